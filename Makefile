@@ -1,0 +1,41 @@
+# `make` or `make help` lists the targets.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+# The installer's options, for example PIP_OPTIONS="--index-url <CPU build of torch>" (README, "Install").
+PIP_OPTIONS ?=
+OMP_NUM_THREADS ?= 1
+export OMP_NUM_THREADS
+PYTEST := $(BIN)/python -m pytest
+ARGS ?=
+
+.DEFAULT_GOAL := help
+.PHONY: help setup run test check bench blind clean
+
+help:  ## list the targets
+	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-8s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+
+# The environment is remade whenever what it should hold has changed.
+$(VENV)/.installed: pyproject.toml constraints.txt
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/pip install --quiet --disable-pip-version-check $(PIP_OPTIONS) -c constraints.txt -e ".[dev,joblib]"
+	@touch $@
+
+setup: $(VENV)/.installed  ## create .venv with everything that development needs
+
+run: setup  ## the main experiment: learn damping from simulated gear vibration with backlash
+	$(BIN)/python -m gear_damping experiment=backlash $(ARGS)
+
+test: setup  ## style, import contracts and the test suite
+	$(BIN)/ruff check .
+	$(BIN)/lint-imports
+	$(PYTEST) -m "not slow" $(ARGS)
+
+check: setup  ## everything `make test` runs and the slow tests
+	$(BIN)/ruff check .
+	$(BIN)/lint-imports
+	$(PYTEST) $(ARGS)
+
+clean:  ## remove the environment and caches; outputs/ stays
+	rm -rf $(VENV) .pytest_cache .ruff_cache .import_linter_cache build dist *.egg-info
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -1,0 +1,49 @@
+"""One way to say that an input is wrong: every problem at once, each with key, rule and remedy."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One thing that is wrong with what the user gave.
+
+    Args:
+        key: What is wrong: a configuration key, or a file with its channel.
+        value: The value found there, or None where there is none to show.
+        rule: What holds for the key.
+        remedy: What the user can do about it.
+        source: The file or command line that the value came from.
+    """
+
+    key: str
+    rule: str
+    value: object = None
+    remedy: str = ""
+    source: str = ""
+
+    def __str__(self) -> str:
+        shown = "" if self.value is None else f" = {self.value!r}"
+        parts = [f"{self.key}{shown}: {self.rule}"]
+        if self.remedy:
+            parts.append(f"remedy: {self.remedy}")
+        if self.source:
+            parts.append(f"(from {self.source})")
+        return "; ".join(parts[:2]) + (f" {parts[2]}" if len(parts) > 2 else "")
+
+
+class InputError(ValueError):
+    """Raised when the user's input cannot be used; holds every problem that was found."""
+
+    def __init__(self, problems: Problem | Sequence[Problem]) -> None:
+        self.problems = [problems] if isinstance(problems, Problem) else list(problems)
+        super().__init__("\n".join(f"- {problem}" for problem in self.problems))
+
+
+def nearest(word: str, choices: Sequence[str]) -> str:
+    """The remedy sentence for a name that is not among `choices`: the nearest one, or the list."""
+    found = get_close_matches(str(word), list(choices), n=1, cutoff=0.5)
+    if found:
+        return f"did you mean '{found[0]}'?"
+    return "choose one of " + ", ".join(sorted(choices))

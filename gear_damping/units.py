@@ -1,0 +1,106 @@
+"""Units cross the door here, once: everything inside is SI, or the solver's natural units.
+
+A unit is a factor to SI and the exponents of (mass, length, time, angle, voltage). Angle and
+voltage are kept apart at the door only, so that an angle cannot be read as a pure number.
+Unknown units are refused: a guess would be worse.
+"""
+
+import re
+from dataclasses import dataclass
+from math import pi
+
+from gear_damping.errors import InputError, Problem, nearest
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """Exponents of the base quantities."""
+
+    mass: float = 0
+    length: float = 0
+    time: float = 0
+    angle: float = 0
+    voltage: float = 0
+
+    def __mul__(self, other: "Dimension") -> "Dimension":
+        return Dimension(*(a + b for a, b in zip(self.exponents, other.exponents, strict=True)))
+
+    def __pow__(self, power: float) -> "Dimension":
+        return Dimension(*(power * a for a in self.exponents))
+
+    @property
+    def exponents(self) -> tuple[float, ...]:
+        """The exponents in the order of the fields."""
+        return (self.mass, self.length, self.time, self.angle, self.voltage)
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A unit: `value * factor` is the value in SI."""
+
+    factor: float
+    dimension: Dimension
+
+
+_KG, _M, _S = Dimension(mass=1), Dimension(length=1), Dimension(time=1)
+_RAD, _V, _ONE = Dimension(angle=1), Dimension(voltage=1), Dimension()
+_N = Dimension(1, 1, -2)
+
+_ATOMS: dict[str, Unit] = {
+    "1": Unit(1.0, _ONE), "%": Unit(1e-2, _ONE), "dB": Unit(1.0, _ONE),
+    "kg": Unit(1.0, _KG), "gram": Unit(1e-3, _KG), "t": Unit(1e3, _KG),
+    "m": Unit(1.0, _M), "cm": Unit(1e-2, _M), "mm": Unit(1e-3, _M), "um": Unit(1e-6, _M), "nm": Unit(1e-9, _M),
+    "s": Unit(1.0, _S), "ms": Unit(1e-3, _S), "us": Unit(1e-6, _S), "min": Unit(60.0, _S), "h": Unit(3600.0, _S),
+    "Hz": Unit(1.0, _S**-1), "kHz": Unit(1e3, _S**-1), "MHz": Unit(1e6, _S**-1),
+    "N": Unit(1.0, _N), "kN": Unit(1e3, _N), "mN": Unit(1e-3, _N),
+    "Nm": Unit(1.0, _N * _M), "rad": Unit(1.0, _RAD), "mrad": Unit(1e-3, _RAD), "urad": Unit(1e-6, _RAD),
+    "deg": Unit(pi / 180, _RAD), "arcmin": Unit(pi / 10800, _RAD), "arcsec": Unit(pi / 648000, _RAD),
+    "rev": Unit(2 * pi, _RAD), "rpm": Unit(2 * pi / 60, _RAD * _S**-1),
+    "V": Unit(1.0, _V), "mV": Unit(1e-3, _V), "uV": Unit(1e-6, _V),
+    "gn": Unit(9.80665, _M * _S**-2),
+}  # fmt: skip
+
+_SPELLINGS = {"µ": "u", "μ": "u", "·": "*", "²": "^2", "³": "^3", "°": "deg", "**": "^", "N.m": "N*m", "N m": "N*m"}
+_FACTOR = re.compile(r"^(?P<atom>[A-Za-z%]+|1)(\^(?P<power>-?\d+(\.\d+)?))?$")
+
+
+def parse_unit(text: str, key: str = "unit", source: str = "") -> Unit:
+    """The unit that `text` names, for example `um`, `N*m`, `m/s^2` or `kg*m^2`.
+
+    Raises:
+        InputError: the unit is unknown; `g` alone is refused because it means gram to some and
+            standard gravity to others.
+    """
+    plain = text.strip()
+    for spelling, ours in _SPELLINGS.items():
+        plain = plain.replace(spelling, ours)
+    plain = plain.replace("(", "").replace(")", "") if "/" not in plain else plain
+    unit = Unit(1.0, _ONE)
+    for index, part in enumerate(plain.split("/")):
+        sign = -1 if index else 1
+        for piece in part.strip("() ").split("*"):
+            atom, power = _parse_factor(piece.strip(), text, key, source)
+            unit = Unit(unit.factor * atom.factor ** (sign * power), unit.dimension * atom.dimension ** (sign * power))
+    return unit
+
+
+def _parse_factor(piece: str, text: str, key: str, source: str) -> tuple[Unit, float]:
+    match = _FACTOR.match(piece)
+    name = match["atom"] if match else piece
+    if not match or name not in _ATOMS:
+        remedy = "write 'gram' or 'gn' (9.80665 m/s^2)" if name == "g" else nearest(name, list(_ATOMS))
+        raise InputError(Problem(key, f"unknown unit '{text}'", remedy=remedy, source=source))
+    return _ATOMS[name], float(match["power"] or 1)
+
+
+def to_si(value: float, unit: str, expected: str, key: str = "value", source: str = "") -> float:
+    """`value` in `unit`, converted to SI; `expected` is any unit of the right dimension.
+
+    Raises:
+        InputError: the unit is unknown or has another dimension than `expected`.
+    """
+    found, wanted = parse_unit(unit, key, source), parse_unit(expected)
+    if found.dimension != wanted.dimension:
+        rule = f"the unit '{unit}' is not one of the kind of '{expected}'"
+        raise InputError(Problem(key, rule, value, f"give it in '{expected}'", source))
+    return value * found.factor
