@@ -1,0 +1,1 @@
+"""Equations of motion as sums of named terms, batched, in pure torch."""

@@ -1,0 +1,1 @@
+"""One file an effect: its equation, parameters, bounds and reference."""

@@ -1,0 +1,116 @@
+"""A model: one base system and the effects that are added to it, with their values."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor
+
+from gear_damping.errors import InputError, Problem, nearest
+from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.scales import Scales
+from gear_damping.physics.systems.base import System
+from gear_damping.physics.terms import Contact, Effect, MeshStiffness
+from gear_damping.units import parse_unit
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A batch of one model in natural units, ready to integrate.
+
+    Args:
+        scales: Natural units of each member.
+        base: Parameters and derived quantities of the system, natural units.
+        terms: For each effect name what its `prepare` gave, natural units.
+        derived: Derived quantities of the system in SI.
+    """
+
+    scales: Scales
+    base: dict[str, Tensor]
+    terms: dict[str, dict[str, Tensor]]
+    derived: dict[str, Tensor]
+
+
+class Model:
+    """A base system with effects; values live outside it, as tensors by flat name.
+
+    The flat name of a system's parameter is its own (`pinion_torque`), that of an effect's is
+    `effect.parameter` (`backlash.gap`).
+    """
+
+    def __init__(self, system: System, effects: Sequence[Effect] = ()) -> None:
+        """Compose the model.
+
+        Raises:
+            InputError: an effect does not go with the system, is there twice, or a slot that holds
+                one term (mesh stiffness, contact) is filled wrongly.
+        """
+        self.system = system
+        self.effects = tuple(effects)
+        problems = list(_composition_problems(system, self.effects))
+        if problems:
+            raise InputError(problems)
+
+    def parameters(self) -> dict[str, Parameter]:
+        """Every parameter by its flat name."""
+        found = {p.name: p for p in self.system.parameters}
+        for effect in self.effects:
+            found |= {f"{effect.name}.{p.name}": p for p in effect.parameters}
+        return found
+
+    def values(self, batch: int, **given: float | Sequence[float] | Tensor) -> dict[str, Tensor]:
+        """Values for a batch in SI: the defaults, with those in `given` put in their place.
+
+        Flat names with a dot are given as `**{"backlash.gap": 1e-4}`. Scalars are shared by the
+        batch; tensors have shape (batch,), or (n, batch) for list-valued parameters.
+
+        Raises:
+            InputError: a name is unknown, or a parameter without a default is not given.
+        """
+        declared = self.parameters()
+        problems = [Problem(k, "no such parameter", remedy=nearest(k, list(declared))) for k in given.keys() - declared]
+        chosen = {name: given.get(name, p.default) for name, p in declared.items()}
+        problems += [Problem(k, "must be given", remedy=declared[k].meaning) for k, v in chosen.items() if v is None]
+        if problems:
+            raise InputError(problems)
+        return {name: _as_rows(value, batch, declared[name].vector) for name, value in chosen.items()}
+
+    def prepare(self, values: Mapping[str, Tensor]) -> Prepared:
+        """Everything the equation needs, in natural units, from SI values by flat name."""
+        own = {p.name: values[p.name] for p in self.system.parameters}
+        given = {e.name: {p.name: values[f"{e.name}.{p.name}"] for p in e.parameters} for e in self.effects}
+        mesh = next((e for e in self.effects if isinstance(e, MeshStiffness)), None)
+        mean_stiffness = None if mesh is None else mesh.mean(given[mesh.name])
+        derived = self.system.derived(own, mean_stiffness)
+        scales = self.system.scales(derived)
+        units = {p.name: p.unit for p in self.system.parameters} | self.system.derived_units
+        base = {k: v / scales.unit_of(parse_unit(units[k]).dimension) for k, v in (own | derived).items()}
+        terms = {e.name: e.prepare(e.to_natural(given[e.name], scales), base) for e in self.effects}
+        return Prepared(scales, base, terms, derived)
+
+
+def _composition_problems(system: System, effects: Sequence[Effect]) -> list[Problem]:
+    problems = []
+    names = [effect.name for effect in effects]
+    for effect in effects:
+        if system.name not in effect.systems:
+            rule = f"does not go with the system '{system.name}'"
+            problems.append(Problem(f"simulator.{effect.name}", rule, remedy=f"it needs {' or '.join(effect.systems)}"))
+        if names.count(effect.name) > 1:
+            problems.append(Problem(f"simulator.{effect.name}", "is there twice", remedy="name it once"))
+    meshes = sum(isinstance(effect, MeshStiffness) for effect in effects)
+    wanted = 1 if system.name == "gear_pair" else 0
+    if meshes != wanted:
+        rule = f"a {system.name} has {wanted} mesh stiffness, here there are {meshes}"
+        problems.append(Problem("simulator.mesh_stiffness", rule, remedy="choose one form of mesh stiffness"))
+    if sum(isinstance(effect, Contact) for effect in effects) > 1:
+        problems.append(Problem("simulator", "two effects define the contact", remedy="keep one of them"))
+    return problems
+
+
+def _as_rows(value: float | Sequence[float] | Tensor, batch: int, vector: bool) -> Tensor:
+    tensor = torch.as_tensor(value, dtype=torch.float64)
+    if vector and tensor.ndim < 2:
+        tensor = tensor.reshape(-1, 1)
+    shape = (tensor.shape[0], batch) if vector else (batch,)
+    return tensor.expand(shape).clone()

@@ -1,0 +1,66 @@
+"""What a term sees when it is evaluated: state, angles, inputs and locked regions at one instant."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import torch
+from torch import Tensor
+
+
+@dataclass(frozen=True)
+class Rotation:
+    """A shaft, or the mesh, at one instant: angle (rad) and angular speed; shape (batch,).
+
+    The cosine and sine are taken once, and only where a term asks for them.
+    """
+
+    angle: Tensor
+    speed: Tensor
+
+    @cached_property
+    def cos(self) -> Tensor:
+        """Cosine of the angle."""
+        return torch.cos(self.angle)
+
+    @cached_property
+    def sin(self) -> Tensor:
+        """Sine of the angle."""
+        return torch.sin(self.angle)
+
+
+@dataclass
+class Moment:
+    """One instant of a batch, in natural units; every tensor has shape (batch,).
+
+    The equation fills the later fields in as it goes: `deflection` and `contact` are there for
+    damping and elastic terms, `normal_force` only for terms that act on it.
+
+    Args:
+        time: Time since the start of the run.
+        displacement: x, along the line of action for a gear pair.
+        velocity: Its rate.
+        extra: States that effects added, by name.
+        inputs: Measured or drawn time series at this instant, by name.
+        locked: Region of each switch, 1 where its function is positive, else 0. Inside a step it
+            is held, so that the step sees one smooth branch.
+        pinion: Pinion shaft (gear pair only).
+        gear: Gear shaft (gear pair only).
+        mesh: Mesh angle, n_teeth_pinion times the pinion angle (gear pair only).
+    """
+
+    time: Tensor
+    displacement: Tensor
+    velocity: Tensor
+    extra: Mapping[str, Tensor] = field(default_factory=dict)
+    inputs: Mapping[str, Tensor] = field(default_factory=dict)
+    locked: Mapping[str, Tensor] = field(default_factory=dict)
+    pinion: Rotation | None = None
+    gear: Rotation | None = None
+    mesh: Rotation | None = None
+    delta: Tensor | None = None
+    delta_rate: Tensor | None = None
+    deflection: Tensor | None = None
+    contact: Tensor | float = 1.0
+    stiffness: Tensor | None = None
+    normal_force: Tensor | None = None

@@ -1,0 +1,62 @@
+"""Declarations of what an effect or a system can be given: parameters (numbers) and options (choices)."""
+
+from dataclasses import dataclass
+from math import inf
+
+from gear_damping.errors import Problem, nearest
+from gear_damping.units import Dimension, parse_unit
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A number with a unit, bounds and a default, all in SI.
+
+    Args:
+        name: Its key in the configuration.
+        unit: Its SI unit; the conversion to the solver's natural units follows from it.
+        default: The value when the effect is on and the key is absent; None: it must be given.
+        lower: Smallest value that makes sense.
+        upper: Largest value that makes sense.
+        meaning: One line for the documentation.
+        source: `paper` where the paper prints the value, `assumed` elsewhere.
+        vector: Whether it is a list of values (harmonics, teeth, steps) instead of one.
+    """
+
+    name: str
+    unit: str
+    default: float | tuple[float, ...] | None
+    meaning: str
+    lower: float = -inf
+    upper: float = inf
+    source: str = "assumed"
+    vector: bool = False
+
+    @property
+    def dimension(self) -> Dimension:
+        """Exponents of mass, length, time, angle and voltage."""
+        return parse_unit(self.unit).dimension
+
+    def problem(self, value: float, key: str, source: str = "") -> Problem | None:
+        """The problem with `value` (SI), or None when it lies within the bounds."""
+        if self.lower <= value <= self.upper:
+            return None
+        rule = f"must lie within {self.lower:g} … {self.upper:g} {self.unit}"
+        nearest_valid = min(max(value, self.lower), self.upper) if value == value else self.default
+        return Problem(key, rule, value, f"nearest valid value {nearest_valid:g}", source)
+
+
+@dataclass(frozen=True)
+class Option:
+    """A choice that changes the form of an equation."""
+
+    name: str
+    choices: tuple[object, ...]
+    default: object
+    meaning: str
+
+    def problem(self, value: object, key: str, source: str = "") -> Problem | None:
+        """The problem with `value`, or None when it is one of the choices."""
+        if any(value == choice and type(value) is type(choice) for choice in self.choices):
+            return None
+        rule = "must be one of " + ", ".join(str(choice) for choice in self.choices)
+        return Problem(key, rule, value, nearest(str(value), [str(c) for c in self.choices]), source)

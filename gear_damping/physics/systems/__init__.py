@@ -1,0 +1,1 @@
+"""The bases that effects are added to: `gear_pair` and `oscillator`."""

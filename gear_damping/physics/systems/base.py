@@ -1,0 +1,52 @@
+"""What a base system declares: its parameters, derived quantities, angles and load."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from typing import ClassVar
+
+from torch import Tensor
+
+from gear_damping.errors import InputError
+from gear_damping.physics.moment import Moment, Rotation
+from gear_damping.physics.parameter import Option, Parameter
+from gear_damping.physics.scales import Scales
+
+Values = Mapping[str, Tensor]
+
+
+class System(ABC):
+    """A single-degree-of-freedom base; effects are added to it as terms."""
+
+    name: ClassVar[str]
+    response: ClassVar[str]  # the channel that displacement is recorded in
+    parameters: ClassVar[tuple[Parameter, ...]]
+    options: ClassVar[tuple[Option, ...]] = ()
+    derived_units: ClassVar[dict[str, str]]
+
+    def __init__(self, **options: object) -> None:
+        """Choose options by name; an unknown value raises InputError."""
+        declared = {option.name: option for option in self.options}
+        self.chosen = {name: options.get(name, option.default) for name, option in declared.items()}
+        problems = [declared[k].problem(v, k) for k, v in self.chosen.items()]
+        if any(problems):
+            raise InputError([p for p in problems if p])
+
+    @abstractmethod
+    def derived(self, values: Values, mean_stiffness: Tensor | None) -> dict[str, Tensor]:
+        """Quantities that follow from the parameters, in SI, with the units of `derived_units`."""
+
+    @abstractmethod
+    def scales(self, derived: Values) -> Scales:
+        """The natural units of each member."""
+
+    @abstractmethod
+    def load(self, now: Moment, p: Values) -> Tensor:
+        """The load F(t) in natural units, from parameters and inputs."""
+
+    def stiffness(self, p: Values) -> Tensor:
+        """The constant stiffness of a base without a mesh."""
+        raise NotImplementedError(f"{self.name} takes its stiffness from a mesh_stiffness effect")
+
+    def rotations(self, time: Tensor, inputs: Values, p: Values) -> dict[str, Rotation]:
+        """Pinion, gear and mesh rotation; empty for a base that does not turn."""
+        return {}

@@ -1,0 +1,113 @@
+"""A spur gear pair in its dynamic transmission error, x = r_b1 theta_1 - r_b2 theta_2.
+
+Özgüven & Houser (1988), J. Sound Vib. 121(3); Kahraman & Singh (1990), J. Sound Vib. 142(1).
+"""
+
+from math import pi
+from typing import ClassVar
+
+import torch
+from torch import Tensor
+
+from gear_damping.physics.moment import Moment, Rotation
+from gear_damping.physics.parameter import Option, Parameter
+from gear_damping.physics.scales import Scales
+from gear_damping.physics.systems.base import System, Values
+
+PRINTED_BASE_CIRCLES = (0.05, 0.11)  # m; the paper's Table 1, truncated base diameters
+PRINTED_MASS = 1.0  # kg; the paper's equation 8 has no mass
+UNLOADED_LENGTH = 1e-6  # m; the unit of length of a member that carries no load
+
+
+class GearPair(System):
+    """The base of a gear pair; its mesh stiffness and damping are effects."""
+
+    name = "gear_pair"
+    response = "transmission_error"
+    parameters: ClassVar = (
+        Parameter("n_teeth_pinion", "1", 20, "teeth of the pinion", 5, 500, "paper"),
+        Parameter("n_teeth_gear", "1", 40, "teeth of the gear", 5, 1000, "paper"),
+        Parameter("module", "m", 3e-3, "module", 1e-4, 0.1, "paper"),
+        Parameter("pressure_angle", "rad", pi / 9, "pressure angle", 0.1, 0.7, "paper"),
+        Parameter("inertia_pinion", "kg*m^2", 2.6e-4, "moment of inertia of the pinion", 1e-9, 1e4, "paper"),
+        Parameter("inertia_gear", "kg*m^2", 4.5e-3, "moment of inertia of the gear", 1e-9, 1e5, "paper"),
+        Parameter("equivalent_mass", "kg", 0.0, "replaces the inertias where positive", 0, 1e5),
+        Parameter("pinion_torque", "N*m", 150.0, "mean torque on the pinion", -1e6, 1e6, "paper"),
+        Parameter("gear_torque", "N*m", 0.0, "torque on the gear, where it is `held`", -1e6, 1e6),
+        Parameter("pinion_speed", "rad/s", 4600 * pi / 30, "mean speed of the pinion", -1e4, 1e4),
+        Parameter("pinion_angle", "rad", 0.0, "pinion angle at the start"),
+        Parameter("mesh_phase", "rad", 0.0, "mesh angle at pinion angle zero"),
+        Parameter("gear_phase", "rad", 0.0, "gear angle at pinion angle zero"),
+        Parameter("initial_displacement", "m", 0.0, "transmission error at the start"),
+        Parameter("initial_velocity", "m/s", 0.0, "its rate at the start"),
+    )
+    options: ClassVar = (
+        Option("gear_torque_mode", ("balanced", "held"), "balanced", "what the gear does when T1 varies"),
+        Option("as_printed", (False, True), False, "mass 1 kg and the paper's base circles"),
+    )
+    derived_units: ClassVar = {
+        "base_radius_pinion": "m",
+        "base_radius_gear": "m",
+        "equivalent_mass": "kg",
+        "mean_stiffness": "N/m",
+        "natural_frequency": "1/s",
+        "load_per_pinion_torque": "1/m",
+        "load_per_gear_torque": "1/m",
+        "mean_load": "N",
+    }
+
+    def derived(self, values: Values, mean_stiffness: Tensor | None) -> dict[str, Tensor]:
+        """Base radii, equivalent mass, natural frequency and load, in SI."""
+        v = values
+        radius_1, radius_2 = self._base_radii(v)
+        inertia_1, inertia_2 = v["inertia_pinion"], v["inertia_gear"]
+        mass = inertia_1 * inertia_2 / (inertia_1 * radius_2**2 + inertia_2 * radius_1**2)
+        mass = torch.where(v["equivalent_mass"] > 0, v["equivalent_mass"], mass)
+        if self.chosen["as_printed"]:
+            mass = torch.full_like(mass, PRINTED_MASS)
+        if self.chosen["gear_torque_mode"] == "balanced":
+            per_pinion, per_gear = 1 / radius_1, torch.zeros_like(radius_1)
+        else:
+            per_pinion, per_gear = mass * radius_1 / inertia_1, mass * radius_2 / inertia_2
+        return {
+            "base_radius_pinion": radius_1,
+            "base_radius_gear": radius_2,
+            "equivalent_mass": mass,
+            "mean_stiffness": mean_stiffness,
+            "natural_frequency": torch.sqrt(mean_stiffness / mass),
+            "load_per_pinion_torque": per_pinion,
+            "load_per_gear_torque": per_gear,
+            "mean_load": per_pinion * v["pinion_torque"] + per_gear * v["gear_torque"],
+        }
+
+    def _base_radii(self, v: Values) -> tuple[Tensor, Tensor]:
+        if self.chosen["as_printed"]:
+            one = torch.ones_like(v["module"])
+            return one * PRINTED_BASE_CIRCLES[0] / 2, one * PRINTED_BASE_CIRCLES[1] / 2
+        per_tooth = v["module"] * torch.cos(v["pressure_angle"]) / 2
+        return per_tooth * v["n_teeth_pinion"], per_tooth * v["n_teeth_gear"]
+
+    def scales(self, derived: Values) -> Scales:
+        """Equivalent mass, static deflection and 1/omega_n."""
+        static = (derived["mean_load"] / derived["mean_stiffness"]).abs()
+        length = torch.where(static > 0, static, torch.full_like(static, UNLOADED_LENGTH))
+        return Scales(derived["equivalent_mass"], length, 1 / derived["natural_frequency"])
+
+    def load(self, now: Moment, p: Values) -> Tensor:
+        """F = m_e (r_b1 T1 / I1 + r_b2 T2 / I2), which is T1 / r_b1 when the torques balance."""
+        pinion = now.inputs.get("pinion_torque", p["pinion_torque"])
+        gear = now.inputs.get("gear_torque", p["gear_torque"])
+        return p["load_per_pinion_torque"] * pinion + p["load_per_gear_torque"] * gear
+
+    def rotations(self, time: Tensor, inputs: Values, p: Values) -> dict[str, Rotation]:
+        """The shafts and the mesh at this time; a measured pinion angle replaces the constant speed."""
+        if "pinion_angle" in inputs:
+            angle, speed = inputs["pinion_angle"], inputs["pinion_angle_rate"]
+        else:
+            angle, speed = p["pinion_angle"] + p["pinion_speed"] * time, p["pinion_speed"]
+        ratio = p["n_teeth_pinion"] / p["n_teeth_gear"]
+        return {
+            "pinion": Rotation(angle, speed),
+            "gear": Rotation(ratio * angle + p["gear_phase"], ratio * speed),
+            "mesh": Rotation(p["n_teeth_pinion"] * angle + p["mesh_phase"], p["n_teeth_pinion"] * speed),
+        }

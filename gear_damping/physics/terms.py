@@ -1,0 +1,153 @@
+"""The slots of the equation of motion, and what every effect declares.
+
+    m x'' + contact * F_d(delta') + N = F(t),   delta = x - e,   N = k * deflection + F_el
+
+An effect is one final class in one file of `effects/` that fills one of these slots (or several).
+Its declaration feeds the simulator, the configuration, the catalogue of causes, the documentation
+and the parametrised tests.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from typing import ClassVar
+
+import torch
+from torch import Tensor
+
+from gear_damping.errors import InputError
+from gear_damping.physics.moment import Moment
+from gear_damping.physics.parameter import Option, Parameter
+from gear_damping.physics.scales import Scales
+
+Values = Mapping[str, Tensor]
+
+
+class Effect(ABC):
+    """What every effect declares; `name` is its configuration key, cause name and file name."""
+
+    name: ClassVar[str]
+    equation: ClassVar[str]
+    reference: ClassVar[str]
+    parameters: ClassVar[tuple[Parameter, ...]]
+    options: ClassVar[tuple[Option, ...]] = ()
+    systems: ClassVar[tuple[str, ...]] = ("gear_pair", "oscillator")
+    dissipative: ClassVar[bool] = False
+
+    def __init__(self, **options: object) -> None:
+        """Choose options by name.
+
+        Raises:
+            InputError: an option has a value that is not among its choices.
+        """
+        declared = {option.name: option for option in self.options}
+        unknown = set(options) - set(declared)
+        if unknown:
+            raise TypeError(f"{self.name} has no option {sorted(unknown)}")
+        chosen = {name: options.get(name, option.default) for name, option in declared.items()}
+        problems = [declared[k].problem(v, f"{self.name}.{k}") for k, v in chosen.items()]
+        if any(problems):
+            raise InputError([p for p in problems if p])
+        self.chosen = chosen
+
+    def to_natural(self, values: Values, scales: Scales) -> dict[str, Tensor]:
+        """The parameters in natural units, from SI; shapes (batch,) or (n, batch)."""
+        units = {p.name: p.dimension for p in self.parameters}
+        return {name: value / scales.unit_of(units[name]) for name, value in values.items()}
+
+    def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
+        """What the term needs at every instant, worked out once from its natural parameters.
+
+        Args:
+            values: The effect's parameters in natural units.
+            base: The system's derived quantities in natural units (see `System.derived`).
+        """
+        return dict(values)
+
+
+class MeshStiffness(Effect):
+    """The slot of k(t); a gear pair has exactly one."""
+
+    @abstractmethod
+    def mean(self, values: Values) -> Tensor:
+        """Mean stiffness over a mesh period, in the units of `values`; shape (batch,)."""
+
+    @abstractmethod
+    def stiffness(self, now: Moment, p: Values) -> Tensor:
+        """k at this instant."""
+
+
+class StiffnessFactor(Effect):
+    """A factor on the stiffness."""
+
+    @abstractmethod
+    def factor(self, now: Moment, p: Values) -> Tensor:
+        """The factor at this instant, 1 where the effect does nothing."""
+
+
+class TransmissionErrorSource(Effect):
+    """A geometric error e that the flanks impose: delta = x - e."""
+
+    @abstractmethod
+    def error(self, now: Moment, p: Values) -> tuple[Tensor, Tensor]:
+        """e and its rate at this instant."""
+
+
+class Switch(Effect):
+    """An effect whose branch depends on the sign of smooth functions.
+
+    The solver holds the branch within a step and splits the step where a function changes sign.
+    """
+
+    @abstractmethod
+    def switches(self, now: Moment, p: Values) -> dict[str, Tensor]:
+        """The switching functions by name; names start with the effect's own."""
+
+
+class Contact(Switch):
+    """The slot that turns delta into the deflection of the flanks; absent, contact never ends."""
+
+    @abstractmethod
+    def deflect(self, now: Moment, p: Values) -> tuple[Tensor, Tensor]:
+        """The deflection, and 1 where the flanks touch, else 0."""
+
+
+class ElasticForce(Effect):
+    """A restoring force beside k * deflection."""
+
+    @abstractmethod
+    def elastic_force(self, now: Moment, p: Values) -> Tensor:
+        """The force at this instant, positive where it opposes a positive deflection."""
+
+
+class DampingForce(Effect):
+    """A force that opposes the rate of deflection; it acts only where the flanks touch."""
+
+    @abstractmethod
+    def damping_force(self, now: Moment, p: Values) -> Tensor:
+        """The force at this instant, positive where it opposes a positive rate."""
+
+
+class Load(Effect):
+    """A force added to the load F(t)."""
+
+    @abstractmethod
+    def load(self, now: Moment, p: Values) -> Tensor:
+        """The force at this instant, positive where it presses the drive flanks together."""
+
+
+class HeldLoad(Effect):
+    """A random load, drawn once per run and held over each output sample."""
+
+    @abstractmethod
+    def draw(self, values: Values, mean_load: Tensor, samples: int, generator: torch.Generator) -> Tensor:
+        """The load in the unit of `mean_load`; shape (batch, samples)."""
+
+
+class Sensor(Effect):
+    """What stands between the motion and its record; applied to SI signals after the integration."""
+
+    position: ClassVar[int] = 0  # in the chain from the motion (low) to the file (high)
+
+    @abstractmethod
+    def measure(self, signal: Tensor, values: Values, time_step: float, generator: torch.Generator) -> Tensor:
+        """The recorded signal from the true one; shape (batch, time), SI."""
