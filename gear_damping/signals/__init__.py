@@ -1,0 +1,1 @@
+"""Wavelet transforms, spectra, orders, envelopes and band-limited interpolation of sampled records."""
