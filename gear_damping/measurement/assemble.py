@@ -1,0 +1,175 @@
+"""From raw values to a record: units, sign, unwrapped angles, one time base, checks."""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.checks import check_record
+from gear_damping.measurement.encoders import base_radius, transmission_error
+from gear_damping.measurement.fields import Problems
+from gear_damping.measurement.own_units import Conversion, UnitSystem
+from gear_damping.measurement.plan import Plan
+from gear_damping.measurement.raw import RawChannel, RawRecord
+from gear_damping.measurement.record import Channel, Finding, Quantity, Record
+from gear_damping.measurement.timebase import moved_to
+from gear_damping.units import parse_unit
+
+_GEOMETRY = ("n_teeth_pinion", "n_teeth_gear", "module", "pressure_angle")
+_SPEEDS = ("pinion_angle", "pinion_speed")
+
+
+class Assembler:
+    """Makes records out of raw ones; what is wrong goes to `problems`."""
+
+    def __init__(self, plan: Plan, units: UnitSystem, problems: Problems, source: str) -> None:
+        self.plan, self.units, self.problems, self.source = plan, units, problems, source
+
+    def record(self, raw: RawRecord, name: str) -> Record | None:
+        """The record, or None where something in it is wrong."""
+        before = len(self.problems)
+        notes, findings = list(raw.base.notes), list(raw.base.findings)
+        channels = {}
+        for channel in raw.channels:
+            with self.problems.collecting():
+                channels[channel.plan.name] = self._channel(channel, raw, notes, findings)
+        with self.problems.collecting():
+            self._from_encoders(raw, channels, notes)
+        conditions = self._conditions(raw, channels, notes)
+        if raw.complete and len(self.problems) == before:
+            self._require(raw, channels, conditions)
+        if not raw.complete or len(self.problems) > before:
+            return None
+        plan, base = raw.plan, raw.base
+        record = Record(
+            name, raw.table.path, raw.sha256, plan.role, base.sampling_rate, base.time, channels, conditions,
+            plan.gear_torque_mode, plan.mesh_index, base.uniform, (*raw.table.notes, *notes),
+        )  # fmt: skip
+        named = tuple(replace(finding, record=name) for finding in findings)
+        return replace(record, findings=(*named, *check_record(record)))
+
+    def _channel(
+        self, raw: RawChannel, record: RawRecord, notes: list[str], findings: list[Finding]
+    ) -> Channel:
+        plan = raw.plan
+        conversion = self.units.conversion(plan.name, raw.unit, f"{plan.key}.unit", self.source)
+        findings += [found] if (found := _unit_conflict(raw, conversion)) else []
+        limits = {
+            name: quantity.value * self._limit(plan.name, quantity, f"{plan.key}.{name}").factor
+            for name, quantity in plan.limits.items()
+        }
+        factor = conversion.factor
+        if record.table.full_scale is not None:
+            factor = limits.get("range", factor)
+            notes.append(f"{plan.name}: full scale is taken as {factor:.6g} {conversion.unit}")
+        values = raw.values * (factor * plan.sensor["polarity"])
+        if plan.name == "pinion_angle":
+            values = _unwrapped(values, notes)
+        if raw.own_time is None:
+            values = record.base.resample(values)
+        else:
+            values = moved_to(record.base.time, raw.own_time, values, plan.key, str(record.table.path))
+            rate = raw.own_time.sampling_rate
+            notes.append(f"{plan.name}: interpolated from {rate:.6g} Hz to the record's time")
+        return Channel(
+            plan.name, values, conversion.unit, raw.unit, conversion.factor, **limits, **plan.sensor
+        )
+
+    def _limit(self, name: str, quantity: Quantity, key: str) -> Conversion:
+        return self.units.conversion(name, quantity.unit, key, self.source)
+
+    def _from_encoders(self, raw: RawRecord, channels: dict[str, Channel], notes: list[str]) -> None:
+        """The pinion angle, and the transmission error where both shafts are measured."""
+        shaft = raw.angles.get("pinion", raw.angles.get("tacho"))
+        if shaft is not None and "pinion_angle" not in channels:
+            angle = raw.base.resample(shaft)
+            channels["pinion_angle"] = Channel("pinion_angle", angle, "rad", datum="arbitrary")
+        if "gear" not in raw.angles or "transmission_error" in channels:
+            return
+        key = f"{raw.plan.key}.encoders"
+        if "pinion" not in raw.angles:
+            rule = "the gear's encoder needs the pinion's beside it"
+            raise InputError(Problem(key, rule, remedy="declare encoders.pinion", source=self.source))
+        channels["transmission_error"] = self._error(raw.angles, raw, key)
+        notes.append("transmission_error: r_b1 theta_1 - r_b2 theta_2 from the encoders, without its mean")
+
+    def _error(self, angles: dict[str, NDArray], raw: RawRecord, key: str) -> Channel:
+        missing = [name for name in _GEOMETRY if name not in self.plan.parameters]
+        if missing:
+            rule = "the transmission error from encoders needs the base radii"
+            remedy = f"give {', '.join(missing)} under parameters"
+            raise InputError(Problem(key, rule, None, remedy, self.source))
+        teeth_1, teeth_2, module, pressure = (self.plan.parameters[name].value for name in _GEOMETRY)
+        values = transmission_error(
+            angles["pinion"], angles["gear"],
+            base_radius(teeth_1, module, pressure), base_radius(teeth_2, module, pressure),
+        )  # fmt: skip
+        return Channel("transmission_error", raw.base.resample(values), "m", datum="arbitrary")
+
+    def _conditions(
+        self, raw: RawRecord, channels: dict[str, Channel], notes: list[str]
+    ) -> dict[str, Quantity]:
+        """A channel beats a condition of the same name."""
+        kept = {}
+        for name, quantity in raw.plan.conditions.items():
+            if name in channels:
+                notes.append(f"{name}: the channel is used, not the value under conditions")
+                continue
+            kept[name] = quantity
+            if self.plan.system == "oscillator":
+                with self.problems.collecting():
+                    unit = self._limit(name, quantity, f"{raw.plan.key}.conditions.{name}")
+                    kept[name] = Quantity(quantity.value * unit.factor, unit.unit, quantity.uncertainty)
+        return kept
+
+    def _require(self, raw: RawRecord, channels: dict[str, Channel], conditions: dict[str, Quantity]) -> None:
+        """What a record must have to be of use."""
+        have = {*channels, *conditions}
+        if self.plan.system == "oscillator":
+            self._missing(raw, {"displacement", "velocity", "acceleration"} & {*channels}, "a displacement")
+            return
+        self._missing(raw, {"transmission_error", "acceleration"} & {*channels}, "a transmission_error")
+        self._missing(raw, have & {*_SPEEDS}, "pinion_speed under conditions, or a pinion_angle")
+        if "transmission_error" not in channels:
+            return
+        self._missing(raw, have & {"pinion_torque"}, "pinion_torque under conditions, or its channel")
+        torque = channels.get("pinion_torque")
+        settled = "gear_torque" in have or raw.plan.gear_torque_mode
+        if torque is not None and np.ptp(torque.values) > 0 and not settled:
+            rule = "the pinion torque varies and nothing says what the gear torque does"
+            remedy = "write gear_torque: balanced (or held) beside pinion_torque, or its channel"
+            self._problem(raw, rule, remedy)
+
+    def _missing(self, raw: RawRecord, found: set[str], needed: str) -> None:
+        if not found:
+            self._problem(raw, f"the record lacks {needed}", f"declare {needed}")
+
+    def _problem(self, raw: RawRecord, rule: str, remedy: str) -> None:
+        self.problems.append(Problem(f"{raw.plan.key}.channels", rule, None, remedy, self.source))
+
+
+def _unwrapped(angle: NDArray[np.float64], notes: list[str]) -> NDArray[np.float64]:
+    """An angle that goes on where the encoder began again at zero."""
+    whole = np.unwrap(angle)
+    if not np.array_equal(whole, angle):
+        notes.append("pinion_angle: unwrapped")
+    return whole
+
+
+def _unit_conflict(raw: RawChannel, conversion: Conversion) -> Finding | None:
+    """The header names a unit and the YAML another one."""
+    if raw.header_unit is None or raw.header_unit == raw.unit:
+        return None
+    try:
+        header = parse_unit(raw.header_unit)
+    except InputError:
+        return None  # brackets that hold no unit
+    stated = parse_unit(raw.unit)
+    if (header.dimension, header.factor) == (stated.dimension, stated.factor):
+        return None
+    message = (
+        f"the header of column '{raw.plan.column}' says '{raw.header_unit}' and the YAML '{raw.unit}', "
+        f"which was used to read {raw.plan.name} in {conversion.unit}; correct the one that is wrong"
+    )
+    return Finding("unit_conflict", message, channel=raw.plan.name)

@@ -1,0 +1,1 @@
+"""One small reader per file format, found by the suffix of the file."""

@@ -1,0 +1,45 @@
+"""WAV files, which vibration recorders write: samples are fractions of full scale."""
+
+import warnings
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.io import wavfile
+
+from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.formats.table import ArrayTable, Table
+
+
+def read_wav(path: Path, max_bytes: int) -> Table:
+    """The channels of a WAV file by index, integers divided by full scale, with its sampling rate.
+
+    Raises:
+        InputError: not a readable WAV file.
+    """
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", wavfile.WavFileWarning)  # chunks of metadata that scipy skips
+            rate, samples = wavfile.read(path)
+    except Exception as error:  # scipy raises whatever a damaged file leads it to
+        remedy = "export uncompressed PCM or float"
+        raise InputError(Problem("file", f"not a readable WAV file ({error})", str(path), remedy)) from None
+    scaled, note = _fractions(samples)
+    table = ArrayTable(path, list(np.atleast_2d(scaled.T)))
+    table.sampling_rate = float(rate)
+    table.full_scale = 1.0 if samples.dtype.kind in "iu" else None
+    table.notes = (note,)
+    return table
+
+
+def _fractions(samples: NDArray) -> tuple[NDArray[np.float64], str]:
+    """Integers become fractions of full scale; scipy hands 24 bits over in the upper bytes of 32."""
+    values = samples.astype(np.float64)
+    if samples.dtype.kind == "f":
+        return values, "WAV holds floating-point samples: taken as they are"
+    bits = 8 * samples.dtype.itemsize
+    scale = float(2 ** (bits - 1))
+    if samples.dtype.kind == "u":  # 8-bit WAV counts from 0 to 255 with zero at 128
+        values = values - scale
+    said = f"WAV holds integers in {bits} bits: divided by {scale:.0f}, so that full scale is 1"
+    return values / scale, said

@@ -1,0 +1,97 @@
+"""The units that values are kept in: SI for a gear pair, the rig's own for an oscillator.
+
+An oscillator measured in volts or degrees stays in them; its velocity and acceleration are put in
+the displacement's unit per second, and all its records in the units of the first.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.record import Quantity
+from gear_damping.measurement.vocabulary import GEAR_CHANNELS, OSCILLATOR_CHANNELS
+from gear_damping.units import Dimension, Unit, parse_unit
+
+_PER_SECOND = Dimension(time=-1)
+_PER = {0: "", 1: "/s", 2: "/s^2"}
+
+
+@dataclass(frozen=True)
+class Conversion:
+    """`value * factor` is the value in `unit`."""
+
+    factor: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class _Reference:
+    """The unit that a kind of channel is kept in; `order` counts time derivatives."""
+
+    unit: Unit
+    text: str
+    order: int
+
+
+class UnitSystem:
+    """Converts what was declared into the units that are kept.
+
+    Args:
+        system: `gear_pair` or `oscillator`.
+        declared: Name and unit of every channel, in the order of the file; unknown units are skipped.
+    """
+
+    def __init__(self, system: str, declared: Iterable[tuple[str, str]]) -> None:
+        self.system = system
+        self._response: _Reference | None = None
+        self._force: _Reference | None = None
+        for name, text in declared if system == "oscillator" else ():
+            try:
+                unit = parse_unit(text)
+            except InputError:
+                continue  # reported where the channel itself is converted
+            order = OSCILLATOR_CHANNELS[name]
+            if order is None:
+                self._force = self._force or _Reference(unit, text, 0)
+            elif self._response is None or order < self._response.order:
+                self._response = _Reference(unit, text, order)
+
+    def conversion(self, name: str, text: str, key: str, source: str) -> Conversion:
+        """How values of channel `name` in the unit `text` are converted.
+
+        Raises:
+            InputError: the unit is unknown or of another kind than the channel.
+        """
+        unit = parse_unit(text, key, source)
+        if self.system == "gear_pair":
+            kept = _Reference(parse_unit(GEAR_CHANNELS[name]), GEAR_CHANNELS[name], 0)
+        else:
+            kept = self._oscillator_unit(name, text, unit)
+        if unit.dimension != kept.unit.dimension:
+            rule = f"the unit '{text}' is not one of the kind of '{kept.text}'"
+            raise InputError(Problem(key, rule, text, f"give {name} in '{kept.text}'", source))
+        return Conversion(unit.factor / kept.unit.factor, kept.text)
+
+    def _oscillator_unit(self, name: str, text: str, unit: Unit) -> _Reference:
+        order = OSCILLATOR_CHANNELS[name]
+        reference = self._force if order is None else self._response
+        if reference is None:
+            return _Reference(unit, text, 0)
+        times = (order or 0) - reference.order if order is not None else 0
+        dimension = reference.unit.dimension * _PER_SECOND**times
+        return _Reference(Unit(reference.unit.factor, dimension), reference.text + _PER[times], order or 0)
+
+    def force_gain(self, quantity: Quantity, source: str) -> Quantity:
+        """The force gain in the kept units, response/s^2 per force; `own` says that it is in them."""
+        if quantity.unit == "own" or self._response is None or self._force is None:
+            return quantity
+        key = "parameters.force_gain"
+        unit = parse_unit(quantity.unit, key, source)
+        per = 2 - self._response.order
+        wanted = self._response.unit.dimension * _PER_SECOND**per * self._force.unit.dimension**-1
+        text = f"{self._response.text}{_PER[per]}/({self._force.text})"
+        if unit.dimension != wanted:
+            rule = f"the unit '{quantity.unit}' is not one of the kind of '{text}'"
+            raise InputError(Problem(key, rule, quantity.value, f"give it in '{text}'", source))
+        factor = unit.factor / self._response.unit.factor * self._force.unit.factor
+        return Quantity(quantity.value * factor, text, quantity.uncertainty)

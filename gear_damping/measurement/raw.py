@@ -1,0 +1,198 @@
+"""Reading what a record's plan asks for out of its file, before units are compared."""
+
+import hashlib
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.checks import refuse_not_finite
+from gear_damping.measurement.fields import Problems
+from gear_damping.measurement.formats.registry import read_table
+from gear_damping.measurement.formats.table import Table
+from gear_damping.measurement.paths import resolve_file
+from gear_damping.measurement.plan import ChannelPlan, RecordPlan, TimePlan
+from gear_damping.measurement.shaft import shaft_angle
+from gear_damping.measurement.timebase import TimeBase, stamped_time, steady_time
+from gear_damping.units import to_si
+
+LEAST_SAMPLES = 8
+
+
+class Files:
+    """Files that are read and digested once, however many records lie in them."""
+
+    def __init__(self, folder: Path, max_bytes: int) -> None:
+        self._folder, self._max_bytes = folder, max_bytes
+        self._tables: dict[Path, Table] = {}
+        self._digests: dict[Path, str] = {}
+
+    def table(self, file: str, key: str, source: str) -> Table:
+        """The table of a file named in the YAML; raises InputError where it cannot be read."""
+        path = resolve_file(file, self._folder, key, source)
+        if path not in self._tables:
+            self._tables[path] = read_table(path, self._max_bytes)
+        return self._tables[path]
+
+    def sha256(self, path: Path) -> str:
+        """The digest of a file in hexadecimal."""
+        if path not in self._digests:
+            with path.open("rb") as file:
+                self._digests[path] = hashlib.file_digest(file, "sha256").hexdigest()
+        return self._digests[path]
+
+
+@dataclass(frozen=True, eq=False)
+class RawChannel:
+    """A channel's values as they stand in the file, with their unit there."""
+
+    plan: ChannelPlan
+    values: NDArray[np.float64]
+    unit: str
+    header_unit: str | None
+    own_time: TimeBase | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class RawRecord:
+    """A record as it stands in its file; `angles` holds the shafts' angles in rad by encoder."""
+
+    plan: RecordPlan
+    table: Table
+    sha256: str
+    base: TimeBase
+    channels: list[RawChannel]
+    angles: dict[str, NDArray[np.float64]]
+    complete: bool
+
+
+class RawReader:
+    """Reads one record; what is wrong goes to `problems`."""
+
+    def __init__(self, plan: RecordPlan, table: Table, problems: Problems, source: str) -> None:
+        self.plan, self.table, self.problems, self.source = plan, table, problems, source
+        self.file = str(table.path)
+        self.first, self.stop = plan.rows or (0, 0)
+
+    def read(self, sha256: str) -> RawRecord | None:
+        """The record, or None where it has no time base; `complete` where all of it could be read."""
+        before, base = len(self.problems), None
+        with self.problems.collecting():
+            self._find_rows()
+            base = self._base()
+        channels = []
+        for plan in self.plan.channels:
+            with self.problems.collecting():
+                channels.append(self._channel(plan))
+        angles = {}
+        for plan in self.plan.encoders if base else ():
+            with self.problems.collecting():
+                angles[plan.name] = shaft_angle(plan, base, self.sliced, self.unsliced, self.file)
+        if base is None:
+            return None
+        complete = len(self.problems) == before
+        return RawRecord(self.plan, self.table, sha256, base, channels, angles, complete)
+
+    def _find_rows(self) -> None:
+        """The number of rows is that of the time stamps, else of the first column that can be read."""
+        time = f"{self.plan.key}.channels.time"
+        shared = [plan for plan in self.plan.channels if plan.timing is None]
+        counted = [plan for plan in self.plan.encoders if not plan.timestamps]
+        columns = [(self.plan.timing.column, time)] if self.plan.timing.column is not None else []
+        columns += [(plan.column, f"{plan.key}.column") for plan in (*shared, *counted)]
+        if not columns:
+            rule, remedy = "no column gives the number of samples", "declare a time column"
+            raise InputError(Problem(self.plan.key, rule, None, remedy, self.source))
+        sizes = (self._size(column) for column, _ in columns)
+        n = next((size for size in sizes if size is not None), None) or self._all(*columns[0]).size
+        if self.stop > n:
+            self.stop = n
+            rule, remedy = f"{self.table.path.name} has {n} rows", f"end the slice at {n} or before"
+            raise InputError(
+                Problem(f"{self.plan.key}.slice", rule, list(self.plan.rows), remedy, self.source)
+            )
+        self.stop = self.stop or n
+        if self.stop - self.first < LEAST_SAMPLES:
+            rule = f"{self.stop - self.first} samples; a record needs at least {LEAST_SAMPLES}"
+            raise InputError(Problem(self.plan.key, rule, None, "use a longer slice or file", self.source))
+
+    def _size(self, column: str | int) -> int | None:
+        """The length of a column; None where it cannot be read, which its channel will say."""
+        try:
+            return self._all(column, "").size
+        except InputError:
+            return None
+
+    def _all(self, column: str | int, key: str) -> NDArray[np.float64]:
+        return self.table.values(self.table.index(column, key))
+
+    def sliced(self, column: str | int, key: str) -> NDArray[np.float64]:
+        """(n,) finite values in the rows of the record."""
+        values = self._all(column, key)
+        if values.size < self.stop:
+            rule = f"column '{column}' has {values.size} samples, the record {self.stop}"
+            remedy = "give the channel its own time or sampling_rate"
+            raise InputError(Problem(key, rule, remedy=remedy, source=self.file))
+        values = values[self.first : self.stop]
+        refuse_not_finite(values, self._named(key, column), self.file, self.first)
+        return values
+
+    def _named(self, key: str, column: str | int) -> str:
+        return f"{key}, {self.table.path.name} column '{column}'"
+
+    def _base(self) -> TimeBase | None:
+        timing, n = self.plan.timing, self.stop - self.first
+        held = self.table.sampling_rate
+        if timing.column is not None:
+            return self._stamped(timing, f"{self.plan.key}.channels.time", self.sliced, self.first)
+        rate = timing.sampling_rate or held
+        if rate is None:
+            if not any(problem.key.startswith(self.plan.key) for problem in self.problems):
+                rule = "neither time nor sampling_rate is given"
+                remedy = "write sampling_rate: {value: 50, unit: kHz}"
+                raise InputError(Problem(f"{self.plan.key}.channels", rule, None, remedy, self.source))
+            return None
+        if held and abs(rate / held - 1) > 1e-3:
+            rule, remedy = f"the file itself says {held:g} Hz", "leave sampling_rate out"
+            raise InputError(Problem(f"{self.plan.key}.sampling_rate", rule, rate, remedy, self.source))
+        return steady_time(rate, self.first, n)
+
+    def _stamped(self, timing: TimePlan, key: str, read: object, first: int) -> TimeBase:
+        column = timing.column
+        values = read(column, key)
+        unit = timing.unit or self.table.unit(self.table.index(column, key))
+        if unit is None:
+            raise InputError(Problem(f"{key}.unit", "is missing", None, "give unit: s", self.source))
+        seconds = values * to_si(1.0, unit, "s", f"{key}.unit", self.source)
+        return stamped_time(seconds, self._named(key, column), self.file, first)
+
+    def _channel(self, plan: ChannelPlan) -> RawChannel:
+        header = self.table.unit(self.table.index(plan.column, f"{plan.key}.column"))
+        unit = plan.unit or header
+        if unit is None:
+            remedy = "give the unit of the column"
+            raise InputError(Problem(f"{plan.key}.unit", "is missing", None, remedy, self.source))
+        if plan.timing is None:
+            return RawChannel(plan, self.sliced(plan.column, f"{plan.key}.column"), unit, header)
+        values = self.unsliced(plan.column, f"{plan.key}.column")
+        return RawChannel(plan, values, unit, header, self._own_time(plan, values.size))
+
+    def unsliced(self, column: str | int, key: str) -> NDArray[np.float64]:
+        """All finite values of a column."""
+        values = self._all(column, key)
+        refuse_not_finite(values, self._named(key, column), self.file)
+        return values
+
+    def _own_time(self, plan: ChannelPlan, n: int) -> TimeBase:
+        key = f"{plan.key}.time"
+        if plan.timing.sampling_rate is not None:
+            return steady_time(plan.timing.sampling_rate, 0, n)
+        if plan.timing.column is None:
+            raise InputError(Problem(key, "gives no time base", None, "name a column or a rate", self.source))
+        base = self._stamped(plan.timing, key, self.unsliced, 0)
+        if base.time.size != n:
+            rule = f"{base.time.size} time stamps for {n} samples"
+            raise InputError(Problem(key, rule, None, "name the stamps of this very channel", self.file))
+        return base

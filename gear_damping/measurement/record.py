@@ -1,0 +1,171 @@
+"""What a measurement is inside the program: arrays in SI (or in the rig's own unit) with their story."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+ROLES = ("fit", "holdout")
+SEVERITIES = ("data_problem", "note")
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A value with its unit; `uncertainty` is relative, and 0 means known.
+
+    Args:
+        value: The value, in SI unless `unit` names the rig's own unit.
+        unit: The unit of `value`.
+        uncertainty: Relative standard uncertainty, >= 0.
+    """
+
+    value: float
+    unit: str
+    uncertainty: float = 0.0
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Something suspicious in data that could be read.
+
+    Args:
+        kind: What it is, for example `clipped` or `dropped_samples`.
+        message: A sentence with the remedy.
+        record: The record's name.
+        channel: The channel, or "" where it concerns the whole record.
+        sample: The first sample of the record that shows it, or None.
+        severity: `data_problem` (no physical cause may be named before it is cured) or `note`.
+    """
+
+    kind: str
+    message: str
+    record: str = ""
+    channel: str = ""
+    sample: int | None = None
+    severity: str = "data_problem"
+
+
+@dataclass(frozen=True, eq=False)
+class Channel:
+    """One measured signal and what is declared about its sensor.
+
+    Args:
+        name: The quantity, for example `transmission_error` or `displacement`.
+        values: (n,) float64 in `unit`; polarity is applied, delay and filters are not undone.
+        unit: SI for a gear pair; an oscillator stays in the unit that it was measured in.
+        declared_unit: The unit in the file; residuals are reported in it.
+        declared_factor: One `declared_unit` in `unit`.
+        lowpass: Corner of the sensor's low-pass in Hz.
+        highpass: Corner of its high-pass in Hz.
+        coupling: `DC` or `AC`; an AC channel knows nothing of the mean.
+        delay: How late the channel is, in s.
+        range: Full scale, in `unit`.
+        noise: Standard deviation of the sensor noise, in `unit`.
+        uncertainty: Relative uncertainty of the gain; 0 means known.
+        polarity: The sign that the file's values were multiplied by.
+        datum: `absolute`, or `arbitrary` where the zero means nothing.
+        mounting: `tangential` or `casing`, for the acceleration of a gear pair.
+        radius: Radius in m at which a tangential acceleration is measured.
+    """
+
+    name: str
+    values: NDArray[np.float64]
+    unit: str
+    declared_unit: str = ""
+    declared_factor: float = 1.0
+    lowpass: float | None = None
+    highpass: float | None = None
+    coupling: str = "DC"
+    delay: float = 0.0
+    range: float | None = None
+    noise: float | None = None
+    uncertainty: float = 0.0
+    polarity: int = 1
+    datum: str = "absolute"
+    mounting: str | None = None
+    radius: float | None = None
+
+    def __post_init__(self) -> None:
+        if np.ndim(self.values) != 1:
+            rule = f"values of channel '{self.name}' must be one-dimensional, not {np.shape(self.values)}"
+            raise ValueError(f"{rule}; ravel them")
+        if not self.declared_unit:
+            object.__setattr__(self, "declared_unit", self.unit)
+
+
+@dataclass(frozen=True, eq=False)
+class Record:
+    """Signals that were measured together.
+
+    Args:
+        name: Unique within the measurement.
+        file: The file that the values come from.
+        sha256: The digest of that file in hexadecimal.
+        role: `fit`, `holdout`, or None where the program holds out operating conditions itself.
+        sampling_rate: In Hz; for uneven stamps one over their median step.
+        time: (n,) float64, the stamps of the samples in s.
+        channels: Channel by name, all of n samples.
+        conditions: Constant operating conditions by name, in SI.
+        gear_torque_mode: `balanced` or `held`, where said instead of a gear torque.
+        mesh_index: True where the zero of the pinion angle is the zero of the mesh.
+        uniform: False where the stamps are too uneven to be put on a grid.
+        notes: What was done to the values on their way in.
+        findings: What is suspicious in them.
+    """
+
+    name: str
+    file: Path
+    sha256: str
+    role: str | None
+    sampling_rate: float
+    time: NDArray[np.float64]
+    channels: Mapping[str, Channel]
+    conditions: Mapping[str, Quantity] = field(default_factory=dict)
+    gear_torque_mode: str | None = None
+    mesh_index: bool = False
+    uniform: bool = True
+    notes: tuple[str, ...] = ()
+    findings: tuple[Finding, ...] = ()
+
+    def __post_init__(self) -> None:
+        if self.role not in (*ROLES, None):
+            raise ValueError(f"role must be one of {ROLES} or None, not {self.role!r}")
+        if not self.sampling_rate > 0:
+            raise ValueError(f"sampling_rate must be positive, not {self.sampling_rate}")
+        for name, channel in self.channels.items():
+            if channel.values.shape != self.time.shape:
+                rule = f"channel '{name}' has {channel.values.shape} samples and time {self.time.shape}"
+                raise ValueError(f"{rule}; all channels of a record share its time")
+
+    @property
+    def duration(self) -> float:
+        """Time from the first to the last sample, in s."""
+        return float(self.time[-1] - self.time[0])
+
+
+@dataclass(frozen=True, eq=False)
+class Measurement:
+    """A rig and what was recorded on it.
+
+    Args:
+        system: `gear_pair` or `oscillator`.
+        parameters: Nominal values of the rig by name, in SI or the rig's own units.
+        records: The records in the order of the file.
+        source: The measurement.yaml that they were declared in.
+    """
+
+    system: str
+    parameters: Mapping[str, Quantity]
+    records: tuple[Record, ...]
+    source: Path
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """Everything suspicious, over all records."""
+        return tuple(finding for record in self.records for finding in record.findings)
+
+    def with_role(self, role: str | None) -> tuple[Record, ...]:
+        """The records of one role: `fit`, `holdout` or None (not said)."""
+        return tuple(record for record in self.records if record.role == role)

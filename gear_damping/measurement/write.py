@@ -1,0 +1,126 @@
+"""Writing records as files that load_measurement reads back to the same numbers."""
+
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+import yaml
+
+from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.record import Channel, Quantity, Record
+from gear_damping.measurement.vocabulary import CHANNELS, SYSTEMS
+
+YAML_NAME = "measurement.yaml"
+_FILE_NAME = re.compile(r"^[A-Za-z0-9][\w.-]*$")
+
+
+def write_measurement(
+    folder: str | Path,
+    system: str,
+    records: Sequence[Record],
+    parameters: Mapping[str, Quantity] | None = None,
+) -> Path:
+    """Write one CSV file per record and a measurement.yaml beside them.
+
+    Args:
+        folder: Is made where it does not exist.
+        system: `gear_pair` or `oscillator`.
+        records: Each with a unique name that can be a file name; `file` and `sha256` are not used.
+        parameters: Nominal values of the rig, in SI or the oscillator's own units.
+
+    Returns:
+        The path of the measurement.yaml.
+
+    Raises:
+        InputError: one of the files exists already; nothing is overwritten and nothing written.
+        ValueError: an unknown system or channel, or names that repeat or cannot be file names.
+    """
+    _refuse_names(system, records)
+    folder = Path(folder)
+    files = {record.name: folder / f"{record.name}.csv" for record in records}
+    taken = [path for path in (*files.values(), folder / YAML_NAME) if path.exists()]
+    if taken:
+        remedy = "choose another folder, or remove it"
+        raise InputError([Problem("folder", "the file exists already", str(path), remedy) for path in taken])
+    folder.mkdir(parents=True, exist_ok=True)
+    for record in records:
+        _write_csv(files[record.name], record)
+    content = {
+        "system": system,
+        "parameters": {name: _quantity(quantity) for name, quantity in (parameters or {}).items()},
+        "records": [_declaration(record) for record in records],
+    }
+    text = yaml.safe_dump({key: value for key, value in content.items() if value}, sort_keys=False)
+    with (folder / YAML_NAME).open("x", encoding="utf-8") as file:
+        file.write(text)
+    return folder / YAML_NAME
+
+
+def _refuse_names(system: str, records: Sequence[Record]) -> None:
+    if system not in SYSTEMS:
+        raise ValueError(f"system must be one of {SYSTEMS}, not {system!r}")
+    names = [record.name for record in records]
+    if not names or len(set(names)) < len(names):
+        raise ValueError(f"records must be at least one, each with its own name, not {names}; rename them")
+    for record in records:
+        if not _FILE_NAME.match(record.name):
+            rule = f"the record name {record.name!r} is no file name"
+            raise ValueError(f"{rule}; use letters, digits, '_', '-', '.'")
+        unknown = set(record.channels) - set(CHANNELS[system])
+        if unknown:
+            rule = f"record '{record.name}' has channels {sorted(unknown)} that a {system} lacks"
+            raise ValueError(f"{rule}; drop them")
+
+
+def _write_csv(path: Path, record: Record) -> None:
+    """Seventeen digits bring every float64 back exactly."""
+    columns = [record.time, *(channel.values / channel.polarity for channel in record.channels.values())]
+    with path.open("x", encoding="utf-8") as file:
+        file.write(",".join(["time", *record.channels]) + "\n")
+        np.savetxt(file, np.column_stack(columns), delimiter=",", fmt="%.17g")
+
+
+def _declaration(record: Record) -> dict[str, object]:
+    channels: dict[str, object] = {"time": {"column": "time", "unit": "s"}}
+    channels |= {name: _channel(channel) for name, channel in record.channels.items()}
+    conditions: dict[str, object] = {name: _quantity(value) for name, value in record.conditions.items()}
+    if record.gear_torque_mode:
+        conditions["gear_torque"] = record.gear_torque_mode
+    declaration = {
+        "name": record.name,
+        "file": f"{record.name}.csv",
+        "role": record.role,
+        "channels": channels,
+        "conditions": conditions,
+        "mesh_index": record.mesh_index,
+    }
+    return {key: value for key, value in declaration.items() if value}
+
+
+def _channel(channel: Channel) -> dict[str, object]:
+    """The column, its unit and what differs from the defaults of a sensor."""
+    declared: dict[str, object] = {"column": channel.name, "unit": channel.unit}
+    for name, unit in (
+        ("lowpass", "Hz"), ("highpass", "Hz"), ("delay", "s"), ("radius", "m"),
+        ("range", channel.unit), ("noise", channel.unit),
+    ):  # fmt: skip
+        value = getattr(channel, name)
+        if value:
+            declared[name] = {"value": float(value), "unit": unit}
+    for name, default in (
+        ("coupling", "DC"), ("uncertainty", 0.0), ("polarity", 1), ("datum", "absolute"), ("mounting", None),
+    ):  # fmt: skip
+        value = getattr(channel, name)
+        if value != default:
+            declared[name] = value
+    return declared
+
+
+def _quantity(quantity: Quantity) -> dict[str, object]:
+    written: dict[str, object] = {"value": float(quantity.value)}
+    if quantity.unit != "own":
+        written["unit"] = quantity.unit
+    if quantity.uncertainty:
+        written["uncertainty"] = float(quantity.uncertainty)
+    return written

@@ -1,0 +1,205 @@
+"""What a sound measurement.yaml becomes: SI, signs, slices, time bases, units of an oscillator."""
+
+import hashlib
+from math import pi
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+from gear_damping.measurement.load import load_measurement
+from gear_damping.measurement.paths import data_root
+
+
+def test_a_sound_gear_record_is_read_in_si(bench):
+    measurement = bench.load()
+    record = measurement.records[0]
+    assert (measurement.system, record.name, record.role) == ("gear_pair", "run_1", "fit")
+    assert record.gear_torque_mode == "balanced"
+    assert measurement.findings == ()
+    assert record.notes == ()
+    error = record.channels["transmission_error"]
+    np.testing.assert_allclose(error.values, bench.columns["dte"] * 1e-6, rtol=1e-15)
+    assert (error.unit, error.declared_unit, error.declared_factor) == ("m", "um", 1e-6)
+    np.testing.assert_array_equal(record.channels["pinion_torque"].values, bench.columns["T1"])
+    np.testing.assert_array_equal(record.time, bench.columns["t"])
+    assert record.sampling_rate == pytest.approx(20000, rel=1e-12)
+    assert record.sha256 == hashlib.sha256((bench.folder / "run_1.csv").read_bytes()).hexdigest()
+
+
+def test_parameters_are_converted_and_keep_their_uncertainty(bench):
+    bench.content["parameters"] = {
+        "module": {"value": 3, "unit": "mm"},
+        "torque_gain": {"value": 1.02, "uncertainty": 0.05},
+        "n_teeth_pinion": 20,
+        "pressure_angle": {"value": 20, "unit": "deg"},
+    }
+    parameters = bench.load().parameters
+    assert parameters["module"].value == pytest.approx(0.003, rel=1e-15)
+    assert (parameters["torque_gain"].value, parameters["torque_gain"].uncertainty) == (1.02, 0.05)
+    assert parameters["n_teeth_pinion"].value == 20
+    assert parameters["pressure_angle"].value == pytest.approx(pi / 9, rel=1e-15)
+
+
+def test_slice_takes_rows_a_to_b_minus_one(bench):
+    bench.record["slice"] = [100, 250]
+    record = bench.load().records[0]
+    np.testing.assert_array_equal(record.time, bench.columns["t"][100:250])
+    np.testing.assert_allclose(
+        record.channels["transmission_error"].values, bench.columns["dte"][100:250] * 1e-6, rtol=1e-15
+    )
+
+
+def test_sampling_rate_replaces_the_time_column_and_counts_from_the_slice(bench):
+    del bench.channels["time"]
+    bench.channels["sampling_rate"] = {"value": 20, "unit": "kHz"}
+    bench.record["slice"] = [100, 250]
+    record = bench.load().records[0]
+    assert record.sampling_rate == 20000
+    np.testing.assert_array_equal(record.time, np.arange(100, 250) / 20000)
+
+
+def test_polarity_turns_the_sign_and_sensor_keys_are_kept_in_si(bench):
+    bench.channels["transmission_error"] |= {
+        "polarity": -1, "lowpass": {"value": 8, "unit": "kHz"}, "highpass": {"value": 2, "unit": "Hz"},
+        "coupling": "AC", "delay": {"value": 12, "unit": "us"}, "range": {"value": 0.2, "unit": "mm"},
+        "noise": {"value": 50, "unit": "nm"}, "uncertainty": 0.01, "datum": "arbitrary",
+    }  # fmt: skip
+    channel = bench.load().records[0].channels["transmission_error"]
+    np.testing.assert_allclose(channel.values, -bench.columns["dte"] * 1e-6, rtol=1e-15)
+    assert (channel.lowpass, channel.highpass, channel.coupling) == (8000, 2, "AC")
+    assert (channel.uncertainty, channel.polarity, channel.datum) == (0.01, -1, "arbitrary")
+    assert [channel.delay, channel.range, channel.noise] == pytest.approx([12e-6, 2e-4, 5e-8], rel=1e-12)
+
+
+def test_a_channel_beats_the_condition_of_its_name(bench):
+    bench.record["conditions"] = {
+        "pinion_speed": {"value": 1800, "unit": "rpm"},
+        "pinion_torque": {"value": 99, "unit": "N*m"},
+    }
+    record = bench.load().records[0]
+    assert set(record.conditions) == {"pinion_speed"}
+    assert record.conditions["pinion_speed"].value == pytest.approx(60 * pi, rel=1e-15)
+    assert any("pinion_torque" in note for note in record.notes)
+
+
+def test_a_wrapped_angle_is_unwrapped_and_said(bench):
+    whole = bench.columns["theta1"] * 5
+    bench.columns["theta1"] = np.mod(whole, 2 * pi)
+    record = bench.load().records[0]
+    np.testing.assert_allclose(record.channels["pinion_angle"].values, whole, atol=1e-12)
+    assert record.notes == ("pinion_angle: unwrapped",)
+
+
+def test_small_jitter_is_resampled_to_the_grid_and_said(bench):
+    time = bench.columns["t"]
+    wobble = 0.002 / 20000 * np.sin(np.arange(time.size))
+    wobble[[0, -1]] = 0
+    bench.columns["t"] = time + wobble
+    bench.columns["dte"] = np.sin(2 * pi * 300 * bench.columns["t"])
+    record = bench.load().records[0]
+    np.testing.assert_allclose(record.time, time, atol=1e-15)
+    truth = 1e-6 * np.sin(2 * pi * 300 * time)
+    moved = np.abs(record.channels["transmission_error"].values - truth).max()
+    assert moved < 1e-12 < np.abs(1e-6 * bench.columns["dte"] - truth).max()
+    assert "resampled" in record.notes[0]
+    assert record.uniform
+    assert record.findings == ()
+
+
+def test_a_channel_with_its_own_time_base_comes_to_the_record_s_time(bench):
+    fast = np.arange(400) / 20000
+    slow = np.arange(110) / 5000
+    np.savez(
+        bench.folder / "run.npz",
+        t=fast,
+        dte=bench.columns["dte"],
+        slow=150 + np.sin(2 * pi * 50 * slow),
+        ts=slow,
+    )
+    bench.record["file"] = "run.npz"
+    del bench.channels["pinion_angle"]
+    bench.record["conditions"] = {"pinion_speed": {"value": 1800, "unit": "rpm"}}
+    torque = {"column": "slow", "unit": "N*m"}
+    truth = 150 + np.sin(2 * pi * 50 * fast)
+    for base in ({"time": {"column": "ts", "unit": "s"}}, {"sampling_rate": {"value": 5, "unit": "kHz"}}):
+        bench.channels["pinion_torque"] = torque | base
+        record = bench.load_as_it_is().records[0]
+        np.testing.assert_allclose(record.channels["pinion_torque"].values, truth, atol=1e-4)
+        assert any("5000 Hz" in note for note in record.notes)
+
+
+def test_records_of_one_file_get_names_of_their_own(bench):
+    bench.record["slice"] = [0, 200]
+    bench.add_record(slice=[200, 400], role="holdout")
+    bench.add_record(name="again")
+    measurement = bench.load()
+    assert [record.name for record in measurement.records] == ["run_1_1", "run_1_2", "again"]
+    assert [record.name for record in measurement.with_role("holdout")] == ["run_1_2"]
+
+
+def _oscillator(folder: Path, header: str, rows: np.ndarray, content: dict):
+    np.savetxt(folder / "ring.csv", rows, delimiter=",", header=header, comments="", fmt="%.17g")
+    path = folder / "measurement.yaml"
+    path.write_text(yaml.safe_dump({"system": "oscillator", **content}))
+    return load_measurement(path)
+
+
+def test_an_oscillator_stays_in_its_unit_and_its_derivatives_follow(tmp_path):
+    time = np.arange(64) / 1000
+    rows = np.column_stack([time, np.sin(90 * time), 0.09 * np.cos(90 * time), np.cos(7 * time)])
+    channels = {
+        "time": {"column": 0},
+        "displacement": {"column": "x (mm)"},
+        "velocity": {"column": "v", "unit": "m/s"},
+        "force": {"column": 3, "unit": "mV"},
+    }
+    gain = {"value": 2.0, "unit": "m/s^2/V"}
+    content = {"records": [{"file": "ring.csv", "channels": channels}], "parameters": {"force_gain": gain}}
+    measurement = _oscillator(tmp_path, '"t (s)",x (mm),v,"F"', rows, content)
+    found = measurement.records[0].channels
+    assert {name: channel.unit for name, channel in found.items()} == {
+        "displacement": "mm", "velocity": "mm/s", "force": "mV",
+    }  # fmt: skip
+    np.testing.assert_array_equal(found["displacement"].values, rows[:, 1])
+    np.testing.assert_allclose(found["velocity"].values, 1e3 * rows[:, 2], rtol=1e-15)
+    np.testing.assert_array_equal(found["force"].values, rows[:, 3])
+    assert measurement.parameters["force_gain"].value == pytest.approx(2.0)  # mm/s^2 per mV is m/s^2 per V
+    assert measurement.parameters["force_gain"].unit == "mm/s^2/(mV)"
+
+
+def test_the_units_of_the_first_record_hold_for_all(tmp_path):
+    rows = np.column_stack([np.arange(64) / 100, np.cos(np.arange(64))])
+    first = {"time": {"column": "t", "unit": "s"}, "displacement": {"column": "phi", "unit": "deg"}}
+    second = {**first, "displacement": {"column": "phi", "unit": "rad"}}
+    records = [{"file": "ring.csv", "channels": first}, {"file": "ring.csv", "channels": second}]
+    measurement = _oscillator(tmp_path, "t,phi", rows, {"records": records})
+    assert [record.channels["displacement"].unit for record in measurement.records] == ["deg", "deg"]
+    np.testing.assert_allclose(
+        measurement.records[1].channels["displacement"].values, np.degrees(rows[:, 1]), rtol=1e-14
+    )
+
+
+def test_numbers_with_an_exponent_and_no_point_are_numbers(tmp_path):
+    rows = np.column_stack([np.arange(64) / 100, np.cos(np.arange(64))])
+    np.savetxt(tmp_path / "ring.csv", rows, delimiter=",", header="t,x", comments="")
+    (tmp_path / "m.yaml").write_text(
+        "system: oscillator\nparameters: {stiffness: {value: 1e4, unit: 1/s^2}}\nrecords:\n"
+        "  - file: ring.csv\n    channels:\n      time: {column: t, unit: s}\n"
+        "      displacement: {column: x, unit: V, noise: {value: 2e-3, unit: V}}\n"
+    )
+    measurement = load_measurement(tmp_path / "m.yaml")
+    assert measurement.parameters["stiffness"].value == 1e4
+    assert measurement.records[0].channels["displacement"].noise == 2e-3
+
+
+def test_the_data_folder_comes_from_the_environment_or_lies_beside_the_checkout(bench, monkeypatch):
+    monkeypatch.setenv("GEAR_DAMPING_DATA", str(bench.folder))
+    assert data_root() == bench.folder
+    bench.write_csv()
+    bench.record["file"] = "${GEAR_DAMPING_DATA}/run_1.csv"
+    assert bench.load_as_it_is().records[0].time.size == 400
+    monkeypatch.delenv("GEAR_DAMPING_DATA")
+    checkout = Path(__file__).resolve().parents[2]
+    assert data_root() == checkout.parent / "shared" / "data"
