@@ -144,8 +144,7 @@ def _oversampled(record: Record) -> Finding | None:
 
 def _fastest_content(values: NDArray[np.float64], rate: float) -> float:
     """Hz below which 99.9 % of the energy about the mean lies; 0 for a constant."""
-    power = np.abs(np.fft.rfft((values - values.mean()) * np.hanning(values.size))) ** 2
-    total = power.sum()
-    if total == 0:
+    if np.ptp(values) == 0:
         return 0.0
-    return float(np.searchsorted(np.cumsum(power), _CONTENT * total)) * rate / values.size
+    power = np.abs(np.fft.rfft((values - values.mean()) * np.hanning(values.size))) ** 2
+    return float(np.searchsorted(np.cumsum(power), _CONTENT * power.sum())) * rate / values.size

@@ -1,0 +1,194 @@
+"""The readers: what each format gives, and how each says what is wrong."""
+
+import numpy as np
+import pytest
+from scipy.io import savemat, wavfile
+
+from gear_damping.errors import InputError
+from gear_damping.measurement.formats.registry import read_table
+
+
+def _csv(folder, text: str, encoding: str = "utf-8"):
+    path = folder / "data.csv"
+    path.write_bytes(text.encode(encoding))
+    return read_table(path)
+
+
+def _column(table, name):
+    return table.values(table.index(name, "column")).tolist()
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "t,a\n0,1.5\n1,-2e-3\n",
+        '"t","a",\r\n0,1.5,\r\n1,-2e-3,\r\n\r\n',  # quotes, an empty third column, blank lines
+        "t,a,\n0,1.5\n1,-2e-3\n",  # a third header without cells
+        "t;a\n0;1,5\n1;-2e-3\n",
+        "t\ta\n0\t1.5\n1\t-2e-3\n",
+        "t a\n0  1.5\n1 -2e-3\n",
+        "# exported by a logger\n# t,a\n0,1.5\n1,-2e-3\n",
+        "\ufefft, a\n0, 1.5\n1, -2e-3\n",
+    ],
+)
+def test_the_same_numbers_come_out_of_every_dialect(tmp_path, text):
+    table = _csv(tmp_path, text)
+    assert _column(table, "t") == [0, 1]
+    assert _column(table, "a") == [1.5, -2e-3]
+    assert _column(table, 1) == [1.5, -2e-3]
+
+
+def test_a_decimal_comma_is_said_and_never_guessed_against_points(tmp_path):
+    table = _csv(tmp_path, "t;a\n0;1,5\n1;2\n")
+    assert _column(table, "a") == [1.5, 2]
+    assert table.notes == ("data.csv: read with decimal commas",)
+    with pytest.raises(InputError, match=r"row 0 .line 2., column 1 'a' = '1,500': not a number"):
+        _column(_csv(tmp_path, "t;a\n0;1,500\n1;2.5\n"), "a")
+
+
+def test_a_header_names_units_and_may_hold_the_delimiter(tmp_path):
+    table = _csv(tmp_path, '"Acc DE, radial (m/s^2)",Speed [rpm],Note\n1,2,3\n')
+    assert table.names == ("Acc DE, radial (m/s^2)", "Speed [rpm]", "Note")
+    assert [table.unit(k) for k in range(3)] == ["m/s^2", "rpm", None]
+
+
+def test_older_encodings_are_read(tmp_path):
+    assert _csv(tmp_path, "t,x (µm)\n0,1\n", "latin-1").unit(1) == "µm"
+    assert _csv(tmp_path, "t,x (µm)\n0,1\n", "utf-16").unit(1) == "µm"
+
+
+def test_a_file_without_header_is_read_by_index(tmp_path):
+    table = _csv(tmp_path, "0,1\n1,2\n")
+    assert _column(table, 1) == [1, 2]
+    with pytest.raises(InputError, match="give a 0-based index: 0, 1"):
+        table.index("x", "column")
+
+
+def test_a_repeated_header_needs_an_index(tmp_path):
+    table = _csv(tmp_path, "x,x\n0,1\n1,2\n")
+    with pytest.raises(InputError, match=r"2 columns bear this name.*one of \[0, 1\]"):
+        table.index("x", "column")
+
+
+def test_many_faults_are_counted_not_listed(tmp_path):
+    with pytest.raises(InputError) as caught:
+        _column(_csv(tmp_path, "t,a\n" + "0,x\n" * 50 + "0,1\n"), "a")
+    assert len(caught.value.problems) == 4
+    assert "47 more cells" in str(caught.value)
+    with pytest.raises(InputError, match="47 more rows"):
+        _csv(tmp_path, "t,a\n" + "0\n" * 50 + "0,1\n")
+
+
+def test_binary_under_the_name_of_text_is_refused(tmp_path):
+    (tmp_path / "data.csv").write_bytes(b"\x00\x01\x02" * 50)
+    with pytest.raises(InputError, match="not a text file"):
+        read_table(tmp_path / "data.csv")
+
+
+def test_npz_gives_vectors_and_the_columns_of_matrices(tmp_path):
+    matrix = np.arange(20.0).reshape(2, 10)
+    np.savez(tmp_path / "a.npz", x=np.arange(10, dtype=np.int16), m=matrix, label=np.array("rig 3"))
+    table = read_table(tmp_path / "a.npz")
+    assert table.names == ("x", "m[0]", "m[1]")
+    np.testing.assert_array_equal(table.values(2), matrix[1])
+    assert table.values(0).dtype == np.float64
+
+
+def test_npz_with_python_objects_is_never_unpickled(tmp_path):
+    np.savez(tmp_path / "a.npz", x=np.array([{}, 1], dtype=object))
+    with pytest.raises(InputError, match="not a readable NPZ"):
+        read_table(tmp_path / "a.npz")
+
+
+def test_npz_that_unpacks_to_too_much_is_refused(tmp_path):
+    np.savez_compressed(tmp_path / "a.npz", x=np.zeros(100_000))
+    assert (tmp_path / "a.npz").stat().st_size < 10_000
+    with pytest.raises(InputError, match="1 MB are more than the 0 MB"):
+        read_table(tmp_path / "a.npz", max_bytes=10_000)
+
+
+def test_mat_v5_gives_its_numeric_variables(tmp_path):
+    values = np.sin(np.arange(30.0))
+    savemat(tmp_path / "a.mat", {"X097_DE_time": values[:, None], "note": "text", "s": {"inner": 1.0}})
+    table = read_table(tmp_path / "a.mat")
+    assert table.names == ("X097_DE_time",)
+    np.testing.assert_array_equal(table.values(0), values)
+
+
+def test_mat_that_unpacks_to_too_much_is_refused(tmp_path):
+    savemat(tmp_path / "a.mat", {"x": np.zeros(100_000)}, do_compression=True)
+    with pytest.raises(InputError, match="1 MB are more than"):
+        read_table(tmp_path / "a.mat", max_bytes=10_000)
+
+
+@pytest.mark.parametrize(
+    "head", [b"MATLAB 7.3 MAT-file, Platform: GLNXA64" + b" " * 90, b"\x89HDF\r\n\x1a\n" + b"\0" * 600]
+)
+def test_mat_7_3_names_the_extra(tmp_path, head):
+    (tmp_path / "a.mat").write_bytes(head)
+    with pytest.raises(InputError, match=r"extra \[formats\] \(h5py\).*save -v7"):
+        read_table(tmp_path / "a.mat")
+
+
+@pytest.mark.parametrize(
+    ("suffix", "library"),
+    [("h5", "h5py"), ("HDF5", "h5py"), ("uff", "pyuff"), ("unv", "pyuff"), ("tdms", "npTDMS")],
+)
+def test_formats_of_the_extra_name_it(tmp_path, suffix, library):
+    (tmp_path / f"a.{suffix}").write_bytes(b"something")
+    with pytest.raises(InputError, match=rf"extra \[formats\] \({library}\)"):
+        read_table(tmp_path / f"a.{suffix}")
+
+
+@pytest.mark.parametrize("suffix", ["npz", "mat", "wav"])
+def test_garbage_is_one_error_that_names_the_file(tmp_path, suffix):
+    path = tmp_path / f"a.{suffix}"
+    path.write_bytes(bytes(range(1, 250)) * 4)
+    with pytest.raises(InputError, match=rf"a\.{suffix}'?: not a readable"):
+        read_table(path)
+
+
+def test_an_unknown_format_lists_the_known(tmp_path):
+    (tmp_path / "a.xlsx").write_bytes(b"something")
+    with pytest.raises(InputError, match=r"unknown format '.xlsx'.*known are .*\.csv"):
+        read_table(tmp_path / "a.xlsx")
+
+
+def test_a_large_file_is_refused_before_it_is_read(tmp_path):
+    (tmp_path / "a.csv").write_text("t,a\n" + "0,1\n" * 1000)
+    with pytest.raises(InputError, match="more than the"):
+        read_table(tmp_path / "a.csv", max_bytes=1000)
+
+
+@pytest.mark.parametrize(
+    ("dtype", "stored", "fractions"),
+    [
+        (np.int16, [-32768, 0, 16384], [-1, 0, 0.5]),
+        (np.int32, [-(2**31), 0, 2**30], [-1, 0, 0.5]),
+        (np.uint8, [0, 128, 192], [-1, 0, 0.5]),
+        (np.float32, [-3.0, 0, 0.5], [-3, 0, 0.5]),
+    ],
+)
+def test_wav_integers_are_fractions_of_full_scale(tmp_path, dtype, stored, fractions):
+    wavfile.write(tmp_path / "a.wav", 12800, np.array(stored, dtype))
+    table = read_table(tmp_path / "a.wav")
+    assert table.sampling_rate == 12800
+    assert table.values(0).tolist() == fractions
+    assert ("full scale" in table.notes[0]) == (dtype is not np.float32)
+
+
+def test_a_wav_record_brings_its_rate_and_is_scaled_by_the_range(bench):
+    samples = (3000 * np.sin(np.arange(2000) / 9)).astype(np.int16)
+    wavfile.write(bench.folder / "a.wav", 12800, np.column_stack([samples, -samples]))
+    channel = {"column": 1, "unit": "m/s^2", "range": {"value": 5, "unit": "gn"}}
+    record = {"file": "a.wav", "channels": {"acceleration": channel}}
+    record["conditions"] = {"pinion_speed": {"value": 1800, "unit": "rpm"}}
+    bench.content["records"] = [record]
+    loaded = bench.load_as_it_is().records[0]
+    assert loaded.sampling_rate == 12800
+    expected = -samples / 32768 * 5 * 9.80665
+    np.testing.assert_allclose(loaded.channels["acceleration"].values, expected, rtol=1e-14)
+    assert loaded.channels["acceleration"].mounting == "casing"
+    assert any("full scale is taken as 49.03" in note for note in loaded.notes)
+    record["channels"]["sampling_rate"] = {"value": 44.1, "unit": "kHz"}
+    assert "the file itself says 12800 Hz" in bench.only_problem(write=False)

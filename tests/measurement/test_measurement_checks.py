@@ -1,0 +1,165 @@
+"""Suspicious data is found and named; sound data raises nothing."""
+
+import numpy as np
+import pytest
+
+
+def _errors(bench) -> np.ndarray:
+    return bench.columns["dte"]
+
+
+def test_sound_data_raises_nothing(bench):
+    assert bench.load().findings == ()
+
+
+def test_dropped_samples_are_counted_where_they_are(bench):
+    keep = np.r_[0:100, 103:250, 251:400]
+    bench.columns = {name: values[keep] for name, values in bench.columns.items()}
+    record = bench.load().records[0]
+    (finding,) = record.findings
+    assert (finding.kind, finding.sample, finding.severity) == ("dropped_samples", 100, "data_problem")
+    assert "about 4 sample(s) were dropped in 2 gap(s)" in finding.message
+    assert not record.uniform
+    np.testing.assert_array_equal(record.time, bench.columns["t"])
+    assert record.sampling_rate == pytest.approx(20000)
+
+
+def test_uneven_stamps_are_left_at_their_stamps_and_said(bench):
+    bench.columns["t"] = bench.columns["t"] + 0.1 / 20000 * np.sin(np.arange(400))
+    bench.columns["theta1"] = 188.5 * bench.columns["t"]
+    record = bench.load().records[0]
+    (finding,) = record.findings
+    assert (finding.kind, finding.severity) == ("uneven_stamps", "data_problem")
+    assert not record.uniform
+    np.testing.assert_array_equal(record.time, bench.columns["t"])
+
+
+def test_a_rate_that_changes_within_the_record_is_found(bench):
+    bench.columns["t"][250:] += (np.arange(150) + 1) / 20000 * 0.5
+    bench.columns["theta1"] = 188.5 * bench.columns["t"]
+    assert bench.kinds() == ["uneven_stamps"]
+    assert bench.load().findings[0].sample == 250
+
+
+def test_steps_within_one_percent_are_one_rate_and_beyond_are_not(bench):
+    step = np.full(399, 1 / 20000)
+    step[7] *= 1.009
+    bench.columns["t"] = np.r_[0, np.cumsum(step)]
+    assert bench.load().records[0].uniform
+    step[7] = 1.011 / 20000
+    bench.columns["t"] = np.r_[0, np.cumsum(step)]
+    bench.write_csv()
+    assert bench.kinds() == ["uneven_stamps"]
+
+
+def test_records_of_different_rate_are_noted(bench):
+    bench.write_csv()
+    bench.columns = {name: values[::2] for name, values in bench.columns.items()}
+    bench.write_csv("run_2.csv")
+    bench.add_record(file="run_2.csv")
+    (finding,) = bench.load().findings
+    assert (finding.kind, finding.record, finding.severity) == ("mixed_rates", "run_2", "note")
+
+
+def test_a_constant_response_is_a_problem_and_a_constant_torque_is_not(bench):
+    _errors(bench)[:] = 3.0
+    bench.columns["T1"][:] = 150.0
+    found = {finding.channel: finding.severity for finding in bench.load().findings}
+    assert found == {"transmission_error": "data_problem", "pinion_torque": "note"}
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_clipped_response_is_found(bench, side):
+    signal = _errors(bench)
+    signal[:] = side * np.minimum(side * signal, np.quantile(side * signal, 0.95))
+    assert bench.kinds() == ["clipped"]
+
+
+def test_a_single_saturated_stretch_is_found(bench):
+    _errors(bench)[200:212] = 15.0
+    finding = bench.load().findings[0]
+    assert (finding.kind, finding.sample) == ("clipped", 200)
+
+
+def test_a_coarse_converter_is_not_taken_for_clipping(bench):
+    signal = _errors(bench)
+    for levels in (8, 16, 50, 200):
+        bench.columns["dte"] = np.round(signal * levels / np.ptp(signal)) * np.ptp(signal) / levels
+        bench.write_csv()
+        assert bench.kinds() == [], levels
+
+
+def test_a_torque_that_steps_or_ramps_and_holds_is_not_clipped(bench):
+    ramp = np.interp(np.arange(400), [0, 100, 200, 399], [100, 100, 150, 150])
+    for torque in (ramp, np.where(np.arange(400) < 200, 100.0, 150.0)):
+        bench.columns["T1"] = torque
+        bench.write_csv()
+        assert bench.kinds() == []
+
+
+def test_a_torque_that_returns_to_its_limit_is_clipped(bench):
+    bench.columns["T1"] = np.minimum(150 + 20 * np.sin(np.arange(400) / 11), 165)
+    assert bench.kinds() == ["clipped"]
+
+
+def test_the_declared_range_shows_clipping_that_noise_hides(bench):
+    bench.channels["transmission_error"]["range"] = {"value": 9.5, "unit": "um"}
+    assert bench.kinds() == ["clipped"]
+    bench.channels["transmission_error"]["range"] = {"value": 20, "unit": "um"}
+    assert bench.kinds() == []
+
+
+@pytest.mark.parametrize(
+    ("unit", "kinds"), [("um", []), ("mm", ["implausible_magnitude"]), ("m", ["implausible_magnitude"])]
+)
+def test_a_unit_slip_of_the_transmission_error_is_found(bench, unit, kinds):
+    bench.channels["transmission_error"]["unit"] = unit
+    assert bench.kinds() == kinds
+
+
+def test_an_arbitrary_datum_is_not_taken_for_a_large_error(bench):
+    _errors(bench)[:] += 5000.0
+    bench.channels["transmission_error"]["datum"] = "arbitrary"
+    assert bench.kinds() == []
+    bench.channels["transmission_error"]["datum"] = "absolute"
+    assert bench.kinds() == ["implausible_magnitude"]
+
+
+def test_a_header_that_names_another_unit_is_found(bench):
+    bench.columns["dte (nm)"] = bench.columns.pop("dte")
+    bench.channels["transmission_error"]["column"] = "dte (nm)"
+    assert bench.kinds() == ["unit_conflict"]
+    del bench.channels["transmission_error"]["unit"]
+    record = bench.load().records[0]
+    assert record.findings == ()
+    np.testing.assert_allclose(
+        record.channels["transmission_error"].values, 1e-9 * bench.columns["dte (nm)"], rtol=1e-15
+    )
+
+
+@pytest.mark.parametrize(
+    ("rpm", "kinds"), [(1800, []), (1830, []), (1850, ["speed_mismatch"]), (-1800, ["speed_mismatch"])]
+)
+def test_angle_and_speed_must_agree(bench, rpm, kinds):
+    bench.record["conditions"] = {"pinion_speed": {"value": rpm, "unit": "rpm"}}
+    assert bench.kinds() == kinds
+
+
+def test_an_angle_in_degrees_read_as_radians_is_found(bench):
+    bench.columns["theta1"] = np.degrees(bench.columns["theta1"])
+    bench.record["conditions"] = {"pinion_speed": {"value": 1800, "unit": "rpm"}}
+    assert bench.kinds() == ["speed_mismatch"]
+
+
+def test_torque_and_angle_exchanged_are_found(bench):
+    rng = np.random.default_rng(3)
+    bench.columns["T1"] = 0.5 + 0.1 * rng.standard_normal(400)
+    bench.channels["pinion_torque"]["column"] = "theta1"
+    bench.channels["pinion_angle"]["column"] = "T1"
+    assert "angle_not_turning" in bench.kinds()
+
+
+def test_oversampling_is_a_note(bench):
+    _errors(bench)[:] = 8 + 2 * np.sin(2 * np.pi * 100 * bench.columns["t"])
+    (finding,) = bench.load().findings
+    assert (finding.kind, finding.severity) == ("oversampled", "note")

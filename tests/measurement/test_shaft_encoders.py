@@ -1,0 +1,143 @@
+"""Angles from encoders and tachos, and the transmission error that two encoders see."""
+
+from math import cos, pi
+
+import numpy as np
+import pytest
+
+from gear_damping.errors import InputError
+from gear_damping.measurement.encoders import angle_from_counts, angle_from_pulses, rising_edges
+
+RADIUS_PINION = 20 * 3e-3 * cos(pi / 9) / 2
+RADIUS_GEAR = 2 * RADIUS_PINION
+
+
+def _rig(bench, **files):
+    np.savez(bench.folder / "run.npz", **files)
+    bench.content["parameters"] = {
+        "n_teeth_pinion": 20,
+        "n_teeth_gear": 40,
+        "module": {"value": 3, "unit": "mm"},
+        "pressure_angle": {"value": 20, "unit": "deg"},
+    }
+    bench.content["records"] = [
+        {
+            "file": "run.npz",
+            "channels": {"time": {"column": "t", "unit": "s"}},
+            "conditions": {"pinion_torque": {"value": 150, "unit": "N*m"}},
+        }
+    ]
+    return bench.record
+
+
+def test_counts_that_begin_again_each_turn_become_one_angle():
+    angle = np.linspace(0, 30, 500)
+    counts = np.mod(angle / (2 * pi) * 2048, 2048)
+    np.testing.assert_allclose(angle_from_counts(counts, 2048), angle, atol=1e-11)
+    np.testing.assert_allclose(angle_from_counts(counts, 2048, -1), -angle, atol=1e-11)
+
+
+def test_pulse_times_of_a_slowly_swinging_shaft_give_its_angle():
+    fine = np.linspace(0, 1, 200_001)
+    swing = 50 * fine + 0.3 * np.sin(2 * pi * 3 * fine)
+    pulses = np.interp(np.arange(0, swing[-1], 2 * pi / 60), swing, fine)
+    time = np.linspace(0.002, 0.99, 700)
+    expected = 50 * time + 0.3 * np.sin(2 * pi * 3 * time)
+    found = angle_from_pulses(pulses, time, 60, 1, "key", "file")
+    assert np.max(np.abs(found - expected)) < 2e-4
+
+
+@pytest.mark.parametrize(
+    ("pulses", "said"),
+    [
+        ([0.1], "at least 2"),
+        ([0, 0.2, 0.1, 1], "pulse 2 does not come after"),
+        ([0, 0.1, 0.2], "do not cover"),
+    ],
+)
+def test_pulses_that_cannot_be_used_are_refused(pulses, said):
+    with pytest.raises(InputError, match=said):
+        angle_from_pulses(np.array(pulses), np.linspace(0, 1, 50), 4, 1, "key", "file")
+
+
+def test_edges_are_found_between_samples():
+    time = np.arange(1000) / 1000
+    edges = rising_edges(np.sin(2 * pi * 7.3 * time - 1), time, 0.0)
+    np.testing.assert_allclose(edges, (1 / (2 * pi) + np.arange(edges.size)) / 7.3, atol=1e-6)
+
+
+def test_two_encoders_give_the_transmission_error(bench):
+    time = np.arange(2000) / 20000
+    truth = 5e-6 * np.sin(2 * pi * 600 * time)
+    pinion = 60 * pi * time
+    gear = (RADIUS_PINION * pinion - truth) / RADIUS_GEAR
+    record = _rig(bench, t=time, p=np.mod(pinion * 4096 / (2 * pi), 4096), g=-gear * 5000 / (2 * pi))
+    record["encoders"] = {
+        "pinion": {"column": "p", "counts_per_revolution": 4096},
+        "gear": {"column": "g", "counts_per_revolution": 5000, "direction": -1},
+    }
+    loaded = bench.load_as_it_is().records[0]
+    error = loaded.channels["transmission_error"]
+    np.testing.assert_allclose(error.values, truth - truth.mean(), atol=1e-13)
+    assert (error.unit, error.datum) == ("m", "arbitrary")
+    np.testing.assert_allclose(loaded.channels["pinion_angle"].values, pinion, atol=1e-10)
+    assert loaded.findings == ()
+    del bench.content["parameters"]["module"]
+    assert "give module under parameters" in bench.only_problem(write=False)
+
+
+def test_the_index_pulse_is_the_zero_of_the_angle(bench):
+    time = np.arange(2000) / 20000
+    counts = 60 * pi * time * 4096 / (2 * pi)
+    index = (np.arange(2000) >= 400) & (np.arange(2000) < 403)
+    record = _rig(bench, t=time, p=counts, z=index.astype(float), x=np.sin(3000 * time))
+    record["channels"]["transmission_error"] = {"column": "x", "unit": "um"}
+    record["encoders"] = {"pinion": {"column": "p", "counts_per_revolution": 4096, "index": "z"}}
+    record["mesh_index"] = True
+    loaded = bench.load_as_it_is().records[0]
+    assert loaded.channels["pinion_angle"].values[400] == pytest.approx(0, abs=1e-12)
+    assert loaded.mesh_index
+
+
+@pytest.mark.parametrize("stamped", [True, False])
+def test_a_tacho_gives_the_pinion_angle(bench, stamped):
+    time = np.arange(4000) / 20000
+    pulses = np.arange(0.001, 0.2, 2 * pi / 8 / (60 * pi))
+    phase = np.mod((time - 0.001) / (2 * pi / 8 / (60 * pi)), 1)
+    wave = np.where(phase < 0.5, 5.0, 0.0)
+    record = _rig(bench, t=time, x=np.sin(3000 * time), pulses=pulses * 1e3, wave=wave)
+    record["channels"]["transmission_error"] = {"column": "x", "unit": "um"}
+    tacho = {"timestamps": "pulses", "unit": "ms"} if stamped else {"column": "wave", "unit": "V"}
+    tacho |= {"pulses_per_revolution": 8}
+    if not stamped:
+        tacho["threshold"] = {"value": 2500, "unit": "mV"}
+    record["encoders"] = {"tacho": tacho}
+    angle = bench.load_as_it_is().records[0].channels["pinion_angle"].values
+    expected = 60 * pi * time
+    tolerance = 1e-9 if stamped else 60 * pi / 20000  # a square wave is known to a sample
+    assert np.ptp(angle - expected) <= 2 * tolerance
+
+
+@pytest.mark.parametrize(
+    ("encoders", "said"),
+    [
+        ({"pinion": {"column": "p"}}, "counts_per_revolution: is missing"),
+        ({"pinion": {"counts_per_revolution": 9}}, "either column"),
+        ({"pinion": {"column": "p", "counts_per_revolution": 0}}, "at least 1"),
+        ({"gear": {"column": "p", "counts_per_revolution": 9}}, "needs the pinion's"),
+        ({"pinion": {"column": "q", "counts_per_revolution": 9}}, "no such column"),
+    ],
+)
+def test_an_encoder_that_lacks_something_says_so(bench, encoders, said):
+    time = np.arange(2000) / 20000
+    _rig(bench, t=time, p=1000 * time)["encoders"] = encoders
+    assert said in "\n".join(bench.problems(write=False))
+
+
+def test_an_oscillator_has_no_encoders(bench):
+    _rig(bench, t=np.arange(50) / 100, x=np.sin(np.arange(50)))
+    bench.record["channels"]["displacement"] = {"column": "x", "unit": "V"}
+    bench.record["encoders"] = {}
+    bench.content |= {"system": "oscillator", "parameters": {}}
+    bench.record["conditions"] = {}
+    assert "only a gear_pair has encoders" in bench.only_problem(write=False)
