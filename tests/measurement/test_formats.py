@@ -64,6 +64,12 @@ def test_a_file_without_header_is_read_by_index(tmp_path):
         table.index("x", "column")
 
 
+def test_a_column_without_name_or_cells_is_empty_when_asked_for(tmp_path):
+    table = _csv(tmp_path, "t,a,\n0,1.5\n1,2\n")
+    with pytest.raises(InputError, match=r"row 0 .line 2., column 2 = '': an empty cell"):
+        table.values(2)
+
+
 def test_a_repeated_header_needs_an_index(tmp_path):
     table = _csv(tmp_path, "x,x\n0,1\n1,2\n")
     with pytest.raises(InputError, match=r"2 columns bear this name.*one of \[0, 1\]"):
@@ -156,8 +162,10 @@ def test_an_unknown_format_lists_the_known(tmp_path):
 
 def test_a_large_file_is_refused_before_it_is_read(tmp_path):
     (tmp_path / "a.csv").write_text("t,a\n" + "0,1\n" * 1000)
-    with pytest.raises(InputError, match="more than the"):
-        read_table(tmp_path / "a.csv", max_bytes=1000)
+    wavfile.write(tmp_path / "a.wav", 12800, np.zeros(1000, np.int16))
+    for name in ("a.csv", "a.wav"):
+        with pytest.raises(InputError, match="more than the"):
+            read_table(tmp_path / name, max_bytes=1000)
 
 
 @pytest.mark.parametrize(

@@ -142,7 +142,7 @@ def test_records_of_one_file_get_names_of_their_own(bench):
 def _oscillator(folder: Path, header: str, rows: np.ndarray, content: dict):
     np.savetxt(folder / "ring.csv", rows, delimiter=",", header=header, comments="", fmt="%.17g")
     path = folder / "measurement.yaml"
-    path.write_text(yaml.safe_dump({"system": "oscillator", **content}))
+    path.write_text(yaml.safe_dump({"system": "oscillator", **content}, sort_keys=False))
     return load_measurement(path)
 
 
@@ -151,11 +151,11 @@ def test_an_oscillator_stays_in_its_unit_and_its_derivatives_follow(tmp_path):
     rows = np.column_stack([time, np.sin(90 * time), 0.09 * np.cos(90 * time), np.cos(7 * time)])
     channels = {
         "time": {"column": 0},
-        "displacement": {"column": "x (mm)"},
         "velocity": {"column": "v", "unit": "m/s"},
+        "displacement": {"column": "x (mm)"},
         "force": {"column": 3, "unit": "mV"},
     }
-    gain = {"value": 2.0, "unit": "m/s^2/V"}
+    gain = {"value": 2.0, "unit": "m/s^2/mV"}
     content = {"records": [{"file": "ring.csv", "channels": channels}], "parameters": {"force_gain": gain}}
     measurement = _oscillator(tmp_path, '"t (s)",x (mm),v,"F"', rows, content)
     found = measurement.records[0].channels
@@ -165,7 +165,7 @@ def test_an_oscillator_stays_in_its_unit_and_its_derivatives_follow(tmp_path):
     np.testing.assert_array_equal(found["displacement"].values, rows[:, 1])
     np.testing.assert_allclose(found["velocity"].values, 1e3 * rows[:, 2], rtol=1e-15)
     np.testing.assert_array_equal(found["force"].values, rows[:, 3])
-    assert measurement.parameters["force_gain"].value == pytest.approx(2.0)  # mm/s^2 per mV is m/s^2 per V
+    assert measurement.parameters["force_gain"].value == pytest.approx(2000.0)
     assert measurement.parameters["force_gain"].unit == "mm/s^2/(mV)"
 
 
@@ -173,9 +173,14 @@ def test_the_units_of_the_first_record_hold_for_all(tmp_path):
     rows = np.column_stack([np.arange(64) / 100, np.cos(np.arange(64))])
     first = {"time": {"column": "t", "unit": "s"}, "displacement": {"column": "phi", "unit": "deg"}}
     second = {**first, "displacement": {"column": "phi", "unit": "rad"}}
-    records = [{"file": "ring.csv", "channels": first}, {"file": "ring.csv", "channels": second}]
+    records = [
+        {"file": "ring.csv", "channels": first, "conditions": {"force": {"value": 2, "unit": "V"}}},
+        {"file": "ring.csv", "channels": second, "conditions": {"force": {"value": 30, "unit": "mV"}}},
+    ]
     measurement = _oscillator(tmp_path, "t,phi", rows, {"records": records})
     assert [record.channels["displacement"].unit for record in measurement.records] == ["deg", "deg"]
+    forces = [record.conditions["force"] for record in measurement.records]
+    assert [(force.value, force.unit) for force in forces] == [(2, "V"), (0.03, "V")]
     np.testing.assert_allclose(
         measurement.records[1].channels["displacement"].values, np.degrees(rows[:, 1]), rtol=1e-14
     )

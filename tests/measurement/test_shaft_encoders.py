@@ -68,7 +68,7 @@ def test_edges_are_found_between_samples():
 
 def test_two_encoders_give_the_transmission_error(bench):
     time = np.arange(2000) / 20000
-    truth = 5e-6 * np.sin(2 * pi * 600 * time)
+    truth = 3e-6 + 5e-6 * np.sin(2 * pi * 600 * time)
     pinion = 60 * pi * time
     gear = (RADIUS_PINION * pinion - truth) / RADIUS_GEAR
     record = _rig(bench, t=time, p=np.mod(pinion * 4096 / (2 * pi), 4096), g=-gear * 5000 / (2 * pi))
@@ -104,18 +104,29 @@ def test_a_tacho_gives_the_pinion_angle(bench, stamped):
     time = np.arange(4000) / 20000
     pulses = np.arange(0.001, 0.2, 2 * pi / 8 / (60 * pi))
     phase = np.mod((time - 0.001) / (2 * pi / 8 / (60 * pi)), 1)
-    wave = np.where(phase < 0.5, 5.0, 0.0)
+    wave = np.where(phase < 0.5, 5000.0, 0.0)
+    wave[np.flatnonzero(phase > 0.7)[40:43]] = 900.0  # a bounce below the threshold
     record = _rig(bench, t=time, x=np.sin(3000 * time), pulses=pulses * 1e3, wave=wave)
     record["channels"]["transmission_error"] = {"column": "x", "unit": "um"}
-    tacho = {"timestamps": "pulses", "unit": "ms"} if stamped else {"column": "wave", "unit": "V"}
+    tacho = {"timestamps": "pulses", "unit": "ms"} if stamped else {"column": "wave", "unit": "mV"}
     tacho |= {"pulses_per_revolution": 8}
     if not stamped:
-        tacho["threshold"] = {"value": 2500, "unit": "mV"}
+        tacho["threshold"] = {"value": 2.5, "unit": "V"}
     record["encoders"] = {"tacho": tacho}
     angle = bench.load_as_it_is().records[0].channels["pinion_angle"].values
     expected = 60 * pi * time
     tolerance = 1e-9 if stamped else 60 * pi / 20000  # a square wave is known to a sample
     assert np.ptp(angle - expected) <= 2 * tolerance
+
+
+def test_a_measured_angle_beats_the_encoder_s(bench):
+    time = np.arange(2000) / 20000
+    record = _rig(bench, t=time, x=np.sin(3000 * time), p=1000 * time, angle=60 * pi * time)
+    record["channels"]["transmission_error"] = {"column": "x", "unit": "um"}
+    record["channels"]["pinion_angle"] = {"column": "angle", "unit": "rad"}
+    record["encoders"] = {"pinion": {"column": "p", "counts_per_revolution": 7}}
+    loaded = bench.load_as_it_is().records[0]
+    np.testing.assert_array_equal(loaded.channels["pinion_angle"].values, 60 * pi * time)
 
 
 @pytest.mark.parametrize(
