@@ -1,0 +1,1 @@
+"""Damping from signals: learned estimators, classical estimators and the limits of information."""

@@ -1,0 +1,186 @@
+"""Train several estimators and their controls on the same windows, with several seeds, and score them."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from math import isfinite
+from pathlib import Path
+from statistics import fmean, stdev
+from typing import Any
+
+import torch
+from torch import Tensor
+
+from gear_damping.identification.controls import mean_predictor, white_noise_runs
+from gear_damping.identification.datamodule import WindowDataModule
+from gear_damping.identification.lightning_module import EstimatorConfig
+from gear_damping.identification.metrics import means_over_runs, scores
+from gear_damping.identification.noise import SensorNoise
+from gear_damping.identification.protocols import Protocol
+from gear_damping.identification.runs import RunSet
+from gear_damping.identification.trainer import Training, fit_estimator, predict_windows
+
+_CLEAN = SensorNoise(None)
+MEAN, WHITE_NOISE = "mean", "white_noise"
+
+Scores = dict[str, float | None]
+
+
+@dataclass(frozen=True)
+class _Seed:
+    """What is the same for every fit of one seed."""
+
+    seed: int
+    folder: Path
+    training: Training
+    data: WindowDataModule
+    noise_data: WindowDataModule
+    options: Mapping[str, Any]
+    resume_from: Path | None
+
+
+def compare_models(
+    run_set: RunSet,
+    protocol: Protocol,
+    models: Mapping[str, EstimatorConfig],
+    training: Training,
+    seeds: Sequence[int],
+    folder: Path | str,
+    *,
+    test_runs: RunSet | None = None,
+    noise: SensorNoise = _CLEAN,
+    resume_from: Path | str | None = None,
+    progress: bool = True,
+    hparams: Mapping[str, Any] | None = None,
+    announce: Callable[[str], None] = lambda line: None,
+) -> dict[str, Any]:
+    """Train and score every model and the controls, once for each seed.
+
+    A seed decides split, sensor noise, order and weights; at one seed all models meet the same windows. The
+    control `white_noise` is the network of the first model, trained in the same way on white noise.
+
+    Args:
+        run_set: The runs.
+        protocol: How they are split.
+        models: Name -> estimator. The names become folders: `folder`/<name>/seed_<seed>/.
+        training: The budget of each fit.
+        seeds: At least one.
+        folder: Where checkpoints and TensorBoard events go.
+        test_runs: Runs to test on instead of a part of `run_set` (by_run).
+        noise: The sensor.
+        resume_from: Folder of an interrupted comparison of the same arguments; what it finished is not
+            trained again.
+        progress: Show progress bars on stderr, if that is a terminal.
+        hparams: What TensorBoard's HParams table shows beside model and seed.
+        announce: Called with a line of text after each fit.
+
+    Returns:
+        Plain data, ready for JSON: `protocol`, `seeds`, `models` and `controls` (name -> scores of
+        `metrics.scores`: rmse_percent as {mean, std} over the seeds, the others as means over the seeds, a
+        score that is undefined at some seed as None, and `per_seed` with the values), and `predictions` of
+        the first seed: name -> true and predicted value of each test window, and for each run the true value
+        and the mean and spread over its windows. The std of one seed is 0.
+
+    Raises:
+        ValueError: no models, no seeds, a model named like a control, or what protocol and fits refuse.
+        KeyboardInterrupt: as the user sent it; `resume_from` takes it up again.
+    """
+    _require_names(models, seeds)
+    folder = Path(folder)
+    source = None if resume_from is None else Path(resume_from)
+    per_seed: dict[str, list[Scores]] = {name: [] for name in (*models, MEAN, WHITE_NOISE)}
+    predictions: dict[str, Any] = {}
+    for seed in seeds:
+        options = {"progress": progress, "hparams": dict(hparams or {})}
+        data = WindowDataModule(run_set, protocol, seed=seed, noise=noise, test_runs=test_runs)
+        white_test = None if test_runs is None else white_noise_runs(test_runs, seed, "test_runs")
+        white = white_noise_runs(run_set, seed)
+        white_data = WindowDataModule(white, protocol, seed=seed, noise=noise, test_runs=white_test)
+        shared = _Seed(seed, folder, training, data, white_data, options, source)
+        for name, (found, true, predicted) in _one_seed(shared, models, announce):
+            per_seed[name].append(found)
+            if seed == seeds[0]:
+                predictions[name] = _plain_predictions(true, predicted, data.test_window_runs)
+    return {
+        "protocol": protocol.name,
+        "seeds": list(seeds),
+        "models": {name: _summary(per_seed[name]) for name in models},
+        "controls": {name: _summary(per_seed[name]) for name in (MEAN, WHITE_NOISE)},
+        "predictions": predictions,
+    }
+
+
+def _one_seed(
+    shared: _Seed, models: Mapping[str, EstimatorConfig], announce: Callable[[str], None]
+) -> Iterator[tuple[str, tuple[Scores, Tensor, Tensor]]]:
+    """Name, and scores with true and predicted values, of every model and control."""
+    for name, config in models.items():
+        yield name, _fit_and_score(shared, name, config, shared.data, announce)
+    config = next(iter(models.values()))
+    yield WHITE_NOISE, _fit_and_score(shared, WHITE_NOISE, config, shared.noise_data, announce)
+    data = shared.data
+    mean = mean_predictor(data.training_labels)
+    true = data.test_runs.damping_ratio_percent[data.test_window_runs].cpu()
+    predicted = torch.full_like(true, mean)
+    yield MEAN, ({**scores(true, predicted, data.test_window_runs, mean), "epochs": 0}, true, predicted)
+
+
+def _fit_and_score(
+    shared: _Seed,
+    name: str,
+    config: EstimatorConfig,
+    data: WindowDataModule,
+    announce: Callable[[str], None],
+) -> tuple[Scores, Tensor, Tensor]:
+    place = Path(name) / f"seed_{shared.seed}"
+    earlier = None if shared.resume_from is None else shared.resume_from / place / "last.ckpt"
+    hparams = {"model": name, **shared.options["hparams"]}
+    fit = fit_estimator(
+        config,
+        data,
+        shared.training,
+        shared.folder / place,
+        seed=shared.seed,
+        resume=earlier if earlier is not None and earlier.exists() else None,
+        progress=shared.options["progress"],
+        hparams=hparams,
+    )
+    true, predicted = predict_windows(fit.estimator, data.test_dataloader())
+    found = scores(true, predicted, data.test_window_runs, mean_predictor(data.training_labels))
+    announce(
+        f"{name}, seed {shared.seed}: test RMSE {found['rmse_percent']:.4f} %, validation "
+        f"{fit.best_validation_rmse:.4f} %, {len(fit.history)} epochs"
+    )
+    return {**found, "epochs": fit.epochs}, true, predicted
+
+
+def _summary(per_seed: Sequence[Scores]) -> dict[str, Any]:
+    columns = {name: [found[name] for found in per_seed] for name in per_seed[0]}
+    errors = columns["rmse_percent"]
+    summary: dict[str, Any] = {name: _mean(values) for name, values in columns.items()}
+    spread = stdev(errors) if len(errors) > 1 else 0.0
+    summary["rmse_percent"] = {"mean": fmean(errors), "std": spread}
+    summary["per_seed"] = columns
+    return summary
+
+
+def _mean(values: Sequence[float | None]) -> float | None:
+    if any(value is None or not isfinite(value) for value in values):
+        return None
+    return fmean(values)
+
+
+def _plain_predictions(true: Tensor, predicted: Tensor, runs: Tensor) -> dict[str, Any]:
+    label, mean, spread = means_over_runs(true, predicted, runs)
+    return {
+        "true": true.tolist(),
+        "predicted": predicted.tolist(),
+        "per_run": {"true": label.tolist(), "predicted": mean.tolist(), "spread": spread.tolist()},
+    }
+
+
+def _require_names(models: Mapping[str, EstimatorConfig], seeds: Sequence[int]) -> None:
+    if not models or not seeds:
+        raise ValueError("models and seeds must not be empty: give at least one of each")
+    taken = {MEAN, WHITE_NOISE} & set(models)
+    if taken:
+        raise ValueError(f"models must not be named like the controls, got {sorted(taken)}: rename them")

@@ -1,0 +1,104 @@
+"""What the network is fed: the raw window, or its wavelet transform, with normalisation stored inside."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import torch
+from torch import Tensor, nn
+
+from gear_damping.errors import nearest
+from gear_damping.signals.wavelets import ContinuousWavelet, MorletCWT, RickerCWT
+
+_WAVELETS: dict[str, type[ContinuousWavelet]] = {"ricker": RickerCWT, "morlet": MorletCWT}
+
+
+def make_wavelet(settings: Mapping[str, Any], sampling_rate: float) -> ContinuousWavelet:
+    """The transform named by settings["kind"] ("ricker" or "morlet") with its other plain arguments.
+
+    Raises:
+        ValueError: the kind is unknown, or the transform refuses an argument.
+    """
+    arguments = dict(settings)
+    kind = arguments.pop("kind", None)
+    if kind not in _WAVELETS:
+        raise ValueError(
+            f"wavelet kind must be one of {', '.join(_WAVELETS)}, got {kind!r}: "
+            + nearest(str(kind), list(_WAVELETS))
+        )
+    return _WAVELETS[kind](sampling_rate, **arguments)
+
+
+class FrontEnd(nn.Module):
+    """Windows (batch, window) to features (batch, window, feature) of mean 0 and deviation 1.
+
+    The means and deviations are buffers, so they travel with the weights; they are fitted on the training
+    part only (`fit_signal`, then `fit_features`). The base class gives the window itself: one feature.
+    """
+
+    n_features = 1
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.register_buffer("signal_mean", torch.zeros(()))
+        self.register_buffer("signal_scale", torch.ones(()))
+        self.register_buffer("feature_mean", torch.zeros(self.n_features))
+        self.register_buffer("feature_scale", torch.ones(self.n_features))
+
+    def columns(self, signals: Tensor) -> Tensor:
+        """Features before their normalisation of whole records or windows, (batch, time, feature).
+
+        The mean of the training signals is taken off first: a transform sees zeros beyond the ends, and a
+        constant part would put a step there.
+        """
+        return self._transform((signals - self.signal_mean) / self.signal_scale)
+
+    def forward(self, inputs: Tensor) -> Tensor:
+        """Normalised features of windows (batch, window), or of columns (batch, window, feature)."""
+        columns = self.columns(inputs) if inputs.ndim == 2 else inputs
+        return (columns - self.feature_mean) / self.feature_scale
+
+    def fit_signal(self, windows: Tensor) -> None:
+        """Take mean and deviation of the signal from training windows (batch, window)."""
+        # In float64: a small oscillation about a large constant would lose its deviation to rounding.
+        _set(self.signal_mean, self.signal_scale, windows.double().reshape(-1, 1))
+
+    def fit_features(self, inputs: Tensor) -> None:
+        """Take mean and deviation of each feature from training windows or columns."""
+        columns = self.columns(inputs) if inputs.ndim == 2 else inputs
+        _set(self.feature_mean, self.feature_scale, columns.double().reshape(-1, self.n_features))
+
+    def _transform(self, signals: Tensor) -> Tensor:
+        return signals[..., None]
+
+
+class WaveletFrontEnd(FrontEnd):
+    """Features that are the wavelet coefficients of the window at each of its samples.
+
+    Given a window, the transform sees the window and nothing else. Real transforms give one feature per
+    scale, complex ones two: all real parts, then all imaginary parts.
+
+    Args:
+        wavelet: Settings of `make_wavelet`: kind and plain arguments.
+        sampling_rate: Samples per second (Hz).
+    """
+
+    def __init__(self, wavelet: Mapping[str, Any], sampling_rate: float) -> None:
+        transform = make_wavelet(wavelet, sampling_rate)
+        complex_result = transform.output_dtype(torch.float32).is_complex
+        self.n_features = len(transform.frequencies_hz) * (2 if complex_result else 1)
+        super().__init__()
+        self.transform = transform
+
+    def _transform(self, signals: Tensor) -> Tensor:
+        coefficients = self.transform(signals)
+        if coefficients.is_complex():
+            coefficients = torch.cat([coefficients.real, coefficients.imag], dim=1)
+        return coefficients.transpose(1, 2)
+
+
+def _set(mean: Tensor, scale: Tensor, values: Tensor) -> None:
+    deviation, average = torch.std_mean(values, dim=0, correction=0)
+    mean.copy_(average.reshape(mean.shape))
+    # A feature that never varies (a scale that sees nothing) is left at its size, not divided by zero.
+    deviation = torch.where(deviation > 0, deviation, torch.ones_like(deviation))
+    scale.copy_(deviation.reshape(scale.shape))

@@ -1,0 +1,219 @@
+"""The learned estimator: front-end, network, loss and what a checkpoint needs in order to predict."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import lightning as L
+import torch
+from torch import Tensor
+
+from gear_damping.errors import InputError, Problem
+from gear_damping.identification.features import FrontEnd, WaveletFrontEnd
+from gear_damping.identification.networks import DampingLSTM
+from gear_damping.identification.windows import gather_windows, window_starts, windows_of_runs
+
+# A rate that is wrong by this fraction moves every frequency, and with it the damping, by the same.
+_RATE_TOLERANCE = 1e-3
+_WINDOWS_AT_ONCE = 4096
+_PLAIN = (bool, int, float, str, list, tuple)
+
+
+@dataclass(frozen=True)
+class EstimatorConfig:
+    """The estimator that is to be trained.
+
+    Args:
+        features: "raw" (the window) or "cwt" (its wavelet transform).
+        wavelet: Kind and plain arguments of the transform (`features.make_wavelet`); for "cwt" only.
+        hidden_size: Units of the LSTM.
+        dropout: Part of the state that is dropped in training.
+        whole_run_columns: Where the protocol allows it, transform whole runs, as the paper does; False
+            transforms each window by itself under every protocol.
+    """
+
+    features: str = "raw"
+    wavelet: Mapping[str, Any] = field(
+        default_factory=lambda: {
+            "kind": "ricker", "frequency_min_hz": 500.0, "frequency_max_hz": 10000.0, "n_scales": 32
+        }
+    )  # fmt: skip
+    hidden_size: int = 60
+    dropout: float = 0.2
+    whole_run_columns: bool = True
+
+    def __post_init__(self) -> None:
+        if self.features not in ("raw", "cwt"):
+            raise ValueError(f"features must be 'raw' or 'cwt', got {self.features!r}")
+        # Of subclasses too: a numpy float is a float, and a checkpoint that holds one is refused on loading.
+        odd = {name: value for name, value in self.wavelet.items() if type(value) not in _PLAIN}
+        if odd:
+            raise ValueError(f"wavelet must hold plain numbers, texts and lists, got {odd!r}: convert them")
+
+
+RAW_LSTM = EstimatorConfig("raw")
+CWT_LSTM = EstimatorConfig("cwt")
+
+
+class RecordPrediction(NamedTuple):
+    """Damping ratio of a record (% of critical): mean and standard deviation over its windows, and each."""
+
+    damping_ratio_percent: float
+    spread_percent: float
+    per_window_percent: Tensor
+
+
+class DampingModule(L.LightningModule):
+    """LSTM on raw windows or on wavelet columns, trained on the RMSE of the damping ratio in %.
+
+    All arguments are plain values and are stored in the checkpoint with the weights, the normalisation
+    buffers and the learning curve (`history`): a checkpoint is all that a prediction needs.
+
+    Args:
+        features: "raw" or "cwt".
+        sampling_rate: Rate of the signals that it is trained on (Hz).
+        window: Samples that it sees at once.
+        data_set: Id of the runs that it is trained on.
+        wavelet: Settings of the transform for "cwt"; None for "raw".
+        whole_run: Columns are of the whole run (the paper's protocol), not of the window.
+        hidden_size: Units of the LSTM.
+        dropout: Part of the state that is dropped in training.
+        learning_rate: Step of Adam.
+    """
+
+    def __init__(
+        self,
+        features: str,
+        sampling_rate: float,
+        window: int,
+        data_set: str,
+        wavelet: dict[str, Any] | None = None,
+        whole_run: bool = False,
+        hidden_size: int = 60,
+        dropout: float = 0.2,
+        learning_rate: float = 1e-3,
+    ) -> None:
+        super().__init__()
+        self.save_hyperparameters(logger=False)
+        self.front_end = WaveletFrontEnd(wavelet, sampling_rate) if features == "cwt" else FrontEnd()
+        self.network = DampingLSTM(self.front_end.n_features, hidden_size, dropout)
+        self.history: list[dict[str, float]] = []
+        self._squares = {"train": _Squares(), "val": _Squares()}
+
+    def forward(self, inputs: Tensor) -> Tensor:
+        """Damping ratio (%) of windows (batch, window), or of columns (batch, window, feature)."""
+        return self.network(self.front_end(inputs))
+
+    def training_step(self, batch: tuple[Tensor, Tensor], _: int) -> Tensor:
+        """RMSE of one batch."""
+        square = (self(batch[0]) - batch[1]).square()
+        self._squares["train"].add(square)
+        # The root has no slope at zero, which one constant label can reach.
+        return (square.mean() + 1e-12).sqrt()
+
+    def validation_step(self, batch: tuple[Tensor, Tensor], _: int) -> None:
+        """Collect the squared errors, so that the RMSE is that of the whole set, not a mean over batches."""
+        self._squares["val"].add((self(batch[0]) - batch[1]).square())
+
+    def on_train_epoch_end(self) -> None:
+        """Log the epoch and add it to the learning curve.
+
+        Once an epoch: logging each step costs about as much as the step.
+        """
+        rate = self.trainer.optimizers[0].param_groups[0]["lr"]
+        validation = self._squares["val"].take_rmse()
+        epoch = {
+            "train_loss": self._squares["train"].take_rmse(),
+            "val_loss": validation,
+            "val_rmse_percent": validation,
+            "learning_rate": rate,
+        }
+        self.log_dict(epoch, batch_size=1)
+        self.history.append(epoch)
+
+    def configure_optimizers(self) -> torch.optim.Optimizer:
+        """Adam, fused into one call for all weights: three times less per step for a network this small."""
+        return torch.optim.Adam(self.parameters(), lr=self.hparams["learning_rate"], fused=True)
+
+    def on_save_checkpoint(self, checkpoint: dict[str, Any]) -> None:
+        """Put the learning curve into the checkpoint."""
+        checkpoint["history"] = list(self.history)
+
+    def on_load_checkpoint(self, checkpoint: dict[str, Any]) -> None:
+        """Take the learning curve from the checkpoint."""
+        self.history = list(checkpoint["history"])
+
+    @torch.inference_mode()
+    def predict_record(self, values: Tensor, sampling_rate: float, stride: int = 1) -> RecordPrediction:
+        """Predict the damping ratio of one record of any length.
+
+        The spread over overlapping windows is no interval of confidence: the windows share samples, and a
+        network that is sure of itself can be wrong in all of them.
+
+        Args:
+            values: Samples of the record, (time,), in the unit of the training signals.
+            sampling_rate: Samples per second (Hz), that of the training signals to 0.1 %.
+            stride: Samples between windows.
+
+        Raises:
+            InputError: another rate, fewer samples than a window, or samples that are not finite.
+        """
+        values = torch.as_tensor(values, dtype=torch.float32, device=self.device)
+        self._check_record(values, sampling_rate)
+        was_training = self.training
+        self.eval()
+        record = self.front_end.columns(values[None]) if self.hparams["whole_run"] else values[None]
+        starts = window_starts(0, len(values), self.hparams["window"], stride)
+        index = windows_of_runs(torch.zeros(1, dtype=torch.long), starts).to(self.device)
+        parts = index.split(_WINDOWS_AT_ONCE)
+        each = torch.cat([self(gather_windows(record, part, self.hparams["window"])) for part in parts]).cpu()
+        self.train(was_training)
+        return RecordPrediction(float(each.mean()), float(each.std(correction=0)), each)
+
+    def _check_record(self, values: Tensor, sampling_rate: float) -> None:
+        trained, window = self.hparams["sampling_rate"], self.hparams["window"]
+        problems = []
+        if values.ndim != 1 or len(values) < window:
+            rule = f"must be one channel of at least {window} samples, got shape {tuple(values.shape)}"
+            problems.append(Problem("values", rule, remedy="use a longer record"))
+        elif not bool(values.isfinite().all()):
+            problems.append(Problem("values", "must be finite", remedy="cut out the broken samples"))
+        if not abs(sampling_rate / trained - 1) <= _RATE_TOLERANCE:
+            rule = f"the estimator was trained at {trained:g} Hz and the record has {sampling_rate:g} Hz"
+            remedy = f"resample the record to {trained:g} Hz, or train at {sampling_rate:g} Hz"
+            problems.append(Problem("sampling_rate", rule, sampling_rate, remedy))
+        if problems:
+            raise InputError(problems)
+
+
+def load_estimator(path: Path | str) -> DampingModule:
+    """The estimator in a checkpoint, ready to predict on the CPU.
+
+    Raises:
+        InputError: the file is missing or is not a checkpoint of an estimator.
+    """
+    try:
+        module = DampingModule.load_from_checkpoint(path, map_location="cpu", weights_only=True)
+    except Exception as error:  # a damaged file fails in as many ways as there are readers
+        rule = f"must be a checkpoint of a trained estimator ({type(error).__name__}: {error})"
+        remedy = "give the best.ckpt of a training run"
+        raise InputError(Problem("checkpoint", rule, str(path), remedy)) from error
+    return module.eval()
+
+
+class _Squares:
+    """Sum and number of squared errors, kept on the device until the epoch ends."""
+
+    def __init__(self) -> None:
+        self.total: Tensor | float = 0.0
+        self.count = 0
+
+    def add(self, square: Tensor) -> None:
+        self.total = self.total + square.detach().sum()
+        self.count += square.numel()
+
+    def take_rmse(self) -> float:
+        mean = float(self.total) / max(self.count, 1)
+        self.total, self.count = 0.0, 0
+        return mean**0.5

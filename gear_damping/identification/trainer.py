@@ -1,0 +1,230 @@
+"""The one trainer of all learned estimators: seeds, early stopping, checkpoints, TensorBoard."""
+
+import shutil
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+import lightning as L
+import torch
+from lightning.pytorch.callbacks import Callback, RichProgressBar
+from lightning.pytorch.plugins.environments import LightningEnvironment
+from torch import Tensor
+
+from gear_damping.identification.controls import mean_predictor
+from gear_damping.identification.datamodule import WindowDataModule
+from gear_damping.identification.lightning_module import DampingModule, EstimatorConfig, load_estimator
+from gear_damping.identification.lightning_support import (
+    EpochSeeds,
+    EventsLogger,
+    Patience,
+    PortableCheckpoint,
+    interruptible,
+    own_randomness,
+    quiet_lightning,
+    threads,
+)
+from gear_damping.identification.metrics import epochs_to_convergence
+from gear_damping.identification.seeding import derived_seed
+
+_MONITOR = "val_rmse_percent"
+
+
+@dataclass(frozen=True)
+class Training:
+    """The budget of one fit.
+
+    Args:
+        max_epochs: Epochs at most.
+        batch_size: Windows of a batch.
+        patience: Epochs without a better validation error before training stops.
+        learning_rate: Step of Adam.
+    """
+
+    max_epochs: int = 40
+    batch_size: int = 256
+    patience: int = 8
+    learning_rate: float = 1e-3
+
+    def __post_init__(self) -> None:
+        for name in ("max_epochs", "batch_size", "patience", "learning_rate"):
+            if not getattr(self, name) > 0:
+                raise ValueError(f"{name} must be positive, got {getattr(self, name)!r}")
+
+
+# The budget of Yousfi et al. (2026), section 2.3.
+PAPER_TRAINING = Training(max_epochs=200, batch_size=32, patience=20)
+
+
+@dataclass(frozen=True)
+class FitResult:
+    """What a fit leaves: the best estimator, its learning curve and its files."""
+
+    estimator: DampingModule
+    history: list[dict[str, float]]
+    best_checkpoint: Path
+    last_checkpoint: Path
+
+    @property
+    def best_validation_rmse(self) -> float:
+        """Lowest validation RMSE (%)."""
+        return min(epoch[_MONITOR] for epoch in self.history)
+
+    @property
+    def epochs(self) -> int:
+        """Epochs to convergence (`metrics.epochs_to_convergence`)."""
+        return epochs_to_convergence([epoch[_MONITOR] for epoch in self.history])
+
+
+def fit_estimator(
+    config: EstimatorConfig,
+    data: WindowDataModule,
+    training: Training,
+    folder: Path | str,
+    *,
+    seed: int = 0,
+    resume: Path | str | None = None,
+    progress: bool = True,
+    hparams: Mapping[str, Any] | None = None,
+) -> FitResult:
+    """Train an estimator and return the best one.
+
+    The folder holds `best.ckpt`, `last.ckpt` (written at the start and after each epoch) and the TensorBoard
+    events. The result depends on the arguments and not on the state of torch's generator, which is left
+    as it was; a resumed fit repeats an interrupted epoch from its start and ends where an uninterrupted one
+    would.
+
+    Args:
+        config: The estimator.
+        data: The windows.
+        training: The budget; its batch size and rate count, not those of `data`.
+        folder: Where files go; made if missing.
+        seed: Seed of the weights and of dropout.
+        resume: `last.ckpt` of a fit to go on with, in this folder or another.
+        progress: Show a progress bar on stderr, if that is a terminal.
+        hparams: What TensorBoard's HParams table shows of this fit beside the seed (swept keys).
+
+    Raises:
+        KeyboardInterrupt: as the user sent it, after the files were closed; `last.ckpt` can be resumed.
+        ValueError: `resume` is of another data set.
+        RuntimeError: no epoch ended with a finite validation error.
+    """
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    data.batch_size = training.batch_size
+    if resume is None:
+        for name in ("best.ckpt", "last.ckpt"):  # of an earlier fit: never to be taken for this one's
+            (folder / name).unlink(missing_ok=True)
+    with own_randomness(derived_seed(seed, "weights")), threads(training.batch_size), quiet_lightning():
+        module = build_estimator(config, data, training.learning_rate)
+        fit_front_end(module, data)
+        finished = resume is not None and _take_over(Path(resume), folder, module, training)
+        logger = EventsLogger(folder)
+        if not finished:
+            trainer = _trainer(training, folder, logger, seed, progress)
+            _fit(trainer, module, data, None if resume is None else folder / "last.ckpt")
+        result = _result(module, folder)
+        table = {"seed": seed, **(hparams or {})}
+        logger.log_hyperparams(table, {"hp/val_rmse_percent": result.best_validation_rmse})
+        logger.finalize("success")
+    return result
+
+
+def build_estimator(config: EstimatorConfig, data: WindowDataModule, learning_rate: float) -> DampingModule:
+    """The untrained estimator of a configuration for these windows; it starts at the mean label."""
+    wavelet = config.features == "cwt"
+    module = DampingModule(
+        features=config.features,
+        sampling_rate=float(data.run_set.sampling_rate),
+        window=int(data.protocol.window),
+        data_set=str(data.run_set.id),
+        wavelet=dict(config.wavelet) if wavelet else None,
+        whole_run=wavelet and config.whole_run_columns and data.protocol.chronological,
+        hidden_size=int(config.hidden_size),
+        dropout=float(config.dropout),
+        learning_rate=float(learning_rate),
+    )
+    module.network.start_at(mean_predictor(data.training_labels))
+    return module
+
+
+def fit_front_end(module: DampingModule, data: WindowDataModule) -> None:
+    """Fit the normalisation on training windows; give `data` its whole-run columns where they are used."""
+    with torch.no_grad():
+        data.use_signals()
+        module.front_end.fit_signal(data.training_inputs())
+        if module.hparams["whole_run"]:
+            data.use_columns(module.front_end.columns)
+        module.front_end.fit_features(data.training_inputs())
+
+
+def _take_over(resume: Path, folder: Path, module: DampingModule, training: Training) -> bool:
+    """Bring the files of the fit to go on with into the folder; whether it had already come to its end."""
+    earlier = load_estimator(resume)
+    ours, theirs = module.hparams["data_set"], earlier.hparams["data_set"]
+    if ours != theirs:
+        raise ValueError(f"resume is of data set {theirs!r}, not of {ours!r}: train anew, or use that set")
+    for name, path in {"last.ckpt": resume, "best.ckpt": resume.with_name("best.ckpt")}.items():
+        if path.exists() and path.resolve() != (folder / name).resolve():
+            shutil.copyfile(path, folder / name)
+    errors = [epoch[_MONITOR] for epoch in earlier.history]
+    if not errors:
+        return False
+    since_best = len(errors) - 1 - errors.index(min(errors))
+    return len(errors) >= training.max_epochs or since_best >= training.patience
+
+
+def _trainer(training: Training, folder: Path, logger: EventsLogger, seed: int, progress: bool) -> L.Trainer:
+    bar = progress and sys.stderr.isatty()
+    callbacks: list[Callback] = [
+        EpochSeeds(seed, folder / "last.ckpt"),
+        Patience(_MONITOR, patience=training.patience, check_on_train_epoch_end=True),
+        PortableCheckpoint(folder, "best", monitor=_MONITOR),
+        # A second one: `save_last` of the first would write only where it also finds a new best.
+        PortableCheckpoint(folder, "last"),
+    ]
+    if bar:
+        callbacks.append(RichProgressBar(refresh_rate=20, console_kwargs={"stderr": True}))
+    return L.Trainer(
+        accelerator="auto",
+        devices=1,
+        # One process: a job's scheduler must not be taken for a cluster to train on.
+        plugins=[LightningEnvironment()],
+        max_epochs=training.max_epochs,
+        logger=logger,
+        callbacks=callbacks,
+        default_root_dir=folder,
+        enable_progress_bar=bar,
+        enable_model_summary=False,
+        num_sanity_val_steps=0,
+        log_every_n_steps=1,
+    )
+
+
+def _fit(trainer: L.Trainer, module: DampingModule, data: WindowDataModule, checkpoint: Path | None) -> None:
+    try:
+        with interruptible():
+            trainer.fit(module, datamodule=data, ckpt_path=checkpoint, weights_only=True)
+    finally:
+        data.trainer = None  # the data outlives this trainer
+
+
+def _result(module: DampingModule, folder: Path) -> FitResult:
+    best, last = folder / "best.ckpt", folder / "last.ckpt"
+    history = module.history or load_estimator(last).history
+    # Lightning keeps a first epoch that ended in nan as the best one.
+    if not any(isfinite(epoch[_MONITOR]) for epoch in history):
+        raise RuntimeError("no epoch had a finite validation error: lower learning_rate, or check the runs")
+    return FitResult(load_estimator(best), history, best, last)
+
+
+def predict_windows(module: DampingModule, batches: Any) -> tuple[Tensor, Tensor]:
+    """True and predicted damping ratio (%) of all windows of a data loader, on the CPU."""
+    module = module.eval()
+    with torch.inference_mode():
+        pairs = [(true.cpu(), module(inputs.to(module.device)).cpu()) for inputs, true in batches]
+    true, predicted = zip(*pairs, strict=True)
+    return torch.cat(true), torch.cat(predicted)
