@@ -90,12 +90,9 @@ def compare_models(
     per_seed: dict[str, list[Scores]] = {name: [] for name in (*models, MEAN, WHITE_NOISE)}
     predictions: dict[str, Any] = {}
     for seed in seeds:
-        options = {"progress": progress, "hparams": dict(hparams or {})}
         data = WindowDataModule(run_set, protocol, seed=seed, noise=noise, test_runs=test_runs)
-        white_test = None if test_runs is None else white_noise_runs(test_runs, seed, "test_runs")
-        white = white_noise_runs(run_set, seed)
-        white_data = WindowDataModule(white, protocol, seed=seed, noise=noise, test_runs=white_test)
-        shared = _Seed(seed, folder, training, data, white_data, options, source)
+        options = {"progress": progress, "hparams": dict(hparams or {})}
+        shared = _Seed(seed, folder, training, data, _white_noise_data(data), options, source)
         for name, (found, true, predicted) in _one_seed(shared, models, announce):
             per_seed[name].append(found)
             if seed == seeds[0]:
@@ -107,6 +104,15 @@ def compare_models(
         "controls": {name: _summary(per_seed[name]) for name in (MEAN, WHITE_NOISE)},
         "predictions": predictions,
     }
+
+
+def _white_noise_data(data: WindowDataModule) -> WindowDataModule:
+    """The same windows of white noise."""
+    test_runs = None
+    if data.test_runs is not data.run_set:
+        test_runs = white_noise_runs(data.test_runs, data.seed, "test_runs")
+    runs = white_noise_runs(data.run_set, data.seed)
+    return WindowDataModule(runs, data.protocol, seed=data.seed, noise=data.noise, test_runs=test_runs)
 
 
 def _one_seed(
