@@ -67,8 +67,7 @@ def compare_models(
         folder: Where checkpoints and TensorBoard events go.
         test_runs: Runs to test on instead of a part of `run_set` (by_run).
         noise: The sensor.
-        resume_from: Folder of an interrupted comparison of the same arguments; what it finished is not
-            trained again.
+        resume_from: Folder of an interrupted comparison; what it finished is not trained again.
         progress: Show progress bars on stderr, if that is a terminal.
         hparams: What TensorBoard's HParams table shows beside model and seed.
         announce: Called with a line of text after each fit.
@@ -85,25 +84,21 @@ def compare_models(
         KeyboardInterrupt: as the user sent it; `resume_from` takes it up again.
     """
     _require_names(models, seeds)
-    folder = Path(folder)
     source = None if resume_from is None else Path(resume_from)
     per_seed: dict[str, list[Scores]] = {name: [] for name in (*models, MEAN, WHITE_NOISE)}
     predictions: dict[str, Any] = {}
     for seed in seeds:
         data = WindowDataModule(run_set, protocol, seed=seed, noise=noise, test_runs=test_runs)
         options = {"progress": progress, "hparams": dict(hparams or {})}
-        shared = _Seed(seed, folder, training, data, _white_noise_data(data), options, source)
+        shared = _Seed(seed, Path(folder), training, data, _white_noise_data(data), options, source)
         for name, (found, true, predicted) in _one_seed(shared, models, announce):
             per_seed[name].append(found)
             if seed == seeds[0]:
                 predictions[name] = _plain_predictions(true, predicted, data.test_window_runs)
-    return {
-        "protocol": protocol.name,
-        "seeds": list(seeds),
-        "models": {name: _summary(per_seed[name]) for name in models},
-        "controls": {name: _summary(per_seed[name]) for name in (MEAN, WHITE_NOISE)},
-        "predictions": predictions,
-    }
+    summaries = {name: _summary(found) for name, found in per_seed.items()}
+    controls = {name: summaries.pop(name) for name in (MEAN, WHITE_NOISE)}
+    results = {"protocol": protocol.name, "seeds": list(seeds), "models": summaries, "controls": controls}
+    return results | {"predictions": predictions}
 
 
 def _white_noise_data(data: WindowDataModule) -> WindowDataModule:
