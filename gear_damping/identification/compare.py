@@ -73,11 +73,10 @@ def compare_models(
         announce: Called with a line of text after each fit.
 
     Returns:
-        Plain data, ready for JSON: `protocol`, `seeds`, `models` and `controls` (name -> scores of
-        `metrics.scores`: rmse_percent as {mean, std} over the seeds, the others as means over the seeds, a
-        score that is undefined at some seed as None, and `per_seed` with the values), and `predictions` of
-        the first seed: name -> true and predicted value of each test window, and for each run the true value
-        and the mean and spread over its windows. The std of one seed is 0.
+        Plain data, ready for JSON: `protocol`, `seeds`, `models` and `controls` (name -> `metrics.scores`:
+        rmse_percent as {mean, std} over the seeds (std 0 for one seed), the others as means over the seeds
+        (None where undefined), and `per_seed` with the values), and `predictions` of the first seed: name ->
+        true and predicted value of each test window, and of each run with the spread over its windows.
 
     Raises:
         ValueError: no models, no seeds, a model named like a control, or what protocol and fits refuse.
