@@ -60,7 +60,8 @@ _ATOMS: dict[str, Unit] = {
     "gn": Unit(9.80665, _M * _S**-2),
 }  # fmt: skip
 
-_SPELLINGS = {"µ": "u", "μ": "u", "·": "*", "²": "^2", "³": "^3", "°": "deg", "**": "^", "N.m": "N*m", "N m": "N*m"}
+_SPELLINGS = {"µ": "u", "μ": "u", "·": "*", "²": "^2", "³": "^3", "°": "deg", "**": "^"}
+_SPELLINGS |= {"N.m": "N*m", "N m": "N*m"}
 _FACTOR = re.compile(r"^(?P<atom>[A-Za-z%]+|1)(\^(?P<power>-?\d+(\.\d+)?))?$")
 
 
@@ -80,7 +81,8 @@ def parse_unit(text: str, key: str = "unit", source: str = "") -> Unit:
         sign = -1 if index else 1
         for piece in part.strip("() ").split("*"):
             atom, power = _parse_factor(piece.strip(), text, key, source)
-            unit = Unit(unit.factor * atom.factor ** (sign * power), unit.dimension * atom.dimension ** (sign * power))
+            exponent = sign * power
+            unit = Unit(unit.factor * atom.factor**exponent, unit.dimension * atom.dimension**exponent)
     return unit
 
 

@@ -1,6 +1,6 @@
 """The equation of motion: the sum of the model's terms at one instant.
 
-    m x'' + contact * F_d(delta') + N = F(t),   delta = x - e,   N = k * deflection + F_el
+m x'' + contact * F_d(delta') + N = F(t),   delta = x - e,   N = k * deflection + F_el
 """
 
 from collections.abc import Mapping
@@ -14,7 +14,9 @@ from gear_damping.physics.terms import (
     Contact,
     DampingForce,
     ElasticForce,
+    ExtraStates,
     Load,
+    MeshForceFactor,
     MeshStiffness,
     StiffnessFactor,
     Switch,
@@ -36,6 +38,8 @@ class EquationOfMotion:
         self.system = model.system
         self.effects = model.effects
         self.switching = [effect for effect in model.effects if isinstance(effect, Switch)]
+        with_states = [effect for effect in model.effects if isinstance(effect, ExtraStates)]
+        self.extra_names = [f"{effect.name}.{state}" for effect in with_states for state in effect.states]
 
     def _filling(self, slot: type) -> list:
         return [effect for effect in self.effects if isinstance(effect, slot)]
@@ -43,7 +47,8 @@ class EquationOfMotion:
     def moment(self, time: Tensor, state: tuple[Tensor, ...], inputs: Values, base: Values) -> Moment:
         """The state at one instant, with the angles that belong to it."""
         turns = self.system.rotations(time, inputs, base)
-        return Moment(time, state[0], state[1], inputs=inputs, **turns)
+        extra = dict(zip(self.extra_names, state[2:], strict=True))
+        return Moment(time, state[0], state[1], extra=extra, inputs=inputs, **turns)
 
     def switches(self, now: Moment, terms: Mapping[str, Values]) -> dict[str, Tensor]:
         """Every switching function at this instant; a branch changes where one changes sign."""
@@ -58,10 +63,18 @@ class EquationOfMotion:
         self._deform(now, terms)
         self._touch(now, base, terms)
         damping = sum(e.damping_force(now, terms[e.name]) for e in self._filling(DampingForce))
-        load = self.system.load(now, base) + sum(e.load(now, terms[e.name]) for e in self._filling(Load))
-        load = load + now.inputs.get(HELD_LOAD, 0.0)
-        acceleration = (load - now.contact * damping - now.normal_force) / base["equivalent_mass"]
-        return now.velocity, acceleration
+        now.mesh_force = now.contact * damping + now.normal_force
+        for effect in self._filling(MeshForceFactor):
+            now.mesh_force = now.mesh_force * effect.force_factor(now, terms[effect.name])
+        now.load = self.system.load(now, base) + now.inputs.get(HELD_LOAD, 0.0)
+        now.load = now.load + sum(e.load_force(now, terms[e.name]) for e in self._filling(Load))
+        acceleration = (now.load - now.mesh_force) / base["equivalent_mass"]
+        extra = (self._extra_rates(effect, now, terms) for effect in self._filling(ExtraStates))
+        return now.velocity, acceleration, *(rate for rates in extra for rate in rates)
+
+    def _extra_rates(self, effect: ExtraStates, now: Moment, terms: Mapping[str, Values]) -> list[Tensor]:
+        rates = effect.state_rates(now, terms[effect.name])
+        return [rates[name] for name in effect.states]
 
     def energy(self, now: Moment, base: Values, terms: Mapping[str, Values]) -> Tensor:
         """Kinetic energy and the energy of k * deflection, natural units."""

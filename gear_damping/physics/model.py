@@ -10,7 +10,7 @@ from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.scales import Scales
 from gear_damping.physics.systems.base import System
-from gear_damping.physics.terms import Contact, Effect, MeshStiffness
+from gear_damping.physics.terms import Contact, Effect, MeshStiffness, SystemChange
 from gear_damping.units import parse_unit
 
 
@@ -82,6 +82,9 @@ class Model:
         mesh = next((e for e in self.effects if isinstance(e, MeshStiffness)), None)
         mean_stiffness = None if mesh is None else mesh.mean(given[mesh.name])
         derived = self.system.derived(own, mean_stiffness)
+        for effect in self.effects:
+            if isinstance(effect, SystemChange):
+                derived = effect.change(given[effect.name], derived)
         scales = self.system.scales(derived)
         units = {p.name: p.unit for p in self.system.parameters} | self.system.derived_units
         base = {k: v / scales.unit_of(parse_unit(units[k]).dimension) for k, v in (own | derived).items()}

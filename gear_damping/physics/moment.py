@@ -33,8 +33,8 @@ class Rotation:
 class Moment:
     """One instant of a batch, in natural units; every tensor has shape (batch,).
 
-    The equation fills the later fields in as it goes: `deflection` and `contact` are there for
-    damping and elastic terms, `normal_force` only for terms that act on it.
+    The equation fills the later fields in as it goes, in their order: a term may use those that
+    come before its own slot.
 
     Args:
         time: Time since the start of the run.
@@ -64,3 +64,5 @@ class Moment:
     contact: Tensor | float = 1.0
     stiffness: Tensor | None = None
     normal_force: Tensor | None = None
+    mesh_force: Tensor | None = None
+    load: Tensor | None = None

@@ -9,6 +9,7 @@ and the parametrised tests.
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import ClassVar
 
 import torch
@@ -73,7 +74,7 @@ class MeshStiffness(Effect):
 
     @abstractmethod
     def stiffness(self, now: Moment, p: Values) -> Tensor:
-        """k at this instant."""
+        """K at this instant."""
 
 
 class StiffnessFactor(Effect):
@@ -89,7 +90,7 @@ class TransmissionErrorSource(Effect):
 
     @abstractmethod
     def error(self, now: Moment, p: Values) -> tuple[Tensor, Tensor]:
-        """e and its rate at this instant."""
+        """E and its rate at this instant."""
 
 
 class Switch(Effect):
@@ -131,8 +132,39 @@ class Load(Effect):
     """A force added to the load F(t)."""
 
     @abstractmethod
-    def load(self, now: Moment, p: Values) -> Tensor:
+    def load_force(self, now: Moment, p: Values) -> Tensor:
         """The force at this instant, positive where it presses the drive flanks together."""
+
+
+class MeshForceFactor(Effect):
+    """A factor on the whole force between the flanks, N plus damping."""
+
+    @abstractmethod
+    def force_factor(self, now: Moment, p: Values) -> Tensor:
+        """The factor at this instant, 1 where the effect does nothing."""
+
+
+class ExtraStates(Effect):
+    """An effect with states of its own; combine it with the slots through which they act."""
+
+    states: ClassVar[dict[str, str]]  # name -> SI unit; `now.extra` has them as `effect.state`
+
+    def initial(self, p: Values, base: Values) -> dict[str, Tensor]:
+        """The states at the start in natural units, by own name; at rest unless said otherwise."""
+        zero = torch.zeros_like(base["equivalent_mass"])
+        return dict.fromkeys(self.states, zero)
+
+    @abstractmethod
+    def state_rates(self, now: Moment, p: Values) -> dict[str, Tensor]:
+        """Rates of the states, by own name; `now.mesh_force` and `now.load` are known by then."""
+
+
+class SystemChange(Effect):
+    """A change of the quantities that the system derives from its parameters."""
+
+    @abstractmethod
+    def change(self, values: Values, derived: dict[str, Tensor]) -> dict[str, Tensor]:
+        """The derived quantities with the change made, all in SI."""
 
 
 class HeldLoad(Effect):
@@ -143,11 +175,31 @@ class HeldLoad(Effect):
         """The load in the unit of `mean_load`; shape (batch, samples)."""
 
 
+@dataclass(frozen=True)
+class Recording:
+    """What a sensor may know beside the signal.
+
+    Args:
+        sampling_rate: Samples per second.
+        generator: Source of randomness.
+        derived: Derived quantities of the system in SI, each (batch,).
+        pinion_angle: True angle of the pinion shaft (batch, time) in rad; None without a shaft.
+        gear_angle: True angle of the gear shaft.
+    """
+
+    sampling_rate: float
+    generator: torch.Generator
+    derived: Values
+    pinion_angle: Tensor | None = None
+    gear_angle: Tensor | None = None
+
+
 class Sensor(Effect):
     """What stands between the motion and its record; applied to SI signals after the integration."""
 
     position: ClassVar[int] = 0  # in the chain from the motion (low) to the file (high)
+    channel: ClassVar[str | None] = None  # None: the response; else the channel it acts on
 
     @abstractmethod
-    def measure(self, signal: Tensor, values: Values, time_step: float, generator: torch.Generator) -> Tensor:
-        """The recorded signal from the true one; shape (batch, time), SI."""
+    def measure(self, signal: Tensor, values: Values, recording: Recording) -> Tensor:
+        """The recorded signal from the true one; shape (batch, time), SI; `values` in SI."""

@@ -1,0 +1,1 @@
+"""Typed schema of every configuration group, and one check that collects every problem."""

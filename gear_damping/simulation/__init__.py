@@ -1,0 +1,1 @@
+"""Solving the equation of motion: the only room that imports torchdiffeq."""
