@@ -82,6 +82,11 @@ class EquationOfMotion:
         self._touch(now, base, terms)
         return base["equivalent_mass"] * now.velocity**2 / 2 + now.stiffness * now.deflection**2 / 2
 
+    def imposed_error(self, now: Moment, terms: Mapping[str, Values]) -> tuple[Tensor, Tensor]:
+        """The geometric error e of the flanks and its rate at this instant."""
+        self._deform(now, terms)
+        return now.displacement - now.delta, now.velocity - now.delta_rate
+
     def _deform(self, now: Moment, terms: Mapping[str, Values]) -> None:
         """Fill in delta = x - e and its rate."""
         now.delta, now.delta_rate = now.displacement, now.velocity

@@ -21,6 +21,7 @@ class System(ABC):
     response: ClassVar[str]  # the channel that displacement is recorded in
     parameters: ClassVar[tuple[Parameter, ...]]
     options: ClassVar[tuple[Option, ...]] = ()
+    inputs: ClassVar[dict[str, str]]  # series that may be given, with their SI units
     derived_units: ClassVar[dict[str, str]]
 
     def __init__(self, **options: object) -> None:

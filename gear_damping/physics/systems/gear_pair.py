@@ -45,6 +45,7 @@ class GearPair(System):
         Option("gear_torque_mode", ("balanced", "held"), "balanced", "what the gear does when T1 varies"),
         Option("as_printed", (False, True), False, "mass 1 kg and the paper's base circles"),
     )
+    inputs: ClassVar = {"pinion_torque": "N*m", "gear_torque": "N*m", "pinion_angle": "rad"}
     derived_units: ClassVar = {
         "base_radius_pinion": "m",
         "base_radius_gear": "m",

@@ -28,6 +28,7 @@ class Oscillator(System):
         Parameter("initial_displacement", "m", 0.0, "displacement at the start"),
         Parameter("initial_velocity", "m/s", 0.0, "velocity at the start"),
     )
+    inputs: ClassVar = {"force": "1"}
     derived_units: ClassVar = {
         "equivalent_mass": "kg",
         "mean_stiffness": "N/m",

@@ -1,0 +1,41 @@
+"""How many sub-steps a member needs for the accuracy that is asked."""
+
+import torch
+from torch import Tensor
+
+from gear_damping.physics.model import Prepared
+from gear_damping.simulation.tsit5 import ORDER
+
+# Relative L2 error of a smooth trajectory = CONSTANT * (fastest rate * sub-step)^5 * natural radians;
+# measured by step halving over the families of runs (tests/simulation/test_accuracy.py).
+CONSTANT = 5e-5
+ALLOWED = (1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 48, 64, 96, 128, 192, 256)
+
+
+def substeps_for(accuracy: float, prepared: Prepared, interval: Tensor, intervals: int) -> Tensor:
+    """Sub-steps per output interval, from each member's own parameters alone; shape (batch,).
+
+    Args:
+        accuracy: Relative L2 error asked.
+        prepared: The members in natural units.
+        interval: Natural time between outputs, (batch,).
+        intervals: Output intervals of a run.
+    """
+    radians = (interval * intervals).clamp(min=1.0)
+    step = (accuracy / (CONSTANT * radians)) ** (1 / ORDER)
+    wanted = fastest_rate(prepared) * interval / step
+    allowed = torch.tensor(ALLOWED, dtype=wanted.dtype)
+    return allowed[torch.searchsorted(allowed, wanted.clamp(max=ALLOWED[-1]))].long()
+
+
+def fastest_rate(prepared: Prepared) -> Tensor:
+    """The fastest angular rate that a step must resolve, natural units, (batch,).
+
+    The natural frequency is 1 in natural units; a term that brings a faster one says so with a value
+    called `fastest_rate`.
+    """
+    rate = torch.ones_like(prepared.base["equivalent_mass"])
+    for values in prepared.terms.values():
+        if "fastest_rate" in values:
+            rate = torch.maximum(rate, values["fastest_rate"])
+    return rate

@@ -1,0 +1,80 @@
+"""How a model is stepped on this machine: native kernel, kernel fused by torch.compile, or eager."""
+
+import ctypes
+import logging
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor
+
+from gear_damping.simulation.kernel import Kernel, Members
+from gear_damping.simulation.native import build
+from gear_damping.simulation.native.source import kernel_source
+from gear_damping.simulation.native.stepper import NativeStepper
+from gear_damping.simulation.native.trace import UntraceableError
+from gear_damping.simulation.solver_settings import Engine
+from gear_damping.simulation.stepper import Stepper
+
+log = logging.getLogger(__name__)
+_said: set[str] = set()
+_libraries: dict[int, ctypes.CDLL | None] = {}
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The engine that was chosen, with what it needs."""
+
+    engine: Engine
+    library: ctypes.CDLL | None = None
+
+    def stepper(self, kernel: Kernel, fixed: Tensor, series: Tensor) -> Stepper:
+        """A stepper for one batch."""
+        if self.library is not None:
+            return NativeStepper(kernel, fixed, series, self.library, build.width_and_options()[0])
+        return Stepper(kernel, fixed, series, compiled=self.engine == "fused")
+
+
+def choose(wish: Engine, kernel: Kernel, members: Members, state: Tensor) -> Choice:
+    """The engine for a model: what was asked for, or the fastest that this machine has.
+
+    On a CPU that is the native kernel where there is a C++ compiler, on a GPU torch.compile.
+
+    Raises:
+        RuntimeError: an engine was asked for that this machine does not have.
+    """
+    if wish == "auto":
+        wish = "fused" if state.is_cuda else "native"
+        library = None if state.is_cuda else _native(kernel, members, state)
+        return Choice(wish) if state.is_cuda else Choice("native" if library else "eager", library)
+    if wish == "native":
+        library = _native(kernel, members, state)
+        if library is None:
+            raise RuntimeError("simulator.solver.engine=native needs a C++ compiler and terms with a native form")
+        return Choice("native", library)
+    return Choice(wish)
+
+
+def _native(kernel: Kernel, members: Members, state: Tensor) -> ctypes.CDLL | None:
+    if id(kernel) not in _libraries:
+        _libraries[id(kernel)] = _build(kernel, members, state)
+    return _libraries[id(kernel)]
+
+
+def _build(kernel: Kernel, members: Members, state: Tensor) -> ctypes.CDLL | None:
+    if build.compiler() is None:
+        say_once("no C++ compiler found: simulation runs without native kernels, slower, with the same results")
+        return None
+    try:
+        with torch.no_grad():
+            source = kernel_source(kernel, members, state, build.width_and_options()[0])
+        return build.compiled(source)
+    except (UntraceableError, RuntimeError, OSError) as problem:
+        say_once(f"no native kernel for this model, it runs slower with the same results ({problem})")
+        return None
+
+
+def say_once(message: str) -> None:
+    """Log a message the first time it comes up in this process."""
+    if message not in _said:
+        _said.add(message)
+        log.warning(message)

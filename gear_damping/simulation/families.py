@@ -1,0 +1,136 @@
+"""Families of runs: what varies from run to run, and where the runs start."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+import torch
+from torch import Tensor
+
+from gear_damping.errors import InputError, Problem, nearest
+from gear_damping.physics.equation import EquationOfMotion
+from gear_damping.physics.model import Model
+from gear_damping.physics.terms import DampingLaw
+from gear_damping.simulation.runs import reference_velocity
+
+Values = dict[str, Tensor]
+DAMPING_RATIO = "damping_ratio_percent"
+
+
+@dataclass(frozen=True)
+class Spread:
+    """A uniform distribution; `relative` ones multiply the nominal value."""
+
+    low: float
+    high: float
+    relative: bool = False
+
+    def draw(self, nominal: Tensor, generator: torch.Generator) -> Tensor:
+        """One value for each run, in the shape of `nominal`."""
+        found = self.low + (self.high - self.low) * torch.rand(nominal.shape[-1], generator=generator, dtype=torch.float64)
+        return nominal * found if self.relative else found.expand(nominal.shape)
+
+
+@dataclass(frozen=True)
+class Family:
+    """What varies between runs.
+
+    Args:
+        name: Its name.
+        spreads: Distribution of each varying parameter by flat name (SI), and of `damping_ratio_percent`.
+        start: `static`: near the static equilibrium; `rest`: at zero, a step of the whole load.
+        perturbation: Standard deviation of a `static` start, relative to the static deflection and
+            to the reference velocity.
+    """
+
+    name: str
+    spreads: Mapping[str, Spread] = field(default_factory=dict)
+    start: Literal["static", "rest"] = "static"
+    perturbation: float = 0.1
+
+
+def draw_values(
+    model: Model,
+    given: Mapping[str, float],
+    family: Family,
+    n_runs: int,
+    generator: torch.Generator,
+    *,
+    damping_law: str | None = None,
+    damping_ratio_percent: float | None = None,
+) -> tuple[Values, Tensor]:
+    """Parameters of every run (SI, by flat name) and the nominal reference velocity (m/s, (batch,)).
+
+    Args:
+        model: Base system and effects.
+        given: Nominal values that differ from the defaults, SI by flat name.
+        family: What varies.
+        n_runs: How many runs.
+        generator: Source of randomness.
+        damping_law: The damping effect that carries the drawn damping ratio; None: as given.
+        damping_ratio_percent: The ratio of every run in %; None: drawn from the family's spread.
+
+    Raises:
+        InputError: a spread or the damping law names something that the model does not have.
+    """
+    values = model.values(n_runs, **given)
+    _check(model, family, damping_law, values)
+    velocity = reference_velocity(model.prepare(values).derived)
+    for name in sorted(family.spreads):
+        if name != DAMPING_RATIO:
+            values[name] = family.spreads[name].draw(values[name], generator).clone()
+    drawn = family.spreads.get(DAMPING_RATIO, Spread(0, 0)).draw(velocity, generator)
+    if damping_ratio_percent is not None:
+        drawn = torch.full_like(velocity, damping_ratio_percent)
+    if damping_law is not None and (DAMPING_RATIO in family.spreads or damping_ratio_percent is not None):
+        _set_damping(model, values, damping_law, drawn / 100, velocity)
+    if family.start == "static":
+        _start_static(model, given, values, family.perturbation, velocity, generator)
+    return values, velocity
+
+
+def _check(model: Model, family: Family, damping_law: str | None, values: Values) -> None:
+    problems = [
+        Problem(f"family.spreads.{name}", "the model has no such parameter", remedy=nearest(name, list(values)))
+        for name in family.spreads
+        if name != DAMPING_RATIO and name not in values
+    ]
+    laws = [effect.name for effect in model.effects if isinstance(effect, DampingLaw)]
+    if damping_law is not None and damping_law not in laws:
+        rule = "must be a damping effect that is switched on"
+        remedy = f"on are: {', '.join(laws)}" if laws else "switch one on, for example simulator.viscous_damping={}"
+        problems.append(Problem("simulator.damping_law", rule, damping_law, remedy))
+    if problems:
+        raise InputError(problems)
+
+
+def _set_damping(model: Model, values: Values, law: str, ratio: Tensor, velocity: Tensor) -> None:
+    effect = next(effect for effect in model.effects if effect.name == law)
+    derived = model.prepare(values).derived
+    own = {p.name: values[f"{law}.{p.name}"] for p in effect.parameters}
+    found = effect.coefficient_for(ratio, own, derived["equivalent_mass"], derived["mean_stiffness"], velocity)
+    values |= {f"{law}.{name}": value for name, value in found.items()}
+
+
+def _start_static(
+    model: Model, given: Mapping[str, float], values: Values, perturbation: float, velocity: Tensor, generator: torch.Generator
+) -> None:
+    """Start where the mean load holds the flanks, plus what they impose, plus a random share."""
+    prepared = model.prepare(values)
+    static = prepared.derived["mean_load"] / prepared.derived["mean_stiffness"]
+    error, error_rate = _imposed(model, prepared)
+    shares = perturbation * torch.randn(2, len(static), generator=generator, dtype=torch.float64)
+    starts = {
+        "initial_displacement": static * (1 + shares[0]) + error * prepared.scales.length,
+        "initial_velocity": velocity * shares[1] + error_rate * prepared.scales.velocity,
+    }
+    values |= {name: value for name, value in starts.items() if name not in given}
+
+
+def _imposed(model: Model, prepared: object) -> tuple[Tensor, Tensor]:
+    """The geometric error of the flanks at the start and its rate, natural units."""
+    zero = torch.zeros_like(prepared.base["equivalent_mass"])
+    equation = EquationOfMotion(model)
+    extra = (zero,) * len(equation.extra_names)
+    now = equation.moment(zero, (zero, zero, *extra), {}, prepared.base)
+    return equation.imposed_error(now, prepared.terms)

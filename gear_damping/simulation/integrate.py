@@ -1,0 +1,102 @@
+"""From prepared members to trajectories: packing, kernels, groups of equal sub-steps, `odeint`."""
+
+from collections.abc import Callable, Mapping
+
+import torch
+from torch import Tensor
+from torchdiffeq import odeint
+
+from gear_damping.physics.model import Model, Prepared
+from gear_damping.physics.terms import ExtraStates
+from gear_damping.simulation import torchdiffeq_method
+from gear_damping.simulation.accuracy import substeps_for
+from gear_damping.simulation.compilation import choose
+from gear_damping.simulation.kernel import Kernel, Members
+from gear_damping.simulation.layout import Layout
+from gear_damping.simulation.series import Series
+from gear_damping.simulation.solver_settings import Solver
+from gear_damping.simulation.stepper import Stepper
+
+Progress = Callable[[int, int], None]
+
+torchdiffeq_method.register()
+
+
+def integrate(
+    model: Model,
+    prepared: Prepared,
+    inputs: Mapping[str, Tensor],
+    interval: Tensor,
+    n_samples: int,
+    solver: Solver,
+    progress: Progress | None = None,
+) -> tuple[list[str], Tensor]:
+    """Names of the states and their values in natural units, (n_state, batch, time).
+
+    Members that need the same number of sub-steps go together, so that no member's answer depends on
+    its batch-mates.
+    """
+    layout, series = Layout(prepared), Series(tuple(sorted(inputs)))
+    fixed, start = layout.pack(prepared, interval), _initial(model, prepared)
+    packed = series.pack(inputs, n_samples - 1, interval.shape[0])
+    example = Members(fixed, packed[0], fixed.new_zeros(()))
+    kernel = _kernel_of(model, layout, series, example, start)
+    choice = choose(solver.engine, kernel, example, start)
+    groups = _groups(prepared, interval, n_samples - 1, solver)
+    states = torch.empty(*start.shape, n_samples, dtype=torch.float64)
+    work, done = sum(n * len(lanes) for n, lanes in groups), 0
+    for n, lanes in groups:
+        stepper = choice.stepper(kernel, fixed[:, lanes].contiguous(), packed[:, :, lanes].contiguous())
+        share = _share(progress, done, n * len(lanes), work)
+        states[:, lanes] = _solve(stepper, start[:, lanes], n_samples, n, share)
+        done += n * len(lanes)
+    return ["displacement", "velocity", *kernel.equation.extra_names], states
+
+
+def _solve(stepper: Stepper, start: Tensor, n_samples: int, substeps: int, progress: Progress | None) -> Tensor:
+    times = torch.arange(n_samples, dtype=start.dtype, device=start.device)
+    options = {"stepper": stepper, "substeps": substeps, "progress": progress}
+    with torch.no_grad():
+        found = odeint(stepper.rates, start, times, method=torchdiffeq_method.METHOD, options=options)
+    return found.permute(1, 2, 0)
+
+
+def _groups(prepared: Prepared, interval: Tensor, intervals: int, solver: Solver) -> list[tuple[int, Tensor]]:
+    """Sub-steps and the members that take them, in chunks that bound the memory."""
+    if solver.substeps is None:
+        substeps = substeps_for(solver.accuracy, prepared, interval, intervals)
+    else:
+        substeps = torch.full(interval.shape, solver.substeps)
+    members = [(int(n), (substeps == n).nonzero().squeeze(1)) for n in substeps.unique()]
+    return [(n, lanes) for n, all_lanes in members for lanes in all_lanes.split(solver.chunk)]
+
+
+def _initial(model: Model, prepared: Prepared) -> Tensor:
+    """States at the start in natural units, (n_state, batch)."""
+    base = prepared.base
+    rows = [base["initial_displacement"], base["initial_velocity"]]
+    for effect in model.effects:
+        if isinstance(effect, ExtraStates):
+            found = effect.initial(prepared.terms[effect.name], base)
+            rows += [found[name] for name in effect.states]
+    return torch.stack(rows)
+
+
+def _share(progress: Progress | None, done: int, own: int, work: int) -> Progress | None:
+    """Progress of one group as a part of the whole, in thousandths."""
+    if progress is None:
+        return None
+    return lambda now, total: progress(round(1000 * (done + own * now / total) / work), 1000)
+
+
+_kernels: dict[tuple, Kernel] = {}
+
+
+def _kernel_of(model: Model, layout: Layout, series: Series, members: Members, start: Tensor) -> Kernel:
+    """The kernel of a model; models of one structure share it, and what was compiled for it."""
+    parts = (model.system, *model.effects)
+    key = tuple((type(part), tuple(sorted(part.chosen.items()))) for part in parts)
+    key += (tuple(layout.entries), series.names)
+    if key not in _kernels:
+        _kernels[key] = Kernel(model, layout, series, members, start)
+    return _kernels[key]

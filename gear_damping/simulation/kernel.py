@@ -1,0 +1,196 @@
+"""The two functions that all time is spent in, written so that each can be fused into one kernel.
+
+Both are pure: everything about the members comes in as packed tensors (see `Layout`, `Series`).
+Position is counted in output intervals, index + u with u in 0…1.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import torch
+from torch import Tensor
+
+from gear_damping.physics.equation import EquationOfMotion
+from gear_damping.physics.model import Model
+from gear_damping.physics.moment import Moment
+from gear_damping.simulation import tsit5
+from gear_damping.simulation.layout import Layout
+from gear_damping.simulation.series import Series
+
+WATCHED = (1 / 3, 2 / 3)  # positions inside a step at which a branch that was left is noticed
+ROOT_STEPS = 6  # of the bracketed search on the interpolant; one Newton step on the true state follows
+
+
+@dataclass(frozen=True)
+class Members:
+    """What the kernel knows about some members during one output interval.
+
+    Args:
+        fixed: Packed parameters, (rows, batch).
+        series: Packed inputs of this interval, (rows, batch).
+        index: Number of the output interval, a 0-dimensional tensor.
+    """
+
+    fixed: Tensor
+    series: Tensor
+    index: Tensor
+
+
+class Kernel:
+    """Steps of one model; holds no member's data, so that it is compiled once for any batch."""
+
+    def __init__(self, model: Model, layout: Layout, series: Series, members: Members, state: Tensor) -> None:
+        """Learn the names of the switches from some members and their state."""
+        self.equation = EquationOfMotion(model)
+        self.layout = layout
+        self.series = series
+        now, _, _, terms = self.moment(torch.zeros_like(state[0]), state, members)
+        self.switch_names = tuple(self.equation.switches(now, terms))
+
+    @cached_property
+    def fused_advance(self) -> Callable:
+        """`advance` as one compiled kernel for any batch size; the first call compiles it."""
+        return _fused(self.advance)
+
+    @cached_property
+    def fused_cross(self) -> Callable:
+        """`cross` as one compiled kernel."""
+        return _fused(self.cross)
+
+    @property
+    def is_compiled(self) -> bool:
+        """Whether this process has compiled the kernel already."""
+        return "fused_advance" in self.__dict__
+
+    def moment(self, u: Tensor, state: Tensor, members: Members) -> tuple[Moment, Tensor, dict, dict]:
+        """The moment at position u of the interval, with interval, base and term values."""
+        interval, base, terms = self.layout.unpack(members.fixed)
+        time = (members.index + u) * interval
+        inputs = self.series.at(members.series, u, interval)
+        return self.equation.moment(time, state.unbind(0), inputs, base), interval, base, terms
+
+    def rates(self, u: Tensor, state: Tensor, members: Members, locked: Tensor) -> Tensor:
+        """Rates of the states per output interval, (n_state, batch), on the locked branch."""
+        now, interval, base, terms = self.moment(u, state, members)
+        now.locked = dict(zip(self.switch_names, locked.unbind(0), strict=True))
+        return torch.stack(self.equation.rates(now, base, terms)) * interval
+
+    def switches(self, u: Tensor, state: Tensor, members: Members) -> Tensor:
+        """Every switching function, (n_switch, batch)."""
+        now, _, _, terms = self.moment(u, state, members)
+        return torch.stack(list(self.equation.switches(now, terms).values()))
+
+    def advance(self, state: Tensor, start: Tensor, length: Tensor, members: Members, locked: Tensor) -> tuple:
+        """One step on the locked branch.
+
+        Returns:
+            State at the end, rates at the start and at the end, and the smallest margin to the edge
+            of the branch that was met at the watched positions: negative where the branch was left.
+            For a model without switches only the state.
+        """
+
+        def rates(u: Tensor, inner: Tensor) -> Tensor:
+            return self.rates(u, inner, members, locked)
+
+        end, first = tsit5.step(rates, state, start, length)
+        if not self.switch_names:
+            return (end,)
+        last = rates(start + length, end)
+        margin = self._margin(start + length, end, members, locked)
+        for part in WATCHED:
+            inner = _interpolate(part, length, state, end, first, last)
+            margin = torch.minimum(margin, self._margin(start + part * length, inner, members, locked))
+        return end, first, last, margin
+
+    def cross(self, ends: tuple, start: Tensor, length: Tensor, members: Members, locked: Tensor) -> tuple:
+        """The first crossing inside a step that left its branch.
+
+        Args:
+            ends: State at start and end of that step, rates at start and end.
+            start: Position of its start.
+            length: Its length.
+            members: The members that crossed.
+            locked: The branch they were on.
+
+        Returns:
+            State and position of the crossing, and the branch behind it.
+        """
+        part = self._root(ends, start, length, members, locked)
+
+        def rates(u: Tensor, inner: Tensor) -> Tensor:
+            return self.rates(u, inner, members, locked)
+
+        state, _ = tsit5.step(rates, ends[0], start, part * length)
+        position = start + part * length
+        slope = rates(position, state)
+        reach = 1e-4 * length
+        here = self._signed(position, state, members, locked)
+        there = self._signed(position + reach, state + reach * slope, members, locked)
+        smallest = here.argmin(0, keepdim=True)
+        value, change = here.gather(0, smallest)[0], (there - here).gather(0, smallest)[0]
+        shift = torch.where(change.abs() > 0, -value / torch.where(change == 0, 1.0, change) * reach, 0.0)
+        shift = torch.minimum(torch.maximum(shift, -1e-2 * part * length), 1e-2 * (1 - part) * length)
+        flipped = torch.zeros_like(locked).scatter(0, smallest, 1.0)
+        return state + shift * slope, position + shift, (locked - flipped).abs()
+
+    def _root(self, ends: tuple, start: Tensor, length: Tensor, members: Members, locked: Tensor) -> Tensor:
+        """Share of the step at which the margin on the interpolant first falls to zero (Illinois)."""
+
+        def margin(part: Tensor) -> Tensor:
+            inner = _interpolate(part, length, *ends)
+            return self._margin(start + part * length, inner, members, locked)
+
+        low, high = torch.zeros_like(start), torch.ones_like(start)
+        at_low, at_high = margin(low).clamp(min=0), margin(high)
+        for part in reversed(WATCHED):
+            inside = torch.full_like(start, part)
+            value = margin(inside)
+            left = value < 0
+            high, at_high = torch.where(left, inside, high), torch.where(left, value, at_high)
+        for part in WATCHED:
+            inside = torch.full_like(start, part)
+            kept = inside < high
+            low = torch.where(kept, inside, low)
+            at_low = torch.where(kept, margin(inside).clamp(min=0), at_low)
+        for _ in range(ROOT_STEPS):
+            middle = _secant(low, high, at_low, at_high)
+            value = margin(middle)
+            left = value < 0
+            at_low, at_high = torch.where(left, at_low / 2, value), torch.where(left, value, at_high / 2)
+            low, high = torch.where(left, low, middle), torch.where(left, middle, high)
+        return _secant(low, high, at_low, at_high)
+
+    def _signed(self, u: Tensor, state: Tensor, members: Members, locked: Tensor) -> Tensor:
+        return self.switches(u, state, members) * (2 * locked - 1)
+
+    def _margin(self, u: Tensor, state: Tensor, members: Members, locked: Tensor) -> Tensor:
+        return self._signed(u, state, members, locked).amin(0)
+
+
+def _fused(function: Callable) -> Callable:
+    """Compile a step; the compiler sees nothing but tensors."""
+
+    def flat(first: Tensor | tuple, start: Tensor, length: Tensor, fixed: Tensor, *rest: Tensor) -> tuple:
+        series, index, locked = rest
+        return function(first, start, length, Members(fixed, series, index), locked)
+
+    compiled = torch.compile(flat, dynamic=True, fullgraph=True)
+
+    def call(first: Tensor | tuple, start: Tensor, length: Tensor, members: Members, locked: Tensor) -> tuple:
+        return compiled(first, start, length, members.fixed, members.series, members.index, locked)
+
+    return call
+
+
+def _secant(low: Tensor, high: Tensor, at_low: Tensor, at_high: Tensor) -> Tensor:
+    """Where the line through a value >= 0 and a value <= 0 meets zero."""
+    width = at_low - at_high
+    return low + (high - low) * at_low / torch.where(width > 0, width, 1.0)
+
+
+def _interpolate(part: Tensor | float, length: Tensor, start: Tensor, end: Tensor, first: Tensor, last: Tensor) -> Tensor:
+    """Cubic Hermite interpolation at a share of the step."""
+    s, r = part, 1 - part
+    ends = (1 + 2 * s) * r * r * start + s * s * (3 - 2 * s) * end
+    return ends + length * (s * r * r * first - s * s * r * last)

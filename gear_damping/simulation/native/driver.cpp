@@ -1,0 +1,197 @@
+// Walks members over output intervals with the region-locked method of Tsitouras (see stepper.py, which
+// does the same in PyTorch). Above this text stand: WIDTH, N_STATE, N_FIXED, N_SERIES, N_SWITCH, N_KEPT,
+// the vector types and functions, and the traced functions setup, rates and switches.
+
+struct Block {
+  vd P[N_FIXED + 1], S[N_SERIES + 1], L[N_SWITCH + 1], Q[N_KEPT + 1];
+  double index;
+};
+
+static const double NODES[6] = {0.0, 0.161, 0.327, 0.9, 0.9800255409045097, 1.0};
+static const double STAGES[6][5] = {
+    {0},
+    {0.161},
+    {-0.008480655492356989, 0.335480655492357},
+    {2.8971530571054935, -6.359448489975075, 4.3622954328695815},
+    {5.325864828439257, -11.748883564062828, 7.4955393428898365, -0.09249506636175525},
+    {5.86145544294642, -12.92096931784711, 8.159367898576159, -0.071584973281401, -0.028269050394068383}};
+static const double WEIGHTS[6] = {0.09646076681806523, 0.01, 0.4798896504144996,
+                                  1.379008574103742, -3.290069515436081, 2.324710524099774};
+static const double WATCHED[2] = {1.0 / 3.0, 2.0 / 3.0};
+static const int ROOT_STEPS = 6, MOST_SPLITS = 8;
+
+static inline void rates_at(vd u, const vd* y, const Block& b, const vd* L, vd* out) {
+  rates(u, y, b.P, b.S, b.index, L, b.Q, out);
+}
+
+static inline void step(const vd* y, vd start, vd length, const Block& b, const vd* L, vd* end, vd* first) {
+  vd k[6][N_STATE], inner[N_STATE];
+  for (int stage = 0; stage < 6; ++stage) {
+    for (int i = 0; i < N_STATE; ++i) {
+      vd sum = vd{};
+      for (int j = 0; j < stage; ++j) sum += STAGES[stage][j] * k[j][i];
+      inner[i] = y[i] + length * sum;
+    }
+    rates_at(start + NODES[stage] * length, inner, b, L, k[stage]);
+  }
+  for (int i = 0; i < N_STATE; ++i) {
+    vd sum = vd{};
+    for (int j = 0; j < 6; ++j) sum += WEIGHTS[j] * k[j][i];
+    end[i] = y[i] + length * sum;
+    first[i] = k[0][i];
+  }
+}
+
+#if N_SWITCH > 0
+static inline void signed_switches(vd u, const vd* y, const Block& b, const vd* L, vd* out) {
+  switches(u, y, b.P, b.S, b.index, L, b.Q, out);
+  for (int w = 0; w < N_SWITCH; ++w) out[w] *= 2.0 * L[w] - 1.0;
+}
+
+static inline vd margin(vd u, const vd* y, const Block& b, const vd* L) {
+  vd g[N_SWITCH];
+  signed_switches(u, y, b, L, g);
+  vd least = g[0];
+  for (int w = 1; w < N_SWITCH; ++w) least = v_min(least, g[w]);
+  return least;
+}
+
+struct Ends {
+  vd start[N_STATE], end[N_STATE], first[N_STATE], last[N_STATE];
+};
+
+static inline vd margin_inside(vd part, vd start, vd length, const Ends& e, const Block& b, const vd* L) {
+  const vd rest = 1.0 - part;
+  vd inner[N_STATE];
+  for (int i = 0; i < N_STATE; ++i)
+    inner[i] = (1.0 + 2.0 * part) * rest * rest * e.start[i] + part * part * (3.0 - 2.0 * part) * e.end[i] +
+               length * (part * rest * rest * e.first[i] - part * part * rest * e.last[i]);
+  return margin(start + part * length, inner, b, L);
+}
+
+static inline vd advance(vd start, vd length, const Block& b, const vd* L, Ends& e) {
+  step(e.start, start, length, b, L, e.end, e.first);
+  rates_at(start + length, e.end, b, L, e.last);
+  vd least = margin(start + length, e.end, b, L);
+  for (double part : WATCHED) least = v_min(least, margin_inside(vd{} + part, start, length, e, b, L));
+  return least;
+}
+
+static inline vd secant(vd low, vd high, vd at_low, vd at_high) {
+  const vd width = at_low - at_high;
+  return low + (high - low) * at_low / (width > 0.0 ? width : vd{} + 1.0);
+}
+
+static inline vd root(vd start, vd length, const Ends& e, const Block& b, const vd* L) {
+  vd low = vd{}, high = vd{} + 1.0;
+  vd at_low = v_max(margin_inside(low, start, length, e, b, L), vd{});
+  vd at_high = margin_inside(high, start, length, e, b, L);
+  for (int i = 1; i >= 0; --i) {
+    const vd inside = vd{} + WATCHED[i], value = margin_inside(inside, start, length, e, b, L);
+    const vm left = value < 0.0;
+    high = left ? inside : high;
+    at_high = left ? value : at_high;
+  }
+  for (double part : WATCHED) {
+    const vd inside = vd{} + part, value = margin_inside(inside, start, length, e, b, L);
+    const vm kept = inside < high;
+    low = kept ? inside : low;
+    at_low = kept ? v_max(value, vd{}) : at_low;
+  }
+  for (int i = 0; i < ROOT_STEPS; ++i) {
+    const vd middle = secant(low, high, at_low, at_high), value = margin_inside(middle, start, length, e, b, L);
+    const vm left = value < 0.0;
+    at_low = left ? at_low / 2.0 : value;
+    at_high = left ? value : at_high / 2.0;
+    low = left ? low : middle;
+    high = left ? middle : high;
+  }
+  return secant(low, high, at_low, at_high);
+}
+
+// The first crossing of a step: its state and position, and the branch behind it, for lanes in `crossed`.
+static inline void cross(Ends& e, vd& start, vd length, const Block& b, vd* L, vm crossed) {
+  const vd part = root(start, length, e, b, L);
+  vd y[N_STATE], slope[N_STATE], ahead[N_STATE], here[N_SWITCH], there[N_SWITCH];
+  step(e.start, start, part * length, b, L, y, slope);
+  const vd position = start + part * length, reach = 1e-4 * length;
+  rates_at(position, y, b, L, slope);
+  for (int i = 0; i < N_STATE; ++i) ahead[i] = y[i] + reach * slope[i];
+  signed_switches(position, y, b, L, here);
+  signed_switches(position + reach, ahead, b, L, there);
+  vd value = here[0], change = there[0] - here[0], which = vd{};
+  for (int w = 1; w < N_SWITCH; ++w) {
+    const vm less = here[w] < value;
+    value = less ? here[w] : value;
+    change = less ? there[w] - here[w] : change;
+    which = less ? vd{} + double(w) : which;
+  }
+  vd shift = change != 0.0 ? -value / (change == 0.0 ? vd{} + 1.0 : change) * reach : vd{};
+  shift = v_min(v_max(shift, -1e-2 * part * length), 1e-2 * (1.0 - part) * length);
+  for (int i = 0; i < N_STATE; ++i) e.start[i] = crossed ? y[i] + shift * slope[i] : e.start[i];
+  start = crossed ? position + shift : start;
+  for (int w = 0; w < N_SWITCH; ++w) L[w] = (crossed & (which == double(w))) ? 1.0 - L[w] : L[w];
+}
+
+static inline void split(vd start, vd length, Block& b, Ends& e, vm crossed) {
+  const vd stop = start + length;
+  const vm ours = crossed;
+  Ends work = e;
+  vd L[N_SWITCH];
+  for (int w = 0; w < N_SWITCH; ++w) L[w] = b.L[w];
+  for (int i = 0; i < MOST_SPLITS && any(crossed); ++i) {
+    cross(work, start, stop - start, b, L, crossed);
+    crossed = ours & (advance(start, stop - start, b, L, work) < 0.0);
+  }
+  for (int i = 0; i < N_STATE; ++i) e.end[i] = ours ? work.end[i] : e.end[i];
+  for (int w = 0; w < N_SWITCH; ++w) b.L[w] = ours ? L[w] : b.L[w];
+}
+#endif
+
+static inline void substep(vd* y, vd start, vd length, Block& b) {
+#if N_SWITCH > 0
+  Ends e;
+  for (int i = 0; i < N_STATE; ++i) e.start[i] = y[i];
+  const vm crossed = advance(start, length, b, b.L, e) < 0.0;
+  if (any(crossed)) split(start, length, b, e, crossed);
+  for (int i = 0; i < N_STATE; ++i) y[i] = e.end[i];
+#else
+  vd end[N_STATE], first[N_STATE];
+  step(y, start, length, b, b.L, end, first);
+  for (int i = 0; i < N_STATE; ++i) y[i] = end[i];
+#endif
+}
+
+// Lanes of row `row` of a (rows, lanes) array; past the end the last lane is repeated.
+static inline vd load(const double* rows, long lanes, long row, long lane) {
+  vd v;
+  for (int l = 0; l < WIDTH; ++l) v[l] = rows[row * lanes + (lane + l < lanes ? lane + l : lanes - 1)];
+  return v;
+}
+
+static inline void store(double* rows, long lanes, long row, long lane, vd v) {
+  for (int l = 0; l < WIDTH && lane + l < lanes; ++l) rows[row * lanes + lane + l] = v[l];
+}
+
+// fixed (N_FIXED, lanes); series (intervals, N_SERIES, lanes); state (N_STATE, lanes) and branch
+// (N_SWITCH, lanes) are read and left at the last interval; out (count, N_STATE, lanes).
+extern "C" void walk(long lanes, long from, long to, long first, long count, long substeps, const double* fixed,
+                     const double* series, double* state, double* branch, double* out) {
+  const double part = 1.0 / double(substeps);
+  for (long lane = from; lane < to; lane += WIDTH) {
+    Block b;
+    vd y[N_STATE];
+    for (int i = 0; i < N_FIXED; ++i) b.P[i] = load(fixed, lanes, i, lane);
+    for (int i = 0; i < N_STATE; ++i) y[i] = load(state, lanes, i, lane);
+    for (int w = 0; w < N_SWITCH; ++w) b.L[w] = load(branch, lanes, w, lane);
+    setup(b.P, b.Q);
+    for (long n = 0; n < count; ++n) {
+      b.index = double(first + n);
+      for (int i = 0; i < N_SERIES; ++i) b.S[i] = load(series, lanes, (first + n) * N_SERIES + i, lane);
+      for (long s = 0; s < substeps; ++s) substep(y, vd{} + double(s) * part, vd{} + part, b);
+      for (int i = 0; i < N_STATE; ++i) store(out, lanes, n * N_STATE + i, lane, y[i]);
+    }
+    for (int i = 0; i < N_STATE; ++i) store(state, lanes, i, lane, y[i]);
+    for (int w = 0; w < N_SWITCH; ++w) store(branch, lanes, w, lane, b.L[w]);
+  }
+}

@@ -1,0 +1,83 @@
+"""The C++ source of a model's kernel."""
+
+from pathlib import Path
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from gear_damping.simulation.kernel import Kernel, Members
+from gear_damping.simulation.native.emit import Written
+from gear_damping.simulation.native.expressions import Program
+from gear_damping.simulation.native.trace import LANES, trace
+
+HERE = Path(__file__).resolve().parent
+
+
+def kernel_source(kernel: Kernel, members: Members, state: Tensor, width: int) -> str:
+    """C++ of everything that happens to members of this structure.
+
+    Args:
+        kernel: The model's steps.
+        members: Some members, of which the first is traced with.
+        state: Their state.
+        width: Lanes of a vector.
+
+    Raises:
+        UntraceableError: a term uses an operation that has no native form.
+    """
+    program = Program()
+    sizes = (state.shape[0], kernel.layout.rows, members.series.shape[0], len(kernel.switch_names))
+    inputs = _inputs(program, sizes)
+    examples = _examples(members, state, sizes)
+
+    def rates(u: Tensor, y: Tensor, fixed: Tensor, series: Tensor, index: Tensor, locked: Tensor) -> Tensor:
+        return kernel.rates(u, y, Members(fixed, series, index), locked)
+
+    def switches(u: Tensor, y: Tensor, fixed: Tensor, series: Tensor, index: Tensor, locked: Tensor) -> Tensor:
+        return kernel.switches(u, y, Members(fixed, series, index))
+
+    written = Written(program)
+    parts = [written.function("rates", _flat(trace(rates, examples, inputs, program)))]
+    if kernel.switch_names:
+        parts.append(written.function("switches", _flat(trace(switches, examples, inputs, program))))
+    parts.append(written.setup())
+    names = ("WIDTH", "N_STATE", "N_FIXED", "N_SERIES", "N_SWITCH", "N_KEPT")
+    defined = [f"#define {n} {v}" for n, v in zip(names, (width, *sizes, len(written.kept)), strict=True)]
+    driver = (HERE / "driver.cpp").read_text()
+    return "\n".join([*defined, (HERE / "vectors.h").read_text(), *parts, driver])
+
+
+def _flat(results: list[np.ndarray]) -> list:
+    return [value for result in results for value in np.ravel(result)]
+
+
+def _inputs(program: Program, sizes: tuple[int, int, int, int]) -> list[np.ndarray]:
+    """Expressions of u, y, fixed, series, index and locked, in the order of the traced functions."""
+    n_state, n_fixed, n_series, n_switch = sizes
+
+    def rows(letter: str, count: int, varies: bool) -> np.ndarray:
+        made = np.empty((count, 1), dtype=object)
+        for i in range(count):
+            made[i, 0] = program.input(f"{letter}[{i}]", varies)
+        return made
+
+    u = np.array([program.input("u", True)], dtype=object)
+    index = np.array(program.input("index", True), dtype=object)
+    return [
+        u,
+        rows("y", n_state, True),
+        rows("P", n_fixed, False),
+        rows("S", n_series, True),
+        index,
+        rows("L", n_switch, True),
+    ]
+
+
+def _examples(members: Members, state: Tensor, sizes: tuple[int, int, int, int]) -> list[Tensor]:
+    def first(rows: Tensor) -> Tensor:
+        return rows[:, :1].expand(rows.shape[0], LANES).clone()
+
+    u = torch.zeros(LANES, dtype=state.dtype)
+    locked = torch.ones(sizes[3], LANES, dtype=state.dtype)
+    return [u, first(state), first(members.fixed), first(members.series), torch.zeros((), dtype=state.dtype), locked]

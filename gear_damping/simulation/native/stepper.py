@@ -1,0 +1,49 @@
+"""The native counterpart of `Stepper`: the same walk, many intervals at a time, on every core."""
+
+import ctypes
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+
+import torch
+from torch import Tensor
+
+from gear_damping.simulation.stepper import Stepper
+
+BLOCK = 128  # output intervals between two reports of progress
+
+
+class NativeStepper(Stepper):
+    """Walks a batch with a compiled kernel; lanes are shared out over PyTorch's number of threads."""
+
+    def __init__(self, kernel: object, fixed: Tensor, series: Tensor, library: ctypes.CDLL, width: int) -> None:
+        """Prepare a batch; arguments as for `Stepper`, and the kernel's library with its vector width."""
+        super().__init__(kernel, fixed, series, compiled=False)
+        self.library, self.width = library, width
+
+    def run(self, state: Tensor, out: Tensor, substeps: int, report: Callable[[int], None]) -> None:
+        """Fill `out` (intervals, n_state, batch) with the state after each interval."""
+        state, series = state.clone().contiguous(), self.series.contiguous()
+        fixed, locked = self.fixed.contiguous(), self.locked.contiguous()
+        lanes, total = fixed.shape[1], out.shape[0]
+        shares = self._shares(lanes)
+        with ThreadPoolExecutor(len(shares)) as pool:
+            for first in range(0, total, BLOCK):
+                count = min(BLOCK, total - first)
+                target = out[first : first + count]
+
+                def work(share: tuple[int, int], first: int = first, count: int = count, target: Tensor = target) -> None:
+                    numbers = (lanes, *share, first, count, substeps)
+                    pointers = (fixed, series, state, locked, target)
+                    self.library.walk(
+                        *(ctypes.c_long(n) for n in numbers), *(ctypes.c_void_p(p.data_ptr()) for p in pointers)
+                    )
+
+                list(pool.map(work, shares))
+                report(first + count)
+
+    def _shares(self, lanes: int) -> list[tuple[int, int]]:
+        """Ranges of lanes, whole vectors each, one for each thread that has something to do."""
+        blocks = -(-lanes // self.width)
+        threads = max(1, min(torch.get_num_threads(), blocks))
+        edges = [min(lanes, self.width * round(blocks * i / threads)) for i in range(threads + 1)]
+        return [(a, b) for a, b in zip(edges[:-1], edges[1:], strict=True) if b > a]

@@ -1,0 +1,197 @@
+"""Reads a tensor program into scalar expressions.
+
+The program is traced by PyTorch (`make_fx`) for a batch of `LANES` members whose axis is the last one;
+every tensor becomes an array of expressions with that axis cut to length one.
+"""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import torch
+from torch import Tensor
+from torch.fx.experimental.proxy_tensor import make_fx
+
+from gear_damping.simulation.native.expressions import Expression, Program, Value
+
+LANES = 13  # a length that no other axis has
+BINARY = {
+    "add": "add", "sub": "sub", "mul": "mul", "div": "div", "pow": "pow", "maximum": "maximum", "minimum": "minimum",
+    "gt": "gt", "ge": "ge", "lt": "lt", "le": "le", "eq": "eq", "ne": "ne",
+    "logical_and": "and", "bitwise_and": "and", "logical_or": "or", "bitwise_or": "or",
+    "__and__": "and", "__or__": "or",
+}  # fmt: skip
+UNARY = {"neg", "abs", "sqrt", "cos", "sin", "tanh", "exp", "log", "atan", "sign", "floor"}
+SAME = {"clone", "alias", "detach", "lift_fresh_copy", "contiguous", "_to_copy"}
+Arrays = np.ndarray
+
+
+class UntraceableError(NotImplementedError):
+    """An operation that has no native form; the model then runs without native kernel."""
+
+
+def trace(function: Callable, examples: Sequence[Tensor], inputs: Sequence[Arrays], program: Program) -> list[Arrays]:
+    """The results of `function` as arrays of expressions.
+
+    Args:
+        function: Takes and returns tensors whose last axis has LANES members.
+        examples: Tensors to trace with.
+        inputs: Expressions that stand for them.
+        program: Where the operations go.
+
+    Raises:
+        UntraceableError: the function uses an operation without native form.
+    """
+    with torch.no_grad():
+        graph = make_fx(function)(*examples)
+    values: dict = {}
+    waiting = iter(inputs)
+    for node in graph.graph.nodes:
+        if node.op == "placeholder":
+            values[node] = next(waiting)
+        elif node.op == "get_attr":
+            values[node] = _constant(getattr(graph, node.target))
+        elif node.op == "call_function":
+            arguments = torch.fx.node.map_arg(node.args, lambda n: values[n])
+            options = torch.fx.node.map_arg(dict(node.kwargs), lambda n: values[n])
+            values[node] = _apply(program, node, arguments, options)
+        elif node.op == "output":
+            found = node.args[0] if isinstance(node.args[0], (list, tuple)) else [node.args[0]]
+            return [values[n] for n in found]
+    raise UntraceableError("a program without output")
+
+
+def _constant(tensor: Tensor) -> Arrays:
+    return tensor.detach().to(torch.float64).numpy().astype(object)
+
+
+def _apply(program: Program, node: torch.fx.Node, a: tuple, k: dict) -> Arrays | list[Arrays]:
+    name = getattr(node.target, "__name__", str(node.target)).split(".")[0]
+    if name in SAME:
+        return _converted(program, a[0], node)
+    if name in BINARY and not k.get("alpha"):
+        return _each(program, BINARY[name], *a)
+    if name in UNARY:
+        return _each(program, name, a[0])
+    if name in _SPECIAL:
+        return _SPECIAL[name](program, node, a, k)
+    raise UntraceableError(f"the operation '{name}' has no native form")
+
+
+def _each(program: Program, name: str, *arguments: object) -> Arrays:
+    """Apply an operation to every element, with broadcasting."""
+    arrays = np.broadcast_arrays(*(np.asarray(a, dtype=object) for a in arguments))
+    result = np.empty(arrays[0].shape, dtype=object)
+    for place in np.ndindex(result.shape):
+        result[place] = program.apply(name, *(_number(array[place]) for array in arrays))
+    return result
+
+
+def _number(value: object) -> Expression:
+    return value if isinstance(value, Value) else float(value)
+
+
+def _converted(program: Program, array: Arrays, node: torch.fx.Node) -> Arrays:
+    """A mask that becomes a number; anything else stays."""
+    wants_number = node.meta["val"].dtype.is_floating_point
+    flat = [v for v in np.ravel(array) if isinstance(v, Value)]
+    if wants_number and any(v.kind == "mask" for v in flat):
+        return _each(program, "number", array)
+    return array
+
+
+def _filled(number: float) -> Callable:
+    def make(program: Program, node: torch.fx.Node, a: tuple, k: dict) -> Arrays:
+        return np.full(_shape(node), number, dtype=object)
+
+    return make
+
+
+def _shape(node: torch.fx.Node) -> tuple[int, ...]:
+    shape = tuple(node.meta["val"].shape)
+    return (*shape[:-1], 1) if shape and shape[-1] == LANES else shape
+
+
+def _sum(program: Program, node: torch.fx.Node, a: tuple, k: dict) -> Arrays:
+    axes = a[1] if len(a) > 1 and a[1] is not None else list(range(a[0].ndim))
+    return _reduced(program, "add", a[0], axes, node)
+
+
+def _extreme(name: str) -> Callable:
+    def reduce(program: Program, node: torch.fx.Node, a: tuple, k: dict) -> Arrays:
+        axes = a[1] if isinstance(a[1], (list, tuple)) else [a[1]]
+        return _reduced(program, name, a[0], axes, node)
+
+    return reduce
+
+
+def _reduced(program: Program, name: str, array: Arrays, axes: Sequence[int], node: torch.fx.Node) -> Arrays:
+    for axis in axes:
+        if axis % array.ndim == array.ndim - 1:
+            raise UntraceableError("a sum over the members")
+    for axis in sorted((axis % array.ndim for axis in axes), reverse=True):
+        parts = [np.take(array, i, axis=axis) for i in range(array.shape[axis])]
+        array = parts[0]
+        for part in parts[1:]:
+            array = _each(program, name, array, part)
+    return np.reshape(array, _shape(node))
+
+
+def _clamp(program: Program, node: torch.fx.Node, a: tuple, k: dict) -> Arrays:
+    low = a[1] if len(a) > 1 else k.get("min")
+    high = a[2] if len(a) > 2 else k.get("max")
+    result = a[0]
+    if low is not None:
+        result = _each(program, "maximum", result, low)
+    return result if high is None else _each(program, "minimum", result, high)
+
+
+_SPECIAL: dict[str, Callable] = {
+    "where": lambda p, n, a, k: _each(p, "where", *a),
+    "logical_not": lambda p, n, a, k: _each(p, "not", a[0]),
+    "bitwise_not": lambda p, n, a, k: _each(p, "not", a[0]),
+    "rsub": lambda p, n, a, k: _each(p, "sub", a[1], a[0]),
+    "reciprocal": lambda p, n, a, k: _each(p, "div", 1.0, a[0]),
+    "square": lambda p, n, a, k: _each(p, "mul", a[0], a[0]),
+    "clamp": _clamp,
+    "clamp_min": _clamp,
+    "clamp_max": lambda p, n, a, k: _each(p, "minimum", a[0], a[1]),
+    "sum": _sum,
+    "amin": _extreme("minimum"),
+    "amax": _extreme("maximum"),
+    "select": lambda p, n, a, k: np.take(a[0], a[2], axis=a[1]),
+    "slice": lambda p, n, a, k: _slice(*a),
+    "unbind": lambda p, n, a, k: [np.take(a[0], i, axis=_axis(a)) for i in range(a[0].shape[_axis(a)])],
+    "getitem": lambda p, n, a, k: a[0][a[1]],
+    "stack": lambda p, n, a, k: np.stack(a[0], axis=a[1] if len(a) > 1 else 0),
+    "cat": lambda p, n, a, k: np.concatenate(a[0], axis=a[1] if len(a) > 1 else 0),
+    "unsqueeze": lambda p, n, a, k: np.expand_dims(a[0], a[1]),
+    "squeeze": lambda p, n, a, k: np.reshape(a[0], _shape(n)),
+    "view": lambda p, n, a, k: np.reshape(a[0], _shape(n)),
+    "reshape": lambda p, n, a, k: np.reshape(a[0], _shape(n)),
+    "_unsafe_view": lambda p, n, a, k: np.reshape(a[0], _shape(n)),
+    "expand": lambda p, n, a, k: np.broadcast_to(a[0], _shape(n)),
+    "zeros_like": _filled(0.0),
+    "zeros": _filled(0.0),
+    "new_zeros": _filled(0.0),
+    "ones_like": _filled(1.0),
+    "ones": _filled(1.0),
+    "new_ones": _filled(1.0),
+    "full_like": lambda p, n, a, k: np.full(_shape(n), float(a[1]), dtype=object),
+    "full": lambda p, n, a, k: np.full(_shape(n), float(a[1]), dtype=object),
+    "new_full": lambda p, n, a, k: np.full(_shape(n), float(a[2]), dtype=object),
+    "scalar_tensor": lambda p, n, a, k: np.asarray(float(a[0]), dtype=object),
+    "flip": lambda p, n, a, k: np.flip(a[0], axis=tuple(a[1])),
+}
+
+
+def _axis(a: tuple) -> int:
+    return a[1] if len(a) > 1 else 0
+
+
+def _slice(array: Arrays, axis: int = 0, start: int | None = None, stop: int | None = None, step: int = 1) -> Arrays:
+    if axis % array.ndim == array.ndim - 1:
+        return array
+    stop = None if stop is None or stop > array.shape[axis] else stop
+    place = [slice(None)] * array.ndim
+    place[axis] = slice(start, stop, step)
+    return array[tuple(place)]

@@ -1,0 +1,128 @@
+"""What a simulation gives back."""
+
+from dataclasses import dataclass, field, replace
+
+import torch
+from torch import Tensor
+
+from gear_damping.physics.model import Model
+from gear_damping.physics.terms import DampingLaw, Recording, Sensor
+
+FINE, DIVERGED = 0, 1
+
+
+@dataclass(frozen=True)
+class Runs:
+    """Simulated runs of one model, SI, float64.
+
+    Args:
+        model: The model they came from.
+        values: Its parameters by flat name, (batch,) or (n, batch).
+        derived: Derived quantities of the system, each (batch,).
+        sampling_rate: Output samples per second.
+        states: `displacement`, `velocity` and the states of effects by flat name, (batch, time).
+        channels: Other series that belong to the runs (angles, torque, stiffness), (batch, time).
+        status: 0 for a fine run, 1 for one that diverged, (batch,).
+        reference_velocity: Velocity amplitude that equivalent damping ratios belong to, m/s, (batch,).
+        n_diverged: How many runs diverged, kept here or already left out.
+    """
+
+    model: Model
+    values: dict[str, Tensor]
+    derived: dict[str, Tensor]
+    sampling_rate: float
+    states: dict[str, Tensor]
+    channels: dict[str, Tensor]
+    status: Tensor
+    reference_velocity: Tensor
+    n_diverged: int = field(default=0)
+
+    @property
+    def good(self) -> Tensor:
+        """True for runs that did not diverge, (batch,)."""
+        return self.status == FINE
+
+    @property
+    def time(self) -> Tensor:
+        """Time of the samples in s, (time,)."""
+        count = self.states["displacement"].shape[-1]
+        return torch.arange(count, dtype=torch.float64) / self.sampling_rate
+
+    @property
+    def response(self) -> Tensor:
+        """The system's response before any sensor, (batch, time)."""
+        return self.states["displacement"]
+
+    @property
+    def damping_ratio_percent(self) -> Tensor:
+        """Equivalent damping ratio of every damping law together at the reference velocity, in %, (batch,)."""
+        total = torch.zeros_like(self.derived["equivalent_mass"])
+        mass, stiffness = self.derived["equivalent_mass"], self.derived["mean_stiffness"]
+        for effect in self.model.effects:
+            if isinstance(effect, DampingLaw):
+                own = {p.name: self.values[f"{effect.name}.{p.name}"] for p in effect.parameters}
+                total = total + effect.damping_ratio(own, mass, stiffness, self.reference_velocity)
+        return 100 * total
+
+    def channel(self, name: str) -> Tensor:
+        """A series by name, (batch, time); the response also by the name that files give it."""
+        if name == self.model.system.response:
+            return self.response
+        found = self.states | self.channels
+        if name not in found:
+            raise KeyError(f"no channel '{name}'; there are {', '.join(sorted(found))}")
+        return found[name]
+
+    def record(self, generator: torch.Generator, skip: tuple[str, ...] = ()) -> Tensor:
+        """The response as the model's sensors record it, (batch, time).
+
+        Args:
+            generator: Source of the sensors' noise.
+            skip: Names of sensors to leave out.
+        """
+        return self.measured(self.model.system.response, generator, skip)
+
+    def measured(self, channel: str, generator: torch.Generator, skip: tuple[str, ...] = ()) -> Tensor:
+        """Any channel behind the sensors that act on it, (batch, time)."""
+        signal = self.channel(channel)
+        about = Recording(
+            self.sampling_rate,
+            generator,
+            self.derived,
+            self.channels.get("pinion_angle"),
+            self.channels.get("gear_angle"),
+        )
+        for sensor in self._sensors(channel, skip):
+            own = {p.name: self.values[f"{sensor.name}.{p.name}"] for p in sensor.parameters}
+            signal = sensor.measure(signal, own, about)
+        return signal
+
+    def _sensors(self, channel: str, skip: tuple[str, ...]) -> list[Sensor]:
+        sensors = [e for e in self.model.effects if isinstance(e, Sensor) and e.name not in skip]
+        response = self.model.system.response
+        return sorted((s for s in sensors if (s.channel or response) == channel), key=lambda s: s.position)
+
+    def keep(self, mask: Tensor) -> "Runs":
+        """The runs where `mask` (batch,) is true."""
+
+        def some(values: dict[str, Tensor], last: bool) -> dict[str, Tensor]:
+            return {k: v[..., mask] if last else v[mask] for k, v in values.items()}
+
+        return replace(
+            self,
+            values=some(self.values, True),
+            derived=some(self.derived, True),
+            states=some(self.states, False),
+            channels=some(self.channels, False),
+            status=self.status[mask],
+            reference_velocity=self.reference_velocity[mask],
+        )
+
+
+def reference_velocity(derived: dict[str, Tensor]) -> Tensor:
+    """The velocity amplitude omega_n F0 / k0 that equivalent damping ratios belong to, m/s, (batch,).
+
+    An oscillator has no mean load: its reference amplitude takes the place of F0 / k0.
+    """
+    amplitude = (derived["mean_load"] / derived["mean_stiffness"]).abs()
+    return derived["natural_frequency"] * derived.get("amplitude", amplitude)

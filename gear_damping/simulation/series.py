@@ -1,0 +1,78 @@
+"""Input series between their samples: one polynomial for each output interval.
+
+A measured force or torque is band-limited: it is interpolated by a windowed sinc to five points of
+each interval, and the quartic through them is what the solver sees, smooth inside every step. A
+drawn load is held over its interval. A measured angle is linear between its samples.
+"""
+
+from collections.abc import Mapping
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from gear_damping.physics.equation import HELD_LOAD
+from gear_damping.signals.envelope import upsample
+
+ANGLE, ANGLE_RATE = "pinion_angle", "pinion_angle_rate"
+POINTS = 4  # sub-intervals of an output interval at which the sinc interpolation is taken
+MARGIN = 32  # samples of odd reflection beyond each end, which the sinc interpolation needs
+_TO_COEFFICIENTS = torch.tensor(np.linalg.inv(np.vander(np.linspace(0, 1, POINTS + 1), increasing=True)))
+
+
+class Series:
+    """Coefficients of every input series, and their evaluation inside an interval.
+
+    The packed tensor has shape (intervals, rows, batch).
+    """
+
+    def __init__(self, names: tuple[str, ...]) -> None:
+        """Order the rows of the inputs called `names`."""
+        self.names = names
+        self.heights = [_height(name) for name in names]
+
+    def pack(self, inputs: Mapping[str, Tensor], intervals: int, batch: int) -> Tensor:
+        """Coefficients from natural-unit inputs of shape (batch, time), or (batch, intervals) if held."""
+        parts = [_coefficients(name, inputs[name]) for name in self.names]
+        if not parts:
+            return torch.zeros(intervals, 0, batch, dtype=torch.float64)
+        return torch.cat(parts).permute(1, 0, 2).contiguous()
+
+    def at(self, rows: Tensor, u: Tensor, interval: Tensor) -> dict[str, Tensor]:
+        """Every input at position `u` (0…1) of the interval whose rows these are."""
+        found, row = {}, 0
+        for name, height in zip(self.names, self.heights, strict=True):
+            coefficients = rows[row : row + height]
+            value = coefficients[height - 1]
+            for k in range(height - 2, -1, -1):
+                value = value * u + coefficients[k]
+            found[name] = value
+            if name == ANGLE:
+                found[ANGLE_RATE] = coefficients[1] / interval
+            row += height
+        return found
+
+
+def _height(name: str) -> int:
+    return {HELD_LOAD: 1, ANGLE: 2}.get(name, POINTS + 1)
+
+
+def _coefficients(name: str, values: Tensor) -> Tensor:
+    """Shape (height, intervals, batch), powers of u ascending."""
+    series = values.T
+    if name == HELD_LOAD:
+        return series.unsqueeze(0)
+    if name == ANGLE:
+        return torch.stack([series[:-1], series[1:] - series[:-1]])
+    fine = _between_samples(values)
+    windows = fine.unfold(-1, POINTS + 1, POINTS)  # (batch, intervals, points)
+    return torch.einsum("kp,bip->kib", _TO_COEFFICIENTS.to(values), windows)
+
+
+def _between_samples(values: Tensor) -> Tensor:
+    """The series at POINTS positions per interval, (batch, POINTS * intervals + 1)."""
+    margin = min(MARGIN, values.shape[-1] - 1)
+    before = 2 * values[:, :1] - values[:, 1 : margin + 1].flip(-1)
+    after = 2 * values[:, -1:] - values[:, -margin - 1 : -1].flip(-1)
+    fine = upsample(torch.cat([before, values, after], dim=-1), POINTS)
+    return fine[:, POINTS * margin : fine.shape[-1] - POINTS * margin]

@@ -1,0 +1,128 @@
+"""Simulate a batch of runs of one model: the front door of this room."""
+
+from collections.abc import Mapping
+
+import torch
+from torch import Tensor
+
+from gear_damping.errors import InputError, Problem
+from gear_damping.physics.equation import HELD_LOAD
+from gear_damping.physics.model import Model, Prepared
+from gear_damping.physics.terms import ExtraStates, HeldLoad
+from gear_damping.simulation.integrate import Progress, integrate
+from gear_damping.simulation.runs import DIVERGED, FINE, Runs, reference_velocity
+from gear_damping.simulation.series import ANGLE, ANGLE_RATE
+from gear_damping.simulation.solver_settings import Solver
+from gear_damping.units import parse_unit
+
+FAR = 1e6  # natural lengths; a member that goes farther has diverged
+
+
+def simulate(
+    model: Model,
+    values: Mapping[str, Tensor],
+    *,
+    sampling_rate: float,
+    n_samples: int,
+    inputs: Mapping[str, Tensor] | None = None,
+    solver: Solver | None = None,
+    seed: int = 0,
+    progress: Progress | None = None,
+) -> Runs:
+    """Simulate every member of a batch, each with its own parameters, inputs and start.
+
+    Args:
+        model: Base system and effects.
+        values: Parameters in SI by flat name, (batch,) or (n, batch) (see `Model.values`).
+        sampling_rate: Output samples per second.
+        n_samples: Output samples of each run, the first at time 0.
+        inputs: Measured series at the output instants, (batch, time): `force` (oscillator),
+            `pinion_torque`, `gear_torque` in N m, `pinion_angle` in rad, unwrapped.
+        solver: Settings; the defaults when None.
+        seed: Seed of drawn loads.
+        progress: Called with (done, total) as the work proceeds.
+
+    Raises:
+        InputError: an input is unknown to the system or has the wrong shape.
+    """
+    solver = solver or Solver()
+    prepared = model.prepare(values)
+    batch = prepared.base["equivalent_mass"].shape[0]
+    inputs = dict(inputs or {})
+    _check_inputs(model, inputs, (batch, n_samples))
+    natural = _natural_inputs(model, inputs, prepared)
+    natural |= _held_loads(model, values, prepared, n_samples - 1, seed)
+    interval = 1 / (sampling_rate * prepared.scales.time)
+    names, states = integrate(model, prepared, natural, interval, n_samples, solver, progress)
+    fine = torch.isfinite(states).all(0).all(-1) & (states[0].abs().amax(-1) < FAR)
+    return Runs(
+        model=model,
+        values=dict(values),
+        derived=prepared.derived,
+        sampling_rate=sampling_rate,
+        states=_in_si(model, names, states, prepared),
+        channels=_channels(model, prepared, inputs, interval, n_samples),
+        status=torch.where(fine, FINE, DIVERGED),
+        reference_velocity=reference_velocity(prepared.derived),
+        n_diverged=int((~fine).sum()),
+    )
+
+
+def _check_inputs(model: Model, inputs: Mapping[str, Tensor], shape: tuple[int, int]) -> None:
+    known = model.system.inputs
+    problems = [
+        Problem(f"inputs.{name}", f"the {model.system.name} takes no such series", remedy=f"it takes {', '.join(known)}")
+        for name in inputs.keys() - known.keys()
+    ]
+    problems += [
+        Problem(f"inputs.{name}", f"must have the shape (batch, time) = {shape}", tuple(value.shape))
+        for name, value in inputs.items()
+        if tuple(value.shape) != shape
+    ]
+    if problems:
+        raise InputError(problems)
+
+
+def _natural_inputs(model: Model, inputs: Mapping[str, Tensor], prepared: Prepared) -> dict[str, Tensor]:
+    units = {name: parse_unit(unit).dimension for name, unit in model.system.inputs.items()}
+    return {
+        name: value.to(torch.float64) / prepared.scales.unit_of(units[name]).unsqueeze(1)
+        for name, value in inputs.items()
+    }
+
+
+def _held_loads(
+    model: Model, values: Mapping[str, Tensor], prepared: Prepared, intervals: int, seed: int
+) -> dict[str, Tensor]:
+    generator = torch.Generator().manual_seed(seed)
+    total: Tensor | None = None
+    for effect in model.effects:
+        if isinstance(effect, HeldLoad):
+            own = {p.name: values[f"{effect.name}.{p.name}"] for p in effect.parameters}
+            drawn = effect.draw(own, prepared.derived["mean_load"], intervals, generator)
+            total = drawn if total is None else total + drawn
+    return {} if total is None else {HELD_LOAD: total / prepared.scales.force.unsqueeze(1)}
+
+
+def _in_si(model: Model, names: list[str], states: Tensor, prepared: Prepared) -> dict[str, Tensor]:
+    units = {"displacement": "m", "velocity": "m/s"}
+    for effect in model.effects:
+        if isinstance(effect, ExtraStates):
+            units |= {f"{effect.name}.{state}": unit for state, unit in effect.states.items()}
+    scales = prepared.scales
+    return {
+        name: state * scales.unit_of(parse_unit(units[name]).dimension).unsqueeze(1)
+        for name, state in zip(names, states, strict=True)
+    }
+
+
+def _channels(
+    model: Model, prepared: Prepared, inputs: Mapping[str, Tensor], interval: Tensor, n_samples: int
+) -> dict[str, Tensor]:
+    """Angles at the output instants, and the inputs as given, (batch, time)."""
+    time = interval.unsqueeze(1) * torch.arange(n_samples, dtype=torch.float64)
+    base = {name: value.unsqueeze(1) for name, value in prepared.base.items()}
+    turning = {ANGLE: inputs[ANGLE], ANGLE_RATE: inputs[ANGLE] * 0} if ANGLE in inputs else {}
+    turns = model.system.rotations(time, turning, base)
+    angles = {f"{name}_angle": turn.angle.expand(time.shape) for name, turn in turns.items()}
+    return angles | dict(inputs)
