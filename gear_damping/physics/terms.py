@@ -136,6 +136,20 @@ class Load(Effect):
         """The force at this instant, positive where it presses the drive flanks together."""
 
 
+class DampingLaw(DampingForce):
+    """A damping force whose size can be stated as an equivalent damping ratio."""
+
+    @abstractmethod
+    def damping_ratio(self, values: Values, mass: Tensor, stiffness: Tensor, velocity: Tensor) -> Tensor:
+        """The equivalent damping ratio at a velocity amplitude (m/s), all in SI; shape (batch,)."""
+
+    @abstractmethod
+    def coefficient_for(
+        self, damping_ratio: Tensor, values: Values, mass: Tensor, stiffness: Tensor, velocity: Tensor
+    ) -> dict[str, Tensor]:
+        """The parameters, by own name in SI, that have this equivalent damping ratio."""
+
+
 class MeshForceFactor(Effect):
     """A factor on the whole force between the flanks, N plus damping."""
 

@@ -1,0 +1,40 @@
+"""Damping ratios that stand for a damping law at a stated amplitude, and their other forms.
+
+A force alpha sign(v) |v|^n dissipates per cycle of velocity amplitude V as much as a viscous one with
+c_eq = alpha V^(n-1) gamma_n. The ratio belongs to that amplitude and is always stated with it.
+"""
+
+from math import pi, sqrt
+
+import torch
+from torch import Tensor
+
+
+def gamma_factor(exponent: Tensor) -> Tensor:
+    """gamma_n = (2 / sqrt(pi)) Gamma(n/2 + 1) / Gamma((n + 3)/2); 1 for n = 1, 8/(3 pi) for n = 2."""
+    return 2 / sqrt(pi) * torch.exp(torch.lgamma(exponent / 2 + 1) - torch.lgamma((exponent + 3) / 2))
+
+
+def equivalent_damping_coefficient(coefficient: Tensor, exponent: Tensor, velocity: Tensor) -> Tensor:
+    """c_eq in N s/m of a coefficient in N (s/m)^n at a velocity amplitude in m/s."""
+    return coefficient * velocity ** (exponent - 1) * gamma_factor(exponent)
+
+
+def equivalent_damping_ratio(
+    coefficient: Tensor, exponent: Tensor, velocity: Tensor, mass: Tensor, stiffness: Tensor
+) -> Tensor:
+    """zeta = c_eq / (2 sqrt(k m)) at a velocity amplitude in m/s."""
+    return equivalent_damping_coefficient(coefficient, exponent, velocity) / (2 * torch.sqrt(stiffness * mass))
+
+
+def power_law_coefficient(
+    damping_ratio: Tensor, exponent: Tensor, velocity: Tensor, mass: Tensor, stiffness: Tensor
+) -> Tensor:
+    """alpha in N (s/m)^n that has an equivalent damping ratio at a velocity amplitude in m/s."""
+    per_unit = equivalent_damping_ratio(torch.ones_like(damping_ratio), exponent, velocity, mass, stiffness)
+    return damping_ratio / per_unit
+
+
+def log_decrement(damping_ratio: Tensor) -> Tensor:
+    """delta = 2 pi zeta / sqrt(1 - zeta^2), natural logarithm of the ratio of successive peaks."""
+    return 2 * pi * damping_ratio / torch.sqrt(1 - damping_ratio**2)

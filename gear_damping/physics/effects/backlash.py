@@ -1,0 +1,40 @@
+"""Backlash: clearance between the flanks, with contact on both sides."""
+
+from typing import ClassVar
+
+import torch
+from torch import Tensor
+
+from gear_damping.physics.moment import Moment
+from gear_damping.physics.parameter import Option, Parameter
+from gear_damping.physics.terms import Contact, Values
+
+DRIVE, COAST = "backlash.drive", "backlash.coast"
+
+
+class Backlash(Contact):
+    """The drive flank touches where delta > 0, the coast flank where delta < -gap."""
+
+    name = "backlash"
+    equation = "deflection = delta for delta > 0, delta + gap for delta < -gap, else 0; damping only in contact"
+    reference = "Kahraman & Singh (1990), J. Sound Vib. 142(1)"
+    parameters: ClassVar = (Parameter("gap", "m", 1e-4, "whole clearance; the drive flank is at 0", 0, 0.01),)
+    options: ClassVar = (
+        Option("as_printed", (False, True), False, "flanks at -gap/2 and gap/2, damping also in free flight"),
+    )
+
+    def _datum(self, p: Values) -> Tensor:
+        return p["gap"] / 2 if self.chosen["as_printed"] else torch.zeros_like(p["gap"])
+
+    def switches(self, now: Moment, p: Values) -> dict[str, Tensor]:
+        """Depth of the drive flank and of the coast flank."""
+        depth = now.delta - self._datum(p)
+        return {DRIVE: depth, COAST: -depth - p["gap"]}
+
+    def deflect(self, now: Moment, p: Values) -> tuple[Tensor, Tensor]:
+        """Deflection and contact on the locked side."""
+        depth, drive, coast = now.delta - self._datum(p), now.locked[DRIVE], now.locked[COAST]
+        deflection = drive * depth + coast * (depth + p["gap"])
+        if self.chosen["as_printed"]:
+            return deflection, torch.ones_like(depth)
+        return deflection, drive + coast

@@ -1,0 +1,69 @@
+"""Mesh stiffness as a truncated Fourier series of the rectangular wave."""
+
+from math import pi
+from typing import ClassVar
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from gear_damping.physics.moment import Moment
+from gear_damping.physics.parameter import Option, Parameter
+from gear_damping.physics.terms import MeshStiffness, Values
+
+
+class FourierMeshStiffness(MeshStiffness):
+    """Two tooth pairs carry on the mesh angle 0 … 2 pi (contact_ratio - 1), one pair elsewhere."""
+
+    name = "fourier_mesh_stiffness"
+    equation = "k = k_mean + sum_h w_h 2 (k_max - k_min) / (h pi) sin(h pi (eps - 1)) cos(h (theta_M - pi (eps - 1)))"
+    reference = "Kahraman & Singh (1991), J. Sound Vib. 146(1)"
+    parameters: ClassVar = (
+        Parameter("maximum", "N/m", 4e8, "stiffness with two tooth pairs in contact", 0, 1e14, "paper"),
+        Parameter("minimum", "N/m", 2e8, "stiffness with one tooth pair in contact", 0, 1e14, "paper"),
+        Parameter("contact_ratio", "1", 1.6, "contact ratio", 1.0, 2.0, "paper"),
+    )
+    options: ClassVar = (
+        Option("n_harmonics", tuple(range(1, 33)), 8, "harmonics of the mesh frequency"),
+        Option("weighting", ("plain", "lanczos"), "plain", "lanczos: sinc(h / (H + 1)) against the Gibbs overshoot"),
+    )
+
+    def mean(self, values: Values) -> Tensor:
+        """Mean over a mesh period."""
+        return values["minimum"] + (values["maximum"] - values["minimum"]) * (values["contact_ratio"] - 1)
+
+    def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
+        """The series about its centre of symmetry, as a polynomial in the cosine of the mesh angle there."""
+        centre = pi * (values["contact_ratio"] - 1)
+        order = torch.arange(1, self.chosen["n_harmonics"] + 1, dtype=centre.dtype, device=centre.device)
+        swing = 2 * (values["maximum"] - values["minimum"]) / pi
+        series = self._weights(order) / order.unsqueeze(1) * torch.sin(order.unsqueeze(1) * centre) * swing
+        to_powers = torch.as_tensor(_chebyshev_to_powers(self.chosen["n_harmonics"]), dtype=centre.dtype)
+        coefficients = to_powers.to(centre.device) @ torch.cat([self.mean(values).unsqueeze(0), series])
+        speed = base["pinion_speed"].abs() * base["n_teeth_pinion"]
+        return {
+            "coefficients": coefficients,
+            "centre_cos": torch.cos(centre),
+            "centre_sin": torch.sin(centre),
+            "mesh_rate": speed,
+        }
+
+    def stiffness(self, now: Moment, p: Values) -> Tensor:
+        """Horner's rule in cos(theta_M - centre)."""
+        cosine = now.mesh.cos * p["centre_cos"] + now.mesh.sin * p["centre_sin"]
+        powers = p["coefficients"]
+        total = powers[self.chosen["n_harmonics"]]
+        for power in range(self.chosen["n_harmonics"] - 1, -1, -1):
+            total = total * cosine + powers[power]
+        return total
+
+    def _weights(self, order: Tensor) -> Tensor:
+        if self.chosen["weighting"] == "plain":
+            return torch.ones_like(order).unsqueeze(1)
+        return torch.sinc(order / (self.chosen["n_harmonics"] + 1)).unsqueeze(1)
+
+
+def _chebyshev_to_powers(degree: int) -> np.ndarray:
+    """Column h holds the power coefficients of cos(h x) as a polynomial in cos(x)."""
+    columns = [np.polynomial.chebyshev.cheb2poly(np.eye(degree + 1)[h]) for h in range(degree + 1)]
+    return np.stack([np.pad(column, (0, degree + 1 - len(column))) for column in columns], axis=1)

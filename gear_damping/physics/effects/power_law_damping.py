@@ -1,0 +1,53 @@
+"""Damping by a power of the rate of deflection."""
+
+from typing import ClassVar
+
+import torch
+from torch import Tensor
+
+from gear_damping.physics.damping_ratio import equivalent_damping_ratio, power_law_coefficient
+from gear_damping.physics.moment import Moment
+from gear_damping.physics.parameter import Option, Parameter
+from gear_damping.physics.scales import Scales
+from gear_damping.physics.terms import DampingLaw, Values
+
+SLOWEST = 1e-100  # natural velocity below which the force is taken as zero, so that powers stay finite
+
+
+class PowerLawDamping(DampingLaw):
+    """A force that grows with a power of the rate, in its direction."""
+
+    name = "power_law_damping"
+    equation = "F_d = alpha sign(delta') |delta'|^n"
+    reference = "Yousfi et al. (2026); the printed form alpha |v|^(n+1) drives the motion where v < 0"
+    parameters: ClassVar = (
+        Parameter("coefficient", "N", 131.797425, "alpha in N (s/m)^n; the default is 0.35 % at n = 2", 0, 1e12),
+        Parameter("exponent", "1", 2.0, "n", 0.2, 5, "assumed"),
+    )
+    options: ClassVar = (Option("as_printed", (False, True), False, "alpha |delta'|^(n+1), which does not dissipate"),)
+    dissipative = True
+
+    def to_natural(self, values: Values, scales: Scales) -> dict[str, Tensor]:
+        """Alpha has the unit N (s/m)^n, which depends on n."""
+        power = values["exponent"] + (1 if self.chosen["as_printed"] else 0)
+        coefficient = values["coefficient"] * scales.velocity**power / scales.force
+        return {"coefficient": coefficient, "exponent": values["exponent"]}
+
+    def damping_force(self, now: Moment, p: Values) -> Tensor:
+        """The force at this instant."""
+        speed = now.delta_rate.abs().clamp(min=SLOWEST)
+        size = p["coefficient"] * speed ** p["exponent"]
+        if self.chosen["as_printed"]:
+            return size * speed
+        return torch.where(now.delta_rate < 0, -size, size)
+
+    def damping_ratio(self, values: Values, mass: Tensor, stiffness: Tensor, velocity: Tensor) -> Tensor:
+        """The ratio that dissipates as much per cycle at this velocity amplitude."""
+        return equivalent_damping_ratio(values["coefficient"], values["exponent"], velocity, mass, stiffness)
+
+    def coefficient_for(
+        self, damping_ratio: Tensor, values: Values, mass: Tensor, stiffness: Tensor, velocity: Tensor
+    ) -> dict[str, Tensor]:
+        """Alpha for this ratio at this velocity amplitude."""
+        alpha = power_law_coefficient(damping_ratio, values["exponent"], velocity, mass, stiffness)
+        return {"coefficient": alpha}
