@@ -23,18 +23,18 @@ def equivalent_damping_coefficient(coefficient: Tensor, exponent: Tensor, veloci
 def equivalent_damping_ratio(
     coefficient: Tensor, exponent: Tensor, velocity: Tensor, mass: Tensor, stiffness: Tensor
 ) -> Tensor:
-    """zeta = c_eq / (2 sqrt(k m)) at a velocity amplitude in m/s."""
+    """Zeta = c_eq / (2 sqrt(k m)) at a velocity amplitude in m/s."""
     return equivalent_damping_coefficient(coefficient, exponent, velocity) / (2 * torch.sqrt(stiffness * mass))
 
 
 def power_law_coefficient(
     damping_ratio: Tensor, exponent: Tensor, velocity: Tensor, mass: Tensor, stiffness: Tensor
 ) -> Tensor:
-    """alpha in N (s/m)^n that has an equivalent damping ratio at a velocity amplitude in m/s."""
+    """Alpha in N (s/m)^n that has an equivalent damping ratio at a velocity amplitude in m/s."""
     per_unit = equivalent_damping_ratio(torch.ones_like(damping_ratio), exponent, velocity, mass, stiffness)
     return damping_ratio / per_unit
 
 
 def log_decrement(damping_ratio: Tensor) -> Tensor:
-    """delta = 2 pi zeta / sqrt(1 - zeta^2), natural logarithm of the ratio of successive peaks."""
+    """Delta = 2 pi zeta / sqrt(1 - zeta^2), natural logarithm of the ratio of successive peaks."""
     return 2 * pi * damping_ratio / torch.sqrt(1 - damping_ratio**2)

@@ -10,7 +10,7 @@ from torch import Tensor
 from gear_damping.physics.model import Model
 from gear_damping.simulation.runs import Runs
 
-GROUPS = ("values", "derived", "states", "channels")
+GROUPS = ("values", "derived", "states", "inputs")
 
 
 def save_runs(folder: Path, key: str, manifest: dict, runs: Runs) -> Path:

@@ -27,7 +27,8 @@ class Spread:
 
     def draw(self, nominal: Tensor, generator: torch.Generator) -> Tensor:
         """One value for each run, in the shape of `nominal`."""
-        found = self.low + (self.high - self.low) * torch.rand(nominal.shape[-1], generator=generator, dtype=torch.float64)
+        share = torch.rand(nominal.shape[-1], generator=generator, dtype=torch.float64)
+        found = self.low + (self.high - self.low) * share
         return nominal * found if self.relative else found.expand(nominal.shape)
 
 
@@ -113,7 +114,12 @@ def _set_damping(model: Model, values: Values, law: str, ratio: Tensor, velocity
 
 
 def _start_static(
-    model: Model, given: Mapping[str, float], values: Values, perturbation: float, velocity: Tensor, generator: torch.Generator
+    model: Model,
+    given: Mapping[str, float],
+    values: Values,
+    perturbation: float,
+    velocity: Tensor,
+    generator: torch.Generator,
 ) -> None:
     """Start where the mean load holds the flanks, plus what they impose, plus a random share."""
     prepared = model.prepare(values)

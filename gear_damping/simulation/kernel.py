@@ -189,7 +189,9 @@ def _secant(low: Tensor, high: Tensor, at_low: Tensor, at_high: Tensor) -> Tenso
     return low + (high - low) * at_low / torch.where(width > 0, width, 1.0)
 
 
-def _interpolate(part: Tensor | float, length: Tensor, start: Tensor, end: Tensor, first: Tensor, last: Tensor) -> Tensor:
+def _interpolate(
+    part: Tensor | float, length: Tensor, start: Tensor, end: Tensor, first: Tensor, last: Tensor
+) -> Tensor:
     """Cubic Hermite interpolation at a share of the step."""
     s, r = part, 1 - part
     ends = (1 + 2 * s) * r * r * start + s * s * (3 - 2 * s) * end

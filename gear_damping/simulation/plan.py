@@ -118,8 +118,9 @@ def _refuse_divergence(plan: SimulationPlan, runs: Runs) -> None:
     share = runs.n_diverged / plan.n_runs
     if share > plan.diverged_share:
         which = ", ".join(str(int(i)) for i in (~runs.good).nonzero()[:10, 0])
-        rule = f"{runs.n_diverged} of {plan.n_runs} runs diverged (members {which} …), allowed are {plan.diverged_share:.0%}"
-        remedy = "bring the parameters back into a stable range, or ask for more accuracy: simulator.solver.accuracy=1e-6"
+        rule = f"{runs.n_diverged} of {plan.n_runs} runs diverged (members {which} …)"
+        rule += f", allowed are {plan.diverged_share:.0%}"
+        remedy = "bring the parameters back into a stable range, or set simulator.solver.accuracy=1e-6"
         raise InputError(Problem("simulator", rule, remedy=remedy))
 
 

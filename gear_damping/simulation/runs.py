@@ -1,12 +1,14 @@
 """What a simulation gives back."""
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import torch
 from torch import Tensor
 
 from gear_damping.physics.model import Model
 from gear_damping.physics.terms import DampingLaw, Recording, Sensor
+from gear_damping.simulation.series import ANGLE, ANGLE_RATE
 
 FINE, DIVERGED = 0, 1
 
@@ -21,7 +23,7 @@ class Runs:
         derived: Derived quantities of the system, each (batch,).
         sampling_rate: Output samples per second.
         states: `displacement`, `velocity` and the states of effects by flat name, (batch, time).
-        channels: Other series that belong to the runs (angles, torque, stiffness), (batch, time).
+        inputs: Series that were given to the simulation, (batch, time).
         status: 0 for a fine run, 1 for one that diverged, (batch,).
         reference_velocity: Velocity amplitude that equivalent damping ratios belong to, m/s, (batch,).
         n_diverged: How many runs diverged, kept here or already left out.
@@ -32,7 +34,7 @@ class Runs:
     derived: dict[str, Tensor]
     sampling_rate: float
     states: dict[str, Tensor]
-    channels: dict[str, Tensor]
+    inputs: dict[str, Tensor]
     status: Tensor
     reference_velocity: Tensor
     n_diverged: int = field(default=0)
@@ -68,10 +70,23 @@ class Runs:
         """A series by name, (batch, time); the response also by the name that files give it."""
         if name == self.model.system.response:
             return self.response
-        found = self.states | self.channels
-        if name not in found:
-            raise KeyError(f"no channel '{name}'; there are {', '.join(sorted(found))}")
-        return found[name]
+        found = self.states | self.inputs
+        if name in found:
+            return found[name]
+        angles = self.angles
+        if name not in angles:
+            raise KeyError(f"no channel '{name}'; there are {', '.join(sorted(found | angles))}")
+        return angles[name]
+
+    @cached_property
+    def angles(self) -> dict[str, Tensor]:
+        """`pinion_angle`, `gear_angle` and `mesh_angle` in rad, (batch, time); none without a shaft."""
+        base = {name: value.unsqueeze(1) for name, value in self.model.prepare(self.values).base.items()}
+        time = self.time / self.model.prepare(self.values).scales.time.unsqueeze(1)
+        given = self.inputs.get(ANGLE)
+        turning = {} if given is None else {ANGLE: given, ANGLE_RATE: given * 0}
+        turns = self.model.system.rotations(time, turning, base)
+        return {f"{name}_angle": turn.angle.expand(time.shape) for name, turn in turns.items()}
 
     def record(self, generator: torch.Generator, skip: tuple[str, ...] = ()) -> Tensor:
         """The response as the model's sensors record it, (batch, time).
@@ -89,8 +104,8 @@ class Runs:
             self.sampling_rate,
             generator,
             self.derived,
-            self.channels.get("pinion_angle"),
-            self.channels.get("gear_angle"),
+            self.angles.get("pinion_angle"),
+            self.angles.get("gear_angle"),
         )
         for sensor in self._sensors(channel, skip):
             own = {p.name: self.values[f"{sensor.name}.{p.name}"] for p in sensor.parameters}
@@ -113,7 +128,7 @@ class Runs:
             values=some(self.values, True),
             derived=some(self.derived, True),
             states=some(self.states, False),
-            channels=some(self.channels, False),
+            inputs=some(self.inputs, False),
             status=self.status[mask],
             reference_velocity=self.reference_velocity[mask],
         )

@@ -11,7 +11,6 @@ from gear_damping.physics.model import Model, Prepared
 from gear_damping.physics.terms import ExtraStates, HeldLoad
 from gear_damping.simulation.integrate import Progress, integrate
 from gear_damping.simulation.runs import DIVERGED, FINE, Runs, reference_velocity
-from gear_damping.simulation.series import ANGLE, ANGLE_RATE
 from gear_damping.simulation.solver_settings import Solver
 from gear_damping.units import parse_unit
 
@@ -61,7 +60,7 @@ def simulate(
         derived=prepared.derived,
         sampling_rate=sampling_rate,
         states=_in_si(model, names, states, prepared),
-        channels=_channels(model, prepared, inputs, interval, n_samples),
+        inputs=inputs,
         status=torch.where(fine, FINE, DIVERGED),
         reference_velocity=reference_velocity(prepared.derived),
         n_diverged=int((~fine).sum()),
@@ -71,7 +70,7 @@ def simulate(
 def _check_inputs(model: Model, inputs: Mapping[str, Tensor], shape: tuple[int, int]) -> None:
     known = model.system.inputs
     problems = [
-        Problem(f"inputs.{name}", f"the {model.system.name} takes no such series", remedy=f"it takes {', '.join(known)}")
+        Problem(f"inputs.{name}", f"a {model.system.name} takes no such series", remedy=f"it takes {', '.join(known)}")
         for name in inputs.keys() - known.keys()
     ]
     problems += [
@@ -114,15 +113,3 @@ def _in_si(model: Model, names: list[str], states: Tensor, prepared: Prepared) -
         name: state * scales.unit_of(parse_unit(units[name]).dimension).unsqueeze(1)
         for name, state in zip(names, states, strict=True)
     }
-
-
-def _channels(
-    model: Model, prepared: Prepared, inputs: Mapping[str, Tensor], interval: Tensor, n_samples: int
-) -> dict[str, Tensor]:
-    """Angles at the output instants, and the inputs as given, (batch, time)."""
-    time = interval.unsqueeze(1) * torch.arange(n_samples, dtype=torch.float64)
-    base = {name: value.unsqueeze(1) for name, value in prepared.base.items()}
-    turning = {ANGLE: inputs[ANGLE], ANGLE_RATE: inputs[ANGLE] * 0} if ANGLE in inputs else {}
-    turns = model.system.rotations(time, turning, base)
-    angles = {f"{name}_angle": turn.angle.expand(time.shape) for name, turn in turns.items()}
-    return angles | dict(inputs)

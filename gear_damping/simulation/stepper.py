@@ -97,8 +97,7 @@ class Stepper:
         for _ in range(MOST_SPLITS):
             state, position, branch = self.cross(ends, start, length, members, locked)
             state, start, locked = (
-                torch.where(crossing, new, old)
-                for new, old in ((state, ends[0]), (position, start), (branch, locked))
+                torch.where(crossing, new, old) for new, old in ((state, ends[0]), (position, start), (branch, locked))
             )
             length = stop - start
             end, first, last, margin = self.advance(state, start, length, members, locked)

@@ -42,7 +42,7 @@ def width_and_options() -> tuple[int, tuple[str, ...]]:
 
 
 def _compiles(*options: str) -> bool:
-    probe = "extern \"C\" double cos(double); double f(double a) { return cos(a); }"
+    probe = 'extern "C" double cos(double); double f(double a) { return cos(a); }'
     with tempfile.TemporaryDirectory() as folder:
         source = Path(folder) / "probe.cpp"
         source.write_text(probe)

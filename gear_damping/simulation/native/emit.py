@@ -16,12 +16,13 @@ class Written:
         """A function that writes `results` to `out`, reading the kept values of a run from `Q`."""
         lines = [f"  const {_type(v)} {_name(v)} = {self._text(v)};" for v in self._needed(results, stage=True)]
         lines += [f"  out[{i}] = vd{{}} + {self._read(result)};" for i, result in enumerate(results)]
-        head = "static inline void {}(vd u, const vd* y, const vd* P, const vd* S, double index, const vd* L, const vd* Q, vd* out) {{"
-        return "\n".join([head.format(name), *lines, "}"])
+        arguments = "vd u, const vd* y, const vd* P, const vd* S, double index, const vd* L, const vd* Q, vd* out"
+        return "\n".join([f"static inline void {name}({arguments}) {{", *lines, "}"])
 
     def setup(self) -> str:
         """The function that fills `Q`; call it after every `function` was written."""
-        lines = [f"  const {_type(v)} {_name(v)} = {self._text(v)};" for v in self._needed(list(self.kept), stage=False)]
+        needed = self._needed(list(self.kept), stage=False)
+        lines = [f"  const {_type(v)} {_name(v)} = {self._text(v)};" for v in needed]
         lines += [f"  Q[{place}] = vd{{}} + {_name(value)};" for value, place in self.kept.items()]
         return "\n".join(["static inline void setup(const vd* P, vd* Q) {", *lines, "}"])
 
@@ -46,9 +47,7 @@ class Written:
         if name == "where":
             texts[1:] = [f"(vd{{}} + {text})" for text in texts[1:]]
         elif name not in ("add", "sub", "mul", "div") or all(not isinstance(a, Value) for a in arguments):
-            texts = [
-                t if isinstance(a, Value) else f"(vd{{}} + {t})" for a, t in zip(arguments, texts, strict=True)
-            ]
+            texts = [t if isinstance(a, Value) else f"(vd{{}} + {t})" for a, t in zip(arguments, texts, strict=True)]
         return TEMPLATES[name].format(*texts)
 
     def _read(self, a: Expression, stage: bool = True) -> str:
@@ -62,7 +61,7 @@ class Written:
 
 
 def _special(number: float) -> str:
-    return "__builtin_nan(\"\")" if number != number else ("" if number > 0 else "-") + "__builtin_inf()"
+    return '__builtin_nan("")' if number != number else ("" if number > 0 else "-") + "__builtin_inf()"
 
 
 def _name(value: Value) -> str:

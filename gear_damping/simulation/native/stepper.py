@@ -3,6 +3,7 @@
 import ctypes
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from itertools import pairwise
 
 import torch
 from torch import Tensor
@@ -29,21 +30,21 @@ class NativeStepper(Stepper):
         with ThreadPoolExecutor(len(shares)) as pool:
             for first in range(0, total, BLOCK):
                 count = min(BLOCK, total - first)
-                target = out[first : first + count]
-
-                def work(share: tuple[int, int], first: int = first, count: int = count, target: Tensor = target) -> None:
-                    numbers = (lanes, *share, first, count, substeps)
-                    pointers = (fixed, series, state, locked, target)
-                    self.library.walk(
-                        *(ctypes.c_long(n) for n in numbers), *(ctypes.c_void_p(p.data_ptr()) for p in pointers)
+                tensors = (fixed, series, state, locked, out[first : first + count])
+                list(
+                    pool.map(
+                        lambda share, a=(first, count, substeps), t=tensors: self._walk(lanes, share, a, t), shares
                     )
-
-                list(pool.map(work, shares))
+                )
                 report(first + count)
+
+    def _walk(self, lanes: int, share: tuple[int, int], numbers: tuple[int, ...], tensors: tuple[Tensor, ...]) -> None:
+        pointers = (ctypes.c_void_p(tensor.data_ptr()) for tensor in tensors)
+        self.library.walk(*(ctypes.c_long(n) for n in (lanes, *share, *numbers)), *pointers)
 
     def _shares(self, lanes: int) -> list[tuple[int, int]]:
         """Ranges of lanes, whole vectors each, one for each thread that has something to do."""
         blocks = -(-lanes // self.width)
         threads = max(1, min(torch.get_num_threads(), blocks))
         edges = [min(lanes, self.width * round(blocks * i / threads)) for i in range(threads + 1)]
-        return [(a, b) for a, b in zip(edges[:-1], edges[1:], strict=True) if b > a]
+        return [(a, b) for a, b in pairwise(edges) if b > a]
