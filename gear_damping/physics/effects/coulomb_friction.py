@@ -1,0 +1,31 @@
+"""Coulomb friction in the mesh."""
+
+from typing import ClassVar
+
+import torch
+from torch import Tensor
+
+from gear_damping.physics.moment import Moment
+from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.terms import DampingForce, Values
+
+
+class CoulombFriction(DampingForce):
+    """A force of constant size against the motion, smoothed about zero."""
+
+    name = "coulomb_friction"
+    equation = "F_d = F_c tanh(delta' / (w V)), V = omega_n F0 / k0"
+    reference = "Threlfall (1978), Mech. Mach. Theory 13(4)"
+    parameters: ClassVar = (
+        Parameter("force", "N", 20.0, "F_c", 0, 1e6),
+        Parameter("width", "1", 0.02, "w, width of the sign change relative to the reference velocity", 1e-6, 10),
+    )
+    dissipative = True
+
+    def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
+        """In natural units the reference velocity is 1."""
+        return dict(values) | {"steepness": 1 / values["width"]}
+
+    def damping_force(self, now: Moment, p: Values) -> Tensor:
+        """The force at this instant."""
+        return p["force"] * torch.tanh(now.delta_rate * p["steepness"])

@@ -1,0 +1,11 @@
+"""Modulation of the mesh stiffness by the gear shaft."""
+
+from gear_damping.physics.shaft_order import StiffnessModulation
+
+
+class GearStiffnessModulation(StiffnessModulation):
+    """The stiffness varies once per turn of the gear: sidebands of the mesh lines."""
+
+    name = "gear_stiffness_modulation"
+    equation = "k (1 + eps cos(theta_2 + phi))"
+    shaft = "gear"

@@ -1,0 +1,37 @@
+"""Ripple of the driving torque."""
+
+from typing import ClassVar
+
+import torch
+from torch import Tensor
+
+from gear_damping.physics.moment import Moment
+from gear_damping.physics.parameter import Option, Parameter
+from gear_damping.physics.terms import Load, Values
+
+
+class TorqueRipple(Load):
+    """A torque at an order of the pinion shaft that no torque channel shows."""
+
+    name = "torque_ripple"
+    equation = "F + R cos(q theta_1 + phi), R a torque or a share of the load"
+    reference = "Vinayak, Singh & Padmanabhan (1995), J. Sound Vib. 185(1)"
+    parameters: ClassVar = (
+        Parameter("amplitude", "N*m", 3.0, "R as a torque", 0, 1e6),
+        Parameter("share", "1", 0.02, "R as a share of the load, where proportional", 0, 1),
+        Parameter("order", "1", 1.0, "q, cycles per turn of the pinion", 0, 1000),
+        Parameter("phase", "rad", 0.0, "phi"),
+    )
+    options: ClassVar = (Option("proportional", (False, True), False, "a share of the load instead of a torque"),)
+    systems: ClassVar = ("gear_pair",)
+
+    def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
+        """The amplitude as a force, or as a share."""
+        force = values["amplitude"] * base["load_per_pinion_torque"]
+        size = values["share"] if self.chosen["proportional"] else force
+        return {"size": size, "order": values["order"], "phase": values["phase"]}
+
+    def load_force(self, now: Moment, p: Values) -> Tensor:
+        """The force at this instant."""
+        cosine = torch.cos(p["order"] * now.pinion.angle + p["phase"])
+        return p["size"] * cosine * (now.load if self.chosen["proportional"] else 1.0)

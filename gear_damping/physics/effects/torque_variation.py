@@ -1,0 +1,60 @@
+"""A torque that changes during a run."""
+
+from math import pi
+from typing import ClassVar
+
+import torch
+from torch import Tensor
+
+from gear_damping.physics.moment import Moment
+from gear_damping.physics.parameter import Option, Parameter
+from gear_damping.physics.terms import Load, Switch, Values
+
+
+class TorqueVariation(Load, Switch):
+    """Steps, a ramp or a sine on top of the mean pinion torque."""
+
+    name = "torque_variation"
+    equation = "T1(t) = T1 + steps | ramp | A sin(2 pi f t + phi)"
+    reference = "Yousfi et al. (2026), varying torque"
+    parameters: ClassVar = (
+        Parameter("step_times", "s", (0.0125, 0.025, 0.0375), "when the torque steps", 0, 1e6, vector=True),
+        Parameter("step_changes", "N*m", (30.0, -45.0, 30.0), "by how much", -1e6, 1e6, vector=True),
+        Parameter("ramp_start", "s", 0.01, "start of the ramp", 0, 1e6),
+        Parameter("ramp_end", "s", 0.04, "end of the ramp", 0, 1e6),
+        Parameter("ramp_change", "N*m", 30.0, "torque added by the end of the ramp and kept", -1e6, 1e6),
+        Parameter("sine_amplitude", "N*m", 15.0, "A", 0, 1e6),
+        Parameter("sine_frequency", "1/s", 40.0, "f in Hz", 0, 1e6),
+        Parameter("sine_phase", "rad", 0.0, "phi"),
+    )
+    options: ClassVar = (Option("form", ("steps", "ramp", "sine"), "steps", "what the torque does"),)
+    systems: ClassVar = ("gear_pair",)
+
+    def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
+        """Torques as forces along the line of action."""
+        form, per_torque = self.chosen["form"], base["load_per_pinion_torque"]
+        if form == "steps":
+            return {"times": values["step_times"], "forces": values["step_changes"] * per_torque}
+        if form == "sine":
+            rate = 2 * pi * values["sine_frequency"]
+            return {"force": values["sine_amplitude"] * per_torque, "rate": rate, "phase": values["sine_phase"]}
+        times = {"start": values["ramp_start"], "end": values["ramp_end"]}
+        return times | {"force": values["ramp_change"] * per_torque}
+
+    def switches(self, now: Moment, p: Values) -> dict[str, Tensor]:
+        """Time since each corner."""
+        if self.chosen["form"] == "sine":
+            return {}
+        corners = p["times"].unbind(0) if self.chosen["form"] == "steps" else (p["start"], p["end"])
+        return {f"{self.name}.{i}": now.time - corner for i, corner in enumerate(corners)}
+
+    def load_force(self, now: Moment, p: Values) -> Tensor:
+        """The force of the torque that was added."""
+        form = self.chosen["form"]
+        if form == "sine":
+            return p["force"] * torch.sin(p["rate"] * now.time + p["phase"])
+        if form == "steps":
+            return sum(now.locked[f"{self.name}.{i}"] * force for i, force in enumerate(p["forces"].unbind(0)))
+        begun, over = now.locked[f"{self.name}.0"], now.locked[f"{self.name}.1"]
+        share = (now.time - p["start"]) / (p["end"] - p["start"])
+        return p["force"] * (begun * (1 - over) * share + over)

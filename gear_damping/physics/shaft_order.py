@@ -1,0 +1,84 @@
+"""What the effects that turn with a shaft have in common."""
+
+from typing import ClassVar
+
+import torch
+from torch import Tensor
+
+from gear_damping.physics.moment import Moment, Rotation
+from gear_damping.physics.parameter import Option, Parameter
+from gear_damping.physics.scales import Scales
+from gear_damping.physics.terms import StiffnessFactor, TransmissionErrorSource, Values
+
+
+class Eccentricity(TransmissionErrorSource, StiffnessFactor):
+    """The geometric centre of a gear runs on a circle about its shaft."""
+
+    shaft: ClassVar[str]
+    reference = "Kahraman & Singh (1991), J. Sound Vib. 146(1); Yousfi et al. (2026) add E to K instead"
+    parameters: ClassVar = (
+        Parameter("amplitude", "m", 2e-5, "eccentricity along the line of action", 0, 1e-2),
+        Parameter("phase", "rad", 0.0, "phase at shaft angle zero"),
+    )
+    options: ClassVar = (
+        Option("as_printed", (False, True), False, "the bare number E is added to the stiffness in N/m"),
+    )
+    systems: ClassVar = ("gear_pair",)
+
+    def to_natural(self, values: Values, scales: Scales) -> dict[str, Tensor]:
+        """A length, or as printed a stiffness."""
+        unit = scales.force / scales.length if self.chosen["as_printed"] else scales.length
+        return {"amplitude": values["amplitude"] / unit, "phase": values["phase"]}
+
+    def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
+        """Cosine and sine parts."""
+        return cosine_and_sine(values)
+
+    def error(self, now: Moment, p: Values) -> tuple[Tensor, Tensor]:
+        """E cos(theta + phase) and its rate."""
+        if self.chosen["as_printed"]:
+            return torch.zeros_like(now.displacement), torch.zeros_like(now.displacement)
+        turn = getattr(now, self.shaft)
+        return wave(turn, p), wave_rate(turn, p)
+
+    def factor(self, now: Moment, p: Values) -> Tensor:
+        """1, or as printed (k + E cos(theta + phase)) / k."""
+        if not self.chosen["as_printed"]:
+            return torch.ones_like(now.displacement)
+        return 1 + wave(getattr(now, self.shaft), p) / now.stiffness
+
+
+class StiffnessModulation(StiffnessFactor):
+    """The mesh stiffness varies once per turn of a shaft."""
+
+    shaft: ClassVar[str]
+    reference = "Kahraman & Singh (1991), J. Sound Vib. 146(1)"
+    parameters: ClassVar = (
+        Parameter("amplitude", "1", 0.01, "share of the stiffness", 0, 0.9),
+        Parameter("phase", "rad", 0.0, "phase at shaft angle zero"),
+    )
+    systems: ClassVar = ("gear_pair",)
+
+    def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
+        """Cosine and sine parts."""
+        return cosine_and_sine(values)
+
+    def factor(self, now: Moment, p: Values) -> Tensor:
+        """1 + amplitude cos(theta + phase)."""
+        return 1 + wave(getattr(now, self.shaft), p)
+
+
+def cosine_and_sine(values: Values) -> dict[str, Tensor]:
+    """The parts of amplitude cos(theta + phase) that go with cos theta and sin theta."""
+    amplitude, phase = values["amplitude"], values["phase"]
+    return {"in_phase": amplitude * torch.cos(phase), "quadrature": -amplitude * torch.sin(phase)}
+
+
+def wave(turn: Rotation, p: Values) -> Tensor:
+    """Amplitude cos(theta + phase)."""
+    return p["in_phase"] * turn.cos + p["quadrature"] * turn.sin
+
+
+def wave_rate(turn: Rotation, p: Values) -> Tensor:
+    """Its rate."""
+    return turn.speed * (p["quadrature"] * turn.cos - p["in_phase"] * turn.sin)
