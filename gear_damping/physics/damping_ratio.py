@@ -38,3 +38,8 @@ def power_law_coefficient(
 def log_decrement(damping_ratio: Tensor) -> Tensor:
     """Delta = 2 pi zeta / sqrt(1 - zeta^2), natural logarithm of the ratio of successive peaks."""
     return 2 * pi * damping_ratio / torch.sqrt(1 - damping_ratio**2)
+
+
+def reference_velocity(mean_load: Tensor, mean_stiffness: Tensor, mass: Tensor) -> Tensor:
+    """V = omega_n F0 / k0 in m/s, the velocity amplitude that damping ratios are stated at by default."""
+    return torch.sqrt(mean_stiffness / mass) * mean_load.abs() / mean_stiffness

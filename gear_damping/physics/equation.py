@@ -11,11 +11,14 @@ from torch import Tensor
 from gear_damping.physics.model import Model
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.terms import (
+    BearingForce,
     Contact,
     DampingForce,
     ElasticForce,
     ExtraStates,
     Load,
+    LoadFactor,
+    LoadPath,
     MeshForceFactor,
     MeshStiffness,
     StiffnessFactor,
@@ -66,8 +69,8 @@ class EquationOfMotion:
         now.mesh_force = now.contact * damping + now.normal_force
         for effect in self._filling(MeshForceFactor):
             now.mesh_force = now.mesh_force * effect.force_factor(now, terms[effect.name])
-        now.load = self.system.load(now, base) + now.inputs.get(HELD_LOAD, 0.0)
-        now.load = now.load + sum(e.load_force(now, terms[e.name]) for e in self._filling(Load))
+        self._press(now, base, terms)
+        now.bearing_force = sum(e.bearing_force(now, terms[e.name]) for e in self._filling(BearingForce))
         acceleration = (now.load - now.mesh_force) / base["equivalent_mass"]
         extra = (self._extra_rates(effect, now, terms) for effect in self._filling(ExtraStates))
         return now.velocity, acceleration, *(rate for rates in extra for rate in rates)
@@ -94,11 +97,22 @@ class EquationOfMotion:
             error, rate = effect.error(now, terms[effect.name])
             now.delta, now.delta_rate = now.delta - error, now.delta_rate - rate
 
+    def _press(self, now: Moment, base: Values, terms: Mapping[str, Values]) -> None:
+        """Fill in the load of the torques and the load that reaches the mesh."""
+        load = self.system.load(now, base) + sum(e.load_force(now, terms[e.name]) for e in self._filling(Load))
+        for effect in self._filling(LoadFactor):
+            load = load * effect.load_factor(now, terms[effect.name])
+        now.drive_load = load
+        for effect in self._filling(LoadPath):
+            load = effect.transmitted_load(now, terms[effect.name])
+        now.load = load + now.inputs.get(HELD_LOAD, 0.0)
+
     def _touch(self, now: Moment, base: Values, terms: Mapping[str, Values]) -> None:
         """Fill in deflection, contact, stiffness and normal force."""
         now.deflection, now.contact = now.delta, torch.ones_like(now.delta)
         for effect in self._filling(Contact):
             now.deflection, now.contact = effect.deflect(now, terms[effect.name])
+            now.clearances = effect.clearances(now, terms[effect.name])
         meshes = self._filling(MeshStiffness)
         now.stiffness = meshes[0].stiffness(now, terms[meshes[0].name]) if meshes else self.system.stiffness(base)
         for effect in self._filling(StiffnessFactor):

@@ -10,8 +10,10 @@ from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.scales import Scales
 from gear_damping.physics.systems.base import System
-from gear_damping.physics.terms import Contact, Effect, MeshStiffness, SystemChange
+from gear_damping.physics.terms import Contact, ContactChange, Effect, MeshStiffness, SystemChange
 from gear_damping.units import parse_unit
+
+Named = dict[str, Tensor]
 
 
 @dataclass(frozen=True)
@@ -20,15 +22,16 @@ class Prepared:
 
     Args:
         scales: Natural units of each member.
-        base: Parameters and derived quantities of the system, natural units.
+        base: Parameters and derived quantities of the system, natural units; for a gear pair also the
+            zone of double contact, `contact_ratio` and `contact_lead` (rad of mesh angle).
         terms: For each effect name what its `prepare` gave, natural units.
         derived: Derived quantities of the system in SI.
     """
 
     scales: Scales
-    base: dict[str, Tensor]
-    terms: dict[str, dict[str, Tensor]]
-    derived: dict[str, Tensor]
+    base: Named
+    terms: dict[str, Named]
+    derived: Named
 
 
 class Model:
@@ -47,6 +50,7 @@ class Model:
         """
         self.system = system
         self.effects = tuple(effects)
+        self._mesh = next((effect for effect in self.effects if isinstance(effect, MeshStiffness)), None)
         problems = list(_composition_problems(system, self.effects))
         if problems:
             raise InputError(problems)
@@ -79,17 +83,28 @@ class Model:
         """Everything the equation needs, in natural units, from SI values by flat name."""
         own = {p.name: values[p.name] for p in self.system.parameters}
         given = {e.name: {p.name: values[f"{e.name}.{p.name}"] for p in e.parameters} for e in self.effects}
-        mesh = next((e for e in self.effects if isinstance(e, MeshStiffness)), None)
-        mean_stiffness = None if mesh is None else mesh.mean(given[mesh.name])
-        derived = self.system.derived(own, mean_stiffness)
+        derived, zone = self._derived(own, given)
         for effect in self.effects:
             if isinstance(effect, SystemChange):
                 derived = effect.change(given[effect.name], derived)
         scales = self.system.scales(derived)
         units = {p.name: p.unit for p in self.system.parameters} | self.system.derived_units
-        base = {k: v / scales.unit_of(parse_unit(units[k]).dimension) for k, v in (own | derived).items()}
+        base = {k: v / scales.unit_of(parse_unit(units[k]).dimension) for k, v in (own | derived).items()} | zone
         terms = {e.name: e.prepare(e.to_natural(given[e.name], scales), base) for e in self.effects}
         return Prepared(scales, base, terms, derived)
+
+    def _derived(self, own: Named, given: dict[str, Named]) -> tuple[Named, Named]:
+        """Derived quantities in SI, and the zone of double contact; a change of it goes into `given`."""
+        if self._mesh is None:
+            return self.system.derived(own, None), {}
+        mesh = given[self._mesh.name]
+        derived = self.system.derived(own, self._mesh.mean(mesh))
+        lead = torch.zeros_like(mesh["contact_ratio"])
+        for effect in self.effects:
+            if isinstance(effect, ContactChange):
+                mesh["contact_ratio"], lead = effect.contact(given[effect.name], mesh["contact_ratio"], derived)
+                derived = self.system.derived(own, self._mesh.mean(mesh))
+        return derived, {"contact_ratio": mesh["contact_ratio"], "contact_lead": lead}
 
 
 def _composition_problems(system: System, effects: Sequence[Effect]) -> list[Problem]:
@@ -101,6 +116,11 @@ def _composition_problems(system: System, effects: Sequence[Effect]) -> list[Pro
             problems.append(Problem(f"simulator.{effect.name}", rule, remedy=f"it needs {' or '.join(effect.systems)}"))
         if names.count(effect.name) > 1:
             problems.append(Problem(f"simulator.{effect.name}", "is there twice", remedy="name it once"))
+        problems += [
+            Problem(f"simulator.{effect.name}", f"needs the effect '{name}'", remedy=f"add simulator.{name}={{}}")
+            for name in effect.requires
+            if name not in names
+        ]
     meshes = sum(isinstance(effect, MeshStiffness) for effect in effects)
     wanted = 1 if system.name == "gear_pair" else 0
     if meshes != wanted:

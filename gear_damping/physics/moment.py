@@ -61,8 +61,11 @@ class Moment:
     delta: Tensor | None = None
     delta_rate: Tensor | None = None
     deflection: Tensor | None = None
+    clearances: tuple[Tensor, Tensor] | None = None
     contact: Tensor | float = 1.0
     stiffness: Tensor | None = None
     normal_force: Tensor | None = None
     mesh_force: Tensor | None = None
+    drive_load: Tensor | None = None
     load: Tensor | None = None
+    bearing_force: Tensor | float = 0.0

@@ -15,7 +15,7 @@ class Eccentricity(TransmissionErrorSource, StiffnessFactor):
     """The geometric centre of a gear runs on a circle about its shaft."""
 
     shaft: ClassVar[str]
-    reference = "Kahraman & Singh (1991), J. Sound Vib. 146(1); Yousfi et al. (2026) add E to K instead"
+    reference = "Velex & Maatar (1996), J. Sound Vib. 191(5); Yousfi et al. (2026) add E to K instead"
     parameters: ClassVar = (
         Parameter("amplitude", "m", 2e-5, "eccentricity along the line of action", 0, 1e-2),
         Parameter("phase", "rad", 0.0, "phase at shaft angle zero"),
@@ -82,3 +82,26 @@ def wave(turn: Rotation, p: Values) -> Tensor:
 def wave_rate(turn: Rotation, p: Values) -> Tensor:
     """Its rate."""
     return turn.speed * (p["quadrature"] * turn.cos - p["in_phase"] * turn.sin)
+
+
+def harmonics(turn: Rotation, in_phase: Tensor, quadrature: Tensor) -> tuple[Tensor, Tensor]:
+    """A periodic function of an angle and its rate, by Clenshaw's recurrence.
+
+    Args:
+        turn: The angle.
+        in_phase: Cosine parts by harmonic 1, 2, …, (n, batch).
+        quadrature: Sine parts by harmonic.
+    """
+    twice, zero = 2 * turn.cos, torch.zeros_like(turn.cos)
+    even, odd = [zero, zero], [zero, zero]  # of the function: cosine and sine series
+    slopes = [zero, zero], [zero, zero]  # of its derivative by the angle
+    for h in range(in_phase.shape[0], 0, -1):
+        a, b = in_phase[h - 1], quadrature[h - 1]
+        even, odd = [a + twice * even[0] - even[1], even[0]], [b + twice * odd[0] - odd[1], odd[0]]
+        slopes = (
+            [h * b + twice * slopes[0][0] - slopes[0][1], slopes[0][0]],
+            [-h * a + twice * slopes[1][0] - slopes[1][1], slopes[1][0]],
+        )
+    value = turn.cos * even[0] - even[1] + turn.sin * odd[0]
+    slope = turn.cos * slopes[0][0] - slopes[0][1] + turn.sin * slopes[1][0]
+    return value, slope * turn.speed

@@ -33,6 +33,7 @@ class Effect(ABC):
     options: ClassVar[tuple[Option, ...]] = ()
     systems: ClassVar[tuple[str, ...]] = ("gear_pair", "oscillator")
     dissipative: ClassVar[bool] = False
+    requires: ClassVar[tuple[str, ...]] = ()  # names of effects that must be there too
 
     def __init__(self, **options: object) -> None:
         """Choose options by name.
@@ -66,7 +67,9 @@ class Effect(ABC):
 
 
 class MeshStiffness(Effect):
-    """The slot of k(t); a gear pair has exactly one."""
+    """The slot of k(t); a gear pair has exactly one. It has a parameter called `contact_ratio`."""
+
+    systems: ClassVar[tuple[str, ...]] = ("gear_pair",)
 
     @abstractmethod
     def mean(self, values: Values) -> Tensor:
@@ -111,6 +114,10 @@ class Contact(Switch):
     def deflect(self, now: Moment, p: Values) -> tuple[Tensor, Tensor]:
         """The deflection, and 1 where the flanks touch, else 0."""
 
+    @abstractmethod
+    def clearances(self, now: Moment, p: Values) -> tuple[Tensor, Tensor]:
+        """Distances of the flanks on the drive side and on the coast side, 0 where they touch."""
+
 
 class ElasticForce(Effect):
     """A restoring force beside k * deflection."""
@@ -134,6 +141,30 @@ class Load(Effect):
     @abstractmethod
     def load_force(self, now: Moment, p: Values) -> Tensor:
         """The force at this instant, positive where it presses the drive flanks together."""
+
+
+class LoadFactor(Effect):
+    """A factor on the load of the torques; drawn loads come on top."""
+
+    @abstractmethod
+    def load_factor(self, now: Moment, p: Values) -> Tensor:
+        """The factor at this instant, 1 where the effect does nothing."""
+
+
+class LoadPath(Effect):
+    """What stands between the torques and the mesh."""
+
+    @abstractmethod
+    def transmitted_load(self, now: Moment, p: Values) -> Tensor:
+        """The load that reaches the mesh, from `now.drive_load`, the load of the torques."""
+
+
+class BearingForce(Effect):
+    """A force on the pinion in its bearing, along the line of action."""
+
+    @abstractmethod
+    def bearing_force(self, now: Moment, p: Values) -> Tensor:
+        """The force at this instant, positive where it pushes as the mesh force does."""
 
 
 class DampingLaw(DampingForce):
@@ -179,6 +210,17 @@ class SystemChange(Effect):
     @abstractmethod
     def change(self, values: Values, derived: dict[str, Tensor]) -> dict[str, Tensor]:
         """The derived quantities with the change made, all in SI."""
+
+
+class ContactChange(Effect):
+    """A change of the zone of double contact with the mean load."""
+
+    @abstractmethod
+    def contact(self, values: Values, contact_ratio: Tensor, derived: Values) -> tuple[Tensor, Tensor]:
+        """The contact ratio, and the mesh angle (rad) by which double contact begins early.
+
+        `values` and `derived` are in SI; shapes (batch,).
+        """
 
 
 class HeldLoad(Effect):

@@ -31,6 +31,11 @@ class Backlash(Contact):
         depth = now.delta - self._datum(p)
         return {DRIVE: depth, COAST: -depth - p["gap"]}
 
+    def clearances(self, now: Moment, p: Values) -> tuple[Tensor, Tensor]:
+        """Distances of the drive flanks and of the coast flanks."""
+        depth = now.delta - self._datum(p)
+        return -depth * (1 - now.locked[DRIVE]), (depth + p["gap"]) * (1 - now.locked[COAST])
+
     def deflect(self, now: Moment, p: Values) -> tuple[Tensor, Tensor]:
         """Deflection and contact on the locked side."""
         depth, drive, coast = now.delta - self._datum(p), now.locked[DRIVE], now.locked[COAST]

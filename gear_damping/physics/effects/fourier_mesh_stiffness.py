@@ -11,6 +11,8 @@ from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.terms import MeshStiffness, Values
 
+LONGEST_POLYNOMIAL = 12  # harmonics; the powers of longer series cancel too much
+
 
 class FourierMeshStiffness(MeshStiffness):
     """Two tooth pairs carry on the mesh angle 0 … 2 pi (contact_ratio - 1), one pair elsewhere."""
@@ -33,29 +35,35 @@ class FourierMeshStiffness(MeshStiffness):
         return values["minimum"] + (values["maximum"] - values["minimum"]) * (values["contact_ratio"] - 1)
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
-        """The series about its centre of symmetry, as a polynomial in the cosine of the mesh angle there."""
-        centre = pi * (values["contact_ratio"] - 1)
+        """The series about its centre of symmetry; if short, as a polynomial in the cosine there."""
+        half = pi * (values["contact_ratio"] - 1)
+        centre = half - base["contact_lead"]
         order = torch.arange(1, self.chosen["n_harmonics"] + 1, dtype=centre.dtype, device=centre.device)
         swing = 2 * (values["maximum"] - values["minimum"]) / pi
-        series = self._weights(order) / order.unsqueeze(1) * torch.sin(order.unsqueeze(1) * centre) * swing
-        to_powers = torch.as_tensor(_chebyshev_to_powers(self.chosen["n_harmonics"]), dtype=centre.dtype)
-        coefficients = to_powers.to(centre.device) @ torch.cat([self.mean(values).unsqueeze(0), series])
-        speed = base["pinion_speed"].abs() * base["n_teeth_pinion"]
-        return {
-            "coefficients": coefficients,
-            "centre_cos": torch.cos(centre),
-            "centre_sin": torch.sin(centre),
-            "mesh_rate": speed,
-        }
+        series = self._weights(order) / order.unsqueeze(1) * torch.sin(order.unsqueeze(1) * half) * swing
+        coefficients = torch.cat([self.mean(values).unsqueeze(0), series])
+        if self._is_short:
+            to_powers = torch.as_tensor(_chebyshev_to_powers(self.chosen["n_harmonics"]))
+            coefficients = to_powers.to(coefficients) @ coefficients
+        return {"coefficients": coefficients, "centre_cos": torch.cos(centre), "centre_sin": torch.sin(centre)}
 
     def stiffness(self, now: Moment, p: Values) -> Tensor:
-        """Horner's rule in cos(theta_M - centre)."""
+        """Horner's rule in cos(theta_M - centre), Clenshaw's recurrence for long series."""
         cosine = now.mesh.cos * p["centre_cos"] + now.mesh.sin * p["centre_sin"]
-        powers = p["coefficients"]
-        total = powers[self.chosen["n_harmonics"]]
-        for power in range(self.chosen["n_harmonics"] - 1, -1, -1):
-            total = total * cosine + powers[power]
-        return total
+        first, *others = p["coefficients"].unbind(0)
+        if self._is_short:
+            total = others[-1]
+            for coefficient in (*others[-2::-1], first):
+                total = total * cosine + coefficient
+            return total
+        last, before = torch.zeros_like(cosine), torch.zeros_like(cosine)
+        for coefficient in reversed(others):
+            last, before = coefficient + 2 * cosine * last - before, last
+        return first + cosine * last - before
+
+    @property
+    def _is_short(self) -> bool:
+        return self.chosen["n_harmonics"] <= LONGEST_POLYNOMIAL
 
     def _weights(self, order: Tensor) -> Tensor:
         if self.chosen["weighting"] == "plain":

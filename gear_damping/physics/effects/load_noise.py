@@ -16,9 +16,10 @@ class LoadNoise(HeldLoad):
     equation = "F + w_k on sample k, std(w) = |F0| 10^(-SNR/20)"
     reference = "Yousfi et al. (2026), noise on the load"
     parameters: ClassVar = (Parameter("snr_db", "1", 20.0, "mean load to noise in dB", -40, 200),)
+    systems: ClassVar = ("gear_pair",)
 
     def draw(self, values: Values, mean_load: Tensor, samples: int, generator: torch.Generator) -> Tensor:
         """One force for each output sample, (batch, samples)."""
         shape = (mean_load.shape[0], samples)
-        noise = torch.randn(shape, generator=generator, dtype=mean_load.dtype)
+        noise = torch.randn(shape, generator=generator, dtype=mean_load.dtype, device=generator.device).to(mean_load)
         return noise * (mean_load.abs() * 10 ** (-values["snr_db"] / 20)).unsqueeze(1)

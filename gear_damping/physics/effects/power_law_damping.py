@@ -9,9 +9,8 @@ from gear_damping.physics.damping_ratio import equivalent_damping_ratio, power_l
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.scales import Scales
+from gear_damping.physics.shapes import power_of_size
 from gear_damping.physics.terms import DampingLaw, Values
-
-SLOWEST = 1e-100  # natural velocity below which the force is taken as zero, so that powers stay finite
 
 
 class PowerLawDamping(DampingLaw):
@@ -35,10 +34,9 @@ class PowerLawDamping(DampingLaw):
 
     def damping_force(self, now: Moment, p: Values) -> Tensor:
         """The force at this instant."""
-        speed = now.delta_rate.abs().clamp(min=SLOWEST)
-        size = p["coefficient"] * speed ** p["exponent"]
+        size = p["coefficient"] * power_of_size(now.delta_rate, p["exponent"])
         if self.chosen["as_printed"]:
-            return size * speed
+            return size * now.delta_rate.abs()
         return torch.where(now.delta_rate < 0, -size, size)
 
     def damping_ratio(self, values: Values, mass: Tensor, stiffness: Tensor, velocity: Tensor) -> Tensor:

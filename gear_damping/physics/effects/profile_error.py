@@ -7,6 +7,8 @@ from torch import Tensor
 
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.shaft_order import harmonics
+from gear_damping.physics.shapes import same_length
 from gear_damping.physics.terms import TransmissionErrorSource, Values
 
 
@@ -24,19 +26,10 @@ class ProfileError(TransmissionErrorSource):
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
         """Cosine and sine parts by harmonic."""
+        same_length(self.name, values, "amplitudes", "phases")
         amplitudes, phases = values["amplitudes"], values["phases"]
         return {"in_phase": amplitudes * torch.cos(phases), "quadrature": -amplitudes * torch.sin(phases)}
 
     def error(self, now: Moment, p: Values) -> tuple[Tensor, Tensor]:
-        """The error and its rate; multiples of the mesh angle by rotation."""
-        cosine, sine = now.mesh.cos, now.mesh.sin
-        error, slope = torch.zeros_like(cosine), torch.zeros_like(cosine)
-        turned_cosine, turned_sine = torch.ones_like(cosine), torch.zeros_like(cosine)
-        for h in range(p["in_phase"].shape[0]):
-            turned_cosine, turned_sine = (
-                turned_cosine * cosine - turned_sine * sine,
-                turned_sine * cosine + turned_cosine * sine,
-            )
-            error = error + p["in_phase"][h] * turned_cosine + p["quadrature"][h] * turned_sine
-            slope = slope + (h + 1) * (p["quadrature"][h] * turned_cosine - p["in_phase"][h] * turned_sine)
-        return error, slope * now.mesh.speed
+        """The error and its rate."""
+        return harmonics(now.mesh, p["in_phase"], p["quadrature"])

@@ -32,12 +32,14 @@ class RectangularMeshStiffness(MeshStiffness, Switch):
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
         """The centre of the double contact and the cosine of half its width."""
         half = pi * (values["contact_ratio"] - 1)
-        return dict(values) | {"centre_cos": torch.cos(half), "centre_sin": torch.sin(half)}
+        centre = half - base["contact_lead"]
+        edge = {"centre_cos": torch.cos(centre), "centre_sin": torch.sin(centre), "edge": torch.cos(half)}
+        return dict(values) | edge
 
     def switches(self, now: Moment, p: Values) -> dict[str, Tensor]:
-        """Positive in double contact: cos(theta_M - centre) - cos(half width), the two being equal."""
+        """Positive in double contact: cos(theta_M - centre) - cos(half width)."""
         cosine = now.mesh.cos * p["centre_cos"] + now.mesh.sin * p["centre_sin"]
-        return {DOUBLE: cosine - p["centre_cos"]}
+        return {DOUBLE: cosine - p["edge"]}
 
     def stiffness(self, now: Moment, p: Values) -> Tensor:
         """The value on the locked side."""

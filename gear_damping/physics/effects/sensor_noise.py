@@ -20,6 +20,7 @@ class SensorNoise(Sensor):
 
     def measure(self, signal: Tensor, values: Values, recording: Recording) -> Tensor:
         """The noisy record."""
-        noise = torch.randn(signal.shape, generator=recording.generator, dtype=signal.dtype)
+        source = recording.generator
+        noise = torch.randn(signal.shape, generator=source, dtype=signal.dtype, device=source.device).to(signal)
         size = signal.std(dim=-1, keepdim=True, correction=0)
         return signal + noise * size * 10 ** (-values["snr_db"] / 20).unsqueeze(1)

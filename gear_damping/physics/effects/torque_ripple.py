@@ -7,10 +7,10 @@ from torch import Tensor
 
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Option, Parameter
-from gear_damping.physics.terms import Load, Values
+from gear_damping.physics.terms import Load, LoadFactor, Values
 
 
-class TorqueRipple(Load):
+class TorqueRipple(Load, LoadFactor):
     """A torque at an order of the pinion shaft that no torque channel shows."""
 
     name = "torque_ripple"
@@ -31,7 +31,13 @@ class TorqueRipple(Load):
         size = values["share"] if self.chosen["proportional"] else force
         return {"size": size, "order": values["order"], "phase": values["phase"]}
 
+    def _wave(self, now: Moment, p: Values) -> Tensor:
+        return p["size"] * torch.cos(p["order"] * now.pinion.angle + p["phase"])
+
     def load_force(self, now: Moment, p: Values) -> Tensor:
-        """The force at this instant."""
-        cosine = torch.cos(p["order"] * now.pinion.angle + p["phase"])
-        return p["size"] * cosine * (now.load if self.chosen["proportional"] else 1.0)
+        """The force at this instant, where it is a torque of its own."""
+        return torch.zeros_like(now.displacement) if self.chosen["proportional"] else self._wave(now, p)
+
+    def load_factor(self, now: Moment, p: Values) -> Tensor:
+        """The factor at this instant, where it is a share of the load."""
+        return 1 + self._wave(now, p) if self.chosen["proportional"] else torch.ones_like(now.displacement)

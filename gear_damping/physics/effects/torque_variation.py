@@ -8,7 +8,10 @@ from torch import Tensor
 
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Option, Parameter
+from gear_damping.physics.shapes import same_length
 from gear_damping.physics.terms import Load, Switch, Values
+
+SHORTEST = 1e-9  # natural time that a ramp takes at least: a ramp that ends where it starts is a step
 
 
 class TorqueVariation(Load, Switch):
@@ -24,7 +27,7 @@ class TorqueVariation(Load, Switch):
         Parameter("ramp_end", "s", 0.04, "end of the ramp", 0, 1e6),
         Parameter("ramp_change", "N*m", 30.0, "torque added by the end of the ramp and kept", -1e6, 1e6),
         Parameter("sine_amplitude", "N*m", 15.0, "A", 0, 1e6),
-        Parameter("sine_frequency", "1/s", 40.0, "f in Hz", 0, 1e6),
+        Parameter("sine_frequency", "Hz", 40.0, "f", 0, 1e6),
         Parameter("sine_phase", "rad", 0.0, "phi"),
     )
     options: ClassVar = (Option("form", ("steps", "ramp", "sine"), "steps", "what the torque does"),)
@@ -34,11 +37,13 @@ class TorqueVariation(Load, Switch):
         """Torques as forces along the line of action."""
         form, per_torque = self.chosen["form"], base["load_per_pinion_torque"]
         if form == "steps":
+            same_length("torque_variation", values, "step_times", "step_changes")
             return {"times": values["step_times"], "forces": values["step_changes"] * per_torque}
         if form == "sine":
             rate = 2 * pi * values["sine_frequency"]
             return {"force": values["sine_amplitude"] * per_torque, "rate": rate, "phase": values["sine_phase"]}
-        times = {"start": values["ramp_start"], "end": values["ramp_end"]}
+        length = (values["ramp_end"] - values["ramp_start"]).clamp(min=SHORTEST)
+        times = {"start": values["ramp_start"], "end": values["ramp_start"] + length, "length": length}
         return times | {"force": values["ramp_change"] * per_torque}
 
     def switches(self, now: Moment, p: Values) -> dict[str, Tensor]:
@@ -56,5 +61,5 @@ class TorqueVariation(Load, Switch):
         if form == "steps":
             return sum(now.locked[f"{self.name}.{i}"] * force for i, force in enumerate(p["forces"].unbind(0)))
         begun, over = now.locked[f"{self.name}.0"], now.locked[f"{self.name}.1"]
-        share = (now.time - p["start"]) / (p["end"] - p["start"])
+        share = (now.time - p["start"]) / p["length"]
         return p["force"] * (begun * (1 - over) * share + over)
