@@ -7,7 +7,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.physics.model import Model
-from gear_damping.physics.terms import DampingLaw, Recording, Sensor
+from gear_damping.physics.terms import DampingLaw, ExtraStates, Recording, Sensor
 from gear_damping.simulation.series import ANGLE, ANGLE_RATE
 
 FINE, DIVERGED = 0, 1
@@ -132,6 +132,15 @@ class Runs:
             status=self.status[mask],
             reference_velocity=self.reference_velocity[mask],
         )
+
+
+def state_units(model: Model) -> dict[str, str]:
+    """The SI unit of every state by its name in `Runs.states`."""
+    units = {"displacement": "m", "velocity": "m/s"}
+    for effect in model.effects:
+        if isinstance(effect, ExtraStates):
+            units |= {f"{effect.name}.{state}": unit for state, unit in effect.states.items()}
+    return units
 
 
 def reference_velocity(derived: dict[str, Tensor]) -> Tensor:

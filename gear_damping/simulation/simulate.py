@@ -8,9 +8,9 @@ from torch import Tensor
 from gear_damping.errors import InputError, Problem
 from gear_damping.physics.equation import HELD_LOAD
 from gear_damping.physics.model import Model, Prepared
-from gear_damping.physics.terms import ExtraStates, HeldLoad
+from gear_damping.physics.terms import HeldLoad
 from gear_damping.simulation.integrate import Progress, integrate
-from gear_damping.simulation.runs import DIVERGED, FINE, Runs, reference_velocity
+from gear_damping.simulation.runs import DIVERGED, FINE, Runs, reference_velocity, state_units
 from gear_damping.simulation.solver_settings import Solver
 from gear_damping.units import parse_unit
 
@@ -104,12 +104,8 @@ def _held_loads(
 
 
 def _in_si(model: Model, names: list[str], states: Tensor, prepared: Prepared) -> dict[str, Tensor]:
-    units = {"displacement": "m", "velocity": "m/s"}
-    for effect in model.effects:
-        if isinstance(effect, ExtraStates):
-            units |= {f"{effect.name}.{state}": unit for state, unit in effect.states.items()}
-    scales = prepared.scales
+    units = state_units(model)
     return {
-        name: state * scales.unit_of(parse_unit(units[name]).dimension).unsqueeze(1)
+        name: state * prepared.scales.unit_of(parse_unit(units[name]).dimension).unsqueeze(1)
         for name, state in zip(names, states, strict=True)
     }

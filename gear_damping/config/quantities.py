@@ -1,0 +1,79 @@
+"""Numbers with units in the configuration: the one place where they become SI."""
+
+from collections.abc import Mapping, Sequence
+from math import isfinite
+from typing import Any
+
+from gear_damping.errors import InputError, Problem
+from gear_damping.physics.parameter import Parameter
+from gear_damping.units import parse_unit, to_si
+
+SUFFIXES = {"rpm": "rpm", "deg": "deg", "um": "um", "mm": "mm", "ms": "ms", "khz": "kHz", "hz": "Hz", "percent": "%"}
+
+
+def split_suffix(key: str, known: Mapping[str, Any]) -> tuple[str, str | None]:
+    """The parameter a key names and the unit of its suffix: `pinion_speed_rpm` → (`pinion_speed`, `rpm`)."""
+    if key in known:
+        return key, None
+    name, _, suffix = key.rpartition("_")
+    if suffix in SUFFIXES and name in known:
+        return name, SUFFIXES[suffix]
+    return key, None
+
+
+def quantity(value: Any, expected: str, key: str, source: str, unit: str | None = None) -> float:
+    """A number in SI from a plain number (SI, or in `unit`) or {value, unit}.
+
+    Raises:
+        InputError: it is neither, not finite, or in a unit of another kind.
+    """
+    if isinstance(value, Mapping):
+        extra = set(value) - {"value", "unit"}
+        if extra or "value" not in value:
+            rule = "must be a number or {value: …, unit: …}"
+            raise InputError(Problem(key, rule, dict(value), f"for example {{value: 1, unit: {expected}}}", source))
+        unit, value = value.get("unit", unit), value["value"]
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not isfinite(value):
+        raise InputError(
+            Problem(key, f"must be a finite number in {unit or expected}", value, "write a number", source)
+        )
+    return to_si(float(value), unit, expected, key, source) if unit else float(value)
+
+
+def parameter_value(
+    value: Any, parameter: Parameter, key: str, source: str, unit: str | None = None
+) -> float | tuple[float, ...]:
+    """The value of a declared parameter in SI, a tuple for a list-valued one.
+
+    Raises:
+        InputError: its type, unit or range is wrong.
+    """
+    if not parameter.vector:
+        found = quantity(value, parameter.unit, key, source, unit)
+        _refuse(parameter.problem(found, key, source))
+        return found
+    listed, unit = _listed(value, unit)
+    if listed is None:
+        raise InputError(
+            Problem(key, f"must be a list of numbers in {parameter.unit}", value, "write [a, b, …]", source)
+        )
+    numbers = tuple(quantity(v, parameter.unit, f"{key}[{i}]", source, unit) for i, v in enumerate(listed))
+    for i, number in enumerate(numbers):
+        _refuse(parameter.problem(number, f"{key}[{i}]", source))
+    return numbers
+
+
+def _listed(value: Any, unit: str | None) -> tuple[Sequence[Any] | None, str | None]:
+    if isinstance(value, Mapping) and isinstance(value.get("value"), list):
+        return value["value"] or None, value.get("unit", unit)
+    return (value or None, unit) if isinstance(value, list) else (None, unit)
+
+
+def _refuse(problem: Problem | None) -> None:
+    if problem:
+        raise InputError(problem)
+
+
+def valid_unit(text: str, key: str, source: str) -> None:
+    """Raise InputError where the text names no unit."""
+    parse_unit(text, key, source)

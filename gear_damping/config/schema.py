@@ -1,0 +1,163 @@
+"""The keys outside the simulator: type, range and choices of each, and their check."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import inf, isfinite
+from typing import Any
+
+from gear_damping.config.source import Origin
+from gear_damping.errors import Problem, nearest
+
+TASKS = ("train", "simulate", "evaluate", "identify", "explain")
+MODELS = ("raw_lstm", "cwt_lstm")
+
+
+@dataclass(frozen=True)
+class Key:
+    """What one key may hold.
+
+    Args:
+        kind: `int`, `float`, `bool`, `text` or `names`.
+        lower: Smallest number.
+        upper: Largest number.
+        choices: Allowed texts or names; empty for any.
+        optional: Whether null is allowed.
+        exclusive: Whether the bounds themselves are excluded.
+    """
+
+    kind: str
+    lower: float = -inf
+    upper: float = inf
+    choices: tuple[str, ...] = ()
+    optional: bool = False
+    exclusive: bool = False
+
+
+_SHARE = Key("float", 0, 1, exclusive=True)
+SCHEMA: dict[str, Any] = {
+    "task": Key("text", choices=TASKS),
+    "name": Key("text"),
+    "seed": Key("int", 0, 2**31 - 1),
+    "seeds": Key("int", 1, 1000),
+    "checkpoint": Key("text", optional=True),
+    "resume": Key("text", optional=True),
+    "data_folder": Key("text"),
+    "progress": Key("bool"),
+    "write_measurement": Key("bool"),
+    "protocol": {
+        "name": Key("text", choices=("by_run", "paper", "paper_many_runs")),
+        "window": Key("int", 2, 1_000_000),
+        "stride": Key("int", 1, 1_000_000),
+        "evaluation_stride": Key("int", 1, 1_000_000),
+        "validation_fraction": _SHARE,
+        "test_fraction": _SHARE,
+        "windows_per_epoch": Key("int", 1, 10**9, optional=True),
+        "run": Key("int", 0, 10**9),
+    },
+    "wavelet": {
+        "kind": Key("text", choices=("ricker", "morlet")),
+        "frequency_min_hz": Key("float", 0, 1e12, exclusive=True),
+        "frequency_max_hz": Key("float", 0, 1e12, exclusive=True),
+        "n_scales": Key("int", 1, 4096),
+        "omega0": Key("float", 1, 100, optional=True),
+        "magnitude": Key("bool", optional=True),
+    },
+    "model": {
+        "names": Key("names", choices=MODELS),
+        "hidden_size": Key("int", 1, 4096),
+        "dropout": Key("float", 0, 0.99),
+    },
+    "training": {
+        "max_epochs": Key("int", 1, 1_000_000),
+        "batch_size": Key("int", 1, 1_000_000),
+        "patience": Key("int", 1, 1_000_000),
+        "learning_rate": Key("float", 0, 10, exclusive=True),
+    },
+    "measurement": {"path": Key("text", optional=True), "channel": Key("text", optional=True)},
+}
+ELSEWHERE = ("simulator", "family")  # groups with a check of their own
+NOT_REQUIRED = ("omega0", "magnitude")
+
+
+def check(config: Mapping[str, Any], origin: Origin) -> list[Problem]:
+    """Every problem with the keys outside simulator and family."""
+    return _check(config, SCHEMA, "", origin, ELSEWHERE)
+
+
+def _check(
+    values: Mapping[str, Any], schema: Mapping[str, Any], prefix: str, origin: Origin, skip: tuple[str, ...] = ()
+) -> list[Problem]:
+    problems = [
+        Problem(prefix + name, "no such key", remedy=nearest(name, [*schema, *skip]), source=origin.of(prefix + name))
+        for name in values
+        if name not in schema and name not in skip
+    ]
+    for name, rule in schema.items():
+        key = prefix + name
+        if name not in values:
+            if name not in NOT_REQUIRED:
+                problems.append(Problem(key, "is missing", remedy="leave the group as it is", source=origin.of(key)))
+        elif isinstance(rule, Key):
+            found = problem_with(values[name], rule, key, origin)
+            problems += [found] if found else []
+        elif isinstance(values[name], Mapping):
+            problems += _check(values[name], rule, key + ".", origin)
+        else:
+            remedy = f"give {key}.<key>, or choose {name}=<choice>"
+            problems.append(Problem(key, "is a group of keys", values[name], remedy, origin.of(key)))
+    return problems
+
+
+def problem_with(value: Any, rule: Key, key: str, origin: Origin) -> Problem | None:
+    """The problem with one value, or None."""
+    if value is None:
+        return None if rule.optional else Problem(key, "must be given", source=origin.of(key))
+    said = _wrong_type(value, rule) or _out_of_range(value, rule)
+    if said:
+        return Problem(key, said[0], value, said[1], origin.of(key))
+    names = value if rule.kind == "names" else [value]
+    for name in names:
+        if rule.choices and name not in rule.choices:
+            return Problem(
+                key,
+                f"must be one of {', '.join(rule.choices)}",
+                value,
+                nearest(str(name), rule.choices),
+                origin.of(key),
+            )
+    return None
+
+
+def _wrong_type(value: Any, rule: Key) -> tuple[str, str] | None:
+    number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    wanted = {
+        "int": (isinstance(value, int) and not isinstance(value, bool), "a whole number"),
+        "float": (number, "a number"),
+        "bool": (isinstance(value, bool), "true or false"),
+        "text": (isinstance(value, str), "text"),
+        "names": (
+            isinstance(value, list) and len(value) > 0 and len(set(map(str, value))) == len(value),
+            "a list of names",
+        ),
+    }
+    good, said = wanted[rule.kind]
+    return None if good else (f"must be {said}", f"write {said}")
+
+
+def _out_of_range(value: Any, rule: Key) -> tuple[str, str] | None:
+    if rule.kind not in ("int", "float"):
+        return None
+    inside = rule.lower < value < rule.upper if rule.exclusive else rule.lower <= value <= rule.upper
+    if inside and isfinite(value):
+        return None
+    words = "strictly between" if rule.exclusive else "within"
+    return f"must lie {words} {rule.lower:g} and {rule.upper:g}", f"nearest valid value {_nearest_number(value, rule)}"
+
+
+def _nearest_number(value: float, rule: Key) -> str:
+    if not isfinite(value):
+        return f"{rule.lower:g}"
+    near = min(max(value, rule.lower), rule.upper)
+    if rule.exclusive and near in (rule.lower, rule.upper):
+        return f"just {'above' if near == rule.lower else 'below'} {near:g}"
+    return f"{near:g}"

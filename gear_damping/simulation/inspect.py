@@ -1,0 +1,36 @@
+"""What happened inside one run: every instant is evaluated as a member of one batch."""
+
+import torch
+from torch import Tensor
+
+from gear_damping.physics.equation import EquationOfMotion
+from gear_damping.simulation.runs import Runs, state_units
+from gear_damping.units import parse_unit
+
+
+def forces_of(runs: Runs, member: int) -> dict[str, Tensor]:
+    """`stiffness` (N/m), `contact`, `mesh_force` (N) and `load` (N) of one run over time, each (time,).
+
+    The load leaves out what was drawn for the run and held over samples.
+    """
+    one = {name: value[..., member : member + 1] for name, value in runs.values.items()}
+    count = len(runs.time)
+    every = {name: value.expand(*value.shape[:-1], count) for name, value in one.items()}
+    prepared = runs.model.prepare(every)
+    scales = prepared.scales
+    equation = EquationOfMotion(runs.model)
+    units = state_units(runs.model)
+    state = [runs.states[n][member] / scales.unit_of(parse_unit(units[n]).dimension) for n in runs.states]
+    given = {name: value[member] for name, value in runs.inputs.items()}
+    if "pinion_angle" in given:
+        given["pinion_angle_rate"] = torch.gradient(given["pinion_angle"])[0]
+    now = equation.moment(runs.time / scales.time, tuple(state), given, prepared.base)
+    now.locked = {name: (value >= 0).to(value) for name, value in equation.switches(now, prepared.terms).items()}
+    equation.rates(now, prepared.base, prepared.terms)
+    contact = now.contact if isinstance(now.contact, Tensor) else torch.ones(count)
+    return {
+        "stiffness": now.stiffness * scales.force / scales.length,
+        "contact": contact,
+        "mesh_force": now.mesh_force * scales.force,
+        "load": now.load * scales.force,
+    }

@@ -1,0 +1,104 @@
+"""What every run leaves in its folder: run.json, kept true from the first second to the last."""
+
+import hashlib
+import json
+import math
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+RUNNING, FINISHED, FAILED, INTERRUPTED = "running", "finished", "failed", "interrupted"
+PACKAGES = ("gear-damping", "torch", "lightning", "hydra-core", "torchdiffeq", "numpy", "scipy")
+
+
+class RunFolder:
+    """The folder of one run, with its run.json."""
+
+    def __init__(self, path: Path, config: Mapping[str, Any]) -> None:
+        """Open the folder and say that the run is running."""
+        self.path = path
+        path.mkdir(parents=True, exist_ok=True)
+        self._begin = time.monotonic()
+        self.record: dict[str, Any] = {
+            "status": RUNNING,
+            "task": config.get("task"),
+            "command": " ".join(["python -m gear_damping", *sys.argv[1:]]),
+            "config": dict(config),
+            "seed": config.get("seed"),
+            "git": git_state(),
+            "versions": versions(),
+            "inputs": {},
+            "started": datetime.now(UTC).isoformat(timespec="seconds"),
+            "wall_time_s": 0.0,
+            "metrics": {},
+        }
+        self._write()
+
+    def add_input(self, path: Path) -> None:
+        """Note the digest of a file that the run reads."""
+        self.record["inputs"][str(path)] = hashlib.sha256(path.read_bytes()).hexdigest()
+        self._write()
+
+    def close(self, status: str, metrics: Mapping[str, Any] | None = None, error: str | None = None) -> None:
+        """Say how the run ended."""
+        self.record |= {"status": status, "wall_time_s": round(time.monotonic() - self._begin, 3)}
+        self.record["metrics"] = dict(metrics or {})
+        if error:
+            self.record["error"] = error
+        self._write()
+
+    def write_json(self, name: str, content: Any) -> Path:
+        """Write a JSON file into the folder, whole or not at all."""
+        return write_json(self.path / name, content)
+
+    def _write(self) -> None:
+        self.write_json("run.json", self.record)
+
+
+def write_json(path: Path, content: Any) -> Path:
+    """Write JSON that any reader understands: numbers that are not finite become null."""
+    unfinished = path.with_name(path.name + ".part")
+    unfinished.write_text(json.dumps(_plain(content), indent=2, allow_nan=False) + "\n")
+    os.replace(unfinished, path)
+    return path
+
+
+def _plain(content: Any) -> Any:
+    if isinstance(content, Mapping):
+        return {str(key): _plain(value) for key, value in content.items()}
+    if isinstance(content, (list, tuple)):
+        return [_plain(value) for value in content]
+    if isinstance(content, float):
+        return content if math.isfinite(content) else None
+    return str(content) if isinstance(content, Path) else content
+
+
+def versions() -> dict[str, str]:
+    """Versions of Python and of the packages that decide a result."""
+    found = {"python": sys.version.split()[0]}
+    for package in PACKAGES:
+        try:
+            found[package] = version(package)
+        except PackageNotFoundError:
+            found[package] = "not installed"
+    return found
+
+
+def git_state() -> dict[str, Any]:
+    """Revision of the checkout that the package runs from, and whether it was changed; None outside of one."""
+    folder = Path(__file__).resolve().parents[2]
+    if not (folder / ".git").exists():
+        return {"revision": None, "dirty": None}
+    revision, changes = (
+        subprocess.run(["git", "-C", str(folder), *command], capture_output=True, text=True, check=False)
+        for command in (["rev-parse", "HEAD"], ["status", "--porcelain"])
+    )
+    if revision.returncode:
+        return {"revision": None, "dirty": None}
+    return {"revision": revision.stdout.strip(), "dirty": bool(changes.stdout.strip())}

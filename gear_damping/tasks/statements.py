@@ -1,0 +1,53 @@
+"""The sentences a run says while it works."""
+
+import logging
+from collections.abc import Mapping
+from typing import Any
+
+import torch
+
+from gear_damping.config.settings import Settings
+from gear_damping.identification.trainer import Training
+from gear_damping.physics.damping_ratio import log_decrement
+from gear_damping.simulation.runs import Runs
+
+say = logging.getLogger("gear_damping").info
+
+
+def say_budget(settings: Settings, training: Training) -> None:
+    """What the run is about to spend."""
+    s = settings.simulator
+    seeds = f"{settings.seeds} seed" + ("s" if settings.seeds > 1 else "")
+    names = ", ".join([*settings.model["names"], "white_noise"])
+    say(
+        f"{settings.name}: {s.n_runs} runs of {s.n_samples} samples, family {s.family.name}, protocol "
+        f"{settings.protocol['name']}; {names}, {seeds} from {settings.seed}, at most {training.max_epochs} "
+        f"epochs each, batch {training.batch_size}, patience {training.patience}"
+    )
+
+
+def say_runs(settings: Settings, runs: Runs) -> None:
+    """What the runs hold: the label in all its forms, at the amplitude that it belongs to."""
+    ratio, law = runs.damping_ratio_percent, settings.simulator.damping_law
+    low, high = float(ratio.min()), float(ratio.max())
+    delta = log_decrement(torch.tensor([low, high]) / 100)
+    line = f"damping ratio {low:.3f} … {high:.3f} % of critical, log-decrement {delta[0]:.4f} … {delta[1]:.4f}"
+    alpha = runs.values.get(f"{law}.coefficient")
+    if alpha is not None:
+        exponent = float(runs.values[f"{law}.exponent"][0])
+        line += f", alpha {alpha.min():.1f} … {alpha.max():.1f} N (s/m)^{exponent:g}"
+    say(f"{line}, at a velocity amplitude of {float(runs.reference_velocity[0]):.3g} m/s")
+    if runs.n_diverged:
+        say(f"{runs.n_diverged} runs diverged and were left out")
+
+
+def say_controls(results: Mapping[str, Any]) -> None:
+    """What the controls say about the networks' figures."""
+    blind = results["controls"]["white_noise"]["rmse_percent"]["mean"]
+    for name, found in results["models"].items():
+        error = found["rmse_percent"]["mean"]
+        if error > 0.95 * blind:
+            say(
+                f"{name} ({error:.4g} %) is no better than a network that was fed white noise ({blind:.4g} %): "
+                "under this protocol its figure says nothing about damping"
+            )

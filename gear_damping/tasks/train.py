@@ -1,0 +1,90 @@
+"""task=train: simulate runs, train the networks and their controls, score them, leave tables and figures."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from torch.utils.tensorboard import SummaryWriter
+
+from gear_damping.config.settings import Settings
+from gear_damping.identification.compare import compare_models
+from gear_damping.identification.lightning_module import EstimatorConfig
+from gear_damping.identification.noise import SensorNoise
+from gear_damping.identification.protocols import Protocol
+from gear_damping.identification.trainer import Training
+from gear_damping.reporting import figures, tables
+from gear_damping.simulation.runs import Runs
+from gear_damping.tasks import statements
+from gear_damping.tasks.experiment_figures import experiment_figures
+from gear_damping.tasks.run_folder import RunFolder
+from gear_damping.tasks.simulated import plan_of, run_set_of, simulated, test_plan_of
+
+FEATURES = {"raw_lstm": "raw", "cwt_lstm": "cwt"}
+
+
+def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
+    """Train and compare; returns the metrics for run.json."""
+    plan, other = plan_of(settings), test_plan_of(settings)
+    protocol, training = Protocol(**settings.protocol), Training(**settings.training)
+    statements.say_budget(settings, training)
+    runs = simulated(plan, settings)
+    test_runs = simulated(other, settings, "simulating test runs") if other else None
+    statements.say_runs(settings, runs)
+    results = compare_models(
+        run_set_of(runs, plan),
+        protocol,
+        estimators(settings),
+        training,
+        settings.all_seeds,
+        folder.path,
+        test_runs=run_set_of(test_runs, other) if other else None,
+        noise=SensorNoise(settings.simulator.sensor_noise_db),
+        resume_from=settings.resume,
+        progress=settings.progress,
+        hparams=_hparams(settings),
+        announce=statements.say,
+    )
+    predictions = results.pop("predictions")
+    results = {"experiment": settings.name, "family": settings.simulator.family.name, **results}
+    results["n_runs"], results["n_diverged"] = len(runs.status), runs.n_diverged
+    folder.write_json("results.json", results)
+    text = tables.results_table(results)
+    (folder.path / "results.txt").write_text(text)
+    statements.say(text)
+    statements.say_controls(results)
+    _figures(settings, runs, predictions, folder)
+    return _metrics(results)
+
+
+def estimators(settings: Settings) -> dict[str, EstimatorConfig]:
+    """The networks to train, by name."""
+    model = settings.model
+    return {
+        name: EstimatorConfig(FEATURES[name], settings.wavelet, model["hidden_size"], model["dropout"])
+        for name in model["names"]
+    }
+
+
+def _hparams(settings: Settings) -> dict[str, Any]:
+    """Columns of TensorBoard's HParams table."""
+    simulator = settings.simulator
+    found = {"experiment": settings.name, "protocol": settings.protocol["name"], "family": simulator.family.name}
+    snr = {k: float(v) for k, v in simulator.given.items() if k.endswith("snr_db")}
+    ratio = simulator.damping_ratio_percent
+    return found | snr | ({} if ratio is None else {"damping_ratio_percent": ratio})
+
+
+def _metrics(results: Mapping[str, Any]) -> dict[str, Any]:
+    scored = {**results["models"], **results["controls"]}
+    return {
+        f"{name}/{score}": value["mean"] if isinstance(value, Mapping) else value
+        for name, found in scored.items()
+        for score, value in found.items()
+        if score != "per_seed"
+    }
+
+
+def _figures(settings: Settings, runs: Runs, predictions: Mapping[str, Any], folder: RunFolder) -> None:
+    with SummaryWriter(str(folder.path)) as writer:
+        for name, figure in experiment_figures(settings, runs, predictions).items():
+            figures.save(figure, folder.path / f"{name}.png")
+            writer.add_figure(name, figure, close=False)
