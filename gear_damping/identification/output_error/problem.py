@@ -1,0 +1,169 @@
+"""What is fitted to what: free parameters, records, and predictions with their sensitivities in one batch."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from math import inf
+
+import torch
+from torch import Tensor
+
+from gear_damping.physics.model import Model
+from gear_damping.simulation.simulate import simulate
+from gear_damping.simulation.solver_settings import Solver
+
+SENSOR_NOISE = "sensor_noise"
+OFFSET = "response_offset"  # a free parameter that is added to the prediction itself
+DIFFERENCE = 1e-6  # step of the sensitivities, in units of each parameter's scale
+LOCAL = ("initial_displacement", "initial_velocity")
+
+
+@dataclass(frozen=True)
+class FreeParameter:
+    """A parameter to fit.
+
+    Args:
+        name: Flat name in the model, or `response_offset`.
+        start: First guess, SI or the rig's own unit.
+        scale: What counts as a step of order one; for a logarithmic one the start itself does.
+        logarithmic: Whether its logarithm is fitted, which keeps its sign.
+        lower: Smallest value.
+        upper: Largest value.
+    """
+
+    name: str
+    start: float
+    scale: float = 1.0
+    logarithmic: bool = False
+    lower: float = -inf
+    upper: float = inf
+
+    def value(self, z: Tensor) -> Tensor:
+        """The parameter from its fitted coordinate."""
+        found = self.start * torch.exp(z) if self.logarithmic else self.start + self.scale * z
+        return found.clamp(self.lower, self.upper)
+
+
+@dataclass(frozen=True)
+class FitRecord:
+    """A measured record as the fit sees it.
+
+    Args:
+        name: What it is called.
+        response: Samples, (time,), float64.
+        sampling_rate: Hz.
+        inputs: Measured input series at the same instants, by the name that the simulator gives them.
+        conditions: Parameters that are known for this record alone, by flat name.
+    """
+
+    name: str
+    response: Tensor
+    sampling_rate: float
+    inputs: Mapping[str, Tensor] = field(default_factory=dict)
+    conditions: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """Residuals (starts, records, time) and sensitivities (starts, records, time, columns).
+
+    The columns are the shared parameters, then displacement and velocity at the start of the record.
+    Samples beyond the end of a shorter record are zero in both.
+    """
+
+    residual: Tensor
+    sensitivity: Tensor
+
+
+class OutputErrorProblem:
+    """Predictions of records by a model whose parameters are partly free."""
+
+    def __init__(
+        self,
+        model: Model,
+        given: Mapping[str, float],
+        free: Sequence[FreeParameter],
+        records: Sequence[FitRecord],
+        solver: Solver | None = None,
+    ) -> None:
+        """State the problem.
+
+        Args:
+            model: The simulator.
+            given: Parameters that are known, by flat name.
+            free: Parameters to fit; every record's initial state is free besides.
+            records: At least one; all of one sampling rate.
+            solver: Settings of the solver; its sub-steps are fixed, so that sensitivities are smooth.
+        """
+        if len({record.sampling_rate for record in records}) != 1:
+            raise ValueError("records must share one sampling_rate: resample them, or fit them by rate")
+        self.model, self.given, self.free, self.records = model, dict(given), list(free), list(records)
+        self.solver = solver or Solver()
+        self.response = _padded([record.response for record in records])
+        self.mask = _padded([torch.ones_like(record.response) for record in records])
+        self.spread = torch.stack([r.response.std().clamp(min=1e-300) for r in self.records])
+        self.rate_scale = torch.stack([_rate_spread(r) for r in self.records])
+
+    @property
+    def n_shared(self) -> int:
+        """Number of shared parameters."""
+        return len(self.free)
+
+    def first_states(self) -> Tensor:
+        """A first guess of every initial state in its own scale, (records, 2): the first samples of the record."""
+        guesses = []
+        for i, record in enumerate(self.records):
+            slope = (record.response[1] - record.response[0]) * record.sampling_rate
+            guesses.append(torch.stack([record.response[0] / self.spread[i], slope / self.rate_scale[i]]))
+        return torch.stack(guesses)
+
+    def parameters(self, shared: Tensor) -> dict[str, Tensor]:
+        """Values of the shared parameters from their coordinates (..., n_shared)."""
+        return {p.name: p.value(shared[..., i]) for i, p in enumerate(self.free)}
+
+    def predict(self, shared: Tensor, states: Tensor, samples: int | None = None) -> Tensor:
+        """Predicted responses (points, records, time) for coordinates (points, n_shared) and (points, records, 2)."""
+        points, n_records = shared.shape[0], len(self.records)
+        samples = samples or self.response.shape[1]
+        batch = points * n_records
+        values = self.model.values(batch, **self.given)
+        found = self.parameters(shared)
+        offset = found.pop(OFFSET, torch.zeros(points, dtype=torch.float64))
+        for name, value in found.items():
+            values[name] = value.repeat_interleave(n_records)
+        for name in {name for record in self.records for name in record.conditions}:
+            known = torch.tensor([r.conditions.get(name, float("nan")) for r in self.records], dtype=torch.float64)
+            values[name] = torch.where(known.isnan().repeat(points), values[name], known.repeat(points))
+        values["initial_displacement"] = (states[..., 0] * self.spread).reshape(-1)
+        values["initial_velocity"] = (states[..., 1] * self.rate_scale).reshape(-1)
+        names = self.records[0].inputs
+        inputs = {n: _padded([r.inputs[n] for r in self.records])[:, :samples].repeat(points, 1) for n in names}
+        rate = self.records[0].sampling_rate
+        runs = simulate(self.model, values, sampling_rate=rate, n_samples=samples, inputs=inputs, solver=self.solver)
+        recorded = runs.record(torch.Generator().manual_seed(0), skip=(SENSOR_NOISE,))
+        return recorded.reshape(points, n_records, samples) + offset.reshape(-1, 1, 1)
+
+    def linearise(self, shared: Tensor, states: Tensor, samples: int | None = None) -> Prediction:
+        """Residuals and sensitivities at several starts at once; every column is a member of one batch."""
+        samples = samples or self.response.shape[1]
+        starts, columns = shared.shape[0], self.n_shared + len(LOCAL)
+        steps = torch.zeros(columns + 1, columns, dtype=torch.float64)
+        steps[1:] = DIFFERENCE * torch.eye(columns, dtype=torch.float64)
+        all_shared = shared.unsqueeze(1) + steps[:, : self.n_shared]
+        all_states = states.unsqueeze(1) + steps[:, self.n_shared :].unsqueeze(1)
+        points = starts * (columns + 1)
+        found = self.predict(all_shared.reshape(points, -1), all_states.reshape(points, -1, 2), samples)
+        found = found.reshape(starts, columns + 1, len(self.records), samples)
+        mask = self.mask[:, :samples]
+        residual = (self.response[:, :samples] - found[:, 0]) * mask
+        sensitivity = (found[:, 1:] - found[:, :1]) / DIFFERENCE * mask
+        return Prediction(residual, sensitivity.permute(0, 2, 3, 1))
+
+
+def _padded(series: Sequence[Tensor]) -> Tensor:
+    """Rows of equal length, the shorter ones continued by zeros."""
+    return torch.nn.utils.rnn.pad_sequence([s.to(torch.float64) for s in series], batch_first=True)
+
+
+def _rate_spread(record: FitRecord) -> Tensor:
+    """Standard deviation of the response's rate."""
+    return (record.response.diff() * record.sampling_rate).std().clamp(min=1e-300)

@@ -1,0 +1,56 @@
+"""How far a fitted parameter can be trusted.
+
+The covariance is the sandwich (J'J)^-1 S (J'J)^-1 with S the long-run covariance of the scores J_t r_t
+(Newey & West 1987): it holds for coloured residuals, which is what a model that misses something leaves.
+"""
+
+from collections.abc import Callable
+
+import torch
+from torch import Tensor
+
+from gear_damping.identification.output_error.least_squares import Fitted, full_jacobian
+from gear_damping.identification.output_error.problem import OutputErrorProblem
+
+QUANTILE = 1.959964
+
+
+def covariance(problem: OutputErrorProblem, fitted: Fitted, correlated_samples: int) -> Tensor:
+    """Covariance of the coordinates of the shared parameters, (n_shared, n_shared).
+
+    Args:
+        problem: What was fitted.
+        fitted: The fit.
+        correlated_samples: Samples over which residuals may be correlated, some natural periods.
+    """
+    sensitivity, residual = fitted.prediction.sensitivity, fitted.prediction.residual[0]
+    jacobian = full_jacobian(sensitivity, problem.n_shared)[0]
+    inverse = torch.linalg.pinv(jacobian.T @ jacobian, hermitian=True)
+    scores = jacobian.reshape(*residual.shape, -1) * residual.unsqueeze(-1)
+    meat = sum(_long_run(one, correlated_samples) for one in scores)
+    samples, parameters = float(problem.mask.sum()), jacobian.shape[1]
+    sandwich = inverse @ meat @ inverse * samples / max(samples - parameters, 1.0)
+    plain = inverse * residual.square().sum() / max(samples - parameters, 1.0)
+    wide = torch.maximum(sandwich.diagonal(), plain.diagonal()) / sandwich.diagonal().clamp(min=1e-300)
+    scale = wide.clamp(min=1).sqrt()
+    found = sandwich * scale.unsqueeze(0) * scale.unsqueeze(1)
+    return found[: problem.n_shared, : problem.n_shared]
+
+
+def _long_run(scores: Tensor, lags: int) -> Tensor:
+    """Bartlett-weighted sum of the autocovariances of (time, p), (p, p)."""
+    total = scores.T @ scores
+    for lag in range(1, min(lags, len(scores) - 1) + 1):
+        part = scores[lag:].T @ scores[:-lag]
+        total = total + (1 - lag / (lags + 1)) * (part + part.T)
+    return total
+
+
+def interval(function: Callable[[Tensor], Tensor], shared: Tensor, spread: Tensor) -> tuple[float, tuple[float, float]]:
+    """Value and 95 % interval of a quantity that hangs on the shared coordinates (delta method)."""
+    with torch.enable_grad():
+        point = shared.clone().requires_grad_()
+        value = function(point)
+        (slope,) = torch.autograd.grad(value, point)
+    half = QUANTILE * float((slope @ spread @ slope).clamp(min=0).sqrt())
+    return float(value.detach()), (float(value) - half, float(value) + half)
