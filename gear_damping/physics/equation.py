@@ -65,8 +65,9 @@ class EquationOfMotion:
         """Rates of the states, in natural units; `now.locked` says which branch holds."""
         self._deform(now, terms)
         self._touch(now, base, terms)
-        damping = sum(e.damping_force(now, terms[e.name]) for e in self._filling(DampingForce))
-        now.mesh_force = now.contact * damping + now.normal_force
+        forces = [(e.acts_in_gap, e.damping_force(now, terms[e.name])) for e in self._filling(DampingForce)]
+        in_contact = sum(force for in_gap, force in forces if not in_gap)
+        now.mesh_force = now.normal_force + now.contact * in_contact + sum(force for in_gap, force in forces if in_gap)
         for effect in self._filling(MeshForceFactor):
             now.mesh_force = now.mesh_force * effect.force_factor(now, terms[effect.name])
         self._press(now, base, terms)

@@ -130,6 +130,8 @@ class ElasticForce(Effect):
 class DampingForce(Effect):
     """A force that opposes the rate of deflection; it acts only where the flanks touch."""
 
+    acts_in_gap: ClassVar[bool] = False  # whether it acts where they do not touch as well
+
     @abstractmethod
     def damping_force(self, now: Moment, p: Values) -> Tensor:
         """The force at this instant, positive where it opposes a positive rate."""

@@ -24,7 +24,12 @@ class CoulombFriction(DampingForce):
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
         """In natural units the reference velocity is 1."""
-        return dict(values) | {"steepness": 1 / values["width"]}
+        steepness = 1 / values["width"]
+        return {
+            "force": values["force"],
+            "steepness": steepness,
+            "fastest_rate": values["force"] * steepness / base["equivalent_mass"],
+        }
 
     def damping_force(self, now: Moment, p: Values) -> Tensor:
         """The force at this instant."""

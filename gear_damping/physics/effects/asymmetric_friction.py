@@ -1,0 +1,41 @@
+"""Friction that differs by the direction of motion."""
+
+from typing import ClassVar
+
+import torch
+from torch import Tensor
+
+from gear_damping.physics.moment import Moment
+from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.terms import DampingForce, Values
+
+
+class AsymmetricFriction(DampingForce):
+    """Dry and viscous friction, each with a value for every direction of motion."""
+
+    name = "asymmetric_friction"
+    equation = "F_d = t F_c(t) + c(t) delta', t = tanh(delta' / (w V)), F_c and c from backward (t = -1) to forward (1)"
+    reference = "Armstrong-Hélouvry, Dupont & Canudas de Wit (1994), Automatica 30(7)"
+    parameters: ClassVar = (
+        Parameter("force_forward", "N", 20.0, "dry friction where the deflection grows", 0, 1e6),
+        Parameter("force_backward", "N", 10.0, "dry friction where it falls", 0, 1e6),
+        Parameter("damping_forward", "N*s/m", 0.0, "viscous coefficient where the deflection grows", 0, 1e12),
+        Parameter("damping_backward", "N*s/m", 0.0, "viscous coefficient where it falls", 0, 1e12),
+        Parameter("width", "1", 0.02, "w, width of the sign change relative to the reference velocity", 1e-6, 10),
+    )
+    dissipative = True
+
+    def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
+        """Means and halves of the differences of the two directions."""
+        found = {"steepness": 1 / values["width"]}
+        for kind in ("force", "damping"):
+            forward, backward = values[f"{kind}_forward"], values[f"{kind}_backward"]
+            found |= {f"{kind}_mean": (forward + backward) / 2, f"{kind}_half": (forward - backward) / 2}
+        largest = torch.maximum(values["force_forward"], values["force_backward"])
+        return found | {"fastest_rate": largest * found["steepness"] / base["equivalent_mass"]}
+
+    def damping_force(self, now: Moment, p: Values) -> Tensor:
+        """The force at this instant."""
+        direction = torch.tanh(now.delta_rate * p["steepness"])
+        dry = direction * (p["force_mean"] + direction * p["force_half"])
+        return dry + now.delta_rate * (p["damping_mean"] + direction * p["damping_half"])

@@ -1,0 +1,49 @@
+"""Flexibility of the pinion's bearing."""
+
+from typing import ClassVar
+
+import torch
+from torch import Tensor
+
+from gear_damping.physics.moment import Moment
+from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.terms import ExtraStates, TransmissionErrorSource, Values
+
+PLACE, RATE = "bearing_flexibility.displacement", "bearing_flexibility.velocity"
+
+
+class BearingFlexibility(ExtraStates, TransmissionErrorSource):
+    """The pinion gives way along the line of action: one more degree of freedom y."""
+
+    name = "bearing_flexibility"
+    equation = "delta = x - e - y, m_b y'' + c_b y' + k_b y = N + F_d, c_b = 2 zeta_b sqrt(k_b m_b)"
+    reference = "Özgüven (1991), J. Sound Vib. 145(2)"
+    parameters: ClassVar = (
+        Parameter("stiffness", "N/m", 5e8, "k_b", 1e3, 1e14),
+        Parameter("mass", "kg", 2.0, "m_b, pinion and its part of the shaft", 1e-3, 1e4),
+        Parameter("damping_ratio", "1", 0.02, "zeta_b, of the bearing alone", 0, 10),
+    )
+    systems: ClassVar = ("gear_pair",)
+    states: ClassVar = {"displacement": "m", "velocity": "m/s"}
+
+    def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
+        """The bearing, and a bound on the fastest rate of mesh and bearing together."""
+        stiffness, mass = values["stiffness"], values["mass"]
+        damping = 2 * values["damping_ratio"] * torch.sqrt(stiffness * mass)
+        mesh = base["mean_stiffness"]
+        fastest = torch.sqrt(mesh / base["equivalent_mass"] + (mesh + stiffness) / mass)
+        return {"stiffness": stiffness, "mass": mass, "damping": damping, "fastest_rate": fastest}
+
+    def initial(self, p: Values, base: Values) -> dict[str, Tensor]:
+        """Where the mean load holds it."""
+        place = base["mean_load"] / p["stiffness"]
+        return {"displacement": place, "velocity": torch.zeros_like(place)}
+
+    def error(self, now: Moment, p: Values) -> tuple[Tensor, Tensor]:
+        """How far the pinion has given way."""
+        return now.extra[PLACE], now.extra[RATE]
+
+    def state_rates(self, now: Moment, p: Values) -> dict[str, Tensor]:
+        """Pressed by the mesh force and the forces on the bearing."""
+        force = now.mesh_force + now.bearing_force - p["stiffness"] * now.extra[PLACE] - p["damping"] * now.extra[RATE]
+        return {"displacement": now.extra[RATE], "velocity": force / p["mass"]}

@@ -1,0 +1,26 @@
+"""Stiffness of a curved contact."""
+
+from typing import ClassVar
+
+from torch import Tensor
+
+from gear_damping.physics.moment import Moment
+from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.shapes import power_of_size
+from gear_damping.physics.terms import StiffnessFactor, Values
+
+
+class HertzStiffness(StiffnessFactor):
+    """The contact stiffens as it is pressed: 1/2 for a ball, about 1/10 for tooth flanks."""
+
+    name = "hertz_stiffness"
+    equation = "N = k delta (|delta| / delta_0)^p"
+    reference = "Yang & Sun (1985), J. Mech. Transm. Autom. Des. 107(4)"
+    parameters: ClassVar = (
+        Parameter("exponent", "1", 0.1, "p", 0, 2),
+        Parameter("reference_deflection", "m", 1.66e-5, "delta_0, at which the stiffness is k", 1e-9, 1e9),
+    )
+
+    def factor(self, now: Moment, p: Values) -> Tensor:
+        """(|delta| / delta_0)^p."""
+        return power_of_size(now.deflection / p["reference_deflection"], p["exponent"])

@@ -1,0 +1,29 @@
+"""Damping that grows with the deflection."""
+
+from typing import ClassVar
+
+from torch import Tensor
+
+from gear_damping.physics.moment import Moment
+from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.shapes import power_of_size
+from gear_damping.physics.terms import DampingForce, Values
+
+
+class HuntCrossleyDamping(DampingForce):
+    """A viscous force that vanishes where the flanks just touch."""
+
+    name = "hunt_crossley_damping"
+    equation = "F_d = c (|delta| / delta_0)^p delta'"
+    reference = "Hunt & Crossley (1975), J. Appl. Mech. 42(2)"
+    parameters: ClassVar = (
+        Parameter("damping_coefficient", "N*s/m", 64.5, "c, at the reference deflection", 0, 1e12),
+        Parameter("exponent", "1", 1.0, "p", 0, 5),
+        Parameter("reference_deflection", "m", 1.66e-5, "delta_0, a fixed length", 1e-9, 1e9),
+    )
+    dissipative = True
+
+    def damping_force(self, now: Moment, p: Values) -> Tensor:
+        """The force at this instant."""
+        share = power_of_size(now.deflection / p["reference_deflection"], p["exponent"])
+        return p["damping_coefficient"] * share * now.delta_rate

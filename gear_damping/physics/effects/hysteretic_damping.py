@@ -1,0 +1,49 @@
+"""Hysteresis of the mesh."""
+
+from typing import ClassVar
+
+import torch
+from torch import Tensor
+
+from gear_damping.physics.moment import Moment
+from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.shapes import power_of_size
+from gear_damping.physics.terms import DampingForce, ExtraStates, Values
+
+
+class HystereticDamping(ExtraStates, DampingForce):
+    """An elastic force that yields: its loss per cycle does not depend on the rate.
+
+    It stores energy, beta k z^2 / 2, and gives back less than it took. Out of contact the
+    hysteretic deflection relaxes within 1/omega_n, so that every contact starts anew.
+    """
+
+    name = "hysteretic_damping"
+    equation = "F_d = beta k z, z' = delta' - |z / z_y|^n (delta' + |delta'| sign z) / 2"
+    reference = "Wen (1976), J. Eng. Mech. Div. ASCE 102(2)"
+    parameters: ClassVar = (
+        Parameter("share", "1", 0.02, "beta, share of the mean stiffness", 0, 10),
+        Parameter("yield_deflection", "m", 2e-6, "z_y, largest hysteretic deflection", 1e-12, 1e9),
+        Parameter("exponent", "1", 1.0, "n, sharpness of the yielding", 0.5, 10),
+    )
+    states: ClassVar = {"deflection": "m"}
+    dissipative = True
+
+    def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
+        """The stiffness that yields, and a rate at which yielding is stable, if not resolved."""
+        return {
+            "stiffness": values["share"] * base["mean_stiffness"],
+            "yield_deflection": values["yield_deflection"],
+            "exponent": values["exponent"],
+            "fastest_rate": values["exponent"] / values["yield_deflection"] / 3,
+        }
+
+    def damping_force(self, now: Moment, p: Values) -> Tensor:
+        """The force at this instant."""
+        return p["stiffness"] * now.extra["hysteretic_damping.deflection"]
+
+    def state_rates(self, now: Moment, p: Values) -> dict[str, Tensor]:
+        """Yielding in contact, relaxation out of it."""
+        z, rate = now.extra["hysteretic_damping.deflection"], now.delta_rate
+        yielding = power_of_size(z / p["yield_deflection"], p["exponent"]) * (rate + rate.abs() * torch.sign(z)) / 2
+        return {"deflection": now.contact * (rate - yielding) - (1 - now.contact) * z}

@@ -1,0 +1,56 @@
+"""Errors of the single tooth pitches."""
+
+from math import pi
+from typing import ClassVar
+
+import torch
+from torch import Tensor
+
+from gear_damping.errors import InputError, Problem
+from gear_damping.physics.moment import Moment
+from gear_damping.physics.parameter import Option, Parameter
+from gear_damping.physics.shaft_order import harmonics
+from gear_damping.physics.terms import TransmissionErrorSource, Values
+
+TYPICAL = (2, -1, 3, -4, 1, 5, -3, 0, 2, -2, 4, -5, 1, 3, -1, -3, 2, 0, -4, 2)  # um
+
+
+class PitchError(TransmissionErrorSource):
+    """One deviation a tooth, repeated every turn: shaft orders from 2 to half the number of teeth.
+
+    The mean is no error of the pitch and the first order is eccentricity: both are removed.
+    """
+
+    name = "pitch_error"
+    equation = "e(theta), the trigonometric interpolation of e_j at theta + phi = 2 pi j / z, orders 2 … z/2"
+    reference = "Velex & Maatar (1996), J. Sound Vib. 191(5)"
+    parameters: ClassVar = (
+        Parameter("values", "m", tuple(1e-6 * v for v in TYPICAL), "e_j, one value a tooth", -1e-3, 1e-3, vector=True),
+        Parameter("phase", "rad", 0.0, "phi"),
+    )
+    options: ClassVar = (Option("shaft", ("pinion", "gear"), "pinion", "which of the two gears"),)
+    systems: ClassVar = ("gear_pair",)
+
+    def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
+        """Cosine and sine parts by shaft order."""
+        teeth, count = values["values"], values["values"].shape[0]
+        self._check_count(count, base[f"n_teeth_{self.chosen['shaft']}"])
+        order = torch.arange(1, count // 2 + 1, dtype=teeth.dtype, device=teeth.device)
+        angle = order.unsqueeze(1) * torch.arange(count, dtype=teeth.dtype, device=teeth.device) * (2 * pi / count)
+        weight = torch.full_like(order, 2 / count)
+        weight[0] = 0  # eccentricity
+        if count % 2 == 0:
+            weight[-1] = 1 / count
+        even, odd = (weight.unsqueeze(1) * wave @ teeth for wave in (torch.cos(angle), torch.sin(angle)))
+        turned = order.unsqueeze(1) * values["phase"]
+        cosine, sine = torch.cos(turned), torch.sin(turned)
+        return {"in_phase": even * cosine + odd * sine, "quadrature": odd * cosine - even * sine}
+
+    def error(self, now: Moment, p: Values) -> tuple[Tensor, Tensor]:
+        """The error and its rate."""
+        return harmonics(getattr(now, self.chosen["shaft"]), p["in_phase"], p["quadrature"])
+
+    def _check_count(self, count: int, teeth: Tensor) -> None:
+        if not bool((teeth == count).all()):
+            rule = f"has {count} values, the {self.chosen['shaft']} has {teeth.max().item():g} teeth"
+            raise InputError(Problem("simulator.pitch_error.values", rule, remedy="give one value for each tooth"))

@@ -1,0 +1,23 @@
+"""Restoring force with a quadratic part."""
+
+from typing import ClassVar
+
+from torch import Tensor
+
+from gear_damping.physics.moment import Moment
+from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.terms import ElasticForce, Values
+
+
+class QuadraticStiffness(ElasticForce):
+    """A force that makes one side stiffer than the other."""
+
+    name = "quadratic_stiffness"
+    equation = "N + k2 delta^2"
+    reference = "Nayfeh & Mook (1979), Nonlinear Oscillations, Wiley"
+    parameters: ClassVar = (Parameter("coefficient", "N/m^2", 0.1, "k2", -1e24, 1e24),)
+    systems: ClassVar = ("oscillator",)
+
+    def elastic_force(self, now: Moment, p: Values) -> Tensor:
+        """The force at this instant."""
+        return p["coefficient"] * now.deflection * now.deflection

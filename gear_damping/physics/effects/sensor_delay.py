@@ -1,0 +1,30 @@
+"""Delay of the sensor."""
+
+from math import pi
+from typing import ClassVar
+
+import torch
+from torch import Tensor
+
+from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.record_filter import filtered
+from gear_damping.physics.terms import Recording, Sensor, Values
+
+
+class SensorDelay(Sensor):
+    """The record lags behind its time stamps, by any fraction of a sample."""
+
+    name = "sensor_delay"
+    equation = "y(t - tau)"
+    reference = "Laakso et al. (1996), IEEE Signal Process. Mag. 13(1)"
+    parameters: ClassVar = (Parameter("delay", "s", 2e-5, "tau", -1e3, 1e3),)
+    position = 50
+
+    def measure(self, signal: Tensor, values: Values, recording: Recording) -> Tensor:
+        """The record, band-limited interpolated at earlier instants."""
+
+        def response(frequency: Tensor) -> Tensor:
+            angle = -2 * pi * frequency * values["delay"].unsqueeze(1)
+            return torch.complex(torch.cos(angle), torch.sin(angle))
+
+        return filtered(signal, recording.sampling_rate, response)

@@ -1,0 +1,24 @@
+"""Drift of the sensor."""
+
+from typing import ClassVar
+
+import torch
+from torch import Tensor
+
+from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.terms import Recording, Sensor, Values
+
+
+class SensorDrift(Sensor):
+    """The zero of the record wanders steadily."""
+
+    name = "sensor_drift"
+    equation = "y + d t"
+    reference = "Doebelin (2003), Measurement Systems"
+    parameters: ClassVar = (Parameter("rate", "m/s", 2e-5, "d", -1e9, 1e9),)
+    position = 30
+
+    def measure(self, signal: Tensor, values: Values, recording: Recording) -> Tensor:
+        """The drifting record."""
+        time = torch.arange(signal.shape[-1], dtype=signal.dtype, device=signal.device) / recording.sampling_rate
+        return signal + values["rate"].unsqueeze(1) * time

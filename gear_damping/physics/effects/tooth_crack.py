@@ -1,0 +1,53 @@
+"""A cracked tooth."""
+
+from math import pi
+from typing import ClassVar
+
+import torch
+from torch import Tensor
+
+from gear_damping.physics.moment import Moment
+from gear_damping.physics.parameter import Option, Parameter
+from gear_damping.physics.terms import StiffnessFactor, Switch, Values
+
+IN_MESH = "tooth_crack.in_mesh"
+
+
+class ToothCrack(StiffnessFactor, Switch):
+    """The mesh is softer while one tooth is in contact, once per turn of its shaft."""
+
+    name = "tooth_crack"
+    equation = "k (1 - d) while 0 < theta + phi < 2 pi eps / z"
+    reference = "Chaari, Fakhfakh & Haddar (2009), Eur. J. Mech. A/Solids 28(3)"
+    parameters: ClassVar = (
+        Parameter("depth", "1", 0.1, "d, share of the stiffness that is lost", 0, 0.9),
+        Parameter("phase", "rad", 0.0, "phi; the tooth enters at theta = -phi"),
+        Parameter("edge", "rad", 0.02, "shaft angle over which a smooth edge goes from 12 to 88 %", 1e-6, 1),
+    )
+    options: ClassVar = (
+        Option("shaft", ("pinion", "gear"), "pinion", "whose tooth"),
+        Option("edges", ("smooth", "switched"), "smooth", "a tanh at either edge, or a jump"),
+    )
+    systems: ClassVar = ("gear_pair",)
+
+    def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
+        """The centre of the contact and the cosine of half its width."""
+        half = pi * base["contact_ratio"] / base[f"n_teeth_{self.chosen['shaft']}"]
+        centre = half - values["phase"]
+        found = {"depth": values["depth"], "centre_cos": torch.cos(centre), "centre_sin": torch.sin(centre)}
+        return found | {"limit": torch.cos(half), "steepness": 2 / (values["edge"] * torch.sin(half))}
+
+    def _inside(self, now: Moment, p: Values) -> Tensor:
+        """Positive while the tooth is in contact."""
+        turn = getattr(now, self.chosen["shaft"])
+        return turn.cos * p["centre_cos"] + turn.sin * p["centre_sin"] - p["limit"]
+
+    def switches(self, now: Moment, p: Values) -> dict[str, Tensor]:
+        """One function where the edges are jumps."""
+        return {IN_MESH: self._inside(now, p)} if self.chosen["edges"] == "switched" else {}
+
+    def factor(self, now: Moment, p: Values) -> Tensor:
+        """1 - d in contact, 1 elsewhere."""
+        if self.chosen["edges"] == "switched":
+            return 1 - p["depth"] * now.locked[IN_MESH]
+        return 1 - p["depth"] * (1 + torch.tanh(p["steepness"] * self._inside(now, p))) / 2

@@ -1,0 +1,34 @@
+"""Unbalance of the pinion."""
+
+from typing import ClassVar
+
+import torch
+from torch import Tensor
+
+from gear_damping.physics.moment import Moment
+from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.terms import BearingForce, Values
+
+
+class Unbalance(BearingForce):
+    """The centre of mass runs beside the shaft: a force on the bearing that grows with the speed squared."""
+
+    name = "unbalance"
+    equation = "m_b y'' + … = N + F_d + U omega_1^2 cos(theta_1 + phi)"
+    reference = "ISO 21940-11:2016, balance quality of rotors"
+    parameters: ClassVar = (
+        Parameter("unbalance", "kg*m", 2e-5, "U; quality G6.3 allows 1.3e-5 per kg at 4600 rpm", 0, 1),
+        Parameter("phase", "rad", 0.0, "phi"),
+    )
+    systems: ClassVar = ("gear_pair",)
+    requires: ClassVar = ("bearing_flexibility",)
+
+    def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
+        """Cosine and sine parts."""
+        size, phase = values["unbalance"], values["phase"]
+        return {"in_phase": size * torch.cos(phase), "quadrature": -size * torch.sin(phase)}
+
+    def bearing_force(self, now: Moment, p: Values) -> Tensor:
+        """The part along the line of action of the turning force."""
+        part = p["in_phase"] * now.pinion.cos + p["quadrature"] * now.pinion.sin
+        return part * now.pinion.speed * now.pinion.speed
