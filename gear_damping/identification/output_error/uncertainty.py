@@ -53,4 +53,5 @@ def interval(function: Callable[[Tensor], Tensor], shared: Tensor, spread: Tenso
         value = function(point)
         (slope,) = torch.autograd.grad(value, point)
     half = QUANTILE * float((slope @ spread @ slope).clamp(min=0).sqrt())
-    return float(value.detach()), (float(value) - half, float(value) + half)
+    middle = float(value.detach())
+    return middle, (middle - half, middle + half)
