@@ -2,31 +2,37 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
 
 import torch
 from torch import Tensor
 
 
-@dataclass(frozen=True)
+@dataclass
 class Rotation:
     """A shaft, or the mesh, at one instant: angle (rad) and angular speed; shape (batch,).
 
-    The cosine and sine are taken once, and only where a term asks for them.
+    The cosine and sine are taken once, and only where a term asks for them. (Not by `cached_property`:
+    before Python 3.12 it takes a lock, which torch.compile cannot trace.)
     """
 
     angle: Tensor
     speed: Tensor
+    _cos: Tensor | None = field(default=None, init=False, repr=False)
+    _sin: Tensor | None = field(default=None, init=False, repr=False)
 
-    @cached_property
+    @property
     def cos(self) -> Tensor:
         """Cosine of the angle."""
-        return torch.cos(self.angle)
+        if self._cos is None:
+            self._cos = torch.cos(self.angle)
+        return self._cos
 
-    @cached_property
+    @property
     def sin(self) -> Tensor:
         """Sine of the angle."""
-        return torch.sin(self.angle)
+        if self._sin is None:
+            self._sin = torch.sin(self.angle)
+        return self._sin
 
 
 @dataclass

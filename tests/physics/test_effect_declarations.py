@@ -1,0 +1,64 @@
+"""Every effect's declaration is complete and consistent: it feeds configuration, docs and causes."""
+
+import re
+
+import pytest
+from effect_bench import EFFECTS
+
+from gear_damping.physics.catalogue import SYSTEMS
+from gear_damping.units import parse_unit
+
+CATALOGUE = """
+viscous_damping power_law_damping coulomb_friction asymmetric_friction tooth_friction squeeze_film_damping
+hunt_crossley_damping hysteretic_damping backlash cubic_stiffness hertz_stiffness encoder_error pinion_eccentricity
+gear_eccentricity pinion_stiffness_modulation gear_stiffness_modulation profile_error pitch_error tooth_crack
+torque_ripple torque_variation bearing_flexibility shaft_torsion load_dependent_contact inertia_error unbalance
+windage_drag shaft_angle_error load_noise sensor_noise sensor_gain sensor_offset sensor_drift sensor_delay
+sensor_lowpass sensor_saturation sensor_quantisation fourier_mesh_stiffness rectangular_mesh_stiffness
+quadratic_stiffness offset_force sine_restoring
+"""
+
+
+def test_the_catalogue_holds_every_canonical_name():
+    assert sorted(EFFECTS) == sorted(CATALOGUE.split())
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_name_is_the_file_name_and_the_class_name_in_snake_case(name):
+    cls = EFFECTS[name]
+    assert cls.__module__.rsplit(".", 1)[1] == name
+    assert re.sub(r"(?<=[a-z])(?=[A-Z])", "_", cls.__name__).lower() == name
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_it_says_what_it_is(name):
+    cls = EFFECTS[name]
+    assert len(cls.equation) > 2
+    assert re.search(r"\(\d{4}\)|:\d{4}|\d{4}", cls.reference), "a reference has a year"
+    assert cls.__doc__
+    assert cls.__doc__.strip().endswith(".")
+    assert set(cls.systems) <= set(SYSTEMS)
+    assert cls.systems
+    assert set(cls.requires) <= set(EFFECTS)
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_parameters_have_units_bounds_and_defaults_within(name):
+    parameters = EFFECTS[name].parameters
+    assert len({p.name for p in parameters}) == len(parameters)
+    for p in parameters:
+        parse_unit(p.unit)
+        assert p.meaning
+        assert p.lower < p.upper
+        values = p.default if p.vector else (p.default,)
+        assert values
+        assert all(p.problem(v, p.name) is None for v in values)
+        assert p.source in ("paper", "assumed")
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_options_have_their_default_among_the_choices(name):
+    for option in EFFECTS[name].options:
+        assert option.problem(option.default, option.name) is None
+        assert option.meaning
+        assert option.name not in {p.name for p in EFFECTS[name].parameters}
