@@ -17,8 +17,7 @@ class EncoderError(Sensor):
 
     name = "encoder_error"
     equation = (
-        "x + r_b1 (A1 cos(theta_1 + phi1) + B1 cos(n theta_1)) "
-        "- r_b2 (A2 cos(theta_2 + phi2) + B2 cos(n theta_2))"
+        "x + r_b1 (A1 cos(theta_1 + phi1) + B1 cos(n theta_1)) - r_b2 (A2 cos(theta_2 + phi2) + B2 cos(n theta_2))"
     )
     reference = "Rémond (1998), Meas. Sci. Technol. 9(3)"
     parameters: ClassVar = (

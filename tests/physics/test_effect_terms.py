@@ -1,0 +1,286 @@
+"""Every term equals an independent form of it, written in numpy and SI."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import torch
+from effect_bench import EFFECTS, Bench
+from gear_case import GearCase, Ripple
+from gear_terms import sampled
+
+from gear_damping.physics.terms import DampingForce, ExtraStates
+
+TURNED = {"mesh_phase": 0.7, "pinion_angle": 0.3, "gear_phase": 1.1, "pinion_torque": 90.0}
+CASE = GearCase(mesh_phase=0.7, pinion_angle_0=0.3, gear_angle_0=1.1, torque=90.0)
+
+
+def close(found: torch.Tensor, wanted: np.ndarray, share: float = 1e-11) -> None:
+    wanted = np.asarray(wanted)
+    assert np.abs(found.numpy() - wanted).max() <= share * np.abs(wanted).max()
+
+
+@pytest.mark.parametrize(
+    ("options", "given", "case"),
+    [
+        ({}, {}, {}),
+        ({"n_harmonics": 1}, {}, {"n_harmonics": 1}),
+        ({"weighting": "lanczos", "n_harmonics": 12}, {}, {"weighting": "lanczos", "n_harmonics": 12}),
+        ({"n_harmonics": 13}, {"contact_ratio": 1.37}, {"n_harmonics": 13, "contact_ratio": 1.37}),
+        ({"n_harmonics": 32}, {"maximum": 5e8, "minimum": 1e8}, {"n_harmonics": 32, "k_max": 5e8, "k_min": 1e8}),
+    ],
+)
+def test_fourier_mesh_stiffness(options, given, case):
+    own = {f"fourier_mesh_stiffness.{k}": v for k, v in given.items()}
+    bench = Bench("fourier_mesh_stiffness", options, TURNED | own)
+    found = bench.evaluated().stiffness * bench.unit("N/m")
+    close(found, sampled(replace(CASE, **case), "stiffness", bench.times().numpy()))
+
+
+def test_rectangular_mesh_stiffness():
+    given = TURNED | {"rectangular_mesh_stiffness.contact_ratio": 1.4}
+    bench = Bench("rectangular_mesh_stiffness", {}, given, batch=200)
+    found = bench.evaluated().stiffness * bench.unit("N/m")
+    case = replace(CASE, stiffness_form="rectangular", contact_ratio=1.4)
+    wanted = sampled(case, "stiffness", bench.times().numpy())
+    close(found, wanted)
+    assert set(np.round(wanted)) == {2e8, 4e8}
+
+
+@pytest.mark.parametrize("name", ["fourier_mesh_stiffness", "rectangular_mesh_stiffness"])
+def test_the_mean_of_the_mesh_stiffness_is_its_time_mean(name):
+    bench = Bench(name, batch=5000)
+    period = CASE.mesh_period
+    now = bench.evaluated(time=(torch.arange(5000, dtype=torch.float64) + 0.5) / 5000 * period)
+    found = (now.stiffness * bench.unit("N/m")).mean()
+    assert found.item() == pytest.approx(bench.prepared.derived["mean_stiffness"][0].item(), rel=1e-9)
+
+
+@pytest.mark.parametrize("shaft", ["pinion", "gear"])
+def test_stiffness_modulation(shaft):
+    name = f"{shaft}_stiffness_modulation"
+    bench = Bench(name, {}, TURNED | {f"{name}.amplitude": 0.03, f"{name}.phase": 0.4})
+    case = replace(CASE, **{name: (0.03, 0.4)})
+    close(bench.evaluated().stiffness * bench.unit("N/m"), sampled(case, "stiffness", bench.times().numpy()))
+
+
+def errors(bench: Bench) -> tuple[torch.Tensor, torch.Tensor]:
+    now = bench.evaluated()
+    e, rate = bench.equation.imposed_error(now, bench.prepared.terms)
+    return e * bench.unit("m"), rate * bench.unit("m/s")
+
+
+@pytest.mark.parametrize("shaft", ["pinion", "gear"])
+def test_eccentricity(shaft):
+    name = f"{shaft}_eccentricity"
+    bench = Bench(name, {}, TURNED | {f"{name}.amplitude": 3e-5, f"{name}.phase": 0.4})
+    case = replace(CASE, **{name: (3e-5, 0.4)})
+    close(errors(bench)[0], sampled(case, "error", bench.times().numpy()))
+
+
+def test_profile_error():
+    given = {"profile_error.amplitudes": [3e-6, 2e-6, 1e-6], "profile_error.phases": [0.1, -0.4, 2.0]}
+    bench = Bench("profile_error", {}, TURNED | given)
+    case = replace(CASE, profile_error=((1, 3e-6, 0.1), (2, 2e-6, -0.4), (3, 1e-6, 2.0)))
+    close(errors(bench)[0], sampled(case, "error", bench.times().numpy()))
+
+
+@pytest.mark.parametrize("name", ["pinion_eccentricity", "gear_eccentricity", "profile_error", "pitch_error"])
+def test_the_rate_of_an_error_is_its_derivative_in_time(name):
+    given = {f"{name}.phase": 0.4} if name != "profile_error" else {}
+    bench, width = Bench(name, {}, TURNED | given), 1e-7
+    rate = errors(bench)[1]
+    ends = []
+    for shift in (-width, width):
+        now = bench.moment(bench.times() + shift, bench.random())
+        ends.append(bench.equation.imposed_error(now, bench.prepared.terms)[0] * bench.unit("m"))
+    close(rate, (ends[1] - ends[0]).numpy() / (2 * width), 1e-6)
+
+
+@pytest.mark.parametrize(("shaft", "teeth"), [("pinion", 20), ("pinion", 21), ("gear", 40)])
+def test_pitch_error_goes_through_its_values_without_mean_and_first_order(shaft, teeth):
+    source = np.random.default_rng(1)
+    values = 1e-6 * source.standard_normal(teeth)
+    angle = 2 * np.pi * np.arange(teeth) / teeth
+    first = 2 / teeth * (values @ np.cos(angle) * np.cos(angle) + values @ np.sin(angle) * np.sin(angle))
+    given = {"pitch_error.values": values.tolist(), f"n_teeth_{shaft}": teeth, "pitch_error.phase": 0.5}
+    bench = Bench("pitch_error", {"shaft": shaft}, given, batch=teeth)
+    speed = 4600 * math.pi / 30 * (1.0 if shaft == "pinion" else 0.5)
+    now = bench.evaluated(time=torch.as_tensor((angle + 2 * np.pi - 0.5) / speed))
+    found = bench.equation.imposed_error(now, bench.prepared.terms)[0] * bench.unit("m")
+    close(found, values - values.mean() - first)
+
+
+def load(bench: Bench) -> torch.Tensor:
+    return bench.evaluated().load * bench.unit("N")
+
+
+@pytest.mark.parametrize("held", [False, True])
+@pytest.mark.parametrize("form", ["steps", "ramp", "sine"])
+def test_torque_variation(form, held):
+    given = {
+        "torque_variation.step_times": [0.004, 0.012],
+        "torque_variation.step_changes": [30.0, -50.0],
+        "torque_variation.ramp_start": 0.004,
+        "torque_variation.ramp_end": 0.02,
+        "torque_variation.ramp_change": 40.0,
+        "torque_variation.sine_phase": 0.3,
+        "gear_torque": 170.0,
+    }
+    system = {"gear_torque_mode": "held"} if held else {}
+    bench = Bench("torque_variation", {"form": form}, TURNED | given, system_options=system)
+    shapes = {
+        "steps": {"torque_steps": ((0.004, 30.0), (0.012, -50.0))},
+        "ramp": {"torque_ramp": (0.004, 0.02, 40.0)},
+        "sine": {"torque_sine": (15.0, 40.0, 0.3)},
+    }
+    case = replace(CASE, gear_torque=170.0 if held else None, **shapes[form])
+    close(load(bench), sampled(case, "load", bench.times().numpy()))
+
+
+def test_a_ramp_without_length_is_a_step():
+    given = {"torque_variation.ramp_start": 0.01, "torque_variation.ramp_end": 0.01}
+    bench = Bench("torque_variation", {"form": "ramp"}, given)
+    radius = GearCase().base_radii[0]
+    close(load(bench), np.where(bench.times().numpy() > 0.01, 180.0, 150.0) / radius)
+
+
+def test_torque_ripple():
+    given = {"torque_ripple.amplitude": 4.0, "torque_ripple.order": 3.0, "torque_ripple.phase": 0.2}
+    bench = Bench("torque_ripple", {}, TURNED | given)
+    wave = Ripple(4.0 / CASE.base_radii[0], 3.0, 0.2)
+    close(load(bench), sampled(replace(CASE, ripple=(wave,)), "load", bench.times().numpy()))
+
+
+def test_a_proportional_ripple_scales_the_varying_torque_but_not_the_drawn_load():
+    given = {"torque_ripple.share": 0.1, "torque_ripple.order": 2.0, "torque_ripple.phase": 0.2}
+    bench = Bench("torque_ripple", {"proportional": True}, TURNED | given, others=("torque_variation",))
+    drawn = torch.linspace(-1, 1, bench.batch, dtype=torch.float64) * 100
+    now = bench.moment(bench.times(), bench.random(), {"held_load": drawn / bench.unit("N")})
+    bench.equation.rates(now, bench.prepared.base, bench.prepared.terms)
+    steps = ((0.0125, 30.0), (0.025, -45.0), (0.0375, 30.0))
+    case = replace(CASE, torque_steps=steps, ripple=(Ripple(0.1, 2.0, 0.2, proportional=True),))
+    close(now.load * bench.unit("N"), sampled(case, "load", bench.times().numpy()) + drawn.numpy())
+
+
+def test_windage_drag_takes_from_the_torque_and_turns_with_the_rotation():
+    for sign in (1.0, -1.0):
+        bench = Bench("windage_drag", {}, {"windage_drag.coefficient": 5e-6, "pinion_speed": sign * 480.0})
+        wanted = (150.0 - sign * 5e-6 * 480.0**2) / GearCase().base_radii[0]
+        close(load(bench), np.full(bench.batch, wanted))
+
+
+def test_offset_force():
+    bench = Bench("offset_force", {}, {"offset_force.force": -0.3})
+    close(bench.evaluated().load * bench.unit("N"), np.full(bench.batch, -0.3))
+
+
+DAMPING = {
+    "viscous_damping": lambda p, d, v, s: p["damping_coefficient"] * v,
+    "power_law_damping": lambda p, d, v, s: p["coefficient"] * np.sign(v) * np.abs(v) ** p["exponent"],
+    "coulomb_friction": lambda p, d, v, s: p["force"] * np.tanh(v / (p["width"] * s)),
+    "hunt_crossley_damping": lambda p, d, v, s: (
+        p["damping_coefficient"] * (np.abs(d) / p["reference_deflection"]) ** p["exponent"] * v
+    ),
+}
+
+
+@pytest.mark.parametrize("name", DAMPING)
+def test_damping_forces(name):
+    bench = Bench(name, {}, {} if name != "power_law_damping" else {"power_law_damping.exponent": 1.7})
+    now = bench.evaluated()
+    p = {k: v.numpy() for k, v in bench.own.items()}
+    found = bench.effect.damping_force(now, bench.p) * bench.unit("N")
+    deflection, rate = (now.deflection * bench.unit("m")).numpy(), (now.delta_rate * bench.unit("m/s")).numpy()
+    scale = CASE.natural_frequency * replace(CASE, torque=150.0).static_deflection
+    close(found, DAMPING[name](p, deflection, rate, scale))
+
+
+def test_asymmetric_friction_has_its_own_values_in_each_direction():
+    given = {"asymmetric_friction.damping_forward": 40.0, "asymmetric_friction.damping_backward": 90.0}
+    given |= {"asymmetric_friction.width": 0.02}
+    bench = Bench("asymmetric_friction", {}, given)
+    fast = torch.linspace(0.3, 1.0, bench.batch, dtype=torch.float64)
+    for v, force, damping in ((fast, 20.0, 40.0), (-fast, -10.0, 90.0)):
+        now = bench.moment(bench.times(), (torch.full_like(v, 1e-5), v))
+        bench.equation.rates(now, bench.prepared.base, bench.prepared.terms)
+        close(bench.effect.damping_force(now, bench.p) * bench.unit("N"), force + damping * v.numpy())
+
+
+def test_squeeze_film_damping_acts_across_the_gap():
+    given = {"backlash.gap": 1e-4, "squeeze_film_damping.film_thickness": 8e-6}
+    bench = Bench("squeeze_film_damping", {}, given)
+    now = bench.evaluated()
+    x, v = (s.numpy() for s in bench.random())
+    drive, coast = np.maximum(-x, 0), np.maximum(x + 1e-4, 0)
+    assert (drive > 0).any()
+    assert (coast == 0).any()
+    assert (drive == 0).any()
+    h = 8e-6
+    force = 64.5 * v * ((h / (h + drive)) ** 3 + (h / (h + coast)) ** 3)
+    close(bench.effect.damping_force(now, bench.p) * bench.unit("N"), force)
+    close((now.mesh_force - now.normal_force) * bench.unit("N"), force, 1e-9)
+
+
+ELASTIC = {
+    "cubic_stiffness": lambda p, d: p["coefficient"] * d**3,
+    "quadratic_stiffness": lambda p, d: p["coefficient"] * d**2,
+    "sine_restoring": lambda p, d: p["stiffness"] * p["length"] * np.sin(d / p["length"]),
+}
+
+
+@pytest.mark.parametrize("name", ELASTIC)
+def test_elastic_forces(name):
+    given = {"sine_restoring.length": 0.7, "amplitude": 2.0} if name == "sine_restoring" else {}
+    bench = Bench(name, {}, given)
+    now = bench.evaluated()
+    wanted = ELASTIC[name]({k: v.numpy() for k, v in bench.own.items()}, (now.deflection * bench.unit("m")).numpy())
+    close(bench.effect.elastic_force(now, bench.p) * bench.unit("N"), wanted)
+
+
+def test_hertz_stiffness():
+    bench = Bench("hertz_stiffness", {}, {"hertz_stiffness.exponent": 0.5})
+    now = bench.evaluated()
+    d = (now.deflection * bench.unit("m")).numpy()
+    force = sampled(GearCase(), "stiffness", bench.times().numpy()) * d * (np.abs(d) / 1.66e-5) ** 0.5
+    close(now.normal_force * bench.unit("N"), force)
+
+
+@pytest.mark.parametrize("shaft", ["pinion", "gear"])
+@pytest.mark.parametrize("edges", ["switched", "smooth"])
+def test_tooth_crack_softens_the_mesh_while_the_tooth_is_in_contact(shaft, edges):
+    given = {"tooth_crack.depth": 0.2, "tooth_crack.phase": 0.4, "tooth_crack.edge": 1e-6, "pinion_angle": 0.3}
+    bench = Bench("tooth_crack", {"shaft": shaft, "edges": edges}, given, batch=400)
+    speed, teeth = 4600 * math.pi / 30, 20
+    angle = 0.3 + speed * bench.times().numpy()
+    angle, teeth = (angle, teeth) if shaft == "pinion" else (angle / 2, 40)
+    inside = np.mod(angle + 0.4, 2 * np.pi) < 2 * np.pi * 1.6 / teeth
+    assert 0.02 < inside.mean() < 0.15
+    close(bench.effect.factor(bench.evaluated(), bench.p), 1 - 0.2 * inside)
+
+
+def test_backlash_has_two_flanks_and_damps_in_contact_only():
+    bench = Bench("backlash", {}, {"backlash.gap": 8e-5}, others=("viscous_damping",))
+    now = bench.evaluated()
+    x, v = (s.numpy() for s in bench.random())
+    deflection = np.where(x > 0, x, np.where(x < -8e-5, x + 8e-5, 0.0))
+    assert {-1.0, 0.0, 1.0} == set(np.sign(deflection))
+    force = sampled(GearCase(), "stiffness", bench.times().numpy()) * deflection
+    close(now.mesh_force * bench.unit("N"), force + 64.5 * v * (deflection != 0))
+    drive, coast = (h * bench.unit("m") for h in now.clearances)
+    close(drive, np.maximum(-x, 0))
+    close(coast, np.maximum(x + 8e-5, 0))
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize(
+    "name",
+    [n for n, c in EFFECTS.items() if c.dissipative and issubclass(c, DampingForce) and not issubclass(c, ExtraStates)],
+)
+def test_a_dissipative_force_never_drives_the_motion(name, seed):
+    bench = Bench(name)
+    now = bench.evaluated(seed)
+    power = bench.effect.damping_force(now, bench.p) * now.delta_rate
+    assert (power >= 0).all()
+    assert (power > 0).any()
