@@ -1,5 +1,6 @@
 """Small shapes that several effects share: powers without infinite slopes, checks of lists."""
 
+import torch
 from torch import Tensor
 
 from gear_damping.errors import InputError, Problem
@@ -11,6 +12,15 @@ SMALLEST = 1e-100  # natural size below which a power counts as zero, so that it
 def power_of_size(value: Tensor, exponent: Tensor) -> Tensor:
     """|value|^exponent with a finite slope everywhere, also at 0."""
     return value.abs().clamp(min=SMALLEST) ** exponent
+
+
+def sign_change_rate(force: Tensor, width: Tensor, mass: Tensor) -> Tensor:
+    """The rate that a step must resolve where a friction force of this size turns within a velocity width.
+
+    Natural units. The slope alone would allow steps that jump over the turn; the share of the width that
+    a step may cover was measured by step halving.
+    """
+    return torch.maximum(force / (width * mass), 0.12 / width)
 
 
 def same_length(effect: str, values: Values, first: str, second: str) -> None:

@@ -19,6 +19,7 @@ from gear_damping.simulation.layout import Layout
 from gear_damping.simulation.series import Series
 
 WATCHED = (1 / 3, 2 / 3)  # positions inside a step at which a branch that was left is noticed
+SAME_INSTANT = 1e-5  # of the change over 1e-4 of a step: crossings nearer than that are one
 ROOT_STEPS = 6  # of the bracketed search on the interpolant; one Newton step on the true state follows
 
 
@@ -128,11 +129,13 @@ class Kernel:
         here = self._signed(position, state, members, locked)
         there = self._signed(position + reach, state + reach * slope, members, locked)
         smallest = here.argmin(0, keepdim=True)
-        value, change = here.gather(0, smallest)[0], (there - here).gather(0, smallest)[0]
+        changes = there - here
+        value, change = here.gather(0, smallest)[0], changes.gather(0, smallest)[0]
         shift = torch.where(change.abs() > 0, -value / torch.where(change == 0, 1.0, change) * reach, 0.0)
         shift = torch.minimum(torch.maximum(shift, -1e-2 * part * length), 1e-2 * (1 - part) * length)
-        flipped = torch.zeros_like(locked).scatter(0, smallest, 1.0)
-        return state + shift * slope, position + shift, (locked - flipped).abs()
+        # Several switches may turn at one instant; one that comes back from rounding does not turn.
+        turning = (changes < 0) & ((here <= value) | (here < SAME_INSTANT * changes.abs()))
+        return state + shift * slope, position + shift, (locked - turning.to(locked)).abs()
 
     def _root(self, ends: tuple, start: Tensor, length: Tensor, members: Members, locked: Tensor) -> Tensor:
         """Share of the step at which the margin on the interpolant first falls to zero (Illinois)."""

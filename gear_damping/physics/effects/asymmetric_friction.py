@@ -7,6 +7,7 @@ from torch import Tensor
 
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.shapes import sign_change_rate
 from gear_damping.physics.terms import DampingForce, Values
 
 
@@ -21,7 +22,7 @@ class AsymmetricFriction(DampingForce):
         Parameter("force_backward", "N", 10.0, "dry friction where it falls", 0, 1e6),
         Parameter("damping_forward", "N*s/m", 0.0, "viscous coefficient where the deflection grows", 0, 1e12),
         Parameter("damping_backward", "N*s/m", 0.0, "viscous coefficient where it falls", 0, 1e12),
-        Parameter("width", "1", 0.02, "w, width of the sign change relative to the reference velocity", 1e-6, 10),
+        Parameter("width", "1", 0.05, "w, width of the sign change relative to the reference velocity", 1e-6, 10),
     )
     dissipative = True
 
@@ -32,7 +33,7 @@ class AsymmetricFriction(DampingForce):
             forward, backward = values[f"{kind}_forward"], values[f"{kind}_backward"]
             found |= {f"{kind}_mean": (forward + backward) / 2, f"{kind}_half": (forward - backward) / 2}
         largest = torch.maximum(values["force_forward"], values["force_backward"])
-        return found | {"fastest_rate": largest * found["steepness"] / base["equivalent_mass"]}
+        return found | {"fastest_rate": sign_change_rate(largest, values["width"], base["equivalent_mass"])}
 
     def damping_force(self, now: Moment, p: Values) -> Tensor:
         """The force at this instant."""

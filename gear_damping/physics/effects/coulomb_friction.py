@@ -7,6 +7,7 @@ from torch import Tensor
 
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.shapes import sign_change_rate
 from gear_damping.physics.terms import DampingForce, Values
 
 
@@ -18,7 +19,7 @@ class CoulombFriction(DampingForce):
     reference = "Threlfall (1978), Mech. Mach. Theory 13(4)"
     parameters: ClassVar = (
         Parameter("force", "N", 20.0, "F_c", 0, 1e6),
-        Parameter("width", "1", 0.02, "w, width of the sign change relative to the reference velocity", 1e-6, 10),
+        Parameter("width", "1", 0.05, "w, width of the sign change relative to the reference velocity", 1e-6, 10),
     )
     dissipative = True
 
@@ -28,7 +29,7 @@ class CoulombFriction(DampingForce):
         return {
             "force": values["force"],
             "steepness": steepness,
-            "fastest_rate": values["force"] * steepness / base["equivalent_mass"],
+            "fastest_rate": sign_change_rate(values["force"], values["width"], base["equivalent_mass"]),
         }
 
     def damping_force(self, now: Moment, p: Values) -> Tensor:

@@ -2,12 +2,15 @@
 
 from typing import ClassVar
 
+import torch
 from torch import Tensor
 
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.shapes import power_of_size
 from gear_damping.physics.terms import StiffnessFactor, Values
+
+STEPS_AT_LIGHT_CONTACT = 2.5  # times as many as the natural frequency asks for
 
 
 class HertzStiffness(StiffnessFactor):
@@ -20,6 +23,10 @@ class HertzStiffness(StiffnessFactor):
         Parameter("exponent", "1", 0.1, "p", 0, 2),
         Parameter("reference_deflection", "m", 1.66e-5, "delta_0, at which the stiffness is k", 1e-9, 1e9),
     )
+
+    def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
+        """Where contact is light the curvature of the force has no bound: smaller steps."""
+        return dict(values) | {"fastest_rate": torch.full_like(values["exponent"], STEPS_AT_LIGHT_CONTACT)}
 
     def factor(self, now: Moment, p: Values) -> Tensor:
         """(|delta| / delta_0)^p."""

@@ -26,5 +26,5 @@ class SqueezeFilmDamping(DampingForce):
 
     def damping_force(self, now: Moment, p: Values) -> Tensor:
         """The force at this instant."""
-        drive, coast = (p["film_thickness"] / (p["film_thickness"] + h) for h in now.clearances)
+        drive, coast = (p["film_thickness"] / (p["film_thickness"] + h.clamp(min=0)) for h in now.clearances)
         return p["damping_coefficient"] * now.delta_rate * (drive * drive * drive + coast * coast * coast)

@@ -18,6 +18,7 @@ static const double STAGES[6][5] = {
 static const double WEIGHTS[6] = {0.09646076681806523, 0.01, 0.4798896504144996,
                                   1.379008574103742, -3.290069515436081, 2.324710524099774};
 static const double WATCHED[2] = {1.0 / 3.0, 2.0 / 3.0};
+static const double SAME_INSTANT = 1e-5;
 static const int ROOT_STEPS = 6, MOST_SPLITS = 8;
 
 static inline void rates_at(vd u, const vd* y, const Block& b, const vd* L, vd* out) {
@@ -119,18 +120,21 @@ static inline void cross(Ends& e, vd& start, vd length, const Block& b, vd* L, v
   for (int i = 0; i < N_STATE; ++i) ahead[i] = y[i] + reach * slope[i];
   signed_switches(position, y, b, L, here);
   signed_switches(position + reach, ahead, b, L, there);
-  vd value = here[0], change = there[0] - here[0], which = vd{};
+  vd value = here[0], change = there[0] - here[0];
   for (int w = 1; w < N_SWITCH; ++w) {
     const vm less = here[w] < value;
     value = less ? here[w] : value;
     change = less ? there[w] - here[w] : change;
-    which = less ? vd{} + double(w) : which;
   }
   vd shift = change != 0.0 ? -value / (change == 0.0 ? vd{} + 1.0 : change) * reach : vd{};
   shift = v_min(v_max(shift, -1e-2 * part * length), 1e-2 * (1.0 - part) * length);
   for (int i = 0; i < N_STATE; ++i) e.start[i] = crossed ? y[i] + shift * slope[i] : e.start[i];
   start = crossed ? position + shift : start;
-  for (int w = 0; w < N_SWITCH; ++w) L[w] = (crossed & (which == double(w))) ? 1.0 - L[w] : L[w];
+  for (int w = 0; w < N_SWITCH; ++w) {
+    const vd turn = there[w] - here[w];
+    const vm turning = crossed & (turn < 0.0) & ((here[w] <= value) | (here[w] < SAME_INSTANT * v_abs(turn)));
+    L[w] = turning ? 1.0 - L[w] : L[w];
+  }
 }
 
 static inline void split(vd start, vd length, Block& b, Ends& e, vm crossed) {

@@ -1,0 +1,81 @@
+"""Measured series as inputs: between samples, and what is refused."""
+
+import numpy as np
+import pytest
+import torch
+
+from gear_damping.errors import InputError
+from gear_damping.physics.equation import HELD_LOAD
+from gear_damping.simulation.inspect import forces_of
+from gear_damping.simulation.series import ANGLE, ANGLE_RATE, Series
+from gear_damping.simulation.simulate import simulate
+
+
+def test_a_band_limited_input_between_its_samples():
+    n, cycles = 400, 0.23  # cycles per sample
+    index = torch.arange(n, dtype=torch.float64)
+    tone = torch.sin(2 * np.pi * cycles * index + 0.4).unsqueeze(0)
+    series = Series(("force",))
+    packed = series.pack({"force": tone}, n - 1, 1)
+    for u in (0.0, 0.3, 0.77, 1.0):
+        position = torch.full((1,), u, dtype=torch.float64)
+        found = torch.stack([series.at(rows, position, position)["force"] for rows in packed])[50:-50, 0]
+        expected = torch.sin(2 * np.pi * cycles * (index[50:-51] + u) + 0.4)
+        assert (found - expected).abs().max() < 2e-3
+
+
+def test_a_held_load_and_a_linear_angle():
+    series = Series((HELD_LOAD, ANGLE))
+    load = torch.tensor([[1.0, -2.0, 5.0]], dtype=torch.float64)
+    angle = torch.tensor([[0.0, 1.0, 3.0, 3.5]], dtype=torch.float64)
+    packed = series.pack({HELD_LOAD: load, ANGLE: angle}, 3, 1)
+    half, interval = torch.tensor([0.5], dtype=torch.float64), torch.tensor([0.1], dtype=torch.float64)
+    found = series.at(packed[1], half, interval)
+    assert float(found[HELD_LOAD]) == -2
+    assert float(found[ANGLE]) == 2
+    assert float(found[ANGLE_RATE]) == pytest.approx(20)
+
+
+def test_a_measured_angle_takes_the_place_of_the_speed(bench_model):
+    model, values = bench_model
+    given = values(2)
+    run = {"sampling_rate": 40e3, "n_samples": 200}
+    expected = simulate(model, given, **run)
+    angle = expected.channel("pinion_angle")
+    given["pinion_speed"] = given["pinion_speed"] * 0.3
+    found = simulate(model, given, inputs={"pinion_angle": angle}, **run)
+    torch.testing.assert_close(found.response, expected.response, rtol=1e-6, atol=1e-14)
+    assert torch.equal(found.channel("pinion_angle"), angle)
+
+
+def test_a_measured_torque_takes_the_place_of_the_mean(bench_model):
+    model, values = bench_model
+    given = values(2)
+    run = {"sampling_rate": 40e3, "n_samples": 200}
+    expected = simulate(model, given, **run).response
+    torque = given["pinion_torque"].unsqueeze(1).expand(2, 200)
+    found = simulate(model, given, inputs={"pinion_torque": torque}, **run).response
+    torch.testing.assert_close(found, expected, rtol=1e-6, atol=1e-14)
+
+
+def test_wrong_inputs_are_named(bench_model):
+    model, values = bench_model
+    series = {"force": torch.zeros(2, 5), "pinion_torque": torch.zeros(2, 4)}
+    with pytest.raises(InputError) as caught:
+        simulate(model, values(2), sampling_rate=40e3, n_samples=5, inputs=series)
+    assert "inputs.force" in str(caught.value)
+    assert "(2, 5)" in str(caught.value)
+
+
+def test_forces_balance_the_acceleration(bench_model):
+    """m x'' = load - mesh force, with x'' from the velocity by central differences."""
+    model, values = bench_model
+    runs = simulate(model, values(2), sampling_rate=400e3, n_samples=400)
+    forces = forces_of(runs, 1)
+    velocity = runs.states["velocity"][1]
+    acceleration = (velocity[2:] - velocity[:-2]) * 400e3 / 2
+    mass = float(runs.derived["equivalent_mass"][1])
+    expected = (forces["load"] - forces["mesh_force"])[1:-1]
+    inside = forces["contact"][1:-1] == 1
+    difference = (mass * acceleration - expected)[inside]
+    assert float(difference.abs().median()) < 2e-3 * float(expected.abs().max())

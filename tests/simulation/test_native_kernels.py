@@ -1,0 +1,140 @@
+"""Native kernels do what the eager equations do, for every effect of the catalogue."""
+
+import ctypes
+import logging
+
+import numpy as np
+import pytest
+import torch
+
+from gear_damping.physics.catalogue import builtin_effects
+from gear_damping.physics.model import Model
+from gear_damping.physics.systems.gear_pair import GearPair
+from gear_damping.physics.systems.oscillator import Oscillator
+from gear_damping.physics.terms import MeshStiffness, Sensor
+from gear_damping.simulation import compilation
+from gear_damping.simulation.native import build
+from gear_damping.simulation.native.expressions import Program
+from gear_damping.simulation.native.trace import LANES, UntraceableError, trace
+from gear_damping.simulation.simulate import simulate
+from gear_damping.simulation.solver_settings import Solver
+
+EFFECTS = {name: kind for name, kind in builtin_effects().items() if not issubclass(kind, Sensor)}
+
+
+def model_with(name):
+    kinds = builtin_effects()
+    effects = [kinds[name](), *(kinds[other]() for other in kinds[name].requires)]
+    if "gear_pair" not in kinds[name].systems:
+        return Model(Oscillator(), effects), {"stiffness": 1e8, "amplitude": 1e-5, "initial_displacement": 1e-5}
+    if not issubclass(kinds[name], MeshStiffness):
+        effects.append(kinds["fourier_mesh_stiffness"]())
+    if name != "viscous_damping":
+        effects.append(kinds["viscous_damping"]())
+    return Model(GearPair(), effects), {"initial_displacement": 1.9e-5}
+
+
+@pytest.mark.usefixtures("compiler")
+@pytest.mark.parametrize("name", EFFECTS)
+def test_native_equals_eager(name):
+    model, given = model_with(name)
+    values = model.values(3, **given)
+    run = {"sampling_rate": 40e3, "n_samples": 40}
+    native = simulate(model, values, solver=Solver(substeps=4, engine="native"), **run)
+    eager = simulate(model, values, solver=Solver(substeps=4, engine="eager"), **run)
+    for state in native.states:
+        torch.testing.assert_close(native.states[state], eager.states[state], rtol=1e-9, atol=1e-12)
+
+
+@pytest.mark.usefixtures("compiler")
+def test_a_term_without_native_form_runs_eager(bench_model, monkeypatch, caplog):
+    model, values = bench_model
+
+    def refuse(*_):
+        raise UntraceableError("no native form")
+
+    monkeypatch.setattr(compilation, "kernel_source", refuse)
+    monkeypatch.setattr(compilation, "_libraries", {})
+    monkeypatch.setattr(compilation, "_said", set())
+    with caplog.at_level(logging.WARNING):
+        runs = simulate(model, values(2), sampling_rate=40e3, n_samples=5)
+    assert runs.good.all()
+    assert "no native kernel" in caplog.text
+    with pytest.raises(RuntimeError, match="native"):
+        simulate(model, values(2), sampling_rate=40e3, n_samples=5, solver=Solver(engine="native"))
+
+
+def test_without_a_compiler_the_results_are_the_same(bench_model, monkeypatch, caplog):
+    model, values = bench_model
+    expected = simulate(model, values(2), sampling_rate=40e3, n_samples=30).response
+    monkeypatch.setattr(build, "compiler", lambda: None)
+    monkeypatch.setattr(compilation, "_libraries", {})
+    monkeypatch.setattr(compilation, "_said", set())
+    with caplog.at_level(logging.WARNING):
+        found = simulate(model, values(2), sampling_rate=40e3, n_samples=30).response
+    assert "no C++ compiler" in caplog.text
+    torch.testing.assert_close(found, expected, rtol=1e-9, atol=1e-15)
+
+
+def operations(a, b):
+    """Every operation that the tracer knows, on (2, lanes) and (lanes,)."""
+    mask = (a > 0.2) & ~(b <= 0.7)
+    stacked = torch.stack([a[0], b, a[1] - 2])
+    return torch.stack(
+        [
+            torch.where(mask[0], a[0] ** 2, -a[1]),
+            stacked.sum(0) + stacked.amin(0) - stacked.amax(0),
+            (a * b).sum(0).clamp(0.1, 0.9),
+            torch.tanh(a[0]) + torch.exp(-b) + torch.log(b + 2) + torch.atan(a[1]),
+            torch.sqrt(b) * torch.sign(a[0]) + a[0].abs() ** b + torch.floor(3 * a[1]),
+            1 / (1 + b) + torch.maximum(a[0], b) - torch.minimum(a[1], b),
+            mask[1].to(a) + (1 - a[0]).reciprocal() + torch.cos(a[0]) * torch.sin(b),
+        ]
+    )
+
+
+@pytest.mark.usefixtures("compiler")
+def test_every_operation_against_pytorch(tmp_path):
+    from gear_damping.simulation.native.emit import Written
+
+    generator = torch.Generator().manual_seed(3)
+    a = 0.05 + 0.9 * torch.rand(2, LANES, generator=generator, dtype=torch.float64)
+    b = 0.05 + 0.9 * torch.rand(LANES, generator=generator, dtype=torch.float64)
+    program = Program()
+    rows = np.array([[program.input("y[0]", True)], [program.input("y[1]", True)]], dtype=object)
+    last = np.array([program.input("y[2]", True)], dtype=object)
+    (found,) = trace(operations, [a, b], [rows, last], program)
+    written = Written(program)
+    body = written.function("stage", list(np.ravel(found)))
+    width, _ = build.width_and_options()
+    main = """
+extern "C" void call(const double* in, double* out) {
+  vd y[3], r[7];
+  for (int i = 0; i < 3; ++i) for (int l = 0; l < WIDTH; ++l) y[i][l] = in[i * WIDTH + l];
+  stage(vd{}, y, y, y, 0.0, y, y, r);
+  for (int i = 0; i < 7; ++i) for (int l = 0; l < WIDTH; ++l) out[i * WIDTH + l] = r[i][l];
+}"""
+    header = (build.HERE / "vectors.h").read_text()
+    library = build.compiled(f"#define WIDTH {width}\n{header}\n{body}\n{main}")
+    given = torch.cat([a, b.unsqueeze(0)])[:, :width].contiguous()
+    result = torch.empty(7, width, dtype=torch.float64)
+    library.call(ctypes.c_void_p(given.data_ptr()), ctypes.c_void_p(result.data_ptr()))
+    torch.testing.assert_close(result, operations(a, b)[:, :width], rtol=1e-13, atol=1e-14)
+
+
+def test_an_unknown_operation_is_refused_by_name():
+    with pytest.raises(UntraceableError, match="erfinv"):
+        trace(torch.erfinv, [torch.zeros(LANES)], [np.array([0.0], dtype=object)], Program())
+
+
+@pytest.mark.usefixtures("compiler")
+def test_kernels_are_kept_between_processes(bench_model, monkeypatch, tmp_path, caplog):
+    model, values = bench_model
+    monkeypatch.setenv("GEAR_DAMPING_CACHE", str(tmp_path))
+    for number, said in ((0, True), (1, False)):
+        caplog.clear()
+        monkeypatch.setattr(compilation, "_libraries", {})
+        with caplog.at_level(logging.INFO):
+            simulate(model, values(2), sampling_rate=40e3, n_samples=3)
+        assert ("compiling" in caplog.text) is said, number
+    assert len(list(tmp_path.glob("kernels/*.so"))) == 1
