@@ -7,16 +7,15 @@ unknown key shall meet our own check, which knows the nearest valid one, and not
 from collections.abc import Sequence
 
 from gear_damping.config.locate import conf_folder, groups
-from gear_damping.errors import InputError, Problem, nearest
+from gear_damping.errors import Problem, nearest
 
 FLAGS_WITH_VALUE = ("--config-path", "-cp", "--config-name", "-cn", "--config-dir", "-cd", "--package", "-p")
 
 
-def prepare(arguments: Sequence[str]) -> list[str]:
-    """The arguments as Hydra shall see them.
+def prepare(arguments: Sequence[str]) -> tuple[list[str], list[Problem]]:
+    """The arguments as Hydra shall see them, and what is wrong with the others, which are left out.
 
-    Raises:
-        InputError: group choices that do not exist, arguments that are no override.
+    Wrong are arguments that are no override, and choices that a group does not have.
     """
     problems: list[Problem] = []
     prepared, value_follows = [], False
@@ -25,27 +24,27 @@ def prepare(arguments: Sequence[str]) -> list[str]:
             prepared.append(argument)
             value_follows = argument in FLAGS_WITH_VALUE and not value_follows
             continue
-        prepared.append(_override(argument, problems))
-    if problems:
-        raise InputError(problems)
-    return prepared
+        found = _problems_with(argument)
+        problems += found
+        prepared += [] if found else [_override(argument)]
+    return prepared, problems
 
 
-def _override(argument: str, problems: list[Problem]) -> str:
+def _problems_with(argument: str) -> list[Problem]:
     key, equals, value = argument.partition("=")
-    if argument.startswith("~"):
-        return argument
-    if not equals:
-        rule = "is not an override"
-        problems.append(Problem(argument, rule, remedy="write key=value, for example experiment=backlash"))
-        return argument
+    if not equals and not argument.startswith("~"):
+        remedy = "write key=value, for example experiment=backlash"
+        return [Problem(argument, "is not an override", remedy=remedy, source="the command line")]
+    group = key.lstrip("+")
+    return _unknown_choices(group, value) if group in groups() else []
+
+
+def _override(argument: str) -> str:
+    key, _, value = argument.partition("=")
     plain = key.lstrip("+")
-    if plain.startswith("hydra"):
+    if argument.startswith("~") or plain.startswith("hydra"):
         return argument
-    if plain in groups():
-        problems += _unknown_choices(plain, value)
-        return f"{plain}={value}"
-    return f"++{plain}={value}"
+    return f"{plain}={value}" if plain in groups() else f"++{plain}={value}"
 
 
 def _unknown_choices(group: str, value: str) -> list[Problem]:
@@ -64,6 +63,6 @@ def typed_value(overrides: Sequence[str], key: str) -> str | None:
     """What the command line gave for a key or one below it, as typed; None where it gave nothing."""
     for override in reversed(overrides):
         name, _, value = override.lstrip("+").partition("=")
-        if name == key or name.startswith(key + ".") or key.startswith(name + "."):
+        if name not in groups() and (name == key or name.startswith(key + ".") or key.startswith(name + ".")):
             return f"{name}={value}"
     return None

@@ -32,15 +32,23 @@ def main(arguments: Sequence[str]) -> int:
     if {"--help", "-h"} & set(arguments):
         print(help_text())
         return OK
-    try:
-        prepared = prepare(arguments)
-        many = bool(set(MULTIRUN) & set(arguments))
-        if not many and not set(HYDRA_ONLY) & set(arguments):
-            read_settings(*_composed(overrides_of(prepared)))
-    except InputError as error:
-        say_problems(error)
+    prepared, problems = prepare(arguments)
+    many = bool(set(MULTIRUN) & set(arguments))
+    if not many and not set(HYDRA_ONLY) & set(arguments):
+        problems += _problems_of(overrides_of(prepared))
+    if problems:
+        say_problems(InputError(problems))
         return WRONG_INPUT
     return _run(prepared, many)
+
+
+def _problems_of(overrides: Sequence[str]) -> list[Problem]:
+    """Everything that is wrong with the configuration of these overrides."""
+    try:
+        read_settings(*_composed(overrides))
+    except InputError as error:
+        return error.problems
+    return []
 
 
 def _composed(overrides: Sequence[str]) -> tuple[dict, Origin]:
