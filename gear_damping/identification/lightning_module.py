@@ -197,7 +197,8 @@ def load_estimator(path: Path | str) -> DampingModule:
         InputError: the file is missing or is not a checkpoint of an estimator.
     """
     try:
-        module = DampingModule.load_from_checkpoint(path, map_location="cpu", weights_only=True)
+        with torch.random.fork_rng(devices=[]):  # a new network draws weights, which the file then replaces
+            module = DampingModule.load_from_checkpoint(path, map_location="cpu", weights_only=True)
     except Exception as error:  # a damaged file fails in as many ways as there are readers
         rule = f"must be a checkpoint of a trained estimator ({type(error).__name__}: {error})"
         remedy = "give the best.ckpt of a training run"

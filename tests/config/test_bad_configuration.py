@@ -1,0 +1,78 @@
+"""Whatever is wrong is named with its key, value, rule, remedy and place, all of it at once."""
+
+import pytest
+
+from gear_damping.tasks.command import main
+
+FAULTS = {
+    "unknown_effect": (["simulator.backlsh.gap=1"], ["simulator.backlsh", "did you mean 'backlash'"]),
+    "unknown_parameter": (["simulator.backlash.gab=1"], ["simulator.backlash.gab", "did you mean 'gap'"]),
+    "below_its_bound": (
+        ["simulator.backlash.gap=-1"],
+        ["simulator.backlash.gap = -1", "within 0", "nearest valid value 0"],
+    ),
+    "wrong_unit": (["simulator.backlash.gap={value:1,unit:kg}"], ["simulator.backlash.gap", "'kg'", "'m'"]),
+    "unknown_unit": (["simulator.backlash.gap={value:1,unit:furlong}"], ["simulator.backlash.gap", "furlong"]),
+    "text_for_a_number": (["simulator.pinion_speed_rpm=fast"], ["pinion_speed_rpm = 'fast'", "finite number in rpm"]),
+    "not_finite": (["simulator.pinion_torque=.nan"], ["simulator.pinion_torque", "finite"]),
+    "given_twice": (["simulator.pinion_speed=400"], ["pinion_speed", "given twice"]),
+    "list_for_a_number": (["simulator.pinion_torque=[1,2]"], ["simulator.pinion_torque = [1, 2]"]),
+    "number_for_a_list": (["simulator.profile_error.amplitudes=1"], ["profile_error.amplitudes", "list of numbers"]),
+    "unknown_option": (["simulator.backlash.as_printed=maybe"], ["backlash.as_printed", "True"]),
+    "effect_as_number": (["simulator.backlash=3"], ["simulator.backlash = 3", "null (off)"]),
+    "two_meshes": (["simulator.rectangular_mesh_stiffness={}"], ["mesh_stiffness", "here there are 2"]),
+    "effect_of_the_other_system": (["simulator.sine_restoring={}"], ["sine_restoring", "oscillator"]),
+    "law_is_off": (["simulator.damping_law=viscous_damping"], ["damping_law", "power_law_damping"]),
+    "solver_key": (["simulator.solver.acuracy=1"], ["simulator.solver.acuracy", "did you mean 'accuracy'"]),
+    "solver_engine": (["simulator.solver.engine=fast"], ["simulator.solver.engine", "auto, native, fused, eager"]),
+    "missing_plugin": (["simulator.plugins=[nope.py]"], ["simulator.plugins", "nope.py", "no such file"]),
+    "unknown_choice": (["experiment=backlsh"], ["experiment = 'backlsh'", "did you mean 'backlash'"]),
+    "unknown_key": (["sed=3"], ["sed: no such key", "did you mean 'seed'"]),
+    "unknown_plus_key": (["+foo=3"], ["foo: no such key", "command line: foo=3"]),
+    "no_override": (["backlash"], ["backlash: is not an override"]),
+    "wrong_task": (["task=fly"], ["task = 'fly'", "identify"]),
+    "whole_number": (["training.batch_size=2.5"], ["training.batch_size = 2.5", "whole number"]),
+    "positive": (["training.learning_rate=0"], ["training.learning_rate", "just above 0"]),
+    "group_as_value": (["++training=5"], ["training = '5'", "no such choice"]),
+    "window_longer_than_runs": (["protocol.window=5000"], ["protocol.window = 5000", "2000"]),
+    "above_nyquist": (["wavelet.frequency_max_hz=30000"], ["wavelet.frequency_max_hz", "20000"]),
+    "order_of_frequencies": (["wavelet.frequency_min_hz=20000"], ["wavelet.frequency_min_hz", "below"]),
+    "ratio_needs_by_run": (
+        ["experiment=damping_ratio", "protocol=paper"],
+        ["simulator.damping_ratio_percent", "protocol=by_run", "conf/experiment/damping_ratio.yaml"],
+    ),
+    "no_measurement": (["task=identify"], ["measurement.path", "needs a measurement", "conf/measurement/none.yaml"]),
+    "no_checkpoint": (["task=evaluate"], ["checkpoint", "best.ckpt"]),
+    "missing_checkpoint": (["task=evaluate", "checkpoint=nope.ckpt"], ["checkpoint = 'nope.ckpt'", "no such file"]),
+    "spread_of_nothing": (["family.spreads.xx={uniform:[1,2]}"], ["family.spreads.xx", "no such parameter"]),
+    "spread_upside_down": (["family.spreads.pinion_torque={factor:[2,1]}"], ["pinion_torque", "swap them"]),
+    "spread_of_odd_form": (["family.spreads.pinion_torque=3"], ["pinion_torque", "uniform"]),
+    "broken_override": (["simulator.pinion_torque=[1"], ["configuration", "--help"]),
+    "family_of_a_gear_for_an_oscillator": (["simulator=oscillator"], ["pinion_speed_rpm", "conf/family/bench.yaml"]),
+}
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_fault_is_named(name, caplog, capsys):
+    arguments, said = FAULTS[name]
+    code = main(arguments)
+    text = caplog.text + capsys.readouterr().err
+    assert code == 1
+    for words in said:
+        assert words in text
+    assert "Traceback" not in text
+
+
+def test_all_problems_at_once(caplog):
+    arguments = ["model=bth", "simulator.backlash.gap=-1", "training.batch_size=0", "seed=x", "+foo=3"]
+    assert main(arguments) == 1
+    assert "5 problems" in caplog.text
+    for key in ("model", "simulator.backlash.gap", "training.batch_size", "seed", "foo"):
+        assert f"- {key}" in caplog.text
+
+
+def test_help_names_tasks_groups_and_keys(capsys):
+    assert main(["--help"]) == 0
+    said = capsys.readouterr().out
+    for word in ("experiment", "backlash", "identify", "training.max_epochs", "--multirun"):
+        assert word in said

@@ -1,0 +1,120 @@
+"""Output error on oscillators whose parameters are known, and on real records."""
+
+import closed_forms
+import numpy as np
+import pytest
+import torch
+from scipy.integrate import solve_ivp
+
+from gear_damping.identification.oscillator import DAMPING, first_frequency, fit_oscillator
+from gear_damping.identification.output_error.problem import FitRecord
+from gear_damping.measurement.load import load_measurement
+from gear_damping.measurement.paths import data_root
+
+RATE, FREQUENCY, RATIO = 500.0, 20.0, 0.02
+OMEGA = 2 * np.pi * FREQUENCY
+
+
+def free_decay_record(seed, noise=0.0, name="decay"):
+    times = np.arange(1500) / RATE
+    clean, _ = closed_forms.free_decay(times, 1.0, 2 * RATIO * OMEGA, OMEGA**2, 2e-3, 0.05)
+    noisy = clean + 1e-5 + noise * np.random.default_rng(seed).standard_normal(1500)
+    return FitRecord(name, torch.as_tensor(noisy), RATE)
+
+
+def forced_record(seed, noise=0.0, name="forced"):
+    """Independent truth: scipy with a band-limited force written as a sum of tones."""
+    generator = np.random.default_rng(seed)
+    times = np.arange(2000) / RATE
+    lines = np.arange(2, 160) * 0.25
+    amplitudes, phases = generator.uniform(0.5, 1, len(lines)), generator.uniform(0, 2 * np.pi, len(lines))
+
+    def force(t):
+        return float(amplitudes @ np.sin(2 * np.pi * lines * t + phases))
+
+    def slope(t, y):
+        return [y[1], 3.0 * force(t) - 2 * RATIO * OMEGA * y[1] - OMEGA**2 * y[0]]
+
+    found = solve_ivp(slope, (0, times[-1]), [1e-3, 0.0], "DOP853", times, rtol=1e-9, atol=1e-12)
+    response = found.y[0] + noise * generator.standard_normal(2000)
+    measured = torch.as_tensor([force(t) for t in times])
+    return FitRecord(name, torch.as_tensor(response), RATE, {"force": measured})
+
+
+def test_a_clean_free_decay_is_found_exactly():
+    found = fit_oscillator([free_decay_record(0)])
+    assert found.converged
+    assert found.natural_frequency_hz.value == pytest.approx(FREQUENCY, rel=1e-6)
+    assert found.damping_ratio_percent.value == pytest.approx(100 * RATIO, rel=1e-5)
+    assert found.log_decrement.value == pytest.approx(2 * np.pi * RATIO / np.sqrt(1 - RATIO**2), rel=1e-5)
+    assert found.offset == pytest.approx(1e-5, rel=1e-3)
+    assert found.rmse["holdout"] is None
+
+
+def test_a_forced_record_is_found_and_the_holdout_predicted():
+    found = fit_oscillator([forced_record(1)], [forced_record(2, name="other")])
+    assert found.natural_frequency_hz.value == pytest.approx(FREQUENCY, rel=1e-3)
+    assert found.damping_ratio_percent.value == pytest.approx(100 * RATIO, rel=1e-2)
+    assert found.parameters["force_gain"].value == pytest.approx(3.0, rel=1e-2)
+    spread = float(forced_record(2).response.std())
+    assert found.rmse["holdout"] < 0.02 * spread
+
+
+def test_intervals_cover_the_truth():
+    """Twenty noisy decays: about nineteen intervals hold the true ratio; fewer than fifteen would be 1 in 10^4."""
+    covered, widths = 0, []
+    for seed in range(20):
+        found = fit_oscillator([free_decay_record(seed, noise=2e-4)])
+        low, high = found.damping_ratio_percent.interval95
+        covered += low <= 100 * RATIO <= high
+        widths.append(high - low)
+    assert covered >= 16
+    assert max(widths) < 0.3 * 100 * RATIO
+
+
+def test_two_records_with_their_own_starts():
+    records = [free_decay_record(0, name="a"), free_decay_record(0, name="b")]
+    records[1] = FitRecord("b", records[1].response[300:], RATE)
+    found = fit_oscillator(records)
+    assert found.damping_ratio_percent.value == pytest.approx(100 * RATIO, rel=1e-5)
+    assert found.predictions["b"].shape == (1200,)
+
+
+def test_first_frequency_is_near():
+    assert first_frequency(free_decay_record(0)) == pytest.approx(FREQUENCY, rel=0.05)
+    assert first_frequency(forced_record(1)) == pytest.approx(FREQUENCY, rel=0.2)
+
+
+def real(name):
+    root = data_root()
+    if not root.is_dir():
+        pytest.skip("no measured records: set GEAR_DAMPING_DATA")
+    from gear_damping.config.locate import conf_folder
+
+    measurement = load_measurement(conf_folder() / "measurement" / "records" / f"{name}.yaml")
+
+    def record(r):
+        inputs = {n: torch.as_tensor(c.values) for n, c in r.channels.items() if n == "force"}
+        return FitRecord(r.name, torch.as_tensor(r.channels["displacement"].values), r.sampling_rate, inputs)
+
+    roles = ("fit", "holdout")
+    return [[record(r) for r in measurement.with_role(role)] for role in roles]
+
+
+@pytest.mark.real_record
+def test_ship_roll():
+    fit_on, holdout = real("ship_roll_21337")
+    found = fit_oscillator(fit_on, holdout)
+    assert np.degrees(found.rmse["fit"]) <= 0.18
+    low, high = found.damping_ratio_percent.interval95
+    assert 0.4 < low < high < 0.7
+
+
+@pytest.mark.real_record
+def test_silverbox():
+    fit_on, holdout = real("silverbox")
+    multisines = [r for r in holdout if r.name != "arrow"]
+    found = fit_oscillator(fit_on[:2], multisines)
+    assert found.rmse["holdout"] <= 7.0e-3
+    assert found.natural_frequency_hz.value == pytest.approx(69.5, rel=0.01)
+    assert found.given[DAMPING] > 0

@@ -1,0 +1,164 @@
+"""Tasks from the command line to the files that they leave."""
+
+import json
+
+import numpy as np
+import pytest
+import torch
+
+from gear_damping.identification.lightning_module import load_estimator
+from gear_damping.measurement.load import load_measurement
+from gear_damping.tasks import dispatch, train
+from gear_damping.tasks.command import main
+
+QUICK = [
+    "experiment=backlash",
+    "training=smoke",
+    "training.max_epochs=1",
+    "simulator.n_runs=12",
+    "simulator.n_samples=120",
+    "protocol.windows_per_epoch=128",
+    "progress=false",
+]
+SCORES = {"rmse_percent", "rmse_paper", "median_relative_error", "skill", "epochs"}
+
+
+def record_of(folder):
+    return json.loads((folder / "run.json").read_text())
+
+
+@pytest.fixture
+def said(caplog, capsys):
+    """Everything that was said so far, through logging or on stderr."""
+    return lambda: caplog.text + capsys.readouterr().err
+
+
+def own(tmp_path):
+    return [f"hydra.run.dir={tmp_path / 'run'}", f"data_folder={tmp_path / 'data'}"]
+
+
+@pytest.fixture(scope="module")
+def trained(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("trained")
+    state = torch.random.get_rng_state()
+    assert main([*QUICK, "seeds=2", *own(folder)]) == 0
+    torch.random.set_rng_state(state)
+    return folder / "run"
+
+
+def test_train_leaves_what_other_programs_read(trained):
+    results = json.loads((trained / "results.json").read_text())
+    assert results["experiment"] == "backlash"
+    assert results["protocol"] == "by_run"
+    assert results["family"] == "bench"
+    assert results["seeds"] == [0, 1]
+    assert set(results["models"]) == {"raw_lstm", "cwt_lstm"}
+    assert set(results["controls"]) == {"mean", "white_noise"}
+    for scores in (*results["models"].values(), *results["controls"].values()):
+        assert set(scores) >= SCORES
+        assert set(scores["rmse_percent"]) == {"mean", "std"}
+    record = record_of(trained)
+    assert record["status"] == "finished"
+    assert record["config"]["simulator"]["n_runs"] == 12
+    assert record["versions"]["torch"].startswith("2.13.0")
+    assert {"revision", "dirty"} == set(record["git"])
+    assert record["wall_time_s"] > 0
+    assert record["metrics"]["raw_lstm/rmse_percent"] == results["models"]["raw_lstm"]["rmse_percent"]["mean"]
+
+
+def test_train_leaves_figures_checkpoints_and_events(trained):
+    figures = {path.stem for path in trained.glob("*.png")}
+    assert figures == {"mesh_stiffness", "response", "scalogram", "predicted_against_true"}
+    for model in ("raw_lstm", "cwt_lstm", "white_noise"):
+        assert (trained / model / "seed_1" / "best.ckpt").is_file()
+        assert list((trained / model / "seed_0").glob("events.*"))
+    assert list(trained.glob("events.*"))
+
+
+def test_a_checkpoint_alone_predicts(trained):
+    estimator = load_estimator(trained / "cwt_lstm" / "seed_0" / "best.ckpt")
+    record = 1e-5 * torch.sin(torch.arange(200) / 3)
+    assert 0 < estimator.predict_record(record, 40e3).damping_ratio_percent < 5
+
+
+def test_evaluate_scores_a_checkpoint_on_fresh_runs(trained, tmp_path):
+    checkpoint = trained / "raw_lstm" / "seed_0" / "best.ckpt"
+    assert main([*QUICK, "task=evaluate", f"checkpoint={checkpoint}", *own(tmp_path)]) == 0
+    found = json.loads((tmp_path / "run" / "evaluation.json").read_text())
+    assert 0 < found["rmse_percent"] < 2
+    assert list(record_of(tmp_path / "run")["inputs"]) == [str(checkpoint)]
+
+
+def test_simulated_runs_come_back_as_a_measurement_and_are_identified(trained, tmp_path):
+    """simulate -> measurement.yaml -> identify with a trained network."""
+    arguments = ["task=simulate", "write_measurement=true", "simulator.n_runs=2", "simulator.sensor_offset={}"]
+    assert main([*QUICK, *arguments, *own(tmp_path)]) == 0
+    folder = tmp_path / "run"
+    with np.load(folder / "runs.npz") as runs:
+        assert runs["transmission_error"].shape == (2, 120)
+        assert runs["t"][1] == pytest.approx(25e-6)
+        response = runs["transmission_error"]
+    measurement = load_measurement(folder / "measurement" / "measurement.yaml")
+    np.testing.assert_allclose(measurement.records[1].channels["transmission_error"].values, response[1], rtol=1e-9)
+    assert (folder / "simulation.png").is_file()
+    checkpoint = trained / "raw_lstm" / "seed_0" / "best.ckpt"
+    path = folder / "measurement" / "measurement.yaml"
+    again = [f"hydra.run.dir={tmp_path / 'again'}", "progress=false"]
+    assert main(["task=identify", f"measurement.path={path}", f"checkpoint={checkpoint}", *again]) == 0
+    found = json.loads((tmp_path / "again" / "identification.json").read_text())
+    assert found["damping_ratio_percent"]["value"] > 0
+    assert str(path) in record_of(tmp_path / "again")["inputs"]
+
+
+def test_an_interrupted_run_says_so_and_can_go_on(tmp_path, monkeypatch, said):
+    original = train.compare_models
+
+    def interrupted(*arguments, **options):
+        original(*arguments, **options)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(train, "compare_models", interrupted)
+    assert main([*QUICK, "model=raw_lstm", *own(tmp_path)]) == 130
+    folder = tmp_path / "run"
+    assert record_of(folder)["status"] == "interrupted"
+    assert f"resume={folder}" in said()
+    assert (folder / "raw_lstm" / "seed_0" / "last.ckpt").is_file()
+    monkeypatch.setattr(train, "compare_models", original)
+    again = [f"hydra.run.dir={tmp_path / 'again'}", f"data_folder={tmp_path / 'data'}", f"resume={folder}"]
+    assert main([*QUICK, "model=raw_lstm", *again]) == 0
+
+
+def test_a_defect_is_recorded_as_one(tmp_path, monkeypatch, said):
+    def broken(*_):
+        raise ZeroDivisionError("oops")
+
+    monkeypatch.setattr(dispatch, "task_of", lambda settings: broken)
+    assert main([*QUICK, *own(tmp_path)]) == 1
+    record = record_of(tmp_path / "run")
+    assert record["status"] == "failed"
+    assert "ZeroDivisionError: oops" in record["error"]
+    assert "a defect of gear_damping" in said()
+
+
+def test_a_diverging_simulator_is_never_trained_on(tmp_path, said):
+    wild = [
+        "simulator.damping_law=null",
+        "simulator.power_law_damping.exponent=5",
+        "simulator.power_law_damping.coefficient=1e12",
+    ]
+    assert main([*QUICK, *wild, *own(tmp_path)]) == 1
+    assert "12 of 12 runs diverged" in said()
+    assert record_of(tmp_path / "run")["status"] == "failed"
+
+
+def test_a_sweep_with_a_failing_job_leaves_its_table(tmp_path):
+    quick = [q for q in QUICK if "experiment" not in q]
+    sweep = ["experiment=noise", "simulator.load_noise.snr_db=10,-1000,40", "model=raw_lstm"]
+    place = [f"hydra.sweep.dir={tmp_path / 'sweep'}", f"data_folder={tmp_path / 'data'}"]
+    assert main(["--multirun", *sweep, *quick, *place]) == 1
+    lines = (tmp_path / "sweep" / "sweep.csv").read_text().splitlines()
+    assert len(lines) == 4
+    assert lines[0].startswith("job,status,simulator.load_noise.snr_db,raw_lstm/rmse_percent")
+    assert [line.split(",")[1] for line in lines[1:]] == ["finished", "failed", "finished"]
+    assert "simulator.load_noise.snr_db" in lines[2]
+    assert (tmp_path / "sweep" / "sweep.png").is_file()
