@@ -46,7 +46,7 @@ def _rows(results: Mapping[str, Any]) -> list[tuple[str, ...]]:
                     name + mark,
                     f"{error['mean']:.4g}{spread}",
                     _number(found["rmse_paper"], ".4g"),
-                    "–" if relative is None else f"{100 * relative:.1f} %",
+                    "–" if relative is None else f"{100 * relative:.3g} %",
                     _number(found["skill"], ".3f"),
                     "–" if not epochs else f"{epochs:.3g}",
                 )

@@ -14,6 +14,8 @@ from gear_damping.reporting import figures
 from gear_damping.simulation.inspect import forces_of
 from gear_damping.simulation.runs import Runs
 
+SCALOGRAM_SAMPLES = 480
+
 
 def experiment_figures(settings: Settings, runs: Runs, predictions: Mapping[str, Any]) -> dict[str, Figure]:
     """Figures by file name; those of a response show the first run."""
@@ -39,11 +41,12 @@ def scalogram(settings: Settings, runs: Runs, signal: torch.Tensor) -> Figure:
         columns = wavelet(signal.float().unsqueeze(0) - signal.float().mean())[0]
     speed = runs.values.get("pinion_speed")
     mesh = None if speed is None else float(speed[0] * runs.values["n_teeth_pinion"][0]) / (2 * pi)
+    shown = slice(0, SCALOGRAM_SAMPLES)  # of a longer record more would be a blur
     return figures.scalogram_figure(
-        runs.time.numpy(),
+        runs.time.numpy()[shown],
         np.asarray(wavelet.frequencies_hz),
-        columns.numpy(),
-        wavelet.cone_of_influence(signal.shape[0], signal.device).numpy(),
+        columns.numpy()[:, shown],
+        wavelet.cone_of_influence(signal.shape[0], signal.device).numpy()[:, shown],
         mesh_frequency_hz=mesh,
         natural_frequency_hz=float(runs.derived["natural_frequency"][0]) / (2 * pi),
     )

@@ -18,7 +18,7 @@ from gear_damping.tasks import statements
 from gear_damping.tasks.progress import progress_bar
 from gear_damping.tasks.run_folder import RunFolder
 
-MOST_PANELS = 6  # records shown in the figure
+MOST_PANELS = 3  # records of each role shown in the figure
 
 
 def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
@@ -68,7 +68,7 @@ def _by_output_error(settings: Settings, measurement: Measurement, folder: RunFo
     statements.say(text)
     if not found.converged:
         statements.say("the search did not come to rest: take the figures as a first guess")
-    figures.save(_figure(found, fit_on + holdout, content), folder.path / "identification.png")
+    figures.save(_figure(found, fit_on[:MOST_PANELS] + holdout[-MOST_PANELS:], content), folder.path / "identification.png")
     return {
         "damping_ratio_percent": found.damping_ratio_percent.value,
         "natural_frequency_hz": found.natural_frequency_hz.value,
@@ -148,7 +148,7 @@ def _figure(found: OscillatorFit, records: Sequence[Record], content: dict[str, 
             "measured": record.channels["displacement"].values / factor,
             "simulated": found.predictions[record.name].numpy() / factor,
         }
-        for record in records[:MOST_PANELS]
+        for record in records
     ]
     zeta, natural = content["damping_ratio_percent"], content["natural_frequency_hz"]
     text = [
