@@ -68,7 +68,9 @@ def _by_output_error(settings: Settings, measurement: Measurement, folder: RunFo
     statements.say(text)
     if not found.converged:
         statements.say("the search did not come to rest: take the figures as a first guess")
-    figures.save(_figure(found, fit_on[:MOST_PANELS] + holdout[-MOST_PANELS:], content), folder.path / "identification.png")
+    figures.save(
+        _figure(found, fit_on[:MOST_PANELS] + holdout[-MOST_PANELS:], content), folder.path / "identification.png"
+    )
     return {
         "damping_ratio_percent": found.damping_ratio_percent.value,
         "natural_frequency_hz": found.natural_frequency_hz.value,
