@@ -9,8 +9,8 @@ from torch import Tensor
 
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.physics.equation import EquationOfMotion
-from gear_damping.physics.model import Model
-from gear_damping.physics.terms import DampingLaw
+from gear_damping.physics.model import Model, Prepared
+from gear_damping.physics.terms import DampingLaw, ExtraStates
 from gear_damping.simulation.runs import reference_velocity
 
 Values = dict[str, Tensor]
@@ -133,10 +133,16 @@ def _start_static(
     values |= {name: value for name, value in starts.items() if name not in given}
 
 
-def _imposed(model: Model, prepared: object) -> tuple[Tensor, Tensor]:
-    """The geometric error of the flanks at the start and its rate, natural units."""
+def _imposed(model: Model, prepared: Prepared) -> tuple[Tensor, Tensor]:
+    """What the flanks and the states of effects impose at the start, and its rate, natural units."""
     zero = torch.zeros_like(prepared.base["equivalent_mass"])
     equation = EquationOfMotion(model)
-    extra = (zero,) * len(equation.extra_names)
-    now = equation.moment(zero, (zero, zero, *extra), {}, prepared.base)
+    now = equation.moment(zero, (zero, zero, *extra_states(model, prepared)), {}, prepared.base)
     return equation.imposed_error(now, prepared.terms)
+
+
+def extra_states(model: Model, prepared: Prepared) -> list[Tensor]:
+    """The states of effects at the start in natural units, in the order of the equation."""
+    with_states = [effect for effect in model.effects if isinstance(effect, ExtraStates)]
+    found = {e.name: e.initial(prepared.terms[e.name], prepared.base) for e in with_states}
+    return [found[effect.name][state] for effect in with_states for state in effect.states]

@@ -7,10 +7,10 @@ from torch import Tensor
 from torchdiffeq import odeint
 
 from gear_damping.physics.model import Model, Prepared
-from gear_damping.physics.terms import ExtraStates
 from gear_damping.simulation import torchdiffeq_method
 from gear_damping.simulation.accuracy import substeps_for
 from gear_damping.simulation.compilation import choose
+from gear_damping.simulation.families import extra_states
 from gear_damping.simulation.kernel import Kernel, Members
 from gear_damping.simulation.layout import Layout
 from gear_damping.simulation.series import Series
@@ -73,13 +73,8 @@ def _groups(prepared: Prepared, interval: Tensor, intervals: int, solver: Solver
 
 def _initial(model: Model, prepared: Prepared) -> Tensor:
     """States at the start in natural units, (n_state, batch)."""
-    base = prepared.base
-    rows = [base["initial_displacement"], base["initial_velocity"]]
-    for effect in model.effects:
-        if isinstance(effect, ExtraStates):
-            found = effect.initial(prepared.terms[effect.name], base)
-            rows += [found[name] for name in effect.states]
-    return torch.stack(rows)
+    own = [prepared.base["initial_displacement"], prepared.base["initial_velocity"]]
+    return torch.stack([*own, *extra_states(model, prepared)])
 
 
 def _share(progress: Progress | None, done: int, own: int, work: int) -> Progress | None:
