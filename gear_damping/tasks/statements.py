@@ -9,6 +9,7 @@ import torch
 from gear_damping.config.settings import Settings
 from gear_damping.identification.trainer import Training
 from gear_damping.physics.damping_ratio import log_decrement
+from gear_damping.simulation.floquet import floquet_multiplier
 from gear_damping.simulation.runs import Runs
 
 say = logging.getLogger("gear_damping").info
@@ -37,6 +38,11 @@ def say_runs(settings: Settings, runs: Runs) -> None:
         exponent = float(runs.values[f"{law}.exponent"][0])
         line += f", alpha {alpha.min():.1f} … {alpha.max():.1f} N (s/m)^{exponent:g}"
     say(f"{line}, at a velocity amplitude of {float(runs.reference_velocity[0]):.3g} m/s")
+    if runs.model.system.name == "gear_pair":
+        least = int(ratio.argmin())
+        multiplier = floquet_multiplier(runs, least)
+        growth = "its mesh makes the motion grow until contact is lost" if multiplier > 1 else "stable"
+        say(f"largest Floquet multiplier of the least damped run: {multiplier:.4f} ({growth})")
     if runs.n_diverged:
         say(f"{runs.n_diverged} runs diverged and were left out")
 
