@@ -86,8 +86,9 @@ def fit_oscillator(
     found = _estimates(problem, fitted, frequency)
     natural = found["natural_frequency_hz"].value
     predictions = _fit_predictions(problem, fitted)
-    for record in holdout_records:
-        predictions[record.name] = predict_holdout(problem.model, given, offset, record, natural, solver)
+    if holdout_records:
+        held = predict_holdout(problem.model, given, offset, holdout_records, natural, solver)
+        predictions |= {record.name: found for record, found in zip(holdout_records, held, strict=True)}
     return OscillatorFit(
         parameters={k: v for k, v in found.items() if k in (STIFFNESS, GAIN, "damping_coefficient")},
         damping_ratio_percent=found["damping_ratio_percent"],

@@ -1,12 +1,13 @@
 """A fitted model on records that it never met: parameters frozen, only the start of each is found."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import torch
 from torch import Tensor
 
 from gear_damping.identification.output_error.least_squares import fit
-from gear_damping.identification.output_error.problem import FitRecord, FreeParameter, OutputErrorProblem
+from gear_damping.identification.output_error.problem import OFFSET, FitRecord, FreeParameter, OutputErrorProblem
 from gear_damping.physics.model import Model
 from gear_damping.simulation.solver_settings import Solver
 
@@ -15,43 +16,37 @@ START_PERIODS = 1.25  # natural periods at the start of a record that its initia
 
 def predict_holdout(
     model: Model,
-    given: dict[str, float],
+    given: Mapping[str, float],
     offset: float,
-    record: FitRecord,
+    records: Sequence[FitRecord],
     natural_frequency_hz: float,
     solver: Solver | None = None,
-) -> Tensor:
-    """The prediction of one record, (time,).
+) -> list[Tensor]:
+    """The predictions of records of one sampling rate, each (time,).
 
     Args:
         model: The simulator.
         given: Every parameter, by flat name.
         offset: Constant that is added to the response.
-        record: The record; beyond its first 1.25 natural periods only its inputs are used.
+        records: The records; beyond their first 1.25 natural periods only their inputs are used.
         natural_frequency_hz: Sets those periods.
         solver: Settings of the solver.
     """
-    samples = max(6, round(START_PERIODS / natural_frequency_hz * record.sampling_rate))
-    samples = min(samples, len(record.response))
-    beginning = FitRecord(
-        record.name,
-        record.response[:samples],
-        record.sampling_rate,
-        {name: series[:samples] for name, series in record.inputs.items()},
-        record.conditions,
-    )
-    free = [FreeParameter("response_offset", offset, scale=0.0)]
-    start = fit(OutputErrorProblem(model, given, free, [beginning], solver), torch.zeros(1, 1, dtype=torch.float64))
-    whole = OutputErrorProblem(model, given, free, [record], solver)
-    scaled = start.states.unsqueeze(0) * _ratio(beginning, record)
-    return whole.predict(torch.zeros(1, 1, dtype=torch.float64), scaled)[0, 0]
+    samples = max(6, round(START_PERIODS / natural_frequency_hz * records[0].sampling_rate))
+    beginnings = [_beginning(record, samples) for record in records]
+    frozen = [FreeParameter(OFFSET, offset, scale=0.0)]
+    none = torch.zeros(1, 1, dtype=torch.float64)
+    short = OutputErrorProblem(model, given, frozen, beginnings, solver)
+    start = fit(short, none)
+    whole = OutputErrorProblem(model, given, frozen, records, solver)
+    scales = [torch.stack([p.spread, p.rate_scale], dim=1) for p in (short, whole)]
+    found = whole.predict(none, (start.states * scales[0] / scales[1]).unsqueeze(0))[0]
+    return [found[i, : len(record.response)] for i, record in enumerate(records)]
 
 
-def _ratio(beginning: FitRecord, record: FitRecord) -> Tensor:
-    """From the scale of the beginning to that of the whole record."""
-    problems = [OutputErrorProblem(None, {}, [], [r]) for r in (beginning, record)]
-    scales = [torch.stack([p.spread[0], p.rate_scale[0]]) for p in problems]
-    return scales[0] / scales[1]
+def _beginning(record: FitRecord, samples: int) -> FitRecord:
+    inputs = {name: series[:samples] for name, series in record.inputs.items()}
+    return replace(record, response=record.response[:samples], inputs=inputs)
 
 
 def rmse(measured: Sequence[Tensor], predicted: Sequence[Tensor]) -> float:

@@ -22,7 +22,8 @@ class FreeParameter:
     """A parameter to fit.
 
     Args:
-        name: Flat name in the model, or `response_offset`.
+        name: Flat name in the model, with an index for one element of a list (`profile_error.phases[1]`),
+            or `response_offset`.
         start: First guess, SI or the rig's own unit.
         scale: What counts as a step of order one; for a logarithmic one the start itself does.
         logarithmic: Whether its logarithm is fitted, which keeps its sign.
@@ -129,7 +130,7 @@ class OutputErrorProblem:
         found = self.parameters(shared)
         offset = found.pop(OFFSET, torch.zeros(points, dtype=torch.float64))
         for name, value in found.items():
-            values[name] = value.repeat_interleave(n_records)
+            _place(values, name, value.repeat_interleave(n_records))
         for name in {name for record in self.records for name in record.conditions}:
             known = torch.tensor([r.conditions.get(name, float("nan")) for r in self.records], dtype=torch.float64)
             values[name] = torch.where(known.isnan().repeat(points), values[name], known.repeat(points))
@@ -157,6 +158,15 @@ class OutputErrorProblem:
         residual = (self.response[:, :samples] - found[:, 0]) * mask
         sensitivity = (found[:, 1:] - found[:, :1]) / DIFFERENCE * mask
         return Prediction(residual, sensitivity.permute(0, 2, 3, 1))
+
+
+def _place(values: dict[str, Tensor], name: str, value: Tensor) -> None:
+    """Put the values of one parameter, or of one element of a list, where they belong."""
+    flat, _, index = name.partition("[")
+    if index:
+        values[flat][int(index.rstrip("]"))] = value
+    else:
+        values[flat] = value
 
 
 def _padded(series: Sequence[Tensor]) -> Tensor:
