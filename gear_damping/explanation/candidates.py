@@ -1,0 +1,212 @@
+"""Step 5a: what could be missing. Every effect of the catalogue as something that can be switched on gradually."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import pi
+
+from gear_damping.explanation.hypothesis import Given, Hypothesis
+from gear_damping.identification.output_error.problem import FreeParameter
+from gear_damping.physics.catalogue import builtin_effects
+from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.terms import Effect
+from gear_damping.units import parse_unit
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """How an effect is switched on, where its declaration does not say so.
+
+    Args:
+        strengths: Parameters that are zero without the effect, with a size in natural units (of an
+            oscillator) or None for the declared default.
+        phases: Phase parameter of each strength that turns with a shaft.
+        scanned: Other parameters with the values that are tried, natural units; freed in the full fit.
+        fixed: Parameters that stay, natural units.
+        presence: The effect has no zero (a stiffness that was rigid): it is tried as a whole.
+        options: Options of the effect.
+    """
+
+    strengths: Mapping[str, float | None]
+    phases: Mapping[str, str] = field(default_factory=dict)
+    scanned: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    fixed: Mapping[str, float] = field(default_factory=dict)
+    presence: bool = False
+    options: Mapping[str, object] = field(default_factory=dict)
+
+
+def _wave(size: float | None = None) -> Recipe:
+    return Recipe({"amplitude": size}, {"amplitude": "phase"})
+
+
+RECIPES: dict[str, tuple[Recipe, ...]] = {
+    "power_law_damping": tuple(Recipe({"coefficient": 0.01}, scanned={"exponent": (n,)}) for n in (2.0, 0.5, 3.0)),
+    "coulomb_friction": (Recipe({"force": 0.005}, fixed={"width": 0.05}),),
+    "asymmetric_friction": (Recipe({"force_forward": 0.005, "force_backward": 0.005}, fixed={"width": 0.05}),),
+    "hysteretic_damping": (Recipe({"share": 0.02}, fixed={"yield_deflection": 0.2, "exponent": 1.0}),),
+    "hunt_crossley_damping": (
+        Recipe({"damping_coefficient": 0.01}, fixed={"exponent": 1.0, "reference_deflection": 1.0}),
+    ),
+    "cubic_stiffness": (Recipe({"coefficient": 0.02}),),
+    "quadratic_stiffness": (Recipe({"coefficient": 0.02}),),
+    "hertz_stiffness": (Recipe({"exponent": 0.05}, fixed={"reference_deflection": 1.0}),),
+    "tooth_friction": (Recipe({"friction_coefficient": None}),),
+    "backlash": (Recipe({"gap": None}, presence=True),),
+    "pinion_eccentricity": (_wave(),),
+    "gear_eccentricity": (_wave(),),
+    "pinion_stiffness_modulation": (_wave(),),
+    "gear_stiffness_modulation": (_wave(),),
+    "shaft_angle_error": (_wave(),),
+    "profile_error": (Recipe({"amplitudes": None}, {"amplitudes": "phases"}),),
+    "pitch_error": (Recipe({"values": 3e-6}),),
+    "torque_ripple": tuple(Recipe({"amplitude": None}, {"amplitude": "phase"}, fixed={"order": q}) for q in (1.0, 2.0)),
+    "bearing_flexibility": (Recipe({"stiffness": None}, presence=True, scanned={"mass": (2.0,)}),),
+    "shaft_torsion": (Recipe({"stiffness": None}, presence=True),),
+    "load_dependent_contact": (Recipe({"growth": None}),),
+    "windage_drag": (Recipe({"coefficient": None}),),
+    "tooth_crack": tuple(Recipe({"depth": None}, fixed={"phase": 2 * pi * i / 20}) for i in range(20)),
+    "sensor_offset": (Recipe({"offset": None}),),
+    "sensor_drift": (Recipe({"rate": 0.001}),),
+    "sensor_delay": (Recipe({"delay": 0.05}),),
+    "sensor_gain": (Recipe({"gain": None}),),
+    "sensor_saturation": (Recipe({"limit": None}, presence=True),),
+}
+NEUTRAL = {"sensor_gain": 1.0}
+ONLY_GEAR_UNITS = {"bearing_flexibility", "shaft_torsion", "torque_ripple", "tooth_crack"}
+NEEDS_UNCERTAINTY = {"sensor_gain", "inertia_error"}  # identifiable only where the load is known absolutely
+COVERED_BY_NUISANCE = {"oscillator": {"sensor_offset"}, "gear_pair": set()}
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One way in which one effect may be missing.
+
+    Args:
+        name: The effect.
+        label: The name with what distinguishes the variant.
+        hypothesis: The calibrated model with the effect added and switched off (or present).
+        strengths: Places of its strengths among the free parameters.
+        phases: Place of the phase by place of its strength.
+        later: Free parameters that join in the full fit only.
+        presence: Whether it is tried as a whole.
+    """
+
+    name: str
+    label: str
+    hypothesis: Hypothesis
+    strengths: tuple[int, ...]
+    phases: Mapping[int, int]
+    later: tuple[FreeParameter, ...]
+    presence: bool
+
+
+def candidates_for(base: Hypothesis) -> list[Candidate]:
+    """Every variant of every effect that goes with the system and is not there yet."""
+    kinds = builtin_effects()
+    there = {effect.name for effect in base.effects}
+    refused = there | NEEDS_UNCERTAINTY | COVERED_BY_NUISANCE[base.system.name]
+    found = []
+    for name, recipes in RECIPES.items():
+        kind = kinds[name]
+        if base.system.name in kind.systems and name not in refused and set(kind.requires) <= there:
+            found += [_candidate(base, kind, recipe) for recipe in recipes]
+    return found
+
+
+def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe) -> Candidate:
+    effect = kind(**recipe.options)
+    sizes = _Sizes(base)
+    given: Given = {}
+    for parameter in kind.parameters:
+        given[f"{kind.name}.{parameter.name}"] = sizes.default(kind, parameter, recipe)
+    free, strengths, phases = [], [], {}
+    first = len(base.free)
+    for name, size in recipe.strengths.items():
+        for parameter in _elements(kind, name, sizes.size(kind, name, size, recipe), given, recipe):
+            place = first + len(free)
+            free.append(parameter)
+            strengths.append(place)
+            if name in recipe.phases:
+                index = parameter.name.partition("[")[2]
+                phase = f"{kind.name}.{recipe.phases[name]}" + (f"[{index}" if index else "")
+                free.append(FreeParameter(phase, 0.0))
+                phases[place] = place + 1
+    later = tuple(
+        FreeParameter(
+            f"{kind.name}.{name}",
+            float(given[f"{kind.name}.{name}"]),
+            logarithmic=True,
+            lower=_bound(kind, name, 0),
+            upper=_bound(kind, name, 1),
+        )
+        for name in recipe.scanned
+    )
+    label = kind.name + "".join(
+        f" {k}={v:.3g}"
+        for k, v in {**recipe.fixed, **{k: v[0] for k, v in recipe.scanned.items()}}.items()
+        if k in ("exponent", "order", "phase")
+    )
+    return Candidate(
+        kind.name,
+        label,
+        base.with_effect([effect], given, free, kind.name),
+        tuple(strengths),
+        phases,
+        later,
+        recipe.presence,
+    )
+
+
+def _bound(kind: type[Effect], name: str, which: int) -> float:
+    parameter = next(p for p in kind.parameters if p.name == name)
+    return (parameter.lower, parameter.upper)[which]
+
+
+class _Sizes:
+    """Sizes of an effect's parameters for this rig."""
+
+    def __init__(self, base: Hypothesis) -> None:
+        self.is_gear = base.system.name == "gear_pair"
+        self.scales = base.model.prepare(base.model.values(1, **base.given)).scales
+
+    def natural(self, kind: type[Effect], parameter: Parameter, value: float, exponent: float = 1.0) -> float:
+        """A value in natural units, in the rig's own; the unit of a power law hangs on its exponent."""
+        if kind.name == "power_law_damping" and parameter.name == "coefficient":
+            return value * float(self.scales.force[0] / self.scales.velocity[0] ** exponent)
+        return value * float(self.scales.unit_of(parse_unit(parameter.unit).dimension)[0])
+
+    def size(self, kind: type[Effect], name: str, size: float | None, recipe: Recipe) -> float:
+        """The size of a strength that is tried."""
+        parameter = next(p for p in kind.parameters if p.name == name)
+        if size is None or (self.is_gear and kind.name == "pitch_error"):
+            default = size or parameter.default
+            return default[0] if isinstance(default, tuple) else float(default)
+        return self.natural(kind, parameter, size, recipe.scanned.get("exponent", (1.0,))[0])
+
+    def default(self, kind: type[Effect], parameter: Parameter, recipe: Recipe) -> float | tuple[float, ...]:
+        """The value that a parameter has before it is fitted."""
+        if parameter.name in recipe.strengths:
+            neutral = NEUTRAL.get(kind.name, 0.0)
+            if recipe.presence:
+                return parameter.default
+            return (neutral,) * len(parameter.default) if parameter.vector else neutral
+        chosen = recipe.fixed.get(parameter.name, recipe.scanned.get(parameter.name, (None,)))
+        value = chosen[0] if isinstance(chosen, tuple) else chosen
+        if value is None:
+            return (0.0,) * len(parameter.default) if parameter.vector else parameter.default
+        if kind.name in ONLY_GEAR_UNITS or parameter.unit in ("1", "rad"):
+            return value
+        return self.natural(kind, parameter, value)
+
+
+def _elements(kind: type[Effect], name: str, size: float, given: Given, recipe: Recipe) -> list[FreeParameter]:
+    """A free parameter for a strength, or for each element of a list of them."""
+    declared = next(p for p in kind.parameters if p.name == name)
+    flat, value = f"{kind.name}.{name}", given[f"{kind.name}.{name}"]
+    if recipe.presence:
+        return [FreeParameter(flat, float(value), logarithmic=True, lower=declared.lower, upper=declared.upper)]
+    if isinstance(value, tuple):
+        return [FreeParameter(f"{flat}[{i}]", v, abs(size)) for i, v in enumerate(value)]
+    lower, upper = (-float("inf"), float("inf")) if name in recipe.phases else (declared.lower, declared.upper)
+    if name in recipe.phases:
+        return [FreeParameter(flat, value, abs(size))]
+    return [FreeParameter(flat, value, abs(size), lower=lower, upper=upper)]

@@ -1,0 +1,146 @@
+"""Step 7: add what the held-out records bear out, one cause after another, then drop what is not needed."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+
+from gear_damping.explanation.candidates import candidates_for
+from gear_damping.explanation.evidence import Evidence
+from gear_damping.explanation.hypothesis import Hypothesis, Outcome, fit_hypothesis
+from gear_damping.explanation.noise import NoiseLevel
+from gear_damping.explanation.ranking import Score, scores
+from gear_damping.explanation.refit import Refit, block_samples, chosen, refitted
+from gear_damping.explanation.significance import Excess, excess, paired_gain
+from gear_damping.identification.output_error.problem import FreeParameter
+from gear_damping.simulation.solver_settings import Solver
+
+BORNE_OUT = 3.0  # t of the held-out gain that a cause needs
+LEAST_SHARE = 0.25  # of the remaining excess that a cause must take
+RIVAL = 2.0  # t below which two explanations are not told apart
+MOST_CAUSES = 4
+Say = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Accepted:
+    """A cause that held-out records bear out.
+
+    Args:
+        name: The effect.
+        refit: Its full fit when it was accepted.
+        share: Share of the excess that it took, held out.
+        confusable: Other effects that fit no worse.
+    """
+
+    name: str
+    refit: Refit
+    share: float
+    confusable: tuple[str, ...]
+
+
+@dataclass
+class Search:
+    """What the search found.
+
+    Args:
+        nominal: The calibrated nominal model.
+        outcome: The model at the end.
+        accepted: Causes in the order in which they were accepted.
+        first_scores: Every candidate's score beside the nominal model.
+        rejected: Full fits of the last round that were not accepted.
+    """
+
+    nominal: Outcome
+    outcome: Outcome
+    accepted: list[Accepted] = field(default_factory=list)
+    first_scores: list[Score] = field(default_factory=list)
+    rejected: list[Refit] = field(default_factory=list)
+
+
+def search(nominal: Outcome, evidence: Evidence, noise: NoiseLevel, say: Say, solver: Solver | None = None) -> Search:
+    """Extend the nominal model until nothing significant is missing or nothing more is borne out."""
+    found = Search(nominal, nominal)
+    found.first_scores = scores(nominal, evidence, candidates_for(nominal.hypothesis), noise.value, solver)
+    first = current = excess(nominal.holdout, evidence.holdout, noise)
+    ranked = found.first_scores
+    while current.significant and len(found.accepted) < MOST_CAUSES:
+        fits = _full_fits(ranked, found.outcome, evidence, solver)
+        found.rejected = fits
+        best = _best(fits, found.outcome, evidence, current, noise)
+        if best is None:
+            break
+        rivals = _rivals(best, fits, evidence)
+        after = excess(best.outcome.holdout, evidence.holdout, noise)
+        share = (current.percent - after.percent) / max(first.percent, 1e-300)
+        found.accepted.append(Accepted(best.name, best, share, rivals))
+        say(f"{best.name} takes {100 * share:.1f} % of the excess on held-out records")
+        found.outcome, current = best.outcome, after
+        if _finished(first, current):
+            break
+        ranked = scores(found.outcome, evidence, candidates_for(found.outcome.hypothesis), noise.value, solver)
+    if len(found.accepted) > 1:
+        _prune(found, evidence, say, solver)
+    return found
+
+
+def _finished(first: Excess, current: Excess) -> bool:
+    return not current.significant
+
+
+def _full_fits(ranked: Sequence[Score], outcome: Outcome, evidence: Evidence, solver: Solver | None) -> list[Refit]:
+    if not ranked:
+        return []
+    fits = (refitted(score, outcome, evidence, solver) for score in chosen(ranked) if score.gain > 0)
+    return sorted((fit for fit in fits if fit is not None), key=lambda fit: fit.outcome.holdout_cost)
+
+
+def _best(
+    fits: Sequence[Refit], outcome: Outcome, evidence: Evidence, current: Excess, noise: NoiseLevel
+) -> Refit | None:
+    """The best full fit, where held-out records bear it out."""
+    for fit in fits[:1]:
+        after = excess(fit.outcome.holdout, evidence.holdout, noise)
+        takes = (current.percent - after.percent) / current.percent
+        if fit.t > BORNE_OUT and takes >= LEAST_SHARE:
+            return fit
+    return None
+
+
+def _rivals(best: Refit, fits: Sequence[Refit], evidence: Evidence) -> tuple[str, ...]:
+    """Effects whose full fit is not worse by the paired test."""
+    block = block_samples(best.outcome, evidence.sampling_rate)
+    return tuple(
+        fit.name
+        for fit in fits
+        if fit.name != best.name and paired_gain(fit.outcome.holdout, best.outcome.holdout, block)[1] < RIVAL
+    )
+
+
+def _prune(found: Search, evidence: Evidence, say: Say, solver: Solver | None) -> None:
+    """Drop a cause whose removal costs nothing that held-out records show."""
+    block = block_samples(found.outcome, evidence.sampling_rate)
+    for accepted in found.accepted[:-1]:
+        without = fit_hypothesis(
+            _without(found.outcome.hypothesis, accepted.name),
+            evidence,
+            None,
+            found.outcome.fitted.states,
+            solver=solver,
+        )
+        _, t = paired_gain(without.holdout, found.outcome.holdout, block)
+        if t < BORNE_OUT:
+            say(f"{accepted.name} is not needed beside the others")
+            found.outcome = without
+            found.accepted = [other for other in found.accepted if other is not accepted]
+
+
+def _without(hypothesis: Hypothesis, name: str) -> Hypothesis:
+    def other(parameter: FreeParameter) -> bool:
+        return not parameter.name.startswith(name + ".")
+
+    return replace(
+        hypothesis,
+        effects=tuple(effect for effect in hypothesis.effects if effect.name != name),
+        given={key: value for key, value in hypothesis.given.items() if not key.startswith(name + ".")},
+        free=tuple(parameter for parameter in hypothesis.free if other(parameter)),
+        causes=tuple(cause for cause in hypothesis.causes if cause != name),
+    )

@@ -1,0 +1,145 @@
+"""A simulation as a hypothesis: base system, effects, what is known, what is free, and its fit to the evidence."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import torch
+from torch import Tensor
+
+from gear_damping.explanation.evidence import Evidence
+from gear_damping.identification.output_error.holdout import predict_holdout
+from gear_damping.identification.output_error.least_squares import Fitted, fit
+from gear_damping.identification.output_error.problem import OFFSET, FreeParameter, OutputErrorProblem
+from gear_damping.physics.model import Model
+from gear_damping.physics.systems.base import System
+from gear_damping.physics.terms import Effect
+from gear_damping.simulation.solver_settings import Solver
+
+Given = dict[str, float | tuple[float, ...]]
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """A simulator with free parameters.
+
+    Args:
+        system: The base.
+        effects: Its effects.
+        given: Known values by flat name.
+        free: What is fitted.
+        causes: Names of the effects beyond the nominal model.
+    """
+
+    system: System
+    effects: tuple[Effect, ...]
+    given: Given
+    free: tuple[FreeParameter, ...]
+    causes: tuple[str, ...] = ()
+
+    @property
+    def model(self) -> Model:
+        """The simulator."""
+        return Model(self.system, self.effects)
+
+    def with_effect(
+        self, effects: Sequence[Effect], given: Given, free: Sequence[FreeParameter], cause: str
+    ) -> "Hypothesis":
+        """The same with an effect more."""
+        return replace(
+            self,
+            effects=(*self.effects, *effects),
+            given=self.given | given,
+            free=(*self.free, *free),
+            causes=(*self.causes, cause),
+        )
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """A fitted hypothesis and what it leaves.
+
+    Args:
+        hypothesis: With the fitted values as the starts of its free parameters.
+        problem: The fit's statement.
+        fitted: The fit.
+        values: Fitted values by flat name.
+        holdout: Residuals of held-out records, each (time,).
+        fit_residuals: Residuals of fitted records.
+    """
+
+    hypothesis: Hypothesis
+    problem: OutputErrorProblem
+    fitted: Fitted
+    values: dict[str, float]
+    holdout: list[Tensor] = field(repr=False)
+    fit_residuals: list[Tensor] = field(repr=False)
+
+    @property
+    def holdout_cost(self) -> float:
+        """Sum of squares over held-out samples."""
+        return sum(float(r.square().sum()) for r in self.holdout)
+
+    def flat_given(self) -> Given:
+        """Every value of the model by flat name, lists as tuples."""
+        return placed(self.hypothesis.given, self.values)
+
+
+def placed(given: Given, values: dict[str, float]) -> Given:
+    """Known values with the fitted ones in their places."""
+    merged: Given = dict(given)
+    for name, value in values.items():
+        flat, _, index = name.partition("[")
+        if index:
+            listed = list(merged[flat])
+            listed[int(index.rstrip("]"))] = value
+            merged[flat] = tuple(listed)
+        elif name != OFFSET:
+            merged[name] = value
+    return merged
+
+
+def fit_hypothesis(
+    hypothesis: Hypothesis,
+    evidence: Evidence,
+    starts: Tensor | None = None,
+    states: Tensor | None = None,
+    *,
+    iterations: int = 12,
+    horizons: Sequence[int] | None = None,
+    solver: Solver | None = None,
+) -> Outcome:
+    """Fit to the records to fit, then predict the held-out ones with the parameters frozen.
+
+    Args:
+        hypothesis: What is fitted; its free parameters start where they say.
+        evidence: The records.
+        starts: Coordinates of several starts, (starts, n_free); at the parameters' own starts where absent.
+        states: Initial states of the records to fit, (records, 2), to start from.
+        iterations: At most so many.
+        horizons: Samples of growing rounds.
+        solver: Settings of the solver.
+    """
+    problem = OutputErrorProblem(hypothesis.model, hypothesis.given, hypothesis.free, evidence.fit, solver)
+    if starts is None:
+        starts = torch.zeros(1, problem.n_shared, dtype=torch.float64)
+    begun = None if states is None else states.expand(len(starts), -1, -1).clone()
+    fitted = fit(problem, starts, horizons, iterations, begun)
+    values = {name: float(value) for name, value in problem.parameters(fitted.shared).items()}
+    given = placed(hypothesis.given, values)
+    frequency = natural_frequency_hz(hypothesis.model, given)
+    predicted = predict_holdout(hypothesis.model, given, values.get(OFFSET, 0.0), evidence.holdout, frequency, solver)
+    holdout = [record.response - found for record, found in zip(evidence.holdout, predicted, strict=True)]
+    residual = fitted.prediction.residual[0]
+    fit_residuals = [residual[i, : len(record.response)] for i, record in enumerate(evidence.fit)]
+    settled = tuple(_settled(p, values[p.name]) for p in hypothesis.free)
+    return Outcome(replace(hypothesis, free=settled, given=given), problem, fitted, values, holdout, fit_residuals)
+
+
+def _settled(parameter: FreeParameter, value: float) -> FreeParameter:
+    return replace(parameter, start=value)
+
+
+def natural_frequency_hz(model: Model, given: Given) -> float:
+    """Natural frequency of a model in Hz."""
+    derived = model.prepare(model.values(1, **given)).derived
+    return float(derived["natural_frequency"][0]) / (2 * torch.pi)

@@ -1,0 +1,79 @@
+"""Step 4: is anything wrong? The excess of held-out residuals over the noise, with its uncertainty."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor
+
+from gear_damping.explanation.noise import NoiseLevel
+from gear_damping.identification.output_error.problem import FitRecord
+
+SMALLEST = 0.03  # % of the channel's AC variance; less is never called significant
+ERRORS = 3.0  # standard errors
+
+
+@dataclass(frozen=True)
+class Excess:
+    """Held-out mean squared residual beyond the noise, in % of the channel's AC variance.
+
+    Args:
+        percent: D.
+        threshold: Above it D is significant.
+        misfit: Mean squared residual over the noise variance.
+        per_record: The same by record name.
+    """
+
+    percent: float
+    threshold: float
+    misfit: float
+    per_record: dict[str, float]
+
+    @property
+    def significant(self) -> bool:
+        """Whether the data show that something is missing."""
+        return self.percent > self.threshold
+
+
+def excess(residuals: Sequence[Tensor], records: Sequence[FitRecord], noise: NoiseLevel) -> Excess:
+    """D of these residuals."""
+    total = sum(len(r) for r in residuals)
+    mean_square = sum(float(r.square().sum()) for r in residuals) / total
+    variance = sum(float((r.response - r.response.mean()).square().sum()) for r in records) / total
+    floor = noise.value**2
+    effective = total / correlation_sum(residuals)
+    relative = mean_square / max(floor, 1e-300)
+    beyond = max(mean_square - floor, 0.0) / variance
+    error = (1 + beyond) * (2 / effective + 2 / noise.degrees_of_freedom) ** 0.5 * floor
+    widened = error if noise.agree else 2 * error
+    each = {
+        record.name: float(residual.square().mean()) / max(floor, 1e-300)
+        for record, residual in zip(records, residuals, strict=True)
+    }
+    threshold = max(SMALLEST, 100 * ERRORS * widened / variance)
+    return Excess(100 * (mean_square - floor) / variance, threshold, relative, each)
+
+
+def correlation_sum(residuals: Sequence[Tensor]) -> float:
+    """Sum of the squared autocorrelations of the residuals, at least 1."""
+    total, weight = 0.0, 0
+    for residual in residuals:
+        centred = residual - residual.mean()
+        spectrum = torch.fft.rfft(centred, n=2 * len(centred)).abs().square()
+        correlation = torch.fft.irfft(spectrum)[: len(centred) // 4]
+        correlation = correlation / correlation[0].clamp(min=1e-300)
+        total += len(residual) * float(1 + 2 * correlation[1:].square().sum())
+        weight += len(residual)
+    return max(total / weight, 1.0)
+
+
+def paired_gain(before: Sequence[Tensor], after: Sequence[Tensor], block: int) -> tuple[float, float]:
+    """Mean gain of squared residuals per sample and its t statistic over blocks of so many samples."""
+    gains = []
+    for old, new in zip(before, after, strict=True):
+        difference = old.square() - new.square()
+        count = max(1, len(difference) // block)
+        gains += [part.mean() for part in difference[: count * block].chunk(count)]
+    found = torch.stack(gains)
+    error = found.std() / len(found) ** 0.5 if len(found) > 1 else found.abs().mean()
+    return float(found.mean()), float(found.mean() / error.clamp(min=1e-300))

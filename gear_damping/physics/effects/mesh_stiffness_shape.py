@@ -1,0 +1,42 @@
+"""The shape of the mesh stiffness beyond its ideal wave."""
+
+from typing import ClassVar
+
+import torch
+from torch import Tensor
+
+from gear_damping.physics.moment import Moment
+from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.shapes import same_length
+from gear_damping.physics.terms import StiffnessFactor, Values
+
+
+class MeshStiffnessShape(StiffnessFactor):
+    """Free harmonics of the mesh: what calibration settles before any cause is named."""
+
+    name = "mesh_stiffness_shape"
+    equation = "k (1 + sum_h a_h cos(h theta_M) + b_h sin(h theta_M))"
+    reference = "Weber & Banaschek (1953), Vieweg; the shape of real teeth is not a rectangle"
+    parameters: ClassVar = (
+        Parameter("in_phase", "1", (0.0, 0.0), "a_h by harmonic", -1, 1, vector=True),
+        Parameter("quadrature", "1", (0.0, 0.0), "b_h by harmonic", -1, 1, vector=True),
+    )
+    systems: ClassVar = ("gear_pair",)
+
+    def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
+        """The lists as they are, once they are of one length."""
+        same_length(self.name, values, "in_phase", "quadrature")
+        return dict(values)
+
+    def factor(self, now: Moment, p: Values) -> Tensor:
+        """The factor at this mesh angle."""
+        cosine, sine = now.mesh.cos, now.mesh.sin
+        turned_cosine, turned_sine = torch.ones_like(cosine), torch.zeros_like(cosine)
+        total = torch.ones_like(cosine)
+        for h in range(p["in_phase"].shape[0]):
+            turned_cosine, turned_sine = (
+                turned_cosine * cosine - turned_sine * sine,
+                turned_sine * cosine + turned_cosine * sine,
+            )
+            total = total + p["in_phase"][h] * turned_cosine + p["quadrature"][h] * turned_sine
+        return total

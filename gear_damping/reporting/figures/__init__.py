@@ -1,0 +1,28 @@
+"""Every figure of the project by one name; each takes plain arrays and returns a matplotlib Figure."""
+
+from matplotlib.figure import Figure
+
+from gear_damping.reporting.figures.identification import identification_figure
+from gear_damping.reporting.figures.predictions import predicted_against_true_figure
+from gear_damping.reporting.figures.response import response_figure
+from gear_damping.reporting.figures.scalogram import scalogram_figure
+from gear_damping.reporting.figures.simulation import simulation_figure
+from gear_damping.reporting.figures.spectra import order_spectrum_figure
+from gear_damping.reporting.figures.stiffness import mesh_stiffness_figure
+from gear_damping.reporting.figures.sweep import sweep_figure
+from gear_damping.reporting.figures.training import training_figure
+from gear_damping.reporting.style import save
+
+__all__ = [
+    "Figure",
+    "identification_figure",
+    "mesh_stiffness_figure",
+    "order_spectrum_figure",
+    "predicted_against_true_figure",
+    "response_figure",
+    "save",
+    "scalogram_figure",
+    "simulation_figure",
+    "sweep_figure",
+    "training_figure",
+]

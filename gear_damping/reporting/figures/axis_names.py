@@ -1,0 +1,46 @@
+"""What the axis of a swept key says: its words and its unit, from the declaration of the effect."""
+
+from gear_damping.physics.catalogue import builtin_effects
+from gear_damping.physics.parameter import Parameter
+
+WORDS = {"snr": "signal-to-noise ratio"}
+SUFFIXES = {"rpm": "rpm", "deg": "°", "um": "µm", "mm": "mm", "ms": "ms", "khz": "kHz", "hz": "Hz", "percent": "%"}
+_PRETTY = {"um": "µm", "N*m": "N·m", "N*s/m": "N·s/m", "m^2": "m²", "kg*m^2": "kg·m²", "deg": "°"}
+
+
+def swept_axis(key: str) -> str:
+    """The label of an axis over a configuration key: words, unit, and the key itself in the second line.
+
+    Args:
+        key: For example `simulator.load_noise.snr_db` or `simulator.backlash.gap_um`.
+    """
+    parts = key.removeprefix("simulator.").split(".")
+    name, unit = _unit(parts)
+    words = ", ".join(_words(part) for part in (*parts[:-1], name))
+    return f"{words}{f' / {unit}' if unit else ''}\n{key}"
+
+
+def pretty_unit(unit: str) -> str:
+    """A unit as it is printed; nothing for a pure number."""
+    if unit == "1":
+        return ""
+    return _PRETTY.get(unit, unit.replace("*", "·").replace("^2", "²").replace("^3", "³"))
+
+
+def _unit(parts: list[str]) -> tuple[str, str]:
+    """The parameter's name without its unit, and the unit."""
+    declared = _declared(parts)
+    stem, _, suffix = parts[-1].rpartition("_")
+    if declared is not None and declared.name == parts[-1]:
+        short = parts[-1].removesuffix("_db") if declared.unit == "dB" else parts[-1]
+        return short, pretty_unit(declared.unit)
+    return (stem, SUFFIXES[suffix]) if stem and suffix in SUFFIXES else (parts[-1], "")
+
+
+def _declared(parts: list[str]) -> Parameter | None:
+    effect = builtin_effects().get(parts[0]) if len(parts) > 1 else None
+    return next((p for p in effect.parameters if p.name == parts[-1]), None) if effect else None
+
+
+def _words(part: str) -> str:
+    return " ".join(WORDS.get(word, word) for word in part.split("_"))
