@@ -4,7 +4,17 @@ from gear_damping.physics.catalogue import builtin_effects
 from gear_damping.physics.parameter import Parameter
 
 WORDS = {"snr": "signal-to-noise ratio"}
-SUFFIXES = {"rpm": "rpm", "deg": "°", "um": "µm", "mm": "mm", "ms": "ms", "khz": "kHz", "hz": "Hz", "percent": "%"}
+SUFFIXES = {
+    "rpm": "rpm",
+    "deg": "°",
+    "um": "µm",
+    "mm": "mm",
+    "ms": "ms",
+    "khz": "kHz",
+    "hz": "Hz",
+    "percent": "%",
+    "db": "dB",
+}
 _PRETTY = {"um": "µm", "N*m": "N·m", "N*s/m": "N·s/m", "m^2": "m²", "kg*m^2": "kg·m²", "deg": "°"}
 
 
@@ -31,9 +41,8 @@ def _unit(parts: list[str]) -> tuple[str, str]:
     """The parameter's name without its unit, and the unit."""
     declared = _declared(parts)
     stem, _, suffix = parts[-1].rpartition("_")
-    if declared is not None and declared.name == parts[-1]:
-        short = parts[-1].removesuffix("_db") if declared.unit == "dB" else parts[-1]
-        return short, pretty_unit(declared.unit)
+    if declared is not None and suffix not in SUFFIXES:
+        return parts[-1], pretty_unit(declared.unit)
     return (stem, SUFFIXES[suffix]) if stem and suffix in SUFFIXES else (parts[-1], "")
 
 

@@ -40,11 +40,12 @@ def identification_figure(
             say_empty(grid[0][0], "no records to show")
         for number, panel in enumerate(panels):
             _record(grid[2 * number : 2 * number + 2], panel, unit, label)
-        legend_above_first(grid[0][0], panels)
+        body.align_ylabels(grid[:, 0])
+        _legend_over_first(grid[0][0], panels)
         return figure
 
 
-def legend_above_first(axes: Axes, panels: Sequence[Mapping[str, Any]]) -> None:
+def _legend_over_first(axes: Axes, panels: Sequence[Mapping[str, Any]]) -> None:
     """One legend for all records, over the first one, whose title moves to the right."""
     if panels:
         axes.set_title("")

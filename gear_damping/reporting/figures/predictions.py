@@ -6,21 +6,16 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
 
 from gear_damping.reporting.figures.arrays import Array, any_finite, extent, series
-from gear_damping.reporting.style import (
-    CYCLE,
-    FAINT,
-    INK,
-    MODEL_COLOURS,
-    colour_of,
-    marker_of,
-    new_figure,
-    say_empty,
-    styled,
-)
+from gear_damping.reporting.style import INK, colour_of, marker_of, new_figure, say_empty, styled
 
-ALWAYS_ONE_VALUE = "mean"  # the control without a picture of its own: it is drawn as a line in every panel
+MEAN = "mean"  # the control that always says one value: a line in every panel instead of a panel
+MOST_COLUMNS = 3
+RIGHT_LINE = {"color": INK, "linewidth": 0.9, "linestyle": ":", "label": "predicted = true"}
+MEAN_LINE = {"color": INK, "linewidth": 0.9, "linestyle": "--", "label": "mean of the training labels (control)"}
 
 
 def predicted_against_true_figure(predictions: Mapping[str, Any]) -> Figure:
@@ -35,59 +30,68 @@ def predicted_against_true_figure(predictions: Mapping[str, Any]) -> Figure:
         ValueError: the arrays of a model have different lengths.
     """
     found = {name: _arrays(name, pair) for name, pair in predictions.items()}
-    constant = found.pop(ALWAYS_ONE_VALUE, None)
+    constant = found.pop(MEAN, None)
+    level = float(np.nanmean(constant[1])) if constant is not None and any_finite(constant[1]) else None
     limits = extent([part for arrays in found.values() for part in arrays[:2]], margin=0.05)
     with styled():
-        panels = max(len(found), 1)
-        columns = min(panels, 3)
-        figure = new_figure(0.5 + 3.2 * -(-panels // columns) * (1.0 if columns > 1 else 1.3))
-        grid = figure.subplots(-(-panels // columns), columns, squeeze=False, sharex=True, sharey=True)
-        for unused in grid.flat[panels:]:
-            unused.set_axis_off()
-        for row in grid:
-            row[0].set_ylabel("predicted damping ratio / %")
-        for axes in grid[-1]:
-            axes.set_xlabel("true damping ratio / %")
+        figure, grid = _panels(max(len(found), 1))
         if not found:
-            say_empty(grid.flat[0], "no predictions to show")
-        for number, (axes, (name, arrays)) in enumerate(zip(grid.flat, found.items(), strict=False)):
+            say_empty(grid[0], "no predictions to show")
+        for number, (axes, (name, arrays)) in enumerate(zip(grid, found.items(), strict=False)):
             _panel(axes, name, number, arrays)
             if limits:
-                _references(axes, limits, constant)
+                _references(axes, limits, level)
+        if limits:
+            lines = [Line2D([], [], **RIGHT_LINE)] + ([] if level is None else [Line2D([], [], **MEAN_LINE)])
+            figure.legend(handles=lines, loc="outside upper left", ncols=2)
         return figure
 
 
-def _arrays(name: str, pair: Mapping[str, Any] | Sequence[Any]) -> tuple[Array, Array, Array]:
+def _panels(count: int) -> tuple[Figure, NDArray[np.object_]]:
+    """A figure with square panels; rows are full but for the last one."""
+    columns = min(count, MOST_COLUMNS)
+    rows = -(-count // columns)
+    figure = new_figure(0.4 + {1: 4.6, 2: 4.1, 3: 3.2}[columns] * rows)
+    grid = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
+    for axes in grid.flat:
+        axes.set_box_aspect(1)
+    for row in grid:
+        row[0].set_ylabel("predicted damping ratio / %")
+    for axes in grid.flat[max(count - columns, 0) : count]:
+        axes.set_xlabel("true damping ratio / %")
+        axes.tick_params(labelbottom=True)
+    for unused in grid.flat[count:]:
+        unused.set_axis_off()
+    return figure, grid.flat[:count]
+
+
+def _arrays(name: str, pair: Mapping[str, Any] | Sequence[Any]) -> tuple[Array, ...]:
     """True, predicted and spread (0 where there is none) of a model."""
     if isinstance(pair, Mapping):
         pair = pair.get("per_run", pair)
         pair = (pair["true"], pair["predicted"], pair.get("spread"))
     true, predicted, spread = (*pair, None)[:3]
     spread = np.zeros(np.shape(true)) if spread is None else spread
-    return series(**{f"{name}_true": true, f"{name}_predicted": predicted, f"{name}_spread": spread})
+    return series(**{f"{name}, true": true, f"{name}, predicted": predicted, f"{name}, spread": spread})
 
 
-def _panel(axes: Axes, name: str, number: int, arrays: tuple[Array, Array, Array]) -> None:
+def _panel(axes: Axes, name: str, number: int, arrays: tuple[Array, ...]) -> None:
     true, predicted, spread = arrays
     if not any_finite(true + predicted):
         axes.set_title(name)
         say_empty(axes)
         return
-    colour = MODEL_COLOURS.get(name, CYCLE[number % len(CYCLE)])
+    colour = colour_of(name, number)
     if np.nansum(spread) > 0:
-        axes.errorbar(true, predicted, yerr=np.nan_to_num(spread), fmt="none", ecolor=colour, alpha=0.3, linewidth=0.8)
-    axes.plot(true, predicted, marker_of(name), markersize=4, color=colour_of(name, number), linestyle="none")
+        axes.errorbar(true, predicted, yerr=np.nan_to_num(spread), fmt="none", ecolor=colour, alpha=0.35, linewidth=0.8)
+    axes.plot(true, predicted, marker_of(name), markersize=4, color=colour, linestyle="none")
     error = float(np.sqrt(np.nanmean((predicted - true) ** 2)))
-    axes.set_title(f"{name}: RMSE over runs {error:.3g} %")
+    axes.set_title(f"{name}\nRMSE over runs {error:.3g} %")
 
 
-def _references(axes: Axes, limits: tuple[float, float], constant: tuple[Array, ...] | None) -> None:
+def _references(axes: Axes, limits: tuple[float, float], level: float | None) -> None:
     """The line of right answers, and that of the mean predictor."""
-    axes.plot(limits, limits, color=INK, linewidth=0.9, linestyle=":", zorder=1)
-    axes.annotate("right", limits, (-4, -4), textcoords="offset points", fontsize=8, color=INK, ha="right", va="top")
-    if constant is not None and any_finite(constant[1]):
-        level = float(np.nanmean(constant[1]))
-        axes.axhline(level, color=INK, linewidth=0.9, linestyle="--", zorder=1)
-        axes.annotate("mean", (limits[1], level), (0, 3), textcoords="offset points", fontsize=8, ha="right")
-    axes.set(xlim=limits, ylim=limits, aspect="equal", facecolor="white")
-    axes.grid(color=FAINT)
+    axes.plot(limits, limits, zorder=1, **RIGHT_LINE)
+    if level is not None:
+        axes.axhline(level, zorder=1, **MEAN_LINE)
+    axes.set(xlim=limits, ylim=limits)

@@ -50,6 +50,7 @@ def scalogram_figure(
         _picture(axes, shown_time, frequencies, size)
         _cone(axes, shown_time, frequencies, affected)
         _frequency_marks(axes, mesh_frequency_hz, natural_frequency_hz)
+        axes.set_title(_explanation(affected, mesh_frequency_hz, natural_frequency_hz), fontsize=9, color=INK)
         return figure
 
 
@@ -59,7 +60,7 @@ def _picture(axes: Axes, time: Array, frequencies: Array, size: Array) -> None:
         time, frequencies, level, vmin=-DECIBELS, vmax=0, cmap=SEQUENTIAL, shading="nearest", rasterized=True
     )
     axes.set(yscale="log", xlim=(time[0], time[-1]), ylim=(frequencies[0], frequencies[-1]))
-    axes.figure.colorbar(image, ax=axes, label="magnitude / dB of the peak", pad=0.1)
+    axes.figure.colorbar(image, ax=axes, label="magnitude / dB of the peak", pad=0.015)
 
 
 def _cone(axes: Axes, time: Array, frequencies: Array, affected: NDArray[np.float64]) -> None:
@@ -70,7 +71,6 @@ def _cone(axes: Axes, time: Array, frequencies: Array, affected: NDArray[np.floa
     axes.contourf(time, frequencies, affected, levels=[0.5, 1.5], colors="none", hatches=["///"])
     if not affected.all():
         axes.contour(time, frequencies, affected, levels=[0.5], colors="white", linewidths=1.2)
-    axes.set_title("hatched: the transform reaches beyond the record", fontsize=9, color=INK)
 
 
 def _frequency_marks(axes: Axes, mesh: float | None, natural: float | None) -> None:
@@ -83,3 +83,11 @@ def _frequency_marks(axes: Axes, mesh: float | None, natural: float | None) -> N
         axes.axhline(natural, color="white", linewidth=1.1, linestyle="--")
         found["$f_n$"] = natural
     name_on_right(axes, found)
+
+
+def _explanation(affected: Array, mesh: float | None, natural: float | None) -> str:
+    """What the marks mean."""
+    parts = ["hatched: the transform reaches beyond the record"] if affected.any() else []
+    parts += ["M: mesh frequency"] if mesh else []
+    parts += ["$f_n$: natural frequency"] if natural else []
+    return "      ".join(parts)

@@ -10,9 +10,11 @@ from gear_damping.reporting.figures.arrays import Array, any_finite, extent, ser
 from gear_damping.reporting.figures.marks import mark_orders
 from gear_damping.reporting.figures.spectra import FREQUENCY_LABEL, ORDER_LABEL, SHOWN_MESH_HARMONICS, draw_spectra
 from gear_damping.reporting.style import BLUE, legend_above, new_figure, say_empty, styled
+from gear_damping.signals.envelope import upsample
 from gear_damping.signals.spectra import amplitude_spectrum
 
-LEAST_SAMPLES = 8
+LEAST_SAMPLES = 32
+REFINEMENT = 8
 
 
 def simulation_figure(
@@ -54,11 +56,18 @@ def simulation_figure(
         if top and shaft_frequency_hz:
             mark_orders(spectrum, top, pinion_order=1.0, gear_order=gear_order, mesh_order=n_teeth_pinion)
             legend_above(spectrum, spectrum.get_legend_handles_labels()[0][1:], columns=3)
-        phase.plot(signal, velocity, color=BLUE, linewidth=0.5, alpha=0.7)
+        _phase_plane(phase, signal, velocity)
         phase.set(xlabel=f"{label} / {unit}", ylabel="velocity / (m/s)")
-        if not any_finite(signal + velocity):
-            say_empty(phase)
         return figure
+
+
+def _phase_plane(axes: Axes, signal: Array, velocity: Array) -> None:
+    """The orbit; between samples it is interpolated, since a cycle may have few of them."""
+    if not np.isfinite(signal + velocity).all() or len(signal) < LEAST_SAMPLES:
+        say_empty(axes, "no orbit: too short or not finite")
+        return
+    orbit = upsample(torch.as_tensor(np.stack([signal, velocity])), REFINEMENT).numpy()
+    axes.plot(orbit[0], orbit[1], color=BLUE, linewidth=0.5, alpha=0.8)
 
 
 def _over_time(axes: Axes, time: Array, signal: Array, name: str) -> None:

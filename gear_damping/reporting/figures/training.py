@@ -12,6 +12,7 @@ from gear_damping.reporting.style import INK, colour_of, legend_above, new_figur
 
 History = Sequence[Mapping[str, float]]
 TRAINING, VALIDATION, RATE = "train_loss", "val_rmse_percent", "learning_rate"
+LOGARITHMIC_FROM = 8.0  # ratio of the highest to the lowest error
 
 
 def training_figure(histories: Mapping[str, History]) -> Figure:
@@ -28,13 +29,21 @@ def training_figure(histories: Mapping[str, History]) -> Figure:
         models = list(dict.fromkeys(_model(name) for name in histories))
         for name, history in histories.items():
             _curves(errors, steps, colour_of(_model(name), models.index(_model(name))), history)
-        errors.set(ylabel="RMSE / % of critical", yscale="log")
+        errors.set(ylabel="RMSE / % of critical", yscale=_scale(histories))
         steps.set(xlabel="epoch", ylabel="learning rate", yscale="log")
         if not any_finite(*[_column(history, VALIDATION) for history in histories.values()], [np.nan]):
             say_empty(errors, "no epochs to show")
         steps.xaxis.get_major_locator().set_params(integer=True)
-        legend_above(errors, _legend(models), columns=5)
+        legend_above(errors, _legend(models), columns=6)
         return figure
+
+
+def _scale(histories: Mapping[str, History]) -> str:
+    """Logarithmic where the errors fall far."""
+    columns = [_column(history, key) for history in histories.values() for key in (TRAINING, VALIDATION)]
+    errors = np.concatenate([np.empty(0), *columns])
+    errors = errors[np.isfinite(errors)]
+    return "log" if len(errors) and errors.max() > LOGARITHMIC_FROM * errors.min() else "linear"
 
 
 def _model(name: str) -> str:
