@@ -2,8 +2,13 @@
 
 from matplotlib.figure import Figure
 
+from gear_damping.reporting.figures.candidates import candidates_figure
 from gear_damping.reporting.figures.identification import identification_figure
+from gear_damping.reporting.figures.misfit import misfit_figure
+from gear_damping.reporting.figures.overlay import overlay_figure
 from gear_damping.reporting.figures.predictions import predicted_against_true_figure
+from gear_damping.reporting.figures.residual_force import residual_force_map_figure, residual_force_surface_figure
+from gear_damping.reporting.figures.residual_orders import residual_frequencies_figure, residual_orders_figure
 from gear_damping.reporting.figures.response import response_figure
 from gear_damping.reporting.figures.scalogram import scalogram_figure
 from gear_damping.reporting.figures.simulation import simulation_figure
@@ -15,10 +20,17 @@ from gear_damping.reporting.style import save
 
 __all__ = [
     "Figure",
+    "candidates_figure",
     "identification_figure",
     "mesh_stiffness_figure",
+    "misfit_figure",
     "order_spectrum_figure",
+    "overlay_figure",
     "predicted_against_true_figure",
+    "residual_force_map_figure",
+    "residual_force_surface_figure",
+    "residual_frequencies_figure",
+    "residual_orders_figure",
     "response_figure",
     "save",
     "scalogram_figure",

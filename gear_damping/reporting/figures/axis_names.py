@@ -2,6 +2,7 @@
 
 from gear_damping.physics.catalogue import builtin_effects
 from gear_damping.physics.parameter import Parameter
+from gear_damping.reporting.numbers import pretty_unit
 
 WORDS = {"snr": "signal-to-noise ratio"}
 SUFFIXES = {
@@ -15,7 +16,6 @@ SUFFIXES = {
     "percent": "%",
     "db": "dB",
 }
-_PRETTY = {"um": "µm", "N*m": "N·m", "N*s/m": "N·s/m", "m^2": "m²", "kg*m^2": "kg·m²", "deg": "°"}
 
 
 def swept_axis(key: str) -> str:
@@ -28,13 +28,6 @@ def swept_axis(key: str) -> str:
     name, unit = _unit(parts)
     words = ", ".join(_words(part) for part in (*parts[:-1], name))
     return f"{words}{f' / {unit}' if unit else ''}\n{key}"
-
-
-def pretty_unit(unit: str) -> str:
-    """A unit as it is printed; nothing for a pure number."""
-    if unit == "1":
-        return ""
-    return _PRETTY.get(unit, unit.replace("*", "·").replace("^2", "²").replace("^3", "³"))
 
 
 def _unit(parts: list[str]) -> tuple[str, str]:

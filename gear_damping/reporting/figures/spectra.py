@@ -15,6 +15,7 @@ ORDER_LABEL = "order of the pinion shaft"
 FREQUENCY_LABEL = "frequency / Hz"
 DECADES = 6  # shown below the highest amplitude
 SHOWN_MESH_HARMONICS = 6.4
+MOST_LEGEND_COLUMNS = 6
 LOW_ORDERS = 4.4  # pinion orders of the panel for the shafts
 LOOKS = {
     "measured": {"color": PALE, "linewidth": 0.8, "zorder": 2},
@@ -120,4 +121,5 @@ def _common_legend(figure: Figure, *panels: Axes) -> None:
         handles, labels = axes.get_legend_handles_labels()
         found |= {label: handle for label, handle in zip(labels, handles, strict=True) if label not in found}
     if found:
-        figure.legend(handles=list(found.values()), loc="outside upper left", ncols=7, columnspacing=1.3)
+        columns = len(found) if len(found) <= MOST_LEGEND_COLUMNS else -(-len(found) // 2)
+        figure.legend(handles=list(found.values()), loc="outside upper left", ncols=columns, columnspacing=1.3)

@@ -1,0 +1,101 @@
+"""Measured, nominal and extended simulation on one record."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
+
+from gear_damping.reporting.figures.arrays import Array, any_finite, extent, series, time_axis
+from gear_damping.reporting.style import BLUE, INK, PALE, RED, SKY, legend_above, new_figure, say_empty, styled
+
+SHOWN_SAMPLES = 240
+LEAD = 0.1  # share of the stretch before the first of it
+NOISE_BAND = 2.0  # standard deviations
+MEASURED = {"color": INK, "marker": ".", "markersize": 3.5, "linestyle": "none", "label": "measured"}
+NOMINAL = {"color": RED, "linewidth": 1.0, "label": "nominal simulation"}
+EXTENDED = {"color": BLUE, "linewidth": 1.0, "label": "extended simulation"}
+
+
+def overlay_figure(
+    time: ArrayLike,
+    measured: ArrayLike,
+    nominal: ArrayLike,
+    extended: ArrayLike | None = None,
+    *,
+    unit: str,
+    quantity: str = "transmission error",
+    noise: float | None = None,
+    samples: int = SHOWN_SAMPLES,
+) -> Figure:
+    """Measured, nominal and extended: the stretch where the nominal is worst, its residuals, all residuals.
+
+    Args:
+        time: In s, shape (time,).
+        measured: In `unit`, shape (time,).
+        nominal: The calibrated nominal simulation, shape (time,).
+        extended: The simulation with its causes, shape (time,); None: nothing was added.
+        unit: Unit of the channel.
+        quantity: What the channel is.
+        noise: Standard deviation of the noise in `unit`; its band of two is shaded. None: unknown.
+        samples: Length of the stretch.
+
+    Raises:
+        ValueError: the arrays have different shapes.
+    """
+    given = {"time": time, "measured": measured, "nominal": nominal}
+    time, measured, *simulated = series(**given, **({} if extended is None else {"extended": extended}))
+    residuals = [measured - values for values in simulated]
+    looks = (NOMINAL, EXTENDED)[: len(simulated)]
+    time, time_label = time_axis(time)
+    part = worst_stretch(residuals[0], samples)
+    with styled():
+        figure = new_figure(6.6)
+        upper, middle, lower = figure.subplots(3, 1, height_ratios=(2.2, 1, 1))
+        for values, look in zip(simulated, looks, strict=True):
+            upper.plot(time[part], values[part], **look)
+        upper.plot(time[part], measured[part], zorder=3, **MEASURED)
+        upper.set(ylabel=f"{quantity} / {unit}")
+        upper.tick_params(labelbottom=False)
+        for axes, piece in ((middle, part), (lower, slice(None))):
+            _residuals(axes, time[piece], [r[piece] for r in residuals], looks, noise)
+            axes.set_ylabel(f"residual / {unit}")
+        _limits(upper, time[part])
+        for axes in (middle, lower):
+            axes.set_xlabel(time_label)
+        if any_finite(time[part]):
+            lower.axvspan(np.nanmin(time[part]), np.nanmax(time[part]), color=SKY, alpha=0.3, linewidth=0, zorder=0)
+            lower.set_title("the whole record; the stretch above is shaded", fontsize=9)
+        if noise:
+            middle.set_title(f"grey: the noise, ±{NOISE_BAND:g} standard deviations", fontsize=9)
+        if not any_finite(*residuals):
+            say_empty(upper)
+        figure.align_ylabels()
+        legend_above(upper)
+        return figure
+
+
+def worst_stretch(residual: Array, samples: int) -> slice:
+    """The stretch of so many samples in which the residual has most energy."""
+    if len(residual) <= samples:
+        return slice(None)
+    energy = np.concatenate([[0.0], np.cumsum(np.nan_to_num(residual) ** 2)])
+    start = int(np.argmax(energy[samples:] - energy[:-samples]))
+    start = max(0, start - round(LEAD * samples))
+    return slice(start, start + samples)
+
+
+def _residuals(
+    axes: Axes, time: Array, residuals: list[Array], looks: tuple[dict[str, object], ...], noise: float | None
+) -> None:
+    for values, look in zip(residuals, looks, strict=True):
+        axes.plot(time, values, color=look["color"], linewidth=0.8)
+    if noise:
+        band = NOISE_BAND * noise
+        axes.axhspan(-band, band, color=PALE, alpha=0.25, linewidth=0, zorder=0)
+    _limits(axes, time)
+
+
+def _limits(axes: Axes, time: Array) -> None:
+    limits = extent([time])
+    if limits:
+        axes.set_xlim(limits)
