@@ -9,7 +9,7 @@ from torch import Tensor
 
 from gear_damping.simulation.kernel import Kernel, Members
 from gear_damping.simulation.native import build
-from gear_damping.simulation.native.source import kernel_source
+from gear_damping.simulation.native.source import VECTORS, kernel_source
 from gear_damping.simulation.native.stepper import NativeStepper
 from gear_damping.simulation.native.trace import UntraceableError
 from gear_damping.simulation.solver_settings import Engine
@@ -30,7 +30,7 @@ class Choice:
     def stepper(self, kernel: Kernel, fixed: Tensor, series: Tensor) -> Stepper:
         """A stepper for one batch."""
         if self.library is not None:
-            return NativeStepper(kernel, fixed, series, self.library, build.width_and_options()[0])
+            return NativeStepper(kernel, fixed, series, self.library, build.width_and_options()[0] * VECTORS)
         return Stepper(kernel, fixed, series, compiled=self.engine == "fused")
 
 

@@ -44,13 +44,17 @@ def integrate(
     choice = choose(solver.engine, kernel, example, start)
     groups = _groups(prepared, interval, n_samples - 1, solver)
     states = torch.empty(*start.shape, n_samples, dtype=torch.float64)
+    names = ["displacement", "velocity", *kernel.equation.extra_names]
     work, done = sum(n * len(lanes) for n, lanes in groups), 0
     for n, lanes in groups:
         stepper = choice.stepper(kernel, fixed[:, lanes].contiguous(), packed[:, :, lanes].contiguous())
         share = _share(progress, done, n * len(lanes), work)
-        states[:, lanes] = _solve(stepper, start[:, lanes], n_samples, n, share)
+        found = _solve(stepper, start[:, lanes], n_samples, n, share)
+        if len(groups) == 1:
+            return names, found
+        states[:, lanes] = found
         done += n * len(lanes)
-    return ["displacement", "velocity", *kernel.equation.extra_names], states
+    return names, states
 
 
 def _solve(stepper: Stepper, start: Tensor, n_samples: int, substeps: int, progress: Progress | None) -> Tensor:

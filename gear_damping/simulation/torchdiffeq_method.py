@@ -38,10 +38,11 @@ class RegionLockedTsit5(FixedGridODESolver):
         self.substeps, self.progress = own["substeps"], own["progress"]
 
     def integrate(self, t: Tensor) -> Tensor:
-        """States at every output, (time, n_state, batch)."""
+        """States at every output, (time, n_state, batch); in memory each member's time runs on."""
         if not torch.equal(t, torch.arange(len(t), dtype=t.dtype, device=t.device)):
             raise ValueError(f"{METHOD} counts time in output intervals: t must be 0, 1, 2, …")
-        solution = torch.empty(len(t), *self.y0.shape, dtype=self.y0.dtype, device=self.y0.device)
+        rows = torch.empty(*self.y0.shape, len(t), dtype=self.y0.dtype, device=self.y0.device)
+        solution = rows.permute(2, 0, 1)
         solution[0] = self.y0
         self.stepper.start(self.y0)
         report = self.progress or (lambda done, total: None)

@@ -1,5 +1,5 @@
 // Walks members over output intervals with the region-locked method of Tsitouras (see stepper.py, which
-// does the same in PyTorch). Above this text stand: WIDTH, N_STATE, N_FIXED, N_SERIES, N_SWITCH, N_KEPT,
+// does the same in PyTorch). Above this text stand: WIDTH, VECTORS, N_STATE, N_FIXED, N_SERIES, N_SWITCH, N_KEPT,
 // the vector types and functions, and the traced functions setup, rates and switches.
 
 struct Block {
@@ -20,27 +20,42 @@ static const double WEIGHTS[6] = {0.09646076681806523, 0.01, 0.4798896504144996,
 static const double WATCHED[2] = {1.0 / 3.0, 2.0 / 3.0};
 static const double SAME_INSTANT = 1e-5;
 static const int ROOT_STEPS = 6, MOST_SPLITS = 8;
+static const int TILE = 8;  // outputs that are kept until they fill a line of the cache
 
 static inline void rates_at(vd u, const vd* y, const Block& b, const vd* L, vd* out) {
   rates(u, y, b.P, b.S, b.index, L, b.Q, out);
 }
 
-static inline void step(const vd* y, vd start, vd length, const Block& b, const vd* L, vd* end, vd* first) {
-  vd k[6][N_STATE], inner[N_STATE];
-  for (int stage = 0; stage < 6; ++stage) {
+// One member vector's part in a step.
+struct Task {
+  const vd* y;
+  const Block* block;
+  const vd* L;
+  vd *end, *first;
+};
+
+// A stage waits for the one before it: M vectors at once keep the processor busy meanwhile.
+template <int M>
+static inline void step(const Task* task, vd start, vd length) {
+  vd k[M][6][N_STATE], inner[N_STATE];
+#pragma GCC unroll 6
+  for (int stage = 0; stage < 6; ++stage)
+#pragma GCC unroll 4
+    for (int m = 0; m < M; ++m) {
+      for (int i = 0; i < N_STATE; ++i) {
+        vd sum = vd{};
+        for (int j = 0; j < stage; ++j) sum += STAGES[stage][j] * k[m][j][i];
+        inner[i] = task[m].y[i] + length * sum;
+      }
+      rates_at(start + NODES[stage] * length, inner, *task[m].block, task[m].L, k[m][stage]);
+    }
+  for (int m = 0; m < M; ++m)
     for (int i = 0; i < N_STATE; ++i) {
       vd sum = vd{};
-      for (int j = 0; j < stage; ++j) sum += STAGES[stage][j] * k[j][i];
-      inner[i] = y[i] + length * sum;
+      for (int j = 0; j < 6; ++j) sum += WEIGHTS[j] * k[m][j][i];
+      task[m].end[i] = task[m].y[i] + length * sum;
+      task[m].first[i] = k[m][0][i];
     }
-    rates_at(start + NODES[stage] * length, inner, b, L, k[stage]);
-  }
-  for (int i = 0; i < N_STATE; ++i) {
-    vd sum = vd{};
-    for (int j = 0; j < 6; ++j) sum += WEIGHTS[j] * k[j][i];
-    end[i] = y[i] + length * sum;
-    first[i] = k[0][i];
-  }
 }
 
 #if N_SWITCH > 0
@@ -70,12 +85,18 @@ static inline vd margin_inside(vd part, vd start, vd length, const Ends& e, cons
   return margin(start + part * length, inner, b, L);
 }
 
-static inline vd advance(vd start, vd length, const Block& b, const vd* L, Ends& e) {
-  step(e.start, start, length, b, L, e.end, e.first);
+// The smallest margin met in a step that was taken.
+static inline vd margin_of_step(vd start, vd length, const Block& b, const vd* L, Ends& e) {
   rates_at(start + length, e.end, b, L, e.last);
   vd least = margin(start + length, e.end, b, L);
   for (double part : WATCHED) least = v_min(least, margin_inside(vd{} + part, start, length, e, b, L));
   return least;
+}
+
+static inline vd advance(vd start, vd length, const Block& b, const vd* L, Ends& e) {
+  const Task task{e.start, &b, L, e.end, e.first};
+  step<1>(&task, start, length);
+  return margin_of_step(start, length, b, L, e);
 }
 
 static inline vd secant(vd low, vd high, vd at_low, vd at_high) {
@@ -114,7 +135,8 @@ static inline vd root(vd start, vd length, const Ends& e, const Block& b, const 
 static inline void cross(Ends& e, vd& start, vd length, const Block& b, vd* L, vm crossed) {
   const vd part = root(start, length, e, b, L);
   vd y[N_STATE], slope[N_STATE], ahead[N_STATE], here[N_SWITCH], there[N_SWITCH];
-  step(e.start, start, part * length, b, L, y, slope);
+  const Task task{e.start, &b, L, y, slope};
+  step<1>(&task, start, part * length);
   const vd position = start + part * length, reach = 1e-4 * length;
   rates_at(position, y, b, L, slope);
   for (int i = 0; i < N_STATE; ++i) ahead[i] = y[i] + reach * slope[i];
@@ -152,17 +174,26 @@ static inline void split(vd start, vd length, Block& b, Ends& e, vm crossed) {
 }
 #endif
 
-static inline void substep(vd* y, vd start, vd length, Block& b) {
+static inline void substep(vd (*y)[N_STATE], vd start, vd length, Block* b) {
+  Task tasks[VECTORS];
 #if N_SWITCH > 0
-  Ends e;
-  for (int i = 0; i < N_STATE; ++i) e.start[i] = y[i];
-  const vm crossed = advance(start, length, b, b.L, e) < 0.0;
-  if (any(crossed)) split(start, length, b, e, crossed);
-  for (int i = 0; i < N_STATE; ++i) y[i] = e.end[i];
+  Ends e[VECTORS];
+  for (int m = 0; m < VECTORS; ++m) {
+    for (int i = 0; i < N_STATE; ++i) e[m].start[i] = y[m][i];
+    tasks[m] = Task{e[m].start, &b[m], b[m].L, e[m].end, e[m].first};
+  }
+  step<VECTORS>(tasks, start, length);
+  for (int m = 0; m < VECTORS; ++m) {
+    const vm crossed = margin_of_step(start, length, b[m], b[m].L, e[m]) < 0.0;
+    if (any(crossed)) split(start, length, b[m], e[m], crossed);
+    for (int i = 0; i < N_STATE; ++i) y[m][i] = e[m].end[i];
+  }
 #else
-  vd end[N_STATE], first[N_STATE];
-  step(y, start, length, b, b.L, end, first);
-  for (int i = 0; i < N_STATE; ++i) y[i] = end[i];
+  vd end[VECTORS][N_STATE], first[N_STATE];
+  for (int m = 0; m < VECTORS; ++m) tasks[m] = Task{y[m], &b[m], b[m].L, end[m], first};
+  step<VECTORS>(tasks, start, length);
+  for (int m = 0; m < VECTORS; ++m)
+    for (int i = 0; i < N_STATE; ++i) y[m][i] = end[m][i];
 #endif
 }
 
@@ -177,25 +208,49 @@ static inline void store(double* rows, long lanes, long row, long lane, vd v) {
   for (int l = 0; l < WIDTH && lane + l < lanes; ++l) rows[row * lanes + lane + l] = v[l];
 }
 
-// fixed (N_FIXED, lanes); series (intervals, N_SERIES, lanes); state (N_STATE, lanes) and branch
-// (N_SWITCH, lanes) are read and left at the last interval; out (count, N_STATE, lanes).
-extern "C" void walk(long lanes, long from, long to, long first, long count, long substeps, const double* fixed,
-                     const double* series, double* state, double* branch, double* out) {
-  const double part = 1.0 / double(substeps);
-  for (long lane = from; lane < to; lane += WIDTH) {
-    Block b;
-    vd y[N_STATE];
-    for (int i = 0; i < N_FIXED; ++i) b.P[i] = load(fixed, lanes, i, lane);
-    for (int i = 0; i < N_STATE; ++i) y[i] = load(state, lanes, i, lane);
-    for (int w = 0; w < N_SWITCH; ++w) b.L[w] = load(branch, lanes, w, lane);
-    setup(b.P, b.Q);
-    for (long n = 0; n < count; ++n) {
-      b.index = double(first + n);
-      for (int i = 0; i < N_SERIES; ++i) b.S[i] = load(series, lanes, (first + n) * N_SERIES + i, lane);
-      for (long s = 0; s < substeps; ++s) substep(y, vd{} + double(s) * part, vd{} + part, b);
-      for (int i = 0; i < N_STATE; ++i) store(out, lanes, n * N_STATE + i, lane, y[i]);
+// The last `count` outputs of a vector into its rows of out (N_STATE, lanes, length), from `first` on.
+static inline void flush(double* out, long length, long lanes, long lane, long first, int count, vd (*kept)[N_STATE]) {
+  for (int i = 0; i < N_STATE; ++i)
+    for (int l = 0; l < WIDTH && lane + l < lanes; ++l) {
+      double* row = out + (i * lanes + lane + l) * length + first;
+      for (int n = 0; n < count; ++n) row[n] = kept[n][i][l];
     }
-    for (int i = 0; i < N_STATE; ++i) store(state, lanes, i, lane, y[i]);
-    for (int w = 0; w < N_SWITCH; ++w) store(branch, lanes, w, lane, b.L[w]);
+}
+
+// fixed (N_FIXED, lanes); series (intervals, N_SERIES, lanes); state (N_STATE, lanes) and branch
+// (N_SWITCH, lanes) are read and left at the last interval; out (N_STATE, lanes, length) gets `count` outputs.
+// Lanes `from` to `to` are whole groups of VECTORS vectors, but for the last ones of all.
+extern "C" void walk(long lanes, long from, long to, long first, long count, long substeps, long length,
+                     const double* fixed, const double* series, double* state, double* branch, double* out) {
+  const double part = 1.0 / double(substeps);
+  for (long group = from; group < to; group += WIDTH * VECTORS) {
+    Block b[VECTORS];
+    vd y[VECTORS][N_STATE], kept[VECTORS][TILE][N_STATE];
+    for (int m = 0; m < VECTORS; ++m) {
+      const long lane = group + m * WIDTH;
+      for (int i = 0; i < N_FIXED; ++i) b[m].P[i] = load(fixed, lanes, i, lane);
+      for (int i = 0; i < N_STATE; ++i) y[m][i] = load(state, lanes, i, lane);
+      for (int w = 0; w < N_SWITCH; ++w) b[m].L[w] = load(branch, lanes, w, lane);
+      setup(b[m].P, b[m].Q);
+    }
+    for (long n = 0; n < count; ++n) {
+      for (int m = 0; m < VECTORS; ++m) {
+        b[m].index = double(first + n);
+        const long row = (first + n) * N_SERIES;
+        for (int i = 0; i < N_SERIES; ++i) b[m].S[i] = load(series, lanes, row + i, group + m * WIDTH);
+      }
+      for (long s = 0; s < substeps; ++s) substep(y, vd{} + double(s) * part, vd{} + part, b);
+      const int place = n % TILE;
+      for (int m = 0; m < VECTORS; ++m) {
+        for (int i = 0; i < N_STATE; ++i) kept[m][place][i] = y[m][i];
+        if (place == TILE - 1 || n == count - 1)
+          flush(out, length, lanes, group + m * WIDTH, n - place, place + 1, kept[m]);
+      }
+    }
+    for (int m = 0; m < VECTORS; ++m) {
+      const long lane = group + m * WIDTH;
+      for (int i = 0; i < N_STATE; ++i) store(state, lanes, i, lane, y[m][i]);
+      for (int w = 0; w < N_SWITCH; ++w) store(branch, lanes, w, lane, b[m].L[w]);
+    }
   }
 }

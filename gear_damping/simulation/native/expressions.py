@@ -90,6 +90,8 @@ def _simplified(program: Program, name: str, a: tuple[Expression, ...]) -> Expre
         return a[1]
     if name == "mul" and 0.0 in a:
         return 0.0
+    if name == "div" and isinstance(a[1], Value) and not a[1].varies and isinstance(a[0], Value) and a[0].varies:
+        return program.apply("mul", a[0], program.apply("div", 1.0, a[1]))
     if name == "pow" and isinstance(a[1], float):
         return _power(program, a[0], a[1])
     return None

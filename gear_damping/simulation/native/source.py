@@ -12,6 +12,7 @@ from gear_damping.simulation.native.expressions import Program
 from gear_damping.simulation.native.trace import LANES, trace
 
 HERE = Path(__file__).resolve().parent
+VECTORS = 2  # vectors of lanes that are stepped together, to hide the latency of each
 
 
 def kernel_source(kernel: Kernel, members: Members, state: Tensor, width: int) -> str:
@@ -42,8 +43,8 @@ def kernel_source(kernel: Kernel, members: Members, state: Tensor, width: int) -
     if kernel.switch_names:
         parts.append(written.function("switches", _flat(trace(switches, examples, inputs, program))))
     parts.append(written.setup())
-    names = ("WIDTH", "N_STATE", "N_FIXED", "N_SERIES", "N_SWITCH", "N_KEPT")
-    defined = [f"#define {n} {v}" for n, v in zip(names, (width, *sizes, len(written.kept)), strict=True)]
+    names = ("WIDTH", "VECTORS", "N_STATE", "N_FIXED", "N_SERIES", "N_SWITCH", "N_KEPT")
+    defined = [f"#define {n} {v}" for n, v in zip(names, (width, VECTORS, *sizes, len(written.kept)), strict=True)]
     driver = (HERE / "driver.cpp").read_text()
     return "\n".join([*defined, (HERE / "vectors.h").read_text(), *parts, driver])
 

@@ -3,6 +3,7 @@
 import ctypes
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from itertools import pairwise
 
 import torch
@@ -16,35 +17,34 @@ BLOCK = 128  # output intervals between two reports of progress
 class NativeStepper(Stepper):
     """Walks a batch with a compiled kernel; lanes are shared out over PyTorch's number of threads."""
 
-    def __init__(self, kernel: object, fixed: Tensor, series: Tensor, library: ctypes.CDLL, width: int) -> None:
-        """Prepare a batch; arguments as for `Stepper`, and the kernel's library with its vector width."""
+    def __init__(self, kernel: object, fixed: Tensor, series: Tensor, library: ctypes.CDLL, lanes: int) -> None:
+        """Prepare a batch; arguments as for `Stepper`, and the kernel's library with the lanes it steps together."""
         super().__init__(kernel, fixed, series, compiled=False)
-        self.library, self.width = library, width
+        self.library, self.group = library, lanes
 
     def run(self, state: Tensor, out: Tensor, substeps: int, report: Callable[[int], None]) -> None:
-        """Fill `out` (intervals, n_state, batch) with the state after each interval."""
+        """Fill `out` (intervals, n_state, batch), contiguous in time, with the state after each interval."""
         state, series = state.clone().contiguous(), self.series.contiguous()
         fixed, locked = self.fixed.contiguous(), self.locked.contiguous()
-        lanes, total = fixed.shape[1], out.shape[0]
+        lanes, total, length = fixed.shape[1], out.shape[0], out.stride(2)
+        if out.stride() != (1, lanes * length, length):
+            raise ValueError("out must be a view of (n_state, batch, time) in memory: permute it")
         shares = self._shares(lanes)
         with ThreadPoolExecutor(len(shares)) as pool:
             for first in range(0, total, BLOCK):
                 count = min(BLOCK, total - first)
                 tensors = (fixed, series, state, locked, out[first : first + count])
-                list(
-                    pool.map(
-                        lambda share, a=(first, count, substeps), t=tensors: self._walk(lanes, share, a, t), shares
-                    )
-                )
+                numbers = (first, count, substeps, length)
+                list(pool.map(partial(self._walk, lanes, numbers, tensors), shares))
                 report(first + count)
 
-    def _walk(self, lanes: int, share: tuple[int, int], numbers: tuple[int, ...], tensors: tuple[Tensor, ...]) -> None:
+    def _walk(self, lanes: int, numbers: tuple[int, ...], tensors: tuple[Tensor, ...], share: tuple[int, int]) -> None:
         pointers = (ctypes.c_void_p(tensor.data_ptr()) for tensor in tensors)
         self.library.walk(*(ctypes.c_long(n) for n in (lanes, *share, *numbers)), *pointers)
 
     def _shares(self, lanes: int) -> list[tuple[int, int]]:
-        """Ranges of lanes, whole vectors each, one for each thread that has something to do."""
-        blocks = -(-lanes // self.width)
+        """Ranges of lanes, whole groups each, one for each thread that has something to do."""
+        blocks = -(-lanes // self.group)
         threads = max(1, min(torch.get_num_threads(), blocks))
-        edges = [min(lanes, self.width * round(blocks * i / threads)) for i in range(threads + 1)]
+        edges = [min(lanes, self.group * round(blocks * i / threads)) for i in range(threads + 1)]
         return [(a, b) for a, b in pairwise(edges) if b > a]
