@@ -47,6 +47,7 @@ class Search:
         accepted: Causes in the order in which they were accepted.
         first_scores: Every candidate's score beside the nominal model.
         rejected: Full fits of the last round that were not accepted.
+        first_fits: Full fits of the first round, the best first.
     """
 
     nominal: Outcome
@@ -54,6 +55,7 @@ class Search:
     accepted: list[Accepted] = field(default_factory=list)
     first_scores: list[Score] = field(default_factory=list)
     rejected: list[Refit] = field(default_factory=list)
+    first_fits: list[Refit] = field(default_factory=list)
 
 
 def search(nominal: Outcome, evidence: Evidence, noise: NoiseLevel, say: Say, solver: Solver | None = None) -> Search:
@@ -65,6 +67,7 @@ def search(nominal: Outcome, evidence: Evidence, noise: NoiseLevel, say: Say, so
     while current.significant and len(found.accepted) < MOST_CAUSES:
         fits = _full_fits(ranked, found.outcome, evidence, solver)
         found.rejected = fits
+        found.first_fits = found.first_fits or fits
         best = _best(fits, found.outcome, evidence, current, noise)
         if best is None:
             break

@@ -1,0 +1,202 @@
+"""What explanation.json holds, as plain values."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from gear_damping.explanation import gain
+from gear_damping.explanation.data_faults import sentences
+from gear_damping.explanation.evidence import Evidence
+from gear_damping.explanation.hypothesis import Outcome
+from gear_damping.explanation.next_experiment import LARGEST_SET, confusable_beforehand, next_experiment
+from gear_damping.explanation.noise import NoiseLevel
+from gear_damping.explanation.ranking import Score
+from gear_damping.explanation.unexplained import leftover
+from gear_damping.explanation.verdict import CONSISTENT, DATA_PROBLEM, Judged, statuses
+from gear_damping.measurement.record import Finding, Measurement
+
+SCHEMA_VERSION = 1
+KEYS = (
+    "schema_version", "system", "verdict", "sentences", "causes", "misfit", "residual", "gain", "noise",
+    "candidates", "not_observable", "next_experiment", "unexplained", "records", "calibration", "findings",
+)  # fmt: skip
+
+
+def of_faults(measurement: Measurement, faults: Sequence[Finding]) -> dict[str, Any]:
+    """The content where the data were refused: no cause, and what to cure."""
+    nothing = dict.fromkeys(KEYS)
+    said = sentences(faults)
+    return nothing | {
+        "schema_version": SCHEMA_VERSION,
+        "system": measurement.system,
+        "verdict": DATA_PROBLEM,
+        "sentences": ["The data are damaged, so no physical cause is named.", *said],
+        "causes": [],
+        "candidates": [],
+        "not_observable": [],
+        "records": {record.name: {"role": record.role} for record in measurement.records},
+        "findings": _findings([*faults, *(f for f in measurement.findings if f not in faults)]),
+    }
+
+
+def of_search(measurement: Measurement, evidence: Evidence, noise: NoiseLevel, judged: Judged) -> dict[str, Any]:
+    """The content of a finished search."""
+    found, before, after = judged.found, judged.before, judged.after
+    unit, factor = evidence.channel.declared_unit, evidence.channel.declared_factor
+    first, last = found.nominal, found.outcome
+    causes = _causes(judged, evidence)
+    names = [name for cause in causes for name in (cause["name"], *cause["confusable_with"])]
+    return {
+        "schema_version": SCHEMA_VERSION,
+        "system": measurement.system,
+        "verdict": judged.verdict.word,
+        "sentences": list(judged.verdict.sentences),
+        "causes": causes,
+        "misfit": {
+            "before": before.misfit,
+            "after": after.misfit,
+            "floor": 1.0,
+            "excess_percent": {"before": before.percent, "after": after.percent, "threshold": after.threshold},
+            "records": {
+                name: {"before": before.per_record[name], "after": after.per_record[name]} for name in before.per_record
+            },
+        },
+        "residual": {
+            "fit": _residual(first.fit_residuals, last.fit_residuals, unit, factor),
+            "holdout": _residual(first.holdout, last.holdout, unit, factor),
+        },
+        "gain": _gain(judged, evidence, noise),
+        "noise": {
+            "channel": evidence.channel.name,
+            "value": noise.value / factor,
+            "unit": unit,
+            "by_record": {name: value / factor for name, value in noise.by_record.items()},
+            "method": noise.method,
+            "estimates_agree": noise.agree,
+        },
+        "candidates": _candidates(judged),
+        "not_observable": _not_observable(found.first_scores, names),
+        "next_experiment": next_experiment(names, evidence),
+        "unexplained": None if judged.verdict.word == CONSISTENT else leftover(last, evidence),
+        "records": _records(evidence, first, last, factor, unit),
+        "calibration": {
+            "converged": first.fitted.converged,
+            "parameters": {name: value for name, value in first.values.items()},
+        },
+        "findings": _findings(measurement.findings),
+    }
+
+
+def _findings(findings: Sequence[Finding]) -> list[dict[str, Any]]:
+    return [
+        {"kind": f.kind, "message": f.message, "record": f.record, "channel": f.channel, "sample": f.sample}
+        | {"severity": f.severity}
+        for f in findings
+    ]
+
+
+def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
+    """Accepted causes; where none was, the best of what was tried as a suggestion."""
+    found, last = judged.found, judged.found.outcome
+    spread = gain.spread_of(last, evidence)
+    listed = [
+        {
+            "name": cause.name,
+            "parameters": gain.parameters_of(last, spread, cause.name),
+            "excess_explained": cause.share,
+            "confusable_with": list(cause.confusable)[: LARGEST_SET - 1],
+            "status": statuses(judged.verdict.word),
+        }
+        for cause in found.accepted
+    ]
+    if not listed and judged.verdict.word != CONSISTENT:
+        for refit in [r for r in found.rejected if r.gain > 0][:1]:
+            own = gain.parameters_of(refit.outcome, gain.spread_of(refit.outcome, evidence), refit.name)
+            alike = confusable_beforehand(found.first_scores, refit.name)[: LARGEST_SET - 1]
+            share = _share(refit.outcome, found.nominal)
+            listed.append(
+                {"name": refit.name, "parameters": own, "excess_explained": share, "confusable_with": alike}
+                | {"status": "suggested"}
+            )
+    return sorted(listed, key=lambda cause: -cause["excess_explained"])
+
+
+def _share(outcome: Outcome, nominal: Outcome) -> float:
+    """Share of the held-out squared residual that an outcome takes."""
+    return 1 - outcome.holdout_cost / max(nominal.holdout_cost, 1e-300)
+
+
+def _residual(before: Sequence, after: Sequence, unit: str, factor: float) -> dict[str, Any]:
+    return {"before": gain.rmse(before) / factor, "after": gain.rmse(after) / factor, "unit": unit}
+
+
+def _gain(judged: Judged, evidence: Evidence, noise: NoiseLevel) -> dict[str, Any]:
+    first, last = judged.found.nominal, judged.found.outcome
+    spread = sum(float((r.response - r.response.mean()).square().sum()) for r in evidence.holdout)
+    floor = sum(len(r.response) * noise.by_record[r.name] ** 2 for r in evidence.holdout)
+    damping = {
+        key: gain.damping_ratio(outcome, gain.spread_of(outcome, evidence))
+        for key, outcome in (("before", first), ("after", last))
+    }
+    return {
+        "holdout_nrmse": {
+            "before": gain.nrmse(first.holdout, evidence.holdout),
+            "after": gain.nrmse(last.holdout, evidence.holdout),
+            "floor": (floor / max(spread, 1e-300)) ** 0.5,
+        },
+        "damping_ratio_percent": damping
+        | {"bias_of_the_nominal": damping["before"]["value"] - damping["after"]["value"]},
+    }
+
+
+def _candidates(judged: Judged) -> list[dict[str, Any]]:
+    """Every effect that was tried: what it promised on fitted records, and what a full fit took of held-out ones."""
+    found = judged.found
+    taken = {refit.name: _share(refit.outcome, found.nominal) for refit in found.first_fits}
+    accepted = {cause.name for cause in found.accepted}
+    alike = {name for cause in found.accepted for name in cause.confusable}
+    best: dict[str, Score] = {}
+    for score in found.first_scores:
+        best.setdefault(score.candidate.name, score)
+
+    def status(name: str) -> str:
+        if name in accepted:
+            return statuses(judged.verdict.word)
+        return "confusable" if name in alike else "rejected"
+
+    return [
+        {"name": name, "promised": score.gain, "share": taken.get(name), "status": status(name)}
+        for name, score in best.items()
+    ]
+
+
+def _not_observable(scores: Sequence[Score], named: Sequence[str]) -> list[dict[str, Any]]:
+    """Effects that were not found, with the smallest size that these data would have shown."""
+    best: dict[str, Score] = {}
+    for score in scores:
+        name = score.candidate.name
+        if name not in best or score.smallest < best[name].smallest:
+            best[name] = score
+    listed = []
+    for name, score in best.items():
+        if name in named:
+            continue
+        place = score.candidate.strengths[0]
+        flat = score.candidate.hypothesis.free[place].name
+        unit = score.candidate.hypothesis.model.parameters()[flat.partition("[")[0]].unit
+        listed.append({"name": name, "parameter": flat, "smallest": score.smallest, "unit": unit})
+    return listed
+
+
+def _records(evidence: Evidence, first: Outcome, last: Outcome, factor: float, unit: str) -> dict[str, Any]:
+    found = {}
+    for role, records, before, after in (
+        ("fit", evidence.fit, first.fit_residuals, last.fit_residuals),
+        ("holdout", evidence.holdout, first.holdout, last.holdout),
+    ):
+        for record, old, new in zip(records, before, after, strict=True):
+            found[record.name] = {
+                "role": role,
+                "samples": len(record.response),
+                "rmse": {"before": gain.rmse([old]) / factor, "after": gain.rmse([new]) / factor, "unit": unit},
+            }
+    return found

@@ -1,0 +1,77 @@
+"""Measured data in, named cause out: the steps in the order in which they are done."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+from gear_damping.explanation import content
+from gear_damping.explanation.calibrate import calibrated
+from gear_damping.explanation.data_faults import data_faults, mesh_order_faults
+from gear_damping.explanation.evidence import Evidence, evidence_of
+from gear_damping.explanation.extend import Search, search
+from gear_damping.explanation.noise import NoiseLevel, noise_level, weighted
+from gear_damping.explanation.significance import excess
+from gear_damping.explanation.verdict import Judged, verdict
+from gear_damping.measurement.record import Measurement
+from gear_damping.simulation.solver_settings import Solver
+
+Say = Callable[[str], None]
+STEPS = 4
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """What came of it.
+
+    Args:
+        content: Of explanation.json, plain values.
+        evidence: The records; None where the data were refused.
+        noise: Their noise.
+        found: The search, with the calibrated nominal model and the extended one.
+    """
+
+    content: dict[str, Any]
+    evidence: Evidence | None = None
+    noise: NoiseLevel | None = None
+    found: Search | None = None
+
+
+def explain(
+    measurement: Measurement,
+    say: Say = lambda text: None,
+    report: Callable[[int, int], None] | None = None,
+    solver: Solver | None = None,
+) -> Explanation:
+    """Explain a measurement.
+
+    Args:
+        measurement: What was recorded.
+        say: Told what is found on the way.
+        report: Told (done, total) steps.
+        solver: Settings of the solver.
+
+    Raises:
+        InputError: a record lacks the channel that its system is explained from.
+    """
+    step = report or (lambda done, total: None)
+    faults = data_faults(measurement)
+    if faults:
+        return Explanation(content.of_faults(measurement, faults))
+    evidence = evidence_of(measurement)
+    faults = mesh_order_faults(evidence)
+    if faults:
+        return Explanation(content.of_faults(measurement, faults))
+    noise = noise_level((*evidence.fit, *evidence.holdout), evidence.channel)
+    say(f"noise {noise.value / evidence.channel.declared_factor:.3g} {evidence.channel.declared_unit} ({noise.method})")
+    evidence = replace(evidence, fit=weighted(evidence.fit, noise), holdout=weighted(evidence.holdout, noise))
+    step(1, STEPS)
+    nominal = calibrated(evidence)
+    before = excess(nominal.holdout, evidence.holdout, noise)
+    say(f"the calibrated nominal model leaves {before.percent:.3g} % of the signal's variance beyond the noise")
+    step(2, STEPS)
+    found = search(nominal, evidence, noise, say, solver)
+    step(3, STEPS)
+    after = excess(found.outcome.holdout, evidence.holdout, noise)
+    judged = Judged(found, before, after, verdict(found, before, after, nominal.fitted.converged))
+    step(4, STEPS)
+    return Explanation(content.of_search(measurement, evidence, noise, judged), evidence, noise, found)

@@ -1,0 +1,96 @@
+"""Step 9: what naming the cause was worth, in residuals and in the damping figure."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor
+
+from gear_damping.explanation.evidence import Evidence
+from gear_damping.explanation.hypothesis import Outcome, natural_frequency_hz
+from gear_damping.identification.output_error.problem import OFFSET, FitRecord
+from gear_damping.identification.output_error.uncertainty import QUANTILE, covariance
+from gear_damping.physics.terms import DampingLaw
+from gear_damping.simulation.runs import reference_velocity
+
+CORRELATED_PERIODS = 3.0  # natural periods over which residuals may be correlated
+STEP = 1e-4  # of a coordinate, for the slope of the damping ratio
+
+
+@dataclass(frozen=True)
+class Interval:
+    """A value with its 95 % interval."""
+
+    value: float
+    interval95: tuple[float, float]
+    unit: str
+
+    def plain(self) -> dict[str, object]:
+        """As JSON types."""
+        return {"value": self.value, "unit": self.unit, "interval95": list(self.interval95)}
+
+
+def rmse(residuals: Sequence[Tensor]) -> float:
+    """Root mean square over all samples."""
+    return (sum(float(r.square().sum()) for r in residuals) / max(sum(len(r) for r in residuals), 1)) ** 0.5
+
+
+def nrmse(residuals: Sequence[Tensor], records: Sequence[FitRecord]) -> float:
+    """Root mean square residual over the standard deviation of the channel within records."""
+    spread = sum(float((r.response - r.response.mean()).square().sum()) for r in records)
+    return (sum(float(r.square().sum()) for r in residuals) / max(spread, 1e-300)) ** 0.5
+
+
+def spread_of(outcome: Outcome, evidence: Evidence) -> Tensor:
+    """Covariance of the fitted coordinates; residuals may be coloured."""
+    frequency = natural_frequency_hz(outcome.hypothesis.model, outcome.flat_given())
+    return covariance(outcome.problem, outcome.fitted, round(CORRELATED_PERIODS * evidence.sampling_rate / frequency))
+
+
+def parameters_of(outcome: Outcome, spread: Tensor, cause: str) -> dict[str, dict[str, object]]:
+    """The fitted parameters of an effect with 95 % intervals, by own name."""
+    found = {}
+    declared = outcome.hypothesis.model.parameters()
+    for place, parameter in enumerate(outcome.problem.free):
+        effect, _, own = parameter.name.partition(".")
+        if effect != cause:
+            continue
+        z, half = outcome.fitted.shared[place], QUANTILE * float(spread[place, place].clamp(min=0).sqrt())
+        ends = sorted(float(parameter.value(z + shift)) for shift in (-half, half))
+        value = float(parameter.value(z))
+        unit = declared[parameter.name.partition("[")[0]].unit
+        found[own] = Interval(value, (ends[0], ends[1]), unit).plain()
+    return found
+
+
+def damping_ratio(outcome: Outcome, spread: Tensor) -> dict[str, object]:
+    """The equivalent damping ratio of every damping law together, in % of critical, at its reference velocity."""
+    problem, shared = outcome.problem, outcome.fitted.shared
+    points = shared.repeat(len(shared) + 1, 1)
+    points[1:] += STEP * torch.eye(len(shared), dtype=torch.float64)
+    ratios, velocity = _ratios(outcome, problem.parameters(points), len(points))
+    slope = (ratios[1:] - ratios[0]) / STEP
+    half = QUANTILE * float((slope @ spread @ slope).clamp(min=0).sqrt())
+    value = float(ratios[0])
+    return Interval(value, (value - half, value + half), "%").plain() | {"reference_velocity": velocity}
+
+
+def _ratios(outcome: Outcome, free: Mapping[str, Tensor], batch: int) -> tuple[Tensor, float]:
+    """Damping ratios in % of a batch of points."""
+    model = outcome.hypothesis.model
+    values = model.values(batch, **outcome.flat_given())
+    for name, value in free.items():
+        flat, _, index = name.partition("[")
+        if index:
+            values[flat][int(index.rstrip("]"))] = value
+        elif name != OFFSET:
+            values[name] = value
+    derived = model.prepare(values).derived
+    speed = reference_velocity(derived)
+    speed = speed[:1].expand(batch)  # the same amplitude for every point
+    total = torch.zeros(batch, dtype=torch.float64)
+    for effect in model.effects:
+        if isinstance(effect, DampingLaw):
+            own = {p.name: values[f"{effect.name}.{p.name}"] for p in effect.parameters}
+            total = total + effect.damping_ratio(own, derived["equivalent_mass"], derived["mean_stiffness"], speed)
+    return 100 * total, float(speed[0])

@@ -1,0 +1,120 @@
+"""Step 10: one word for what was found, and a sentence that says it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from gear_damping.explanation.extend import Accepted, Search
+from gear_damping.explanation.next_experiment import LARGEST_SET
+from gear_damping.explanation.significance import Excess
+
+CONSISTENT, EXPLAINED, AMBIGUOUS = "consistent", "explained", "ambiguous"
+PARTLY, UNEXPLAINED, DATA_PROBLEM = "partly_explained", "unexplained", "data_problem"
+VERDICTS = (CONSISTENT, EXPLAINED, AMBIGUOUS, PARTLY, UNEXPLAINED, DATA_PROBLEM)
+REST = 0.02  # of the excess that may be left of an explained one
+HALF = 0.5  # of the excess that established causes must take
+
+SENTENCES = {
+    "viscous_damping": "a damping force proportional to the rate",
+    "power_law_damping": "a damping force that grows with a power of the rate",
+    "coulomb_friction": "a dry friction force",
+    "asymmetric_friction": "a friction force that differs between the two directions of motion",
+    "hysteretic_damping": "a hysteretic force, whose loss does not hang on the rate",
+    "hunt_crossley_damping": "a damping force that grows with the deflection",
+    "squeeze_film_damping": "the damping of an oil film squeezed between the flanks",
+    "cubic_stiffness": "a restoring force that hardens or softens with the cube of the deflection",
+    "quadratic_stiffness": "a restoring force that differs between the two directions of deflection",
+    "hertz_stiffness": "a contact stiffness that grows with the load",
+    "sine_restoring": "the restoring force of a pendulum",
+    "tooth_friction": "the sliding friction of the teeth, which turns round at the pitch point",
+    "backlash": "the gap between the flanks",
+    "pinion_eccentricity": "the eccentricity of the pinion",
+    "gear_eccentricity": "the eccentricity of the gear",
+    "encoder_error": "an error of the encoders",
+    "pinion_stiffness_modulation": "a mesh stiffness that varies over a turn of the pinion",
+    "gear_stiffness_modulation": "a mesh stiffness that varies over a turn of the gear",
+    "profile_error": "errors of the tooth profile",
+    "pitch_error": "errors of the pitch, tooth by tooth",
+    "tooth_crack": "a tooth that is softer than the others",
+    "torque_ripple": "a ripple of the torque that the torque channel does not show",
+    "bearing_flexibility": "the flexibility of a bearing",
+    "shaft_torsion": "the torsion of a shaft or coupling",
+    "load_dependent_contact": "a contact ratio that grows with the load",
+    "windage_drag": "a drag that grows with the square of the speed",
+    "unbalance": "an unbalance",
+    "sensor_gain": "a wrong gain of the sensor",
+    "sensor_offset": "an offset of the sensor",
+    "sensor_drift": "a drift of the sensor",
+    "sensor_delay": "a delay of the sensor",
+    "sensor_lowpass": "the low-pass of the sensor",
+    "sensor_saturation": "a sensor that saturates",
+    "shaft_angle_error": "an error of the shaft angle",
+}
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """The word and its sentences.
+
+    Args:
+        word: One of `VERDICTS`.
+        sentences: For the reader, the most important first.
+    """
+
+    word: str
+    sentences: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A search with what it leaves and what it is called."""
+
+    found: Search
+    before: Excess
+    after: Excess
+    verdict: Verdict
+
+
+def verdict(found: Search, before: Excess, after: Excess, converged: bool = True) -> Verdict:
+    """What the search amounts to.
+
+    Args:
+        found: The search.
+        before: Excess of the calibrated nominal model.
+        after: Excess of the extended one.
+        converged: Whether the calibration came to rest.
+    """
+    if not before.significant:
+        text = f"No evidence of an effect that takes more than {before.threshold:.2g} % of the signal's variance."
+        return Verdict(CONSISTENT, (text,))
+    taken = (before.percent - after.percent) / before.percent
+    rest = after.percent <= max(after.threshold, REST * before.percent)
+    missing = f"The simulation misses {before.percent:.3g} % of the signal's variance"
+    unsettled = () if converged else ("The calibration did not come to rest: take the figures with care.",)
+    if not found.accepted:
+        text = f"{missing}, and no effect of the catalogue is borne out by held-out records."
+        return Verdict(UNEXPLAINED, (text, *unsettled))
+    confused = [cause for cause in found.accepted if cause.confusable]
+    said = _named(found.accepted)
+    if rest and not confused:
+        return Verdict(EXPLAINED, (f"{missing}: {said}.", _left(taken), *unsettled))
+    if rest:
+        alike = "; ".join(f"{c.name} or {' or '.join(c.confusable[: LARGEST_SET - 1])}" for c in confused)
+        return Verdict(AMBIGUOUS, (f"{missing}. These data do not tell apart: {alike}.", _left(taken), *unsettled))
+    if taken >= HALF and not confused:
+        text = f"{missing}. Part of it has a name: {said}. A significant rest of {after.percent:.3g} % has none."
+        return Verdict(PARTLY, (text, _left(taken), *unsettled))
+    text = f"{missing}. {said[0].upper()}{said[1:]} would take part of it, but what is left is too large to name a cause."
+    return Verdict(UNEXPLAINED, (text, *unsettled))
+
+
+def statuses(word: str) -> str:
+    """Whether the causes of a verdict are established or merely suggested."""
+    return "established" if word in (EXPLAINED, AMBIGUOUS, PARTLY) else "suggested"
+
+
+def _named(accepted: Sequence[Accepted]) -> str:
+    return " and ".join(f"{SENTENCES.get(cause.name, cause.name)} (`{cause.name}`)" for cause in accepted)
+
+
+def _left(taken: float) -> str:
+    return f"With it the held-out excess falls by {100 * taken:.1f} %."

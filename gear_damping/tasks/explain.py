@@ -1,0 +1,50 @@
+"""task=explain: what a simulation gets wrong, its name, the extended model, and the gain."""
+
+from pathlib import Path
+from typing import Any
+
+from gear_damping.config.settings import Settings
+from gear_damping.explanation.explain import Explanation, explain
+from gear_damping.explanation.extended_simulator import write_extended
+from gear_damping.measurement.load import load_measurement
+from gear_damping.measurement.record import Measurement
+from gear_damping.reporting.explanation_report import write_report
+from gear_damping.tasks import statements
+from gear_damping.tasks.progress import progress_bar
+from gear_damping.tasks.run_folder import RunFolder
+
+EXTENDED = "extended_simulator.yaml"
+
+
+def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
+    """Explain; returns the metrics for run.json."""
+    measurement = load_measurement(settings.measurement_path)
+    _note_inputs(measurement, folder)
+    with progress_bar("explaining", settings.progress) as progress:
+        found = explain(measurement, statements.say, progress, settings.simulator.solver)
+    folder.write_json("explanation.json", found.content)
+    if found.found is not None:
+        _write_extended(folder.path / EXTENDED, found, measurement)
+    write_report(folder.path, found)
+    for sentence in found.content["sentences"]:
+        statements.say(sentence)
+    statements.say(f"verdict: {found.content['verdict']}; the report is {folder.path / 'report.html'}")
+    return _metrics(found.content)
+
+
+def _note_inputs(measurement: Measurement, folder: RunFolder) -> None:
+    for path in dict.fromkeys([measurement.source, *(record.file for record in measurement.records)]):
+        folder.add_input(path)
+
+
+def _write_extended(path: Path, found: Explanation, measurement: Measurement) -> None:
+    causes = ", ".join(cause["name"] for cause in found.content["causes"] if cause["status"] == "established")
+    write_extended(path, found.found.outcome, {"measurement": measurement.source.name, "causes": causes or "none"})
+
+
+def _metrics(content: dict[str, Any]) -> dict[str, Any]:
+    metrics: dict[str, Any] = {"verdict": content["verdict"], "causes": [cause["name"] for cause in content["causes"]]}
+    if content["misfit"]:
+        metrics |= {f"misfit_{key}": content["misfit"][key] for key in ("before", "after")}
+        metrics |= {f"rmse_holdout_{key}": content["residual"]["holdout"][key] for key in ("before", "after")}
+    return metrics
