@@ -25,7 +25,7 @@ RENAMED = {
 }
 NOT_OF_THE_MODEL = ("damping_ratio", "torque_gain", "torque_offset", "damping_coefficient")
 PHASES = 18  # starts of the mesh phase
-SHAPE_HARMONICS = 6
+SHAPE_HARMONICS = 10
 SHORT_PERIODS = 40.0  # natural periods of the first round
 FIRST_RATIO = 0.01
 
@@ -68,7 +68,7 @@ def _gear_pair(evidence: Evidence) -> Outcome:
     starts = torch.zeros(PHASES, len(first.free), dtype=torch.float64)
     starts[:, 0] = torch.linspace(0, 2 * pi, PHASES + 1, dtype=torch.float64)[:-1]
     horizons = [short, total] if short < total else [total]
-    rough = fit_hypothesis(first, evidence, starts, horizons=horizons, iterations=14)
+    rough = fit_hypothesis(first, evidence, starts, horizons=horizons, iterations=12, kept=0.12)
     shaped = _with_shape(rough.hypothesis)
     return fit_hypothesis(shaped, evidence, states=rough.fitted.states, iterations=14)
 

@@ -104,9 +104,10 @@ def fit_hypothesis(
     starts: Tensor | None = None,
     states: Tensor | None = None,
     *,
-    iterations: int = 12,
+    iterations: int = 30,
     horizons: Sequence[int] | None = None,
     solver: Solver | None = None,
+    kept: float = 0.5,
 ) -> Outcome:
     """Fit to the records to fit, then predict the held-out ones with the parameters frozen.
 
@@ -118,19 +119,20 @@ def fit_hypothesis(
         iterations: At most so many.
         horizons: Samples of growing rounds.
         solver: Settings of the solver.
+        kept: Share of the starts that goes on from round to round.
     """
     problem = OutputErrorProblem(hypothesis.model, hypothesis.given, hypothesis.free, evidence.fit, solver)
     if starts is None:
         starts = torch.zeros(1, problem.n_shared, dtype=torch.float64)
     begun = None if states is None else states.expand(len(starts), -1, -1).clone()
-    fitted = fit(problem, starts, horizons, iterations, begun)
+    fitted = fit(problem, starts, horizons, iterations, begun, kept=kept)
     values = {name: float(value) for name, value in problem.parameters(fitted.shared).items()}
     given = placed(hypothesis.given, values)
     frequency = natural_frequency_hz(hypothesis.model, given)
     predicted = predict_holdout(hypothesis.model, given, values.get(OFFSET, 0.0), evidence.holdout, frequency, solver)
     holdout = [record.response - found for record, found in zip(evidence.holdout, predicted, strict=True)]
     residual = fitted.prediction.residual[0]
-    fit_residuals = [residual[i, : len(record.response)] for i, record in enumerate(evidence.fit)]
+    fit_residuals = [residual[i, : len(r.response)] / r.weight for i, r in enumerate(evidence.fit)]
     settled = tuple(_settled(p, values[p.name]) for p in hypothesis.free)
     return Outcome(replace(hypothesis, free=settled, given=given), problem, fitted, values, holdout, fit_residuals)
 

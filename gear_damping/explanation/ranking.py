@@ -45,7 +45,6 @@ class Projector:
         jacobian = full_jacobian(outcome.fitted.prediction.sensitivity, outcome.problem.n_shared)[0]
         norms = jacobian.norm(dim=0).clamp(min=1e-300)
         self.basis = torch.linalg.qr(jacobian / norms).Q
-        self.mask = outcome.problem.mask.reshape(-1)
 
     def __call__(self, signal: Tensor) -> Tensor:
         """`signal` (samples, n) without its part in the span of the sensitivities."""
@@ -74,7 +73,7 @@ def scores(
 
 
 def _predicted(outcome: Outcome) -> Tensor:
-    return (outcome.problem.response * outcome.problem.mask - outcome.fitted.prediction.residual[0]).reshape(-1)
+    return (outcome.problem.response * outcome.problem.weights - outcome.fitted.prediction.residual[0]).reshape(-1)
 
 
 def _score(
@@ -91,7 +90,7 @@ def _score(
     problem = OutputErrorProblem(candidate.hypothesis.model, candidate.hypothesis.given, free, evidence.fit, solver)
     points, steps = _probes(candidate, len(free))
     states = outcome.fitted.states.expand(len(points), -1, -1)
-    found = (problem.predict(points, states) * problem.mask).reshape(len(points), -1)
+    found = (problem.predict(points, states) * problem.weights).reshape(len(points), -1)
     if not bool(found.isfinite().all()):
         return None
     columns = ((found - base) / steps.unsqueeze(1)).T

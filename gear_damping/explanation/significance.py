@@ -40,14 +40,15 @@ def excess(residuals: Sequence[Tensor], records: Sequence[FitRecord], noise: Noi
     total = sum(len(r) for r in residuals)
     mean_square = sum(float(r.square().sum()) for r in residuals) / total
     variance = sum(float((r.response - r.response.mean()).square().sum()) for r in records) / total
-    floor = noise.value**2
+    floors = {record.name: noise.by_record[record.name] ** 2 for record in records}
+    floor = sum(floors[r.name] * len(r.response) for r in records) / total
     effective = total / correlation_sum(residuals)
     relative = mean_square / max(floor, 1e-300)
     beyond = max(mean_square - floor, 0.0) / variance
     error = (1 + beyond) * (2 / effective + 2 / noise.degrees_of_freedom) ** 0.5 * floor
     widened = error if noise.agree else 2 * error
     each = {
-        record.name: float(residual.square().mean()) / max(floor, 1e-300)
+        record.name: float(residual.square().mean()) / max(floors[record.name], 1e-300)
         for record, residual in zip(records, residuals, strict=True)
     }
     threshold = max(SMALLEST, 100 * ERRORS * widened / variance)

@@ -22,8 +22,7 @@ def make_wavelet(settings: Mapping[str, Any], sampling_rate: float) -> Continuou
     kind = arguments.pop("kind", None)
     if kind not in _WAVELETS:
         raise ValueError(
-            f"wavelet kind must be one of {', '.join(_WAVELETS)}, got {kind!r}: "
-            + nearest(str(kind), list(_WAVELETS))
+            f"wavelet kind must be one of {', '.join(_WAVELETS)}, got {kind!r}: " + nearest(str(kind), list(_WAVELETS))
         )
     return _WAVELETS[kind](sampling_rate, **arguments)
 

@@ -129,9 +129,7 @@ class DampingModule(L.LightningModule):
             "val_rmse_percent": validation,
             "learning_rate": rate,
         }
-        self.log_dict(
-            {name: epoch[name] for name in ("train_loss", "val_loss", "learning_rate")}, batch_size=1
-        )
+        self.log_dict({name: epoch[name] for name in ("train_loss", "val_loss", "learning_rate")}, batch_size=1)
         self.log("val_rmse_percent", validation, batch_size=1, prog_bar=True)
         self.history.append(epoch)
 

@@ -72,9 +72,7 @@ class PortableCheckpoint(ModelCheckpoint):
     """
 
     def __init__(self, folder: Path, name: str, monitor: str | None = None) -> None:
-        super().__init__(
-            folder, name, monitor=monitor, save_on_train_epoch_end=True, enable_version_counter=False
-        )
+        super().__init__(folder, name, monitor=monitor, save_on_train_epoch_end=True, enable_version_counter=False)
 
     def load_state_dict(self, state_dict: dict[str, Any]) -> None:
         """Take over what a checkpoint says of best and last, with the folder of this fit."""

@@ -180,7 +180,7 @@ def _estimates(problem: OutputErrorProblem, fitted: Fitted, frequency: float) ->
 
 def _fit_predictions(problem: OutputErrorProblem, fitted: Fitted) -> dict[str, Tensor]:
     return {
-        record.name: record.response - fitted.prediction.residual[0, i, : len(record.response)]
+        record.name: record.response - fitted.prediction.residual[0, i, : len(record.response)] / record.weight
         for i, record in enumerate(problem.records)
     }
 

@@ -63,9 +63,7 @@ class Protocol:
 
     def __post_init__(self) -> None:
         if self.name not in NAMES:
-            raise ValueError(
-                f"name must be one of {', '.join(NAMES)}, got {self.name!r}: " + nearest(self.name, NAMES)
-            )
+            raise ValueError(f"name must be one of {', '.join(NAMES)}, got {self.name!r}: " + nearest(self.name, NAMES))
         for name in ("window", "stride", "evaluation_stride"):
             if getattr(self, name) < 1:
                 raise ValueError(f"{name} must be at least 1 sample, got {getattr(self, name)!r}")
@@ -143,8 +141,6 @@ def _part(total: int, fraction: float) -> int:
 
 
 BY_RUN = Protocol("by_run")
-PAPER = Protocol(
-    "paper", evaluation_stride=1, validation_fraction=0.2, test_fraction=0.2, windows_per_epoch=None
-)
+PAPER = Protocol("paper", evaluation_stride=1, validation_fraction=0.2, test_fraction=0.2, windows_per_epoch=None)
 PAPER_MANY_RUNS = Protocol("paper_many_runs", validation_fraction=0.2, test_fraction=0.2)
 PROTOCOLS = {protocol.name: protocol for protocol in (BY_RUN, PAPER, PAPER_MANY_RUNS)}

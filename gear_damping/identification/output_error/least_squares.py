@@ -67,6 +67,7 @@ def fit(
     iterations: int = 40,
     states: Tensor | None = None,
     report: Callable[[int, int], None] | None = None,
+    kept: float = 0.5,
 ) -> Fitted:
     """The best of several starts.
 
@@ -77,6 +78,7 @@ def fit(
         iterations: At most so many in each round.
         states: Initial states of the starts, (starts, records, 2); from the records where absent.
         report: Told (done, total) rounds.
+        kept: Share of the starts, the best ones, that goes on from round to round.
     """
     if states is None:
         states = problem.first_states().expand(shared.shape[0], -1, -1).clone()
@@ -86,8 +88,8 @@ def fit(
         points, prediction, cost, converged = _round(problem, points, samples, iterations)
         if report:
             report(number + 1, len(rounds))
-        if number < len(rounds) - 1:  # the better half goes on
-            points = points.pick(cost.argsort()[: max(1, (len(cost) + 1) // 2)])
+        if number < len(rounds) - 1:
+            points = points.pick(cost.argsort()[: max(1, round(kept * len(cost)))])
     best = int(cost.argmin())
     chosen = Prediction(prediction.residual[best : best + 1], prediction.sensitivity[best : best + 1])
     return Fitted(points.shared[best], points.states[best], chosen, float(cost[best]), bool(converged[best]))

@@ -54,6 +54,7 @@ class FitRecord:
         sampling_rate: Hz.
         inputs: Measured input series at the same instants, by the name that the simulator gives them.
         conditions: Parameters that are known for this record alone, by flat name.
+        weight: Factor on its residuals, one over the noise level where records differ in it.
     """
 
     name: str
@@ -61,11 +62,12 @@ class FitRecord:
     sampling_rate: float
     inputs: Mapping[str, Tensor] = field(default_factory=dict)
     conditions: Mapping[str, float] = field(default_factory=dict)
+    weight: float = 1.0
 
 
 @dataclass(frozen=True)
 class Prediction:
-    """Residuals (starts, records, time) and sensitivities (starts, records, time, columns).
+    """Weighted residuals (starts, records, time) and sensitivities (starts, records, time, columns).
 
     The columns are the shared parameters, then displacement and velocity at the start of the record.
     Samples beyond the end of a shorter record are zero in both.
@@ -100,7 +102,7 @@ class OutputErrorProblem:
         self.model, self.given, self.free, self.records = model, dict(given), list(free), list(records)
         self.solver = solver or Solver()
         self.response = _padded([record.response for record in records])
-        self.mask = _padded([torch.ones_like(record.response) for record in records])
+        self.weights = _padded([torch.full_like(record.response, record.weight) for record in records])
         self.spread = torch.stack([r.response.std().clamp(min=1e-300) for r in self.records])
         self.rate_scale = torch.stack([_rate_spread(r) for r in self.records])
 
@@ -154,9 +156,9 @@ class OutputErrorProblem:
         points = starts * (columns + 1)
         found = self.predict(all_shared.reshape(points, -1), all_states.reshape(points, -1, 2), samples)
         found = found.reshape(starts, columns + 1, len(self.records), samples)
-        mask = self.mask[:, :samples]
-        residual = (self.response[:, :samples] - found[:, 0]) * mask
-        sensitivity = (found[:, 1:] - found[:, :1]) / DIFFERENCE * mask
+        weights = self.weights[:, :samples]
+        residual = (self.response[:, :samples] - found[:, 0]) * weights
+        sensitivity = (found[:, 1:] - found[:, :1]) / DIFFERENCE * weights
         return Prediction(residual, sensitivity.permute(0, 2, 3, 1))
 
 

@@ -28,7 +28,7 @@ def covariance(problem: OutputErrorProblem, fitted: Fitted, correlated_samples: 
     inverse = torch.linalg.pinv(jacobian.T @ jacobian, hermitian=True)
     scores = jacobian.reshape(*residual.shape, -1) * residual.unsqueeze(-1)
     meat = sum(_long_run(one, correlated_samples) for one in scores)
-    samples, parameters = float(problem.mask.sum()), jacobian.shape[1]
+    samples, parameters = float((problem.weights > 0).sum()), jacobian.shape[1]
     sandwich = inverse @ meat @ inverse * samples / max(samples - parameters, 1.0)
     plain = inverse * residual.square().sum() / max(samples - parameters, 1.0)
     wide = torch.maximum(sandwich.diagonal(), plain.diagonal()) / sandwich.diagonal().clamp(min=1e-300)
