@@ -49,9 +49,7 @@ class Assembler:
         named = tuple(replace(finding, record=name) for finding in findings)
         return replace(record, findings=(*named, *check_record(record)))
 
-    def _channel(
-        self, raw: RawChannel, record: RawRecord, notes: list[str], findings: list[Finding]
-    ) -> Channel:
+    def _channel(self, raw: RawChannel, record: RawRecord, notes: list[str], findings: list[Finding]) -> Channel:
         plan = raw.plan
         conversion = self.units.conversion(plan.name, raw.unit, f"{plan.key}.unit", self.source)
         findings += [found] if (found := _unit_conflict(raw, conversion)) else []
@@ -72,9 +70,7 @@ class Assembler:
             values = moved_to(record.base.time, raw.own_time, values, plan.key, str(record.table.path))
             rate = raw.own_time.sampling_rate
             notes.append(f"{plan.name}: interpolated from {rate:.6g} Hz to the record's time")
-        return Channel(
-            plan.name, values, conversion.unit, raw.unit, conversion.factor, **limits, **plan.sensor
-        )
+        return Channel(plan.name, values, conversion.unit, raw.unit, conversion.factor, **limits, **plan.sensor)
 
     def _limit(self, name: str, quantity: Quantity, key: str) -> Conversion:
         return self.units.conversion(name, quantity.unit, key, self.source)
@@ -107,9 +103,7 @@ class Assembler:
         )  # fmt: skip
         return Channel("transmission_error", raw.base.resample(values), "m", datum="arbitrary")
 
-    def _conditions(
-        self, raw: RawRecord, channels: dict[str, Channel], notes: list[str]
-    ) -> dict[str, Quantity]:
+    def _conditions(self, raw: RawRecord, channels: dict[str, Channel], notes: list[str]) -> dict[str, Quantity]:
         """A channel beats a condition of the same name."""
         kept = {}
         for name, quantity in raw.plan.conditions.items():

@@ -48,8 +48,7 @@ def declared_plan(content: object, problems: Problems, source: str) -> Plan | No
         top.add("records", "must be a list of at least one record", "begin each record with '- file: ...'")
         listed = []
     records = [
-        _record(Fields(item, f"records[{k}]", RECORD_KEYS, problems, source), system)
-        for k, item in enumerate(listed)
+        _record(Fields(item, f"records[{k}]", RECORD_KEYS, problems, source), system) for k, item in enumerate(listed)
     ]
     return Plan(system, parameters, own, tuple(record for record in records if record))
 

@@ -9,9 +9,7 @@ from gear_damping.errors import InputError, Problem
 TURN = 2 * np.pi
 
 
-def angle_from_counts(
-    counts: NDArray[np.float64], per_revolution: float, direction: int = 1
-) -> NDArray[np.float64]:
+def angle_from_counts(counts: NDArray[np.float64], per_revolution: float, direction: int = 1) -> NDArray[np.float64]:
     """(n,) rad from counts per sample; a counter may begin again after each revolution."""
     return direction * np.unwrap(TURN * counts / per_revolution)
 
@@ -64,9 +62,7 @@ def _extended(pulses: NDArray, angle: NDArray, time: NDArray) -> NDArray[np.floa
     return inner + beyond
 
 
-def rising_edges(
-    signal: NDArray[np.float64], time: NDArray[np.float64], threshold: float
-) -> NDArray[np.float64]:
+def rising_edges(signal: NDArray[np.float64], time: NDArray[np.float64], threshold: float) -> NDArray[np.float64]:
     """(m,) the times in s at which a pulse train rises through `threshold`, between samples too."""
     last = np.flatnonzero((signal[:-1] < threshold) & (signal[1:] >= threshold))
     share = (threshold - signal[last]) / (signal[last + 1] - signal[last])

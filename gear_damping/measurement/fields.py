@@ -38,9 +38,7 @@ class Fields:
         source: The YAML file.
     """
 
-    def __init__(
-        self, content: object, key: str, allowed: Sequence[str], problems: Problems, source: str
-    ) -> None:
+    def __init__(self, content: object, key: str, allowed: Sequence[str], problems: Problems, source: str) -> None:
         self.key, self.problems, self.source = key, problems, source
         if not isinstance(content, dict):
             rule = f"must be a mapping with keys among {', '.join(allowed)}"

@@ -110,9 +110,7 @@ class RawReader:
         if self.stop > n:
             self.stop = n
             rule, remedy = f"{self.table.path.name} has {n} rows", f"end the slice at {n} or before"
-            raise InputError(
-                Problem(f"{self.plan.key}.slice", rule, list(self.plan.rows), remedy, self.source)
-            )
+            raise InputError(Problem(f"{self.plan.key}.slice", rule, list(self.plan.rows), remedy, self.source))
         self.stop = self.stop or n
         if self.stop - self.first < LEAST_SAMPLES:
             rule = f"{self.stop - self.first} samples; a record needs at least {LEAST_SAMPLES}"

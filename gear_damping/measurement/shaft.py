@@ -31,9 +31,7 @@ def shaft_angle(
     """
     time = base.time if base.stamps is None else base.stamps
     if plan.name != "tacho" and not plan.timestamps:
-        angle = angle_from_counts(
-            rows(plan.column, f"{plan.key}.column"), plan.per_revolution, plan.direction
-        )
+        angle = angle_from_counts(rows(plan.column, f"{plan.key}.column"), plan.per_revolution, plan.direction)
         return angle - (0.0 if plan.index is None else _at_index_pulse(plan, angle, rows, file))
     key = f"{plan.key}.{'timestamps' if plan.timestamps else 'column'}"
     if plan.timestamps:

@@ -25,9 +25,7 @@ class _Loader(yaml.SafeLoader):
         for key_node, _ in node.value:
             if key_node.value in seen:
                 where = key_node.start_mark
-                raise yaml.constructor.ConstructorError(
-                    None, None, f"the key '{key_node.value}' appears twice", where
-                )
+                raise yaml.constructor.ConstructorError(None, None, f"the key '{key_node.value}' appears twice", where)
             seen.add(key_node.value)
         return super().construct_mapping(node, deep)
 

@@ -46,9 +46,7 @@ def dense_matrix(mother: Mother, scales: Sequence[float], n_samples: int) -> Ten
     return kernel.reshape(n_samples, -1)
 
 
-def spectrum(
-    mother: Mother, scales: Sequence[float], n_samples: int, dtype: torch.dtype
-) -> tuple[Tensor, int]:
+def spectrum(mother: Mother, scales: Sequence[float], n_samples: int, dtype: torch.dtype) -> tuple[Tensor, int]:
     """Spectrum of the sampled wavelets, (scale, frequency), and the padded length it belongs to.
 
     It is real, because psi(-t) is the conjugate of psi(t). The padding holds the longest wavelet, or
