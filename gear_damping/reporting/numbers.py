@@ -41,8 +41,9 @@ def quantity(value: float | None, unit: str | None, interval: Interval = None, d
     """
     if value is None or not isfinite(value):
         return NOTHING
-    factor, shown = _prefix(value, unit or "")
-    numbers = [factor * value, *(factor * end for end in interval or () if end is not None and isfinite(end))]
+    numbers = [value, *(end for end in interval or () if end is not None and isfinite(end))]
+    factor, shown = _prefix(max(map(abs, numbers)), unit or "")
+    numbers = [factor * one for one in numbers]
     texts = _alike(numbers) if len(numbers) == 3 else [number(numbers[0], digits)]
     text = f"{texts[0]} {shown}".strip().replace(" °", "°")
     return f"{text} ({texts[1]} … {texts[2]})" if len(texts) == 3 else text
@@ -58,7 +59,7 @@ def _alike(numbers: Sequence[float]) -> list[str]:
     return [f"{value:.{decimals}f}" for value in numbers]
 
 
-def found(entry: Mapping[str, Any] | None, digits: int = 3) -> str:
+def estimate(entry: Mapping[str, Any] | None, digits: int = 3) -> str:
     """`quantity` of {value, unit, interval95}."""
     if entry is None:
         return NOTHING
@@ -72,6 +73,6 @@ def percent(share: float | None, digits: int = 3) -> str:
 
 def _prefix(value: float, unit: str) -> tuple[float, str]:
     for limit, factor, prefixed in _PREFIXED.get(unit, ()):
-        if 0 < abs(value) < limit:
+        if 0 < value < limit:
             return factor, prefixed
     return 1.0, pretty_unit(unit)

@@ -1,0 +1,30 @@
+"""Figures and files as data URIs, so that a page needs nothing beside itself."""
+
+import base64
+import io
+
+from matplotlib.figure import Figure
+
+from gear_damping.reporting.style import SAVED_DPI, styled
+
+LARGEST_SVG = 1_500_000  # bytes; a drawing with more is shown as a picture
+PICTURE_DPI = 200
+
+
+def figure_uri(figure: Figure) -> str:
+    """The figure as SVG, or as PNG where the drawing would be too large; the same figure gives the same text."""
+    content = _saved(figure, "svg", SAVED_DPI, {"Date": None, "Creator": None})
+    if len(content) <= LARGEST_SVG:
+        return _uri("image/svg+xml", content)
+    return _uri("image/png", _saved(figure, "png", PICTURE_DPI, {"Software": None}))
+
+
+def _saved(figure: Figure, kind: str, dpi: int, metadata: dict[str, None]) -> bytes:
+    target = io.BytesIO()
+    with styled():
+        figure.savefig(target, format=kind, dpi=dpi, metadata=metadata)
+    return target.getvalue()
+
+
+def _uri(kind: str, content: bytes) -> str:
+    return f"data:{kind};base64,{base64.b64encode(content).decode('ascii')}"

@@ -1,0 +1,104 @@
+"""The figures of a report with their captions."""
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+
+from matplotlib.figure import Figure
+
+from gear_damping.reporting import figures
+from gear_damping.reporting.explanation_report.data_uri import figure_uri
+from gear_damping.reporting.explanation_report.report_input import ReportInput, ResidualSpectrum
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A figure in the page.
+
+    Args:
+        uri: The picture.
+        caption: What to see in it, in one or two sentences.
+    """
+
+    uri: str
+    caption: str
+
+
+def overlays(report: ReportInput) -> list[Shown]:
+    """Measured, nominal and extended of each record."""
+    shown = []
+    for one in report.overlays:
+        figure = figures.overlay_figure(
+            one.time,
+            one.measured,
+            one.nominal,
+            one.extended,
+            unit=report.unit,
+            quantity=report.quantity,
+            noise=one.noise,
+        )
+        caption = (
+            f"{one.record}: the stretch in which the nominal simulation is worst, and the residuals there and over all."
+        )
+        shown.append(_shown(figure, caption))
+    return shown
+
+
+def misfit(report: ReportInput) -> Shown | None:
+    """Before and after of each record."""
+    found = report.explanation.get("misfit") or {}
+    if not found.get("records"):
+        return None
+    figure = figures.misfit_figure(found["records"], floor=found.get("floor", 1.0))
+    return _shown(figure, "Each record from before to after; at the dashed line noise alone is left.")
+
+
+def spectrum(report: ReportInput) -> Shown | None:
+    """Where the residual lies in orders or frequencies."""
+    found = report.spectrum
+    if found is None:
+        return None
+    given = {"after": found.after, "unit": report.unit, "measured": found.measured, "floor": found.floor}
+    if found.mesh_order is None:
+        return _shown(_over_frequencies(found, given), "Spectrum of what the simulation leaves, before and after.")
+    orders = {"mesh_order": found.mesh_order, "gear_order": found.gear_order}
+    figure = figures.residual_orders_figure(found.places, found.before, **given, **orders)
+    caption = "Spectrum of what the simulation leaves, before and after: a line at a shaft's order turns with that "
+    return _shown(figure, caption + "shaft, one at a mesh harmonic repeats with every tooth.")
+
+
+def _over_frequencies(found: ResidualSpectrum, given: dict) -> Figure:
+    place = {"natural_frequency_hz": found.natural_frequency_hz, "highest_hz": found.highest_hz}
+    return figures.residual_frequencies_figure(found.places, found.before, **given, **place)
+
+
+def candidates(report: ReportInput) -> Shown | None:
+    """What was tried."""
+    if not report.candidates:
+        return None
+    figure = figures.candidates_figure([asdict(c) for c in report.candidates], needed_share=report.needed_share)
+    return _shown(
+        figure, "What each effect would explain of the excess, after its full fit, on records that were held out."
+    )
+
+
+def residual_forces(report: ReportInput) -> Iterator[Shown]:
+    """The force that the simulation misses, as far as it was estimated."""
+    if report.force_map is not None:
+        one = report.force_map
+        figure = figures.residual_force_map_figure(one.mesh_phase, one.force, unit=one.unit)
+        caption = (
+            "The force that the nominal simulation misses, by pinion tooth and mesh phase: a column is one tooth's, "
+        )
+        yield _shown(figure, caption + "a row is common to all teeth.")
+    if report.force_surface is not None:
+        two = report.force_surface
+        units = {"displacement_unit": two.displacement_unit, "velocity_unit": two.velocity_unit}
+        figure = figures.residual_force_surface_figure(
+            two.displacement, two.velocity, two.force, force_unit=two.force_unit, visits=two.visits, **units
+        )
+        caption = "The same over displacement and velocity: what depends on displacement is a missing stiffness, what "
+        yield _shown(figure, caption + "depends on velocity missing damping.")
+
+
+def _shown(figure: Figure, caption: str) -> Shown:
+    return Shown(figure_uri(figure), caption)
