@@ -80,7 +80,8 @@ def of_search(measurement: Measurement, evidence: Evidence, noise: NoiseLevel, j
         "records": _records(evidence, first, last, factor, unit),
         "calibration": {
             "converged": first.fitted.converged,
-            "parameters": {name: value for name, value in first.values.items()},
+            "parameters": dict(first.values),
+            "steps": _steps(judged),
         },
         "findings": _findings(measurement.findings),
     }
@@ -91,6 +92,16 @@ def _findings(findings: Sequence[Finding]) -> list[dict[str, Any]]:
         {"kind": f.kind, "message": f.message, "record": f.record, "channel": f.channel, "sample": f.sample}
         | {"severity": f.severity}
         for f in findings
+    ]
+
+
+def _steps(judged: Judged) -> list[str]:
+    before = judged.before
+    rest = "came to rest" if judged.found.nominal.fitted.converged else "did not come to rest: take it with care"
+    return [
+        f"The nominal simulation was fitted first, so that no wrong parameter passes for physics; the fit {rest}.",
+        f"It leaves {before.percent:.3g} % of the signal's variance beyond the noise on held-out records; "
+        f"more than {before.threshold:.2g} % counts as significant.",
     ]
 
 
@@ -138,7 +149,7 @@ def _gain(judged: Judged, evidence: Evidence, noise: NoiseLevel) -> dict[str, An
         for key, outcome in (("before", first), ("after", last))
     }
     return {
-        "holdout_nrmse": {
+        "nrmse": {
             "before": gain.nrmse(first.holdout, evidence.holdout),
             "after": gain.nrmse(last.holdout, evidence.holdout),
             "floor": (floor / max(spread, 1e-300)) ** 0.5,

@@ -14,7 +14,8 @@ SEPARATES = {
     "torque_channel": "record the pinion torque: a ripple of the torque shows there, an eccentricity does not",
     "bearing": "add an accelerometer or displacement sensor at the bearing",
     "remount": "remount the encoder turned by 180 degrees: its own error turns with it, that of the gear does not",
-    "ring_down": "record a ring-down from a larger amplitude: damping and stiffness laws differ by how they change with it",
+    "ring_down": "record a ring-down from a larger amplitude: laws of damping and stiffness "
+    "differ in how they change with it",
     "amplitude": "excite at half and at twice the level: nonlinear forces change their share, linear ones do not",
     "reversal": "reverse the torque slowly: the mean deflection steps by the gap, and offsets separate from friction",
 }
@@ -55,7 +56,8 @@ def next_experiment(names: Sequence[str], evidence: Evidence) -> dict[str, objec
         _for_system("torque", evidence)
     ]
     chosen = max(dict.fromkeys(wishes), key=wishes.count)
-    return {"kind": chosen, "what": SEPARATES[chosen], "separates": list(names), "conditions_so_far": evidence.conditions}
+    known = {"separates": list(names), "conditions_so_far": evidence.conditions}
+    return {"kind": chosen, "what": f"{SEPARATES[chosen][0].upper()}{SEPARATES[chosen][1:]}."} | known
 
 
 def _for_system(kind: str, evidence: Evidence) -> str:

@@ -104,7 +104,9 @@ def _waves(angle: Array, count: int) -> Array:
     return np.stack([wave(h * angle) for h in range(1, count + 1) for wave in (np.cos, np.sin)], 1)
 
 
-def _share(trained: Sequence[Array], residual: Sequence[Array], tested: Sequence[Array], held: Sequence[Array]) -> float:
+def _share(
+    trained: Sequence[Array], residual: Sequence[Array], tested: Sequence[Array], held: Sequence[Array]
+) -> float:
     """Share of the held-out residual's energy that a regression on the fitted records' residuals takes."""
     columns, target = np.concatenate(trained), np.concatenate(residual)
     found = np.linalg.lstsq(columns, target, rcond=1e-8)[0]

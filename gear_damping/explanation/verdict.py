@@ -103,7 +103,7 @@ def verdict(found: Search, before: Excess, after: Excess, converged: bool = True
     if taken >= HALF and not confused:
         text = f"{missing}. Part of it has a name: {said}. A significant rest of {after.percent:.3g} % has none."
         return Verdict(PARTLY, (text, _left(taken), *unsettled))
-    text = f"{missing}. {said[0].upper()}{said[1:]} would take part of it, but what is left is too large to name a cause."
+    text = f"{missing}. {said[0].upper()}{said[1:]} would take part of it, but too much is left to name a cause."
     return Verdict(UNEXPLAINED, (text, *unsettled))
 
 

@@ -25,7 +25,7 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     folder.write_json("explanation.json", found.content)
     if found.found is not None:
         _write_extended(folder.path / EXTENDED, found, measurement)
-    write_report(folder.path, found)
+    write_report(folder.path, found, {"command": folder.record["command"], "measurement": str(measurement.source)})
     for sentence in found.content["sentences"]:
         statements.say(sentence)
     statements.say(f"verdict: {found.content['verdict']}; the report is {folder.path / 'report.html'}")
