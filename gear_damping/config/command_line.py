@@ -5,53 +5,116 @@ unknown key shall meet our own check, which knows the nearest valid one, and not
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+
+from hydra.core.override_parser.overrides_parser import OverridesParser
+from hydra.core.override_parser.types import Override
+from hydra.errors import HydraException
 
 from gear_damping.config.locate import conf_folder, groups
 from gear_damping.errors import Problem, nearest
 
-FLAGS_WITH_VALUE = ("--config-path", "-cp", "--config-name", "-cn", "--config-dir", "-cd", "--package", "-p")
+SOURCE = "the command line"
+OFF_BY_NULL = ("experiment",)  # groups that may be left out
+SHOWS = ("--cfg", "-c", "--info", "-i", "--resolve", "--version", "--hydra-help", "--shell-completion", "-sc")
+MANY = ("--multirun", "-m")
+FLAGS = (*SHOWS, *MANY, "--run", "-r", "--package", "-p", "--help", "-h")
+TAKES = {  # the words that a flag takes after it; None: any
+    **dict.fromkeys(("--cfg", "-c"), ("job", "hydra", "all")),
+    **dict.fromkeys(("--info", "-i"), ("all", "config", "defaults", "defaults-tree", "plugins", "searchpath")),
+    **dict.fromkeys(("--package", "-p"), None),
+}
 
 
-def prepare(arguments: Sequence[str]) -> tuple[list[str], list[Problem]]:
-    """The arguments as Hydra shall see them, and what is wrong with the others, which are left out.
+@dataclass(frozen=True)
+class CommandLine:
+    """The words of a command, sorted.
 
-    Wrong are arguments that are no override, and choices that a group does not have.
+    Args:
+        flags: What begins with a dash, each followed by its word.
+        overrides: Overrides as Hydra shall see them.
+        problems: What is wrong with the other words, which are left out.
     """
+
+    flags: tuple[str, ...]
+    overrides: tuple[str, ...]
+    problems: tuple[Problem, ...]
+
+    @property
+    def many(self) -> bool:
+        """Whether it is a sweep."""
+        return bool(set(MANY) & set(self.flags))
+
+    @property
+    def shows(self) -> bool:
+        """Whether Hydra only shows something and no job runs."""
+        return bool(set(SHOWS) & {flag.partition("=")[0] for flag in self.flags})
+
+    def first_job(self) -> list[str]:
+        """The overrides with the first value of each sweep."""
+        return [_first(override) for override in self.overrides]
+
+
+def read_command_line(arguments: Sequence[str]) -> CommandLine:
+    """Sort the words; wrong are unknown flags, what is no override, and choices that a group does not have."""
+    flags: list[str] = []
+    overrides: list[str] = []
     problems: list[Problem] = []
-    prepared, value_follows = [], False
+    many = bool(set(MANY) & set(arguments))
+    takes: tuple[str, ...] | None = ()
     for argument in arguments:
-        if value_follows or argument.startswith("-"):
-            prepared.append(argument)
-            value_follows = argument in FLAGS_WITH_VALUE and not value_follows
-            continue
-        found = _problems_with(argument)
-        problems += found
-        prepared += [] if found else [_override(argument)]
-    return prepared, problems
+        if takes is None or argument in takes:
+            flags.append(argument)
+            takes = ()
+        elif argument.startswith("-"):
+            name = argument.partition("=")[0]
+            found = _unknown_flag(name)
+            problems += found
+            flags += [] if found else [argument]
+            takes = () if "=" in argument else TAKES.get(name, ())
+        else:
+            found, override = _read_override(argument, many)
+            problems += found
+            overrides += override
+    return CommandLine(tuple(flags), tuple(overrides), tuple(problems))
 
 
-def _problems_with(argument: str) -> list[Problem]:
-    key, equals, value = argument.partition("=")
-    if not equals and not argument.startswith("~"):
+def _unknown_flag(name: str) -> list[Problem]:
+    return [] if name in FLAGS else [Problem(name, "no such flag", remedy=nearest(name, FLAGS), source=SOURCE)]
+
+
+def _read_override(argument: str, many: bool) -> tuple[list[Problem], list[str]]:
+    """What is wrong with one word, and the override that Hydra shall see."""
+    if "=" not in argument and not argument.startswith("~"):
         remedy = "write key=value, for example experiment=backlash"
-        return [Problem(argument, "is not an override", remedy=remedy, source="the command line")]
-    group = key.lstrip("+")
-    return _unknown_choices(group, value) if group in groups() else []
-
-
-def _override(argument: str) -> str:
-    key, _, value = argument.partition("=")
-    plain = key.lstrip("+")
-    if argument.startswith("~") or plain.startswith("hydra"):
-        return argument
-    return f"{plain}={value}" if plain in groups() else f"++{plain}={value}"
+        return [Problem(argument, "is not an override", remedy=remedy, source=SOURCE)], []
+    try:
+        parsed = parse(argument)
+    except HydraException as error:
+        rule = f"cannot be read: {str(error).splitlines()[0]}"
+        remedy = "close every bracket and quote; a value with '=' needs quotes of its own: key='\"value\"'"
+        return [Problem(argument, rule, remedy=remedy, source=SOURCE)], []
+    key, value = parsed.key_or_group, argument.partition("=")[2]
+    if not key:
+        return [Problem(argument, "has no key", remedy="write key=value", source=SOURCE)], []
+    if not many and not parsed.is_delete() and parsed.is_sweep_override():
+        rule, remedy = "has several values and this is one run", "add --multirun for a sweep, or write a list: [a,b]"
+        return [Problem(key, rule, value, remedy, SOURCE)], []
+    if parsed.is_delete() or key.startswith("hydra"):
+        return [], [argument]
+    if key not in groups():
+        return [], [f"++{key}={value}"]
+    if value == "null" and key in OFF_BY_NULL:
+        return [], []
+    problems = _unknown_choices(key, value)
+    return problems, [] if problems else [f"{key}={value}"]
 
 
 def _unknown_choices(group: str, value: str) -> list[Problem]:
+    if "(" in value:
+        return []  # choice(…) and glob(…) of a sweep
+    source = f"{SOURCE}; the choices are the files of {conf_folder() / group}"
     choices = groups()[group]
-    if value == "null":
-        return []
-    source = f"the command line; the choices are the files of {conf_folder() / group}"
     return [
         Problem(group, "no such choice", one, nearest(one, choices), source)
         for one in value.split(",")
@@ -59,10 +122,28 @@ def _unknown_choices(group: str, value: str) -> list[Problem]:
     ]
 
 
-def typed_value(overrides: Sequence[str], key: str) -> str | None:
-    """What the command line gave for a key or one below it, as typed; None where it gave nothing."""
-    for override in reversed(overrides):
-        name, _, value = override.lstrip("+").partition("=")
-        if name not in groups() and (name == key or name.startswith(key + ".") or key.startswith(name + ".")):
-            return f"{name}={value}"
-    return None
+def parse(override: str) -> Override:
+    """One override as Hydra understands it.
+
+    Raises:
+        HydraException: its syntax is broken.
+    """
+    return OverridesParser.create().parse_override(override)
+
+
+def _first(override: str) -> str:
+    parsed = parse(override)
+    if parsed.is_delete() or not parsed.is_sweep_override():
+        return override
+    return f"{override.partition('=')[0]}={next(iter(parsed.sweep_string_iterator()))}"
+
+
+def swept_keys(overrides: Sequence[str]) -> list[str]:
+    """The keys and groups that a sweep varies."""
+    parsed = [parse(override) for override in overrides]
+    return [one.key_or_group for one in parsed if not one.is_delete() and one.is_sweep_override()]
+
+
+def as_typed(overrides: Sequence[str]) -> list[str]:
+    """The overrides as a user types them."""
+    return [override.lstrip("+") for override in overrides]

@@ -6,7 +6,7 @@ from typing import Any
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.physics.parameter import Parameter
-from gear_damping.units import parse_unit, to_si
+from gear_damping.units import to_si
 
 SUFFIXES = {"rpm": "rpm", "deg": "deg", "um": "um", "mm": "mm", "ms": "ms", "khz": "kHz", "hz": "Hz", "percent": "%"}
 
@@ -34,9 +34,9 @@ def quantity(value: Any, expected: str, key: str, source: str, unit: str | None 
             raise InputError(Problem(key, rule, dict(value), f"for example {{value: 1, unit: {expected}}}", source))
         unit, value = value.get("unit", unit), value["value"]
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not isfinite(value):
-        raise InputError(
-            Problem(key, f"must be a finite number in {unit or expected}", value, "write a number", source)
-        )
+        rule = "must be a finite number" + (f" in {unit or expected}" if (unit or expected) != "1" else "")
+        remedy = f"write a number, or {{value: …, unit: {expected}}}"
+        raise InputError(Problem(key, rule, value, remedy, source))
     return to_si(float(value), unit, expected, key, source) if unit else float(value)
 
 
@@ -72,8 +72,3 @@ def _listed(value: Any, unit: str | None) -> tuple[Sequence[Any] | None, str | N
 def _refuse(problem: Problem | None) -> None:
     if problem:
         raise InputError(problem)
-
-
-def valid_unit(text: str, key: str, source: str) -> None:
-    """Raise InputError where the text names no unit."""
-    parse_unit(text, key, source)

@@ -58,7 +58,7 @@ SCHEMA: dict[str, Any] = {
         "kind": Key("text", choices=("ricker", "morlet")),
         "frequency_min_hz": Key("float", 0, 1e12, exclusive=True),
         "frequency_max_hz": Key("float", 0, 1e12, exclusive=True),
-        "n_scales": Key("int", 1, 4096),
+        "n_scales": Key("int", 2, 4096),
         "omega0": Key("float", 1, 100, optional=True),
         "magnitude": Key("bool", optional=True),
     },
@@ -111,7 +111,7 @@ def _check(
 def problem_with(value: Any, rule: Key, key: str, origin: Origin) -> Problem | None:
     """The problem with one value, or None."""
     if value is None:
-        return None if rule.optional else Problem(key, "must be given", source=origin.of(key))
+        return None if rule.optional else Problem(key, "must be given", None, _example(rule), origin.of(key))
     said = _wrong_type(value, rule) or _out_of_range(value, rule)
     if said:
         return Problem(key, said[0], value, said[1], origin.of(key))
@@ -128,6 +128,10 @@ def problem_with(value: Any, rule: Key, key: str, origin: Origin) -> Problem | N
     return None
 
 
+def _example(rule: Key) -> str:
+    return f"choose one of {', '.join(rule.choices)}" if rule.choices else "give a value"
+
+
 def _wrong_type(value: Any, rule: Key) -> tuple[str, str] | None:
     number = isinstance(value, (int, float)) and not isinstance(value, bool)
     wanted = {
@@ -137,7 +141,7 @@ def _wrong_type(value: Any, rule: Key) -> tuple[str, str] | None:
         "text": (isinstance(value, str), "text"),
         "names": (
             isinstance(value, list) and len(value) > 0 and len(set(map(str, value))) == len(value),
-            "a list of names",
+            "a list of different names",
         ),
     }
     good, said = wanted[rule.kind]
@@ -148,16 +152,17 @@ def _out_of_range(value: Any, rule: Key) -> tuple[str, str] | None:
     if rule.kind not in ("int", "float"):
         return None
     inside = rule.lower < value < rule.upper if rule.exclusive else rule.lower <= value <= rule.upper
-    if inside and isfinite(value):
+    if inside:
         return None
     words = "strictly between" if rule.exclusive else "within"
-    return f"must lie {words} {rule.lower:g} and {rule.upper:g}", f"nearest valid value {_nearest_number(value, rule)}"
+    said = f"must lie {words} {rule.lower:.10g} and {rule.upper:.10g}"
+    return said, f"nearest valid value {_nearest_number(value, rule)}"
 
 
 def _nearest_number(value: float, rule: Key) -> str:
-    if not isfinite(value):
+    if isinstance(value, float) and not isfinite(value):
         return f"{rule.lower:g}"
     near = min(max(value, rule.lower), rule.upper)
     if rule.exclusive and near in (rule.lower, rule.upper):
         return f"just {'above' if near == rule.lower else 'below'} {near:g}"
-    return f"{near:g}"
+    return f"{near:.10g}"

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from gear_damping.config import schema
+from gear_damping.config.combinations import Whole, combination_problems
 from gear_damping.config.locate import conf_folder
 from gear_damping.config.simulator import SimulatorSettings, read_simulator
 from gear_damping.config.source import Origin
@@ -48,18 +49,21 @@ def read_settings(config: Mapping[str, Any], origin: Origin) -> Settings:
     config = {key: value for key, value in config.items() if key != "hydra"}
     problems = schema.check(config, origin)
     simulator = None
-    for group in schema.ELSEWHERE:
-        if not isinstance(config.get(group), Mapping):
-            problems.append(Problem(group, "is a group of keys", config.get(group), f"choose {group}=<choice>"))
-    if all(isinstance(config.get(group), Mapping) for group in schema.ELSEWHERE):
+    nodes = {group: config.get(group) for group in schema.ELSEWHERE}
+    for group, node in nodes.items():
+        if not isinstance(node, Mapping):
+            problems.append(Problem(group, "is a group of keys", node, f"choose {group}=<choice>", origin.of(group)))
+    if all(isinstance(node, Mapping) for node in nodes.values()):
         try:
-            simulator = read_simulator(config["simulator"], config["family"], origin)
+            simulator = read_simulator(nodes["simulator"], nodes["family"], origin)
         except InputError as error:
             problems += error.problems
-    problems += [] if problems else _combinations(config, simulator, origin)
+    path = (config.get("measurement") or {}).get("path")
+    measurement = _measurement(path) if isinstance(path, str) else None
+    whole = Whole(config, simulator, measurement, origin)
+    problems += combination_problems(whole, {problem.key for problem in problems})
     if problems:
         raise InputError(problems)
-    path = config["measurement"]["path"]
     return Settings(
         task=config["task"],
         name=config["name"],
@@ -75,53 +79,17 @@ def read_settings(config: Mapping[str, Any], origin: Origin) -> Settings:
         wavelet={key: value for key, value in config["wavelet"].items() if value is not None},
         model=dict(config["model"]),
         training=dict(config["training"]),
-        measurement_path=_measurement(path),
+        measurement_path=measurement,
         measurement_channel=config["measurement"]["channel"],
     )
-
-
-def _combinations(config: Mapping[str, Any], simulator: SimulatorSettings, origin: Origin) -> list[Problem]:
-    """What is wrong with values that are each right by themselves."""
-    problems = []
-
-    def add(key: str, rule: str, value: Any, remedy: str) -> None:
-        problems.append(Problem(key, rule, value, remedy, origin.of(key)))
-
-    task, protocol = config["task"], config["protocol"]
-    for key, path in (("checkpoint", config["checkpoint"]), ("resume", config["resume"])):
-        if path is not None and not Path(path).exists():
-            add(key, "no such file or folder", path, "give the path of an earlier run's")
-    if task in ("identify", "explain") and config["measurement"]["path"] is None:
-        add("measurement.path", f"task={task} needs a measurement", None, "measurement.path=PATH/measurement.yaml")
-    if task == "evaluate" and config["checkpoint"] is None:
-        add("checkpoint", "task=evaluate needs a trained estimator", None, "checkpoint=…/best.ckpt")
-    if protocol["window"] > simulator.n_samples:
-        add(
-            "protocol.window",
-            f"must not exceed simulator.n_samples = {simulator.n_samples}",
-            protocol["window"],
-            "shorten it",
-        )
-    wavelet = config["wavelet"]
-    if wavelet["frequency_min_hz"] >= wavelet["frequency_max_hz"]:
-        add("wavelet.frequency_min_hz", "must lie below frequency_max_hz", wavelet["frequency_min_hz"], "lower it")
-    if wavelet["frequency_max_hz"] >= simulator.sampling_rate / 2 and task == "train":
-        rule = f"must lie below half the sampling rate, {simulator.sampling_rate / 2:g} Hz"
-        add("wavelet.frequency_max_hz", rule, wavelet["frequency_max_hz"], "lower it, or sample faster")
-    if simulator.damping_ratio_percent is not None and protocol["name"] != "by_run" and task == "train":
-        rule = "test runs of one ratio need whole runs to test on"
-        add("simulator.damping_ratio_percent", rule, simulator.damping_ratio_percent, "choose protocol=by_run")
-    return problems
 
 
 def _path(text: str | None) -> Path | None:
     return None if text is None else Path(text)
 
 
-def _measurement(text: str | None) -> Path | None:
+def _measurement(text: str) -> Path:
     """The measurement file; one that comes with the package is found from any folder."""
-    if text is None:
-        return None
     path = Path(text)
     packaged = conf_folder().parent / path
     return packaged if not path.exists() and text.startswith("conf/") and packaged.exists() else path

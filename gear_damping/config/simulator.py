@@ -1,18 +1,23 @@
 """The `simulator` and `family` nodes: checked against the declarations of systems and effects."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
-from gear_damping.config.quantities import parameter_value, quantity, split_suffix
-from gear_damping.config.schema import Key, problem_with
-from gear_damping.config.source import Origin
-from gear_damping.errors import InputError, Problem, nearest
+from gear_damping.config.extended import with_extended
+from gear_damping.config.families import read_family
+from gear_damping.config.quantities import split_suffix
+from gear_damping.config.reader import Reader
+from gear_damping.config.schema import Key
+from gear_damping.config.source import COMMAND_LINE, Origin
+from gear_damping.errors import InputError, Problem
 from gear_damping.physics.catalogue import SYSTEMS, catalogue
 from gear_damping.physics.model import Model
 from gear_damping.physics.parameter import Parameter
-from gear_damping.physics.terms import DampingLaw, Effect
-from gear_damping.simulation.families import DAMPING_RATIO, Family, Spread
+from gear_damping.physics.systems.base import System
+from gear_damping.physics.terms import DampingLaw, Effect, MeshStiffness
+from gear_damping.simulation.families import Family
 from gear_damping.simulation.solver_settings import Solver
 
 PLAIN = {
@@ -30,6 +35,8 @@ SOLVER = {
     "engine": Key("text", choices=("auto", "native", "fused", "eager")),
     "chunk": Key("int", 1, 10_000_000),
 }
+RATE = Parameter("sampling_rate", "Hz", 40e3, "output samples per second", 1e-9, 1e9)
+HOW = (*(name for name in PLAIN if name != "system"), "solver", "plugins")  # keys that say how to simulate
 SENSOR_NOISE = "sensor_noise"
 
 
@@ -49,6 +56,7 @@ class SimulatorSettings:
         diverged_share: Tolerated share of diverged runs.
         solver: Settings of the solver.
         plugins: The user's own effect files.
+        extended: The file of an extended simulator that the model came from, or None.
     """
 
     model: Model
@@ -62,6 +70,7 @@ class SimulatorSettings:
     diverged_share: float
     solver: Solver
     plugins: tuple[str, ...]
+    extended: str | None
 
     @property
     def sensor_noise_db(self) -> float | None:
@@ -69,50 +78,10 @@ class SimulatorSettings:
         declared = self.model.parameters().get(f"{SENSOR_NOISE}.snr_db")
         return None if declared is None else float(self.given.get(f"{SENSOR_NOISE}.snr_db", declared.default))
 
-
-class _Reader:
-    """Reads the two nodes and collects every problem on the way."""
-
-    def __init__(self, node: Mapping[str, Any], origin: Origin) -> None:
-        self.node, self.origin = dict(node), origin
-        self.problems: list[Problem] = []
-
-    def source(self, key: str) -> str:
-        return self.origin.of(key)
-
-    def collect(self, work: Callable[[], Any]) -> Any:
-        """The result of `work`; None where it raised an InputError, which is kept."""
-        try:
-            return work()
-        except InputError as error:
-            self.problems += error.problems
-            return None
-
-    def plain(self, node: Mapping[str, Any], rules: Mapping[str, Key], prefix: str) -> dict[str, Any]:
-        found = {}
-        for name, rule in rules.items():
-            value = node.get(name)
-            problem = problem_with(value, rule, prefix + name, self.origin)
-            self.problems += [problem] if problem else []
-            found[name] = None if problem else value
-        return found
-
-    def parameters(self, node: Mapping[str, Any], declared: Mapping[str, Parameter], prefix: str) -> dict[str, Any]:
-        """Values in SI by parameter name; keys that are not declared are left to the caller."""
-        found: dict[str, Any] = {}
-        for key, value in node.items():
-            name, unit = split_suffix(key, declared)
-            if name not in declared:
-                continue
-            full = prefix + key
-            if name in found:
-                self.problems.append(Problem(full, f"'{name}' is given twice", value, "keep one", self.source(full)))
-            found[name] = self.collect(
-                lambda name=name, unit=unit, value=value, full=full: parameter_value(
-                    value, declared[name], full, self.source(full), unit
-                )
-            )
-        return {name: value for name, value in found.items() if value is not None}
+    @property
+    def files(self) -> list[Path]:
+        """The user's files that decide what is simulated."""
+        return [Path(path) for path in (*self.plugins, *([self.extended] if self.extended else []))]
 
 
 def read_simulator(node: Mapping[str, Any], family: Mapping[str, Any], origin: Origin) -> SimulatorSettings:
@@ -121,155 +90,127 @@ def read_simulator(node: Mapping[str, Any], family: Mapping[str, Any], origin: O
     Raises:
         InputError: everything that is wrong with them.
     """
-    reader = _Reader(node, origin)
-    plain = reader.plain(reader.node, PLAIN, "simulator.")
-    solver = _solver(reader)
-    plugins = _plugins(reader)
-    known = reader.collect(lambda: catalogue(plugins)) or {}
+    reader = Reader(origin)
+    merged = reader.collect(lambda: with_extended(node, origin, HOW))
+    node, reader.origin = merged or (dict(node), origin)
+    plain = reader.plain(node, PLAIN, "simulator.")
+    solver = _solver(reader, node.get("solver"))
+    plugins = _plugins(reader, node.get("plugins") or [])
+    known = catalogue(plugins)
     system_class = SYSTEMS.get(plain["system"])
-    if system_class is None or not known:
+    if system_class is None:
         raise InputError(reader.problems)
     declared = {p.name: p for p in system_class.parameters}
     options = {option.name for option in system_class.options}
-    own = {k: v for k, v in reader.node.items() if k in options}
-    system = reader.collect(lambda: system_class(**own))
-    given = reader.parameters(reader.node, declared, "simulator.")
-    rate = _sampling_rate(reader)
-    effects = _effects(reader, known, declared, options, given)
-    model = None
-    if not reader.problems:
-        model = reader.collect(lambda: Model(system, effects))
-    spreads = _family(reader, family, model)
-    _check_law(reader, model, plain, effects)
+    chosen = {key: value for key, value in node.items() if key in options}
+    system = reader.collect(lambda: system_class(**chosen), "simulator") or system_class()
+    given = reader.parameters(node, declared, "simulator.")
+    rate = reader.parameters(node, {RATE.name: RATE}, "simulator.").get(RATE.name, RATE.default)
+    _refuse_unknown(reader, node, known, declared, options)
+    effects = [_effect(reader, known[key], value, given) for key, value in node.items() if key in known]
+    effects = [effect for effect in effects if effect is not None]
+    model = _model(reader, system, effects, given)
+    flat = declared | {f"{effect.name}.{p.name}": p for effect in effects for p in effect.parameters}
+    drawn = read_family(reader, family, flat, given)
+    plain["damping_law"] = _damping_law(reader, plain["damping_law"], effects)
     if reader.problems:
         raise InputError(reader.problems)
-    del plain["system"], plain["extended"]
+    del plain["system"]
     return SimulatorSettings(
-        model=model, given=given, family=spreads, sampling_rate=rate, solver=Solver(**solver), plugins=plugins, **plain
+        model=model, given=given, family=drawn, sampling_rate=rate, solver=Solver(**solver), plugins=plugins, **plain
     )
 
 
-def _solver(reader: _Reader) -> dict[str, Any]:
-    node = reader.node.get("solver")
+def _solver(reader: Reader, node: Any) -> dict[str, Any]:
     if not isinstance(node, Mapping):
-        reader.problems.append(
-            Problem("simulator.solver", "is a group of keys", node, "give simulator.solver.accuracy")
-        )
+        reader.refuse("simulator.solver", "is a group of keys", node, "give simulator.solver.accuracy")
         return {}
     for key in set(node) - set(SOLVER):
-        full = f"simulator.solver.{key}"
-        reader.problems.append(
-            Problem(full, "no such key", remedy=nearest(key, list(SOLVER)), source=reader.source(full))
-        )
+        reader.refuse_unknown(f"simulator.solver.{key}", SOLVER)
     return reader.plain(node, SOLVER, "simulator.solver.")
 
 
-def _plugins(reader: _Reader) -> tuple[str, ...]:
-    node = reader.node.get("plugins") or []
+def _plugins(reader: Reader, node: Any) -> tuple[str, ...]:
+    """The user's effect files that can be loaded."""
+    key = "simulator.plugins"
     if not isinstance(node, list) or not all(isinstance(path, str) for path in node):
-        rule, source = "must be a list of paths", reader.source("simulator.plugins")
-        reader.problems.append(Problem("simulator.plugins", rule, node, "write [path/to/my_effect.py]", source))
+        reader.refuse(key, "must be a list of paths", node, "write [path/to/my_effect.py]")
         return ()
-    return tuple(node)
+    return tuple(path for path in node if reader.collect(lambda path=path: _load(reader, key, path)))
 
 
-def _sampling_rate(reader: _Reader) -> float:
-    key = "simulator.sampling_rate"
-    rate = reader.collect(lambda: quantity(reader.node.get("sampling_rate"), "Hz", key, reader.source(key)))
-    if rate is not None and not 0 < rate <= 1e9:
-        rule = "must lie above 0 and up to 1e9 Hz"
-        reader.problems.append(Problem(key, rule, rate, "for example {value: 40, unit: kHz}", reader.source(key)))
-    return rate or 1.0
+def _load(reader: Reader, key: str, path: str) -> bool:
+    source = reader.origin.of(key)
+    if not path.endswith(".py"):
+        raise InputError(Problem(key, "is no Python file", path, "give the path of a .py file", source))
+    try:
+        catalogue((path,))
+    except InputError:
+        raise
+    except Exception as error:  # the user's own code can fail in any way
+        rule = f"cannot be loaded: {type(error).__name__}: {error}"
+        raise InputError(Problem(key, rule, path, "correct the file", source)) from error
+    return True
 
 
-def _effects(
-    reader: _Reader,
+def _refuse_unknown(
+    reader: Reader,
+    node: Mapping[str, Any],
     known: Mapping[str, type[Effect]],
     declared: Mapping[str, Parameter],
     options: set[str],
-    given: dict[str, Any],
-) -> list[Effect]:
-    """The effects that are on; their parameters go into `given` by flat name."""
-    ours = {*PLAIN, *options, "solver", "plugins", "sampling_rate"}
-    effects = []
-    for key, value in reader.node.items():
+) -> None:
+    """Note the keys that are neither settings, parameters nor effects, and effects that are no mapping."""
+    ours, numbers = {*HOW, "system", *options}, {**declared, RATE.name: RATE}
+    for key, value in node.items():
         full = f"simulator.{key}"
-        if key in ours or split_suffix(key, declared)[0] in declared:
-            continue
-        if key not in known:
-            choices = [*known, *declared, *ours]
-            problem = Problem(
-                full, "no such effect or parameter", remedy=nearest(key, choices), source=reader.source(full)
-            )
-            reader.problems.append(problem)
-        elif isinstance(value, Mapping):
-            effects += _effect(reader, known[key], value, given)
-        elif value is not None:
-            rule = "must be null (off) or hold parameters"
-            remedy = f"write {full}={{}} for its defaults, or {full}=null"
-            reader.problems.append(Problem(full, rule, value, remedy, reader.source(full)))
-    return effects
+        if key in known:
+            if value is not None and not isinstance(value, Mapping):
+                remedy = f"write {full}={{}} for its defaults, or {full}=null"
+                reader.refuse(full, "must be null (off) or hold parameters", value, remedy)
+        elif key not in ours and split_suffix(key, numbers)[0] not in numbers:
+            reader.refuse_unknown(full, [*known, *numbers, *ours], "no such effect or parameter")
 
 
-def _effect(reader: _Reader, kind: type[Effect], node: Mapping[str, Any], given: dict[str, Any]) -> list[Effect]:
+def _effect(reader: Reader, kind: type[Effect], node: Any, given: dict[str, Any]) -> Effect | None:
+    """The effect where it is on; its parameters go into `given` by flat name."""
+    if not isinstance(node, Mapping):
+        return None
     declared = {p.name: p for p in kind.parameters}
     options = {option.name for option in kind.options}
     prefix = f"simulator.{kind.name}."
     for key in node:
         if split_suffix(key, declared)[0] not in declared and key not in options:
-            remedy = nearest(key, [*declared, *options]) if declared or options else "it takes none"
-            full = prefix + key
-            reader.problems.append(Problem(full, "no such parameter", remedy=remedy, source=reader.source(full)))
+            reader.refuse_unknown(prefix + key, [*declared, *options], "no such parameter")
     found = reader.parameters(node, declared, prefix)
     given |= {f"{kind.name}.{name}": value for name, value in found.items()}
-    effect = reader.collect(lambda: kind(**{k: v for k, v in node.items() if k in options}))
-    return [effect] if effect is not None else []
+    chosen = {key: value for key, value in node.items() if key in options}
+    return reader.collect(lambda: kind(**chosen), "simulator") or kind()
 
 
-def _family(reader: _Reader, node: Mapping[str, Any], model: Model | None) -> Family | None:
-    rules = {
-        "name": Key("text"),
-        "start": Key("text", choices=("static", "rest")),
-        "perturbation": Key("float", 0, 100),
-    }
-    for key in set(node) - set(rules) - {"spreads"}:
-        full = f"family.{key}"
-        remedy = nearest(key, [*rules, "spreads"])
-        reader.problems.append(Problem(full, "no such key", remedy=remedy, source=reader.source(full)))
-    plain = reader.plain(node, rules, "family.")
-    if model is None:
+def _model(reader: Reader, system: System, effects: list[Effect], given: Mapping[str, Any]) -> Model | None:
+    """The model, tried once with its values: lists of unequal length and missing values show there."""
+    meshes = [effect.name for effect in effects if isinstance(effect, MeshStiffness)]
+    if len(meshes) > 1:
+        places = "; ".join(f"{name}: {reader.origin.of(f'simulator.{name}')}" for name in meshes)
+        off = min(meshes, key=lambda name: reader.origin.rank(f"simulator.{name}"))
+        rule, remedy = f"there are {len(meshes)} mesh stiffnesses, {' and '.join(meshes)}", f"add simulator.{off}=null"
+        reader.problems.append(Problem("simulator", rule, None, remedy, places))
         return None
-    declared = model.parameters()
-    spreads = {}
-    for name, spread in (node.get("spreads") or {}).items():
-        if spread is not None:
-            found = reader.collect(lambda name=name, spread=spread: _spread(reader, name, spread, declared))
-            spreads |= {name: found} if found else {}
-    return Family(spreads=spreads, **plain)
+    model = reader.collect(lambda: Model(system, effects), "simulator")
+    if model is not None and not reader.problems:
+        reader.collect(lambda: model.prepare(model.values(1, **given)), "simulator")
+    return model
 
 
-def _spread(reader: _Reader, name: str, node: Any, declared: Mapping[str, Parameter]) -> Spread:
-    key = f"family.spreads.{name}"
-    source = reader.source(key)
-    if name not in declared and name != DAMPING_RATIO:
-        remedy = nearest(name, [*declared, DAMPING_RATIO])
-        raise InputError(Problem(key, "the model has no such parameter", remedy=remedy, source=source))
-    kinds = [kind for kind in ("uniform", "factor") if isinstance(node, Mapping) and kind in node]
-    if len(kinds) != 1 or not isinstance(node[kinds[0]], list) or len(node[kinds[0]]) != 2:
-        rule = "must be {uniform: [low, high], unit: …} or {factor: [low, high]}"
-        raise InputError(Problem(key, rule, node, "for example {factor: [0.8, 1.2]}", source))
-    unit = "1" if kinds[0] == "factor" or name == DAMPING_RATIO else declared[name].unit
-    low, high = (quantity(value, unit, key, source, node.get("unit")) for value in node[kinds[0]])
-    if low > high:
-        raise InputError(Problem(key, "the lower end must not lie above the upper", node, "swap them", source))
-    return Spread(low, high, relative=kinds[0] == "factor")
-
-
-def _check_law(reader: _Reader, model: Model | None, plain: Mapping[str, Any], effects: list[Effect]) -> None:
-    law = plain["damping_law"]
+def _damping_law(reader: Reader, law: str | None, effects: list[Effect]) -> str | None:
+    """The effect that carries the damping ratio; where an extended model has only another one, that one."""
+    key = "simulator.damping_law"
     laws = [effect.name for effect in effects if isinstance(effect, DampingLaw)]
-    if model is None or law is None or law in laws:
-        return
+    if law is None or law in laws:
+        return law
+    if reader.origin.extended and reader.origin.place(key) != COMMAND_LINE and len(laws) == 1:
+        return laws[0]
     remedy = f"on are: {', '.join(laws)}" if laws else "switch one on, for example simulator.viscous_damping={}"
-    rule, key = "must be a damping effect that is switched on", "simulator.damping_law"
-    reader.problems.append(Problem(key, rule, law, remedy, reader.source(key)))
+    reader.refuse(key, "must be a damping effect that is switched on", law, remedy)
+    return law

@@ -1,46 +1,98 @@
-"""Which file or override a value came from, for messages."""
+"""Which file or override a value came from, for messages and where two spellings meet."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
 from typing import Any
 
 import yaml
 
-from gear_damping.config.command_line import typed_value
-from gear_damping.config.locate import conf_folder
+from gear_damping.config.command_line import parse
+from gear_damping.config.locate import conf_folder, groups
+
+EXTENDED, COMMAND_LINE = "extended", "command line"
+# Later ones beat earlier ones, as in the defaults list of config.yaml.
+ORDER = (
+    "config", "simulator", EXTENDED, "family", "protocol", "wavelet", "model", "training", "measurement",
+    "experiment", COMMAND_LINE,
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
 class Origin:
-    """Where values come from: the overrides, and the choice of each group."""
+    """Where values come from.
+
+    Args:
+        overrides: What was typed.
+        choices: The choice of each group.
+        extended: Path and content of the file that `simulator.extended` names.
+    """
 
     overrides: Sequence[str] = ()
     choices: Mapping[str, str | None] = ()
+    extended: tuple[str, Mapping[str, Any]] | None = None
+
+    def with_extended(self, path: str, content: Mapping[str, Any]) -> "Origin":
+        """The same with the file of an extended simulator."""
+        return replace(self, extended=(path, content))
 
     def of(self, key: str) -> str:
-        """The command line, or the last file that gives the key."""
-        typed = typed_value(self.overrides, key)
-        if typed is not None:
-            return f"command line: {typed}"
-        group = key.split(".")[0]
-        chosen = dict(self.choices)
-        places = [("experiment", chosen.get("experiment")), ("training", chosen.get("training"))]
-        places += [("family", chosen.get("family")), (group, chosen.get(group))]
-        for place, choice in places:
-            path = conf_folder() / place / f"{choice}.yaml"
-            if choice and path.is_file() and _gives(path.read_text(), key, group if place == group else ""):
-                return f"conf/{place}/{choice}.yaml"
-        return "conf/config.yaml"
+        """The override, or the last file that gives the key; where none does, the file that should."""
+        place = self.place(key)
+        if place == COMMAND_LINE:
+            return f"command line: {_typed(self.overrides, key)}"
+        if place == EXTENDED:
+            return self.extended[0]
+        group = key.split(".")[0] if place is None else place
+        chosen = dict(self.choices).get(group)
+        return f"conf/{group}/{chosen}.yaml" if chosen else "conf/config.yaml"
+
+    def place(self, key: str) -> str | None:
+        """The member of ORDER that gives the key, or None."""
+        if _typed(self.overrides, key):
+            return COMMAND_LINE
+        return next((place for place in reversed(ORDER[:-1]) if self._gives(place, key)), None)
+
+    def rank(self, key: str) -> int:
+        """How late in ORDER the key is given; -1 where it is not."""
+        place = self.place(key)
+        return -1 if place is None else ORDER.index(place)
+
+    def _gives(self, place: str, key: str) -> bool:
+        if place == EXTENDED:
+            return self.extended is not None and _has({"simulator": self.extended[1]}, key)
+        chosen = dict(self.choices).get(place)
+        name = "config.yaml" if place == "config" else f"{place}/{chosen}.yaml"
+        return (place == "config" or bool(chosen)) and _has(_content(conf_folder() / name, place), key)
 
 
-def _gives(text: str, key: str, group: str) -> bool:
-    """Whether a YAML text has the key; keys of a group's own file lack the group's name."""
-    node: Any = yaml.safe_load(text)
-    parts = key.split(".")
-    if group and "@package _global_" not in text:
-        parts = parts[1:]
-    for part in parts:
+@cache
+def _content(path: Path, place: str) -> Mapping[str, Any]:
+    """What a file gives, by full keys: those of a group's own file lack the group's name."""
+    if not path.is_file():
+        return {}
+    text = path.read_text()
+    content = yaml.safe_load(text) or {}
+    return content if place == "config" or "@package _global_" in text else {place: content}
+
+
+def _has(node: Any, key: str) -> bool:
+    for part in key.split("."):
         if not isinstance(node, Mapping) or part not in node:
             return False
         node = node[part]
     return True
+
+
+def _typed(overrides: Sequence[str], key: str) -> str:
+    """What the command line gave for a key or one below it, as typed; empty where it gave nothing."""
+    for override in reversed(overrides):
+        parsed = parse(override)
+        name = parsed.key_or_group
+        if name in groups() or parsed.is_delete() or parsed.is_sweep_override():
+            continue
+        inside = key.startswith(name + ".") and _has(parsed.value(), key.removeprefix(name + "."))
+        if name == key or name.startswith(key + ".") or inside:
+            return override.lstrip("+")
+    return ""

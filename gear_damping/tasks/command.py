@@ -6,23 +6,17 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import hydra
-from hydra import compose, initialize_config_dir
-from hydra.core.global_hydra import GlobalHydra
 from hydra.core.hydra_config import HydraConfig
-from hydra.errors import HydraException
-from omegaconf import DictConfig, OmegaConf
-from omegaconf.errors import OmegaConfBaseException
+from omegaconf import DictConfig
 
-from gear_damping.config.command_line import prepare
+from gear_damping.config.command_line import CommandLine, read_command_line, swept_keys
 from gear_damping.config.locate import conf_folder, groups
-from gear_damping.config.settings import read_settings
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
 from gear_damping.tasks import sweep
-from gear_damping.tasks.dispatch import INTERRUPTED_CODE, OK, WRONG_INPUT, overrides_of, run_job, say_problems
+from gear_damping.tasks.composed import choices_of, plain, problems_of
+from gear_damping.tasks.dispatch import INTERRUPTED_CODE, OK, WRONG_INPUT, run_job, say_problems
 
-HYDRA_ONLY = ("--cfg", "-c", "--info", "-i", "--resolve", "--version", "--shell-completion", "-sc", "--hydra-help")
-MULTIRUN = ("--multirun", "-m")
 _codes: list[int] = []
 
 
@@ -32,51 +26,32 @@ def main(arguments: Sequence[str]) -> int:
     if {"--help", "-h"} & set(arguments):
         print(help_text())
         return OK
-    prepared, problems = prepare(arguments)
-    many = bool(set(MULTIRUN) & set(arguments))
-    if not many and not set(HYDRA_ONLY) & set(arguments):
-        problems += _problems_of(overrides_of(prepared))
+    typed = read_command_line(arguments)
+    problems = [*typed.problems, *_problems_of(typed)]
     if problems:
         say_problems(InputError(problems))
         return WRONG_INPUT
-    return _run(prepared, many)
+    return _run(typed)
 
 
-def _problems_of(overrides: Sequence[str]) -> list[Problem]:
-    """Everything that is wrong with the configuration of these overrides."""
-    try:
-        read_settings(*_composed(overrides))
-    except InputError as error:
-        return error.problems
-    return []
+def _problems_of(typed: CommandLine) -> list[Problem]:
+    """What is wrong with the configuration; of a sweep, what every job of it shares."""
+    if typed.shows:
+        return []
+    problems = problems_of(typed.first_job())
+    swept = swept_keys(typed.overrides) if typed.many else []
+    return [problem for problem in problems if not any(_concerns(problem, key) for key in swept)]
 
 
-def _composed(overrides: Sequence[str]) -> tuple[dict, Origin]:
-    """The configuration of these overrides and where its values come from; refusals of Hydra as InputError."""
-    GlobalHydra.instance().clear()
-    try:
-        with initialize_config_dir(str(conf_folder()), version_base="1.3"):
-            config = compose("config", list(overrides), return_hydra_config=True)
-            return _plain(config), _origin(config, overrides)
-    except (HydraException, OmegaConfBaseException) as error:
-        said = str(error).split("\n")[0]
-        raise InputError(Problem("configuration", said, remedy="see python -m gear_damping --help")) from error
+def _concerns(problem: Problem, swept: str) -> bool:
+    """Whether the problem may lie in the first value of a swept key: the other jobs shall run."""
+    return swept in groups() or problem.key == swept or problem.key.startswith(swept + ".")
 
 
-def _plain(config: DictConfig) -> dict:
-    """Plain containers without Hydra's own part."""
-    own = OmegaConf.masked_copy(config, [key for key in config if key != "hydra"])
-    return OmegaConf.to_container(own, resolve=True)
-
-
-def _origin(config: DictConfig, overrides: Sequence[str]) -> Origin:
-    return Origin(list(overrides), dict(config.hydra.runtime.choices))
-
-
-def _run(arguments: list[str], many: bool) -> int:
+def _run(typed: CommandLine) -> int:
     _codes.clear()
     sweep.current.clear()
-    old, sys.argv = sys.argv, ["gear_damping", *arguments]
+    old, sys.argv = sys.argv, ["gear_damping", *typed.flags, *typed.overrides]
     command = hydra.main(version_base="1.3", config_path=str(conf_folder()), config_name="config")(_job)
     try:
         command()
@@ -86,16 +61,15 @@ def _run(arguments: list[str], many: bool) -> int:
         _codes.append(int(stop.code or 0))
     finally:
         sys.argv = old
-    failed = _summarise() if many else 0
+    failed = _summarise() if typed.many else 0
     return max([WRONG_INPUT if failed else OK, *_codes])
 
 
 def _job(config: DictConfig) -> int:
     """One job as Hydra calls it, in this process or in a worker of a launcher."""
     own = HydraConfig.get()
-    plain = OmegaConf.to_container(config, resolve=True)
-    origin = Origin(list(own.overrides.task), dict(own.runtime.choices))
-    code = run_job(plain, origin, Path(own.runtime.output_dir))
+    origin = Origin(list(own.overrides.task), choices_of(own))
+    code = run_job(plain(config), origin, Path(own.runtime.output_dir))
     _codes.append(code)
     return code
 

@@ -3,7 +3,7 @@
 import logging
 import signal
 import traceback
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from importlib import import_module
 from pathlib import Path
 from types import FrameType
@@ -21,7 +21,7 @@ OK, WRONG_INPUT, INTERRUPTED_CODE = 0, 1, 130
 def run_job(config: Mapping[str, Any], origin: Origin, folder: Path) -> int:
     """Do one job; returns its exit code. A KeyboardInterrupt is passed on after the folder was closed."""
     signal.signal(signal.SIGTERM, _interrupt)
-    run_folder = RunFolder(folder, config)
+    run_folder = RunFolder(folder, config, origin.choices)
     try:
         settings = read_settings(config, origin)
         metrics = task_of(settings)(settings, run_folder)
@@ -51,11 +51,6 @@ def say_problems(error: InputError) -> None:
     """Every problem, one a line."""
     count = len(error.problems)
     log.error("%s\n%s", "This cannot run:" if count == 1 else f"This cannot run, {count} problems:", error)
-
-
-def overrides_of(arguments: Sequence[str]) -> list[str]:
-    """The plain overrides among what Hydra was given."""
-    return [argument for argument in arguments if "=" in argument and not argument.startswith("-")]
 
 
 def _interrupt(number: int, frame: FrameType | None) -> None:

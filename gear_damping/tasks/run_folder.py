@@ -20,8 +20,14 @@ PACKAGES = ("gear-damping", "torch", "lightning", "hydra-core", "torchdiffeq", "
 class RunFolder:
     """The folder of one run, with its run.json."""
 
-    def __init__(self, path: Path, config: Mapping[str, Any]) -> None:
-        """Open the folder and say that the run is running."""
+    def __init__(self, path: Path, config: Mapping[str, Any], choices: Mapping[str, str | None]) -> None:
+        """Open the folder and say that the run is running.
+
+        Args:
+            path: The folder; made where it is missing.
+            config: The resolved configuration.
+            choices: The choice of each group.
+        """
         self.path = path
         path.mkdir(parents=True, exist_ok=True)
         self._begin = time.monotonic()
@@ -30,6 +36,7 @@ class RunFolder:
             "task": config.get("task"),
             "command": " ".join(["python -m gear_damping", *sys.argv[1:]]),
             "config": dict(config),
+            "choices": dict(choices),
             "seed": config.get("seed"),
             "git": git_state(),
             "versions": versions(),

@@ -8,6 +8,7 @@ from typing import Any
 from hydra.experimental.callback import Callback
 from omegaconf import DictConfig
 
+from gear_damping.config.command_line import swept_keys
 from gear_damping.reporting import figures, tables
 from gear_damping.tasks.run_folder import FINISHED
 
@@ -19,13 +20,7 @@ class SweepSummary(Callback):
 
     def on_multirun_start(self, config: DictConfig, **kwargs: Any) -> None:
         """Remember folder and swept keys."""
-        keys = [o.lstrip("+").partition("=")[0] for o in config.hydra.overrides.task if _is_swept(o)]
-        current.append((Path(config.hydra.sweep.dir), keys))
-
-
-def _is_swept(override: str) -> bool:
-    value = override.partition("=")[2]
-    return ("," in value and not value.startswith(("[", "{"))) or value.startswith(("range(", "choice("))
+        current.append((Path(config.hydra.sweep.dir), swept_keys(config.hydra.overrides.task)))
 
 
 def summarise(folder: Path, keys: Sequence[str]) -> int:
@@ -48,7 +43,8 @@ def _number(path: Path) -> tuple[int, str]:
 def _row(path: Path, keys: Sequence[str]) -> dict[str, Any]:
     record = json.loads(path.read_text())
     row = {"job": path.parent.name, "status": record["status"]}
-    row |= {key: _lookup(record["config"], key) for key in keys}
+    values = {**record["config"], **record["choices"]}
+    row |= {key: _lookup(values, key) for key in keys}
     results = path.parent / "results.json"
     if record["status"] == FINISHED and results.exists():
         found = json.loads(results.read_text())

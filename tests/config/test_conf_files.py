@@ -4,7 +4,7 @@ import pytest
 
 from gear_damping.config.locate import conf_folder, groups
 from gear_damping.config.settings import read_settings
-from gear_damping.tasks.command import _composed
+from gear_damping.tasks.composed import composed
 
 CHOICES = [(group, choice) for group, choices in groups().items() for choice in choices]
 
@@ -16,7 +16,7 @@ def test_choice_is_valid(group, choice):
         overrides += ["family=none", "++wavelet.frequency_max_hz=400", "++wavelet.frequency_min_hz=20"]
     if choice == "none" and group == "family":
         overrides += ["++simulator.damping_law=null"]
-    settings = read_settings(*_composed(overrides))
+    settings = read_settings(*composed(overrides))
     assert settings.simulator.n_runs >= 1
 
 
@@ -30,5 +30,5 @@ def test_every_experiment_begins_with_its_command():
 
 def test_the_measurements_that_come_along_are_found():
     for choice in groups()["measurement"]:
-        settings = read_settings(*_composed([f"measurement={choice}"]))
+        settings = read_settings(*composed([f"measurement={choice}"]))
         assert choice == "none" or settings.measurement_path.is_file()

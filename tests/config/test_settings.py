@@ -3,11 +3,11 @@
 import pytest
 
 from gear_damping.config.settings import read_settings
-from gear_damping.tasks.command import _composed
+from gear_damping.tasks.composed import composed
 
 
 def settings(*overrides):
-    return read_settings(*_composed(list(overrides)))
+    return read_settings(*composed(list(overrides)))
 
 
 def test_units_cross_the_door_once():

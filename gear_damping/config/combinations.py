@@ -1,0 +1,202 @@
+"""What is wrong with values that are each right by themselves."""
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import torch
+
+from gear_damping.config.quantities import SUFFIXES
+from gear_damping.config.simulator import SimulatorSettings
+from gear_damping.config.source import ORDER, Origin
+from gear_damping.errors import Problem
+from gear_damping.simulation.families import DAMPING_RATIO
+from gear_damping.simulation.runs import reference_velocity
+
+RESUMABLE = "*/seed_*/last.ckpt"  # what an interrupted training leaves in its folder
+_NAME = re.compile(r"^[\w][\w.-]*$")
+Found = Iterator[tuple[str, str, Any, str]]  # key, rule, value, remedy
+
+
+@dataclass(frozen=True)
+class Whole:
+    """A configuration of which the keys that a check reads are right."""
+
+    config: Mapping[str, Any]
+    simulator: SimulatorSettings | None
+    measurement: Path | None
+    origin: Origin
+
+    def __getitem__(self, key: str) -> Any:
+        return self.config[key]
+
+
+def combination_problems(whole: Whole, wrong: set[str]) -> list[Problem]:
+    """The problems of every check none of whose keys is wrong by itself.
+
+    Args:
+        whole: The configuration; its simulator is None where that is wrong.
+        wrong: The keys that are wrong by themselves.
+    """
+    problems = []
+    groups = {key.split(".")[0] for key in wrong}
+    for needed, check in CHECKS:
+        if groups & set(needed) or ("simulator" in needed and whole.simulator is None):
+            continue
+        found = check(whole)
+        problems += [Problem(key, rule, value, remedy, whole.origin.of(key)) for key, rule, value, remedy in found]
+    return problems
+
+
+def _name(whole: Whole) -> Found:
+    if not _NAME.match(whole["name"]):
+        yield "name", "names a folder: letters, digits, '_', '-' and '.'", whole["name"], "rename it"
+
+
+def _checkpoint(whole: Whole) -> Found:
+    path = whole["checkpoint"]
+    if path is not None and not Path(path).is_file():
+        yield "checkpoint", "no such file", path, "give the path of a best.ckpt"
+    if whole["task"] == "evaluate" and path is None:
+        yield "checkpoint", "task=evaluate needs a trained estimator", None, "checkpoint=…/best.ckpt"
+
+
+def _resume(whole: Whole) -> Found:
+    path = whole["resume"]
+    if path is not None and not any(Path(path).glob(RESUMABLE)):
+        yield "resume", "holds no checkpoint to go on from", path, "give the folder of an interrupted training"
+
+
+def _measurement(whole: Whole) -> Found:
+    path = whole["measurement"]["path"]
+    if whole["task"] not in ("identify", "explain"):
+        return
+    if path is None:
+        rule = f"task={whole['task']} needs a measurement"
+        yield "measurement.path", rule, None, "measurement.path=PATH/measurement.yaml"
+    elif not whole.measurement.is_file():
+        yield "measurement.path", "no such file", path, "give the path of a measurement.yaml"
+
+
+def _windows(whole: Whole) -> Found:
+    """A window fits into every part that a run is cut into."""
+    protocol, samples = whole["protocol"], whole.simulator.n_samples
+    if whole["task"] != "train":
+        return
+    part = samples
+    if protocol["name"] != "by_run":
+        test = max(1, round(samples * protocol["test_fraction"]))
+        part = min(test, samples - test)
+    if protocol["window"] > part:
+        rule = f"must not exceed {part}, the samples of the shortest part of a run of {samples}"
+        yield "protocol.window", rule, protocol["window"], "shorten it, or raise simulator.n_samples"
+
+
+def _split(whole: Whole) -> Found:
+    """Every part gets a run."""
+    protocol, runs = whole["protocol"], whole.simulator.n_runs
+    if whole["task"] != "train":
+        return
+    run = protocol["run"]
+    if protocol["name"] == "paper" and run >= runs:
+        yield "protocol.run", f"must lie below simulator.n_runs = {runs}", run, f"nearest valid value {runs - 1}"
+    shares = [protocol["validation_fraction"]]
+    shares += [protocol["test_fraction"]] if whole.simulator.damping_ratio_percent is None else []
+    taken = sum(max(1, round(share * runs)) for share in shares)
+    if protocol["name"] == "by_run" and taken >= runs:
+        rule = f"leaves no run to train on: {taken} of {runs} are for validation and test"
+        yield "simulator.n_runs", rule, runs, "raise it, or lower protocol.validation_fraction and test_fraction"
+
+
+def _wavelet(whole: Whole) -> Found:
+    wavelet = whole["wavelet"]
+    if wavelet["frequency_min_hz"] >= wavelet["frequency_max_hz"]:
+        yield "wavelet.frequency_min_hz", "must lie below frequency_max_hz", wavelet["frequency_min_hz"], "lower it"
+    for key in ("omega0", "magnitude"):
+        if wavelet["kind"] != "morlet" and wavelet.get(key) is not None:
+            yield f"wavelet.{key}", "belongs to the Morlet wavelet", wavelet[key], "choose wavelet=morlet"
+
+
+def _nyquist(whole: Whole) -> Found:
+    highest, half = whole["wavelet"]["frequency_max_hz"], whole.simulator.sampling_rate / 2
+    if whole["task"] == "train" and highest >= half:
+        rule = f"must lie below half the sampling rate, {half:g} Hz"
+        yield "wavelet.frequency_max_hz", rule, highest, "lower it, or sample faster"
+
+
+def _test_ratio(whole: Whole) -> Found:
+    ratio, key = whole.simulator.damping_ratio_percent, "simulator.damping_ratio_percent"
+    if ratio is None:
+        return
+    if whole["task"] == "train" and whole["protocol"]["name"] != "by_run":
+        yield key, "test runs of one ratio need whole runs to test on", ratio, "choose protocol=by_run"
+    if whole.simulator.damping_law is None:
+        yield key, "no effect carries a damping ratio", ratio, "give simulator.damping_law"
+
+
+def _without_effect(whole: Whole) -> Found:
+    """Values that were given and that something else decides."""
+    simulator = whole.simulator
+    drawn = simulator.family.spreads
+    for name, spread in drawn.items():
+        key = _given_on_top(name, whole.origin)
+        if key and not spread.relative:
+            remedy = f"leave it out, or add family.spreads.{name}=null"
+            yield key, "has no effect: the family draws it for every run", simulator.given[name], remedy
+    if simulator.damping_law is None:
+        if DAMPING_RATIO in drawn:
+            remedy = f"name the effect, or add family.spreads.{DAMPING_RATIO}=null"
+            yield "simulator.damping_law", "the family draws a damping ratio and no effect carries it", None, remedy
+    elif DAMPING_RATIO in drawn or simulator.damping_ratio_percent is not None:
+        for name in _set_by_ratio(simulator):
+            if name in simulator.given:
+                remedy = f"leave it out, or add simulator.damping_law=null family.spreads.{DAMPING_RATIO}=null"
+                rule = "has no effect: the damping ratio decides it"
+                yield f"simulator.{name}", rule, simulator.given[name], remedy
+
+
+def _given_on_top(name: str, origin: Origin) -> str | None:
+    """The key under which an experiment or the command line gives a parameter, or None."""
+    keys = [f"simulator.{name}", *(f"simulator.{name}_{suffix}" for suffix in SUFFIXES)]
+    return next((key for key in keys if origin.rank(key) > ORDER.index("family")), None)
+
+
+def _set_by_ratio(simulator: SimulatorSettings) -> list[str]:
+    """Flat names of the parameters that follow from the damping ratio."""
+    law = next(effect for effect in simulator.model.effects if effect.name == simulator.damping_law)
+    values = simulator.model.values(1, **simulator.given)
+    derived = simulator.model.prepare(values).derived
+    own = {p.name: values[f"{law.name}.{p.name}"] for p in law.parameters}
+    about = (derived["equivalent_mass"], derived["mean_stiffness"], reference_velocity(derived))
+    return [f"{law.name}.{name}" for name in law.coefficient_for(torch.full_like(about[0], 0.01), own, *about)]
+
+
+def _physics(whole: Whole) -> Found:
+    simulator = whole.simulator
+    value = {name: simulator.given.get(name, p.default) for name, p in simulator.model.parameters().items()}
+    for name in ("n_teeth_pinion", "n_teeth_gear"):
+        teeth = value.get(name, 0)
+        if teeth != round(teeth):
+            yield f"simulator.{name}", "must be a whole number", teeth, f"nearest valid value {round(teeth)}"
+    for effect in (effect.name for effect in simulator.model.effects):
+        low, high = value.get(f"{effect}.minimum"), value.get(f"{effect}.maximum")
+        if low is not None and high is not None and low > high:
+            key = f"simulator.{effect}.minimum"
+            yield key, f"must not exceed maximum = {high:g}", low, f"nearest valid value {high:g}"
+
+
+CHECKS: tuple[tuple[tuple[str, ...], Callable[[Whole], Found]], ...] = (
+    (("name",), _name),
+    (("task", "checkpoint"), _checkpoint),
+    (("resume",), _resume),
+    (("task", "measurement"), _measurement),
+    (("task", "protocol", "simulator"), _windows),
+    (("task", "protocol", "simulator"), _split),
+    (("wavelet",), _wavelet),
+    (("task", "wavelet", "simulator"), _nyquist),
+    (("task", "protocol", "simulator"), _test_ratio),
+    (("simulator", "family"), _without_effect),
+    (("simulator",), _physics),
+)

@@ -1,0 +1,78 @@
+"""The `family` node: what varies from run to run."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from gear_damping.config.quantities import quantity
+from gear_damping.config.reader import Reader
+from gear_damping.config.schema import Key
+from gear_damping.errors import InputError, Problem, nearest
+from gear_damping.physics.parameter import Parameter
+from gear_damping.simulation.families import DAMPING_RATIO, Family, Spread
+
+PLAIN = {
+    "name": Key("text"),
+    "start": Key("text", choices=("static", "rest")),
+    "perturbation": Key("float", 0, 100),
+}
+KINDS = ("uniform", "factor")
+RATIO = Parameter(DAMPING_RATIO, "1", 0.3, "equivalent damping ratio in % of critical", 0, 50)
+
+
+def read_family(
+    reader: Reader, node: Mapping[str, Any], declared: Mapping[str, Parameter], given: Mapping[str, Any]
+) -> Family | None:
+    """The family; problems go to the reader.
+
+    Args:
+        reader: Collects the problems.
+        node: The configuration.
+        declared: The parameters of the model by flat name.
+        given: Their values where given, SI.
+    """
+    for key in set(node) - set(PLAIN) - {"spreads"}:
+        reader.refuse_unknown(f"family.{key}", [*PLAIN, "spreads"])
+    plain = reader.plain(node, PLAIN, "family.")
+    listed = node.get("spreads") or {}
+    if not isinstance(listed, Mapping):
+        reader.refuse("family.spreads", "is a group of keys", listed, "give family.spreads.<parameter>")
+        return None
+    spreads, declared = {}, {**declared, DAMPING_RATIO: RATIO}
+    for name, spread in listed.items():
+        if spread is not None:
+            found = reader.collect(lambda name=name, spread=spread: _spread(reader, name, spread, declared, given))
+            spreads |= {name: found} if found else {}
+    return Family(spreads=spreads, **plain)
+
+
+def _spread(
+    reader: Reader, name: str, node: Any, declared: Mapping[str, Parameter], given: Mapping[str, Any]
+) -> Spread:
+    key = f"family.spreads.{name}"
+    source = reader.origin.of(key)
+    if name not in declared:
+        raise InputError(Problem(key, "the model has no such parameter", None, nearest(name, list(declared)), source))
+    kind = _kind(reader, key, node)
+    parameter = declared[name]
+    unit, own_unit = ("1", None) if kind == "factor" else (parameter.unit, node.get("unit"))
+    low, high = (quantity(value, unit, key, source, own_unit) for value in node[kind])
+    if low > high:
+        raise InputError(Problem(key, "the lower end must not lie above the upper", node, "swap them", source))
+    nominal = given.get(name, parameter.default) if kind == "factor" else 1.0
+    if isinstance(nominal, (int, float)):
+        ends = [parameter.problem(end * nominal, key, source) for end in (low, high)]
+        if any(ends):
+            raise InputError([problem for problem in ends if problem])
+    return Spread(low, high, relative=kind == "factor")
+
+
+def _kind(reader: Reader, key: str, node: Any) -> str:
+    """`uniform` or `factor`; where a file gives one and the command line the other, the latter."""
+    kinds = [kind for kind in KINDS if isinstance(node, Mapping) and kind in node]
+    kinds.sort(key=lambda kind: reader.origin.rank(f"{key}.{kind}"))
+    ranks = [reader.origin.rank(f"{key}.{kind}") for kind in kinds]
+    pair = bool(kinds) and isinstance(node[kinds[-1]], list) and len(node[kinds[-1]]) == 2
+    if not pair or (len(ranks) == 2 and ranks[0] == ranks[1]) or set(node) - {*KINDS, "unit"}:
+        rule = "must be {uniform: [low, high], unit: …} or {factor: [low, high]}"
+        raise InputError(Problem(key, rule, node, "for example {factor: [0.8, 1.2]}", reader.origin.of(key)))
+    return kinds[-1]

@@ -1,0 +1,63 @@
+"""The configuration of a command: composed by Hydra, in plain containers."""
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from hydra import compose, initialize_config_dir
+from hydra.core.global_hydra import GlobalHydra
+from hydra.errors import HydraException
+from omegaconf import DictConfig, OmegaConf
+from omegaconf.errors import OmegaConfBaseException
+
+from gear_damping.config.locate import conf_folder, groups
+from gear_damping.config.settings import read_settings
+from gear_damping.config.source import Origin
+from gear_damping.errors import InputError, Problem
+
+
+def composed(overrides: Sequence[str]) -> tuple[dict[str, Any], Origin]:
+    """The configuration of these overrides and where its values come from.
+
+    Raises:
+        InputError: Hydra refuses them, or the run's folder cannot be made.
+    """
+    GlobalHydra.instance().clear()
+    try:
+        with initialize_config_dir(str(conf_folder()), version_base="1.3"):
+            config = compose("config", list(overrides), return_hydra_config=True)
+            _refuse_folder(config)
+            return plain(config), Origin(list(overrides), choices_of(config.hydra))
+    except (HydraException, OmegaConfBaseException) as error:
+        said = str(error).split("\n")[0]
+        raise InputError(Problem("configuration", said, remedy="see python -m gear_damping --help")) from error
+
+
+def problems_of(overrides: Sequence[str]) -> list[Problem]:
+    """Everything that is wrong with the configuration of these overrides."""
+    try:
+        read_settings(*composed(overrides))
+    except InputError as error:
+        return error.problems
+    return []
+
+
+def plain(config: DictConfig) -> dict[str, Any]:
+    """Plain containers without Hydra's own part."""
+    own = OmegaConf.masked_copy(config, [key for key in config if key != "hydra"])
+    return OmegaConf.to_container(own, resolve=True)
+
+
+def choices_of(hydra_config: DictConfig) -> dict[str, str | None]:
+    """The choice of each group that a user may set."""
+    return {group: choice for group, choice in hydra_config.runtime.choices.items() if group in groups()}
+
+
+def _refuse_folder(config: DictConfig) -> None:
+    """The folder of the run can be made: said before any work."""
+    folder = Path(config.hydra.run.dir).absolute()
+    existing = next(path for path in (folder, *folder.parents) if path.exists())
+    if not existing.is_dir() or not os.access(existing, os.W_OK | os.X_OK):
+        rule = f"cannot be made: {existing} is not a folder that can be written to"
+        raise InputError(Problem("hydra.run.dir", rule, str(folder), "give another folder", "the command line"))
