@@ -1,0 +1,156 @@
+"""Draw hidden cases: size the effects, run the records, put instruments and noise on them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from . import pair
+from .catalogue import FOREIGN
+from .draft import Draft, draft, true_mean_stiffness
+from .integrate import Trajectory
+from .invariants import invariants
+from .knobs import Knobs, stack
+from .plans import Condition
+from .sensor import others, transmission_error
+from .sizing import LADDER, RATE, Sized, lanes_of, path_of, run, size
+from .stiffness import Arrays
+
+SIZING_SPAN = 2500  # samples of each record that the size is judged by
+LANES = 2000  # that are integrated together
+SUBSTEPS = 4
+ANGLE_NOISE = 5e-6  # rad
+
+
+@dataclass(frozen=True, eq=False)
+class HiddenRecord:
+    """One record: channels (n,) in SI by their canonical names, and the condition that was set."""
+
+    name: str
+    condition: Condition
+    time: np.ndarray
+    channels: dict[str, np.ndarray]
+
+
+@dataclass(frozen=True, eq=False)
+class HiddenCase:
+    """A measurement with something hidden in it; `truth` is JSON-able and tells everything.
+
+    nominal: what the user states, by the names of measurement.yaml. gear_torque: balanced | held. fault: what
+    write_case spoils, or None. Records whose condition is `added` answer what the first ones left open.
+    """
+
+    stratum: str
+    seed: int
+    plan: str
+    nominal: dict[str, dict[str, float | str]]
+    gear_torque: str
+    records: tuple[HiddenRecord, ...]
+    fault: str | None
+    truth: dict[str, object] = field(repr=False)
+    origin: Draft = field(repr=False)
+    params: tuple[dict, ...] = field(repr=False)
+
+    @property
+    def first(self) -> tuple[HiddenRecord, ...]:
+        """The records of the measurement before anything was added."""
+        return tuple(record for record in self.records if not record.condition.added)
+
+
+def draw_case(
+    stratum: str, seed: int, *, duration: float = 0.05, snr_db: float | None = None,
+    target_excess: float | None = None,
+) -> HiddenCase:
+    """One case; see draw_cases, which draws many at a fraction of the cost of each."""
+    return draw_cases([(stratum, seed)], duration=duration, snr_db=snr_db, target_excess=target_excess)[0]
+
+
+def draw_cases(
+    wanted: Sequence[tuple[str, int]], *, duration: float = 0.05, snr_db: float | None = None,
+    target_excess: float | None = None,
+) -> list[HiddenCase]:
+    """Cases of (stratum, seed), integrated together; each is what it would be alone, to rounding.
+
+    duration: of each record / s. snr_db: AC part of the channel over its noise; drawn from 20 to 40 where None.
+    target_excess: the excess D / % that each effect is sized for; drawn where None.
+    """
+    drafts = [draft(stratum, seed, duration, snr_db, target_excess) for stratum, seed in wanted]
+    cases, group, lanes = [], [], 0
+    for index, one in enumerate(drafts):
+        group.append(one)
+        lanes += len(one.records) * (1 + LADDER * len(one.effects))
+        if lanes > LANES or index == len(drafts) - 1:
+            cases += _together(group, round(duration * RATE))
+            group, lanes = [], 0
+    return cases
+
+
+def _together(drafts: list[Draft], n: int) -> list[HiddenCase]:
+    sized = size(drafts, min(n, SIZING_SPAN))
+    knobs = stack([lane for one, s in zip(drafts, sized, strict=True) for lane in truth_lanes(one, s.params)])
+    path = run(knobs, drafts, [1] * len(drafts), n, SUBSTEPS)
+    cases, first = [], 0
+    for one, s in zip(drafts, sized, strict=True):
+        own = slice(first, first + len(one.records))
+        cases.append(_case(one, s, lanes_of(knobs, own), path_of(path, own)))
+        first = own.stop
+    return cases
+
+
+def truth_lanes(one: Draft, params: Sequence[dict]) -> list[Knobs]:
+    """The records' knobs with every effect in them."""
+    lanes = []
+    for record in one.records:
+        lane = dict(record)
+        for effect, chosen in zip(one.effects, params, strict=True):
+            lane |= effect.turn(chosen, lane)
+        lanes.append(lane)
+    return lanes
+
+
+def _case(one: Draft, sized: Sized, knobs: Arrays, path: Trajectory) -> HiddenCase:
+    clean = transmission_error(knobs, path)
+    sigma = float(np.sqrt(np.mean(np.var(clean, axis=0)))) * 10.0 ** (-one.snr_db / 20.0)
+    records = _records(one.conditions, knobs, path, sigma, one.noise, 1)
+    truth = _truth(one, sized, path, clean, sigma)
+    mode = "held" if one.shape["held"] else "balanced"
+    params = tuple(sized.params)
+    return HiddenCase(one.stratum, one.seed, one.plan, one.nominal, mode, records, one.fault, truth, one, params)
+
+
+def _records(conditions, knobs: Arrays, path: Trajectory, sigma: float, noise, number: int):
+    shape = path.x[path.time > -1e-12].shape
+    channels = {"transmission_error": transmission_error(knobs, path, sigma * noise.normal(size=shape))}
+    channels |= others(knobs, path)
+    channels["pinion_angle"] = channels["pinion_angle"] + ANGLE_NOISE * noise.normal(size=shape)
+    return tuple(
+        HiddenRecord(f"run_{number + i}", condition, np.arange(shape[0]) / RATE,
+                     {name: values[:, i].copy() for name, values in channels.items()})
+        for i, condition in enumerate(conditions)
+    )
+
+
+def _truth(one: Draft, sized: Sized, path: Trajectory, clean: np.ndarray, sigma: float) -> dict[str, object]:
+    basis = sized.basis
+    difference = clean[: basis.response.shape[0]] - basis.response
+    misread = sum(p for e, p in zip(one.effects, sized.promised, strict=True) if e.as_modelled)
+    stiffness = true_mean_stiffness(one.shape)
+    rms_rate = float(np.sqrt(np.mean(np.var(path.v, axis=0))))
+    return {
+        "stratum": one.stratum, "seed": one.seed, "plan": one.plan, "fault": one.fault, "snr_db": one.snr_db,
+        "noise_std": sigma, "mean_stiffness": stiffness,
+        "damping_ratio_percent": 50.0 * one.shape["viscous"] / float(np.sqrt(stiffness * pair.MASS)),
+        "in_catalogue": not any(effect.name in FOREIGN for effect in one.effects),
+        **basis.excess(difference), "excess_percent_by_misreading": misread,
+        "first_records": basis.excess(difference, with_added=False),
+        "separates": bool(np.any(path.delta < 0.0)), "diverged": bool(np.any(path.diverged)),
+        "effects": [
+            {"name": effect.name, "parameters": params, "target_percent": target, "excess_percent": promised,
+             "invariants": invariants(effect, params, one.records[0], rms_rate)}
+            for effect, params, target, promised in zip(
+                one.effects, sized.params, one.targets, sized.promised, strict=True)
+        ],
+        "rig": one.shape, "records": [{"name": f"run_{i + 1}", **vars(c)} for i, c in enumerate(one.conditions)],
+    }

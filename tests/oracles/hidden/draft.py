@@ -1,0 +1,137 @@
+"""What a case will be before anything is integrated: plan, rig, effects, targets, errors of the nominal values."""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import pair
+from .catalogue import EFFECTS, FAULTS, FOREIGN, HIDDEN, PAIRS, STRATA
+from .effect import Effect, Params, between, phase
+from .knobs import Knobs, stack
+from .plans import PLANS, Condition
+from .stiffness import mean_stiffness
+
+CATALOGUE = HIDDEN | FOREIGN
+
+
+@dataclass
+class Draft:
+    """A case to be sized and run. params are at the largest size; targets in %, None where there is no size."""
+
+    stratum: str
+    seed: int
+    plan: str
+    conditions: list[Condition]
+    records: list[Knobs]  # without the effects, but with what the nominal model has of them
+    effects: list[Effect]
+    params: list[Params]
+    targets: list[float | None]
+    snr_db: float
+    fault: str | None
+    nominal: dict[str, dict[str, float | str]]
+    shape: dict[str, float]
+    start: np.ndarray  # (2, record): off the equilibrium, in shares of deflection and speed
+    noise: np.random.Generator
+
+
+def draft(stratum: str, seed: int, duration: float, snr_db: float | None, target: float | None) -> Draft:
+    """Draw a case; the same arguments draw the same case."""
+    if stratum not in STRATA and stratum not in FOREIGN:
+        raise ValueError(f"no stratum {stratum!r}; choose one of {', '.join((*STRATA, *FOREIGN))}")
+    source = np.random.default_rng([zlib.crc32(stratum.encode()), seed])
+    choice, rig, plan_source, sizes, nominal_source, noise = source.spawn(6)
+    names, plan = _contents(stratum, seed, choice)
+    effects = [CATALOGUE[name] for name in names]
+    plan = plan or next((effect.plan for effect in effects if effect.plan != "full"), "full")
+    given = {name: value for effect in effects for name, value in effect.given.items()}
+    conditions = PLANS[plan](plan_source)
+    shape = _rig(rig, plan, stratum)
+    records = [shape | given | _record(rig, condition, duration) for condition in conditions]
+    targets = [_target(sizes, target) if effect.has_size else None for effect in effects]
+    if stratum == "unbalance":
+        targets[0] = 2.0  # the bearing that it needs
+    return Draft(
+        stratum, seed, plan, conditions, records, effects, [effect.draw(sizes, duration) for effect in effects],
+        targets, float(sizes.uniform(20.0, 40.0)) if snr_db is None else snr_db,
+        FAULTS[seed % len(FAULTS)] if stratum == "data_fault" else None,
+        _nominal(nominal_source, shape, given), shape, 0.03 * noise.normal(size=(2, len(conditions))), noise,
+    )  # fmt: skip
+
+
+def _contents(stratum: str, seed: int, choice: np.random.Generator) -> tuple[list[str], str | None]:
+    """Names of the effects, and the plan where the stratum says it."""
+    ordinary = [name for name in EFFECTS if HIDDEN[name].plan == "full" and name != "unbalance"]
+    if stratum == "unbalance":
+        return ["bearing_flexibility", "unbalance"], None
+    if stratum in CATALOGUE:
+        return [stratum], None
+    if stratum == "pairs":
+        return list(PAIRS[seed % len(PAIRS)]), None
+    if stratum == "outside":
+        return [tuple(FOREIGN)[seed % len(FOREIGN)]], None
+    if stratum == "tacho_error":
+        companions = [name for name in ordinary if name != "shaft_angle_error"]
+        return ["shaft_angle_error", *([str(choice.choice(companions))] if seed % 2 else [])], None
+    if stratum in ("one_record", "one_condition"):
+        return [str(choice.choice(ordinary))], stratum
+    return [], None
+
+
+def _target(rng: np.random.Generator, target: float | None) -> float:
+    """Excess aimed at / %: mostly 0.5 to 20, a quarter of the cases 0.1 to 0.5."""
+    drawn = between(rng, 0.5, 20.0) if rng.random() < 0.75 else between(rng, 0.1, 0.5)
+    return drawn if target is None else target
+
+
+def _rig(rng: np.random.Generator, plan: str, stratum: str) -> dict[str, float]:
+    """The true pair: stiffness, its shape, damping, phases; a null differs from the nominal by shape alone."""
+    loose = 1.6 if stratum == "null" else 1.0
+    shape = {
+        "one_pair": 2e8 * rng.uniform(0.9, 1.1), "contact_ratio": rng.uniform(1.5, 1.7),
+        "edge": rng.uniform(0.06, 0.2 * loose), "crown": rng.uniform(0.0, 0.15 * loose),
+        "lean": rng.uniform(-0.1, 0.1) * loose, "mesh_phase": phase(rng), "gear_phase": phase(rng),
+        "held": float(rng.random() < 0.5),
+    }  # fmt: skip
+    shape["two_pairs"] = shape["one_pair"] * rng.uniform(1.7, 2.05)
+    ratio = between(rng, 0.006, 0.015) if plan == "light" else between(rng, 0.015, 0.05)
+    shape["viscous"] = 2.0 * ratio * float(np.sqrt(true_mean_stiffness(shape) * pair.MASS))
+    return {name: float(value) for name, value in shape.items()}
+
+
+def true_mean_stiffness(shape: Knobs) -> float:
+    """Mean stiffness / (N/m) of a rig."""
+    return float(mean_stiffness(stack([shape]))[0])
+
+
+def _record(rng: np.random.Generator, condition: Condition, duration: float) -> Knobs:
+    speed = pair.rpm(condition.speed * rng.uniform(0.997, 1.003))
+    sway = 2.0 * np.pi * rng.uniform(2.0, 6.0)
+    return {
+        "speed": speed, "angle": float(rng.uniform(0.0, 2.0 * np.pi)), "mass": pair.MASS,
+        "wander": 1e-4 * speed / sway, "wander_rate": sway, "wander_phase": phase(rng),
+        "torque": condition.torque, "flutter": 0.002 * rng.uniform(0.3, 1.0),
+        "flutter_rate": 2.0 * np.pi * rng.uniform(2.0, 8.0), "flutter_phase": phase(rng),
+        "swing": condition.swing, "swing_rate": 2.0 * np.pi / duration, "swing_phase": phase(rng),
+    }  # fmt: skip
+
+
+def _nominal(rng: np.random.Generator, shape: Knobs, given: Knobs) -> dict[str, dict[str, float | str]]:
+    """What the user states: teeth and inertias as they are, the mesh a few per cent wrong, the phase not at all."""
+    mean = true_mean_stiffness(shape)
+    ratio = shape["viscous"] / (2.0 * np.sqrt(mean * pair.MASS))
+    contact_ratio = shape["contact_ratio"] + rng.uniform(-0.05, 0.05)
+    contrast = (shape["two_pairs"] - shape["one_pair"]) * (1.0 + rng.uniform(-0.08, 0.08))
+    low = mean * (1.0 + rng.uniform(-0.04, 0.04)) - contrast * (contact_ratio - 1.0)
+    stated = {
+        "n_teeth_pinion": (pair.TEETH[0], "1"), "n_teeth_gear": (pair.TEETH[1], "1"),
+        "module": (pair.MODULE * 1e3, "mm"), "pressure_angle": (20.0, "deg"),
+        "inertia_pinion": (pair.INERTIA[0], "kg*m^2"), "inertia_gear": (pair.INERTIA[1], "kg*m^2"),
+        "mesh_stiffness_max": (low + contrast, "N/m"), "mesh_stiffness_min": (low, "N/m"),
+        "contact_ratio": (contact_ratio, "1"), "damping_ratio": (ratio * rng.uniform(0.75, 1.3), "1"),
+    }  # fmt: skip
+    if "gap" in given:
+        stated["backlash_gap"] = (given["gap"] * 1e6, "um")
+    return {name: {"value": float(value), "unit": unit} for name, (value, unit) in stated.items()}

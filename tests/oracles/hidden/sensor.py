@@ -1,0 +1,74 @@
+"""What the instruments make of the motion: encoders, gain, filters, delay, rounding; noise comes last."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.signal import butter, sosfilt, sosfilt_zi
+
+from . import pair
+from .excitation import measured_torques, turning
+from .integrate import Trajectory
+from .knobs import any_on
+from .stiffness import Arrays
+
+FINER = 8  # times the sampling rate at which the low-pass runs
+KNEE = 24.0  # sharpness of the amplifier's saturation
+
+
+def between(path: Trajectory, lane: int, t: np.ndarray) -> np.ndarray:
+    """x / m of a lane at any times within its path: quintic through x, x' and x'' of both neighbours."""
+    h = path.time[1] - path.time[0]
+    place = np.clip((t - path.time[0]) / h, 0.0, path.time.size - 1.000001)
+    first = np.floor(place).astype(int)
+    u = place - first
+    x, v, a = path.x[:, lane], path.v[:, lane] * h, path.a[:, lane] * h * h
+    (x0, v0, a0), (x1, v1, a1) = ((x[i], v[i], a[i]) for i in (first, first + 1))
+    rise, speed, bend = x1 - x0 - v0 - 0.5 * a0, v1 - v0 - a0, a1 - a0
+    c3, c4, c5 = 10 * rise - 4 * speed + 0.5 * bend, -15 * rise + 7 * speed - bend, 6 * rise - 3 * speed + 0.5 * bend
+    return x0 + u * (v0 + u * (0.5 * a0 + u * (c3 + u * (c4 + u * c5))))
+
+
+def transmission_error(knobs: Arrays, path: Trajectory, noise: np.ndarray | float = 0.0) -> np.ndarray:
+    """The channel / m from t = 0 on, (n, lane); `noise` is added before saturation and rounding."""
+    begin = int(np.sum(path.time < -1e-12))
+    t = path.time[begin:, None]
+    y = path.x[begin:].copy()
+    late = np.flatnonzero((knobs["delay"] != 0.0) | np.isfinite(knobs["lowpass"]))
+    for lane in late:
+        y[:, lane] = _slow_sensor(path, lane, begin, knobs["delay"][lane], knobs["lowpass"][lane])
+    at = turning(knobs, t, wobble=False)
+    if any_on(knobs, "encoder_1", "encoder_2"):
+        y = y + pair.RADIUS[0] * knobs["encoder_1"] * np.cos(at.pinion + knobs["encoder_1_phase"])
+        y = y - pair.RADIUS[1] * knobs["encoder_2"] * np.cos(at.gear + knobs["encoder_2_phase"])
+    y = y * knobs["gain"] + knobs["offset"] + knobs["drift"] * t
+    if any_on(knobs, "mains"):
+        turn = 100.0 * np.pi * t + knobs["mains_phase"]
+        y = y + knobs["mains"] * (np.cos(turn) + 0.4 * np.cos(3.0 * turn))
+    return _digitised(knobs, y + noise)
+
+
+def _slow_sensor(path: Trajectory, lane: int, begin: int, delay: float, cutoff: float) -> np.ndarray:
+    if not np.isfinite(cutoff):
+        return between(path, lane, path.time[begin:] - delay)
+    h = (path.time[1] - path.time[0]) / FINER
+    fine = between(path, lane, path.time[0] + h * np.arange((path.time.size - 1) * FINER + 1) - delay)
+    filtered_by = butter(2, cutoff, fs=1.0 / h, output="sos")
+    return sosfilt(filtered_by, fine, zi=sosfilt_zi(filtered_by) * fine[0])[0][begin * FINER :: FINER]
+
+
+def _digitised(knobs: Arrays, y: np.ndarray) -> np.ndarray:
+    if any_on(knobs, "limit"):
+        y = y / (1.0 + np.abs(y / knobs["limit"]) ** KNEE) ** (1.0 / KNEE)
+    if any_on(knobs, "step"):
+        size = np.where(knobs["step"] > 0.0, knobs["step"], 1.0)
+        y = np.where(knobs["step"] > 0.0, size * np.floor(y / size + 0.5), y)
+    return y
+
+
+def others(knobs: Arrays, path: Trajectory) -> dict[str, np.ndarray]:
+    """The channels beside the transmission error from t = 0 on, (n, lane) in SI."""
+    t = path.time[path.time > -1e-12][:, None]
+    angle = turning(knobs, t, wobble=False).pinion
+    torque, gear_torque = measured_torques(knobs, t)
+    angle = angle + knobs["angle_error"] * np.cos(angle + knobs["angle_error_phase"])
+    return {"pinion_torque": torque, "gear_torque": gear_torque, "pinion_angle": angle}
