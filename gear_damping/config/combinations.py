@@ -141,7 +141,7 @@ def _without_effect(whole: Whole) -> Found:
     simulator = whole.simulator
     drawn = simulator.family.spreads
     for name, spread in drawn.items():
-        key = _given_on_top(name, whole.origin)
+        key = None if name == DAMPING_RATIO else _given_on_top(name, whole.origin)
         if key and not spread.relative:
             remedy = f"leave it out, or add family.spreads.{name}=null"
             yield key, "has no effect: the family draws it for every run", simulator.given[name], remedy
@@ -151,7 +151,7 @@ def _without_effect(whole: Whole) -> Found:
             yield "simulator.damping_law", "the family draws a damping ratio and no effect carries it", None, remedy
     elif DAMPING_RATIO in drawn or simulator.damping_ratio_percent is not None:
         for name in _set_by_ratio(simulator):
-            if name in simulator.given:
+            if _given_on_top(name, whole.origin):
                 remedy = f"leave it out, or add simulator.damping_law=null family.spreads.{DAMPING_RATIO}=null"
                 rule = "has no effect: the damping ratio decides it"
                 yield f"simulator.{name}", rule, simulator.given[name], remedy

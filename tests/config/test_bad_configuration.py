@@ -47,7 +47,22 @@ FAULTS = {
     "spread_of_nothing": (["family.spreads.xx={uniform:[1,2]}"], ["family.spreads.xx", "no such parameter"]),
     "spread_upside_down": (["family.spreads.pinion_torque={factor:[2,1]}"], ["pinion_torque", "swap them"]),
     "spread_of_odd_form": (["family.spreads.pinion_torque=3"], ["pinion_torque", "uniform"]),
-    "broken_override": (["simulator.pinion_torque=[1"], ["configuration", "--help"]),
+    "broken_override": (["simulator.pinion_torque=[1"], ["simulator.pinion_torque=[1", "close every bracket"]),
+    "several_values_without_multirun": (["seed=1,2"], ["seed = '1,2'", "add --multirun"]),
+    "unknown_flag": (["--multirn"], ["--multirn: no such flag", "--multirun"]),
+    "no_family": (["family=null"], ["family = 'null'", "no such choice"]),
+    "drawn_by_the_family": (
+        ["experiment=noise", "family.spreads.module={uniform:[1,2],unit:mm}", "simulator.module=0.003"],
+        ["simulator.module = 0.003", "the family draws it"],
+    ),
+    "decided_by_the_ratio": (
+        ["simulator.power_law_damping.coefficient=5"],
+        ["simulator.power_law_damping.coefficient = 5", "the damping ratio decides it"],
+    ),
+    "nothing_to_resume": (["resume=tests"], ["resume = 'tests'", "no checkpoint"]),
+    "folder_as_checkpoint": (["task=evaluate", "checkpoint=tests"], ["checkpoint = 'tests'", "no such file"]),
+    "run_folder_below_a_file": (["hydra.run.dir=README.md/run"], ["hydra.run.dir", "cannot be made"]),
+    "no_extended_file": (["simulator.extended=nope.yaml"], ["simulator.extended", "nope.yaml", "cannot be read"]),
     "family_of_a_gear_for_an_oscillator": (["simulator=oscillator"], ["pinion_speed_rpm", "conf/family/bench.yaml"]),
 }
 

@@ -143,6 +143,7 @@ def test_a_defect_is_recorded_as_one(tmp_path, monkeypatch, said):
 def test_a_diverging_simulator_is_never_trained_on(tmp_path, said):
     wild = [
         "simulator.damping_law=null",
+        "family.spreads.damping_ratio_percent=null",
         "simulator.power_law_damping.exponent=5",
         "simulator.power_law_damping.coefficient=1e12",
     ]

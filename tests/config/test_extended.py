@@ -1,0 +1,66 @@
+"""`simulator.extended`: the file's model under every experiment, with the command line on top."""
+
+import pytest
+import yaml
+
+from gear_damping.config.settings import read_settings
+from gear_damping.errors import InputError
+from gear_damping.tasks.composed import composed
+
+FILE = {
+    "system": "gear_pair",
+    "module": 0.004,
+    "pinion_torque": 99.0,
+    "rectangular_mesh_stiffness": {"maximum": 3e8},
+    "viscous_damping": {"damping_coefficient": 1234.0},
+    "pinion_eccentricity": {"amplitude": 2e-6, "phase": 0.5},
+}
+
+
+@pytest.fixture
+def extended(tmp_path):
+    path = tmp_path / "extended_simulator.yaml"
+    path.write_text(yaml.safe_dump(FILE))
+    return path
+
+
+def simulator(*overrides):
+    return read_settings(*composed(list(overrides))).simulator
+
+
+def test_the_model_of_the_file_replaces_the_chosen_one(extended):
+    found = simulator(f"++simulator.extended='{extended}'")
+    names = {effect.name for effect in found.model.effects}
+    assert names == {"rectangular_mesh_stiffness", "viscous_damping", "pinion_eccentricity"}
+    assert found.given["module"] == 0.004
+    assert found.given["pinion_eccentricity.amplitude"] == 2e-6
+    assert found.damping_law == "viscous_damping"
+    assert found.n_runs == 400
+    assert extended in found.files
+
+
+def test_an_experiment_and_the_command_line_come_on_top(extended):
+    found = simulator(
+        "experiment=backlash", f"++simulator.extended='{extended}'", "++simulator.pinion_eccentricity.amplitude=3e-6"
+    )
+    assert "backlash" in {effect.name for effect in found.model.effects}
+    assert found.given["pinion_eccentricity.amplitude"] == 3e-6
+    assert found.given["pinion_eccentricity.phase"] == 0.5
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [("[", "cannot be read"), ("a: 1", "names no system"), ("system: gear_pair\nn_runs: 3", "sets n_runs")],
+)
+def test_a_file_that_is_no_simulator_is_refused(tmp_path, content, said):
+    path = tmp_path / "x.yaml"
+    path.write_text(content)
+    with pytest.raises(InputError, match=said):
+        simulator(f"++simulator.extended='{path}'")
+
+
+def test_a_wrong_value_in_the_file_names_the_file(extended):
+    extended.write_text(yaml.safe_dump(FILE | {"pinion_eccentricity": {"amplitud": 1}}))
+    with pytest.raises(InputError, match="did you mean 'amplitude'") as caught:
+        simulator(f"++simulator.extended='{extended}'")
+    assert str(extended) in str(caught.value)
