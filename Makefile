@@ -10,7 +10,7 @@ PYTEST := $(BIN)/python -m pytest
 ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test check bench blind clean
+.PHONY: help setup run test check bench blind docs clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-8s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -35,6 +35,9 @@ check: setup  ## everything `make test` runs and the slow tests
 	$(BIN)/ruff check .
 	$(BIN)/lint-imports
 	$(PYTEST) $(ARGS)
+
+docs: setup  ## write docs/effects.md and its figures from the declarations of the effects
+	$(BIN)/python -m gear_damping.reporting.effects_page $(ARGS)
 
 clean:  ## remove the environment and caches; outputs/ stays
 	rm -rf $(VENV) .pytest_cache .ruff_cache .import_linter_cache build dist *.egg-info
