@@ -25,7 +25,7 @@ def write_case(case: HiddenCase, folder: str | Path, records: Sequence[HiddenRec
     folder = Path(folder)
     folder.mkdir(parents=True)
     records = case.records if records is None else records
-    sheets = [_sheet(case, record) for record in records]
+    sheets = [_sheet(case, record, len(records) == 1) for record in records]
     content = {"system": "gear_pair", "parameters": {name: dict(value) for name, value in case.nominal.items()}}
     if case.fault:
         spoilt(case.fault, sheets, content, np.random.default_rng([case.seed, 99]))
@@ -37,7 +37,7 @@ def write_case(case: HiddenCase, folder: str | Path, records: Sequence[HiddenRec
     return path
 
 
-def _sheet(case: HiddenCase, record: HiddenRecord) -> Sheet:
+def _sheet(case: HiddenCase, record: HiddenRecord, alone: bool) -> Sheet:
     shown = [name for name in record.channels if name != "gear_torque" or case.gear_torque == "held"]
     columns = {"t": record.time} | {COLUMNS[name]: record.channels[name] * UNITS[name][1] for name in shown}
     if case.seed % 2:
@@ -47,7 +47,7 @@ def _sheet(case: HiddenCase, record: HiddenRecord) -> Sheet:
     if case.gear_torque == "balanced":
         channels["gear_torque"] = "balanced"
     declared: dict[str, object] = {"file": f"{record.name}.csv"}
-    if case.plan != "one_record":
+    if not alone:
         declared["role"] = record.condition.role
     return Sheet(columns, declared | {"channels": channels})
 

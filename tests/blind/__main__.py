@@ -1,0 +1,65 @@
+"""`make blind`: hide effects in measurements, have them explained, count. Resumes where it was stopped."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGE = ROOT / "docs" / "blind.md"
+
+
+def arguments(given: list[str] | None = None) -> argparse.Namespace:
+    """The options of the command line."""
+    from .strata import COUNTS
+
+    parser = argparse.ArgumentParser(prog="make blind ARGS=...", description=__doc__)
+    parser.add_argument("--stratum", action="append", choices=tuple(COUNTS), help="only this one; may be repeated")
+    parser.add_argument("--cases", type=int, help="of each stratum; the counts of a full run where absent")
+    parser.add_argument("--seed", type=int, default=1000, help="the first; seeds below 1000 are for tuning")
+    parser.add_argument("--minutes", type=float, default=85.0, help="begin no case after so many; call again to go on")
+    parser.add_argument("--processes", type=int, default=2, choices=(1, 2))
+    parser.add_argument("--redo", action="store_true", help="ask again what another version of the package answered")
+    parser.add_argument("--page", action="store_true", help=f"write {PAGE.relative_to(ROOT)} too")
+    parser.add_argument("--out", type=Path, default=ROOT / "outputs" / "blind", help="folder of cases and rates")
+    return parser.parse_args(given)
+
+
+def main(given: list[str] | None = None) -> int:
+    """Run; 0 when done, 130 when stopped by Ctrl-C."""
+    os.environ["OMP_NUM_THREADS"] = "1"
+    sys.path.insert(0, str(ROOT / "tests" / "oracles"))
+    os.environ["PYTHONPATH"] = os.pathsep.join([str(ROOT / "tests" / "oracles"), str(ROOT)])  # of the workers
+    options = arguments(given)
+    from .run import CASES, ask, done_cases, write
+    from .strata import COUNTS, questions
+
+    asked = questions(tuple(options.stratum or COUNTS), options.cases, options.seed)
+    stopped = False
+    try:
+        cases = ask(asked, options.out, options.processes, _say, options.minutes, redo=options.redo)
+    except KeyboardInterrupt:
+        stopped, cases = True, done_cases(options.out / CASES)
+        _say("stopped; the cases done so far are kept, and the same command goes on from here")
+    if not cases:
+        return 130 if stopped else 0
+    found = write(cases, options.out, PAGE if options.page else None, " ".join(["make blind", *_shown(given)]))
+    for claim, row in found["rates"].items():
+        _say(f"{claim}: {row['count']} of {row['n']} ({row['target']}: {'met' if row['met'] else 'NOT met'})")
+    _say(f"rates and table: {options.out}")
+    return 130 if stopped else 0
+
+
+def _shown(given: list[str] | None) -> list[str]:
+    words = sys.argv[1:] if given is None else given
+    return [f'ARGS="{" ".join(words)}"'] if words else []
+
+
+def _say(text: str) -> None:
+    print(text, flush=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

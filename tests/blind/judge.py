@@ -1,0 +1,108 @@
+"""What an answer is worth: the claims that the table counts, each true, false, or None where it does not apply."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .strata import same_class
+
+LOUD = 4.0  # times the noise floor, from where an effect outside the catalogue has to be called unexplained
+LARGEST_SET = 4
+UNDISTURBED = ("data_problem", "refused", "consistent", "unexplained")
+Case = dict[str, Any]
+
+
+def names(case: Case) -> list[str]:
+    """Names of what was hidden."""
+    return [effect["name"] for effect in case["truth"]["effects"]]
+
+
+def established(answer: dict[str, Any]) -> list[str]:
+    """Names of established causes, the strongest first."""
+    return [cause["name"] for cause in answer["causes"] if cause["status"] == "established"]
+
+
+def offered(answer: dict[str, Any]) -> list[str]:
+    """Everything that the answer allows for: causes, suggestions, and what each is confused with."""
+    return [name for cause in answer["causes"] for name in (cause["name"], *cause["confusable_with"])]
+
+
+def judged(case: Case) -> dict[str, bool | None]:
+    """The claims about one case by the names of `rates.TARGETS`."""
+    return JUDGES[case["stratum"]](case, case["answer"]) | {"did not crash": _sound(case)}
+
+
+def _sound(case: Case) -> bool:
+    return all(case[key]["verdict"] != "crashed" for key in ("answer", "answer_with_more") if key in case)
+
+
+def _null(case: Case, answer: dict) -> dict[str, bool | None]:
+    return {"null names a cause": bool(answer["causes"])}
+
+
+def _single(case: Case, answer: dict) -> dict[str, bool | None]:
+    name, found = names(case)[-1], established(answer)
+    wrong = bool(found) and not any(same_class(name, other) for other in offered(answer))
+    first = found[:1] == [name] or (found and same_class(name, found[0]) and name in offered(answer))
+    return {"effect established and named first": bool(first), "wrong name established": wrong,
+            "effect named or in the set": any(same_class(name, other) for other in offered(answer))}  # fmt: skip
+
+
+def _faint(case: Case, answer: dict) -> dict[str, bool | None]:
+    name = names(case)[-1]
+    in_set = any(same_class(name, other) for other in offered(answer))
+    return {"faint effect named, suggested or in the set": in_set}
+
+
+def _below(case: Case, answer: dict) -> dict[str, bool | None]:
+    truth, found = names(case), established(answer)
+    return {"below the limit, a wrong name": any(not same_class(truth[-1], name) for name in found)}
+
+
+def _pairs(case: Case, answer: dict) -> dict[str, bool | None]:
+    return {"pair, both named": set(names(case)) <= set(established(answer))}
+
+
+def _outside(case: Case, answer: dict) -> dict[str, bool | None]:
+    misfit = (answer.get("misfit") or {}).get("before", 0.0)
+    loud = answer["verdict"] == "unexplained" if misfit >= LOUD else None
+    return {"outside, called explained": answer["verdict"] in ("explained", "ambiguous"), "outside, unexplained": loud}
+
+
+def _removed(case: Case, answer: dict) -> dict[str, bool | None]:
+    called = answer["verdict"] == "explained"
+    wrong = called and not any(same_class(case["removed"], name) for name in established(answer))
+    return {"removed, explained by another": wrong}
+
+
+def _one_record(case: Case, answer: dict) -> dict[str, bool | None]:
+    name = names(case)[-1]
+    unseen = [entry["name"] for entry in answer.get("not_observable") or []]
+    honest = name in (*offered(answer), *unseen)
+    more = case["answer_with_more"]
+    size = max((1 + len(cause["confusable_with"]) for cause in answer["causes"]), default=0)
+    return {"one record, in the set or not observable": honest, "one record, set too large": size > LARGEST_SET,
+            "with the experiment, named": name in offered(more)}  # fmt: skip
+
+
+def _tacho(case: Case, answer: dict) -> dict[str, bool | None]:
+    truth = names(case)
+    wrong = [name for name in established(answer) if not any(same_class(name, true) for true in truth)]
+    return {"tacho error, a wrong name": bool(wrong)}
+
+
+def _unidentifiable(case: Case, answer: dict) -> dict[str, bool | None]:
+    name = names(case)[-1]
+    wrong = answer["verdict"] == "explained" and not any(same_class(name, o) for o in offered(answer))
+    return {"unidentifiable, explained by another": wrong}
+
+
+def _fault(case: Case, answer: dict) -> dict[str, bool | None]:
+    return {"damaged file blamed on physics": bool(established(answer)) or answer["verdict"] not in UNDISTURBED}
+
+
+JUDGES = {
+    "null": _null, "single": _single, "faint": _faint, "below": _below, "pairs": _pairs, "outside": _outside,
+    "removed": _removed, "one_record": _one_record, "tacho_error": _tacho, "unidentifiable": _unidentifiable,
+    "data_fault": _fault,
+}  # fmt: skip

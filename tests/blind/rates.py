@@ -1,0 +1,94 @@
+"""Rates with their Clopper-Pearson intervals, beside the targets."""
+
+from __future__ import annotations
+
+import statistics
+from collections.abc import Sequence
+from typing import Any
+
+from scipy.stats import beta
+
+from .accuracy import errors, misfits
+from .judge import Case, judged
+
+# claim -> (target, whether the rate should be at least or at most that)
+TARGETS = {
+    "effect established and named first": (0.95, "at least"),
+    "effect named or in the set": (0.95, "at least"),
+    "wrong name established": (0.05, "at most"),
+    "faint effect named, suggested or in the set": (0.80, "at least"),
+    "null names a cause": (0.05, "at most"),
+    "below the limit, a wrong name": (0.05, "at most"),
+    "outside, called explained": (0.05, "at most"),
+    "outside, unexplained": (0.90, "at least"),
+    "removed, explained by another": (0.0, "at most"),
+    "pair, both named": (0.85, "at least"),
+    "one record, in the set or not observable": (0.95, "at least"),
+    "one record, set too large": (0.0, "at most"),
+    "with the experiment, named": (0.95, "at least"),
+    "tacho error, a wrong name": (0.05, "at most"),
+    "unidentifiable, explained by another": (0.05, "at most"),
+    "damaged file blamed on physics": (0.0, "at most"),
+    "did not crash": (1.0, "at least"),
+}
+
+
+def clopper_pearson(count: int, n: int, level: float = 0.95) -> tuple[float, float]:
+    """The exact interval of a rate of `count` in `n`."""
+    if not 0 <= count <= n or n < 1:
+        raise ValueError(f"count must lie in 0..n and n be at least 1, not {count} of {n}")
+    tail = 0.5 * (1.0 - level)
+    low = 0.0 if count == 0 else float(beta.ppf(tail, count, n - count + 1))
+    high = 1.0 if count == n else float(beta.ppf(1.0 - tail, count + 1, n - count))
+    return low, high
+
+
+def rates(cases: Sequence[Case]) -> dict[str, Any]:
+    """Everything that rates.json holds."""
+    verdicts = [(case, judged(case)) for case in cases]
+    rows = {claim: row for claim in TARGETS if (row := _row(claim, verdicts))}
+    found = errors(case for case in cases if case["stratum"] == "single")
+    return {
+        "cases": len(cases),
+        "engines": sorted({case["engine"] for case in cases}),
+        "rates": rows,
+        "misfit_after": misfits(cases),
+        "parameters": {
+            "n": len(found),
+            "median_relative_error": statistics.median(error for error, _ in found) if found else None,
+            "interval_coverage": _counted([held for _, held in found]) if found else None,
+        },
+        "seconds": {"median": statistics.median(c["seconds"] for c in cases) if cases else None},
+        "effects": _by_effect(verdicts),
+    }
+
+
+def _row(claim: str, verdicts: Sequence[tuple[Case, dict]]) -> dict[str, Any] | None:
+    counted = [(case, value[claim]) for case, value in verdicts if value.get(claim) is not None]
+    if not counted:
+        return None
+    target, side = TARGETS[claim]
+    row = _counted([value for _, value in counted])
+    met = row["rate"] >= target if side == "at least" else row["rate"] <= target
+    wrong = [f"{c['stratum']} {c['seed']}" for c, value in counted if value != (side == "at least")]
+    seeds = sorted({case["seed"] for case, _ in counted})
+    return row | {"target": f"{side} {target:g}", "met": met, "seeds": [seeds[0], seeds[-1]], "failed": wrong}
+
+
+def _counted(values: Sequence[bool]) -> dict[str, Any]:
+    count, n = sum(values), len(values)
+    return {"count": count, "n": n, "rate": count / n, "interval95": list(clopper_pearson(count, n))}
+
+
+def _by_effect(verdicts: Sequence[tuple[Case, dict]]) -> dict[str, dict[str, int]]:
+    """Of each hidden effect: how many singles, named first, in the set, wrong."""
+    claims = {"first": "effect established and named first", "in the set": "effect named or in the set",
+              "wrong": "wrong name established"}  # fmt: skip
+    found: dict[str, dict[str, int]] = {}
+    for case, value in verdicts:
+        if case["stratum"] == "single":
+            row = found.setdefault(case["truth"]["effects"][-1]["name"], dict.fromkeys(("n", *claims), 0))
+            row["n"] += 1
+            for short, claim in claims.items():
+                row[short] += bool(value[claim])
+    return dict(sorted(found.items()))

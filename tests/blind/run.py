@@ -1,0 +1,115 @@
+"""Ask the questions, note each answer as it comes, and write what they add up to."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import multiprocessing
+import time
+from collections.abc import Callable, Sequence
+from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
+from pathlib import Path
+from typing import Any
+
+from .judge import Case
+from .rates import rates
+from .strata import Question
+from .table import table
+from .work import answer, quiet_worker
+
+PACKAGE = Path(__file__).resolve().parents[2] / "gear_damping"
+PARTS = ("explanation", "identification", "measurement", "physics", "signals", "simulation")
+CASES, RATES, TABLE = "cases.jsonl", "rates.json", "table.md"
+Say = Callable[[str], None]
+
+
+def engine() -> str:
+    """A fingerprint of the code that explains."""
+    digest = hashlib.sha256()
+    for part in PARTS:
+        for path in sorted((PACKAGE / part).rglob("*.py")):
+            digest.update(path.read_bytes())
+    return digest.hexdigest()[:8]
+
+
+def done_cases(path: Path) -> list[Case]:
+    """Cases noted so far, the last note of each; a line that was cut off is left out."""
+    found: dict[tuple[str, int], Case] = {}
+    for line in path.read_text(encoding="utf-8").splitlines() if path.exists() else ():
+        try:
+            case = json.loads(line)
+        except json.JSONDecodeError:
+            continue
+        found[case["stratum"], case["seed"]] = case
+    return list(found.values())
+
+
+def ask(
+    questions: Sequence[Question], folder: Path, processes: int, say: Say, minutes: float | None = None,
+    solve: Callable[[Question], dict[str, Any]] = answer, redo: bool = False,
+) -> list[Case]:
+    """Answer the questions that have no answer yet; returns all cases of the folder, old and new.
+
+    minutes: no question begins after so many. redo: ask again what another version of the package answered.
+    """  # fmt: skip
+    folder.mkdir(parents=True, exist_ok=True)
+    version = engine()
+    old = done_cases(folder / CASES)
+    done = {(c["stratum"], c["seed"]) for c in old if not redo or c["engine"] == version}
+    waiting = [question for question in questions if question.key not in done]
+    say(f"{len(questions) - len(waiting)} of {len(questions)} cases are done already, {len(waiting)} to do")
+    with (folder / CASES).open("a", encoding="utf-8") as notes:
+
+        def note(case: Case, place: int, rate: float) -> None:
+            notes.write(json.dumps(case | {"engine": version}) + "\n")
+            notes.flush()
+            say(_line(case, place, len(waiting), rate))
+
+        _answer_all(waiting, processes, note, minutes, solve)
+    return done_cases(folder / CASES)
+
+
+def _line(case: Case, place: int, total: int, seconds_each: float) -> str:
+    hidden = "+".join(effect["name"] for effect in case["truth"]["effects"]) or case["truth"]["fault"] or "nothing"
+    said = case["answer"]
+    named = ", ".join(f"{c['name']}{'' if c['status'] == 'established' else '?'}" for c in said["causes"]) or "no name"
+    left = f"about {(total - place) * seconds_each / 60:.0f} min left"
+    return (f"[{place}/{total}] {case['stratum']} {case['seed']} (hidden: {hidden}): {said['verdict']}, {named} "
+            f"({case['seconds']:.0f} s; {left})")  # fmt: skip
+
+
+def _answer_all(waiting, processes: int, note, minutes: float | None, solve) -> None:
+    """Keep the workers busy; on Ctrl-C they are stopped and what is noted stays."""
+    begun = time.monotonic()
+    queue, place = iter(waiting), 0
+    context = multiprocessing.get_context("spawn")
+    pool = ProcessPoolExecutor(processes, mp_context=context, initializer=quiet_worker)
+    running = set()
+    try:
+        while True:
+            late = minutes is not None and time.monotonic() - begun > 60 * minutes
+            while len(running) < processes and not late and (question := next(queue, None)) is not None:
+                running.add(pool.submit(solve, question))
+            if not running:
+                break
+            finished, running = wait(running, return_when=FIRST_COMPLETED)
+            for future in finished:
+                place += 1
+                note(future.result(), place, (time.monotonic() - begun) / place)
+    except BaseException:
+        for process in list(getattr(pool, "_processes", {}).values()):
+            process.terminate()
+        raise
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)
+
+
+def write(cases: Sequence[Case], folder: Path, page: Path | None, command: str) -> dict[str, Any]:
+    """Write rates.json and the table, and the page of the documentation where one is asked for."""
+    found = rates(cases)
+    (folder / RATES).write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+    text = table(found, cases, command)
+    for path in filter(None, (folder / TABLE, page)):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+    return found

@@ -1,0 +1,101 @@
+"""What is asked: the strata of blind cases, how many of each, and which hidden cases they are made of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from hidden import EFFECTS
+
+# Effects that no excess can be had from: they are one class with the load's calibration, or plain noise.
+UNSIZED = ("sensor_gain", "inertia_error", "load_noise", "sensor_quantisation")
+NAMEABLE = tuple(name for name in EFFECTS if name not in UNSIZED)
+COMMON = tuple(
+    name for name in NAMEABLE if name not in ("backlash", "squeeze_film_damping", "unbalance", "tooth_friction")
+)  # of the full plan
+
+CLASSES = (
+    frozenset({"encoder_error", "pinion_eccentricity", "gear_eccentricity", "pitch_error"}),
+    frozenset({"sensor_gain", "inertia_error"}),
+    frozenset({"coulomb_friction", "asymmetric_friction"}),
+)  # the same signal by other words, or one law within the other
+
+
+@dataclass(frozen=True)
+class Question:
+    """One case to be explained.
+
+    stratum: the row of the table. drawn: the stratum of the hidden case. removed: taken out of the catalogue.
+    added: explain a second time with the records that were added later.
+    """
+
+    stratum: str
+    seed: int
+    drawn: str
+    target_excess: float | None = None
+    snr_db: float | None = None
+    removed: str | None = None
+    added: bool = False
+
+    @property
+    def key(self) -> tuple[str, int]:
+        """What makes it the same question."""
+        return self.stratum, self.seed
+
+
+# stratum -> cases in a full run
+COUNTS = {
+    "null": 60, "single": 3 * len(NAMEABLE), "faint": len(NAMEABLE), "pairs": 24, "outside": 25, "one_record": 20,
+    "removed": 2 * len(COMMON), "tacho_error": 10, "below": 10, "unidentifiable": 4, "data_fault": 24,
+}  # fmt: skip
+MEANING = {
+    "null": "nothing is hidden, the stiffness has another shape",
+    "single": "one effect, 0.5 to 20 % of the variance beyond calibration",
+    "faint": "one effect of 0.1 to 0.5 %",
+    "below": "one effect below the information limit: a hundredth of a per cent at 20 dB",
+    "pairs": "two effects at once",
+    "outside": "an effect that the catalogue does not have",
+    "removed": "the true effect is taken out of the catalogue",
+    "one_record": "one record, then the records that the experiment adds",
+    "tacho_error": "a wrong shaft angle, alone or with one effect",
+    "unidentifiable": "a gain or an inertia without a stated uncertainty, or noise",
+    "data_fault": "a damaged file",
+}
+
+
+def question(stratum: str, seed: int) -> Question:
+    """The question of a seed; the effect follows from the seed, so that every effect comes up equally often."""
+    if stratum == "single":
+        name = NAMEABLE[seed % len(NAMEABLE)]
+        return Question(stratum, seed, name, target_excess=(0.7, 2.0, 8.0)[seed // len(NAMEABLE) % 3])
+    if stratum == "faint":
+        return Question(stratum, seed, NAMEABLE[seed % len(NAMEABLE)], target_excess=0.25)
+    if stratum == "below":
+        return Question(stratum, seed, COMMON[7 * seed % len(COMMON)], target_excess=0.01, snr_db=20.0)
+    if stratum == "removed":
+        name = COMMON[seed % len(COMMON)]
+        return Question(stratum, seed, name, target_excess=3.0, removed=name)
+    if stratum == "unidentifiable":
+        return Question(stratum, seed, UNSIZED[seed % len(UNSIZED)])
+    if stratum == "one_record":
+        return Question(stratum, seed, stratum, target_excess=3.0, added=True)
+    if stratum not in COUNTS:
+        raise ValueError(f"no stratum {stratum!r}; choose one of {', '.join(COUNTS)}")
+    return Question(stratum, seed, stratum)
+
+
+def questions(strata: tuple[str, ...], cases: int | None, first_seed: int) -> list[Question]:
+    """Questions of the strata, `cases` of each (all where None), in an order that is balanced wherever it stops."""
+    listed = [list(_of(stratum, cases, first_seed)) for stratum in strata]
+    share = {q.key: (i + 0.5) / len(of) for of in listed for i, q in enumerate(of)}
+    return sorted((q for of in listed for q in of), key=lambda q: share[q.key])
+
+
+def _of(stratum: str, cases: int | None, first_seed: int) -> Iterator[Question]:
+    count = COUNTS[stratum] if cases is None else cases
+    return (question(stratum, first_seed + i) for i in range(count))
+
+
+def same_class(name: str, other: str) -> bool:
+    """Whether data cannot separate the two."""
+    return name == other or any(name in group and other in group for group in CLASSES)

@@ -1,0 +1,73 @@
+"""One question answered: draw, write, load, explain, and keep what came of it as plain values."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+import time
+import traceback
+import warnings
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+from unittest.mock import patch
+
+from hidden import HiddenCase, draw_case, write_case
+
+from gear_damping.errors import InputError
+from gear_damping.explanation import candidates
+from gear_damping.explanation.explain import explain
+from gear_damping.measurement.load import load_measurement
+
+from .strata import Question
+
+DURATION = 0.05  # s of each record
+REFUSED = "refused"  # the data could not be read: one error that names file, channel and remedy
+KEPT = (
+    "verdict", "causes", "misfit", "residual", "not_observable", "next_experiment", "noise", "sentences", "findings",
+)  # fmt: skip
+
+
+def answer(question: Question, duration: float = DURATION) -> dict[str, Any]:
+    """What was hidden and what was said about it; an error of the program is an answer too."""
+    begun = time.perf_counter()
+    kept = {"target_excess": question.target_excess, "snr_db": question.snr_db}
+    case = draw_case(question.drawn, question.seed, duration=duration, **kept)
+    found = asdict(question) | {"truth": _truth(case), "answer": explained(case, question.removed)}
+    if question.added:
+        found["answer_with_more"] = explained(case, question.removed, everything=True)
+    return found | {"seconds": round(time.perf_counter() - begun, 2)}
+
+
+def explained(case: HiddenCase, removed: str | None = None, everything: bool = False) -> dict[str, Any]:
+    """The explanation of a case; without an effect of the catalogue where one is `removed`."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = write_case(case, Path(folder) / "measured", case.records if everything else case.first)
+        library = {name: recipe for name, recipe in candidates.RECIPES.items() if name != removed}
+        with patch.object(candidates, "RECIPES", library), warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            try:
+                content = explain(load_measurement(path)).content
+            except InputError as error:
+                return {"verdict": REFUSED, "causes": [], "sentences": [str(error).replace(folder, "")]}
+            except Exception as error:  # the run goes on, the case counts as failed
+                place = "".join(traceback.format_tb(error.__traceback__)[-2:])
+                return {"verdict": "crashed", "causes": [], "sentences": [f"{type(error).__name__}: {error}", place]}
+    kept = {name: content[name] for name in KEPT}
+    return kept | {"converged": (content["calibration"] or {}).get("converged")}
+
+
+def _truth(case: HiddenCase) -> dict[str, Any]:
+    truth = {name: value for name, value in case.truth.items() if name not in ("rig", "records")}
+    return truth | {"gear_torque": case.gear_torque}
+
+
+def quiet_worker() -> None:
+    """A worker leaves Ctrl-C to its parent and keeps to one thread."""
+    import signal
+
+    import torch
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    os.nice(5)
+    torch.set_num_threads(1)
