@@ -8,8 +8,15 @@ from numpy.typing import ArrayLike
 
 from gear_damping.reporting.figures.arrays import Array, any_finite, extent, series, time_axis
 from gear_damping.reporting.figures.marks import mark_orders
-from gear_damping.reporting.figures.spectra import FREQUENCY_LABEL, ORDER_LABEL, SHOWN_MESH_HARMONICS, draw_spectra
-from gear_damping.reporting.style import BLUE, legend_above, new_figure, say_empty, styled
+from gear_damping.reporting.figures.spectra import (
+    DECADES,
+    FREQUENCY_LABEL,
+    LOW_ORDERS,
+    ORDER_LABEL,
+    SHOWN_MESH_HARMONICS,
+    draw_spectra,
+)
+from gear_damping.reporting.style import BLUE, new_figure, say_empty, styled
 from gear_damping.signals.envelope import upsample
 from gear_damping.signals.spectra import amplitude_spectrum
 
@@ -25,6 +32,7 @@ def simulation_figure(
     sampling_rate: float,
     *,
     label: str = "response",
+    title: str = "",
     shaft_frequency_hz: float | None = None,
     n_teeth_pinion: float | None = None,
     gear_order: float | None = None,
@@ -38,6 +46,7 @@ def simulation_figure(
         unit: Unit of the signal.
         sampling_rate: Samples per second (Hz).
         label: What the signal is.
+        title: Which run it is.
         shaft_frequency_hz: Turns of the pinion per second; None: no shaft, the spectrum is over Hz.
         n_teeth_pinion: Order of the mesh.
         gear_order: Turns of the gear per turn of the pinion.
@@ -47,17 +56,29 @@ def simulation_figure(
     """
     time, signal, velocity = series(time=time, signal=signal, velocity=velocity)
     with styled():
-        figure = new_figure(6.4)
-        grid = figure.add_gridspec(2, 2, width_ratios=(1.6, 1))
-        over_time, spectrum, phase = (figure.add_subplot(grid[p]) for p in (np.s_[0, :], np.s_[1, 0], np.s_[1, 1]))
+        figure = new_figure(6.8)
+        grid = figure.add_gridspec(2, 3, width_ratios=(0.5, 1.5, 1.1), height_ratios=(1, 1.15))
+        wide = np.s_[1, 1] if shaft_frequency_hz else np.s_[1, :2]  # without a shaft there are no low orders
+        over_time, spectrum, phase = (figure.add_subplot(grid[place]) for place in (np.s_[0, :], wide, np.s_[1, 2]))
+        over_time.set_title(title)
         _over_time(over_time, time, signal, f"{label} / {unit}")
-        spectrum.set(xlabel=ORDER_LABEL if shaft_frequency_hz else FREQUENCY_LABEL, ylabel=f"amplitude / {unit}")
-        top = _spectrum(spectrum, signal, sampling_rate, shaft_frequency_hz, n_teeth_pinion)
+        orders, amplitudes = _spectrum(signal, sampling_rate, shaft_frequency_hz)
+        highest = SHOWN_MESH_HARMONICS * n_teeth_pinion if shaft_frequency_hz and n_teeth_pinion else None
+        top = draw_spectra(spectrum, orders, {"response": amplitudes}, highest or _content(orders, amplitudes))
+        spectrum.set_xlabel(ORDER_LABEL if shaft_frequency_hz else FREQUENCY_LABEL)
+        marks = {"pinion_order": 1.0, "gear_order": gear_order}
+        first = spectrum
         if top and shaft_frequency_hz:
-            mark_orders(spectrum, top, pinion_order=1.0, gear_order=gear_order, mesh_order=n_teeth_pinion)
-            legend_above(spectrum, spectrum.get_legend_handles_labels()[0][1:], columns=3)
+            first = figure.add_subplot(grid[1, 0], sharey=spectrum)
+            spectrum.tick_params(labelleft=False)
+            _shaft_orders(first, orders, amplitudes, spectrum.get_ylim())
+            mark_orders(first, LOW_ORDERS, **marks)
+            mark_orders(spectrum, top, mesh_order=n_teeth_pinion, **marks)
+            figure.legend(handles=spectrum.get_legend_handles_labels()[0][1:], loc="outside lower center", ncols=3)
+        first.set_ylabel(f"amplitude / {unit}")
         _phase_plane(phase, signal, velocity)
         phase.set(xlabel=f"{label} / {unit}", ylabel="velocity / (m/s)")
+        phase.locator_params(axis="x", nbins=4)
         return figure
 
 
@@ -81,12 +102,21 @@ def _over_time(axes: Axes, time: Array, signal: Array, name: str) -> None:
         say_empty(axes)
 
 
-def _spectrum(axes: Axes, signal: Array, rate: float, shaft: float | None, teeth: float | None) -> float:
-    """Draw the amplitude spectrum; returns the highest order or frequency shown."""
+def _spectrum(signal: Array, rate: float, shaft: float | None) -> tuple[Array, Array]:
+    """Orders of the shaft, or frequencies, and amplitudes of what varies; empty where there is too little."""
     if len(signal) < LEAST_SAMPLES or not np.isfinite(signal).all():
-        say_empty(axes, "no spectrum: too short or not finite")
-        return 0.0
+        return np.empty(0), np.empty(0)
     frequencies, amplitudes = amplitude_spectrum(torch.as_tensor(signal - signal.mean())[None], rate)
-    orders = frequencies.numpy() / (shaft or 1.0)
-    highest = SHOWN_MESH_HARMONICS * teeth if shaft and teeth else None
-    return draw_spectra(axes, orders, {"response": amplitudes[0].numpy()}, highest)
+    return frequencies.numpy() / (shaft or 1.0), amplitudes[0].numpy()
+
+
+def _content(frequencies: Array, amplitudes: Array) -> float | None:
+    """The frequency above which there is nothing to see; None where there is nothing at all."""
+    seen = frequencies[amplitudes > 10.0**-DECADES * amplitudes.max(initial=0.0)]
+    return 1.1 * float(seen[-1]) if len(seen) and seen[-1] > 0 else None
+
+
+def _shaft_orders(axes: Axes, orders: Array, amplitudes: Array, limits: tuple[float, float]) -> None:
+    """The lowest orders with their single lines."""
+    draw_spectra(axes, orders, {"response": amplitudes}, LOW_ORDERS, marker=".")
+    axes.set(ylim=limits, xlabel="shaft orders", xticks=range(int(LOW_ORDERS) + 1))
