@@ -13,7 +13,7 @@ ARGS ?=
 .PHONY: help setup run test check bench blind docs clean
 
 help:  ## list the targets
-	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-8s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-11s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
 
 # The environment is remade whenever what it should hold has changed.
 $(VENV)/.installed: pyproject.toml constraints.txt
@@ -38,6 +38,21 @@ check: setup  ## everything `make test` runs and the slow tests
 
 docs: setup  ## write docs/effects.md and its figures from the declarations of the effects
 	$(BIN)/python -m gear_damping.reporting.effects_page $(ARGS)
+
+# The peers have an environment of their own; the package needs none of them.
+BENCH_VENV := .venv-bench
+$(BENCH_VENV)/.installed: benchmarks/requirements.txt
+	$(PYTHON) -m venv $(BENCH_VENV)
+	$(BENCH_VENV)/bin/pip install --quiet --disable-pip-version-check $(PIP_OPTIONS) -r benchmarks/requirements.txt
+	@touch $@
+
+bench-setup: $(BENCH_VENV)/.installed  ## create .venv-bench with the libraries that `make bench` compares with
+
+bench: setup  ## time simulation, transforms and training beside other libraries (about 25 minutes)
+	$(BIN)/python -m benchmarks $(ARGS)
+
+blind: setup  ## hide effects in measurements, have them explained, write outputs/blind (resumes; 85 minutes at most)
+	$(BIN)/python -m tests.blind $(ARGS)
 
 clean:  ## remove the environment and caches; outputs/ stays
 	rm -rf $(VENV) .pytest_cache .ruff_cache .import_linter_cache build dist *.egg-info

@@ -1,0 +1,1 @@
+"""Simulation, wavelet transform and training beside other libraries: `make bench`."""

@@ -1,0 +1,47 @@
+"""How cost and memory grow with the batch, the record, the effects, the scales and the sensitivities."""
+
+import statistics
+
+from benchmarks.harness import OWN, PeerError, Process
+from benchmarks.simulating import Said
+
+LARGE = 10_000  # members beyond which one call is measured instead of three
+
+
+def everything(quick: bool, say: Said) -> list[dict]:
+    """CPU time and the peak memory of its own process for each."""
+    batches = (1, 64) if quick else (1, 4, 16, 64, 400, 4096, 65536)
+    lengths = () if quick else (2000, 20_000, 200_000)
+    counts = (2,) if quick else (2, 4, 6, 8, 10)
+    scales = ((16, 8),) if quick else ((64, 8), (64, 32), (64, 128), (4096, 64))
+    parameters = (0, 1) if quick else (0, 1, 2, 3, 4)
+    plans = [("trajectories", {"batch": b, "n_samples": 2000}) for b in batches]
+    plans += [("trajectories", {"batch": 16, "n_samples": n}) for n in lengths]
+    plans += [("trajectories", {"batch": 256, "n_samples": 2000, "effects": e}) for e in counts]
+    plans += [("sensitivities", {"batch": 256, "n_samples": 2000, "parameters": p}) for p in parameters]
+    plans += [("coefficients", {"batch": b, "n_samples": 2000, "n_scales": s}) for b, s in scales]
+    found = [_measured(engine, options, say) for engine, options in plans]
+    return _in_forwards(found)
+
+
+def _in_forwards(rows: list[dict]) -> list[dict]:
+    """The cost of sensitivities as a multiple of the same runs without them."""
+    plain = next((r for r in rows if r.get("parameters") == 0), {}).get("cpu_s")
+    return [r | {"forwards": r["cpu_s"] / plain} if plain and "parameters" in r and "cpu_s" in r else r for r in rows]
+
+
+def _measured(engine: str, options: dict, say: Said) -> dict:
+    row = {"what": engine, **options}
+    try:
+        process = Process(OWN, "growing", engine, options)
+        large = options["batch"] > LARGE
+        runs = [process.run() for _ in range(1 if large else 4)][0 if large else 1 :]  # the first one compiles
+        process.close()
+    except PeerError as problem:
+        say(f"  {row}: left out ({problem})")
+        return row | {"reason": str(problem)}
+    cpu, wall = (statistics.median(run[kind] for run in runs) for kind in ("cpu", "wall"))
+    row |= {"cpu_ms_per_item": 1e3 * cpu / options["batch"], "cpu_s": cpu, "wall_s": wall}
+    row["peak_gib"] = runs[-1]["peak_gib"]
+    say("  " + ", ".join(f"{k} {v:.3g}" if isinstance(v, float) else f"{k} {v}" for k, v in row.items()))
+    return row

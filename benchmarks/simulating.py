@@ -1,0 +1,122 @@
+"""Simulation beside other solvers, each at the cheapest setting that reaches the error asked."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from benchmarks import reference
+from benchmarks.harness import OWN, PEERS, Contestant, PeerError, Process, absent, interleave, rows
+from benchmarks.members import N_SAMPLES, draw
+
+KEPT = 64  # members that are compared with the reference
+SCIPY_MEMBERS = 16
+SHORT = 200  # outputs of the runs with backlash: their chaos has not begun
+WANTED = 1e-5
+Said = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """An engine and its settings from cheap to dear; the first that reaches the error is measured.
+
+    Args:
+        shares_steps: One step size serves the whole batch, so that the error depends on the batch.
+    """
+
+    name: str
+    module: str
+    setting: str
+    ladder: tuple[float, ...]
+    shares_steps: bool = False
+    most: int | None = None
+    own: bool = False
+
+
+OURS = Plan("ours", "own", "substeps", (1, 2, 3, 4, 5, 6, 8), own=True)
+PEER_PLANS = (
+    Plan("scipy_rk45", "simulation_peers", "tolerance", (1e-5, 3e-6, 1e-6, 3e-7, 1e-7), most=SCIPY_MEMBERS),
+    Plan("torchdiffeq_dopri5", "simulation_peers", "tolerance", (1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 3e-8), True),
+    Plan("diffrax", "simulation_peers", "tolerance", (3e-6, 1e-6, 3e-7, 1e-7, 3e-8)),
+    Plan("diffrax_same_algebra", "simulation_peers", "substeps", (2, 3, 4, 5, 6)),
+    Plan("numba_rk4", "simulation_peers", "substeps", (8, 10, 12, 16, 20, 24)),
+)
+UNAWARE = Plan("rk4_unaware", "unaware", "substeps", (512, 1024, 2048, 4096, 8192), own=True)
+
+
+@cache
+def smooth_reference() -> np.ndarray:
+    return reference.smooth(draw(KEPT))
+
+
+@cache
+def backlash_reference() -> np.ndarray:
+    return reference.backlash(draw(KEPT, backlash=True), SHORT)
+
+
+def smooth(batch: int, rounds: int, say: Said, peers: tuple[str, ...] | None = None) -> list[dict]:
+    """Whole trajectories at an error of at most 1e-5 (90th percentile over 64 members)."""
+    plans = [OURS, *(plan for plan in PEER_PLANS if peers is None or plan.name in peers)]
+    found = []
+    for plan in plans:
+        options = {"n_samples": N_SAMPLES, "backlash": False} if plan.name == "ours" else {}
+        found.append(climb(plan, options, smooth_reference(), batch, 90, WANTED, say))
+    return contest("simulate_smooth", batch, found, rounds)
+
+
+def backlash(batch: int, rounds: int, percentile: int, say: Said) -> list[dict]:
+    """Short runs with contact loss: ours, and RK4 that knows nothing of contact, at one error.
+
+    At the median that error is 1e-5; at the 90th percentile it is what ours has with the same setting.
+    """
+    options = {"n_samples": SHORT}
+    ours = climb(OURS, options | {"backlash": True}, backlash_reference(), batch, 50, WANTED, say)
+    wanted = WANTED if percentile == 50 else ours.about.get("error_p90", WANTED)
+    unaware = climb(UNAWARE, options, backlash_reference(), batch, percentile, wanted, say)
+    found = contest("simulate_backlash", batch, [ours, unaware], rounds)
+    return [row | {"equal_error_at": f"p{percentile}", "outputs": SHORT} for row in found]
+
+
+def climb(
+    plan: Plan, options: dict, expected: np.ndarray, batch: int, percentile: int, wanted: float, say: Said
+) -> Contestant:
+    """The engine at the first setting that is exact enough, or at the last.
+
+    Engines whose members do not share steps are tried on the members of the reference alone.
+    """
+    items = min(batch, plan.most or batch)
+    tried = items if plan.shares_steps else min(items, KEPT)
+    python = OWN if plan.own else PEERS
+    try:
+        for setting in plan.ladder:
+            chosen = {**options, plan.setting: setting}
+            error = _errors(python, plan, {**chosen, "batch": tried}, expected)
+            reached = bool(np.percentile(error, percentile) <= wanted)
+            if reached:
+                break
+        process = Process(python, plan.module, plan.name, {**chosen, "batch": items})
+        process.run()  # the first one compiles
+    except PeerError as problem:
+        say(f"  {plan.name}: left out ({problem})")
+        return absent(plan.name, problem)
+    median, ninety = (float(value) for value in np.percentile(error, [50, 90]))
+    about = {"error_p90": ninety, "error_p50": median, "setting": f"{plan.setting} {setting:g}"}
+    say(f"  {plan.name}: {about['setting']}, error p50 {median:.1e}, p90 {ninety:.1e}")
+    return Contestant(plan.name, process, items, about | ({} if reached else {"short_of": wanted}))
+
+
+def _errors(python: object, plan: Plan, options: dict, expected: np.ndarray) -> np.ndarray:
+    process = Process(python, plan.module, plan.name, options)
+    try:
+        _, result = process.result()
+    finally:
+        process.close()
+    return reference.errors(result, expected[: len(result)])
+
+
+def contest(work: str, batch: int, contestants: list[Contestant], rounds: int) -> list[dict]:
+    interleave(contestants, rounds)
+    for contestant in contestants:
+        contestant.close()
+    return rows(work, batch, contestants)
