@@ -10,6 +10,7 @@ from gear_damping.measurement.write import write_measurement
 from gear_damping.reporting import figures
 from gear_damping.simulation.runs import Runs
 from gear_damping.tasks import statements
+from gear_damping.tasks.own_effects import errors_in
 from gear_damping.tasks.recorded import Channels, as_records, recorded_channels, rig_parameters
 from gear_damping.tasks.run_folder import RunFolder
 from gear_damping.tasks.simulated import plan_of, simulated
@@ -20,9 +21,12 @@ NOISE_SEED = 2  # added to the seed of the plan for what the sensors add
 def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     """Simulate and write; returns the metrics for run.json."""
     plan = plan_of(settings)
-    runs = simulated(plan, settings)
-    statements.say_runs(settings, runs)
-    channels = recorded_channels(runs, plan.seed + NOISE_SEED)
+    for path in settings.simulator.files:
+        folder.add_input(path)
+    with errors_in(plan.plugins):
+        runs = simulated(plan, settings)
+        statements.say_runs(settings, runs)
+        channels = recorded_channels(runs, plan.seed + NOISE_SEED)
     arrays = {name: signal.numpy() for name, signal in channels.items()}
     values = {f"parameters/{name}": value.numpy() for name, value in runs.values.items()}
     ratio = runs.damping_ratio_percent.numpy()

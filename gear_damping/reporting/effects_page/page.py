@@ -52,7 +52,7 @@ def page(kinds: Kinds, measured: Mapping[str, Signature]) -> str:
     """
     rows = [_row(name, kind, measured.get(name)) for name, kind in kinds.items()]
     sections = [line for name, kind in kinds.items() for line in section(kind, measured.get(name))]
-    lines = [INTRODUCTION, "", f"## The {len(kinds)} effects", "", *HEAD, *rows, "", *sections]
+    lines = [INTRODUCTION, "", _count(len(kinds)), "", *HEAD, *rows, "", *sections]
     return "\n".join(lines).rstrip() + "\n"
 
 
@@ -109,3 +109,7 @@ def _row(name: str, kind: type[Effect], found: Signature | None) -> str:
 def _amount(value: float) -> str:
     """Three digits, and nothing below a femtometre: rounding."""
     return number(value if abs(value) >= 1e-9 else 0.0, 3).replace("-", "−", 1)
+
+
+def _count(effects: int) -> str:
+    return f"## The {effects} effects" if effects > 1 else "## The effect"

@@ -1,0 +1,139 @@
+"""A user's own effect file: simulated, identified, documented, and clearly refused where it is broken."""
+
+import json
+import runpy
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from gear_damping.measurement.load import load_measurement
+from gear_damping.physics.catalogue import effect_class
+from gear_damping.reporting.effects_page.__main__ import main as write_effects_page
+from gear_damping.reporting.effects_page.declarations import parameter_row
+from gear_damping.tasks.command import main
+from gear_damping.tasks.own_effects import errors_in
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+EXAMPLE = DOCS / "examples" / "my_effect.py"
+NAME = "shear_thinning_damping"
+STIFFNESS, COEFFICIENT, VELOCITY, START = 1000.0, 3.0, 0.5, 0.05
+
+
+def decay(folder, *more, plugin=EXAMPLE):
+    return [
+        "task=simulate", "simulator=oscillator", "family=none", f"simulator.plugins=[{plugin}]",
+        "simulator.damping_law=null", "simulator.viscous_damping=null", f"simulator.stiffness={STIFFNESS}",
+        f"simulator.initial_displacement={START}", "simulator.n_samples=3000", "progress=false",
+        f"simulator.{NAME}.damping_coefficient={COEFFICIENT}", f"simulator.{NAME}.thinning_velocity={VELOCITY}",
+        f"hydra.run.dir={folder / 'run'}", f"data_folder={folder / 'data'}", *more,
+    ]  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory):
+    """The run folder of a noisy decay that was simulated with the example file."""
+    folder = tmp_path_factory.mktemp("decay")
+    assert main(decay(folder, "simulator.sensor_noise.snr_db=40", "write_measurement=true")) == 0
+    return folder / "run"
+
+
+def test_it_simulates_what_its_equation_says(tmp_path):
+    assert main(decay(tmp_path, "simulator.solver.accuracy=1e-7")) == 0
+    with np.load(tmp_path / "run" / "runs.npz") as runs:
+        times, response = runs["t"], runs["displacement"][0]
+        velocity, acceleration = runs["velocity"][0], runs["acceleration"][0]
+        assert runs[f"parameters/{NAME}.thinning_velocity"] == [VELOCITY]
+
+    def slope(_, state):
+        drag = COEFFICIENT * state[1] / (1 + abs(state[1]) / VELOCITY)
+        return [state[1], -STIFFNESS * state[0] - drag]
+
+    truth = solve_ivp(slope, (0, times[-1]), [START, 0], "DOP853", times, rtol=1e-10, atol=1e-13).y
+    np.testing.assert_allclose(response, truth[0], atol=1e-6 * START)
+    np.testing.assert_allclose(velocity, truth[1], atol=1e-6 * START * STIFFNESS**0.5)
+    np.testing.assert_allclose(acceleration, [slope(0, state)[1] for state in truth.T], atol=1e-5 * START * STIFFNESS)
+
+
+def test_the_run_remembers_the_file(recorded):
+    plan = json.loads((recorded / "manifest.json").read_text())["plan"]
+    assert NAME in plan["model"]
+    assert plan["plugins"]
+    assert str(EXAMPLE) in json.loads((recorded / "run.json").read_text())["inputs"]
+
+
+def test_it_is_identified_from_the_record(recorded):
+    identify = runpy.run_path(str(EXAMPLE.with_name("identify_my_effect.py")))["identify"]
+    measurement = recorded / "measurement" / "measurement.yaml"
+    assert load_measurement(measurement).system == "oscillator"
+    found = identify(measurement)
+    truth = {
+        "stiffness": STIFFNESS, f"{NAME}.damping_coefficient": COEFFICIENT, f"{NAME}.thinning_velocity": VELOCITY,
+    }  # fmt: skip
+    assert found.keys() == truth.keys()
+    for name, (value, (low, high)) in found.items():
+        assert value == pytest.approx(truth[name], rel=0.03)
+        assert low < value < high
+        assert high - low < 0.1 * value
+
+
+def test_its_documentation_row_appears(tmp_path):
+    assert write_effects_page(["--plugins", str(EXAMPLE), "--folder", str(tmp_path)]) == 0
+    text = (tmp_path / "effects.md").read_text()
+    kind = effect_class(NAME, [EXAMPLE])
+    assert f"[`{NAME}`](#{NAME}) | the damping force | gear pair, oscillator | yes" in text
+    assert f"### {NAME}" in text
+    assert kind.equation in text
+    for parameter in kind.parameters:
+        assert parameter_row(parameter) in text
+    assert (tmp_path / "figures" / "effects" / f"{NAME}.png").stat().st_size < 40_000
+    assert "### backlash" not in text
+
+
+def test_the_page_about_it_holds_the_files_as_they_are():
+    text = (DOCS / "your_own_effect.md").read_text()
+    assert f"```python\n{EXAMPLE.read_text()}```" in text
+    assert "examples/identify_my_effect.py" in text
+
+
+BROKEN = {
+    "no_python": (lambda text: text.replace("def damping_force(", "def damping_force"), "SyntaxError"),
+    "wrong_import": (lambda text: text.replace("import Tensor", "import Tensr"), "ImportError"),
+    "no_effect": (lambda text: "x = 1\n", "declares no effect"),
+    "taken_name": (lambda text: text.replace(f'"{NAME}"', '"viscous_damping"'), "repeats the name ['viscous_damping']"),
+    "wrong_parameter": (
+        lambda text: text.replace('p["thinning_velocity"]', 'p["velocity"]'),
+        "line 26, in damping_force",
+    ),
+    "wrong_field": (lambda text: text.replace("now.delta_rate.abs", "now.rate.abs"), "no attribute 'rate'"),
+}
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_a_broken_file_ends_in_one_clear_message(name, tmp_path, caplog, capsys):
+    change, said = BROKEN[name]
+    path = tmp_path / f"{name}.py"
+    path.write_text(change(EXAMPLE.read_text()))
+    assert main(decay(tmp_path, plugin=path)) == 1
+    text = caplog.text + capsys.readouterr().err
+    assert text.count("This cannot run") == 1
+    assert f"simulator.plugins = '{path}'" in text
+    assert said in text
+    assert "remedy: " in text
+    assert "Traceback" not in text
+    assert "a defect of gear_damping" not in text
+
+
+def test_a_missing_file_is_named(tmp_path, caplog, capsys):
+    assert main(decay(tmp_path, plugin=tmp_path / "nope.py")) == 1
+    text = caplog.text + capsys.readouterr().err
+    assert "nope.py" in text
+    assert "no such file" in text
+    assert write_effects_page(["--plugins", str(tmp_path / "nope.py"), "--folder", str(tmp_path)]) == 1
+    assert "nope.py" in capsys.readouterr().err
+
+
+def test_errors_of_the_package_itself_are_not_blamed_on_the_file():
+    with pytest.raises(ZeroDivisionError), errors_in([str(EXAMPLE)]):
+        raise ZeroDivisionError
