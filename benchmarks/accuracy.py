@@ -21,6 +21,7 @@ FINE = 192  # sub-steps of what counts as exact
 SAMPLING_RATE, N_SAMPLES = 40e3, 400  # 0.01 s: about 50 natural periods
 KEPT = ("exponent", "contact_ratio", "maximum", "minimum", "lines", "order")  # as declared
 LAW = "power_law_damping"
+NEEDED = {"squeeze_film_damping": ("backlash",), "unbalance": ("bearing_flexibility",)}
 FIELD = {
     "pinion_torque": Spread(0.7, 1.3, relative=True), "pinion_speed": Spread(157.0, 628.0),
     "mesh_phase": Spread(0.0, 2 * pi), "damping_ratio_percent": Spread(0.1, 3.0),
@@ -42,11 +43,11 @@ def drawn(effect: str, batch: int, seed: int = 0) -> tuple[Model, dict[str, Tens
     added = effect_class(effect)
     if "gear_pair" not in added.systems:
         model = Model(Oscillator(), [effect_class("viscous_damping")(), added()])
-        values = model.values(batch, equivalent_mass=1.0, **{"viscous_damping.damping_coefficient": 0.02})
+        values = model.values(batch, **{"viscous_damping.damping_coefficient": 0.02})
         values["initial_displacement"] = 0.2 + 0.8 * _share(batch, generator)
         return model, values | _spread(effect, values, generator)
     mesh = [] if issubclass(added, MeshStiffness) else ["fourier_mesh_stiffness"]
-    names = [*mesh, LAW, *([effect] if effect != LAW else [])]
+    names = dict.fromkeys([*mesh, LAW, *NEEDED.get(effect, ()), effect])
     model = Model(GearPair(), [effect_class(name)() for name in names])
     values, _ = draw_values(model, {}, Family("field", FIELD), batch, generator, damping_law=LAW)
     return model, values | ({} if effect == LAW else _spread(effect, values, generator))
