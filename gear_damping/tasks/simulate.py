@@ -1,5 +1,6 @@
 """task=simulate: write simulated runs as arrays, as a figure and, where asked for, as a measurement."""
 
+from dataclasses import replace
 from math import pi
 from typing import Any
 
@@ -20,7 +21,8 @@ NOISE_SEED = 2  # added to the seed of the plan for what the sensors add
 
 def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     """Simulate and write; returns the metrics for run.json."""
-    plan = plan_of(settings)
+    # Asked to simulate at a damping ratio, all runs have it; only a training keeps it for its test runs.
+    plan = replace(plan_of(settings), damping_ratio_percent=settings.simulator.damping_ratio_percent)
     for path in settings.simulator.files:
         folder.add_input(path)
     with errors_in(plan.plugins):
