@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import signal
 import sys
 from pathlib import Path
 
@@ -33,6 +34,8 @@ def main(given: list[str] | None = None) -> int:
     sys.path.insert(0, str(ROOT / "tests" / "oracles"))
     os.environ["PYTHONPATH"] = os.pathsep.join([str(ROOT / "tests" / "oracles"), str(ROOT)])  # of the workers
     options = arguments(given)
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.default_int_handler)
     from .run import CASES, ask, done_cases, write
     from .strata import COUNTS, questions
 

@@ -65,7 +65,7 @@ def ask(
             notes.flush()
             say(_line(case, place, len(waiting), rate))
 
-        _answer_all(waiting, processes, note, minutes, solve)
+        _answer_all(waiting, processes, note, say, minutes, solve)
     return done_cases(folder / CASES)
 
 
@@ -78,24 +78,27 @@ def _line(case: Case, place: int, total: int, seconds_each: float) -> str:
             f"({case['seconds']:.0f} s; {left})")  # fmt: skip
 
 
-def _answer_all(waiting, processes: int, note, minutes: float | None, solve) -> None:
+def _answer_all(waiting, processes: int, note, say: Say, minutes: float | None, solve) -> None:
     """Keep the workers busy; on Ctrl-C they are stopped and what is noted stays."""
     begun = time.monotonic()
     queue, place = iter(waiting), 0
     context = multiprocessing.get_context("spawn")
     pool = ProcessPoolExecutor(processes, mp_context=context, initializer=quiet_worker)
-    running = set()
+    running: dict = {}
     try:
         while True:
             late = minutes is not None and time.monotonic() - begun > 60 * minutes
             while len(running) < processes and not late and (question := next(queue, None)) is not None:
-                running.add(pool.submit(solve, question))
+                running[pool.submit(solve, question)] = question
             if not running:
                 break
-            finished, running = wait(running, return_when=FIRST_COMPLETED)
-            for future in finished:
+            for future in wait(running, return_when=FIRST_COMPLETED).done:
                 place += 1
-                note(future.result(), place, (time.monotonic() - begun) / place)
+                question, problem = running.pop(future), future.exception()
+                if problem is None:
+                    note(future.result(), place, (time.monotonic() - begun) / place)
+                else:
+                    say(f"{question.stratum} {question.seed} is left out: {type(problem).__name__}: {problem}")
     except BaseException:
         for process in list(getattr(pool, "_processes", {}).values()):
             process.terminate()

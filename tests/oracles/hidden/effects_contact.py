@@ -85,7 +85,7 @@ CONTACT = (
     ),
     Effect(
         "hysteretic_damping",
-        lambda rng, T: {"share": 0.4, "yield_deflection": between(rng, 1e-6, 3e-6), "exponent": 1.0},
+        lambda rng, T: {"share": 0.4, "yield_deflection": between(rng, 4e-6, 8e-6), "exponent": 1.0},
         _turn_hysteresis, {"share": 1},
     ),
     Effect(

@@ -80,7 +80,7 @@ LOAD = (
         lambda p, record: {"load_noise": abs(record["torque"]) / pair.RADIUS[0] * 10.0 ** (-p["snr_db"] / 20.0)},
         shrink=_quieter,
     ),
-    Effect("bearing_flexibility", _bearing, _turn_bearing, {"stiffness": -1}, least=1.0 / 64.0),
+    Effect("bearing_flexibility", _bearing, _turn_bearing, {"stiffness": -1}, least=1.0 / 256.0),
     Effect("shaft_torsion", _torsion, _turn_torsion, {"stiffness": 1}),
     Effect(
         "unbalance", lambda rng, T: {"unbalance": 1e-3, "phase": phase(rng)},

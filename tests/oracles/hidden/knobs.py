@@ -42,7 +42,7 @@ NEUTRAL: Knobs = {
     "dry_forward": 0.0, "dry_backward": 0.0, "viscous_forward": 0.0, "viscous_backward": 0.0,
     "one_way_width": 1.0, "friction": 0.0, "film": 0.0, "film_thickness": 1e-5,
     "contact_damping": 0.0, "contact_exponent": 1.0, "contact_at": 1.66e-5,
-    "hysteresis": 0.0, "yield": 1e-6, "cubic": 0.0, "hertz": 0.0, "hertz_at": 1.66e-5,
+    "hysteresis": 0.0, "yield": 1e-3, "cubic": 0.0, "hertz": 0.0, "hertz_at": 1.66e-5,
     # further degrees of freedom
     "bearing": 0.0, "bearing_stiffness": 1e9, "bearing_mass": 1.0, "bearing_damping": 0.0,
     "unbalance": 0.0, "unbalance_phase": 0.0,

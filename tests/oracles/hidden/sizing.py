@@ -107,6 +107,8 @@ def _chosen(one: Draft, basis: Basis, differences: np.ndarray) -> Sized:
             continue
         left = [basis.excess(differences[:, first + j])["excess_percent"] for j in range(LADDER)]
         finite = np.cumprod(np.isfinite(left)).astype(bool)  # up to the first trial that diverged
+        if not finite.any():
+            raise ValueError(f"{one.stratum} {one.seed}: {effect.name} diverges even at its least size; lower `least`")
         rising = np.maximum.accumulate(np.log(np.array(left)[finite] + 1e-12)) + 1e-9 * np.arange(finite.sum())
         log_sizes = np.log(_sizes(effect.least))[finite]
         log_size = np.interp(np.log(target), rising, log_sizes)
