@@ -1,5 +1,6 @@
 """Numbers as an engineer reads them: digits that mean something, units with prefixes."""
 
+import re
 from collections.abc import Mapping, Sequence
 from math import floor, isfinite, log10
 from typing import Any
@@ -10,6 +11,8 @@ _PRINTED = {
     "1": "", "um": "µm", "us": "µs", "deg": "°", "N*m": "N·m", "N*s/m": "N·s/m", "kg*m^2": "kg·m²", "m/s^2": "m/s²",
     "1/s^2": "1/s²",
 }  # fmt: skip
+
+_EXPONENT = re.compile(r"e\+?(-?)0*")  # 1e+12 and 1e-07 are printed 1e12 and 1e-7
 
 _PLAIN = (1e-3, 1e5)  # numbers outside are printed with an exponent
 
@@ -27,7 +30,7 @@ def number(value: float | None, digits: int = 4) -> str:
     """A number with so many digits that count; a dash where there is none."""
     if value is None or not isfinite(value):
         return NOTHING
-    return f"{value:.{digits}g}".replace("e-0", "e-").replace("e+0", "e")
+    return _EXPONENT.sub(r"e\1", f"{value:.{digits}g}")
 
 
 def quantity(value: float | None, unit: str | None, interval: Interval = None, digits: int = 3) -> str:
