@@ -79,15 +79,20 @@ class Model:
             raise InputError(problems)
         return {name: _as_rows(value, batch, declared[name].vector) for name, value in chosen.items()}
 
-    def prepare(self, values: Mapping[str, Tensor]) -> Prepared:
-        """Everything the equation needs, in natural units, from SI values by flat name."""
+    def prepare(self, values: Mapping[str, Tensor], scales: Scales | None = None) -> Prepared:
+        """Everything the equation needs, in natural units, from SI values by flat name.
+
+        Args:
+            values: Parameters in SI.
+            scales: Units to use in place of the members' own.
+        """
         own = {p.name: values[p.name] for p in self.system.parameters}
         given = {e.name: {p.name: values[f"{e.name}.{p.name}"] for p in e.parameters} for e in self.effects}
         derived, zone = self._derived(own, given)
         for effect in self.effects:
             if isinstance(effect, SystemChange):
                 derived = effect.change(given[effect.name], derived)
-        scales = self.system.scales(derived)
+        scales = scales or self.system.scales(derived)
         units = {p.name: p.unit for p in self.system.parameters} | self.system.derived_units
         base = {k: v / scales.unit_of(parse_unit(units[k]).dimension) for k, v in (own | derived).items()} | zone
         terms = {e.name: e.prepare(e.to_natural(given[e.name], scales), base) for e in self.effects}

@@ -11,6 +11,7 @@ from gear_damping.simulation.kernel import Kernel, Members
 from gear_damping.simulation.native import build
 from gear_damping.simulation.native.source import VECTORS, kernel_source
 from gear_damping.simulation.native.stepper import NativeStepper
+from gear_damping.simulation.native.structure import structure_of
 from gear_damping.simulation.native.trace import UntraceableError
 from gear_damping.simulation.solver_settings import Engine
 from gear_damping.simulation.stepper import Stepper
@@ -65,9 +66,13 @@ def _build(kernel: Kernel, members: Members, state: Tensor) -> ctypes.CDLL | Non
         say_once("no C++ compiler found: simulation runs without native kernels, slower, with the same results")
         return None
     try:
+        structure = structure_of(kernel)
+        found = build.known(structure) if structure else None
+        if found is not None:
+            return found
         with torch.no_grad():
             source = kernel_source(kernel, members, state, build.width_and_options()[0])
-        return build.compiled(source)
+        return build.compiled(source, structure)
     except (UntraceableError, RuntimeError, OSError) as problem:
         say_once(f"no native kernel for this model, it runs slower with the same results ({problem})")
         return None

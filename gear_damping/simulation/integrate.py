@@ -37,19 +37,19 @@ def integrate(
     its batch-mates.
     """
     layout, series = Layout(prepared), Series(tuple(sorted(inputs)))
-    fixed, start = layout.pack(prepared, interval), _initial(model, prepared)
+    fixed, start = layout.pack(prepared, interval), initial_states(model, prepared)
     packed = series.pack(inputs, n_samples - 1, interval.shape[0])
     example = Members(fixed, packed[0], fixed.new_zeros(()))
-    kernel = _kernel_of(model, layout, series, example, start)
+    kernel = kernel_of(model, layout, series, example, start)
     choice = choose(solver.engine, kernel, example, start)
-    groups = _groups(prepared, interval, n_samples - 1, solver)
+    groups = groups_of(prepared, interval, n_samples - 1, solver)
     states = torch.empty(*start.shape, n_samples, dtype=torch.float64)
     names = ["displacement", "velocity", *kernel.equation.extra_names]
     work, done = sum(n * len(lanes) for n, lanes in groups), 0
     for n, lanes in groups:
         stepper = choice.stepper(kernel, fixed[:, lanes].contiguous(), packed[:, :, lanes].contiguous())
         share = _share(progress, done, n * len(lanes), work)
-        found = _solve(stepper, start[:, lanes], n_samples, n, share)
+        found = solve(stepper, start[:, lanes], n_samples, n, share)
         if len(groups) == 1:
             return names, found
         states[:, lanes] = found
@@ -57,7 +57,8 @@ def integrate(
     return names, states
 
 
-def _solve(stepper: Stepper, start: Tensor, n_samples: int, substeps: int, progress: Progress | None) -> Tensor:
+def solve(stepper: Stepper, start: Tensor, n_samples: int, substeps: int, progress: Progress | None) -> Tensor:
+    """Walk a batch from its initial states, (n_state, batch), through `odeint`; (n_state, batch, time)."""
     times = torch.arange(n_samples, dtype=start.dtype, device=start.device)
     options = {"stepper": stepper, "substeps": substeps, "progress": progress}
     with torch.no_grad():
@@ -65,7 +66,7 @@ def _solve(stepper: Stepper, start: Tensor, n_samples: int, substeps: int, progr
     return found.permute(1, 2, 0)
 
 
-def _groups(prepared: Prepared, interval: Tensor, intervals: int, solver: Solver) -> list[tuple[int, Tensor]]:
+def groups_of(prepared: Prepared, interval: Tensor, intervals: int, solver: Solver) -> list[tuple[int, Tensor]]:
     """Sub-steps and the members that take them, in chunks that bound the memory."""
     if solver.substeps is None:
         substeps = substeps_for(solver.accuracy, prepared, interval, intervals)
@@ -75,7 +76,7 @@ def _groups(prepared: Prepared, interval: Tensor, intervals: int, solver: Solver
     return [(n, lanes) for n, all_lanes in members for lanes in all_lanes.split(solver.chunk)]
 
 
-def _initial(model: Model, prepared: Prepared) -> Tensor:
+def initial_states(model: Model, prepared: Prepared) -> Tensor:
     """States at the start in natural units, (n_state, batch)."""
     own = [prepared.base["initial_displacement"], prepared.base["initial_velocity"]]
     return torch.stack([*own, *extra_states(model, prepared)])
@@ -91,7 +92,7 @@ def _share(progress: Progress | None, done: int, own: int, work: int) -> Progres
 _kernels: dict[tuple, Kernel] = {}
 
 
-def _kernel_of(model: Model, layout: Layout, series: Series, members: Members, start: Tensor) -> Kernel:
+def kernel_of(model: Model, layout: Layout, series: Series, members: Members, start: Tensor) -> Kernel:
     """The kernel of a model; models of one structure share it, and what was compiled for it."""
     parts = (model.system, *model.effects)
     key = tuple((type(part), tuple(sorted(part.chosen.items()))) for part in parts)

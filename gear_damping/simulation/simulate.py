@@ -49,7 +49,7 @@ def simulate(
     batch = prepared.base["equivalent_mass"].shape[0]
     inputs = dict(inputs or {})
     _check_inputs(model, inputs, (batch, n_samples))
-    natural = _natural_inputs(model, inputs, prepared)
+    natural = natural_inputs(model, inputs, prepared)
     natural |= _held_loads(model, values, prepared, n_samples - 1, seed)
     interval = 1 / (sampling_rate * prepared.scales.time)
     names, states = integrate(model, prepared, natural, interval, n_samples, solver, progress)
@@ -83,7 +83,8 @@ def _check_inputs(model: Model, inputs: Mapping[str, Tensor], shape: tuple[int, 
         raise InputError(problems)
 
 
-def _natural_inputs(model: Model, inputs: Mapping[str, Tensor], prepared: Prepared) -> dict[str, Tensor]:
+def natural_inputs(model: Model, inputs: Mapping[str, Tensor], prepared: Prepared) -> dict[str, Tensor]:
+    """Input series in natural units."""
     units = {name: parse_unit(unit).dimension for name, unit in model.system.inputs.items()}
     return {
         name: value.to(torch.float64) / prepared.scales.unit_of(units[name]).unsqueeze(1)

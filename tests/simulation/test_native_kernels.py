@@ -7,15 +7,19 @@ import numpy as np
 import pytest
 import torch
 
-from gear_damping.physics.catalogue import builtin_effects
+from gear_damping.physics.catalogue import builtin_effects, effect_class
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.gear_pair import GearPair
 from gear_damping.physics.systems.oscillator import Oscillator
 from gear_damping.physics.terms import MeshStiffness, Sensor
 from gear_damping.simulation import compilation
+from gear_damping.simulation.kernel import Kernel, Members
+from gear_damping.simulation.layout import Layout
 from gear_damping.simulation.native import build
 from gear_damping.simulation.native.expressions import Program
+from gear_damping.simulation.native.structure import structure_of
 from gear_damping.simulation.native.trace import LANES, UntraceableError, trace
+from gear_damping.simulation.series import Series
 from gear_damping.simulation.simulate import simulate
 from gear_damping.simulation.solver_settings import Solver
 
@@ -54,6 +58,7 @@ def test_a_term_without_native_form_runs_eager(bench_model, monkeypatch, caplog)
         raise UntraceableError("no native form")
 
     monkeypatch.setattr(compilation, "kernel_source", refuse)
+    monkeypatch.setattr(compilation.build, "known", lambda structure: None)
     monkeypatch.setattr(compilation, "_libraries", {})
     monkeypatch.setattr(compilation, "_said", set())
     with caplog.at_level(logging.WARNING):
@@ -138,3 +143,26 @@ def test_kernels_are_kept_between_processes(bench_model, monkeypatch, tmp_path, 
             simulate(model, values(2), sampling_rate=40e3, n_samples=3)
         assert ("compiling" in caplog.text) is said, number
     assert len(list(tmp_path.glob("kernels/*.so"))) == 1
+
+
+@pytest.mark.usefixtures("compiler")
+def test_a_kernel_is_found_again_without_tracing(bench_model, monkeypatch):
+    model, values = bench_model
+    run = {"sampling_rate": 40e3, "n_samples": 5}
+    first = simulate(model, values(2), **run).response
+    monkeypatch.setattr(compilation, "kernel_source", None)
+    monkeypatch.setattr(compilation, "_libraries", {})
+    torch.testing.assert_close(simulate(model, values(2), **run).response, first, rtol=0, atol=0)
+
+
+def test_what_decides_a_kernel_is_in_its_key(bench_model):
+    model, values = bench_model
+    other = Model(model.system, [*model.effects, effect_class("cubic_stiffness")()])
+    keys = set()
+    for kind in (model, other):
+        prepared = kind.prepare({**kind.values(2), **values(2)})
+        fixed = Layout(prepared).pack(prepared, prepared.scales.time)
+        members = Members(fixed, fixed[:0], fixed.new_zeros(()))
+        keys.add(structure_of(Kernel(kind, Layout(prepared), Series(()), members, fixed[:2])))
+    assert len(keys) == 2
+    assert None not in keys

@@ -6,7 +6,7 @@ import torchdiffeq
 from torchdiffeq import odeint
 
 from gear_damping.simulation import torchdiffeq_method
-from gear_damping.simulation.integrate import Members, _initial, _kernel_of
+from gear_damping.simulation.integrate import Members, initial_states, kernel_of
 from gear_damping.simulation.layout import Layout
 from gear_damping.simulation.series import Series
 from gear_damping.simulation.simulate import simulate
@@ -20,9 +20,9 @@ def stepper(bench_model):
     prepared = model.prepare(values(3))
     interval = 1 / (40e3 * prepared.scales.time)
     layout, series = Layout(prepared), Series(())
-    fixed, start = layout.pack(prepared, interval), _initial(model, prepared)
+    fixed, start = layout.pack(prepared, interval), initial_states(model, prepared)
     empty = fixed.new_zeros(50, 0, 3)
-    kernel = _kernel_of(model, layout, series, Members(fixed, empty[0], fixed.new_zeros(())), start)
+    kernel = kernel_of(model, layout, series, Members(fixed, empty[0], fixed.new_zeros(())), start)
     return Stepper(kernel, fixed, empty, compiled=False), start, prepared
 
 

@@ -1,8 +1,8 @@
-"""The report of an explanation: `render(ReportInput(…))` gives one self-contained HTML page."""
+"""The report of an explanation as one self-contained HTML page."""
 
-from gear_damping.reporting.explanation_report.render import render, write_report
+from gear_damping.reporting.explanation_report.from_explanation import report_input, write_report
+from gear_damping.reporting.explanation_report.render import render
 from gear_damping.reporting.explanation_report.report_input import (
-    Candidate,
     ForceMap,
     ForceSurface,
     Overlay,
@@ -11,12 +11,12 @@ from gear_damping.reporting.explanation_report.report_input import (
 )
 
 __all__ = [
-    "Candidate",
     "ForceMap",
     "ForceSurface",
     "Overlay",
     "ReportInput",
     "ResidualSpectrum",
     "render",
+    "report_input",
     "write_report",
 ]

@@ -1,7 +1,7 @@
 """The figures of a report with their captions."""
 
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 from matplotlib.figure import Figure
 
@@ -27,17 +27,10 @@ def overlays(report: ReportInput) -> list[Shown]:
     """Measured, nominal and extended of each record."""
     shown = []
     for one in report.overlays:
-        figure = figures.overlay_figure(
-            one.time,
-            one.measured,
-            one.nominal,
-            one.extended,
-            unit=report.unit,
-            quantity=report.quantity,
-            noise=one.noise,
-        )
+        look = {"unit": report.unit, "quantity": report.quantity, "noise": one.noise}
+        figure = figures.overlay_figure(one.time, one.measured, one.nominal, one.extended, **look)
         caption = (
-            f"{one.record}: the stretch in which the nominal simulation is worst, and the residuals there and over all."
+            f"{one.record}: the stretch where the nominal simulation is worst, the residuals there, and all of them."
         )
         shown.append(_shown(figure, caption))
     return shown
@@ -49,7 +42,7 @@ def misfit(report: ReportInput) -> Shown | None:
     if not found.get("records"):
         return None
     figure = figures.misfit_figure(found["records"], floor=found.get("floor", 1.0))
-    return _shown(figure, "Each record from before to after; at the dashed line noise alone is left.")
+    return _shown(figure, "Held-out records from before to after; at the dashed line only noise is left.")
 
 
 def spectrum(report: ReportInput) -> Shown | None:
@@ -58,27 +51,40 @@ def spectrum(report: ReportInput) -> Shown | None:
     if found is None:
         return None
     given = {"after": found.after, "unit": report.unit, "measured": found.measured, "floor": found.floor}
+    caption = f"{found.record or 'Spectrum'}: what the simulation leaves, before and after."
     if found.mesh_order is None:
-        return _shown(_over_frequencies(found, given), "Spectrum of what the simulation leaves, before and after.")
+        return _shown(_over_frequencies(found, given), caption)
     orders = {"mesh_order": found.mesh_order, "gear_order": found.gear_order}
     figure = figures.residual_orders_figure(found.places, found.before, **given, **orders)
-    caption = "Spectrum of what the simulation leaves, before and after: a line at a shaft's order turns with that "
-    return _shown(figure, caption + "shaft, one at a mesh harmonic repeats with every tooth.")
+    reading = "A line at a shaft's order turns with that shaft, one at a mesh harmonic repeats with every tooth."
+    return _shown(figure, f"{caption} {reading}")
 
 
 def _over_frequencies(found: ResidualSpectrum, given: dict) -> Figure:
-    place = {"natural_frequency_hz": found.natural_frequency_hz, "highest_hz": found.highest_hz}
-    return figures.residual_frequencies_figure(found.places, found.before, **given, **place)
+    natural = {"natural_frequency_hz": found.natural_frequency_hz}
+    return figures.residual_frequencies_figure(found.places, found.before, **given, **natural)
 
 
 def candidates(report: ReportInput) -> Shown | None:
     """What was tried."""
-    if not report.candidates:
+    tried = report.explanation.get("candidates")
+    if not tried:
         return None
-    figure = figures.candidates_figure([asdict(c) for c in report.candidates], needed_share=report.needed_share)
-    return _shown(
-        figure, "What each effect would explain of the excess, after its full fit, on records that were held out."
+    misfit = report.explanation.get("misfit") or {}
+    rows = [{**row, "share": excess_share(row.get("share"), misfit)} for row in tried]
+    figure = figures.candidates_figure(rows, needed_share=report.needed_share)
+    caption = (
+        "What each effect explains of the excess on held-out records, after its full fit. Only those that promised "
     )
+    return _shown(figure, caption + "most on the fitted records were fitted in full.")
+
+
+def excess_share(share: float | None, misfit: dict) -> float | None:
+    """The share of the excess over the noise that a share of the whole squared residual is."""
+    before, floor = misfit.get("before"), misfit.get("floor", 1.0)
+    if share is None or before is None or not before > floor:
+        return None
+    return share * before / (before - floor)
 
 
 def residual_forces(report: ReportInput) -> Iterator[Shown]:
@@ -96,8 +102,8 @@ def residual_forces(report: ReportInput) -> Iterator[Shown]:
         figure = figures.residual_force_surface_figure(
             two.displacement, two.velocity, two.force, force_unit=two.force_unit, visits=two.visits, **units
         )
-        caption = "The same over displacement and velocity: what depends on displacement is a missing stiffness, what "
-        yield _shown(figure, caption + "depends on velocity missing damping.")
+        caption = "The force that the nominal simulation misses, over displacement and velocity: what depends on "
+        yield _shown(figure, caption + "displacement is a missing stiffness, what depends on velocity missing damping.")
 
 
 def _shown(figure: Figure, caption: str) -> Shown:

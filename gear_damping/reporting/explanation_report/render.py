@@ -1,10 +1,11 @@
 """The explanation as one page that needs nothing beside itself."""
 
+import re
 from importlib.resources import files
-from pathlib import Path
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup, escape
 
 from gear_damping.reporting.explanation_report import evidence, rows, sentences, vocabulary
 from gear_damping.reporting.explanation_report.report_input import ReportInput
@@ -17,16 +18,14 @@ def render(report: ReportInput) -> str:
     environment = Environment(
         loader=PackageLoader(PACKAGE), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
-    environment.filters["words"] = vocabulary.words
+    environment.filters |= {"words": vocabulary.words, "names_marked": names_marked}
     style = files(PACKAGE).joinpath("templates", "style.css").read_text(encoding="utf-8")
     return environment.get_template("report.html").render(style=style, **_content(report)).lstrip()
 
 
-def write_report(report: ReportInput, path: Path | str) -> Path:
-    """Write the page; returns its path."""
-    path = Path(path)
-    path.write_text(render(report), encoding="utf-8")
-    return path
+def names_marked(text: str) -> Markup:
+    """Text with what stands in backticks set as code; everything else is escaped."""
+    return Markup(re.sub(r"`([^`]+)`", r"<code>\1</code>", str(escape(text))))
 
 
 def _content(report: ReportInput) -> dict[str, Any]:
@@ -34,24 +33,20 @@ def _content(report: ReportInput) -> dict[str, Any]:
     return {
         "title": report.title,
         "verdict": explanation["verdict"],
-        "headline": sentences.HEADLINES[explanation["verdict"]],
-        "verdict_sentences": sentences.verdict_sentences(explanation, report.descriptions),
-        "misfit_sentence": sentences.misfit_sentence(explanation.get("misfit")),
-        "damping_sentence": sentences.damping_sentence(explanation.get("gain")),
+        "verdict_sentences": sentences.verdict_sentences(explanation),
         "causes": [_cause(cause, report) for cause in explanation.get("causes") or ()],
         "next_experiment": sentences.next_experiment_sentences(explanation.get("next_experiment")),
-        "findings": list(report.findings),
-        "calibration": list(report.calibration),
+        "noise": sentences.noise_sentences(explanation.get("noise")),
+        "calibration": sentences.calibration_sentences(explanation.get("calibration")),
+        "rest": rows.unexplained_sentence(report),
         "equations": dict(report.equations),
         "provenance": dict(report.provenance),
-        "records_have_total": rows.has_total(report),
         "tables": {
             "records": rows.records(report),
-            "residuals": rows.residuals(report),
             "parameters": rows.parameters(report),
             "not_observable": rows.not_observable(report),
-            "noise": rows.noise(report),
             "unexplained": rows.unexplained(report),
+            "findings": rows.findings(report),
         },
         "overlays": evidence.overlays(report),
         "misfit": evidence.misfit(report),

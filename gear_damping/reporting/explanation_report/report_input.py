@@ -1,18 +1,24 @@
 """What the report of an explanation is made of: the content of `explanation.json` and the arrays behind its figures.
 
-`explanation` is a mapping with these keys; one that is absent or None leaves its section out:
+`explanation` is a mapping with these keys; one that is absent, None or empty leaves its section out:
 
     verdict         consistent, explained, ambiguous, partly_explained, unexplained or data_problem (required)
+    sentences       what was found, the most important first; `words` in backticks are names
     causes          list, strongest first: {name, parameters: {name: {value, unit, interval95}}, excess_explained
                     (share of the held-out excess), confusable_with: [names], status: established or suggested}
-    misfit          {before, after, floor, records: {record: {role, before, after, floor}}}: held-out mean squared
-                    residual over the noise variance
+    misfit          {before, after, floor, records: {held-out record: {before, after}}}: mean squared residual over
+                    the noise variance
+    records         {record: {role: fit or holdout, samples, rmse: {before, after, unit}}}
     residual        {fit: {before, after, unit}, holdout: {before, after, unit}}: RMSE in the channel's unit
-    gain            {nrmse: {before, after, floor}, damping_ratio_percent: {before: {value, interval95}, after: …}}
-    noise           {channel: {level, unit, method} or a sentence}
-    not_observable  list of {name, smallest, unit}; smallest None or infinite: not at any size
-    next_experiment {description, separates: [names], predicted_separation} or a sentence
-    unexplained     {share, orders, contact_phase, state_dependence, families: {family: share}, …} or a sentence
+    gain            {damping_ratio_percent: {before: {value, interval95, reference_velocity}, after: the same}}
+    noise           {channel, value, unit, by_record: {record: value}, method, estimates_agree}
+    candidates      list of {name, share, status}: share of the held-out squared residual that a full fit takes (None:
+                    it had none), status established, confusable, suggested or rejected
+    not_observable  list of {name, parameter, smallest, unit}; smallest None or infinite: not at any size
+    next_experiment {what, separates: [names], predicted_separation}
+    unexplained     {shares: {family: share}, orders: {family: share}, contact_phase: [values], kurtosis, bursts}
+    calibration     {converged, steps: [sentences]}
+    findings        list of {record, channel, message}: what was found in the data
 
 Units are as in `gear_damping.units`; what is not a number (NaN) counts as not known.
 """
@@ -57,10 +63,10 @@ class ResidualSpectrum:
         after: Those of the extended simulation; None: nothing was added.
         measured: Amplitudes of the record.
         floor: Amplitudes of the noise alone.
-        mesh_order: Teeth of the pinion; None: no gears.
+        mesh_order: Teeth of the pinion; None: no gears, or no whole turn.
         gear_order: Turns of the gear per turn of the pinion.
         natural_frequency_hz: Marked over frequencies.
-        highest_hz: End of the frequency axis.
+        record: Whose spectrum it is.
     """
 
     places: ArrayLike
@@ -71,22 +77,7 @@ class ResidualSpectrum:
     mesh_order: float | None = None
     gear_order: float | None = None
     natural_frequency_hz: float | None = None
-    highest_hz: float | None = None
-
-
-@dataclass(frozen=True)
-class Candidate:
-    """An effect that was tried.
-
-    Args:
-        name: The effect.
-        share: Share of the held-out excess that it explains; None: it was not fitted.
-        status: established, confusable, suggested or rejected.
-    """
-
-    name: str
-    share: float | None
-    status: str = "rejected"
+    record: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,14 +113,11 @@ class ReportInput:
         unit: Its unit.
         overlays: Records to show, held-out ones first.
         spectrum: Spectrum of the residual.
-        candidates: What was tried.
         needed_share: Share of the excess that a cause has to take.
         force_map: Residual force by tooth and mesh phase.
         force_surface: Residual force by displacement and velocity.
-        parameters: Fitted parameters beyond the causes: name -> {before, after: {value, unit, interval95} or None}.
-        equations: Name of a simulation -> its equation of motion as text.
-        calibration: Sentences about how the nominal simulation was calibrated, in order.
-        findings: Sentences about the data: faults of a data problem, and notes.
+        parameters: Fitted parameters: name -> {before, after: {value, unit, interval95} or None}.
+        equations: Effect of the simulation -> its term of the equation of motion as text.
         descriptions: Effect -> sentence about it, for effects that are not in the catalogue.
         provenance: What made the report: command, versions, inputs.
     """
@@ -140,14 +128,11 @@ class ReportInput:
     unit: str = "µm"
     overlays: Sequence[Overlay] = ()
     spectrum: ResidualSpectrum | None = None
-    candidates: Sequence[Candidate] = ()
     needed_share: float | None = None
     force_map: ForceMap | None = None
     force_surface: ForceSurface | None = None
     parameters: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     equations: Mapping[str, str] = field(default_factory=dict)
-    calibration: Sequence[str] = ()
-    findings: Sequence[str] = ()
     descriptions: Mapping[str, str] = field(default_factory=dict)
     provenance: Mapping[str, str] = field(default_factory=dict)
 

@@ -6,42 +6,40 @@ from typing import Any
 
 from gear_damping.reporting.explanation_report.report_input import ReportInput
 from gear_damping.reporting.explanation_report.vocabulary import description, meaning, words
-from gear_damping.reporting.numbers import NOTHING, estimate, number, percent, quantity
+from gear_damping.reporting.numbers import estimate, number, percent, quantity
 
 ROLES = {"fit": "fitted", "holdout": "held out"}
+FAMILIES = {
+    "s1": "pinion shaft", "s2": "gear shaft", "k_s1": "harmonics of the pinion shaft", "M": "mesh harmonics",
+    "M_half": "half the mesh order", "M_sidebands": "sidebands of the mesh", "mean": "constant",
+    "rest": "none of these",
+}  # fmt: skip
+BURST = "It comes in bursts, as impacts do"
+STEADY = "It is spread over the record"
 Row = tuple[str, ...]
 
 
 def records(report: ReportInput) -> list[Row]:
-    """Record, role, misfit before, after and floor."""
-    misfit = report.explanation.get("misfit") or {}
-    floor = misfit.get("floor", 1.0)
-    rows = [_record_row(name, entry, floor) for name, entry in (misfit.get("records") or {}).items()]
-    if has_total(report):
-        rows.append(_record_row("all held-out records", {"role": "holdout", **misfit}, floor))
-    return rows
-
-
-def has_total(report: ReportInput) -> bool:
-    """Whether the last of `records` is that of all held-out records together."""
-    misfit = report.explanation.get("misfit") or {}
-    return bool(misfit.get("records")) and misfit.get("before") is not None
-
-
-def _record_row(name: str, entry: Mapping[str, Any], floor: float) -> Row:
-    misfits = (number(entry.get(key), 3) for key in ("before", "after"))
-    role = str(entry.get("role", "holdout"))
-    return (name, ROLES.get(role, role), *misfits, number(entry.get("floor", floor), 3))
-
-
-def residuals(report: ReportInput) -> list[Row]:
-    """Role, RMSE before and after."""
+    """Record, role, RMSE before, after and of the noise, misfit before and after; the last row is of all held out."""
+    explanation = report.explanation
+    misfits = (explanation.get("misfit") or {}).get("records") or {}
+    noise = (explanation.get("noise") or {}).get("by_record") or {}
     rows = []
-    for role, entry in (report.explanation.get("residual") or {}).items():
-        if entry:
-            values = (quantity(entry.get(key), entry.get("unit")) for key in ("before", "after"))
-            rows.append((f"{ROLES.get(role, role)} records", *values))
+    for name, entry in (explanation.get("records") or {}).items():
+        if entry.get("rmse"):
+            rows.append(_record(name, entry, noise.get(name), misfits.get(name) or {}))
+    total = (explanation.get("residual") or {}).get("holdout")
+    if rows and total:
+        level = (explanation.get("noise") or {}).get("value")
+        rows.append(_record("held out together", {"role": "", "rmse": total}, level, explanation.get("misfit") or {}))
     return rows
+
+
+def _record(name: str, entry: Mapping[str, Any], noise: float | None, misfit: Mapping[str, Any]) -> Row:
+    rmse = entry["rmse"]
+    residuals = (quantity(value, rmse.get("unit")) for value in (rmse.get("before"), rmse.get("after"), noise))
+    role = str(entry.get("role", ""))
+    return (name, ROLES.get(role, role), *residuals, *(number(misfit.get(key), 3) for key in ("before", "after")))
 
 
 def cause_parameters(cause: Mapping[str, Any]) -> list[Row]:
@@ -52,52 +50,55 @@ def cause_parameters(cause: Mapping[str, Any]) -> list[Row]:
 
 def parameters(report: ReportInput) -> list[Row]:
     """Parameter, before, after."""
-    rows = [(words(n), estimate(e.get("before")), estimate(e.get("after"))) for n, e in report.parameters.items()]
+    rows = []
     damping = (report.explanation.get("gain") or {}).get("damping_ratio_percent") or {}
     if damping:
         entries = ({**damping[key], "unit": "%"} if damping.get(key) else None for key in ("before", "after"))
-        rows.insert(0, ("damping ratio, % of critical", *map(estimate, entries)))
-    return rows
+        rows.append(("damping ratio, % of critical", *map(estimate, entries)))
+    named = report.parameters.items()
+    return rows + [(words(n), estimate(e.get("before")), estimate(e.get("after"))) for n, e in named]
 
 
 def not_observable(report: ReportInput) -> list[Row]:
     """Effect, smallest size that would have shown, what it is."""
     rows = []
     for entry in report.explanation.get("not_observable") or ():
-        smallest = entry.get("smallest")
-        visible = smallest is not None and isfinite(smallest)
-        size = quantity(smallest, entry.get("unit"), digits=2) if visible else "not at any size"
-        rows.append((words(entry["name"]), size, description(entry["name"], report.descriptions)))
-    return rows
-
-
-def noise(report: ReportInput) -> list[Row]:
-    """Channel, level, how it was found."""
-    rows = []
-    for channel, entry in (report.explanation.get("noise") or {}).items():
-        if isinstance(entry, Mapping):
-            level = quantity(entry.get("level"), entry.get("unit"))
-            rows.append((words(channel), level, str(entry.get("method", ""))))
-        else:
-            rows.append((words(channel), NOTHING, str(entry)))
+        smallest, name = entry.get("smallest"), entry["name"]
+        size = "not at any size"
+        if smallest is not None and isfinite(smallest):
+            parameter = words(str(entry.get("parameter", "")).partition(".")[2].partition("[")[0])
+            size = f"{parameter} {quantity(smallest, entry.get('unit'), digits=2)}".strip()
+        rows.append((words(name), size, description(name, report.descriptions)))
     return rows
 
 
 def unexplained(report: ReportInput) -> list[Row]:
-    """What is known of the rest: feature, finding."""
-    rest = report.explanation.get("unexplained")
-    if not rest:
-        return []
-    if not isinstance(rest, Mapping):
-        return [("the rest", str(rest))]
-    return [(words(key), _said(value, share=key in ("share", "families"))) for key, value in rest.items() if value]
+    """What is known of the rest: feature, share or finding, the largest first."""
+    rest = report.explanation.get("unexplained") or {}
+    rows = [(f"explained by {words(name)}", percent(share, 2)) for name, share in _falling(rest.get("shares"))]
+    rows += [(f"at the order of: {FAMILIES.get(n, words(n))}", percent(s, 2)) for n, s in _falling(rest.get("orders"))]
+    phase = rest.get("contact_phase") or ()
+    if phase and max(phase) > 0:
+        place = (max(range(len(phase)), key=phase.__getitem__) + 0.5) / len(phase)
+        rows.append(
+            ("strongest at the mesh phase", f"{number(place, 2)} of a period, {number(max(phase), 2)} times the mean")
+        )
+    if "kurtosis" in rest:
+        rows.append(("kurtosis (noise: 3)", number(rest["kurtosis"], 3)))
+    return rows
 
 
-def _said(value: Any, *, share: bool) -> str:
-    if isinstance(value, Mapping):
-        return "; ".join(f"{words(str(key))}: {_said(part, share=share)}" for key, part in value.items())
-    if isinstance(value, (list, tuple)):
-        return ", ".join(_said(part, share=share) for part in value)
-    if isinstance(value, float):
-        return percent(value) if share else number(value)
-    return str(value)
+def _falling(shares: Mapping[str, float] | None) -> list[tuple[str, float]]:
+    return sorted((shares or {}).items(), key=lambda item: -item[1])
+
+
+def unexplained_sentence(report: ReportInput) -> str:
+    """Whether the rest comes in bursts."""
+    bursts = (report.explanation.get("unexplained") or {}).get("bursts")
+    return "" if bursts is None else f"{BURST if bursts else STEADY}."
+
+
+def findings(report: ReportInput) -> list[Row]:
+    """Record, channel, finding."""
+    listed = report.explanation.get("findings") or ()
+    return [(str(f.get("record", "")), words(str(f.get("channel", ""))), str(f["message"])) for f in listed]

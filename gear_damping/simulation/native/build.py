@@ -57,19 +57,54 @@ def cache_folder() -> Path:
     return Path(own) if own else Path(home) / "gear_damping"
 
 
-def compiled(source: str) -> ctypes.CDLL:
+def compiled(source: str, structure: str | None = None) -> ctypes.CDLL:
     """The library of a kernel; compiled on first use, which is logged, and found again after that.
+
+    Args:
+        source: C++ of the kernel.
+        structure: The key under which `known` shall find the library without its source.
 
     Raises:
         RuntimeError: the compiler refused the source.
     """
     _, options = width_and_options()
-    key = hashlib.sha256("\n".join([source, *FLAGS, *options, _machine()]).encode()).hexdigest()[:32]
-    target = cache_folder() / "kernels" / f"{key}.so"
+    target = _kept(_digest(source, *FLAGS, *options, _machine()))
     if not target.exists():
         log.info("compiling the simulation of this model (once, a few seconds)")
         _compile(source, options, target)
+    if structure is not None:
+        _note(_place(structure), target.name)
     return ctypes.CDLL(str(target))
+
+
+def known(structure: str) -> ctypes.CDLL | None:
+    """The library that an earlier process made for a structure, or None.
+
+    Args:
+        structure: Everything that decides the kernel's source.
+    """
+    place = _place(structure)
+    target = place.parent / place.read_text() if place.exists() else None
+    return ctypes.CDLL(str(target)) if target is not None and target.is_file() else None
+
+
+def _place(structure: str) -> Path:
+    return _kept(_digest(structure, *FLAGS, *width_and_options()[1], _machine())).with_suffix(".structure")
+
+
+def _kept(key: str) -> Path:
+    return cache_folder() / "kernels" / f"{key}.so"
+
+
+def _digest(*parts: str) -> str:
+    return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:32]
+
+
+def _note(place: Path, name: str) -> None:
+    """Write a short file whole, also when two processes write it at once."""
+    with tempfile.NamedTemporaryFile("w", dir=place.parent, delete=False) as unfinished:
+        unfinished.write(name)
+    Path(unfinished.name).replace(place)
 
 
 def _compile(source: str, options: tuple[str, ...], target: Path) -> None:

@@ -40,6 +40,7 @@ FOLDED = {
     "sign": lambda a: float((a > 0) - (a < 0)), "floor": math.floor,
 }  # fmt: skip
 LARGEST_UNROLLED_POWER = 8
+SMALLEST_BASE = 1e-100  # of a power that is divided by its base
 
 
 @dataclass
@@ -48,7 +49,7 @@ class Program:
 
     made: dict[Value, tuple[str, tuple[Expression, ...]]] = field(default_factory=dict)
     inputs: dict[Value, str] = field(default_factory=dict)
-    _known: dict[tuple, Value] = field(default_factory=dict)
+    known: dict[tuple, Value] = field(default_factory=dict)
     _count: int = 0
 
     def input(self, text: str, varies: bool) -> Value:
@@ -66,12 +67,12 @@ class Program:
         if simple is not None:
             return simple
         key = (name, *arguments)
-        if key not in self._known:
+        if key not in self.known:
             varies = any(a.varies for a in arguments if isinstance(a, Value))
             kind = "mask" if name in MASKS else "number"
-            self._known[key] = self._new(kind, varies)
-            self.made[self._known[key]] = (name, arguments)
-        return self._known[key]
+            self.known[key] = self._new(kind, varies)
+            self.made[self.known[key]] = (name, arguments)
+        return self.known[key]
 
     def _new(self, kind: Kind, varies: bool) -> Value:
         self._count += 1
@@ -84,6 +85,12 @@ def _simplified(program: Program, name: str, a: tuple[Expression, ...]) -> Expre
         return a[1] if a[0] == 0.0 else a[0]
     if name == "sub" and a[1] == 0.0:
         return a[0]
+    if name == "sub" and a[0] == 0.0:
+        return program.apply("neg", a[1])
+    if name == "where" and a[1] == a[2]:
+        return a[1]
+    if name == "div" and a[0] == 0.0:
+        return 0.0
     if name in ("mul", "div") and a[1] == 1.0:
         return a[0]
     if name == "mul" and a[0] == 1.0:
@@ -94,7 +101,15 @@ def _simplified(program: Program, name: str, a: tuple[Expression, ...]) -> Expre
         return program.apply("mul", a[0], program.apply("div", 1.0, a[1]))
     if name == "pow" and isinstance(a[1], float):
         return _power(program, a[0], a[1])
-    return None
+    return _lowered_power(program, a) if name == "pow" else None
+
+
+def _lowered_power(program: Program, a: tuple[Expression, ...]) -> Expression | None:
+    """|v|^(n - 1) beside |v|^n, as derivatives have it: a division costs a quarter of a power."""
+    made = program.made.get(a[1])
+    if made is None or made[0] != "sub" or made[1][1] != 1.0 or ("pow", a[0], made[1][0]) not in program.known:
+        return None
+    return program.apply("div", program.known["pow", a[0], made[1][0]], program.apply("maximum", a[0], SMALLEST_BASE))
 
 
 def _power(program: Program, base: Expression, exponent: float) -> Expression | None:

@@ -28,7 +28,7 @@ def kernel_source(kernel: Kernel, members: Members, state: Tensor, width: int) -
         UntraceableError: a term uses an operation that has no native form.
     """
     program = Program()
-    sizes = (state.shape[0], kernel.layout.rows, members.series.shape[0], len(kernel.switch_names))
+    sizes = (state.shape[0], members.fixed.shape[0], members.series.shape[0], len(kernel.switch_names))
     inputs = _inputs(program, sizes)
     examples = _examples(members, state, sizes)
 

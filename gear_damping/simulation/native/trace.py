@@ -50,7 +50,7 @@ def trace(function: Callable, examples: Sequence[Tensor], inputs: Sequence[Array
             values[node] = next(waiting)
         elif node.op == "get_attr":
             values[node] = _constant(getattr(graph, node.target))
-        elif node.op == "call_function":
+        elif node.op == "call_function" and node.users:  # what nothing follows from is left out
             arguments = torch.fx.node.map_arg(node.args, lambda n: values[n])
             options = torch.fx.node.map_arg(dict(node.kwargs), lambda n: values[n])
             values[node] = _apply(program, node, arguments, options)
@@ -151,6 +151,8 @@ _SPECIAL: dict[str, Callable] = {
     "bitwise_not": lambda p, n, a, k: _each(p, "not", a[0]),
     "rsub": lambda p, n, a, k: _each(p, "sub", a[1], a[0]),
     "reciprocal": lambda p, n, a, k: _each(p, "div", 1.0, a[0]),
+    "sgn": lambda p, n, a, k: _each(p, "sign", a[0]),
+    "tanh_backward": lambda p, n, a, k: _each(p, "mul", a[0], _each(p, "sub", 1.0, _each(p, "mul", a[1], a[1]))),
     "square": lambda p, n, a, k: _each(p, "mul", a[0], a[0]),
     "clamp": _clamp,
     "clamp_min": _clamp,
@@ -169,10 +171,13 @@ _SPECIAL: dict[str, Callable] = {
     "view": lambda p, n, a, k: np.reshape(a[0], _shape(n)),
     "reshape": lambda p, n, a, k: np.reshape(a[0], _shape(n)),
     "_unsafe_view": lambda p, n, a, k: np.reshape(a[0], _shape(n)),
+    "copy_": lambda p, n, a, k: np.broadcast_to(a[1], _shape(n)),  # later uses refer to this result
     "expand": lambda p, n, a, k: np.broadcast_to(a[0], _shape(n)),
     "zeros_like": _filled(0.0),
     "zeros": _filled(0.0),
     "new_zeros": _filled(0.0),
+    "_new_zeros_with_same_feature_meta": _filled(0.0),
+    "_efficientzerotensor": _filled(0.0),
     "ones_like": _filled(1.0),
     "ones": _filled(1.0),
     "new_ones": _filled(1.0),

@@ -1,0 +1,100 @@
+"""The report's input from a finished explanation: spectra, overlays and forces of the records at hand."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from gear_damping.explanation.evidence import Evidence
+from gear_damping.explanation.explain import Explanation
+from gear_damping.explanation.extend import LEAST_SHARE, Search
+from gear_damping.explanation.gain import parameters_of, spread_of
+from gear_damping.explanation.hypothesis import Outcome
+from gear_damping.reporting.explanation_report.render import render
+from gear_damping.reporting.explanation_report.report_input import Overlay, ReportInput
+from gear_damping.reporting.explanation_report.residual_arrays import force_map, force_surface, spectrum
+from gear_damping.reporting.explanation_report.vocabulary import words
+from gear_damping.reporting.numbers import pretty_unit
+
+MOST_OVERLAYS = 2
+REPORT = "report.html"
+
+
+def write_report(folder: Path | str, explanation: Explanation, provenance: Mapping[str, str] | None = None) -> Path:
+    """Write report.html into a run folder; returns its path."""
+    path = Path(folder) / REPORT
+    path.write_text(render(report_input(explanation, provenance)), encoding="utf-8")
+    return path
+
+
+def report_input(explanation: Explanation, provenance: Mapping[str, str] | None = None) -> ReportInput:
+    """What the report shows of an explanation.
+
+    Args:
+        explanation: As `explain` returned it.
+        provenance: Name -> text for the end of the page.
+    """
+    content, found, evidence = explanation.content, explanation.found, explanation.evidence
+    common = {"title": _title(content), "explanation": content, "provenance": provenance or {}}
+    if found is None or evidence is None:
+        return ReportInput(**common)
+    channel = evidence.channel
+    order = worst_first(found)
+    noise = content["noise"]["by_record"]
+    return ReportInput(
+        **common,
+        quantity=words(channel.name),
+        unit=pretty_unit(channel.declared_unit),
+        overlays=[_overlay(found, evidence, i, noise) for i in order[:MOST_OVERLAYS]],
+        spectrum=spectrum(found, evidence, order[0], noise[evidence.holdout[order[0]].name]),
+        needed_share=LEAST_SHARE,
+        force_map=force_map(found.nominal, evidence),
+        force_surface=force_surface(found.nominal, evidence),
+        parameters=_parameters(found, evidence),
+        equations={words(effect.name): effect.equation for effect in found.outcome.hypothesis.effects},
+    )
+
+
+def worst_first(found: Search) -> list[int]:
+    """Held-out records by what the nominal simulation leaves of them."""
+    left = [float(residual.square().mean()) for residual in found.nominal.holdout]
+    return sorted(range(len(left)), key=lambda i: -left[i])
+
+
+def _title(content: Mapping[str, Any]) -> str:
+    names = list(content.get("records") or {})
+    count = f"{len(names)} records" if len(names) != 1 else f"record {names[0]}"
+    return f"{words(str(content.get('system', 'rig'))).capitalize()}, {count}"
+
+
+def _overlay(found: Search, evidence: Evidence, place: int, noise: Mapping[str, float]) -> Overlay:
+    record, factor = evidence.holdout[place], evidence.channel.declared_factor
+    measured = record.response.numpy()
+    nominal, extended = (measured - o.holdout[place].numpy() for o in (found.nominal, found.outcome))
+    return Overlay(
+        f"{record.name}, held out",
+        np.arange(len(measured)) / record.sampling_rate,
+        measured / factor,
+        nominal / factor,
+        extended / factor if found.accepted else None,
+        noise[record.name],
+    )
+
+
+def _parameters(found: Search, evidence: Evidence) -> dict[str, dict[str, Any]]:
+    """Every fitted parameter before and after, but for those of the causes, which have their own table."""
+    before = _estimates(found.nominal, evidence)
+    after = _estimates(found.outcome, evidence) if found.accepted else {}
+    return {name: {"before": before[name], "after": after.get(name)} for name in before}
+
+
+def _estimates(outcome: Outcome, evidence: Evidence) -> dict[str, Any]:
+    spread = spread_of(outcome, evidence)
+    declared = outcome.hypothesis.model.parameters()
+    found = {}
+    for owner in dict.fromkeys(p.name.partition(".")[0] for p in outcome.problem.free):
+        if owner in declared or any(owner == effect.name for effect in outcome.hypothesis.effects):
+            for own, entry in parameters_of(outcome, spread, owner).items():
+                found[f"{owner}, {own}" if own else owner] = entry
+    return found
