@@ -96,7 +96,7 @@ def read_simulator(node: Mapping[str, Any], family: Mapping[str, Any], origin: O
     plain = reader.plain(node, PLAIN, "simulator.")
     solver = _solver(reader, node.get("solver"))
     plugins = _plugins(reader, node.get("plugins") or [])
-    known = catalogue(plugins)
+    known = catalogue(plugins or ())
     system_class = SYSTEMS.get(plain["system"])
     if system_class is None:
         raise InputError(reader.problems)
@@ -106,9 +106,11 @@ def read_simulator(node: Mapping[str, Any], family: Mapping[str, Any], origin: O
     system = reader.collect(lambda: system_class(**chosen), "simulator") or system_class()
     given = reader.parameters(node, declared, "simulator.")
     rate = reader.parameters(node, {RATE.name: RATE}, "simulator.").get(RATE.name, RATE.default)
-    _refuse_unknown(reader, node, known, declared, options)
+    _refuse_unknown(reader, node, known, {**declared, RATE.name: RATE}, options if plugins is not None else None)
     effects = [_effect(reader, known[key], value, given) for key, value in node.items() if key in known]
     effects = [effect for effect in effects if effect is not None]
+    if plugins is None:  # model, family and damping law may need the effects of a file that cannot be used
+        raise InputError(reader.problems)
     model = _model(reader, system, effects, given)
     flat = declared | {f"{effect.name}.{p.name}": p for effect in effects for p in effect.parameters}
     drawn = read_family(reader, family, flat, given)
@@ -130,46 +132,45 @@ def _solver(reader: Reader, node: Any) -> dict[str, Any]:
     return reader.plain(node, SOLVER, "simulator.solver.")
 
 
-def _plugins(reader: Reader, node: Any) -> tuple[str, ...]:
-    """The user's effect files that can be loaded."""
-    key = "simulator.plugins"
+def _plugins(reader: Reader, node: Any) -> tuple[str, ...] | None:
+    """The user's effect files; None where one of them cannot be used."""
+    key, before = "simulator.plugins", len(reader.problems)
     if not isinstance(node, list) or not all(isinstance(path, str) for path in node):
         reader.refuse(key, "must be a list of paths", node, "write [path/to/my_effect.py]")
-        return ()
-    return tuple(path for path in node if reader.collect(lambda path=path: _load(reader, key, path)))
-
-
-def _load(reader: Reader, key: str, path: str) -> bool:
-    source = reader.origin.of(key)
-    if not path.endswith(".py"):
-        raise InputError(Problem(key, "is no Python file", path, "give the path of a .py file", source))
-    try:
-        catalogue((path,))
-    except InputError:
-        raise
-    except Exception as error:  # the user's own code can fail in any way
-        rule = f"cannot be loaded: {type(error).__name__}: {error}"
-        raise InputError(Problem(key, rule, path, "correct the file", source)) from error
-    return True
+        return None
+    for path in node:
+        reader.collect(lambda path=path: catalogue((path,)))
+    if len(reader.problems) == before:
+        reader.collect(lambda: catalogue(node))
+    return tuple(node) if len(reader.problems) == before else None
 
 
 def _refuse_unknown(
     reader: Reader,
     node: Mapping[str, Any],
     known: Mapping[str, type[Effect]],
-    declared: Mapping[str, Parameter],
-    options: set[str],
+    numbers: Mapping[str, Parameter],
+    options: set[str] | None,
 ) -> None:
-    """Note the keys that are neither settings, parameters nor effects, and effects that are no mapping."""
-    ours, numbers = {*HOW, "system", *options}, {**declared, RATE.name: RATE}
+    """Note effects that are no mapping, and keys that are neither settings, parameters nor effects.
+
+    Args:
+        reader: Collects the problems.
+        node: The configuration.
+        known: The effects by name.
+        numbers: The parameters of the system.
+        options: Those of the system; None: not all effects are known, and no name is judged.
+    """
     for key, value in node.items():
         full = f"simulator.{key}"
         if key in known:
             if value is not None and not isinstance(value, Mapping):
                 remedy = f"write {full}={{}} for its defaults, or {full}=null"
                 reader.refuse(full, "must be null (off) or hold parameters", value, remedy)
-        elif key not in ours and split_suffix(key, numbers)[0] not in numbers:
-            reader.refuse_unknown(full, [*known, *numbers, *ours], "no such effect or parameter")
+        elif options is not None:
+            ours = {*HOW, "system", *options}
+            if key not in ours and split_suffix(key, numbers)[0] not in numbers:
+                reader.refuse_unknown(full, [*known, *numbers, *ours], "no such effect or parameter")
 
 
 def _effect(reader: Reader, kind: type[Effect], node: Any, given: dict[str, Any]) -> Effect | None:

@@ -1,7 +1,6 @@
 """The catalogue: every effect file of `effects/`, and the user's own, by name."""
 
 import importlib
-import importlib.util
 import inspect
 import pkgutil
 from collections.abc import Sequence
@@ -11,6 +10,7 @@ from types import ModuleType
 
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.physics import effects as effects_package
+from gear_damping.physics.effect_files import KEY, load_effects
 from gear_damping.physics.systems.base import System
 from gear_damping.physics.systems.gear_pair import GearPair
 from gear_damping.physics.systems.oscillator import Oscillator
@@ -36,17 +36,21 @@ def catalogue(plugins: Sequence[str | Path] = ()) -> dict[str, type[Effect]]:
         plugins: Python files that each declare one effect or more.
 
     Raises:
-        InputError: a file is missing, declares no effect, or repeats a name.
+        InputError: a file is missing, cannot be loaded, declares no complete effect, or repeats a name.
     """
     found = dict(builtin_effects())
     for path in map(Path, plugins):
-        own = effects_in(_load_file(path))
-        repeated = sorted(set(own) & set(found))
-        if not own or repeated:
-            rule = f"repeats the name {repeated}" if repeated else "declares no effect"
-            raise InputError(Problem("simulator.plugins", rule, str(path), "one Effect class with a new name"))
+        own = load_effects(path)
+        repeated = sorted(set(own) & (set(found) | _keys_of_systems()))
+        if repeated:
+            raise InputError(Problem(KEY, f"repeats the name {repeated}", str(path), "give the effect a new name"))
         found |= own
     return found
+
+
+def _keys_of_systems() -> set[str]:
+    """The names that stand beside those of effects in the configuration."""
+    return {one.name for system in SYSTEMS.values() for one in (*system.parameters, *system.options)}
 
 
 def effects_in(module: ModuleType) -> dict[str, type[Effect]]:
@@ -63,11 +67,3 @@ def effect_class(name: str, plugins: Sequence[str | Path] = ()) -> type[Effect]:
         raise InputError(Problem(f"simulator.{name}", "no such effect", remedy=nearest(name, list(known))))
     return known[name]
 
-
-def _load_file(path: Path) -> ModuleType:
-    if not path.is_file():
-        raise InputError(Problem("simulator.plugins", "no such file", str(path), "give the path of a .py file"))
-    spec = importlib.util.spec_from_file_location(f"gear_damping_plugin_{path.stem}", path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module

@@ -51,6 +51,7 @@ def _concerns(problem: Problem, swept: str) -> bool:
 def _run(typed: CommandLine) -> int:
     _codes.clear()
     sweep.current.clear()
+    handlers = list(logging.root.handlers)  # Hydra puts its own in their place
     old, sys.argv = sys.argv, ["gear_damping", *typed.flags, *typed.overrides]
     command = hydra.main(version_base="1.3", config_path=str(conf_folder()), config_name="config")(_job)
     try:
@@ -61,6 +62,7 @@ def _run(typed: CommandLine) -> int:
         _codes.append(int(stop.code or 0))
     finally:
         sys.argv = old
+        logging.root.handlers[:] = handlers
     failed = _summarise() if typed.many else 0
     return max([WRONG_INPUT if failed else OK, *_codes])
 

@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from gear_damping.errors import InputError
 from gear_damping.measurement.load import load_measurement
 from gear_damping.physics.catalogue import effect_class
+from gear_damping.physics.effect_files import load_effects
 from gear_damping.reporting.effects_page.__main__ import main as write_effects_page
 from gear_damping.reporting.effects_page.declarations import parameter_row
 from gear_damping.tasks.command import main
@@ -102,6 +104,28 @@ BROKEN = {
     "wrong_import": (lambda text: text.replace("import Tensor", "import Tensr"), "ImportError"),
     "no_effect": (lambda text: "x = 1\n", "declares no effect"),
     "taken_name": (lambda text: text.replace(f'"{NAME}"', '"viscous_damping"'), "repeats the name ['viscous_damping']"),
+    "misspelt_method": (
+        lambda text: text.replace("def damping_force(", "def dampingforce("),
+        "the class ShearThinningDamping lacks the method damping_force",
+    ),
+    "no_slot": (lambda text: text.replace("import DampingForce", "import Effect as DampingForce"), "fills no slot"),
+    "no_parameters": (lambda text: text.replace("parameters: ClassVar", "numbers: ClassVar"), "lacks parameters"),
+    "no_equation": (lambda text: text.replace("equation = ", "formula = "), "lacks equation"),
+    "no_reference": (lambda text: text.replace("reference = ", "source = "), "lacks reference"),
+    "no_name": (lambda text: text.replace("name = ", "title = "), "lacks name"),
+    "odd_name": (lambda text: text.replace(f'"{NAME}"', '"shear thinning"'), "has the name 'shear thinning'"),
+    "name_of_a_parameter": (lambda text: text.replace(f'"{NAME}"', '"stiffness"'), "repeats the name ['stiffness']"),
+    "unknown_unit": (
+        lambda text: text.replace('"m/s"', '"m/sek"'),
+        "gives the parameter thinning_velocity an unknown unit 'm/sek'",
+    ),
+    "default_out_of_bounds": (
+        lambda text: text.replace("200.0", "-200.0"),
+        "gives the parameter damping_coefficient the default -200.0: must lie within 0 … 1e+12",
+    ),
+    "empty": (lambda text: "", "declares no effect"),
+    "fails_while_it_loads": (lambda text: text + "\n1 / 0\n", "line 28: ZeroDivisionError"),
+    "stops": (lambda text: "import sys\nsys.exit(3)\n", "line 2: SystemExit"),
     "wrong_parameter": (
         lambda text: text.replace('p["thinning_velocity"]', 'p["velocity"]'),
         "line 26, in damping_force",
@@ -121,6 +145,7 @@ def test_a_broken_file_ends_in_one_clear_message(name, tmp_path, caplog, capsys)
     assert f"simulator.plugins = '{path}'" in text
     assert said in text
     assert "remedy: " in text
+    assert "no such effect or parameter" not in text
     assert "Traceback" not in text
     assert "a defect of gear_damping" not in text
 
@@ -132,6 +157,27 @@ def test_a_missing_file_is_named(tmp_path, caplog, capsys):
     assert "no such file" in text
     assert write_effects_page(["--plugins", str(tmp_path / "nope.py"), "--folder", str(tmp_path)]) == 1
     assert "nope.py" in capsys.readouterr().err
+
+
+def test_all_that_is_wrong_in_a_file_is_said_at_once_beside_the_other_problems(tmp_path, caplog):
+    path = tmp_path / "two_faults.py"
+    path.write_text(EXAMPLE.read_text().replace("reference = ", "source = ").replace('"m/s"', '"m/sek"'))
+    assert main(decay(tmp_path, "simulator.n_runs=0", plugin=path)) == 1
+    assert "3 problems" in caplog.text
+    for words in ("lacks reference", "'m/sek'", "simulator.n_runs = 0"):
+        assert words in caplog.text
+    assert caplog.text.count("(from command line: simulator.plugins=[") == 2
+
+
+def test_a_base_that_effects_of_the_file_share_is_none_itself(tmp_path):
+    path = tmp_path / "shared.py"
+    base = EXAMPLE.read_text().replace("name = ", "title = ")
+    derived = "".join(f"\n\nclass E{i}(ShearThinningDamping):\n    name = 'own_{i}'\n" for i in range(2))
+    path.write_text(base + derived)
+    assert set(load_effects(path)) == {"own_0", "own_1"}
+    path.write_text(base + derived.replace("own_1", "own_0"))
+    with pytest.raises(InputError, match=r"2 effects under the names \['own_0'\]"):
+        load_effects(path)
 
 
 def test_errors_of_the_package_itself_are_not_blamed_on_the_file():

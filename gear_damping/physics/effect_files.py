@@ -1,0 +1,135 @@
+"""A user's own effect file: loaded, and checked before any of it is used."""
+
+import importlib.util
+import inspect
+import traceback
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from types import ModuleType
+
+from gear_damping.errors import InputError, Problem
+from gear_damping.physics import terms
+from gear_damping.physics.parameter import Option, Parameter
+from gear_damping.physics.terms import Effect, ExtraStates, MeshStiffness
+from gear_damping.units import parse_unit
+
+KEY = "simulator.plugins"
+REMEDY = "correct the file"
+_SLOTS = tuple(c for c in vars(terms).values() if inspect.isclass(c) and issubclass(c, Effect) and c is not Effect)
+_TEXTS = {
+    "name": "its key in the configuration",
+    "equation": "the term as it is printed",
+    "reference": "where it is from",
+}
+
+
+def load_effects(path: Path) -> dict[str, type[Effect]]:
+    """The effects that a file declares, by name.
+
+    Raises:
+        InputError: the file is missing, cannot be loaded, declares no effect or one that is not complete.
+    """
+    kinds = _classes(_load(path))
+    faults = [f"the class {kind.__name__} {fault}" for kind in kinds for fault in _faults(kind)]
+    if not kinds:
+        faults = ["declares no effect: no class in it derives from a slot of gear_damping.physics.terms"]
+    if faults:
+        raise InputError([Problem(KEY, fault, str(path), REMEDY) for fault in faults])
+    found = {kind.name: kind for kind in kinds}
+    if len(found) < len(kinds):
+        rule = f"declares {len(kinds)} effects under the names {sorted(found)}"
+        raise InputError(Problem(KEY, rule, str(path), "give each effect a name of its own"))
+    return found
+
+
+def _load(path: Path) -> ModuleType:
+    if path.suffix != ".py":
+        raise InputError(Problem(KEY, "is no Python file", str(path), "give the path of a .py file"))
+    if not path.is_file():
+        raise InputError(Problem(KEY, "no such file", str(path), "give the path of a .py file"))
+    spec = importlib.util.spec_from_file_location(f"gear_damping_plugin_{path.stem}", path)
+    module = importlib.util.module_from_spec(spec)
+    try:
+        spec.loader.exec_module(module)
+    except (Exception, SystemExit) as error:  # the user's own code can fail in any way
+        rule = f"cannot be loaded: {_place(error, path)}{type(error).__name__}: {' '.join(str(error).split())}"
+        raise InputError(Problem(KEY, rule, str(path), REMEDY)) from error
+    return module
+
+
+def _place(error: BaseException, path: Path) -> str:
+    """The line of the file that fails; empty where the error names none or names it itself."""
+    if isinstance(error, SyntaxError):
+        return ""
+    frames = traceback.extract_tb(error.__traceback__)
+    lines = [frame.lineno for frame in frames if Path(frame.filename).resolve() == path.resolve()]
+    return f"line {lines[-1]}: " if lines else ""
+
+
+def _classes(module: ModuleType) -> list[type[Effect]]:
+    """The classes of a file that are meant as effects; a base without a name that others derive from is none."""
+    own = [c for c in vars(module).values() if inspect.isclass(c) and issubclass(c, Effect)]
+    own = [c for c in dict.fromkeys(own) if c.__module__ == module.__name__]
+    bases = {base for c in own for base in c.__mro__[1:]}
+    return [c for c in own if c not in bases or ("name" in vars(c) and not inspect.isabstract(c))]
+
+
+def _faults(kind: type[Effect]) -> Iterator[str]:
+    """What is missing or wrong in a class."""
+    if not issubclass(kind, _SLOTS):
+        yield "fills no slot: derive it from one of gear_damping.physics.terms, for example DampingForce"
+    for method in sorted(kind.__abstractmethods__):
+        yield f"lacks the method {method}"
+    for attribute, meaning in _TEXTS.items():
+        text = getattr(kind, attribute, None)
+        if not isinstance(text, str) or not text.strip():
+            yield f"lacks {attribute}, a text: {meaning}"
+        elif attribute == "name" and not text.isidentifier():
+            yield f"has the name {text!r}: letters, digits and '_' make a key"
+    if not _all(kind.systems, str) or not set(kind.systems) <= {"gear_pair", "oscillator"}:
+        yield f"goes with the systems {kind.systems!r}: choose from ('gear_pair', 'oscillator')"
+    yield from _parameter_faults(kind)
+    if issubclass(kind, ExtraStates):
+        states = getattr(kind, "states", None)
+        if not isinstance(states, dict):
+            yield "lacks states, a dictionary from each state to its unit"
+        else:
+            yield from (fault for name, unit in states.items() for fault in _unit_faults(f"the state {name}", unit))
+
+
+def _parameter_faults(kind: type[Effect]) -> Iterator[str]:
+    parameters = getattr(kind, "parameters", None)
+    if not _all(parameters, Parameter):
+        yield "lacks parameters, a tuple of Parameter(…); () where it has none"
+        return
+    if not _all(kind.options, Option):
+        yield "has options that are no tuple of Option(…)"
+        return
+    names = [one.name for one in (*parameters, *kind.options)]
+    for name in sorted({name for name in names if names.count(name) > 1}):
+        yield f"declares {name} twice"
+    if issubclass(kind, MeshStiffness) and "contact_ratio" not in names:
+        yield "lacks the parameter contact_ratio, which a mesh stiffness has"
+    for parameter in parameters:
+        whole = f"the parameter {parameter.name}"
+        yield from _unit_faults(whole, parameter.unit)
+        values = parameter.default if parameter.vector else (parameter.default,)
+        if parameter.default is not None and not _all(values, (int, float)):
+            wanted = "a tuple of numbers" if parameter.vector else "a number"
+            yield f"gives {whole} the default {parameter.default!r}: must be {wanted}"
+        elif parameter.default is not None and any(parameter.problem(value, "") for value in values):
+            bounds = f"{parameter.lower:g} … {parameter.upper:g}"
+            yield f"gives {whole} the default {parameter.default!r}: must lie within {bounds}"
+
+
+def _unit_faults(what: str, unit: object) -> Iterator[str]:
+    try:
+        if not isinstance(unit, str):
+            raise InputError(Problem("unit", f"unknown unit {unit!r}", remedy="write for example 'N*s/m'"))
+        parse_unit(unit)
+    except InputError as error:
+        yield from (f"gives {what} an {p.rule} ({p.remedy})" for p in error.problems)
+
+
+def _all(values: object, kinds: type | tuple[type, ...]) -> bool:
+    return isinstance(values, Sequence) and not isinstance(values, str) and all(isinstance(v, kinds) for v in values)
