@@ -98,7 +98,7 @@ def _bounds(parameter: Parameter) -> str:
     low, high = parameter.lower, parameter.upper
     if not isfinite(low) and not isfinite(high):
         return NOTHING
-    return f"{number(low)} … {number(high)}".replace("e+", "e").replace("inf", "∞").replace("-", "−")
+    return f"{number(low)} … {number(high)}".replace("inf", "∞").replace("-", "−")
 
 
 def _row(cells: tuple[str, ...]) -> str:
