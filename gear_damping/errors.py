@@ -1,8 +1,10 @@
 """One way to say that an input is wrong: every problem at once, each with key, rule and remedy."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from difflib import get_close_matches
+from pathlib import Path
 
 
 @dataclass(frozen=True)
@@ -25,12 +27,9 @@ class Problem:
 
     def __str__(self) -> str:
         shown = "" if self.value is None else f" = {self.value!r}"
-        parts = [f"{self.key}{shown}: {self.rule}"]
-        if self.remedy:
-            parts.append(f"remedy: {self.remedy}")
-        if self.source:
-            parts.append(f"(from {self.source})")
-        return "; ".join(parts[:2]) + (f" {parts[2]}" if len(parts) > 2 else "")
+        remedy = f"; remedy: {self.remedy}" if self.remedy else ""
+        source = f" (from {self.source})" if self.source else ""
+        return f"{self.key}{shown}: {self.rule}{remedy}{source}"
 
 
 class InputError(ValueError):
@@ -47,3 +46,13 @@ def nearest(word: str, choices: Sequence[str]) -> str:
     if found:
         return f"did you mean '{found[0]}'?"
     return "choose one of " + ", ".join(sorted(choices))
+
+
+@contextmanager
+def writing(path: Path) -> Iterator[Path]:
+    """The path; an OSError that names no file, as that of a full disk, names it."""
+    try:
+        yield path
+    except OSError as error:
+        error.filename = error.filename or str(path)
+        raise

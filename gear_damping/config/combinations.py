@@ -1,5 +1,6 @@
 """What is wrong with values that are each right by themselves."""
 
+import os
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
@@ -15,6 +16,7 @@ from gear_damping.errors import Problem
 from gear_damping.simulation.families import DAMPING_RATIO
 from gear_damping.simulation.runs import reference_velocity
 
+SIMULATING = ("train", "simulate", "evaluate")  # tasks that simulate runs of the configured simulator
 RESUMABLE = "*/seed_*/last.ckpt"  # what an interrupted training leaves in its folder
 _NAME = re.compile(r"^[\w][\w.-]*$")
 Found = Iterator[tuple[str, str, Any, str]]  # key, rule, value, remedy
@@ -58,7 +60,7 @@ def _name(whole: Whole) -> Found:
 def _checkpoint(whole: Whole) -> Found:
     path = whole["checkpoint"]
     if path is not None and not Path(path).is_file():
-        yield "checkpoint", "no such file", path, "give the path of a best.ckpt"
+        yield "checkpoint", _no_file(Path(path)), path, "give the path of a best.ckpt"
     if whole["task"] == "evaluate" and path is None:
         yield "checkpoint", "task=evaluate needs a trained estimator", None, "checkpoint=…/best.ckpt"
 
@@ -77,7 +79,20 @@ def _measurement(whole: Whole) -> Found:
         rule = f"task={whole['task']} needs a measurement"
         yield "measurement.path", rule, None, "measurement.path=PATH/measurement.yaml"
     elif not whole.measurement.is_file():
-        yield "measurement.path", "no such file", path, "give the path of a measurement.yaml"
+        yield "measurement.path", _no_file(whole.measurement), path, "give the path of a measurement.yaml"
+
+
+def _no_file(path: Path) -> str:
+    return "is a folder, no file" if path.is_dir() else "no such file"
+
+
+def _data_folder(whole: Whole) -> Found:
+    """Simulated runs are kept there: said before they are simulated."""
+    folder = Path(whole["data_folder"]).absolute()
+    existing = next(path for path in (folder, *folder.parents) if path.exists())
+    if whole["task"] in SIMULATING and not (existing.is_dir() and os.access(existing, os.W_OK | os.X_OK)):
+        rule = f"cannot be made: {existing} is not a folder that can be written to"
+        yield "data_folder", rule, whole["data_folder"], "give another folder"
 
 
 def _windows(whole: Whole) -> Found:
@@ -192,6 +207,7 @@ CHECKS: tuple[tuple[tuple[str, ...], Callable[[Whole], Found]], ...] = (
     (("task", "checkpoint"), _checkpoint),
     (("resume",), _resume),
     (("task", "measurement"), _measurement),
+    (("task", "data_folder"), _data_folder),
     (("task", "protocol", "simulator"), _windows),
     (("task", "protocol", "simulator"), _split),
     (("wavelet",), _wavelet),

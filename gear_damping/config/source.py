@@ -38,8 +38,14 @@ class Origin:
         return replace(self, extended=(path, content))
 
     def of(self, key: str) -> str:
-        """The override, or the last file that gives the key; where none does, the file that should."""
+        """The override, or the last file that gives the key; where none does, what switches its effect on.
+
+        For a key without either it is the file that should give it.
+        """
         place = self.place(key)
+        parent = key.rpartition(".")[0]
+        if place is None and "." in parent:
+            return self.of(parent)
         if place == COMMAND_LINE:
             return f"command line: {_typed(self.overrides, key)}"
         if place == EXTENDED:

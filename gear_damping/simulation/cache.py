@@ -7,6 +7,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from gear_damping.errors import writing
 from gear_damping.physics.model import Model
 from gear_damping.simulation.runs import Runs
 
@@ -20,10 +21,12 @@ def save_runs(folder: Path, key: str, manifest: dict, runs: Runs) -> Path:
     arrays |= {"status": runs.status.numpy(), "reference_velocity": runs.reference_velocity.numpy()}
     target = folder / f"{key}.npz"
     unfinished = target.with_suffix(".part.npz")
-    np.savez(unfinished, sampling_rate=runs.sampling_rate, **arrays)
+    with writing(unfinished):
+        np.savez(unfinished, sampling_rate=runs.sampling_rate, **arrays)
     unfinished.replace(target)
     note = {"hash": key, "n_diverged": runs.n_diverged, "plan": manifest}
-    target.with_suffix(".json").write_text(json.dumps(note, indent=1, sort_keys=True))
+    with writing(target.with_suffix(".json")) as path:
+        path.write_text(json.dumps(note, indent=1, sort_keys=True))
     return target
 
 

@@ -15,6 +15,7 @@ from gear_damping.config.locate import conf_folder, groups
 from gear_damping.config.settings import read_settings
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
+from gear_damping.tasks.own_effects import errors_in, plugins_of
 
 
 def composed(overrides: Sequence[str]) -> tuple[dict[str, Any], Origin]:
@@ -37,7 +38,9 @@ def composed(overrides: Sequence[str]) -> tuple[dict[str, Any], Origin]:
 def problems_of(overrides: Sequence[str]) -> list[Problem]:
     """Everything that is wrong with the configuration of these overrides."""
     try:
-        read_settings(*composed(overrides))
+        config, origin = composed(overrides)
+        with errors_in(plugins_of(config), origin.of("simulator.plugins")):
+            read_settings(config, origin)
     except InputError as error:
         return error.problems
     return []

@@ -4,6 +4,7 @@ import logging
 import signal
 import traceback
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from types import FrameType
@@ -11,7 +12,8 @@ from typing import Any
 
 from gear_damping.config.settings import Settings, read_settings
 from gear_damping.config.source import Origin
-from gear_damping.errors import InputError
+from gear_damping.errors import InputError, Problem
+from gear_damping.tasks.own_effects import errors_in, plugins_of
 from gear_damping.tasks.run_folder import FAILED, FINISHED, INTERRUPTED, RunFolder
 
 log = logging.getLogger("gear_damping")
@@ -21,25 +23,63 @@ OK, WRONG_INPUT, INTERRUPTED_CODE = 0, 1, 130
 def run_job(config: Mapping[str, Any], origin: Origin, folder: Path) -> int:
     """Do one job; returns its exit code. A KeyboardInterrupt is passed on after the folder was closed."""
     signal.signal(signal.SIGTERM, _interrupt)
-    run_folder = RunFolder(folder, config, origin.choices)
     try:
-        settings = read_settings(config, origin)
-        metrics = task_of(settings)(settings, run_folder)
-    except InputError as error:
-        say_problems(error)
-        run_folder.close(FAILED, error=str(error))
+        run_folder = RunFolder(folder, config, origin.choices)
+    except OSError as error:
+        say_problems(InputError(_not_written(error, folder)))
         return WRONG_INPUT
+    try:
+        with errors_in(plugins_of(config), origin.of("simulator.plugins")):
+            settings = read_settings(config, origin)
+            metrics = task_of(settings)(settings, run_folder)
+        run_folder.close(FINISHED, metrics)
+    except InputError as error:
+        return _failed(run_folder, InputError([_placed(problem, config, origin) for problem in error.problems]))
     except KeyboardInterrupt:
-        run_folder.close(INTERRUPTED)
+        _close(run_folder, INTERRUPTED)
         log.info("interrupted; go on with: resume=%s", folder)
         raise
     except Exception as error:
-        run_folder.close(FAILED, error=f"{type(error).__name__}: {error}")
+        if isinstance(error, OSError) and error.errno is not None:  # of the machine: a full disk, a missing right
+            return _failed(run_folder, InputError(_not_written(error, folder)))
+        _close(run_folder, FAILED, f"{type(error).__name__}: {error}")
         log.error("%s\nThis is a defect of gear_damping, not of your input.", traceback.format_exc())
         return WRONG_INPUT
-    run_folder.close(FINISHED, metrics)
     log.info("everything lies in %s", folder)
     return OK
+
+
+def _placed(problem: Problem, config: Mapping[str, Any], origin: Origin) -> Problem:
+    """A problem that a task found with a key of the configuration, with the place that the key came from."""
+    node: Any = config
+    for part in problem.key.split("."):
+        node = node.get(part, config) if isinstance(node, Mapping) else config
+    if problem.source or isinstance(node, Mapping):  # a group comes from many places
+        return problem
+    return replace(problem, source=origin.of(problem.key))
+
+
+def _failed(run_folder: RunFolder, error: InputError) -> int:
+    say_problems(error)
+    _close(run_folder, FAILED, str(error))
+    return WRONG_INPUT
+
+
+def _close(run_folder: RunFolder, status: str, error: str | None = None) -> None:
+    """Say in run.json how the run ended, where that can still be written."""
+    try:
+        run_folder.close(status, error=error)
+    except OSError as again:
+        log.error("run.json could not be brought up to date: %s", again)
+
+
+def _not_written(error: OSError, folder: Path) -> Problem:
+    """The problem with a file of the run; one without a name is a file that was being written."""
+    rule = error.strerror or str(error)
+    if error.filename is not None:
+        return Problem(str(error.filename), rule, remedy="make room, give the right to it, or name another place")
+    rule = f"a file of the run could not be written: {rule}"
+    return Problem("hydra.run.dir", rule, str(folder), "make room there and in data_folder, or name other folders")
 
 
 def task_of(settings: Settings) -> Callable[[Settings, RunFolder], dict[str, Any]]:

@@ -64,7 +64,7 @@ def _by_output_error(settings: Settings, measurement: Measurement, folder: RunFo
     content = _identification(found, measurement, fit_on, holdout)
     folder.write_json("identification.json", content)
     text = _table(content)
-    (folder.path / "identification.txt").write_text(text)
+    folder.write_text("identification.txt", text)
     statements.say(text)
     if not found.converged:
         statements.say("the search did not come to rest: take the figures as a first guess")

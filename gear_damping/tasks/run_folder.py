@@ -13,6 +13,8 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
+from gear_damping.errors import writing
+
 RUNNING, FINISHED, FAILED, INTERRUPTED = "running", "finished", "failed", "interrupted"
 PACKAGES = ("gear-damping", "torch", "lightning", "hydra-core", "torchdiffeq", "numpy", "scipy")
 
@@ -64,6 +66,11 @@ class RunFolder:
         """Write a JSON file into the folder, whole or not at all."""
         return write_json(self.path / name, content)
 
+    def write_text(self, name: str, text: str) -> None:
+        """Write a text into the folder."""
+        with writing(self.path / name) as path:
+            path.write_text(text)
+
     def _write(self) -> None:
         self.write_json("run.json", self.record)
 
@@ -71,8 +78,9 @@ class RunFolder:
 def write_json(path: Path, content: Any) -> Path:
     """Write JSON that any reader understands: numbers that are not finite become null."""
     unfinished = path.with_name(path.name + ".part")
-    unfinished.write_text(json.dumps(_plain(content), indent=2, allow_nan=False) + "\n")
-    os.replace(unfinished, path)
+    with writing(path):
+        unfinished.write_text(json.dumps(_plain(content), indent=2, allow_nan=False) + "\n")
+        os.replace(unfinished, path)
     return path
 
 

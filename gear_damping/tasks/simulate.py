@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 
 from gear_damping.config.settings import Settings
+from gear_damping.errors import writing
 from gear_damping.measurement.write import write_measurement
 from gear_damping.reporting import figures
 from gear_damping.simulation.runs import Runs
 from gear_damping.tasks import statements
-from gear_damping.tasks.own_effects import errors_in
 from gear_damping.tasks.recorded import Channels, as_records, recorded_channels, rig_parameters
 from gear_damping.tasks.run_folder import RunFolder
 from gear_damping.tasks.simulated import plan_of, simulated
@@ -25,14 +25,14 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     plan = replace(plan_of(settings), damping_ratio_percent=settings.simulator.damping_ratio_percent)
     for path in settings.simulator.files:
         folder.add_input(path)
-    with errors_in(plan.plugins):
-        runs = simulated(plan, settings)
-        statements.say_runs(settings, runs)
-        channels = recorded_channels(runs, plan.seed + NOISE_SEED)
+    runs = simulated(plan, settings)
+    statements.say_runs(settings, runs)
+    channels = recorded_channels(runs, plan.seed + NOISE_SEED)
     arrays = {name: signal.numpy() for name, signal in channels.items()}
     values = {f"parameters/{name}": value.numpy() for name, value in runs.values.items()}
     ratio = runs.damping_ratio_percent.numpy()
-    np.savez(folder.path / "runs.npz", t=runs.time.numpy(), damping_ratio_percent=ratio, **arrays, **values)
+    with writing(folder.path / "runs.npz") as path:
+        np.savez(path, t=runs.time.numpy(), damping_ratio_percent=ratio, **arrays, **values)
     folder.write_json("manifest.json", {"hash": plan.hash, "n_diverged": runs.n_diverged, "plan": plan.describe()})
     if settings.write_measurement:
         records, system = as_records(runs, channels), runs.model.system.name

@@ -48,7 +48,7 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     results["n_runs"], results["n_diverged"] = len(runs.status), runs.n_diverged
     folder.write_json("results.json", results)
     text = tables.results_table(results)
-    (folder.path / "results.txt").write_text(text)
+    folder.write_text("results.txt", text)
     statements.say(text)
     statements.say_controls(results)
     _figures(settings, runs, predictions, folder)

@@ -60,7 +60,20 @@ FAULTS = {
         ["simulator.power_law_damping.coefficient = 5", "the damping ratio decides it"],
     ),
     "nothing_to_resume": (["resume=tests"], ["resume = 'tests'", "no checkpoint"]),
-    "folder_as_checkpoint": (["task=evaluate", "checkpoint=tests"], ["checkpoint = 'tests'", "no such file"]),
+    "folder_as_checkpoint": (["task=evaluate", "checkpoint=tests"], ["checkpoint = 'tests'", "is a folder"]),
+    "folder_as_measurement": (
+        ["task=explain", "measurement.path=tests"],
+        ["measurement.path = 'tests'", "is a folder", "(from command line: measurement.path=tests)"],
+    ),
+    "file_as_data_folder": (
+        ["task=simulate", "data_folder=README.md"],
+        ["data_folder = 'README.md'", "cannot be made", "(from command line: data_folder=README.md)"],
+    ),
+    "no_seeds": (["seeds=0"], ["seeds = 0", "nearest valid value 1", "(from command line: seeds=0)"]),
+    "list_of_another_length": (
+        ["simulator.pitch_error.shaft=gear"],
+        ["simulator.pitch_error.values", "40 teeth", "(from command line: simulator.pitch_error.shaft=gear)"],
+    ),
     "run_folder_below_a_file": (["hydra.run.dir=README.md/run"], ["hydra.run.dir", "cannot be made"]),
     "no_extended_file": (["simulator.extended=nope.yaml"], ["simulator.extended", "nope.yaml", "cannot be read"]),
     "family_of_a_gear_for_an_oscillator": (["simulator=oscillator"], ["pinion_speed_rpm", "conf/family/bench.yaml"]),
