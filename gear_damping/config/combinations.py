@@ -2,7 +2,7 @@
 
 import os
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,8 +12,9 @@ import torch
 from gear_damping.config.quantities import SUFFIXES
 from gear_damping.config.simulator import SimulatorSettings
 from gear_damping.config.source import ORDER, Origin
-from gear_damping.errors import Problem
-from gear_damping.simulation.families import DAMPING_RATIO
+from gear_damping.errors import InputError, Problem
+from gear_damping.physics.terms import DampingLaw
+from gear_damping.simulation.families import DAMPING_RATIO, coefficients_for
 from gear_damping.simulation.runs import reference_velocity
 
 SIMULATING = ("train", "simulate", "evaluate")  # tasks that simulate runs of the configured simulator
@@ -165,7 +166,7 @@ def _without_effect(whole: Whole) -> Found:
             remedy = f"name the effect, or add family.spreads.{DAMPING_RATIO}=null"
             yield "simulator.damping_law", "the family draws a damping ratio and no effect carries it", None, remedy
     elif DAMPING_RATIO in drawn or simulator.damping_ratio_percent is not None:
-        for name in _set_by_ratio(simulator):
+        for name in _set_by_ratio(simulator)[0]:
             if _given_on_top(name, whole.origin):
                 remedy = f"leave it out, or add simulator.damping_law=null family.spreads.{DAMPING_RATIO}=null"
                 rule = "has no effect: the damping ratio decides it"
@@ -178,14 +179,35 @@ def _given_on_top(name: str, origin: Origin) -> str | None:
     return next((key for key in keys if origin.rank(key) > ORDER.index("family")), None)
 
 
-def _set_by_ratio(simulator: SimulatorSettings) -> list[str]:
-    """Flat names of the parameters that follow from the damping ratio."""
-    law = next(effect for effect in simulator.model.effects if effect.name == simulator.damping_law)
+def _set_by_ratio(simulator: SimulatorSettings) -> tuple[Iterable[str], list[Problem]]:
+    """Flat names of the parameters that follow from the damping ratio, and why none do."""
     values = simulator.model.values(1, **simulator.given)
-    derived = simulator.model.prepare(values).derived
-    own = {p.name: values[f"{law.name}.{p.name}"] for p in law.parameters}
-    about = (derived["equivalent_mass"], derived["mean_stiffness"], reference_velocity(derived))
-    return [f"{law.name}.{name}" for name in law.coefficient_for(torch.full_like(about[0], 0.01), own, *about)]
+    velocity = reference_velocity(simulator.model.prepare(values).derived)
+    ratio = torch.full_like(velocity, 0.01)
+    try:
+        return coefficients_for(simulator.model, values, simulator.damping_law, ratio, velocity), []
+    except InputError as error:
+        return (), error.problems
+
+
+def _ratio_carried(whole: Whole) -> Found:
+    """The damping law can carry the damping ratio."""
+    simulator = whole.simulator
+    wanted = DAMPING_RATIO in simulator.family.spreads or simulator.damping_ratio_percent is not None
+    if whole["task"] in SIMULATING and simulator.damping_law is not None and wanted:
+        yield from ((p.key, p.rule, p.value, p.remedy) for p in _set_by_ratio(simulator)[1])
+
+
+def _label(whole: Whole) -> Found:
+    """Runs to learn from have a damping ratio."""
+    model, given = whole.simulator.model, whole.simulator.given
+    if whole["task"] not in ("train", "evaluate"):
+        return
+    if not any(isinstance(effect, DampingLaw) for effect in model.effects):
+        remedy = "switch one on, for example simulator.viscous_damping={}"
+        yield "simulator.damping_law", f"task={whole['task']} needs an effect that states a damping ratio", None, remedy
+    elif not bool((model.prepare(model.values(1, **given)).derived["mean_stiffness"] > 0).all()):
+        yield "simulator.stiffness", "must be positive: a damping ratio needs a linear stiffness", 0, "give one"
 
 
 def _physics(whole: Whole) -> Found:
@@ -213,6 +235,8 @@ CHECKS: tuple[tuple[tuple[str, ...], Callable[[Whole], Found]], ...] = (
     (("wavelet",), _wavelet),
     (("task", "wavelet", "simulator"), _nyquist),
     (("task", "protocol", "simulator"), _test_ratio),
+    (("task", "simulator", "family"), _ratio_carried),
+    (("task", "simulator"), _label),
     (("simulator", "family"), _without_effect),
     (("simulator",), _physics),
 )

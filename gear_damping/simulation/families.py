@@ -72,7 +72,8 @@ def draw_values(
         damping_ratio_percent: The ratio of every run in %; None: drawn from the family's spread.
 
     Raises:
-        InputError: a spread or the damping law names something that the model does not have.
+        InputError: a spread or the damping law names something that the model does not have, or no
+            coefficient of the law has a damping ratio.
     """
     values = model.values(n_runs, **given)
     _check(model, family, damping_law, values)
@@ -84,7 +85,7 @@ def draw_values(
     if damping_ratio_percent is not None:
         drawn = torch.full_like(velocity, damping_ratio_percent)
     if damping_law is not None and (DAMPING_RATIO in family.spreads or damping_ratio_percent is not None):
-        _set_damping(model, values, damping_law, drawn / 100, velocity)
+        values |= coefficients_for(model, values, damping_law, drawn / 100, velocity)
     if family.start == "static":
         _start_static(model, given, values, family.perturbation, velocity, generator)
     return values, velocity
@@ -105,12 +106,38 @@ def _check(model: Model, family: Family, damping_law: str | None, values: Values
         raise InputError(problems)
 
 
-def _set_damping(model: Model, values: Values, law: str, ratio: Tensor, velocity: Tensor) -> None:
+def coefficients_for(model: Model, values: Values, law: str, ratio: Tensor, velocity: Tensor) -> Values:
+    """The parameters of a damping law, by flat name, that have an equivalent damping ratio.
+
+    Args:
+        model: Base system and effects.
+        values: Parameters of every run, SI by flat name.
+        law: The damping effect.
+        ratio: Damping ratio of each run, (batch,).
+        velocity: The velocity amplitude that it is stated at, m/s, (batch,).
+
+    Raises:
+        InputError: no coefficient has the ratio: there is no linear stiffness, or the amplitude is 0.
+    """
     effect = next(effect for effect in model.effects if effect.name == law)
     derived = model.prepare(values).derived
     own = {p.name: values[f"{law}.{p.name}"] for p in effect.parameters}
-    found = effect.coefficient_for(ratio, own, derived["equivalent_mass"], derived["mean_stiffness"], velocity)
-    values |= {f"{law}.{name}": value for name, value in found.items()}
+    mass, stiffness = derived["equivalent_mass"], derived["mean_stiffness"]
+    found = effect.coefficient_for(ratio, own, mass, stiffness, velocity)
+    reached = effect.damping_ratio({**own, **found}, mass, stiffness, velocity)
+    if not bool((reached.isfinite() & ((reached > 0) | (ratio == 0))).all()):
+        raise InputError(_without_ratio(model, law, bool((stiffness > 0).all())))
+    return {f"{law}.{name}": value for name, value in found.items()}
+
+
+def _without_ratio(model: Model, law: str, stiff: bool) -> Problem:
+    """Why a damping law cannot carry a damping ratio."""
+    load = "amplitude" if model.system.name == "oscillator" else "pinion_torque"
+    cause = load if stiff else "stiffness"
+    rule = f"carries no damping ratio: simulator.{cause} is 0 and the ratio is stated at "
+    rule += "the velocity amplitude that follows from it" if stiff else "the frequency that follows from it"
+    own = f"set the parameters of {law} themselves: simulator.damping_law=null family.spreads.{DAMPING_RATIO}=null"
+    return Problem("simulator.damping_law", rule, law, f"give simulator.{cause}, or {own}")
 
 
 def _start_static(

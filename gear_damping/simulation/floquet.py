@@ -19,8 +19,14 @@ STEP = 1e-6  # natural lengths between neighbouring starts; the linear model mak
 def floquet_multiplier(runs: Runs, member: int = 0) -> float:
     """Largest modulus of the multipliers of one run's mesh, contact never lost; above 1 the motion grows.
 
-    The damping of the run stands as its equivalent viscous ratio.
+    The mesh is the linear one: other effects are left out. The damping of the run stands as its equivalent
+    viscous ratio.
+
+    Raises:
+        ValueError: the mesh does not turn or bears no load, or no damping ratio is stated.
     """
+    if not has_multiplier(runs, member):
+        raise ValueError("pinion_speed and the mean load must not be 0 and a damping law must be on")
     mesh = [effect for effect in runs.model.effects if isinstance(effect, MeshStiffness)]
     model = Model(runs.model.system, [*mesh, ViscousDamping()])
     values = {name: _one(runs.values[name], member) for name in model.parameters() if name in runs.values}
@@ -38,6 +44,12 @@ def floquet_multiplier(runs: Runs, member: int = 0) -> float:
     last = torch.stack([run.response[:, -1] / length, run.states["velocity"][:, -1] / (length * rate)])
     monodromy = (last[:, 1:] - last[:, :1]) / STEP
     return float(torch.linalg.eigvals(monodromy).abs().max())
+
+
+def has_multiplier(runs: Runs, member: int = 0) -> bool:
+    """Whether the mesh of a run turns under load and its damping has a ratio: without them it has no multiplier."""
+    turns, loaded = (bool(series[member] != 0) for series in (runs.values["pinion_speed"], runs.derived["mean_load"]))
+    return turns and loaded and bool(runs.damping_ratio_percent[member].isfinite())
 
 
 def _one(value: Tensor, member: int) -> Tensor:

@@ -57,14 +57,18 @@ class Runs:
 
     @property
     def damping_ratio_percent(self) -> Tensor:
-        """Equivalent damping ratio of every damping law together at the reference velocity, in %, (batch,)."""
+        """Equivalent damping ratio of every damping law together at the reference velocity, in %, (batch,).
+
+        It is nan where no effect of the model states one, and where there is no linear stiffness.
+        """
         total = torch.zeros_like(self.derived["equivalent_mass"])
         mass, stiffness = self.derived["equivalent_mass"], self.derived["mean_stiffness"]
-        for effect in self.model.effects:
-            if isinstance(effect, DampingLaw):
-                own = {p.name: self.values[f"{effect.name}.{p.name}"] for p in effect.parameters}
-                total = total + effect.damping_ratio(own, mass, stiffness, self.reference_velocity)
-        return 100 * total
+        laws = [effect for effect in self.model.effects if isinstance(effect, DampingLaw)]
+        for effect in laws:
+            own = {p.name: self.values[f"{effect.name}.{p.name}"] for p in effect.parameters}
+            total = total + effect.damping_ratio(own, mass, stiffness, self.reference_velocity)
+        stated = stiffness > 0 if laws else torch.zeros_like(stiffness, dtype=torch.bool)
+        return torch.where(stated, 100 * total, torch.nan)
 
     def channel(self, name: str) -> Tensor:
         """A series by name, (batch, time); the response also by the name that files give it."""

@@ -40,13 +40,13 @@ def scalogram(settings: Settings, runs: Runs, signal: torch.Tensor) -> Figure:
     with torch.no_grad():
         columns = wavelet(signal.float().unsqueeze(0) - signal.float().mean())[0]
     speed = runs.values.get("pinion_speed")
-    mesh = None if speed is None else float(speed[0] * runs.values["n_teeth_pinion"][0]) / (2 * pi)
+    mesh = None if speed is None else abs(float(speed[0] * runs.values["n_teeth_pinion"][0])) / (2 * pi)
     shown = slice(0, SCALOGRAM_SAMPLES)  # of a longer record more would be a blur
     return figures.scalogram_figure(
         runs.time.numpy()[shown],
         np.asarray(wavelet.frequencies_hz),
         columns.numpy()[:, shown],
         wavelet.cone_of_influence(signal.shape[0], signal.device).numpy()[:, shown],
-        mesh_frequency_hz=mesh,
+        mesh_frequency_hz=mesh or None,  # a mesh that does not turn has none
         natural_frequency_hz=float(runs.derived["natural_frequency"][0]) / (2 * pi),
     )

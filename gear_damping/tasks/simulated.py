@@ -7,6 +7,7 @@ import torch
 
 from gear_damping.config.settings import Settings
 from gear_damping.config.simulator import SENSOR_NOISE
+from gear_damping.errors import InputError, Problem
 from gear_damping.identification.runs import RunSet
 from gear_damping.simulation.plan import SimulationPlan, run_plan
 from gear_damping.simulation.runs import Runs
@@ -44,9 +45,17 @@ def test_plan_of(settings: Settings) -> SimulationPlan | None:
 
 
 def simulated(plan: SimulationPlan, settings: Settings, title: str = "simulating") -> Runs:
-    """The runs of a plan, with progress."""
+    """The runs of a plan, with progress.
+
+    Raises:
+        InputError: too many runs diverged, or all of them, whatever share is tolerated.
+    """
     with progress_bar(title, settings.progress) as progress:
-        return run_plan(plan, folder=Path(settings.data_folder), progress=progress)
+        runs = run_plan(plan, folder=Path(settings.data_folder), progress=progress)
+    if not len(runs.status):
+        rule, remedy = "leaves no run: all of them diverged", "bring the parameters back into a stable range"
+        raise InputError(Problem("simulator.diverged_share", rule, plan.diverged_share, remedy))
+    return runs
 
 
 def run_set_of(runs: Runs, plan: SimulationPlan) -> RunSet:

@@ -9,9 +9,24 @@ import torch
 from gear_damping.config.settings import Settings
 from gear_damping.identification.trainer import Training
 from gear_damping.physics.damping_ratio import log_decrement
-from gear_damping.simulation.floquet import floquet_multiplier
+from gear_damping.physics.terms import (
+    BearingForce,
+    ContactChange,
+    DampingLaw,
+    ElasticForce,
+    ExtraStates,
+    LoadPath,
+    MeshForceFactor,
+    StiffnessFactor,
+    SystemChange,
+)
+from gear_damping.simulation.floquet import floquet_multiplier, has_multiplier
 from gear_damping.simulation.runs import Runs
 
+# Effects that change stiffness, mass or degrees of freedom, of which a Floquet multiplier knows nothing.
+BESIDE_THE_MESH = (
+    BearingForce, ContactChange, ElasticForce, ExtraStates, LoadPath, MeshForceFactor, StiffnessFactor, SystemChange,
+)  # fmt: skip
 say = logging.getLogger("gear_damping").info
 
 
@@ -29,22 +44,42 @@ def say_budget(settings: Settings, training: Training) -> None:
 
 def say_runs(settings: Settings, runs: Runs) -> None:
     """What the runs hold: the label in all its forms, at the amplitude that it belongs to."""
-    ratio, law = runs.damping_ratio_percent, settings.simulator.damping_law
+    say(_damping(runs, settings.simulator.damping_law))
+    if runs.model.system.name == "gear_pair":
+        _say_stability(runs)
+    if runs.n_diverged:
+        say(f"{runs.n_diverged} runs diverged and were left out")
+
+
+def _damping(runs: Runs, law: str | None) -> str:
+    """The damping ratios of the runs, or why there are none."""
+    ratio = runs.damping_ratio_percent
+    if not any(isinstance(effect, DampingLaw) for effect in runs.model.effects):
+        return "no effect of the model states a damping ratio"
+    if bool((runs.derived["mean_stiffness"] == 0).any()):
+        return "no damping ratio can be stated: there is no linear stiffness, so nothing is critical"
     low, high = float(ratio.min()), float(ratio.max())
-    delta = log_decrement(torch.tensor([low, high]) / 100)
-    line = f"damping ratio {low:.3f} … {high:.3f} % of critical, log-decrement {delta[0]:.4f} … {delta[1]:.4f}"
+    line = f"damping ratio {low:.3f} … {high:.3f} % of critical"
+    if high < 100:
+        delta = log_decrement(torch.tensor([low, high]) / 100)
+        line += f", log-decrement {delta[0]:.4f} … {delta[1]:.4f}"
     alpha = runs.values.get(f"{law}.coefficient")
     if alpha is not None:
         exponent = float(runs.values[f"{law}.exponent"][0])
         line += f", alpha {alpha.min():.1f} … {alpha.max():.1f} N (s/m)^{exponent:g}"
-    say(f"{line}, at a velocity amplitude of {float(runs.reference_velocity[0]):.3g} m/s")
-    if runs.model.system.name == "gear_pair":
-        least = int(ratio.argmin())
-        multiplier = floquet_multiplier(runs, least)
-        growth = "its mesh makes the motion grow until contact is lost" if multiplier > 1 else "stable"
-        say(f"largest Floquet multiplier of the least damped run: {multiplier:.4f} ({growth})")
-    if runs.n_diverged:
-        say(f"{runs.n_diverged} runs diverged and were left out")
+    return f"{line}, at a velocity amplitude of {float(runs.reference_velocity[0]):.3g} m/s"
+
+
+def _say_stability(runs: Runs) -> None:
+    """Whether the mesh of the least damped run makes the motion grow, where that mesh has a multiplier."""
+    least = int(runs.damping_ratio_percent.argmin())
+    if not has_multiplier(runs, least):
+        return
+    multiplier = floquet_multiplier(runs, least)
+    growth = "its mesh makes the motion grow until contact is lost" if multiplier > 1 else "stable"
+    missing = [effect.name for effect in runs.model.effects if isinstance(effect, BESIDE_THE_MESH)]
+    without = f"; of its linear mesh alone, without {', '.join(missing)}" if missing else ""
+    say(f"largest Floquet multiplier of the least damped run: {multiplier:.4f} ({growth}{without})")
 
 
 def say_controls(results: Mapping[str, Any]) -> None:

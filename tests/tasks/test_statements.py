@@ -1,0 +1,144 @@
+"""What a run says of its damping and stability, where there is such a thing and where there is not."""
+
+import numpy as np
+import pytest
+
+from gear_damping.config.settings import read_settings
+from gear_damping.errors import InputError
+from gear_damping.simulation.families import Family, Spread
+from gear_damping.simulation.floquet import floquet_multiplier
+from gear_damping.simulation.plan import run_plan
+from gear_damping.tasks.command import main
+from gear_damping.tasks.composed import composed
+from gear_damping.tasks.simulated import plan_of
+
+UNDRIVEN = ["simulator=oscillator", "family=none", "simulator.initial_displacement=0.1"]
+NO_LAW = ["simulator.damping_law=null", "simulator.viscous_damping=null"]
+GEAR_AS_GIVEN = ["simulator.damping_law=null", "family.spreads.damping_ratio_percent=null"]
+
+
+@pytest.fixture
+def simulate(tmp_path, caplog, capsys):
+    def run(*arguments, task="simulate", code=0):
+        size = ["simulator.n_runs=2", "simulator.n_samples=200"] if task == "simulate" else []
+        place = [f"hydra.run.dir={tmp_path / 'run'}", f"data_folder={tmp_path / 'data'}", "progress=false"]
+        assert main([f"task={task}", *size, *place, *arguments]) == code
+        text = caplog.text + capsys.readouterr().err
+        assert "Traceback" not in text
+        return text
+
+    return run
+
+
+def ratio_of(tmp_path):
+    with np.load(tmp_path / "run" / "runs.npz") as runs:
+        return runs["damping_ratio_percent"]
+
+
+def test_a_gear_at_standstill_has_no_multiplier(simulate):
+    text = simulate("simulator.pinion_speed_rpm=0")
+    assert "damping ratio 0." in text
+    assert "Floquet" not in text
+
+
+def test_a_gear_without_load_has_no_multiplier(simulate):
+    text = simulate("simulator.pinion_torque=0", *GEAR_AS_GIVEN, "simulator.viscous_damping={}", "family.start=rest")
+    assert "wrote" in text
+    assert "Floquet" not in text
+
+
+@pytest.mark.parametrize("effect", [None, "simulator.coulomb_friction={}"])
+def test_without_a_damping_law_no_ratio_is_stated(effect, simulate, tmp_path):
+    text = simulate(*UNDRIVEN, *NO_LAW, *([effect] if effect else []))
+    assert "no effect of the model states a damping ratio" in text
+    assert "% of critical" not in text
+    assert np.isnan(ratio_of(tmp_path)).all()
+
+
+def test_without_a_linear_stiffness_no_ratio_is_stated(simulate, tmp_path):
+    text = simulate(*UNDRIVEN, "simulator.stiffness=0", "simulator.sine_restoring={}")
+    assert "no damping ratio can be stated: there is no linear stiffness" in text
+    assert "nan" not in text
+    assert np.isnan(ratio_of(tmp_path)).all()
+
+
+def test_above_critical_damping_there_is_no_decrement(simulate):
+    text = simulate(*UNDRIVEN, "simulator.viscous_damping.damping_coefficient=400")
+    assert "damping ratio 200.000 … 200.000 % of critical, at" in text
+
+
+def test_the_multiplier_says_what_it_leaves_out(simulate):
+    assert "(stable; of its linear mesh alone, without bearing_flexibility)" in simulate(
+        "simulator.bearing_flexibility={}", "simulator.backlash={}"
+    )
+
+
+def test_the_multiplier_of_a_plain_mesh_is_said_as_it_is(simulate):
+    assert "(stable)" in simulate("simulator.backlash={}")
+
+
+REFUSED = {
+    "no_torque": (
+        ["simulator.pinion_torque=0"],
+        ["simulator.damping_law = 'power_law_damping'", "simulator.pinion_torque is 0", "(from conf/simulator/"],
+    ),
+    "no_stiffness": (
+        [*UNDRIVEN, "simulator.stiffness=0", "simulator.damping_ratio_percent=1"],
+        ["simulator.damping_law = 'viscous_damping'", "simulator.stiffness is 0"],
+    ),
+    "no_amplitude": (
+        [
+            *UNDRIVEN, "simulator.viscous_damping=null", "simulator.power_law_damping={}", "simulator.amplitude=0",
+            "simulator.damping_law=power_law_damping", "simulator.damping_ratio_percent=1",
+        ],
+        ["simulator.damping_law = 'power_law_damping'", "simulator.amplitude is 0"],
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_a_ratio_that_no_coefficient_has_is_refused_before_the_run(name, simulate):
+    arguments, said = REFUSED[name]
+    text = simulate(*arguments, code=1)
+    for words in (*said, "carries no damping ratio", "simulator.damping_law=null"):
+        assert words in text
+    assert "diverged" not in text
+
+
+def test_a_plan_says_it_too():
+    plan = plan_of(read_settings(*composed([])))
+    still = Family("still", {"damping_ratio_percent": Spread(0.1, 0.2)})
+    with pytest.raises(InputError, match=r"simulator\.pinion_torque is 0"):
+        run_plan(type(plan)(plan.model, {"pinion_torque": 0.0}, still, 2, 4e4, 20, 0, "power_law_damping"))
+
+
+def test_a_multiplier_of_a_mesh_that_does_not_turn_is_refused():
+    plan = plan_of(read_settings(*composed(["++task=simulate", "++simulator.pinion_speed=0", "++simulator.n_runs=1"])))
+    with pytest.raises(ValueError, match="pinion_speed and the mean load must not be 0"):
+        floquet_multiplier(run_plan(plan))
+
+
+def test_nothing_is_learnt_from_runs_without_a_ratio(simulate):
+    text = simulate(*UNDRIVEN, *NO_LAW, task="train", code=1)
+    assert "simulator.damping_law: task=train needs an effect that states a damping ratio" in text
+
+
+def test_nothing_is_learnt_from_runs_without_a_stiffness(simulate):
+    text = simulate(*UNDRIVEN, "simulator.stiffness=0", "simulator.sine_restoring={}", task="train", code=1)
+    assert "simulator.stiffness = 0: must be positive" in text
+
+
+def test_not_one_run_left_is_refused_whatever_share_is_tolerated(simulate):
+    wild = ["simulator.power_law_damping.exponent=5", "simulator.power_law_damping.coefficient=1e12"]
+    text = simulate(*GEAR_AS_GIVEN, *wild, "simulator.diverged_share=1", code=1)
+    assert "simulator.diverged_share = 1: leaves no run" in text
+
+
+def test_a_gear_at_standstill_is_trained_on(simulate):
+    quick = [
+        "experiment=backlash", "training=smoke", "training.max_epochs=1", "simulator.n_runs=12", "model=raw_lstm",
+        "simulator.n_samples=120", "protocol.windows_per_epoch=128", "simulator.pinion_speed_rpm=0",
+    ]  # fmt: skip
+    text = simulate(*quick, task="train")
+    assert "Floquet" not in text
+    assert "everything lies in" in text
