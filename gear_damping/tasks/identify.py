@@ -15,6 +15,7 @@ from gear_damping.measurement.load import load_measurement
 from gear_damping.measurement.record import Measurement, Record
 from gear_damping.reporting import figures, tables
 from gear_damping.tasks import statements
+from gear_damping.tasks.lack_of_fit import lack_of_fit, sentence
 from gear_damping.tasks.progress import progress_bar
 from gear_damping.tasks.run_folder import RunFolder
 
@@ -58,12 +59,16 @@ def _by_output_error(settings: Settings, measurement: Measurement, folder: RunFo
     fit_on = measurement.with_role("fit") or measurement.with_role(None)
     holdout = measurement.with_role("holdout")
     _require_response(fit_on + holdout, measurement)
+    fitted, held = [_fit_record(r) for r in fit_on], [_fit_record(r) for r in holdout]
     with progress_bar("fitting", settings.progress) as progress:
-        solver = settings.simulator.solver
-        found = fit_oscillator([_fit_record(r) for r in fit_on], [_fit_record(r) for r in holdout], progress, solver)
+        found = fit_oscillator(fitted, held, progress, settings.simulator.solver)
     content = _identification(found, measurement, fit_on, holdout)
+    lacking = lack_of_fit(found.predictions, fitted, held, fit_on[0].channels["displacement"])
+    content["lack_of_fit"] = lacking
     folder.write_json("identification.json", content)
     text = _table(content)
+    if lacking and lacking["significant"]:
+        text = f"{text.rstrip()}\n\n{sentence(lacking, str(measurement.source))}\n"
     folder.write_text("identification.txt", text)
     statements.say(text)
     if not found.converged:

@@ -1,0 +1,55 @@
+"""Whether a fitted linear oscillator is enough for its records, judged as task=explain judges it."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from torch import Tensor
+
+from gear_damping.explanation.noise import noise_level
+from gear_damping.explanation.significance import excess
+from gear_damping.identification.output_error.holdout import rmse
+from gear_damping.identification.output_error.problem import FitRecord
+from gear_damping.measurement.record import Channel
+
+
+def lack_of_fit(
+    predictions: Mapping[str, Tensor], fit: Sequence[FitRecord], holdout: Sequence[FitRecord], channel: Channel
+) -> dict[str, Any] | None:
+    """The residual beside the noise; on the held-out records where there are some.
+
+    Args:
+        predictions: By record name, (time,).
+        fit: Records that were fitted.
+        holdout: Records that were predicted.
+        channel: The channel of the response, with its declared unit and noise.
+
+    Returns:
+        `significant`, and in the declared unit `residual` and `noise`, beside `percent_of_signal` of the
+        residual; None where the records are too short to estimate their noise.
+    """
+    noise = noise_level((*fit, *holdout), channel)
+    if noise.degrees_of_freedom < 1:
+        return None
+    judged = list(holdout or fit)
+    responses, predicted = [r.response for r in judged], [predictions[r.name] for r in judged]
+    residuals = [measured - found for measured, found in zip(responses, predicted, strict=True)]
+    left = rmse(responses, predicted)
+    signal = rmse(responses, [response.mean().expand_as(response) for response in responses])
+    return {
+        "significant": bool(excess(residuals, judged, noise).significant),
+        "residual": float(left / channel.declared_factor),
+        "percent_of_signal": float(100 * left / signal),
+        "noise": float(noise.value / channel.declared_factor),
+        "noise_method": noise.method,
+        "unit": channel.declared_unit,
+    }
+
+
+def sentence(found: Mapping[str, Any], source: str) -> str:
+    """What a significant lack of fit means for the figures, and what to do about it."""
+    return (
+        f"lack of fit: the linear oscillator leaves {found['residual']:.3g} {found['unit']}, "
+        f"{found['percent_of_signal']:.3g} % of the signal, where the noise is {found['noise']:.3g} {found['unit']} "
+        f"({found['noise_method']}). Stiffness and damping are those of the nearest linear motion, and their "
+        f"intervals do not cover what is missing; task=explain measurement.path={source} looks for its name"
+    )

@@ -1,0 +1,85 @@
+"""task=identify says when the linear oscillator is not what was measured."""
+
+import json
+
+import closed_forms
+import numpy as np
+import pytest
+import torch
+from scipy.integrate import solve_ivp
+
+from gear_damping.identification.output_error.problem import FitRecord
+from gear_damping.measurement.record import Channel
+from gear_damping.tasks.command import main
+from gear_damping.tasks.lack_of_fit import lack_of_fit
+
+RATE, OMEGA, DAMPING = 500.0, 40.0, 2.0
+TIME = np.arange(1500) / RATE
+LINEAR, _ = closed_forms.free_decay(TIME, 1.0, DAMPING, OMEGA**2, 1e-2, 0.0)
+
+
+def hardening():
+    def slope(_, state):
+        return [state[1], -DAMPING * state[1] - OMEGA**2 * state[0] * (1 + 2e3 * state[0] ** 2)]
+
+    return solve_ivp(slope, (0, TIME[-1]), [1e-2, 0], "DOP853", TIME, rtol=1e-10, atol=1e-14).y[0]
+
+
+def identified(folder, response, noise):
+    """What was said and identification.json, for a decay in millimetres."""
+    folder.mkdir(exist_ok=True)
+    noisy = response + noise * np.random.default_rng(5).standard_normal(len(response))
+    np.savetxt(folder / "decay.csv", np.column_stack([TIME, 1e3 * noisy]), "%.12g", ",", header="t,x", comments="")
+    text = "system: oscillator\nrecords:\n- file: decay.csv\n  channels:\n    time: {column: t, unit: s}\n"
+    (folder / "measurement.yaml").write_text(text + "    displacement: {column: x, unit: mm}\n")
+    path = folder / "measurement.yaml"
+    place = [f"hydra.run.dir={folder / 'run'}", "progress=false"]
+    assert main(["task=identify", f"measurement.path={path}", *place]) == 0
+    return json.loads((folder / "run" / "identification.json").read_text())
+
+
+@pytest.mark.parametrize("noise", [0.0, 1e-4])
+def test_a_hardening_spring_is_no_linear_oscillator(noise, tmp_path, caplog, capsys):
+    found = identified(tmp_path, hardening(), noise)
+    said = caplog.text + capsys.readouterr().err
+    assert found["lack_of_fit"]["significant"]
+    assert found["lack_of_fit"]["residual"] == pytest.approx(found["residual"]["fit"]["rmse"])
+    assert found["lack_of_fit"]["unit"] == "mm"
+    if noise:
+        assert found["lack_of_fit"]["noise"] == pytest.approx(1e3 * noise, rel=0.1)
+    assert "lack of fit: the linear oscillator leaves" in said
+    assert "lack of fit: " in (tmp_path / "run" / "identification.txt").read_text()
+    assert f"task=explain measurement.path={tmp_path / 'measurement.yaml'}" in said
+
+
+@pytest.mark.parametrize("noise", [0.0, 1e-4])
+def test_a_linear_oscillator_is(noise, tmp_path, caplog, capsys):
+    found = identified(tmp_path, LINEAR, noise)
+    assert not found["lack_of_fit"]["significant"]
+    assert "lack of fit" not in caplog.text + capsys.readouterr().err
+
+
+def channel(**more):
+    return Channel("displacement", LINEAR, "m", **more)
+
+
+def test_held_out_records_decide_where_there_are_some():
+    fit, other = (FitRecord(name, torch.as_tensor(LINEAR.copy()), RATE) for name in ("fit", "other"))
+    predictions = {"fit": fit.response, "other": 0.9 * other.response}
+    assert not lack_of_fit(predictions, [fit], [], channel())["significant"]
+    found = lack_of_fit(predictions, [fit], [other], channel())
+    assert found["significant"]
+    assert found["percent_of_signal"] == pytest.approx(10, rel=1e-2)
+
+
+def test_a_declared_noise_is_what_the_residual_is_held_against():
+    record = FitRecord("fit", torch.as_tensor(LINEAR.copy()), RATE)
+    off = {"fit": record.response + 1e-4 * torch.sin(torch.arange(1500.0))}
+    found = lack_of_fit(off, [record], [], channel(noise=np.float64(1e-5)))
+    assert json.loads(json.dumps(found))["significant"]
+    assert not lack_of_fit(off, [record], [], channel(noise=1e-4))["significant"]
+
+
+def test_a_record_too_short_for_its_noise_is_not_judged():
+    record = FitRecord("fit", torch.as_tensor(LINEAR[:6].copy()), RATE)
+    assert lack_of_fit({"fit": record.response}, [record], [], channel(lowpass=1.0)) is None
