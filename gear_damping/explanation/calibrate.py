@@ -26,6 +26,7 @@ RENAMED = {
 NOT_OF_THE_MODEL = ("damping_ratio", "torque_gain", "torque_offset", "damping_coefficient")
 PHASES = 18  # starts of the mesh phase
 SHAPE_HARMONICS = 10
+EXPECTED_SHAPE = 0.1  # of the mean stiffness over the harmonic: what real teeth add to the ideal wave
 SHORT_PERIODS = 40.0  # natural periods of the first round
 FIRST_RATIO = 0.01
 
@@ -76,7 +77,7 @@ def _gear_pair(evidence: Evidence) -> Outcome:
 def _first_gear_pair(evidence: Evidence) -> Hypothesis:
     given = {RENAMED.get(k, k): v for k, v in evidence.parameters.items() if k not in NOT_OF_THE_MODEL}
     system = GearPair(gear_torque_mode=evidence.gear_torque_mode)
-    effects = [FourierMeshStiffness(), ViscousDamping()]
+    effects = [FourierMeshStiffness(n_harmonics=SHAPE_HARMONICS), ViscousDamping()]
     if given.get("backlash.gap", 0.0) > 0:
         effects.append(Backlash())
     else:
@@ -105,5 +106,11 @@ def _with_shape(rough: Hypothesis) -> Hypothesis:
         rough.system,
         (*rough.effects, MeshStiffnessShape()),
         given,
-        (*free, *(FreeParameter(name, 0.0, scale=0.02, lower=-0.5, upper=0.5) for name in names)),
+        (*free, *(_harmonic(name) for name in names)),
     )
+
+
+def _harmonic(name: str) -> FreeParameter:
+    """Free within what teeth can be: a harmonic that the fitted speeds hardly show must not be driven by noise."""
+    order = int(name.partition("[")[2].rstrip("]")) + 1
+    return FreeParameter(name, 0.0, scale=0.02, lower=-0.5, upper=0.5, deviation=EXPECTED_SHAPE / order)

@@ -22,7 +22,8 @@ class Recipe:
         phases: Phase parameter of each strength that turns with a shaft.
         scanned: Other parameters with the values that are tried, natural units; freed in the full fit.
         fixed: Parameters that stay, natural units.
-        presence: The effect has no zero (a stiffness that was rigid): it is tried as a whole.
+        presence: The effect has no zero (a stiffness that was rigid): it is tried as a whole, at the size
+            of its strength.
         options: Options of the effect.
     """
 
@@ -40,17 +41,24 @@ def _wave(size: float | None = None) -> Recipe:
 
 RECIPES: dict[str, tuple[Recipe, ...]] = {
     "power_law_damping": tuple(Recipe({"coefficient": 0.01}, scanned={"exponent": (n,)}) for n in (2.0, 0.5, 3.0)),
-    "coulomb_friction": (Recipe({"force": 0.005}, fixed={"width": 0.05}),),
-    "asymmetric_friction": (Recipe({"force_forward": 0.005, "force_backward": 0.005}, fixed={"width": 0.05}),),
+    "coulomb_friction": (Recipe({"force": 0.005}, scanned={"width": (0.05,)}),),
+    "asymmetric_friction": (
+        Recipe({"force_forward": 0.005, "force_backward": 0.005}, scanned={"width": (0.05,)}),
+        Recipe(
+            {"force_forward": 0.005, "force_backward": 0.005, "damping_forward": 0.01, "damping_backward": 0.01},
+            scanned={"width": (0.05,)},
+        ),
+    ),
     "hysteretic_damping": (Recipe({"share": 0.02}, fixed={"yield_deflection": 0.2, "exponent": 1.0}),),
     "hunt_crossley_damping": (
         Recipe({"damping_coefficient": 0.01}, fixed={"exponent": 1.0, "reference_deflection": 1.0}),
     ),
+    "squeeze_film_damping": (Recipe({"damping_coefficient": 0.01}),),
     "cubic_stiffness": (Recipe({"coefficient": 0.02}),),
     "quadratic_stiffness": (Recipe({"coefficient": 0.02}),),
     "hertz_stiffness": (Recipe({"exponent": 0.05}, fixed={"reference_deflection": 1.0}),),
     "tooth_friction": (Recipe({"friction_coefficient": None}),),
-    "backlash": (Recipe({"gap": None}, presence=True),),
+    "backlash": tuple(Recipe({"gap": gap}, presence=True) for gap in (2e-5, 5e-5, 1e-4, 2e-4)),
     "pinion_eccentricity": (_wave(),),
     "gear_eccentricity": (_wave(),),
     "pinion_stiffness_modulation": (_wave(),),
@@ -58,20 +66,44 @@ RECIPES: dict[str, tuple[Recipe, ...]] = {
     "shaft_angle_error": (_wave(),),
     "profile_error": (Recipe({"amplitudes": None}, {"amplitudes": "phases"}),),
     "pitch_error": (Recipe({"values": 3e-6}),),
-    "torque_ripple": tuple(Recipe({"amplitude": None}, {"amplitude": "phase"}, fixed={"order": q}) for q in (1.0, 2.0)),
-    "bearing_flexibility": (Recipe({"stiffness": None}, presence=True, scanned={"mass": (2.0,)}),),
-    "shaft_torsion": (Recipe({"stiffness": None}, presence=True),),
+    "torque_ripple": tuple(
+        Recipe(
+            {strength: None},
+            {strength: "phase"},
+            fixed={"order": order, other: 0.0},
+            options={"proportional": strength == "share"},
+        )
+        for strength, other in (("amplitude", "share"), ("share", "amplitude"))
+        for order in (1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
+    ),
+    "bearing_flexibility": tuple(
+        Recipe({"stiffness": k}, presence=True, scanned={"mass": (2.0,)}) for k in (2e8, 1e9, 5e9)
+    ),
+    "unbalance": (Recipe({"unbalance": None}, {"unbalance": "phase"}),),
+    "shaft_torsion": tuple(Recipe({"stiffness": k}, presence=True) for k in (500.0, 2000.0, 20000.0)),
+    "encoder_error": tuple(
+        Recipe({strength: None}, {strength: phase}, fixed={other: 0.0})
+        for strength, phase, other in (
+            ("pinion_amplitude", "pinion_phase", "gear_amplitude"),
+            ("gear_amplitude", "gear_phase", "pinion_amplitude"),
+        )
+    ),
     "load_dependent_contact": (Recipe({"growth": None}),),
     "windage_drag": (Recipe({"coefficient": None}),),
     "tooth_crack": tuple(Recipe({"depth": None}, fixed={"phase": 2 * pi * i / 20}) for i in range(20)),
     "sensor_offset": (Recipe({"offset": None}),),
     "sensor_drift": (Recipe({"rate": 0.001}),),
     "sensor_delay": (Recipe({"delay": 0.05}),),
+    "sensor_lowpass": tuple(
+        Recipe({"cutoff": size}, presence=True, options={"order": order}) for order in (1, 2) for size in (0.5, 1.5)
+    ),
     "sensor_gain": (Recipe({"gain": None}),),
     "sensor_saturation": (Recipe({"limit": None}, presence=True),),
 }
 NEUTRAL = {"sensor_gain": 1.0}
-ONLY_GEAR_UNITS = {"bearing_flexibility", "shaft_torsion", "torque_ripple", "tooth_crack"}
+WITHIN = {"width": (0.02, 0.5)}  # a sharper sign change costs steps and shows no more
+ZERO_BY_DEFAULT = {"encoder_error": 1e-4}  # sizes of what the declaration leaves at zero
+OWN_UNITS = {"bearing_flexibility", "shaft_torsion", "torque_ripple", "tooth_crack", "backlash", "encoder_error"}
 NEEDS_UNCERTAINTY = {"sensor_gain", "inertia_error"}  # identifiable only where the load is known absolutely
 COVERED_BY_NUISANCE = {"oscillator": {"sensor_offset"}, "gear_pair": set()}
 
@@ -135,8 +167,8 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe) -> Candidat
             f"{kind.name}.{name}",
             float(given[f"{kind.name}.{name}"]),
             logarithmic=True,
-            lower=_bound(kind, name, 0),
-            upper=_bound(kind, name, 1),
+            lower=max(_bound(kind, name, 0), WITHIN.get(name, (0, 0))[0]),
+            upper=min(_bound(kind, name, 1), WITHIN.get(name, (0, 1e300))[1]),
         )
         for name in recipe.scanned
     )
@@ -145,6 +177,7 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe) -> Candidat
         for k, v in {**recipe.fixed, **{k: v[0] for k, v in recipe.scanned.items()}}.items()
         if k in ("exponent", "order", "phase")
     )
+    label += "".join(f" {k}={v}" for k, v in recipe.options.items())
     return Candidate(
         kind.name,
         label,
@@ -177,8 +210,8 @@ class _Sizes:
     def size(self, kind: type[Effect], name: str, size: float | None, recipe: Recipe) -> float:
         """The size of a strength that is tried."""
         parameter = next(p for p in kind.parameters if p.name == name)
-        if size is None or (self.is_gear and kind.name == "pitch_error"):
-            default = size or parameter.default
+        if size is None or kind.name in OWN_UNITS or (self.is_gear and kind.name == "pitch_error"):
+            default = size or parameter.default or ZERO_BY_DEFAULT[kind.name]
             return default[0] if isinstance(default, tuple) else float(default)
         return self.natural(kind, parameter, size, recipe.scanned.get("exponent", (1.0,))[0])
 
@@ -187,13 +220,13 @@ class _Sizes:
         if parameter.name in recipe.strengths:
             neutral = NEUTRAL.get(kind.name, 0.0)
             if recipe.presence:
-                return parameter.default
+                return self.size(kind, parameter.name, recipe.strengths[parameter.name], recipe)
             return (neutral,) * len(parameter.default) if parameter.vector else neutral
         chosen = recipe.fixed.get(parameter.name, recipe.scanned.get(parameter.name, (None,)))
         value = chosen[0] if isinstance(chosen, tuple) else chosen
         if value is None:
             return (0.0,) * len(parameter.default) if parameter.vector else parameter.default
-        if kind.name in ONLY_GEAR_UNITS or parameter.unit in ("1", "rad"):
+        if kind.name in OWN_UNITS or parameter.unit in ("1", "rad"):
             return value
         return self.natural(kind, parameter, value)
 

@@ -28,6 +28,8 @@ class Evidence:
         parameters: Nominal values of the rig that the file states, by the file's names.
         channel: The response channel of the first record, for units.
         one_record: Whether there was but one record, cut in two.
+        gear_torque_mode: What holds the gear.
+        noise: Standard deviation of the noise over all records, once it is known.
     """
 
     system: str
@@ -37,6 +39,7 @@ class Evidence:
     channel: Channel
     one_record: bool
     gear_torque_mode: str = "balanced"
+    noise: float = 0.0
 
     @property
     def sampling_rate(self) -> float:
@@ -93,7 +96,16 @@ def _fit_record(record: Record, system: str) -> FitRecord:
         if name in record.channels
     }
     known = {name: quantity.value for name, quantity in record.conditions.items() if name not in inputs}
-    return FitRecord(record.name, response, record.sampling_rate, inputs, known)
+    return FitRecord(record.name, response, record.sampling_rate, inputs, known | _means(inputs, record.sampling_rate))
+
+
+def _means(inputs: dict[str, Tensor], sampling_rate: float) -> dict[str, float]:
+    """Mean load and speed of a record: what hangs on the operating condition follows them."""
+    found = {name: float(inputs[name].mean()) for name in ("pinion_torque", "gear_torque") if name in inputs}
+    if "pinion_angle" in inputs:
+        angle = inputs["pinion_angle"]
+        found["pinion_speed"] = float(angle[-1] - angle[0]) / (len(angle) - 1) * sampling_rate
+    return found
 
 
 def _roles(records: Sequence[tuple[FitRecord, str | None]]) -> tuple[list[FitRecord], list[FitRecord]]:

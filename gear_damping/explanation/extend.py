@@ -7,7 +7,7 @@ from gear_damping.explanation.candidates import candidates_for
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Hypothesis, Outcome, fit_hypothesis
 from gear_damping.explanation.noise import NoiseLevel
-from gear_damping.explanation.ranking import Score, scores
+from gear_damping.explanation.ranking import Score, contains, scores
 from gear_damping.explanation.refit import Refit, block_samples, chosen, refitted
 from gear_damping.explanation.significance import Excess, excess, paired_gain
 from gear_damping.identification.output_error.problem import FreeParameter
@@ -71,7 +71,7 @@ def search(nominal: Outcome, evidence: Evidence, noise: NoiseLevel, say: Say, so
         best = _best(fits, found.outcome, evidence, current, noise)
         if best is None:
             break
-        rivals = _rivals(best, fits, evidence)
+        best, rivals = _simplest(best, fits, evidence)
         after = excess(best.outcome.holdout, evidence.holdout, noise)
         share = (current.percent - after.percent) / max(first.percent, 1e-300)
         found.accepted.append(Accepted(best.name, best, share, rivals))
@@ -108,14 +108,19 @@ def _best(
     return None
 
 
-def _rivals(best: Refit, fits: Sequence[Refit], evidence: Evidence) -> tuple[str, ...]:
-    """Effects whose full fit is not worse by the paired test."""
+def _simplest(best: Refit, fits: Sequence[Refit], evidence: Evidence) -> tuple[Refit, tuple[str, ...]]:
+    """The explanation with its rivals, the effects whose full fit is not worse by the paired test.
+
+    Of two of which one contains the other (a friction with two sides contains one with equal sides), the
+    smaller is taken where the larger does no better.
+    """
     block = block_samples(best.outcome, evidence.sampling_rate)
-    return tuple(
-        fit.name
-        for fit in fits
-        if fit.name != best.name and paired_gain(fit.outcome.holdout, best.outcome.holdout, block)[1] < RIVAL
-    )
+    alike = [f for f in fits if f is best or paired_gain(f.outcome.holdout, best.outcome.holdout, block)[1] < RIVAL]
+    inner = [f for f in alike if any(contains(other.score, f.score) for other in alike if other is not f)]
+    outer = {f.name for f in alike if any(contains(f.score, other.score) for other in inner)}
+    kept = [f for f in alike if f.name not in outer] or alike
+    first = min(kept, key=lambda fit: fit.outcome.holdout_cost)
+    return first, tuple(f.name for f in kept if f is not first)
 
 
 def _prune(found: Search, evidence: Evidence, say: Say, solver: Solver | None) -> None:

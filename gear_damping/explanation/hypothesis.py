@@ -121,7 +121,8 @@ def fit_hypothesis(
         solver: Settings of the solver.
         kept: Share of the starts that goes on from round to round.
     """
-    problem = OutputErrorProblem(hypothesis.model, hypothesis.given, hypothesis.free, evidence.fit, solver)
+    model, known = hypothesis.model, hypothesis.given
+    problem = OutputErrorProblem(model, known, hypothesis.free, evidence.fit, solver, evidence.noise)
     if starts is None:
         starts = torch.zeros(1, problem.n_shared, dtype=torch.float64)
     begun = None if states is None else states.expand(len(starts), -1, -1).clone()

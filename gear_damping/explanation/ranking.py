@@ -14,6 +14,7 @@ from gear_damping.identification.output_error.problem import OutputErrorProblem
 from gear_damping.simulation.solver_settings import Solver
 
 PROBE = 0.05  # share of a strength's size that its slope is taken over
+CONTAINED = 0.99  # cosine with what another can do, from which it contains this one
 VISIBLE = 5.0  # standard deviations at which an effect counts as visible
 
 
@@ -39,15 +40,22 @@ class Score:
 
 
 class Projector:
-    """Takes out of a signal what the free parameters of a fit could do."""
+    """Takes out of a signal what the free parameters of a fit could do.
+
+    What is expected of the parameters counts as further samples, one for each, behind those of the records.
+    """
 
     def __init__(self, outcome: Outcome) -> None:
         jacobian = full_jacobian(outcome.fitted.prediction.sensitivity, outcome.problem.n_shared)[0]
+        expected, slope = outcome.problem.expectation(outcome.fitted.shared)
+        self.expected = expected
+        rows = torch.nn.functional.pad(torch.diag(slope), (0, jacobian.shape[1] - len(slope)))
+        jacobian = torch.cat([jacobian, rows])
         norms = jacobian.norm(dim=0).clamp(min=1e-300)
         self.basis = torch.linalg.qr(jacobian / norms).Q
 
     def __call__(self, signal: Tensor) -> Tensor:
-        """`signal` (samples, n) without its part in the span of the sensitivities."""
+        """`signal` (samples + n_shared, n) without its part in the span of the sensitivities."""
         return signal - self.basis @ (self.basis.T @ signal)
 
 
@@ -61,7 +69,7 @@ def scores(
 ) -> list[Score]:
     """Every candidate's score, the most promising first."""
     project = Projector(outcome)
-    residual = outcome.fitted.prediction.residual[0].reshape(-1)
+    residual = torch.cat([outcome.fitted.prediction.residual[0].reshape(-1), project.expected])
     base = _predicted(outcome)
     found = []
     for number, candidate in enumerate(candidates):
@@ -93,7 +101,7 @@ def _score(
     found = (problem.predict(points, states) * problem.weights).reshape(len(points), -1)
     if not bool(found.isfinite().all()):
         return None
-    columns = ((found - base) / steps.unsqueeze(1)).T
+    columns = torch.nn.functional.pad((found - base) / steps.unsqueeze(1), (0, len(project.expected))).T
     beside = project(columns)
     # What the nuisance takes but for rounding is nothing of its own.
     own = beside.norm(dim=0) > 1e-6 * columns.norm(dim=0).clamp(min=1e-300)
@@ -164,3 +172,9 @@ def collinearity(first: Score, second: Score) -> float:
         return 0.0
     one, other = first.direction, second.columns
     return float((other.T @ one).norm())
+
+
+def contains(larger: Score, smaller: Score) -> bool:
+    """Whether one candidate can do what the other would, with more parameters."""
+    more = larger.columns.shape[1] > smaller.columns.shape[1] > 0
+    return more and collinearity(smaller, larger) > CONTAINED

@@ -11,9 +11,10 @@ from gear_damping.explanation.ranking import Score, collinearity
 from gear_damping.explanation.significance import paired_gain
 from gear_damping.simulation.solver_settings import Solver
 
-FULL_FITS = 3  # of the most promising candidates
-MOST_FITS = 7  # with those that are nearly collinear with the first
-NEARLY_COLLINEAR = 0.8
+FULL_FITS = 4  # of the most promising candidates
+MOST_FITS = 9  # with those that resemble the first
+NEARLY_COLLINEAR = 0.7
+LEAST_PROMISE = 0.3  # of the first one's, for a full fit of one that resembles it
 BLOCK_PERIODS = 6.0  # natural periods of a block of the paired test
 PRESENCE_STARTS = (-1.2, 0.0, 1.2)  # logarithms of the default of an effect that is tried as a whole
 
@@ -53,9 +54,8 @@ def chosen(scores: Sequence[Score]) -> list[Score]:
         best.setdefault(score.candidate.name, score)
     ranked = list(best.values())
     first = ranked[:FULL_FITS]
-    alike = [
-        s for s in ranked[FULL_FITS:] if s.gain > 0.5 * ranked[0].gain and collinearity(ranked[0], s) > NEARLY_COLLINEAR
-    ]
+    promising = [score for score in ranked[FULL_FITS:] if score.gain > LEAST_PROMISE * ranked[0].gain]
+    alike = [score for score in promising if collinearity(ranked[0], score) > NEARLY_COLLINEAR]
     return (first + alike)[:MOST_FITS]
 
 

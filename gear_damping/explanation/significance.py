@@ -36,13 +36,13 @@ class Excess:
 
 
 def excess(residuals: Sequence[Tensor], records: Sequence[FitRecord], noise: NoiseLevel) -> Excess:
-    """D of these residuals."""
+    """D of these residuals, beside what chance would leave if they were noise alone."""
     total = sum(len(r) for r in residuals)
     mean_square = sum(float(r.square().sum()) for r in residuals) / total
     variance = sum(float((r.response - r.response.mean()).square().sum()) for r in records) / total
     floors = {record.name: noise.by_record[record.name] ** 2 for record in records}
     floor = sum(floors[r.name] * len(r.response) for r in records) / total
-    effective = total / correlation_sum(residuals)
+    effective = total / noise.correlation
     relative = mean_square / max(floor, 1e-300)
     beyond = max(mean_square - floor, 0.0) / variance
     error = (1 + beyond) * (2 / effective + 2 / noise.degrees_of_freedom) ** 0.5 * floor
@@ -53,19 +53,6 @@ def excess(residuals: Sequence[Tensor], records: Sequence[FitRecord], noise: Noi
     }
     threshold = max(SMALLEST, 100 * ERRORS * widened / variance)
     return Excess(100 * (mean_square - floor) / variance, threshold, relative, each)
-
-
-def correlation_sum(residuals: Sequence[Tensor]) -> float:
-    """Sum of the squared autocorrelations of the residuals, at least 1."""
-    total, weight = 0.0, 0
-    for residual in residuals:
-        centred = residual - residual.mean()
-        spectrum = torch.fft.rfft(centred, n=2 * len(centred)).abs().square()
-        correlation = torch.fft.irfft(spectrum)[: len(centred) // 4]
-        correlation = correlation / correlation[0].clamp(min=1e-300)
-        total += len(residual) * float(1 + 2 * correlation[1:].square().sum())
-        weight += len(residual)
-    return max(total / weight, 1.0)
 
 
 def paired_gain(before: Sequence[Tensor], after: Sequence[Tensor], block: int) -> tuple[float, float]:

@@ -11,7 +11,9 @@ CONSISTENT, EXPLAINED, AMBIGUOUS = "consistent", "explained", "ambiguous"
 PARTLY, UNEXPLAINED, DATA_PROBLEM = "partly_explained", "unexplained", "data_problem"
 VERDICTS = (CONSISTENT, EXPLAINED, AMBIGUOUS, PARTLY, UNEXPLAINED, DATA_PROBLEM)
 REST = 0.02  # of the excess that may be left of an explained one
-HALF = 0.5  # of the excess that established causes must take
+MOST = 0.9  # of the excess that causes must take to be established although a rest is left,
+HALF = 0.5  # or half of it, where the rest is
+SMALL_REST = 3.0  # no more than this many noise variances
 
 SENTENCES = {
     "viscous_damping": "a damping force proportional to the rate",
@@ -100,7 +102,7 @@ def verdict(found: Search, before: Excess, after: Excess, converged: bool = True
     if rest:
         alike = "; ".join(f"{c.name} or {' or '.join(c.confusable[: LARGEST_SET - 1])}" for c in confused)
         return Verdict(AMBIGUOUS, (f"{missing}. These data do not tell apart: {alike}.", _left(taken), *unsettled))
-    if taken >= HALF and not confused:
+    if (taken >= MOST or (taken >= HALF and after.misfit <= SMALL_REST)) and not confused:
         text = f"{missing}. Part of it has a name: {said}. A significant rest of {after.percent:.3g} % has none."
         return Verdict(PARTLY, (text, _left(taken), *unsettled))
     text = f"{missing}. {said[0].upper()}{said[1:]} would take part of it, but too much is left to name a cause."

@@ -23,6 +23,7 @@ from gear_damping.identification.lightning_support import (
     Patience,
     PortableCheckpoint,
     interruptible,
+    keep_memory,
     own_randomness,
     quiet_lightning,
     threads,
@@ -115,6 +116,7 @@ def fit_estimator(
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     data.batch_size = training.batch_size
+    keep_memory()
     if resume is None:
         for name in ("best.ckpt", "last.ckpt"):  # of an earlier fit: never to be taken for this one's
             (folder / name).unlink(missing_ok=True)

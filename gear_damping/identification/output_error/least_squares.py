@@ -99,13 +99,13 @@ def _round(
     problem: OutputErrorProblem, points: Points, samples: int, iterations: int
 ) -> tuple[Points, Prediction, Tensor, Tensor]:
     now = problem.linearise(points.shared, points.states, samples)
-    cost = _cost(now)
+    cost = _cost(problem, points, now)
     damping = torch.full_like(cost, FIRST_DAMPING)
     converged = torch.zeros_like(cost, dtype=torch.bool)
     for _ in range(iterations):
         trial = _step(problem, points, now, damping)
         new = problem.linearise(trial.shared, trial.states, samples)
-        new_cost = _cost(new)
+        new_cost = _cost(problem, trial, new)
         better = new_cost < cost
         gain = torch.where(better, (cost - new_cost) / cost.clamp(min=1e-300), torch.zeros_like(cost))
         converged = (better & (gain < SMALLEST_GAIN)) | (damping >= LARGEST_DAMPING) | (converged & ~better)
@@ -121,6 +121,10 @@ def _round(
 def _step(problem: OutputErrorProblem, points: Points, now: Prediction, damping: Tensor) -> Points:
     matrix, gradient = normal_equations(now, problem.n_shared)
     matrix, gradient = matrix.nan_to_num(0, 0, 0), gradient.nan_to_num(0, 0, 0)
+    expected, slope = problem.expectation(points.shared)
+    own = torch.cat([slope, slope.new_zeros(matrix.shape[1] - len(slope))])
+    matrix = matrix + torch.diag(own.square())
+    gradient[:, : len(slope)] += slope * expected
     diagonal = matrix.diagonal(dim1=1, dim2=2)
     ridge = damping.unsqueeze(1) * diagonal + 1e-12 * diagonal.amax(1, keepdim=True).clamp(min=1e-30)
     step = torch.linalg.solve(matrix + torch.diag_embed(ridge), gradient)
@@ -129,8 +133,8 @@ def _step(problem: OutputErrorProblem, points: Points, now: Prediction, damping:
     return Points(points.shared + step[:, : problem.n_shared], moved)
 
 
-def _cost(prediction: Prediction) -> Tensor:
-    total = prediction.residual.square().sum((1, 2))
+def _cost(problem: OutputErrorProblem, points: Points, prediction: Prediction) -> Tensor:
+    total = prediction.residual.square().sum((1, 2)) + problem.expectation(points.shared)[0].square().sum(1)
     return torch.where(total.isfinite(), total, torch.full_like(total, float("inf")))
 
 

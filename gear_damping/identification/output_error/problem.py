@@ -29,6 +29,8 @@ class FreeParameter:
         logarithmic: Whether its logarithm is fitted, which keeps its sign.
         lower: Smallest value.
         upper: Largest value.
+        deviation: How far from zero it is expected to lie at most, as a standard deviation; not for a
+            logarithmic one. It counts like one sample of the record's noise.
     """
 
     name: str
@@ -37,6 +39,7 @@ class FreeParameter:
     logarithmic: bool = False
     lower: float = -inf
     upper: float = inf
+    deviation: float = inf
 
     def value(self, z: Tensor) -> Tensor:
         """The parameter from its fitted coordinate."""
@@ -87,6 +90,7 @@ class OutputErrorProblem:
         free: Sequence[FreeParameter],
         records: Sequence[FitRecord],
         solver: Solver | None = None,
+        noise: float = 0.0,
     ) -> None:
         """State the problem.
 
@@ -96,11 +100,12 @@ class OutputErrorProblem:
             free: Parameters to fit; every record's initial state is free besides.
             records: At least one; all of one sampling rate.
             solver: Settings of the solver; its sub-steps are fixed, so that sensitivities are smooth.
+            noise: Standard deviation of the records' noise, against which expectations are weighed.
         """
         if len({record.sampling_rate for record in records}) != 1:
             raise ValueError("records must share one sampling_rate: resample them, or fit them by rate")
         self.model, self.given, self.free, self.records = model, dict(given), list(free), list(records)
-        self.solver = solver or Solver()
+        self.solver, self.noise = solver or Solver(), noise
         self.response = _padded([record.response for record in records])
         self.weights = _padded([torch.full_like(record.response, record.weight) for record in records])
         self.spread = torch.stack([r.response.std().clamp(min=1e-300) for r in self.records])
@@ -122,6 +127,12 @@ class OutputErrorProblem:
     def parameters(self, shared: Tensor) -> dict[str, Tensor]:
         """Values of the shared parameters from their coordinates (..., n_shared)."""
         return {p.name: p.value(shared[..., i]) for i, p in enumerate(self.free)}
+
+    def expectation(self, shared: Tensor) -> tuple[Tensor, Tensor]:
+        """Residuals of what is expected of the parameters, (..., n_shared), and their slopes, (n_shared,)."""
+        slope = torch.tensor([self.noise * p.scale / p.deviation for p in self.free], dtype=torch.float64)
+        start = torch.tensor([self.noise * p.start / p.deviation for p in self.free], dtype=torch.float64)
+        return -(start + slope * shared), slope
 
     def predict(self, shared: Tensor, states: Tensor, samples: int | None = None) -> Tensor:
         """Predicted responses (points, records, time) for coordinates (points, n_shared) and (points, records, 2)."""

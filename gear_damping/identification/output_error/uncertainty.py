@@ -25,7 +25,9 @@ def covariance(problem: OutputErrorProblem, fitted: Fitted, correlated_samples: 
     """
     sensitivity, residual = fitted.prediction.sensitivity, fitted.prediction.residual[0]
     jacobian = full_jacobian(sensitivity, problem.n_shared)[0]
-    inverse = torch.linalg.pinv(jacobian.T @ jacobian, hermitian=True)
+    expected = torch.zeros(jacobian.shape[1], dtype=torch.float64)
+    expected[: problem.n_shared] = problem.expectation(fitted.shared)[1].square()
+    inverse = torch.linalg.pinv(jacobian.T @ jacobian + torch.diag(expected), hermitian=True)
     scores = jacobian.reshape(*residual.shape, -1) * residual.unsqueeze(-1)
     meat = sum(_long_run(one, correlated_samples) for one in scores)
     samples, parameters = float((problem.weights > 0).sum()), jacobian.shape[1]
