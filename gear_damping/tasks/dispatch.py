@@ -43,10 +43,18 @@ def run_job(config: Mapping[str, Any], origin: Origin, folder: Path) -> int:
         if isinstance(error, OSError) and error.errno is not None:  # of the machine: a full disk, a missing right
             return _failed(run_folder, InputError(_not_written(error, folder)))
         _close(run_folder, FAILED, f"{type(error).__name__}: {error}")
-        log.error("%s\nThis is a defect of gear_damping, not of your input.", traceback.format_exc())
+        log.error("%s\n%s", traceback.format_exc(), _whose(plugins_of(config)))
         return WRONG_INPUT
     log.info("everything lies in %s", folder)
     return OK
+
+
+def _whose(plugins: list[str]) -> str:
+    """Where to look for the cause of an error that no line of the user's own files raised."""
+    if not plugins:
+        return "This is a defect of gear_damping, not of your input."
+    files = ", ".join(plugins)
+    return f"This is a defect of what {files} returns, or of gear_damping: try it with simulator.plugins=[]."
 
 
 def _placed(problem: Problem, config: Mapping[str, Any], origin: Origin) -> Problem:

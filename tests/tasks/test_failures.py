@@ -78,6 +78,14 @@ def test_a_line_of_the_users_effect_that_fails_while_the_settings_are_read_is_na
     assert "in prepare, fails with ZeroDivisionError" in said()
 
 
+def test_what_the_users_effect_returns_is_suspected_too(tmp_path, caplog, capsys):
+    plugin, path = broken_effect(tmp_path, force="return None")
+    assert main(["task=simulate", *plugin, *SMALL, *place(tmp_path)]) == 1
+    text = caplog.text + capsys.readouterr().err
+    assert f"a defect of what {path} returns, or of gear_damping" in text
+    assert "not of your input" not in text
+
+
 def test_a_text_as_checkpoint_is_refused(tmp_path, said):
     text = tmp_path / "notes.txt"
     text.write_text("no checkpoint\n")
