@@ -45,7 +45,7 @@ def train(quick: bool, say: Said) -> list[dict]:
     if quick:
         return fitting.train(256, 1024, 1, say)
     plans = ((32, 8192), (256, 16384), (1024, 32768))
-    return [row for batch, windows in plans for row in fitting.train(batch, windows, 7, say)]
+    return [row for batch, windows in plans for row in fitting.train(batch, windows, 5, say)]
 
 
 PARTS = {

@@ -26,7 +26,7 @@ THREADS_PAY_FROM = 128
 # goes back to the kernel.
 M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3
 KEPT_BYTES = 1 << 30
-LARGEST_OF_OLD_GLIBC = 32 << 20  # up to 2.34 a larger block is refused
+LARGEST_OF_OLD_GLIBC = 32 << 20  # which refuses larger blocks
 
 
 class EpochSeeds(Callback):
