@@ -26,6 +26,7 @@ def integrate(
     model: Model,
     prepared: Prepared,
     inputs: Mapping[str, Tensor],
+    units: Mapping[str, Tensor],
     interval: Tensor,
     n_samples: int,
     solver: Solver,
@@ -38,7 +39,7 @@ def integrate(
     """
     layout, series = Layout(prepared), Series(tuple(sorted(inputs)))
     fixed, start = layout.pack(prepared, interval), initial_states(model, prepared)
-    packed = series.pack(inputs, n_samples - 1, interval.shape[0])
+    packed = series.pack(inputs, units, n_samples - 1, interval.shape[0])
     example = Members(fixed, packed[0], fixed.new_zeros(()))
     kernel = kernel_of(model, layout, series, example, start)
     choice = choose(solver.engine, kernel, example, start)

@@ -31,9 +31,21 @@ class Series:
         self.names = names
         self.heights = [_height(name) for name in names]
 
-    def pack(self, inputs: Mapping[str, Tensor], intervals: int, batch: int) -> Tensor:
-        """Coefficients from natural-unit inputs of shape (batch, time), or (batch, intervals) if held."""
-        parts = [_coefficients(name, inputs[name]) for name in self.names]
+    def pack(self, inputs: Mapping[str, Tensor], units: Mapping[str, Tensor], intervals: int, batch: int) -> Tensor:
+        """Coefficients in natural units.
+
+        Args:
+            inputs: Series of shape (rows, time), or (rows, intervals) if held; where a batch repeats them,
+                each is interpolated once.
+            units: Their natural units, (batch,); of a held load none.
+            intervals: Output intervals.
+            batch: Members, a multiple of the rows.
+        """
+        parts = []
+        for name in self.names:
+            found = _coefficients(name, inputs[name].to(torch.float64))
+            whole = found.repeat(1, 1, batch // found.shape[-1])
+            parts.append(whole / units[name] if name in units else whole)
         if not parts:
             return torch.zeros(intervals, 0, batch, dtype=torch.float64)
         return torch.cat(parts).permute(1, 0, 2).contiguous()

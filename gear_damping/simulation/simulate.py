@@ -35,8 +35,8 @@ def simulate(
         values: Parameters in SI by flat name, (batch,) or (n, batch) (see `Model.values`).
         sampling_rate: Output samples per second.
         n_samples: Output samples of each run, the first at time 0.
-        inputs: Measured series at the output instants, (batch, time): `force` (oscillator),
-            `pinion_torque`, `gear_torque` in N m, `pinion_angle` in rad, unwrapped.
+        inputs: Measured series at the output instants, (batch, time), or fewer rows that the batch repeats:
+            `force` (oscillator), `pinion_torque`, `gear_torque` in N m, `pinion_angle` in rad, unwrapped.
         solver: Settings; the defaults when None.
         seed: Seed of drawn loads.
         progress: Called with (done, total) as the work proceeds.
@@ -49,10 +49,10 @@ def simulate(
     batch = prepared.base["equivalent_mass"].shape[0]
     inputs = dict(inputs or {})
     _check_inputs(model, inputs, (batch, n_samples))
-    natural = natural_inputs(model, inputs, prepared)
-    natural |= _held_loads(model, values, prepared, n_samples - 1, seed)
+    series = inputs | _held_loads(model, values, prepared, n_samples - 1, seed)
+    units = input_units(model, inputs, prepared)
     interval = 1 / (sampling_rate * prepared.scales.time)
-    names, states = integrate(model, prepared, natural, interval, n_samples, solver, progress)
+    names, states = integrate(model, prepared, series, units, interval, n_samples, solver, progress)
     low, high = states.aminmax(dim=-1)  # nan, too, shows in the extremes
     fine = (low.isfinite() & high.isfinite()).all(0) & (low[0] > -FAR) & (high[0] < FAR)
     return Runs(
@@ -61,7 +61,7 @@ def simulate(
         derived=prepared.derived,
         sampling_rate=sampling_rate,
         states=_in_si(model, names, states, prepared),
-        inputs=inputs,
+        inputs={name: value.repeat(batch // len(value), 1) for name, value in inputs.items()},
         status=torch.where(fine, FINE, DIVERGED),
         reference_velocity=reference_velocity(prepared.derived),
         n_diverged=int((~fine).sum()),
@@ -77,19 +77,15 @@ def _check_inputs(model: Model, inputs: Mapping[str, Tensor], shape: tuple[int, 
     problems += [
         Problem(f"inputs.{name}", f"must have the shape (batch, time) = {shape}", tuple(value.shape))
         for name, value in inputs.items()
-        if tuple(value.shape) != shape
+        if value.ndim != 2 or value.shape[1] != shape[1] or not len(value) or shape[0] % len(value)
     ]
     if problems:
         raise InputError(problems)
 
 
-def natural_inputs(model: Model, inputs: Mapping[str, Tensor], prepared: Prepared) -> dict[str, Tensor]:
-    """Input series in natural units."""
-    units = {name: parse_unit(unit).dimension for name, unit in model.system.inputs.items()}
-    return {
-        name: value.to(torch.float64) / prepared.scales.unit_of(units[name]).unsqueeze(1)
-        for name, value in inputs.items()
-    }
+def input_units(model: Model, inputs: Mapping[str, Tensor], prepared: Prepared) -> dict[str, Tensor]:
+    """Natural unit of every input series, (batch,)."""
+    return {name: prepared.scales.unit_of(parse_unit(model.system.inputs[name]).dimension) for name in inputs}
 
 
 def _held_loads(

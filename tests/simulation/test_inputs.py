@@ -6,6 +6,8 @@ import torch
 
 from gear_damping.errors import InputError
 from gear_damping.physics.equation import HELD_LOAD
+from gear_damping.physics.model import Model
+from gear_damping.physics.systems.oscillator import Oscillator
 from gear_damping.simulation.inspect import forces_of
 from gear_damping.simulation.series import ANGLE, ANGLE_RATE, Series
 from gear_damping.simulation.simulate import simulate
@@ -16,7 +18,7 @@ def test_a_band_limited_input_between_its_samples():
     index = torch.arange(n, dtype=torch.float64)
     tone = torch.sin(2 * np.pi * cycles * index + 0.4).unsqueeze(0)
     series = Series(("force",))
-    packed = series.pack({"force": tone}, n - 1, 1)
+    packed = series.pack({"force": tone}, {}, n - 1, 1)
     for u in (0.0, 0.3, 0.77, 1.0):
         position = torch.full((1,), u, dtype=torch.float64)
         found = torch.stack([series.at(rows, position, position)["force"] for rows in packed])[50:-50, 0]
@@ -28,7 +30,7 @@ def test_a_held_load_and_a_linear_angle():
     series = Series((HELD_LOAD, ANGLE))
     load = torch.tensor([[1.0, -2.0, 5.0]], dtype=torch.float64)
     angle = torch.tensor([[0.0, 1.0, 3.0, 3.5]], dtype=torch.float64)
-    packed = series.pack({HELD_LOAD: load, ANGLE: angle}, 3, 1)
+    packed = series.pack({HELD_LOAD: load, ANGLE: angle}, {}, 3, 1)
     half, interval = torch.tensor([0.5], dtype=torch.float64), torch.tensor([0.1], dtype=torch.float64)
     found = series.at(packed[1], half, interval)
     assert float(found[HELD_LOAD]) == -2
@@ -79,3 +81,16 @@ def test_forces_balance_the_acceleration(bench_model):
     inside = forces["contact"][1:-1] == 1
     difference = (mass * acceleration - expected)[inside]
     assert float(difference.abs().median()) < 2e-3 * float(expected.abs().max())
+
+
+def test_rows_that_a_batch_repeats_are_the_same_as_rows_given_in_full():
+    model = Model(Oscillator(), [])
+    values = model.values(4, stiffness=torch.tensor([1e4, 2e4, 3e4, 4e4]), amplitude=1e-3)
+    force = torch.sin(torch.arange(50, dtype=torch.float64) * torch.tensor([[0.3], [0.7]]))
+    run = {"sampling_rate": 1000.0, "n_samples": 50}
+    short = simulate(model, values, inputs={"force": force}, **run)
+    whole = simulate(model, values, inputs={"force": force.repeat(2, 1)}, **run)
+    assert torch.equal(short.response, whole.response)
+    assert torch.equal(short.inputs["force"], whole.inputs["force"])
+    with pytest.raises(InputError, match="shape"):
+        simulate(model, values, inputs={"force": force[:1].repeat(3, 1)}, **run)

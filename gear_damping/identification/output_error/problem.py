@@ -150,7 +150,7 @@ class OutputErrorProblem:
         values["initial_displacement"] = (states[..., 0] * self.spread).reshape(-1)
         values["initial_velocity"] = (states[..., 1] * self.rate_scale).reshape(-1)
         names = self.records[0].inputs
-        inputs = {n: _padded([r.inputs[n] for r in self.records])[:, :samples].repeat(points, 1) for n in names}
+        inputs = {n: _padded([r.inputs[n] for r in self.records])[:, :samples] for n in names}
         rate = self.records[0].sampling_rate
         runs = simulate(self.model, values, sampling_rate=rate, n_samples=samples, inputs=inputs, solver=self.solver)
         recorded = runs.record(torch.Generator().manual_seed(0), skip=(SENSOR_NOISE,))
