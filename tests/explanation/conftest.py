@@ -1,0 +1,40 @@
+"""Small measurements with something hidden in them, explained once and looked at by several tests."""
+
+import tempfile
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+from unittest.mock import patch
+
+import pytest
+from hidden import draw_case, write_case
+
+from gear_damping.explanation import candidates
+from gear_damping.explanation.explain import explain
+from gear_damping.measurement.load import load_measurement
+
+RECORDS = (0, 3, 4, 6)  # of the full plan: three speeds, two torques, a fourth condition held out
+ONE = (3,)
+DURATION = 0.02  # s
+
+
+@cache
+def _explained(stratum: str, seed: int, snr_db: float, removed: str | None, records: tuple[int, ...]) -> dict[str, Any]:
+    duration = 0.03 if len(records) == 1 else DURATION
+    case = draw_case(stratum, seed, duration=duration, snr_db=snr_db, target_excess=5.0)
+    case = replace(case, records=tuple(case.records[i] for i in records))
+    library = {name: recipe for name, recipe in candidates.RECIPES.items() if name != removed}
+    with tempfile.TemporaryDirectory() as folder, patch.object(candidates, "RECIPES", library):
+        content = explain(load_measurement(write_case(case, Path(folder) / "measured"))).content
+    return content | {"truth": case.truth}
+
+
+@pytest.fixture(scope="session")
+def explained():
+    """Explain a case of (stratum, seed): the content of explanation.json, and the truth beside it."""
+
+    def run(stratum: str, seed: int, snr_db: float = 25.0, removed: str | None = None, records=RECORDS):
+        return _explained(stratum, seed, snr_db, removed, records)
+
+    return run

@@ -1,0 +1,59 @@
+"""Effects hidden by the independent generator have to be found, and nothing may be found where none is hidden."""
+
+import pytest
+
+ONE_RECORD = (3,)
+
+
+def offered(content):
+    return {name for cause in content["causes"] for name in (cause["name"], *cause["confusable_with"])}
+
+
+@pytest.mark.parametrize(("seed", "snr_db"), [(2, 25.0), (5, 25.0)])
+def test_a_null_names_no_cause(explained, seed, snr_db):
+    found = explained("null", seed, snr_db)
+    assert found["causes"] == []
+    assert found["verdict"] == "consistent"
+    assert found["misfit"]["before"] < 1.5
+    assert found["noise"]["value"] == pytest.approx(1e6 * found["truth"]["noise_std"], rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("effect", "parameter", "tolerance", "alike"),
+    [
+        ("gear_stiffness_modulation", "amplitude", 0.05, set()),
+        ("pinion_eccentricity", "amplitude", 0.05, {"encoder_error"}),  # the same signal
+        ("cubic_stiffness", "coefficient", 0.08, set()),
+        ("windage_drag", "coefficient", 0.05, set()),
+    ],
+)
+def test_a_hidden_effect_is_named_first_with_its_size(explained, effect, parameter, tolerance, alike):
+    found = explained(effect, 1)
+    first = found["causes"][0]
+    assert (first["name"], first["status"]) == (effect, "established"), found["sentences"]
+    assert set(first["confusable_with"]) <= alike
+    stated = first["parameters"][parameter]
+    size = found["truth"]["effects"][0]["parameters"][parameter]
+    assert abs(stated["value"]) == pytest.approx(abs(size), rel=tolerance)
+    low, high = stated["interval95"]
+    assert low < stated["value"] < high
+    assert found["misfit"]["after"] < 1.4 < found["misfit"]["before"]
+
+
+def test_without_the_true_effect_no_other_explains(explained):
+    found = explained("gear_stiffness_modulation", 1, removed="gear_stiffness_modulation")
+    assert found["verdict"] in ("unexplained", "partly_explained")
+    assert found["misfit"]["after"] > 4.0
+    assert found["unexplained"]["orders"]
+
+
+def test_one_record_says_what_it_cannot_show_and_the_experiment_shows_it(explained):
+    alone = explained("cubic_stiffness", 1, records=ONE_RECORD)
+    unseen = {entry["name"] for entry in alone["not_observable"]}
+    assert "cubic_stiffness" in offered(alone) | unseen
+    assert alone["verdict"] != "explained"
+    assert alone["next_experiment"]["kind"] == "torque"
+    more = explained("cubic_stiffness", 1)
+    assert offered(more) == {"cubic_stiffness"}
+    assert more["verdict"] == "explained"
+
