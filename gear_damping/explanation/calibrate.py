@@ -1,11 +1,11 @@
 """Step 3: the nominal simulation at its best, so that wrong parameters do not masquerade as physics."""
 
-from math import pi
+from math import ceil, pi
 
 import torch
 
 from gear_damping.explanation.evidence import Evidence
-from gear_damping.explanation.hypothesis import Hypothesis, Outcome, fit_hypothesis
+from gear_damping.explanation.hypothesis import Hypothesis, Outcome, fit_hypothesis, natural_frequency_hz
 from gear_damping.identification.oscillator import fit_oscillator
 from gear_damping.identification.output_error.problem import OFFSET, FreeParameter
 from gear_damping.physics.effects.backlash import Backlash
@@ -15,6 +15,7 @@ from gear_damping.physics.effects.offset_force import OffsetForce
 from gear_damping.physics.effects.viscous_damping import ViscousDamping
 from gear_damping.physics.systems.gear_pair import GearPair
 from gear_damping.physics.systems.oscillator import Oscillator
+from gear_damping.simulation.solver_settings import Solver
 
 MESH, DAMPING, SHAPE = "fourier_mesh_stiffness", "viscous_damping.damping_coefficient", "mesh_stiffness_shape"
 RENAMED = {
@@ -25,18 +26,19 @@ RENAMED = {
 }
 NOT_OF_THE_MODEL = ("damping_ratio", "torque_gain", "torque_offset", "damping_coefficient")
 PHASES = 18  # starts of the mesh phase
-SHAPE_HARMONICS = 10
+SHAPE_BAND = 1.6  # harmonics of the stiffness count up to this many natural frequencies, at the slowest record,
+FEWEST_HARMONICS, MOST_HARMONICS = 6, 20  # within these
 EXPECTED_SHAPE = 0.1  # of the mean stiffness over the harmonic: what real teeth add to the ideal wave
 SHORT_PERIODS = 40.0  # natural periods of the first round
 FIRST_RATIO = 0.01
 
 
-def calibrated(evidence: Evidence) -> Outcome:
+def calibrated(evidence: Evidence, solver: Solver | None = None) -> Outcome:
     """The nominal model fitted to the evidence."""
-    return _gear_pair(evidence) if evidence.system == "gear_pair" else _oscillator(evidence)
+    return _gear_pair(evidence, solver) if evidence.system == "gear_pair" else _oscillator(evidence, solver)
 
 
-def _oscillator(evidence: Evidence) -> Outcome:
+def _oscillator(evidence: Evidence, solver: Solver | None) -> Outcome:
     """Stiffness, damping, gain; offsets of force and response as nuisances."""
     found = fit_oscillator(evidence.fit)
     forced = "force" in evidence.fit[0].inputs
@@ -57,10 +59,10 @@ def _oscillator(evidence: Evidence) -> Outcome:
         free += [FreeParameter("offset_force.force", force, scale=found.given["stiffness"] * spread)]
         effects.append(OffsetForce())
     nominal = Hypothesis(Oscillator(), tuple(effects), {"amplitude": spread}, tuple(free))
-    return fit_hypothesis(nominal, evidence)
+    return fit_hypothesis(nominal, evidence, solver=solver)
 
 
-def _gear_pair(evidence: Evidence) -> Outcome:
+def _gear_pair(evidence: Evidence, solver: Solver | None) -> Outcome:
     """Mesh phase by a scan, then damping and stiffness, then free harmonics of the stiffness."""
     first = _first_gear_pair(evidence)
     rate = evidence.sampling_rate
@@ -69,15 +71,15 @@ def _gear_pair(evidence: Evidence) -> Outcome:
     starts = torch.zeros(PHASES, len(first.free), dtype=torch.float64)
     starts[:, 0] = torch.linspace(0, 2 * pi, PHASES + 1, dtype=torch.float64)[:-1]
     horizons = [short, total] if short < total else [total]
-    rough = fit_hypothesis(first, evidence, starts, horizons=horizons, iterations=12, kept=0.12)
-    shaped = _with_shape(rough.hypothesis)
-    return fit_hypothesis(shaped, evidence, states=rough.fitted.states, iterations=14)
+    rough = fit_hypothesis(first, evidence, starts, horizons=horizons, iterations=12, kept=0.12, solver=solver)
+    shaped = _with_shape(rough.hypothesis, _shape_harmonics(rough, evidence))
+    return fit_hypothesis(shaped, evidence, states=rough.fitted.states, iterations=20, solver=solver)
 
 
 def _first_gear_pair(evidence: Evidence) -> Hypothesis:
     given = {RENAMED.get(k, k): v for k, v in evidence.parameters.items() if k not in NOT_OF_THE_MODEL}
     system = GearPair(gear_torque_mode=evidence.gear_torque_mode)
-    effects = [FourierMeshStiffness(n_harmonics=SHAPE_HARMONICS), ViscousDamping()]
+    effects = [FourierMeshStiffness(), ViscousDamping()]
     if given.get("backlash.gap", 0.0) > 0:
         effects.append(Backlash())
     else:
@@ -95,12 +97,23 @@ def _first_gear_pair(evidence: Evidence) -> Hypothesis:
     return Hypothesis(system, tuple(effects), known, free)
 
 
-def _with_shape(rough: Hypothesis) -> Hypothesis:
+def _shape_harmonics(rough: Outcome, evidence: Evidence) -> int:
+    """Harmonics of the mesh that the natural frequency lets through, at the slowest record."""
+    model, given = rough.hypothesis.model, rough.flat_given()
+    default = float(given.get("pinion_speed", model.parameters()["pinion_speed"].default))
+    slowest = min(abs(record.conditions.get("pinion_speed", default)) for record in evidence.fit)
+    teeth = float(given.get("n_teeth_pinion", model.parameters()["n_teeth_pinion"].default))
+    mesh_frequency = max(teeth * slowest / (2 * pi), 1e-9)
+    count = ceil(SHAPE_BAND * natural_frequency_hz(model, given) / mesh_frequency)
+    return min(max(count, FEWEST_HARMONICS), MOST_HARMONICS)
+
+
+def _with_shape(rough: Hypothesis, harmonics: int) -> Hypothesis:
     """Free harmonics take over from the contact ratio, which they contain."""
-    names = [f"{SHAPE}.{part}[{h}]" for part in ("in_phase", "quadrature") for h in range(SHAPE_HARMONICS)]
+    names = [f"{SHAPE}.{part}[{h}]" for part in ("in_phase", "quadrature") for h in range(harmonics)]
     free = tuple(p for p in rough.free if p.name in ("mesh_phase", DAMPING, f"{MESH}.maximum"))
     free = tuple(p for p in free if p.name != "mesh_phase")
-    zeros = (0.0,) * SHAPE_HARMONICS
+    zeros = (0.0,) * harmonics
     given = rough.given | {f"{SHAPE}.in_phase": zeros, f"{SHAPE}.quadrature": zeros}
     return Hypothesis(
         rough.system,

@@ -25,6 +25,7 @@ class Recipe:
         presence: The effect has no zero (a stiffness that was rigid): it is tried as a whole, at the size
             of its strength.
         options: Options of the effect.
+        length: Elements of its lists; as declared where absent.
     """
 
     strengths: Mapping[str, float | None]
@@ -33,6 +34,7 @@ class Recipe:
     fixed: Mapping[str, float] = field(default_factory=dict)
     presence: bool = False
     options: Mapping[str, object] = field(default_factory=dict)
+    length: int | None = None
 
 
 def _wave(size: float | None = None) -> Recipe:
@@ -64,7 +66,7 @@ RECIPES: dict[str, tuple[Recipe, ...]] = {
     "pinion_stiffness_modulation": (_wave(),),
     "gear_stiffness_modulation": (_wave(),),
     "shaft_angle_error": (_wave(),),
-    "profile_error": (Recipe({"amplitudes": None}, {"amplitudes": "phases"}),),
+    "profile_error": (Recipe({"amplitudes": None}, {"amplitudes": "phases"}, length=4),),
     "pitch_error": (Recipe({"values": 3e-6}),),
     "torque_ripple": tuple(
         Recipe(
@@ -81,13 +83,6 @@ RECIPES: dict[str, tuple[Recipe, ...]] = {
     ),
     "unbalance": (Recipe({"unbalance": None}, {"unbalance": "phase"}),),
     "shaft_torsion": tuple(Recipe({"stiffness": k}, presence=True) for k in (500.0, 2000.0, 20000.0)),
-    "encoder_error": tuple(
-        Recipe({strength: None}, {strength: phase}, fixed={other: 0.0})
-        for strength, phase, other in (
-            ("pinion_amplitude", "pinion_phase", "gear_amplitude"),
-            ("gear_amplitude", "gear_phase", "pinion_amplitude"),
-        )
-    ),
     "load_dependent_contact": (Recipe({"growth": None}),),
     "windage_drag": (Recipe({"coefficient": None}),),
     "tooth_crack": tuple(Recipe({"depth": None}, fixed={"phase": 2 * pi * i / 20}) for i in range(20)),
@@ -100,10 +95,13 @@ RECIPES: dict[str, tuple[Recipe, ...]] = {
     "sensor_gain": (Recipe({"gain": None}),),
     "sensor_saturation": (Recipe({"limit": None}, presence=True),),
 }
+SAME_RECORD = {  # what no record of this channel can tell apart, and is never tried by itself
+    "pinion_eccentricity": ("encoder_error",),
+    "gear_eccentricity": ("encoder_error",),
+}
 NEUTRAL = {"sensor_gain": 1.0}
 WITHIN = {"width": (0.02, 0.5)}  # a sharper sign change costs steps and shows no more
-ZERO_BY_DEFAULT = {"encoder_error": 1e-4}  # sizes of what the declaration leaves at zero
-OWN_UNITS = {"bearing_flexibility", "shaft_torsion", "torque_ripple", "tooth_crack", "backlash", "encoder_error"}
+OWN_UNITS = {"bearing_flexibility", "shaft_torsion", "torque_ripple", "tooth_crack", "backlash"}
 NEEDS_UNCERTAINTY = {"sensor_gain", "inertia_error"}  # identifiable only where the load is known absolutely
 COVERED_BY_NUISANCE = {"oscillator": {"sensor_offset"}, "gear_pair": set()}
 
@@ -211,7 +209,7 @@ class _Sizes:
         """The size of a strength that is tried."""
         parameter = next(p for p in kind.parameters if p.name == name)
         if size is None or kind.name in OWN_UNITS or (self.is_gear and kind.name == "pitch_error"):
-            default = size or parameter.default or ZERO_BY_DEFAULT[kind.name]
+            default = size or parameter.default
             return default[0] if isinstance(default, tuple) else float(default)
         return self.natural(kind, parameter, size, recipe.scanned.get("exponent", (1.0,))[0])
 
@@ -221,11 +219,11 @@ class _Sizes:
             neutral = NEUTRAL.get(kind.name, 0.0)
             if recipe.presence:
                 return self.size(kind, parameter.name, recipe.strengths[parameter.name], recipe)
-            return (neutral,) * len(parameter.default) if parameter.vector else neutral
+            return (neutral,) * (recipe.length or len(parameter.default)) if parameter.vector else neutral
         chosen = recipe.fixed.get(parameter.name, recipe.scanned.get(parameter.name, (None,)))
         value = chosen[0] if isinstance(chosen, tuple) else chosen
         if value is None:
-            return (0.0,) * len(parameter.default) if parameter.vector else parameter.default
+            return (0.0,) * (recipe.length or len(parameter.default)) if parameter.vector else parameter.default
         if kind.name in OWN_UNITS or parameter.unit in ("1", "rad"):
             return value
         return self.natural(kind, parameter, value)

@@ -17,6 +17,7 @@ from gear_damping.simulation.solver_settings import Solver
 
 Say = Callable[[str], None]
 STEPS = 4
+FIT_ACCURACY = 1e-4  # of the deflection: far below the noise of any record that is explained
 
 
 @dataclass(frozen=True)
@@ -65,8 +66,9 @@ def explain(
     say(f"noise {noise.value / evidence.channel.declared_factor:.3g} {evidence.channel.declared_unit} ({noise.method})")
     fit, holdout = weighted(evidence.fit, noise), weighted(evidence.holdout, noise)
     evidence = replace(evidence, fit=fit, holdout=holdout, noise=noise.value)
+    solver = replace(solver or Solver(), accuracy=max(solver.accuracy if solver else 0.0, FIT_ACCURACY))
     step(1, STEPS)
-    nominal = calibrated(evidence)
+    nominal = calibrated(evidence, solver)
     before = excess(nominal.holdout, evidence.holdout, noise)
     say(f"the calibrated nominal model leaves {before.percent:.3g} % of the signal's variance beyond the noise")
     step(2, STEPS)

@@ -17,6 +17,8 @@ BORNE_OUT = 3.0  # t of the held-out gain that a cause needs
 LEAST_SHARE = 0.25  # of the remaining excess that a cause must take
 RIVAL = 2.0  # t below which two explanations are not told apart
 MOST_CAUSES = 4
+REST = 0.02  # of the first excess: less is not worth a cause
+SAME = 1e-3  # of the noise variance: a mean difference below it is none
 Say = Callable[[str], None]
 
 
@@ -77,16 +79,14 @@ def search(nominal: Outcome, evidence: Evidence, noise: NoiseLevel, say: Say, so
         found.accepted.append(Accepted(best.name, best, share, rivals))
         say(f"{best.name} takes {100 * share:.1f} % of the excess on held-out records")
         found.outcome, current = best.outcome, after
-        if _finished(first, current):
+        if current.percent <= REST * first.percent:
             break
         ranked = scores(found.outcome, evidence, candidates_for(found.outcome.hypothesis), noise.value, solver)
     if len(found.accepted) > 1:
         _prune(found, evidence, say, solver)
+    named = {accepted.name for accepted in found.accepted}
+    found.accepted = [replace(a, confusable=tuple(n for n in a.confusable if n not in named)) for a in found.accepted]
     return found
-
-
-def _finished(first: Excess, current: Excess) -> bool:
-    return not current.significant
 
 
 def _full_fits(ranked: Sequence[Score], outcome: Outcome, evidence: Evidence, solver: Solver | None) -> list[Refit]:
@@ -115,12 +115,17 @@ def _simplest(best: Refit, fits: Sequence[Refit], evidence: Evidence) -> tuple[R
     smaller is taken where the larger does no better.
     """
     block = block_samples(best.outcome, evidence.sampling_rate)
-    alike = [f for f in fits if f is best or paired_gain(f.outcome.holdout, best.outcome.holdout, block)[1] < RIVAL]
+    alike = [f for f in fits if f is best or _as_good(f, best, block, evidence.noise)]
     inner = [f for f in alike if any(contains(other.score, f.score) for other in alike if other is not f)]
     outer = {f.name for f in alike if any(contains(f.score, other.score) for other in inner)}
     kept = [f for f in alike if f.name not in outer] or alike
     first = min(kept, key=lambda fit: fit.outcome.holdout_cost)
     return first, tuple(f.name for f in kept if f is not first)
+
+
+def _as_good(fit: Refit, best: Refit, block: int, noise: float) -> bool:
+    gain, t = paired_gain(fit.outcome.holdout, best.outcome.holdout, block)
+    return t < RIVAL or gain < SAME * noise**2
 
 
 def _prune(found: Search, evidence: Evidence, say: Say, solver: Solver | None) -> None:

@@ -3,14 +3,14 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from gear_damping.explanation.extend import Accepted, Search
+from gear_damping.explanation.candidates import SAME_RECORD
+from gear_damping.explanation.extend import REST, Accepted, Search
 from gear_damping.explanation.next_experiment import LARGEST_SET
 from gear_damping.explanation.significance import Excess
 
 CONSISTENT, EXPLAINED, AMBIGUOUS = "consistent", "explained", "ambiguous"
 PARTLY, UNEXPLAINED, DATA_PROBLEM = "partly_explained", "unexplained", "data_problem"
 VERDICTS = (CONSISTENT, EXPLAINED, AMBIGUOUS, PARTLY, UNEXPLAINED, DATA_PROBLEM)
-REST = 0.02  # of the excess that may be left of an explained one
 MOST = 0.9  # of the excess that causes must take to be established although a rest is left,
 HALF = 0.5  # or half of it, where the rest is
 SMALL_REST = 3.0  # no more than this many noise variances
@@ -98,7 +98,7 @@ def verdict(found: Search, before: Excess, after: Excess, converged: bool = True
     confused = [cause for cause in found.accepted if cause.confusable]
     said = _named(found.accepted)
     if rest and not confused:
-        return Verdict(EXPLAINED, (f"{missing}: {said}.", _left(taken), *unsettled))
+        return Verdict(EXPLAINED, (f"{missing}: {said}.", _left(taken), *_same_record(found.accepted), *unsettled))
     if rest:
         alike = "; ".join(f"{c.name} or {' or '.join(c.confusable[: LARGEST_SET - 1])}" for c in confused)
         return Verdict(AMBIGUOUS, (f"{missing}. These data do not tell apart: {alike}.", _left(taken), *unsettled))
@@ -116,6 +116,14 @@ def statuses(word: str) -> str:
 
 def _named(accepted: Sequence[Accepted]) -> str:
     return " and ".join(f"{SENTENCES.get(cause.name, cause.name)} (`{cause.name}`)" for cause in accepted)
+
+
+def _same_record(accepted: Sequence[Accepted]) -> tuple[str, ...]:
+    return tuple(
+        f"In this channel {SENTENCES[other]} (`{other}`) would look the same as `{cause.name}`."
+        for cause in accepted
+        for other in SAME_RECORD.get(cause.name, ())
+    )
 
 
 def _left(taken: float) -> str:

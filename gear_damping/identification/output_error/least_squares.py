@@ -9,7 +9,7 @@ from torch import Tensor
 from gear_damping.identification.output_error.problem import OutputErrorProblem, Prediction
 
 FIRST_DAMPING, LARGEST_DAMPING, SMALLEST_DAMPING = 1e-2, 1e10, 1e-12
-SMALLEST_GAIN = 1e-9  # relative fall of the cost below which a start has converged
+SMALLEST_GAIN = 1e-7  # relative fall of the cost below which a start has converged
 LONGEST_STEP = 2.0  # of any coordinate in one iteration
 
 
