@@ -84,8 +84,7 @@ def search(nominal: Outcome, evidence: Evidence, noise: NoiseLevel, say: Say, so
         ranked = scores(found.outcome, evidence, candidates_for(found.outcome.hypothesis), noise.value, solver)
     if len(found.accepted) > 1:
         _prune(found, evidence, say, solver)
-    named = {accepted.name for accepted in found.accepted}
-    found.accepted = [replace(a, confusable=tuple(n for n in a.confusable if n not in named)) for a in found.accepted]
+        found.accepted = [_beside_the_others(cause, found, evidence, noise, solver) for cause in found.accepted]
     return found
 
 
@@ -115,7 +114,7 @@ def _simplest(best: Refit, fits: Sequence[Refit], evidence: Evidence) -> tuple[R
     smaller is taken where the larger does no better.
     """
     block = block_samples(best.outcome, evidence.sampling_rate)
-    alike = [f for f in fits if f is best or _as_good(f, best, block, evidence.noise)]
+    alike = [f for f in fits if f is best or _as_good(f.outcome, best.outcome, block, evidence.noise)]
     inner = [f for f in alike if any(contains(other.score, f.score) for other in alike if other is not f)]
     outer = {f.name for f in alike if any(contains(f.score, other.score) for other in inner)}
     kept = [f for f in alike if f.name not in outer] or alike
@@ -123,9 +122,28 @@ def _simplest(best: Refit, fits: Sequence[Refit], evidence: Evidence) -> tuple[R
     return first, tuple(f.name for f in kept if f is not first)
 
 
-def _as_good(fit: Refit, best: Refit, block: int, noise: float) -> bool:
-    gain, t = paired_gain(fit.outcome.holdout, best.outcome.holdout, block)
+def _as_good(fit: Outcome, best: Outcome, block: int, noise: float) -> bool:
+    gain, t = paired_gain(fit.holdout, best.holdout, block)
     return t < RIVAL or gain < SAME * noise**2
+
+
+def _beside_the_others(
+    cause: Accepted, found: Search, evidence: Evidence, noise: NoiseLevel, solver: Solver | None
+) -> Accepted:
+    """The cause with those of its rivals that do no worse in its place, now that the other causes are known."""
+    named = {accepted.name for accepted in found.accepted}
+    rivals = [name for name in cause.confusable if name not in named]
+    if not rivals:
+        return replace(cause, confusable=())
+    states, block = found.outcome.fitted.states, block_samples(found.outcome, evidence.sampling_rate)
+    without = fit_hypothesis(_without(found.outcome.hypothesis, cause.name), evidence, None, states, solver=solver)
+    tried = [c for c in candidates_for(without.hypothesis) if c.name in rivals]
+    best: dict[str, Score] = {}
+    for score in scores(without, evidence, tried, noise.value, solver):
+        best.setdefault(score.candidate.name, score)
+    fits = [refitted(score, without, evidence, solver) for score in best.values() if score.gain > 0]
+    kept = [f.name for f in fits if f is not None and _as_good(f.outcome, found.outcome, block, evidence.noise)]
+    return replace(cause, confusable=tuple(kept))
 
 
 def _prune(found: Search, evidence: Evidence, say: Say, solver: Solver | None) -> None:

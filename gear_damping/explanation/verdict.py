@@ -100,11 +100,10 @@ def verdict(found: Search, before: Excess, after: Excess, converged: bool = True
     if rest and not confused:
         return Verdict(EXPLAINED, (f"{missing}: {said}.", _left(taken), *_same_record(found.accepted), *unsettled))
     if rest:
-        alike = "; ".join(f"{c.name} or {' or '.join(c.confusable[: LARGEST_SET - 1])}" for c in confused)
-        return Verdict(AMBIGUOUS, (f"{missing}. These data do not tell apart: {alike}.", _left(taken), *unsettled))
-    if (taken >= MOST or (taken >= HALF and after.misfit <= SMALL_REST)) and not confused:
+        return Verdict(AMBIGUOUS, (f"{missing}.", *_not_told_apart(confused), _left(taken), *unsettled))
+    if taken >= MOST or (taken >= HALF and after.misfit <= SMALL_REST):
         text = f"{missing}. Part of it has a name: {said}. A significant rest of {after.percent:.3g} % has none."
-        return Verdict(PARTLY, (text, _left(taken), *unsettled))
+        return Verdict(PARTLY, (text, _left(taken), *_not_told_apart(confused), *unsettled))
     text = f"{missing}. {said[0].upper()}{said[1:]} would take part of it, but too much is left to name a cause."
     return Verdict(UNEXPLAINED, (text, *unsettled))
 
@@ -116,6 +115,11 @@ def statuses(word: str) -> str:
 
 def _named(accepted: Sequence[Accepted]) -> str:
     return " and ".join(f"{SENTENCES.get(cause.name, cause.name)} (`{cause.name}`)" for cause in accepted)
+
+
+def _not_told_apart(confused: Sequence[Accepted]) -> tuple[str, ...]:
+    sets = (" or ".join(f"`{name}`" for name in (c.name, *c.confusable[: LARGEST_SET - 1])) for c in confused)
+    return (f"These data do not tell apart: {'; '.join(sets)}.",) if confused else ()
 
 
 def _same_record(accepted: Sequence[Accepted]) -> tuple[str, ...]:

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from gear_damping.config.settings import Settings
+from gear_damping.errors import InputError, Problem
 from gear_damping.explanation.explain import Explanation, explain
 from gear_damping.explanation.extended_simulator import write_extended
 from gear_damping.measurement.load import load_measurement
@@ -18,6 +19,7 @@ EXTENDED = "extended_simulator.yaml"
 
 def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     """Explain; returns the metrics for run.json."""
+    _refuse_used(folder.path)
     measurement = load_measurement(settings.measurement_path)
     _note_inputs(measurement, folder)
     with progress_bar("explaining", settings.progress) as progress:
@@ -30,6 +32,13 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
         statements.say(sentence)
     statements.say(f"verdict: {found.content['verdict']}; the report is {folder.path / 'report.html'}")
     return _metrics(found.content)
+
+
+def _refuse_used(folder: Path) -> None:
+    """An extended simulator may have been edited by hand: it is never overwritten."""
+    if (folder / EXTENDED).exists():
+        rule, remedy = f"holds an {EXTENDED} already", "give another folder, or move the file away"
+        raise InputError(Problem("hydra.run.dir", rule, str(folder), remedy))
 
 
 def _note_inputs(measurement: Measurement, folder: RunFolder) -> None:
