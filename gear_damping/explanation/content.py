@@ -11,6 +11,7 @@ from gear_damping.explanation.hypothesis import Outcome
 from gear_damping.explanation.next_experiment import LARGEST_SET, confusable_beforehand, next_experiment
 from gear_damping.explanation.noise import NoiseLevel
 from gear_damping.explanation.ranking import Score
+from gear_damping.explanation.rig_units import rig_unit
 from gear_damping.explanation.unexplained import leftover
 from gear_damping.explanation.verdict import CONSISTENT, DATA_PROBLEM, Judged, statuses
 from gear_damping.measurement.record import Finding, Measurement
@@ -75,7 +76,7 @@ def of_search(measurement: Measurement, evidence: Evidence, noise: NoiseLevel, j
             "estimates_agree": noise.agree,
         },
         "candidates": _candidates(judged),
-        "not_observable": _not_observable(found.first_scores, names),
+        "not_observable": _not_observable(found.first_scores, names, evidence),
         "next_experiment": next_experiment(names, evidence),
         "unexplained": None if judged.verdict.word == CONSISTENT else leftover(last, evidence),
         "records": _records(evidence, first, last, factor, unit),
@@ -113,7 +114,7 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
     listed = [
         {
             "name": cause.name,
-            "parameters": gain.parameters_of(last, spread, cause.name),
+            "parameters": gain.parameters_of(last, spread, cause.name, evidence),
             "excess_explained": cause.share,
             "confusable_with": [*cause.confusable, *SAME_RECORD.get(cause.name, ())][: LARGEST_SET - 1],
             "status": statuses(judged.verdict.word),
@@ -122,7 +123,8 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
     ]
     if not listed and judged.verdict.word != CONSISTENT:
         for refit in [r for r in found.rejected if r.gain > 0][:1]:
-            own = gain.parameters_of(refit.outcome, gain.spread_of(refit.outcome, evidence), refit.name)
+            spread = gain.spread_of(refit.outcome, evidence)
+            own = gain.parameters_of(refit.outcome, spread, refit.name, evidence)
             alike = confusable_beforehand(found.first_scores, refit.name)[: LARGEST_SET - 1]
             share = _share(refit.outcome, found.nominal)
             listed.append(
@@ -147,6 +149,7 @@ def _gain(judged: Judged, evidence: Evidence, noise: NoiseLevel) -> dict[str, An
     floor = sum(len(r.response) * noise.by_record[r.name] ** 2 for r in evidence.holdout)
     damping = {
         key: gain.damping_ratio(outcome, gain.spread_of(outcome, evidence))
+        | {"velocity_unit": rig_unit("m/s", evidence)}
         for key, outcome in (("before", first), ("after", last))
     }
     return {
@@ -181,7 +184,7 @@ def _candidates(judged: Judged) -> list[dict[str, Any]]:
     ]
 
 
-def _not_observable(scores: Sequence[Score], named: Sequence[str]) -> list[dict[str, Any]]:
+def _not_observable(scores: Sequence[Score], named: Sequence[str], evidence: Evidence) -> list[dict[str, Any]]:
     """Effects that were not found, with the smallest size that these data would have shown."""
     best: dict[str, Score] = {}
     for score in scores:
@@ -194,7 +197,7 @@ def _not_observable(scores: Sequence[Score], named: Sequence[str]) -> list[dict[
             continue
         place = score.candidate.strengths[0]
         flat = score.candidate.hypothesis.free[place].name
-        unit = score.candidate.hypothesis.model.parameters()[flat.partition("[")[0]].unit
+        unit = rig_unit(score.candidate.hypothesis.model.parameters()[flat.partition("[")[0]].unit, evidence)
         listed.append({"name": name, "parameter": flat, "smallest": score.smallest, "unit": unit})
     return listed
 

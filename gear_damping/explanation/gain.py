@@ -8,6 +8,7 @@ from torch import Tensor
 
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Outcome, natural_frequency_hz
+from gear_damping.explanation.rig_units import rig_unit
 from gear_damping.identification.output_error.problem import OFFSET, FitRecord
 from gear_damping.identification.output_error.uncertainty import QUANTILE, covariance
 from gear_damping.physics.terms import DampingLaw
@@ -47,7 +48,7 @@ def spread_of(outcome: Outcome, evidence: Evidence) -> Tensor:
     return covariance(outcome.problem, outcome.fitted, round(CORRELATED_PERIODS * evidence.sampling_rate / frequency))
 
 
-def parameters_of(outcome: Outcome, spread: Tensor, cause: str) -> dict[str, dict[str, object]]:
+def parameters_of(outcome: Outcome, spread: Tensor, cause: str, evidence: Evidence) -> dict[str, dict[str, object]]:
     """The fitted parameters of an effect with 95 % intervals, by own name."""
     found = {}
     declared = outcome.hypothesis.model.parameters()
@@ -58,7 +59,7 @@ def parameters_of(outcome: Outcome, spread: Tensor, cause: str) -> dict[str, dic
         z, half = outcome.fitted.shared[place], QUANTILE * float(spread[place, place].clamp(min=0).sqrt())
         ends = sorted(float(parameter.value(z + shift)) for shift in (-half, half))
         value = float(parameter.value(z))
-        unit = declared[parameter.name.partition("[")[0]].unit
+        unit = rig_unit(declared[parameter.name.partition("[")[0]].unit, evidence)
         found[own] = Interval(value, (ends[0], ends[1]), unit).plain()
     return found
 

@@ -20,7 +20,10 @@ FAULTS = {
     "number_for_a_list": (["simulator.profile_error.amplitudes=1"], ["profile_error.amplitudes", "list of numbers"]),
     "unknown_option": (["simulator.backlash.as_printed=maybe"], ["backlash.as_printed", "True"]),
     "effect_as_number": (["simulator.backlash=3"], ["simulator.backlash = 3", "null (off)"]),
-    "two_meshes": (["simulator.rectangular_mesh_stiffness={}"], ["there are 2 mesh stiffnesses", "add simulator.fourier_mesh_stiffness=null"]),
+    "two_meshes": (
+        ["simulator.rectangular_mesh_stiffness={}"],
+        ["there are 2 mesh stiffnesses", "add simulator.fourier_mesh_stiffness=null"],
+    ),
     "effect_of_the_other_system": (["simulator.sine_restoring={}"], ["sine_restoring", "oscillator"]),
     "law_is_off": (["simulator.damping_law=viscous_damping"], ["damping_law", "power_law_damping"]),
     "solver_key": (["simulator.solver.acuracy=1"], ["simulator.solver.acuracy", "did you mean 'accuracy'"]),

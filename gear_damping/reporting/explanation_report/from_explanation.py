@@ -95,6 +95,6 @@ def _estimates(outcome: Outcome, evidence: Evidence) -> dict[str, Any]:
     found = {}
     for owner in dict.fromkeys(p.name.partition(".")[0] for p in outcome.problem.free):
         if owner in declared or any(owner == effect.name for effect in outcome.hypothesis.effects):
-            for own, entry in parameters_of(outcome, spread, owner).items():
+            for own, entry in parameters_of(outcome, spread, owner, evidence).items():
                 found[f"{owner}, {own}" if own else owner] = entry
     return found

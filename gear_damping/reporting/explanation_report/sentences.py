@@ -9,18 +9,20 @@ from gear_damping.reporting.numbers import estimate, number, percent, quantity
 
 HEADLINES = {
     "consistent": "Consistent: these data give no evidence that the simulation misses anything.",
-    "explained": "Explained: what the simulation misses has a name, and with it only noise is left.",
+    "explained": "Explained: what the simulation misses has a name.",
     "ambiguous": "Ambiguous: what the simulation misses goes by several names that these data do not tell apart.",
     "partly_explained": "Partly explained: a part of what the simulation misses has a name.",
     "unexplained": "Unexplained: the simulation misses something that no effect that was tried explains.",
     "data_problem": "Data problem: the data have a fault that must be cured before a cause can be named.",
 }
+ONLY_NOISE = 1.5  # noise variances that may be left for saying so
 ALL_THE_SAME = "An effect smaller than those listed under “What could not have been seen” may be there all the same."
 
 
 def verdict_sentences(explanation: Mapping[str, Any]) -> list[str]:
     """The verdict and what was found, the most important first."""
     told = [HEADLINES[explanation["verdict"]], *(explanation.get("sentences") or ())]
+    told += [rest_sentence(explanation.get("misfit"))] if explanation["verdict"] == "explained" else []
     told += [ALL_THE_SAME] if explanation["verdict"] == "consistent" and explanation.get("not_observable") else []
     told += [misfit_sentence(explanation.get("misfit")), damping_sentence(explanation.get("gain"))]
     return [sentence for sentence in told if sentence]
@@ -37,6 +39,17 @@ def cause_sentences(cause: Mapping[str, Any], own: Mapping[str, str]) -> list[st
     if cause.get("status") == "suggested":
         told.append("It is a suggestion only: held-out records do not bear it out.")
     return [sentence for sentence in told if sentence]
+
+
+def rest_sentence(misfit: Mapping[str, Any] | None) -> str:
+    """Whether only noise is left of what was explained."""
+    excess = (misfit or {}).get("excess_percent") or {}
+    if not _known(excess.get("after")) or not _known(excess.get("threshold")):
+        return ""
+    small = misfit["after"] <= ONLY_NOISE
+    if small and excess["after"] <= excess["threshold"]:
+        return "With it only noise is left."
+    return "What is left is small beside what was explained, but it is more than noise."
 
 
 def misfit_sentence(misfit: Mapping[str, Any] | None) -> str:
@@ -57,7 +70,7 @@ def damping_sentence(gain: Mapping[str, Any] | None) -> str:
     if not _known(before.get("value")):
         return ""
     was, now = (estimate({**found, "unit": "%"}) for found in (before, after))
-    at = quantity(before.get("reference_velocity"), "m/s")
+    at = quantity(before.get("reference_velocity"), before.get("velocity_unit", "m/s"))
     at = f" at a velocity amplitude of {at}" if before.get("reference_velocity") else ""
     if not _known(after.get("value")) or after["value"] == before["value"]:
         return f"The damping ratio is {was} of critical{at}."
