@@ -26,6 +26,7 @@ RENAMED = {
 }
 NOT_OF_THE_MODEL = ("damping_ratio", "torque_gain", "torque_offset", "damping_coefficient")
 PHASES = 18  # starts of the mesh phase
+SHAPE_ITERATIONS = 30
 SHAPE_BAND = 1.6  # harmonics of the stiffness count up to this many natural frequencies, at the slowest record,
 FEWEST_HARMONICS, MOST_HARMONICS = 6, 20  # within these
 EXPECTED_SHAPE = 0.1  # of the mean stiffness over the harmonic: what real teeth add to the ideal wave
@@ -62,8 +63,28 @@ def _oscillator(evidence: Evidence, solver: Solver | None) -> Outcome:
     return fit_hypothesis(nominal, evidence, solver=solver)
 
 
+def restarted(evidence: Evidence, solver: Solver | None = None) -> Outcome | None:
+    """A gear pair's nominal model before the shape of its stiffness was fitted, with that shape free.
+
+    Where much is missing, the free shape bends to what it is not made for; a cause is better sought from here.
+    """
+    if evidence.system != "gear_pair":
+        return None
+    rough = _rough_gear_pair(evidence, solver)
+    return _shaped(rough, evidence, 0, solver)
+
+
 def _gear_pair(evidence: Evidence, solver: Solver | None) -> Outcome:
     """Mesh phase by a scan, then damping and stiffness, then free harmonics of the stiffness."""
+    return _shaped(_rough_gear_pair(evidence, solver), evidence, SHAPE_ITERATIONS, solver)
+
+
+def _shaped(rough: Outcome, evidence: Evidence, iterations: int, solver: Solver | None) -> Outcome:
+    shaped = _with_shape(rough.hypothesis, _shape_harmonics(rough, evidence))
+    return fit_hypothesis(shaped, evidence, states=rough.fitted.states, iterations=iterations, solver=solver)
+
+
+def _rough_gear_pair(evidence: Evidence, solver: Solver | None) -> Outcome:
     first = _first_gear_pair(evidence)
     rate = evidence.sampling_rate
     total = max(len(record.response) for record in evidence.fit)
@@ -71,9 +92,7 @@ def _gear_pair(evidence: Evidence, solver: Solver | None) -> Outcome:
     starts = torch.zeros(PHASES, len(first.free), dtype=torch.float64)
     starts[:, 0] = torch.linspace(0, 2 * pi, PHASES + 1, dtype=torch.float64)[:-1]
     horizons = [short, total] if short < total else [total]
-    rough = fit_hypothesis(first, evidence, starts, horizons=horizons, iterations=12, kept=0.12, solver=solver)
-    shaped = _with_shape(rough.hypothesis, _shape_harmonics(rough, evidence))
-    return fit_hypothesis(shaped, evidence, states=rough.fitted.states, iterations=20, solver=solver)
+    return fit_hypothesis(first, evidence, starts, horizons=horizons, iterations=12, kept=0.12, solver=solver)
 
 
 def _first_gear_pair(evidence: Evidence) -> Hypothesis:

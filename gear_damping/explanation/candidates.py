@@ -98,12 +98,12 @@ RECIPES: dict[str, tuple[Recipe, ...]] = {
 SAME_RECORD = {  # what no record of this channel can tell apart, and is never tried by itself
     "pinion_eccentricity": ("encoder_error",),
     "gear_eccentricity": ("encoder_error",),
+    "sensor_gain": ("inertia_error",),
 }
 NEUTRAL = {"sensor_gain": 1.0}
 WITHIN = {"width": (0.02, 0.5)}  # a sharper sign change costs steps and shows no more
 OWN_UNITS = {"bearing_flexibility", "shaft_torsion", "torque_ripple", "tooth_crack", "backlash"}
-NEEDS_UNCERTAINTY = {"sensor_gain", "inertia_error"}  # identifiable only where the load is known absolutely
-COVERED_BY_NUISANCE = {"oscillator": {"sensor_offset"}, "gear_pair": set()}
+COVERED_BY_NUISANCE = {"oscillator": {"sensor_offset", "sensor_gain"}, "gear_pair": set()}
 
 
 @dataclass(frozen=True)
@@ -133,7 +133,7 @@ def candidates_for(base: Hypothesis) -> list[Candidate]:
     """Every variant of every effect that goes with the system and is not there yet."""
     kinds = builtin_effects()
     there = {effect.name for effect in base.effects}
-    refused = there | NEEDS_UNCERTAINTY | COVERED_BY_NUISANCE[base.system.name]
+    refused = there | COVERED_BY_NUISANCE[base.system.name]
     found = []
     for name, recipes in RECIPES.items():
         kind = kinds[name]

@@ -75,6 +75,6 @@ def explain(
     found = search(nominal, evidence, noise, say, solver)
     step(3, STEPS)
     after = excess(found.outcome.holdout, evidence.holdout, noise)
-    judged = Judged(found, before, after, verdict(found, before, after, nominal.fitted.converged))
+    judged = Judged(found, before, after, verdict(found, before, after, found.outcome.fitted.converged))
     step(4, STEPS)
     return Explanation(content.of_search(measurement, evidence, noise, judged), evidence, noise, found)

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
+from gear_damping.explanation.calibrate import restarted
 from gear_damping.explanation.candidates import candidates_for
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Hypothesis, Outcome, fit_hypothesis
@@ -17,6 +18,7 @@ BORNE_OUT = 3.0  # t of the held-out gain that a cause needs
 LEAST_SHARE = 0.25  # of the remaining excess that a cause must take
 RIVAL = 2.0  # t below which two explanations are not told apart
 MOST_CAUSES = 4
+BENT = 4.0  # noise variances left by a nominal model whose free shape is no good place to begin
 REST = 0.02  # of the first excess: less is not worth a cause
 SAME = 1e-3  # of the noise variance: a mean difference below it is none
 Say = Callable[[str], None]
@@ -67,10 +69,12 @@ def search(nominal: Outcome, evidence: Evidence, noise: NoiseLevel, say: Say, so
     first = current = excess(nominal.holdout, evidence.holdout, noise)
     ranked = found.first_scores
     while current.significant and len(found.accepted) < MOST_CAUSES:
-        fits = _full_fits(ranked, found.outcome, evidence, solver)
+        if found.accepted:
+            fits = _full_fits(ranked, found.outcome, found.outcome, evidence, solver)
+        else:
+            fits = found.first_fits = _first_fits(found, evidence, current, noise, solver)
+        best = _best(fits, evidence, current, noise)
         found.rejected = fits
-        found.first_fits = found.first_fits or fits
-        best = _best(fits, found.outcome, evidence, current, noise)
         if best is None:
             break
         best, rivals = _simplest(best, fits, evidence)
@@ -88,16 +92,39 @@ def search(nominal: Outcome, evidence: Evidence, noise: NoiseLevel, say: Say, so
     return found
 
 
-def _full_fits(ranked: Sequence[Score], outcome: Outcome, evidence: Evidence, solver: Solver | None) -> list[Refit]:
+def _full_fits(
+    ranked: Sequence[Score], outcome: Outcome, against: Outcome, evidence: Evidence, solver: Solver | None
+) -> list[Refit]:
     if not ranked:
         return []
-    fits = (refitted(score, outcome, evidence, solver) for score in chosen(ranked) if score.gain > 0)
+    fits = (refitted(score, outcome, evidence, solver, against) for score in chosen(ranked) if score.gain > 0)
     return sorted((fit for fit in fits if fit is not None), key=lambda fit: fit.outcome.holdout_cost)
 
 
-def _best(
-    fits: Sequence[Refit], outcome: Outcome, evidence: Evidence, current: Excess, noise: NoiseLevel
-) -> Refit | None:
+def _first_fits(
+    found: Search, evidence: Evidence, current: Excess, noise: NoiseLevel, solver: Solver | None
+) -> list[Refit]:
+    """Full fits of the first round: from the nominal model, and from before its free shape was fitted.
+
+    Where much is missing that shape has bent to what it is not made for, so the other place comes first;
+    the second one is tried only where nothing is borne out from the first.
+    """
+    fits: list[Refit] = []
+    for place in ("shaped", "unshaped") if current.misfit < BENT else ("unshaped", "shaped"):
+        begin, ranked = found.nominal, found.first_scores
+        if place == "unshaped":
+            begin = restarted(evidence, solver)
+            if begin is None:
+                continue
+            ranked = scores(begin, evidence, candidates_for(begin.hypothesis), noise.value, solver)
+        fits += _full_fits(ranked, begin, found.nominal, evidence, solver)
+        fits.sort(key=lambda fit: fit.outcome.holdout_cost)
+        if _best(fits, evidence, current, noise):
+            break
+    return fits
+
+
+def _best(fits: Sequence[Refit], evidence: Evidence, current: Excess, noise: NoiseLevel) -> Refit | None:
     """The best full fit, where held-out records bear it out."""
     for fit in fits[:1]:
         after = excess(fit.outcome.holdout, evidence.holdout, noise)

@@ -59,8 +59,10 @@ def chosen(scores: Sequence[Score]) -> list[Score]:
     return (first + alike)[:MOST_FITS]
 
 
-def refitted(score: Score, outcome: Outcome, evidence: Evidence, solver: Solver | None = None) -> Refit | None:
-    """The candidate's full fit from the calibrated model; None where the fit ran away."""
+def refitted(
+    score: Score, outcome: Outcome, evidence: Evidence, solver: Solver | None = None, against: Outcome | None = None
+) -> Refit | None:
+    """The candidate's full fit from `outcome`, held against it or another; None where the fit ran away."""
     candidate = score.candidate
     starts = score.start.unsqueeze(0)
     if candidate.presence:
@@ -76,5 +78,6 @@ def refitted(score: Score, outcome: Outcome, evidence: Evidence, solver: Solver 
         found = fit_hypothesis(freed, evidence, None, found.fitted.states, solver=solver)
     if not torch.isfinite(torch.tensor(found.holdout_cost)):
         return None
-    gain, t = paired_gain(outcome.holdout, found.holdout, block_samples(outcome, evidence.sampling_rate))
+    before = (against or outcome).holdout
+    gain, t = paired_gain(before, found.holdout, block_samples(outcome, evidence.sampling_rate))
     return Refit(score, found, gain, t)

@@ -26,12 +26,14 @@ class Prepared:
             zone of double contact, `contact_ratio` and `contact_lead` (rad of mesh angle).
         terms: For each effect name what its `prepare` gave, natural units.
         derived: Derived quantities of the system in SI.
+        refinement: How much finer the steps must be than the rates alone ask for.
     """
 
     scales: Scales
     base: Named
     terms: dict[str, Named]
     derived: Named
+    refinement: float = 1.0
 
 
 class Model:
@@ -96,7 +98,8 @@ class Model:
         units = {p.name: p.unit for p in self.system.parameters} | self.system.derived_units
         base = {k: v / scales.unit_of(parse_unit(units[k]).dimension) for k, v in (own | derived).items()} | zone
         terms = {e.name: e.prepare(e.to_natural(given[e.name], scales), base) for e in self.effects}
-        return Prepared(scales, base, terms, derived)
+        refinement = max((effect.refinement for effect in self.effects), default=1.0)
+        return Prepared(scales, base, terms, derived, refinement)
 
     def _derived(self, own: Named, given: dict[str, Named]) -> tuple[Named, Named]:
         """Derived quantities in SI, and the zone of double contact; a change of it goes into `given`."""

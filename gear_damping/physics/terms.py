@@ -34,6 +34,7 @@ class Effect(ABC):
     systems: ClassVar[tuple[str, ...]] = ("gear_pair", "oscillator")
     dissipative: ClassVar[bool] = False
     requires: ClassVar[tuple[str, ...]] = ()  # names of effects that must be there too
+    refinement: ClassVar[float] = 1.0  # of the steps, where the force bends too sharply for them; measured
 
     def __init__(self, **options: object) -> None:
         """Choose options by name.

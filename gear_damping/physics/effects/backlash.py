@@ -16,6 +16,7 @@ class Backlash(Contact):
     """The drive flank touches where delta > 0, the coast flank where delta < -gap."""
 
     name = "backlash"
+    refinement = 1.45
     equation = "deflection = delta for delta > 0, delta + gap for delta < -gap, else 0; damping only in contact"
     reference = "Kahraman & Singh (1990), J. Sound Vib. 142(1)"
     parameters: ClassVar = (Parameter("gap", "m", 1e-4, "whole clearance; the drive flank is at 0", 0, 0.01),)
