@@ -49,6 +49,7 @@ SENTENCES = {
     "sensor_delay": "a delay of the sensor",
     "sensor_lowpass": "the low-pass of the sensor",
     "sensor_saturation": "a sensor that saturates",
+    "inertia_error": "a moment of inertia other than the one that was stated",
     "shaft_angle_error": "an error of the shaft angle",
 }
 
@@ -124,7 +125,7 @@ def _not_told_apart(confused: Sequence[Accepted]) -> tuple[str, ...]:
 
 def _same_record(accepted: Sequence[Accepted]) -> tuple[str, ...]:
     return tuple(
-        f"In this channel {SENTENCES[other]} (`{other}`) would look the same as `{cause.name}`."
+        f"In this channel {SENTENCES.get(other, other)} (`{other}`) would look the same as `{cause.name}`."
         for cause in accepted
         for other in SAME_RECORD.get(cause.name, ())
     )
