@@ -15,7 +15,8 @@ def rig_unit(declared: str, evidence: Evidence) -> str:
     if evidence.channel.declared_factor != 1:
         response = parse_unit(length).dimension
         length = next((name for name, own in _SI.items() if own == response), length)
-    powers = {length: dimension.length, "s": dimension.time, "rad": dimension.angle}
+    powers = {"rad": dimension.angle, "s": dimension.time}
+    powers = {length: dimension.length + powers.pop(length, 0)} | powers
     above = [_power(name, power) for name, power in powers.items() if power > 0]
     below = [_power(name, -power) for name, power in powers.items() if power < 0]
     return "/".join(["*".join(above) or "1", *below])

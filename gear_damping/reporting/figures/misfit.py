@@ -8,6 +8,8 @@ from matplotlib.ticker import LogLocator, NullLocator
 
 from gear_damping.reporting.style import BLUE, INK, PALE, RED, legend_above, new_figure, say_empty, styled
 
+MOST_FINE_RANGE = 2000.0  # of an axis with 1, 2, 5 in every decade
+
 
 def misfit_figure(records: Mapping[str, Mapping[str, float | None]], *, floor: float = 1.0) -> Figure:
     """Mean squared residual over the noise variance, a line a record from before to after, beside the floor.
@@ -35,7 +37,8 @@ def misfit_figure(records: Mapping[str, Mapping[str, float | None]], *, floor: f
         known = np.array([floor, *before, *after])
         limits = (0.85 * np.nanmin(known), max(1.15 * np.nanmax(known), 2.2 * floor))
         axes.set(xscale="log", xlim=limits, ylim=(len(names) - 0.5, -0.5))
-        axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        wide = limits[1] / limits[0] > MOST_FINE_RANGE
+        axes.xaxis.set_major_locator(LogLocator() if wide else LogLocator(subs=(1, 2, 5)))
         axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
         axes.xaxis.set_minor_locator(NullLocator())
         axes.grid(visible=False, axis="y")
