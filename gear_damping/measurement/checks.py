@@ -14,6 +14,7 @@ SPEED_TOLERANCE = 0.02
 SAMPLES_PER_PERIOD = 100  # of the fastest content; more only slow the work
 _CONTENT = 0.999  # share of the energy that counts as content
 _CLIPPED_SAMPLES, _CLIPPED_SHARE, _CLIPPED_RATIO = 5, 1e-3, 6
+_BEND, _BENT_SHARE, _FEWEST_BENDS = 1e-4, 0.6, 10  # of the largest bend; of the samples; in a record
 _ANGLE_CHANNELS = ("pinion_angle",)
 
 
@@ -31,7 +32,7 @@ def check_record(record: Record) -> tuple[Finding, ...]:
     """Everything suspicious in the values of a record, beside what its time stamps showed."""
     found = []
     for channel in record.channels.values():
-        found += [_constant(channel) or _clipped(channel)]
+        found += [_constant(channel) or _clipped(channel) or _straight_lines(channel)]
     if "transmission_error" in record.channels:
         found.append(_magnitude(record.channels["transmission_error"]))
     found += [_turning(record), _speed(record), _oversampled(record)]
@@ -46,6 +47,24 @@ def _constant(channel: Channel) -> Finding | None:
     message += "" if driven else "; check the cable and the column"
     severity = "note" if driven else "data_problem"
     return Finding("constant_channel", message, channel=channel.name, severity=severity)
+
+
+def _straight_lines(channel: Channel) -> Finding | None:
+    """Samples that lie on straight lines between every so many of them: a file that was interpolated."""
+    if channel.name in INPUTS:
+        return None  # a steady torque or an even rotation is a straight line
+    bends = np.abs(np.diff(channel.values, 2))
+    bent = np.flatnonzero(bends > _BEND * bends.max())
+    if len(bent) < _FEWEST_BENDS or len(bent) > _BENT_SHARE * len(bends):
+        return None
+    factor = int(np.gcd.reduce(np.diff(bent)))
+    if factor < 2:
+        return None
+    message = (
+        f"{channel.name} runs in straight lines of {factor} samples: it was interpolated from a {factor} times "
+        "coarser record, whose noise and bandwidth are lost; give the record as it was measured"
+    )
+    return Finding("interpolated", message, channel=channel.name)
 
 
 def _clipped(channel: Channel) -> Finding | None:

@@ -163,3 +163,18 @@ def test_oversampling_is_a_note(bench):
     _errors(bench)[:] = 8 + 2 * np.sin(2 * np.pi * 100 * bench.columns["t"])
     (finding,) = bench.load().findings
     assert (finding.kind, finding.severity) == ("oversampled", "note")
+
+
+@pytest.mark.parametrize("factor", [2, 10])
+def test_a_file_that_was_interpolated_is_said(bench, factor):
+    rows = np.arange(400)
+    knots = rows[::factor]
+    bench.columns["dte"] = np.interp(rows, knots, 1e-6 * np.random.default_rng(0).normal(size=len(knots)))
+    (finding,) = bench.load().findings
+    assert (finding.kind, finding.severity) == ("interpolated", "data_problem")
+    assert f"{factor} times coarser" in finding.message
+
+
+def test_coarse_steps_of_a_converter_are_no_interpolation(bench):
+    bench.columns["dte"] = 1e-8 * np.round(100 * np.sin(np.arange(400) / 40))
+    assert "interpolated" not in {finding.kind for finding in bench.load().findings}
