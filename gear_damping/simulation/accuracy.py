@@ -28,7 +28,7 @@ def substeps_for(accuracy: float, prepared: Prepared, interval: Tensor, interval
     step = (accuracy / (CONSTANT * radians)) ** (1 / ORDER)
     step = step.clamp(max=(accuracy / CORNER) ** (1 / CORNER_ORDER))
     wanted = fastest_rate(prepared) * prepared.refinement * interval / step
-    allowed = torch.tensor(ALLOWED, dtype=wanted.dtype)
+    allowed = torch.tensor(ALLOWED, dtype=wanted.dtype, device=wanted.device)
     return allowed[torch.searchsorted(allowed, wanted.clamp(max=ALLOWED[-1]))].long()
 
 

@@ -39,12 +39,12 @@ def integrate(
     """
     layout, series = Layout(prepared), Series(tuple(sorted(inputs)))
     fixed, start = layout.pack(prepared, interval), initial_states(model, prepared)
-    packed = series.pack(inputs, units, n_samples - 1, interval.shape[0])
+    packed = series.pack(inputs, units, n_samples - 1, interval.shape[0]).to(fixed.device)
     example = Members(fixed, packed[0], fixed.new_zeros(()))
     kernel = kernel_of(model, layout, series, example, start)
     choice = choose(solver.engine, kernel, example, start)
     groups = groups_of(prepared, interval, n_samples - 1, solver)
-    states = torch.empty(*start.shape, n_samples, dtype=torch.float64)
+    states = start.new_empty(*start.shape, n_samples)
     names = ["displacement", "velocity", *kernel.equation.extra_names]
     work, done = sum(n * len(lanes) for n, lanes in groups), 0
     for n, lanes in groups:
@@ -72,7 +72,7 @@ def groups_of(prepared: Prepared, interval: Tensor, intervals: int, solver: Solv
     if solver.substeps is None:
         substeps = substeps_for(solver.accuracy, prepared, interval, intervals)
     else:
-        substeps = torch.full(interval.shape, solver.substeps)
+        substeps = torch.full(interval.shape, solver.substeps, device=interval.device)
     members = [(int(n), (substeps == n).nonzero().squeeze(1)) for n in substeps.unique()]
     return [(n, lanes) for n, all_lanes in members for lanes in all_lanes.split(solver.chunk)]
 

@@ -179,7 +179,7 @@ def _integrated(
     kernel = _sensitive(kernel_of(model, Layout(prepared), series, first, plain[1]), rows, first)
     choice = choose(solver.engine, kernel, Members(fixed, packed[0], fixed.new_zeros(())), start)
     intervals = packed.shape[0]
-    states = torch.empty(*start.shape, intervals + 1, dtype=torch.float64)
+    states = start.new_empty(*start.shape, intervals + 1)
     for n, lanes in groups_of(prepared, fixed[0], intervals, solver):
         stepper = choice.stepper(kernel, fixed[:, lanes].contiguous(), packed[:, :, lanes].contiguous())
         states[:, lanes] = solve(stepper, start[:, lanes], intervals + 1, n, None)
