@@ -10,7 +10,7 @@ from gear_damping.simulation.tsit5 import ORDER
 # step halving over the families of runs. Phase errors add up over a run until damping forgets them.
 CONSTANT = 4e-5
 FORGETTING, GROWTH = 300.0, 0.25  # natural radians after which the error grows by this power only
-CORNER, CORNER_ORDER = 4.9e-4, 2.75  # the same where |v|^n bends at rest: error = CORNER * step^CORNER_ORDER
+CORNER, CORNER_ORDER = 5.6e-4, 2.75  # the same where |v|^n bends at rest: error = CORNER * step^CORNER_ORDER
 ALLOWED = (1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 48, 64, 96, 128, 192, 256)
 
 

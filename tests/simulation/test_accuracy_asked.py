@@ -8,10 +8,10 @@ import pytest
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from benchmarks.accuracy import delivered, drawn, tried_effects
 
-ASKED = (1e-3, 1e-4, 1e-5)
+ASKED = (1e-3, 1e-4, 1e-5, 1e-6)
 EFFECTS = (
     "fourier_mesh_stiffness", "viscous_damping", "cubic_stiffness", "bearing_flexibility", "coulomb_friction",
-    "tooth_friction", "profile_error", "quadratic_stiffness",
+    "tooth_friction", "profile_error", "quadratic_stiffness", "hertz_stiffness", "hunt_crossley_damping", "backlash",
 )  # fmt: skip
 
 

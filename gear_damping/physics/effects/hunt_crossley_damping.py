@@ -14,7 +14,7 @@ class HuntCrossleyDamping(DampingForce):
     """A viscous force that vanishes where the flanks just touch."""
 
     name = "hunt_crossley_damping"
-    refinement = 1.15
+    refinement = 1.5
     equation = "F_d = c (|delta| / delta_0)^p delta'"
     reference = "Hunt & Crossley (1975), J. Appl. Mech. 42(2)"
     parameters: ClassVar = (

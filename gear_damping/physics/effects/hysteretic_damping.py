@@ -19,7 +19,7 @@ class HystereticDamping(ExtraStates, DampingForce):
     """
 
     name = "hysteretic_damping"
-    refinement = 1.1
+    refinement = 1.45
     equation = "F_d = beta k z, z' = delta' - |z / z_y|^n (delta' + |delta'| sign z) / 2"
     reference = "Wen (1976), J. Eng. Mech. Div. ASCE 102(2)"
     parameters: ClassVar = (
