@@ -9,7 +9,7 @@ from torch import Tensor
 
 from gear_damping.simulation.kernel import Kernel, Members
 from gear_damping.simulation.native import build
-from gear_damping.simulation.native.source import VECTORS, kernel_source
+from gear_damping.simulation.native.source import kernel_source, vectors_of
 from gear_damping.simulation.native.stepper import NativeStepper
 from gear_damping.simulation.native.structure import structure_of
 from gear_damping.simulation.native.trace import UntraceableError
@@ -27,11 +27,12 @@ class Choice:
 
     engine: Engine
     library: ctypes.CDLL | None = None
+    lanes: int = 1
 
     def stepper(self, kernel: Kernel, fixed: Tensor, series: Tensor) -> Stepper:
         """A stepper for one batch."""
         if self.library is not None:
-            return NativeStepper(kernel, fixed, series, self.library, build.width_and_options()[0] * VECTORS)
+            return NativeStepper(kernel, fixed, series, self.library, self.lanes)
         return Stepper(kernel, fixed, series, compiled=self.engine == "fused")
 
 
@@ -46,13 +47,20 @@ def choose(wish: Engine, kernel: Kernel, members: Members, state: Tensor) -> Cho
     if wish == "auto":
         wish = "fused" if state.is_cuda else "native"
         library = None if state.is_cuda else _native(kernel, members, state)
-        return Choice(wish) if state.is_cuda else Choice("native" if library else "eager", library)
+        if state.is_cuda:
+            return Choice(wish)
+        return Choice("native" if library else "eager", library, _lanes(library, state))
     if wish == "native":
         library = _native(kernel, members, state)
         if library is None:
             raise RuntimeError("simulator.solver.engine=native needs a C++ compiler and terms with a native form")
-        return Choice("native", library)
+        return Choice("native", library, _lanes(library, state))
     return Choice(wish)
+
+
+def _lanes(library: ctypes.CDLL | None, state: Tensor) -> int:
+    """Members that a kernel steps together."""
+    return 1 if library is None else build.width_and_options()[0] * vectors_of(len(state))
 
 
 def _native(kernel: Kernel, members: Members, state: Tensor) -> ctypes.CDLL | None:

@@ -12,7 +12,12 @@ from gear_damping.simulation.native.expressions import Program
 from gear_damping.simulation.native.trace import LANES, trace
 
 HERE = Path(__file__).resolve().parent
-VECTORS = 2  # vectors of lanes that are stepped together, to hide the latency of each
+MOST_STATES_OF_TWO = 6  # of members of which two vectors at once still fit the processor's registers
+
+
+def vectors_of(n_state: int) -> int:
+    """Vectors of lanes that are stepped together, to hide the latency of each."""
+    return 2 if n_state <= MOST_STATES_OF_TWO else 1
 
 
 def kernel_source(kernel: Kernel, members: Members, state: Tensor, width: int) -> str:
@@ -44,7 +49,8 @@ def kernel_source(kernel: Kernel, members: Members, state: Tensor, width: int) -
         parts.append(written.function("switches", _flat(trace(switches, examples, inputs, program))))
     parts.append(written.setup())
     names = ("WIDTH", "VECTORS", "N_STATE", "N_FIXED", "N_SERIES", "N_SWITCH", "N_KEPT")
-    defined = [f"#define {n} {v}" for n, v in zip(names, (width, VECTORS, *sizes, len(written.kept)), strict=True)]
+    numbers = (width, vectors_of(sizes[0]), *sizes, len(written.kept))
+    defined = [f"#define {n} {v}" for n, v in zip(names, numbers, strict=True)]
     driver = (HERE / "driver.cpp").read_text()
     return "\n".join([*defined, (HERE / "vectors.h").read_text(), *parts, driver])
 
