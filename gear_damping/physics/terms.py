@@ -262,3 +262,8 @@ class Sensor(Effect):
     @abstractmethod
     def measure(self, signal: Tensor, values: Values, recording: Recording) -> Tensor:
         """The recorded signal from the true one; shape (batch, time), SI; `values` in SI."""
+
+    def undo(self, signal: Tensor, values: Values) -> Tensor:
+        """The true signal from a recorded one that drives a simulation; unchanged where nothing is known."""
+        return signal
+

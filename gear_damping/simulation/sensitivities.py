@@ -18,7 +18,7 @@ from gear_damping.simulation.integrate import groups_of, initial_states, kernel_
 from gear_damping.simulation.kernel import Kernel, Members
 from gear_damping.simulation.layout import Layout
 from gear_damping.simulation.series import Series
-from gear_damping.simulation.simulate import input_units
+from gear_damping.simulation.simulate import input_units, true_inputs
 from gear_damping.simulation.solver_settings import Solver
 
 Natural = tuple[Tensor, Tensor, Tensor]  # packed parameters, initial states, packed inputs
@@ -154,7 +154,8 @@ def _natural(
 
     def natural(changed: Mapping[str, Tensor]) -> Natural:
         prepared = model.prepare({**given, **changed}, scales)
-        packed = series.pack(inputs, input_units(model, inputs, prepared), n_samples - 1, interval.shape[0])
+        driving = true_inputs(model, {**given, **changed}, inputs, interval.shape[0])
+        packed = series.pack(driving, input_units(model, inputs, prepared), n_samples - 1, interval.shape[0])
         return Layout(prepared).pack(prepared, interval), initial_states(model, prepared), packed
 
     return natural

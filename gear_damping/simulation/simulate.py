@@ -8,7 +8,7 @@ from torch import Tensor
 from gear_damping.errors import InputError, Problem
 from gear_damping.physics.equation import HELD_LOAD
 from gear_damping.physics.model import Model, Prepared
-from gear_damping.physics.terms import HeldLoad
+from gear_damping.physics.terms import HeldLoad, Sensor
 from gear_damping.simulation.integrate import Progress, integrate
 from gear_damping.simulation.runs import DIVERGED, FINE, Runs, reference_velocity, state_units
 from gear_damping.simulation.solver_settings import Solver
@@ -49,6 +49,7 @@ def simulate(
     batch = prepared.base["equivalent_mass"].shape[0]
     inputs = dict(inputs or {})
     _check_inputs(model, inputs, (batch, n_samples))
+    inputs = true_inputs(model, values, inputs, batch)
     series = inputs | _held_loads(model, values, prepared, n_samples - 1, seed)
     units = input_units(model, inputs, prepared)
     interval = 1 / (sampling_rate * prepared.scales.time)
@@ -81,6 +82,19 @@ def _check_inputs(model: Model, inputs: Mapping[str, Tensor], shape: tuple[int, 
     ]
     if problems:
         raise InputError(problems)
+
+
+def true_inputs(
+    model: Model, values: Mapping[str, Tensor], inputs: Mapping[str, Tensor], batch: int
+) -> dict[str, Tensor]:
+    """The series that drive a simulation, from the recorded ones: errors of their sensors are undone."""
+    found = dict(inputs)
+    for effect in model.effects:
+        if isinstance(effect, Sensor) and effect.channel in found:
+            own = {p.name: values[f"{effect.name}.{p.name}"] for p in effect.parameters}
+            recorded = found[effect.channel]
+            found[effect.channel] = effect.undo(recorded.repeat(batch // len(recorded), 1), own)
+    return found
 
 
 def input_units(model: Model, inputs: Mapping[str, Tensor], prepared: Prepared) -> dict[str, Tensor]:

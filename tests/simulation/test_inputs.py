@@ -5,6 +5,7 @@ import pytest
 import torch
 
 from gear_damping.errors import InputError
+from gear_damping.physics.catalogue import effect_class
 from gear_damping.physics.equation import HELD_LOAD
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.oscillator import Oscillator
@@ -94,3 +95,21 @@ def test_rows_that_a_batch_repeats_are_the_same_as_rows_given_in_full():
     assert torch.equal(short.inputs["force"], whole.inputs["force"])
     with pytest.raises(InputError, match="shape"):
         simulate(model, values, inputs={"force": force[:1].repeat(3, 1)}, **run)
+
+
+def test_a_recorded_angle_drives_the_pair_without_its_error(bench_model):
+    """The record of a run with a wrong angle, driven by that angle: the same motion, when the error is known."""
+    model, values = bench_model
+    rate, n = 40e3, 400
+    wrong = Model(model.system, [*model.effects, effect_class("shaft_angle_error")()])
+    known = {"shaft_angle_error.amplitude": 5e-3, "shaft_angle_error.phase": 0.7}
+    given = {**wrong.values(2, **known), **values(2)}
+    run = {"sampling_rate": rate, "n_samples": n}
+    truth = simulate(wrong, given, **run)
+    angle = truth.channel("pinion_angle")
+    recorded = angle + 5e-3 * torch.cos(angle + 0.7)
+    corrected = simulate(wrong, given, inputs={"pinion_angle": recorded}, **run)
+    believed = simulate(model, values(2), inputs={"pinion_angle": recorded}, **run)
+    spread = truth.response.std()
+    assert (corrected.response - truth.response).abs().max() < 2e-3 * spread
+    assert (believed.response - truth.response).abs().max() > 2e-2 * spread

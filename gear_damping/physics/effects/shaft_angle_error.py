@@ -22,6 +22,12 @@ class ShaftAngleError(Sensor):
     systems: ClassVar = ("gear_pair",)
     channel = "pinion_angle"
 
+    def undo(self, signal: Tensor, values: Values) -> Tensor:
+        """The true angle from the recorded one; the error is small, so two rounds settle it."""
+        amplitude, phase = (values[name].unsqueeze(1) for name in ("amplitude", "phase"))
+        true = signal - amplitude * torch.cos(signal + phase)
+        return signal - amplitude * torch.cos(true + phase)
+
     def measure(self, signal: Tensor, values: Values, recording: Recording) -> Tensor:
         """The recorded angle from the true one."""
         angle = signal if recording.pinion_angle is None else recording.pinion_angle
