@@ -43,8 +43,8 @@ def _number(path: Path) -> tuple[int, str]:
 def _row(path: Path, keys: Sequence[str]) -> dict[str, Any]:
     record = json.loads(path.read_text())
     row = {"job": path.parent.name, "status": record["status"]}
-    values = {**record["config"], **record["choices"]}
-    row |= {key: _lookup(values, key) for key in keys}
+    choices = record["choices"]
+    row |= {key: choices[key] if key in choices else _lookup(record["config"], key) for key in keys}
     results = path.parent / "results.json"
     if record["status"] == FINISHED and results.exists():
         found = json.loads(results.read_text())

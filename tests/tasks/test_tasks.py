@@ -152,6 +152,15 @@ def test_a_diverging_simulator_is_never_trained_on(tmp_path, said):
     assert record_of(tmp_path / "run")["status"] == "failed"
 
 
+def test_a_sweep_over_a_group_says_which_choice_a_job_had(tmp_path):
+    quick = ["training=smoke", "training.max_epochs=1", "simulator.n_runs=12", "simulator.n_samples=120"]
+    place = [f"hydra.sweep.dir={tmp_path / 'sweep'}", f"data_folder={tmp_path / 'data'}", "progress=false"]
+    windows = "protocol.windows_per_epoch=64"
+    assert main(["--multirun", "model=raw_lstm", "family=bench,field", windows, *quick, *place]) == 0
+    lines = (tmp_path / "sweep" / "sweep.csv").read_text().splitlines()
+    assert [line.split(",")[2] for line in lines] == ["family", "bench", "field"]
+
+
 def test_a_sweep_with_a_failing_job_leaves_its_table(tmp_path):
     quick = [q for q in QUICK if "experiment" not in q]
     sweep = ["experiment=noise", "simulator.load_noise.snr_db=10,-1000,40", "model=raw_lstm"]
@@ -161,5 +170,6 @@ def test_a_sweep_with_a_failing_job_leaves_its_table(tmp_path):
     assert len(lines) == 4
     assert lines[0].startswith("job,status,simulator.load_noise.snr_db,raw_lstm/rmse_percent")
     assert [line.split(",")[1] for line in lines[1:]] == ["finished", "failed", "finished"]
+    assert [line.split(",")[2] for line in lines[1:]] == ["10", "-1000", "40"]
     assert "simulator.load_noise.snr_db" in lines[2]
     assert (tmp_path / "sweep" / "sweep.png").is_file()
