@@ -1,6 +1,5 @@
 """What is wrong with values that are each right by themselves."""
 
-import os
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -9,6 +8,7 @@ from typing import Any
 
 import torch
 
+from gear_damping.config.folders import unusable
 from gear_damping.config.quantities import SUFFIXES
 from gear_damping.config.simulator import SimulatorSettings
 from gear_damping.config.source import ORDER, Origin
@@ -89,10 +89,8 @@ def _no_file(path: Path) -> str:
 
 def _data_folder(whole: Whole) -> Found:
     """Simulated runs are kept there: said before they are simulated."""
-    folder = Path(whole["data_folder"]).absolute()
-    existing = next(path for path in (folder, *folder.parents) if path.exists())
-    if whole["task"] in SIMULATING and not (existing.is_dir() and os.access(existing, os.W_OK | os.X_OK)):
-        rule = f"cannot be made: {existing} is not a folder that can be written to"
+    rule = unusable(Path(whole["data_folder"]))
+    if whole["task"] in SIMULATING and rule:
         yield "data_folder", rule, whole["data_folder"], "give another folder"
 
 

@@ -142,8 +142,3 @@ def swept_keys(overrides: Sequence[str]) -> list[str]:
     """The keys and groups that a sweep varies."""
     parsed = [parse(override) for override in overrides]
     return [one.key_or_group for one in parsed if not one.is_delete() and one.is_sweep_override()]
-
-
-def as_typed(overrides: Sequence[str]) -> list[str]:
-    """The overrides as a user types them."""
-    return [override.lstrip("+") for override in overrides]

@@ -130,8 +130,7 @@ def _shape_harmonics(rough: Outcome, evidence: Evidence) -> int:
 def _with_shape(rough: Hypothesis, harmonics: int) -> Hypothesis:
     """Free harmonics take over from the contact ratio, which they contain."""
     names = [f"{SHAPE}.{part}[{h}]" for part in ("in_phase", "quadrature") for h in range(harmonics)]
-    free = tuple(p for p in rough.free if p.name in ("mesh_phase", DAMPING, f"{MESH}.maximum"))
-    free = tuple(p for p in free if p.name != "mesh_phase")
+    free = tuple(p for p in rough.free if p.name in (DAMPING, f"{MESH}.maximum"))
     zeros = (0.0,) * harmonics
     given = rough.given | {f"{SHAPE}.in_phase": zeros, f"{SHAPE}.quadrature": zeros}
     return Hypothesis(

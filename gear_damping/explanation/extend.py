@@ -126,12 +126,12 @@ def _first_fits(
 
 def _best(fits: Sequence[Refit], evidence: Evidence, current: Excess, noise: NoiseLevel) -> Refit | None:
     """The best full fit, where held-out records bear it out."""
-    for fit in fits[:1]:
-        after = excess(fit.outcome.holdout, evidence.holdout, noise)
-        takes = (current.percent - after.percent) / current.percent
-        if fit.t > BORNE_OUT and takes >= LEAST_SHARE:
-            return fit
-    return None
+    if not fits:
+        return None
+    best = fits[0]
+    after = excess(best.outcome.holdout, evidence.holdout, noise)
+    takes = (current.percent - after.percent) / current.percent
+    return best if best.t > BORNE_OUT and takes >= LEAST_SHARE else None
 
 
 def _simplest(best: Refit, fits: Sequence[Refit], evidence: Evidence) -> tuple[Refit, tuple[str, ...]]:

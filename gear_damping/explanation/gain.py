@@ -9,7 +9,7 @@ from torch import Tensor
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Outcome, natural_frequency_hz
 from gear_damping.explanation.rig_units import rig_unit
-from gear_damping.identification.output_error.problem import OFFSET, FitRecord
+from gear_damping.identification.output_error.problem import OFFSET, FitRecord, set_value
 from gear_damping.identification.output_error.uncertainty import QUANTILE, covariance
 from gear_damping.physics.terms import DampingLaw
 from gear_damping.simulation.runs import reference_velocity
@@ -81,11 +81,8 @@ def _ratios(outcome: Outcome, free: Mapping[str, Tensor], batch: int) -> tuple[T
     model = outcome.hypothesis.model
     values = model.values(batch, **outcome.flat_given())
     for name, value in free.items():
-        flat, _, index = name.partition("[")
-        if index:
-            values[flat][int(index.rstrip("]"))] = value
-        elif name != OFFSET:
-            values[name] = value
+        if name != OFFSET:
+            set_value(values, name, value)
     derived = model.prepare(values).derived
     speed = reference_velocity(derived)
     speed = speed[:1].expand(batch)  # the same amplitude for every point

@@ -26,13 +26,13 @@ class Choice:
     """The engine that was chosen, with what it needs."""
 
     engine: Engine
-    library: ctypes.CDLL | None = None
+    kernel_library: ctypes.CDLL | None = None
     lanes: int = 1
 
     def stepper(self, kernel: Kernel, fixed: Tensor, series: Tensor) -> Stepper:
         """A stepper for one batch."""
-        if self.library is not None:
-            return NativeStepper(kernel, fixed, series, self.library, self.lanes)
+        if self.kernel_library is not None:
+            return NativeStepper(kernel, fixed, series, self.kernel_library, self.lanes)
         return Stepper(kernel, fixed, series, compiled=self.engine == "fused")
 
 

@@ -1,6 +1,5 @@
 """The configuration of a command: composed by Hydra, in plain containers."""
 
-import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -11,6 +10,7 @@ from hydra.errors import HydraException
 from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
+from gear_damping.config.folders import unusable
 from gear_damping.config.locate import conf_folder, groups
 from gear_damping.config.settings import read_settings
 from gear_damping.config.source import Origin
@@ -60,7 +60,6 @@ def choices_of(hydra_config: DictConfig) -> dict[str, str | None]:
 def _refuse_folder(config: DictConfig) -> None:
     """The folder of the run can be made: said before any work."""
     folder = Path(config.hydra.run.dir).absolute()
-    existing = next(path for path in (folder, *folder.parents) if path.exists())
-    if not existing.is_dir() or not os.access(existing, os.W_OK | os.X_OK):
-        rule = f"cannot be made: {existing} is not a folder that can be written to"
+    rule = unusable(folder)
+    if rule:
         raise InputError(Problem("hydra.run.dir", rule, str(folder), "give another folder", "the command line"))

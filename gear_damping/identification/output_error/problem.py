@@ -143,7 +143,7 @@ class OutputErrorProblem:
         found = self.parameters(shared)
         offset = found.pop(OFFSET, torch.zeros(points, dtype=torch.float64))
         for name, value in found.items():
-            _place(values, name, value.repeat_interleave(n_records))
+            set_value(values, name, value.repeat_interleave(n_records))
         for name in {name for record in self.records for name in record.conditions}:
             known = torch.tensor([r.conditions.get(name, float("nan")) for r in self.records], dtype=torch.float64)
             values[name] = torch.where(known.isnan().repeat(points), values[name], known.repeat(points))
@@ -173,7 +173,7 @@ class OutputErrorProblem:
         return Prediction(residual, sensitivity.permute(0, 2, 3, 1))
 
 
-def _place(values: dict[str, Tensor], name: str, value: Tensor) -> None:
+def set_value(values: dict[str, Tensor], name: str, value: Tensor) -> None:
     """Put the values of one parameter, or of one element of a list, where they belong."""
     flat, _, index = name.partition("[")
     if index:

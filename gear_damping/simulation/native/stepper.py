@@ -20,7 +20,7 @@ class NativeStepper(Stepper):
     def __init__(self, kernel: object, fixed: Tensor, series: Tensor, library: ctypes.CDLL, lanes: int) -> None:
         """Prepare a batch; arguments as for `Stepper`, and the kernel's library with the lanes it steps together."""
         super().__init__(kernel, fixed, series, compiled=False)
-        self.library, self.group = library, lanes
+        self.kernel_library, self.group = library, lanes
 
     def run(self, state: Tensor, out: Tensor, substeps: int, report: Callable[[int], None]) -> None:
         """Fill `out` (intervals, n_state, batch), contiguous in time, with the state after each interval."""
@@ -40,7 +40,7 @@ class NativeStepper(Stepper):
 
     def _walk(self, lanes: int, numbers: tuple[int, ...], tensors: tuple[Tensor, ...], share: tuple[int, int]) -> None:
         pointers = (ctypes.c_void_p(tensor.data_ptr()) for tensor in tensors)
-        self.library.walk(*(ctypes.c_long(n) for n in (lanes, *share, *numbers)), *pointers)
+        self.kernel_library.walk(*(ctypes.c_long(n) for n in (lanes, *share, *numbers)), *pointers)
 
     def _shares(self, lanes: int) -> list[tuple[int, int]]:
         """Ranges of lanes, whole groups each, one for each thread that has something to do."""

@@ -29,16 +29,8 @@ class Trajectory:
 
 
 @dataclass
-class Tables:
+class Tables(Instant):
     """Excitations at the five nodes of consecutive steps: each (step, node, lane) or a scalar."""
-
-    stiffness: np.ndarray
-    error: np.ndarray
-    error_rate: np.ndarray
-    load: np.ndarray
-    torque: np.ndarray
-    friction: np.ndarray | float
-    unbalance: np.ndarray | float
 
     def at(self, step_index: int, node: int) -> Instant:
         """One instant."""
