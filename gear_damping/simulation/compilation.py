@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
-from gear_damping.simulation.kernel import Kernel, Members
+from gear_damping.simulation.kernel import Kernel, Members, holds_weights
 from gear_damping.simulation.native import build
 from gear_damping.simulation.native.source import kernel_source, vectors_of
 from gear_damping.simulation.native.stepper import NativeStepper
@@ -70,6 +70,9 @@ def _native(kernel: Kernel, members: Members, state: Tensor) -> ctypes.CDLL | No
 
 
 def _build(kernel: Kernel, members: Members, state: Tensor) -> ctypes.CDLL | None:
+    if any(holds_weights(part) for part in kernel.parts):
+        say_once("an effect that holds a network runs in plain PyTorch, slower than a compiled kernel")
+        return None
     if build.compiler() is None:
         say_once("no C++ compiler found: simulation runs without native kernels, slower, with the same results")
         return None

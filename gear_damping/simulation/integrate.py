@@ -11,7 +11,7 @@ from gear_damping.simulation import torchdiffeq_method
 from gear_damping.simulation.accuracy import substeps_for
 from gear_damping.simulation.compilation import choose
 from gear_damping.simulation.families import extra_states
-from gear_damping.simulation.kernel import Kernel, Members
+from gear_damping.simulation.kernel import Kernel, Members, holds_weights
 from gear_damping.simulation.layout import Layout
 from gear_damping.simulation.series import Series
 from gear_damping.simulation.solver_settings import Solver
@@ -96,7 +96,7 @@ _kernels: dict[tuple, Kernel] = {}
 def kernel_of(model: Model, layout: Layout, series: Series, members: Members, start: Tensor) -> Kernel:
     """The kernel of a model; models of one structure share it, and what was compiled for it."""
     parts = (model.system, *model.effects)
-    key = tuple((type(part), tuple(sorted(part.chosen.items()))) for part in parts)
+    key = tuple((type(part), tuple(sorted(part.chosen.items())), id(part) * holds_weights(part)) for part in parts)
     key += (tuple(layout.entries), series.names)
     if key not in _kernels:
         _kernels[key] = Kernel(model, layout, series, members, start)

@@ -174,6 +174,12 @@ class Kernel:
         return self._signed(u, state, members, locked).amin(0)
 
 
+def holds_weights(part: object) -> bool:
+    """Whether a part keeps tensors or networks of its own; they may change, so no compiled kernel may hold them."""
+    kept = {**vars(type(part)), **vars(part)}
+    return any(isinstance(value, Tensor | torch.nn.Module) for value in kept.values())
+
+
 def _fused(function: Callable) -> Callable:
     """Compile a step; the compiler sees nothing but tensors."""
 

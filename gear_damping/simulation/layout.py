@@ -33,6 +33,7 @@ class Layout:
     def __init__(self, prepared: Prepared) -> None:
         """Number the rows of everything in `prepared`, after the output interval in row 0."""
         self.entries: list[Entry] = []
+        self.groups = (BASE, *prepared.terms)
         row = 1
         for group, name, value in _walk(prepared):
             height = value.shape[0] if value.ndim == 2 else 1
@@ -51,10 +52,10 @@ class Layout:
 
     def unpack(self, packed: Tensor) -> tuple[Tensor, Named, dict[str, Named]]:
         """The output interval, the system's values and those of each effect."""
-        groups: dict[str, Named] = {BASE: {}}
+        groups: dict[str, Named] = {group: {} for group in self.groups}
         for entry in self.entries:
             value = packed[entry.start : entry.stop] if entry.vector else packed[entry.start]
-            groups.setdefault(entry.group, {})[entry.name] = value
+            groups[entry.group][entry.name] = value
         base = groups.pop(BASE)
         return packed[0], base, groups
 

@@ -9,11 +9,12 @@ from gear_damping.simulation.kernel import Kernel, Members
 
 MOST_SPLITS = 8  # of one sub-step; a lane that grazes a corner more often keeps its branch to the end
 REPORT_EVERY = 16  # output intervals
-LANE_MULTIPLE = 4  # gathered lanes come in multiples of this, whole vector registers
 
 
 class Stepper:
     """The region-locked fixed-step method for one batch; remembers the branch each member is on."""
+
+    lane_multiple = 4  # gathered lanes come in multiples of this, whole vector registers
 
     def __init__(self, kernel: Kernel, fixed: Tensor, series: Tensor, compiled: bool) -> None:
         """Prepare a batch.
@@ -80,13 +81,12 @@ class Stepper:
         end, first, last, margin = self.advance(state, start, length, members, self.locked)
         left = margin < 0
         if left.any():
-            lanes = _padded(left.nonzero().squeeze(1))
+            lanes = _padded(left.nonzero().squeeze(1), self.lane_multiple)
             ends = tuple(part[:, lanes] for part in (state, end, first, last))
             few = Members(members.fixed[:, lanes], members.series[:, lanes], members.index)
-            end = end.clone()
-            end[:, lanes], self.locked[:, lanes] = self._split(
-                ends, start[lanes], length[lanes], few, self.locked[:, lanes]
-            )
+            end, locked = end.clone(), self.locked.clone()  # a graph may hold the old ones
+            end[:, lanes], locked[:, lanes] = self._split(ends, start[lanes], length[lanes], few, locked[:, lanes])
+            self.locked = locked
         return end
 
     def _split(
@@ -108,7 +108,7 @@ class Stepper:
         return ends[1], locked
 
 
-def _padded(lanes: Tensor) -> Tensor:
-    """The lanes, the last one repeated until their number is a multiple that vectors fill."""
-    missing = -len(lanes) % LANE_MULTIPLE
+def _padded(lanes: Tensor, multiple: int) -> Tensor:
+    """The lanes, the last one repeated until their number is such a multiple."""
+    missing = -len(lanes) % multiple
     return torch.cat([lanes, lanes[-1:].expand(missing)]) if missing else lanes

@@ -1,0 +1,104 @@
+"""Backpropagation through a simulation, for what has too many parameters for forward sensitivities.
+
+That is a network inside the equation of motion: a few hundred weights that all members share. Physical
+parameters are differentiated faster by `sensitivities`. The graph is kept for one block of output intervals
+at a time; those before it are walked again when the gradient comes back (checkpointing).
+"""
+
+from collections.abc import Mapping
+
+import torch
+from torch import Tensor
+from torch.utils.checkpoint import checkpoint
+
+from gear_damping.physics.model import Model
+from gear_damping.simulation.integrate import groups_of, initial_states
+from gear_damping.simulation.kernel import Kernel, Members
+from gear_damping.simulation.layout import Layout
+from gear_damping.simulation.series import Series
+from gear_damping.simulation.simulate import input_units, true_inputs
+from gear_damping.simulation.solver_settings import Solver
+from gear_damping.simulation.stepper import Stepper
+
+
+def simulate_with_gradient(
+    model: Model,
+    values: Mapping[str, Tensor],
+    *,
+    sampling_rate: float,
+    n_samples: int,
+    inputs: Mapping[str, Tensor] | None = None,
+    solver: Solver | None = None,
+    block: int = 16,
+) -> Tensor:
+    """The system's response in SI, (batch, time), as part of the graph of all that it follows from.
+
+    Gradients reach the tensors of `values` that ask for them and the parameters of every network that an
+    effect of the model holds. They are those of the discrete solution, with the instants at which flanks
+    meet and part.
+
+    Args:
+        model: Base system and effects, without drawn loads.
+        values: Parameters in SI by flat name, (batch,) or (n, batch).
+        sampling_rate: Output samples per second.
+        n_samples: Output samples of each run.
+        inputs: Measured series as for `simulate`.
+        solver: Settings; the engine is always plain PyTorch.
+        block: Output intervals whose graph is kept together. Memory grows with block + n_samples / block,
+            so that it is least near the square root of n_samples; time is that of one walk more.
+    """
+    solver, inputs = solver or Solver(), dict(inputs or {})
+    prepared = model.prepare(values)
+    interval = 1 / (sampling_rate * prepared.scales.time)
+    layout, series = Layout(prepared), Series(tuple(sorted(inputs)))
+    fixed, start = layout.pack(prepared, interval), initial_states(model, prepared)
+    driving = true_inputs(model, values, inputs, interval.shape[0])
+    packed = series.pack(driving, input_units(model, inputs, prepared), n_samples - 1, interval.shape[0])
+    with torch.no_grad():
+        groups = groups_of(prepared, interval, n_samples - 1, solver)
+        kernel = _GraphKernel(model, layout, series, Members(fixed, packed[0], fixed.new_zeros(())), start)
+    found = [_displacement(kernel, fixed[:, k], packed[:, :, k], start[:, k], n, block) for n, k in groups]
+    order = torch.cat([lanes for _, lanes in groups]).argsort()
+    return torch.cat(found)[order] * prepared.scales.length.unsqueeze(1)
+
+
+class _GraphKernel(Kernel):
+    """The kernel with the search for a crossing outside the graph.
+
+    The Newton step behind the search alone carries the derivative of the crossing; the search itself, run
+    down to rounding, would only multiply its noise.
+    """
+
+    def _root(self, ends: tuple, start: Tensor, length: Tensor, members: Members, locked: Tensor) -> Tensor:
+        with torch.no_grad():
+            return super()._root(ends, start, length, members, locked)
+
+
+class _GraphStepper(Stepper):
+    """A stepper whose members of one interval are never overwritten by those of the next."""
+
+    lane_multiple = 1  # a lane that stood twice would count twice in the gradient
+
+    def members(self, index: int) -> Members:
+        return Members(self.fixed, self.series[index], self.fixed.new_full((), index))
+
+
+def _displacement(kernel: Kernel, fixed: Tensor, series: Tensor, state: Tensor, substeps: int, block: int) -> Tensor:
+    """The first state in natural units, (batch, time)."""
+    stepper, intervals = _GraphStepper(kernel, fixed, series, compiled=False), len(series)
+    with torch.no_grad():
+        stepper.start(state)
+
+    def walked(state: Tensor, locked: Tensor, first: int, last: int) -> tuple[Tensor, Tensor, Tensor]:
+        stepper.locked, rows = locked, []
+        for index in range(first, last):
+            state = stepper.walk(state, index, substeps)
+            rows.append(state[0])
+        return state, stepper.locked, torch.stack(rows)
+
+    found, locked = [state[:1]], stepper.locked
+    for first in range(0, intervals, block):
+        last = min(first + block, intervals)
+        state, locked, rows = checkpoint(walked, state, locked, first, last, use_reentrant=False)
+        found.append(rows)
+    return torch.cat(found).T
