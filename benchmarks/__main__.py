@@ -14,7 +14,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--quick", action="store_true", help="small batches, one round: a try, not a measurement")
     parser.add_argument("--folder", type=Path, default=Path("outputs/bench"))
     chosen = parser.parse_args(arguments)
-    found = {"machine": report.machine(), "rows": [], "parts": {}, "growth": [], "accuracy": []}
+    found = {"machine": report.machine(), "rows": [], "parts": {}, **{name: [] for name in report.TABLES}}
     for part in chosen.only:
         began = time.perf_counter()
         print(part, flush=True)
@@ -37,6 +37,10 @@ def simulate_backlash(quick: bool, say: Said) -> list[dict]:
     return [row for p in (50, 90) for row in simulating.backlash(batch, rounds, p, say)]
 
 
+def limit(quick: bool, say: Said) -> list[dict]:
+    return simulating.limit(32 if quick else 400, 1 if quick else 9, say)
+
+
 def cwt(quick: bool, say: Said) -> list[dict]:
     return transforming.cwt(8 if quick else 64, 32, 1 if quick else 21, say)
 
@@ -50,7 +54,7 @@ def train(quick: bool, say: Said) -> list[dict]:
 
 PARTS = {
     "simulate_smooth": simulate_smooth, "simulate_backlash": simulate_backlash, "cwt": cwt, "train": train,
-    "growth": growth.everything, "accuracy": accuracy.everything,
+    "limit": limit, "growth": growth.everything, "accuracy": accuracy.everything,
 }  # fmt: skip
 
 if __name__ == "__main__":

@@ -43,6 +43,7 @@ PEER_PLANS = (
     Plan("diffrax_same_algebra", "simulation_peers", "substeps", (2, 3, 4, 5, 6)),
     Plan("numba_rk4", "simulation_peers", "substeps", (10, 12, 16, 20, 24)),
 )
+TUNED = Plan("tuned_cpp", "tuned", "substeps", (2, 3, 4, 5, 6), own=True)
 UNAWARE = Plan("rk4_unaware", "unaware", "substeps", (1024, 2048, 4096, 8192), own=True)
 
 
@@ -77,6 +78,18 @@ def backlash(batch: int, rounds: int, percentile: int, say: Said) -> list[dict]:
     unaware = climb(UNAWARE, options, backlash_reference(), batch, percentile, wanted, say)
     found = contest("simulate_backlash", batch, [ours, unaware], rounds)
     return [row | {"equal_error_at": f"p{percentile}", "outputs": SHORT} for row in found]
+
+
+def limit(batch: int, rounds: int, say: Said) -> list[dict]:
+    """Ours beside C++ written by hand for this one equation, as it is and with our way of its costly parts."""
+    ways = ((), ("cosines",), ("exact_power",), ("cosines", "exact_power"))
+    found = [climb(OURS, {"n_samples": N_SAMPLES, "backlash": False}, smooth_reference(), batch, 90, WANTED, say)]
+    for way in ways:
+        contestant = climb(TUNED, dict.fromkeys(way, True), smooth_reference(), batch, 90, WANTED, say)
+        contestant.about["with"] = " and ".join(way) or "nothing of ours"
+        found.append(contestant)
+    kept = ("engine", "with", "batch", "setting", "error_p90", "cpu_ms_per_item", "ratio_to_ours", "reason")
+    return [{k: row[k] for k in kept if k in row} for row in contest("limit", batch, found, rounds)]
 
 
 def climb(

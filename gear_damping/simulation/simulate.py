@@ -117,7 +117,7 @@ def _held_loads(
 
 def _in_si(model: Model, names: list[str], states: Tensor, prepared: Prepared) -> dict[str, Tensor]:
     units = state_units(model)
-    return {
-        name: state * prepared.scales.unit_of(parse_unit(units[name]).dimension).unsqueeze(1)
+    return {  # in place: fresh memory for every state costs more than the product
+        name: state.mul_(prepared.scales.unit_of(parse_unit(units[name]).dimension).unsqueeze(1))
         for name, state in zip(names, states, strict=True)
     }

@@ -38,7 +38,7 @@ def contest(**processes):
 def results(folder, work, rows):
     found = {
         "machine": {"processor": "P", "cores": 2, "system": "S", "python": "3", "torch": "2", "threads": 1},
-        "rows": rows, "parts": {work: {"seconds": 1, "quick": False}}, "growth": [], "accuracy": [],
+        "rows": rows, "parts": {work: {"seconds": 1, "quick": False}}, **{name: [] for name in report.TABLES},
     }  # fmt: skip
     report.write(folder, report.merged(folder, found))
     return json.loads((folder / "results.json").read_text())
