@@ -47,6 +47,11 @@ class Evidence:
         return self.fit[0].sampling_rate
 
     @property
+    def duration(self) -> float:
+        """Length of the longest record in s."""
+        return max(len(record.response) for record in (*self.fit, *self.holdout)) / self.sampling_rate
+
+    @property
     def conditions(self) -> int:
         """How many operating conditions the records hold."""
         return len({_condition(record) for record in (*self.fit, *self.holdout)})

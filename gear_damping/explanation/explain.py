@@ -75,6 +75,7 @@ def explain(
     step(2, STEPS)
     found = search(nominal, evidence, noise, say, solver)
     step(3, STEPS)
+    before = excess(found.nominal.holdout, evidence.holdout, noise)
     after = excess(found.outcome.holdout, evidence.holdout, noise)
     judged = Judged(found, before, after, verdict(found, before, after, found.outcome.fitted.converged))
     step(4, STEPS)

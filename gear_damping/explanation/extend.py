@@ -18,6 +18,7 @@ BORNE_OUT = 3.0  # t of the held-out gain that a cause needs
 LEAST_SHARE = 0.25  # of the remaining excess that a cause must take
 RIVAL = 2.0  # t below which two explanations are not told apart
 MOST_CAUSES = 4
+MOST_ANEW = 3  # times that a search begins anew from a better calibration
 BENT = 4.0  # noise variances left by a nominal model whose free shape is no good place to begin
 REST = 0.02  # of the first excess: less is not worth a cause
 SAME = 1e-3  # of the noise variance: a mean difference below it is none
@@ -65,9 +66,9 @@ class Search:
 def search(nominal: Outcome, evidence: Evidence, noise: NoiseLevel, say: Say, solver: Solver | None = None) -> Search:
     """Extend the nominal model until nothing significant is missing or nothing more is borne out."""
     found = Search(nominal, nominal)
-    found.first_scores = scores(nominal, evidence, candidates_for(nominal.hypothesis), noise.value, solver)
+    ranked = found.first_scores = _ranked(nominal, evidence, noise, solver)
     first = current = excess(nominal.holdout, evidence.holdout, noise)
-    ranked = found.first_scores
+    anew = 0
     while current.significant and len(found.accepted) < MOST_CAUSES:
         if found.accepted:
             fits = _full_fits(ranked, found.outcome, found.outcome, evidence, solver)
@@ -78,6 +79,16 @@ def search(nominal: Outcome, evidence: Evidence, noise: NoiseLevel, say: Say, so
         if best is None:
             break
         best, rivals = _simplest(best, fits, evidence)
+        settled = _settled_without(best, evidence, solver) if anew < MOST_ANEW else None
+        if settled is not None:
+            anew += 1
+            say(f"what {best.name} seemed to take is taken without it: the fit had not come to rest")
+            found.outcome = settled
+            current = excess(settled.holdout, evidence.holdout, noise)
+            ranked = _ranked(settled, evidence, noise, solver)
+            if not found.accepted:
+                found.nominal, found.first_scores, first = settled, ranked, current
+            continue
         after = excess(best.outcome.holdout, evidence.holdout, noise)
         share = (current.percent - after.percent) / max(first.percent, 1e-300)
         found.accepted.append(Accepted(best.name, best, share, rivals))
@@ -85,11 +96,53 @@ def search(nominal: Outcome, evidence: Evidence, noise: NoiseLevel, say: Say, so
         found.outcome, current = best.outcome, after
         if current.percent <= REST * first.percent:
             break
-        ranked = scores(found.outcome, evidence, candidates_for(found.outcome.hypothesis), noise.value, solver)
+        if len(found.accepted) > 1:
+            current = _exchanged(found, evidence, noise, first, say, solver)
+            if current.percent <= REST * first.percent:
+                break
+        ranked = _ranked(found.outcome, evidence, noise, solver)
     if len(found.accepted) > 1:
         _prune(found, evidence, say, solver)
         found.accepted = [_beside_the_others(cause, found, evidence, noise, solver) for cause in found.accepted]
     return found
+
+
+def _settled_without(best: Refit, evidence: Evidence, solver: Solver | None) -> Outcome | None:
+    """The model without the effect, fitted from where the effect led, if it does as well there.
+
+    Then the effect has no part in the gain: it only led the fit out of a local minimum.
+    """
+    hypothesis, states = _without(best.outcome.hypothesis, best.name), best.outcome.fitted.states
+    without = fit_hypothesis(hypothesis, evidence, None, states, solver=solver)
+    block = block_samples(best.outcome, evidence.sampling_rate)
+    return without if _as_good(without, best.outcome, block, evidence.noise) else None
+
+
+def _ranked(outcome: Outcome, evidence: Evidence, noise: NoiseLevel, solver: Solver | None) -> list[Score]:
+    return scores(outcome, evidence, candidates_for(outcome.hypothesis, evidence.duration), noise.value, solver)
+
+
+def _exchanged(
+    found: Search, evidence: Evidence, noise: NoiseLevel, first: Excess, say: Say, solver: Solver | None
+) -> Excess:
+    """Earlier causes give way to what explains more now that a further one is known; returns what is left.
+
+    A cause that was accepted while another was missing may have been its neighbour that came nearest to both.
+    """
+    for place, cause in enumerate(found.accepted[:-1]):
+        before, states = found.outcome, found.outcome.fitted.states
+        without = fit_hypothesis(_without(before.hypothesis, cause.name), evidence, None, states, solver=solver)
+        fits = _full_fits(_ranked(without, evidence, noise, solver), without, before, evidence, solver)
+        if fits and fits[0].t > BORNE_OUT:
+            best, rivals = _simplest(fits[0], fits, evidence)
+            gained = excess(before.holdout, evidence.holdout, noise).percent
+            gained -= excess(best.outcome.holdout, evidence.holdout, noise).percent
+            share = cause.share + gained / max(first.percent, 1e-300)
+            if best.name != cause.name:
+                say(f"{best.name} takes the place of {cause.name} beside the others")
+            found.accepted[place] = Accepted(best.name, best, share, rivals)
+            found.outcome = best.outcome
+    return excess(found.outcome.holdout, evidence.holdout, noise)
 
 
 def _full_fits(
@@ -116,7 +169,7 @@ def _first_fits(
             begin = restarted(evidence, solver)
             if begin is None:
                 continue
-            ranked = scores(begin, evidence, candidates_for(begin.hypothesis), noise.value, solver)
+            ranked = _ranked(begin, evidence, noise, solver)
         fits += _full_fits(ranked, begin, found.nominal, evidence, solver)
         fits.sort(key=lambda fit: fit.outcome.holdout_cost)
         if _best(fits, evidence, current, noise):
@@ -142,11 +195,11 @@ def _simplest(best: Refit, fits: Sequence[Refit], evidence: Evidence) -> tuple[R
     """
     block = block_samples(best.outcome, evidence.sampling_rate)
     alike = [f for f in fits if f is best or _as_good(f.outcome, best.outcome, block, evidence.noise)]
-    inner = [f for f in alike if any(contains(other.score, f.score) for other in alike if other is not f)]
-    outer = {f.name for f in alike if any(contains(f.score, other.score) for other in inner)}
+    inner = [f for f in alike if any(contains(o.score, f.score) for o in alike if o.name != f.name)]
+    outer = {f.name for f in alike if any(contains(f.score, other.score) for other in inner if other.name != f.name)}
     kept = [f for f in alike if f.name not in outer] or alike
     first = min(kept, key=lambda fit: fit.outcome.holdout_cost)
-    return first, tuple(f.name for f in kept if f is not first)
+    return first, tuple(dict.fromkeys(f.name for f in kept if f.name != first.name))
 
 
 def _as_good(fit: Outcome, best: Outcome, block: int, noise: float) -> bool:
@@ -164,7 +217,7 @@ def _beside_the_others(
         return replace(cause, confusable=())
     states, block = found.outcome.fitted.states, block_samples(found.outcome, evidence.sampling_rate)
     without = fit_hypothesis(_without(found.outcome.hypothesis, cause.name), evidence, None, states, solver=solver)
-    tried = [c for c in candidates_for(without.hypothesis) if c.name in rivals]
+    tried = [c for c in candidates_for(without.hypothesis, evidence.duration) if c.name in rivals]
     best: dict[str, Score] = {}
     for score in scores(without, evidence, tried, noise.value, solver):
         best.setdefault(score.candidate.name, score)

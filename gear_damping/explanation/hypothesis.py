@@ -8,7 +8,7 @@ from torch import Tensor
 
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.identification.output_error.holdout import predict_holdout
-from gear_damping.identification.output_error.least_squares import Fitted, fit
+from gear_damping.identification.output_error.least_squares import SMALLEST_GAIN, Fitted, fit
 from gear_damping.identification.output_error.problem import OFFSET, FreeParameter, OutputErrorProblem
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.base import System
@@ -104,10 +104,11 @@ def fit_hypothesis(
     starts: Tensor | None = None,
     states: Tensor | None = None,
     *,
-    iterations: int = 30,
+    iterations: int | Sequence[int] = 30,
     horizons: Sequence[int] | None = None,
     solver: Solver | None = None,
     kept: float = 0.5,
+    settled: float = SMALLEST_GAIN,
 ) -> Outcome:
     """Fit to the records to fit, then predict the held-out ones with the parameters frozen.
 
@@ -116,17 +117,18 @@ def fit_hypothesis(
         evidence: The records.
         starts: Coordinates of several starts, (starts, n_free); at the parameters' own starts where absent.
         states: Initial states of the records to fit, (records, 2), to start from.
-        iterations: At most so many.
+        iterations: At most so many in each round, or in each of the rounds.
         horizons: Samples of growing rounds.
         solver: Settings of the solver.
         kept: Share of the starts that goes on from round to round.
+        settled: Relative fall of the cost below which the fit has come to rest.
     """
     model, known = hypothesis.model, hypothesis.given
     problem = OutputErrorProblem(model, known, hypothesis.free, evidence.fit, solver, evidence.noise)
     if starts is None:
         starts = torch.zeros(1, problem.n_shared, dtype=torch.float64)
     begun = None if states is None else states.expand(len(starts), -1, -1).clone()
-    fitted = fit(problem, starts, horizons, iterations, begun, kept=kept)
+    fitted = fit(problem, starts, horizons, iterations, begun, kept=kept, settled=settled)
     values = {name: float(value) for name, value in problem.parameters(fitted.shared).items()}
     given = placed(hypothesis.given, values)
     frequency = natural_frequency_hz(hypothesis.model, given)

@@ -29,6 +29,7 @@ class Score:
         direction: Unit vector of what it would explain, nuisance projected out.
         smallest: Size of its first strength that would just be visible, in the strength's own unit.
         columns: Orthonormal basis of what it can do beside the nuisance, (samples, n).
+        variants: Of an effect that is tried as a whole, its other sizes.
     """
 
     candidate: Candidate
@@ -37,6 +38,7 @@ class Score:
     direction: Tensor
     smallest: float
     columns: Tensor
+    variants: tuple[Candidate, ...] = ()
 
 
 class Projector:
@@ -151,6 +153,8 @@ def _probes(candidate: Candidate, n_free: int) -> tuple[Tensor, Tensor]:
 def _start(candidate: Candidate, coefficients: Tensor, n_free: int) -> Tensor:
     """Coordinates of the linearised optimum: amplitudes and phases from their cosine and sine parts."""
     start = torch.zeros(n_free, dtype=torch.float64)
+    for place, coordinate in candidate.begun.items():
+        start[place] = coordinate
     if candidate.presence:
         return start
     column = 0

@@ -4,7 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import torch
+from torch import Tensor
 
+from gear_damping.explanation.candidates import Candidate
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Outcome, fit_hypothesis, natural_frequency_hz
 from gear_damping.explanation.ranking import Score, collinearity
@@ -16,7 +18,12 @@ MOST_FITS = 9  # with those that resemble the first
 NEARLY_COLLINEAR = 0.7
 LEAST_PROMISE = 0.3  # of the first one's, for a full fit of one that resembles it
 BLOCK_PERIODS = 6.0  # natural periods of a block of the paired test
-PRESENCE_STARTS = (-1.2, 0.0, 1.2)  # logarithms of the default of an effect that is tried as a whole
+CAUTIOUS = 0.3  # of the linearised optimum: the second start, where the first one leads too far
+FIRST_PART = 0.25  # of the records, by which the better start is chosen
+ONE = 1e-9  # share of the starts that goes on: the best
+SETTLED = 1e-5  # relative fall of the cost: about a tenth of what a parameter of no use gains from noise
+FIRST_ITERATIONS, LAST_ITERATIONS = 10, 30
+VARIANTS_KEPT = 0.25  # of the sizes of an effect that is tried as a whole, after the first round
 
 
 @dataclass(frozen=True)
@@ -48,15 +55,26 @@ def block_samples(outcome: Outcome, rate: float) -> int:
 
 
 def chosen(scores: Sequence[Score]) -> list[Score]:
-    """The candidates worth a full fit: the best variant of the best effects, and who resembles the first."""
-    best: dict[str, Score] = {}
+    """The candidates worth a full fit: the best variant of the best effects, and who resembles the first.
+
+    An effect that is tried as a whole keeps its other sizes as starts: it is far from linear between them.
+    """
+    variants: dict[str, list[Score]] = {}
     for score in scores:
-        best.setdefault(score.candidate.name, score)
-    ranked = list(best.values())
+        variants.setdefault(score.candidate.name, []).append(score)
+    ranked = [replace(found[0], variants=_sizes(found)) for found in variants.values()]
     first = ranked[:FULL_FITS]
     promising = [score for score in ranked[FULL_FITS:] if score.gain > LEAST_PROMISE * ranked[0].gain]
     alike = [score for score in promising if collinearity(ranked[0], score) > NEARLY_COLLINEAR]
     return (first + alike)[:MOST_FITS]
+
+
+def _sizes(found: Sequence[Score]) -> tuple[Candidate, ...]:
+    """The other sizes of the best variant of an effect that is tried as a whole."""
+    best = found[0].candidate
+    options = best.hypothesis.effects[-1].chosen
+    others = (score.candidate for score in found[1:])
+    return tuple(o for o in others if o.presence and o.hypothesis.effects[-1].chosen == options)
 
 
 def refitted(
@@ -64,20 +82,44 @@ def refitted(
 ) -> Refit | None:
     """The candidate's full fit from `outcome`, held against it or another; None where the fit ran away."""
     candidate = score.candidate
-    starts = score.start.unsqueeze(0)
-    if candidate.presence:
-        starts = starts.repeat(len(PRESENCE_STARTS), 1)
-        starts[:, candidate.strengths[0]] = torch.tensor(PRESENCE_STARTS, dtype=torch.float64)
-    hypothesis = candidate.hypothesis
-    found = fit_hypothesis(hypothesis, evidence, starts, outcome.fitted.states, solver=solver)
+    hypothesis, states = candidate.hypothesis, outcome.fitted.states
+    options = {"solver": solver, "settled": SETTLED}
+    total = max(len(record.response) for record in evidence.fit)
+    found = fit_hypothesis(
+        hypothesis,
+        evidence,
+        _starts(score),
+        states,
+        horizons=[max(2, round(FIRST_PART * total)), total],
+        iterations=(FIRST_ITERATIONS, LAST_ITERATIONS),
+        kept=VARIANTS_KEPT if candidate.presence else ONE,
+        **options,
+    )
     if candidate.later:
         freed = replace(found.hypothesis, free=(*found.hypothesis.free, *candidate.later))
         freed = replace(
             freed, free=tuple(replace(p, start=float(found.hypothesis.given.get(p.name, p.start))) for p in freed.free)
         )
-        found = fit_hypothesis(freed, evidence, None, found.fitted.states, solver=solver)
+        found = fit_hypothesis(freed, evidence, None, found.fitted.states, **options)
     if not torch.isfinite(torch.tensor(found.holdout_cost)):
         return None
     before = (against or outcome).holdout
     gain, t = paired_gain(before, found.holdout, block_samples(outcome, evidence.sampling_rate))
     return Refit(score, found, gain, t)
+
+
+def _starts(score: Score) -> Tensor:
+    """Coordinates of the starts, (starts, n_free): the linearised optimum and less of it, or every size."""
+    candidate = score.candidate
+    if not candidate.presence:
+        starts = score.start.repeat(2, 1)
+        starts[1, list(candidate.strengths)] *= CAUTIOUS
+        return starts
+    return torch.stack([score.start, *(score.start + _apart(other, candidate) for other in score.variants)])
+
+
+def _apart(other: Candidate, candidate: Candidate) -> Tensor:
+    """Coordinates of another size of the candidate, in the candidate's own."""
+    pairs = zip(other.hypothesis.free, candidate.hypothesis.free, strict=True)
+    ratios = [o.start / p.start if p.logarithmic else 1.0 for o, p in pairs]
+    return torch.tensor(ratios, dtype=torch.float64).log()

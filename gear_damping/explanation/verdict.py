@@ -38,6 +38,7 @@ SENTENCES = {
     "pitch_error": "errors of the pitch, tooth by tooth",
     "tooth_crack": "a tooth that is softer than the others",
     "torque_ripple": "a ripple of the torque that the torque channel does not show",
+    "torque_variation": "a change of the torque during the records that the torque channel does not show",
     "bearing_flexibility": "the flexibility of a bearing",
     "shaft_torsion": "the torsion of a shaft or coupling",
     "load_dependent_contact": "a contact ratio that grows with the load",

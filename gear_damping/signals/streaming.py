@@ -13,7 +13,7 @@ from gear_damping.signals.wavelets import ContinuousWavelet
 def iterate_coefficients(
     wavelet: ContinuousWavelet,
     signals: Tensor,
-    records: int = 64,
+    records: int = 32,
     device: torch.device | str | None = None,
 ) -> Iterator[tuple[slice, Tensor]]:
     """Yield (rows, coefficients) of `signals`, shape (run, time), `records` runs at a time.
@@ -21,7 +21,8 @@ def iterate_coefficients(
     Args:
         wavelet: The transform.
         signals: Records of shape (run, time); may lie in a memory-mapped file.
-        records: Runs in one step; memory is a few times records * scale * time.
+        records: Runs in one step; memory is a few times records * scale * time. Blocks of about 32 MiB and more are
+            kept by some C libraries after they are freed, so that more at once is not faster.
         device: Where to compute; by default where the signals are. The coefficients stay there.
     """
     require_records(signals, "signals")
@@ -35,7 +36,7 @@ def transform_in_chunks(
     wavelet: ContinuousWavelet,
     signals: Tensor,
     out: Tensor | None = None,
-    records: int = 64,
+    records: int = 32,
     device: torch.device | str | None = None,
 ) -> Tensor:
     """Coefficients of all `signals`, shape (run, scale, time), without a graph.

@@ -19,12 +19,13 @@ class FourierMeshStiffness(MeshStiffness):
     """Two tooth pairs carry on the mesh angle 0 … 2 pi (contact_ratio - 1), one pair elsewhere."""
 
     name = "fourier_mesh_stiffness"
-    equation = "k = k_mean + sum_h w_h 2 (k_max - k_min) / (h pi) sin(h pi (eps - 1)) cos(h (theta_M - pi (eps - 1)))"
+    equation = "k = k_mean + sum_h w_h sinc(h edge) 2 (k_max - k_min) / (h pi) sin(h pi (eps - 1)) cos(h (theta_M - pi (eps - 1)))"
     reference = "Kahraman & Singh (1991), J. Sound Vib. 146(1)"
     parameters: ClassVar = (
         Parameter("maximum", "N/m", 4e8, "stiffness with two tooth pairs in contact", 0, 1e14, "paper"),
         Parameter("minimum", "N/m", 2e8, "stiffness with one tooth pair in contact", 0, 1e14, "paper"),
         Parameter("contact_ratio", "1", 1.6, "contact ratio", 1.0, 2.0, "paper"),
+        Parameter("edge", "1", 0.0, "share of a mesh period over which a pair takes up its load", 0, 0.5),
     )
     options: ClassVar = (
         Option("n_harmonics", tuple(range(1, 33)), 8, "harmonics of the mesh frequency"),
@@ -42,6 +43,7 @@ class FourierMeshStiffness(MeshStiffness):
         order = torch.arange(1, self.chosen["n_harmonics"] + 1, dtype=centre.dtype, device=centre.device)
         swing = 2 * (values["maximum"] - values["minimum"]) / pi
         series = self._weights(order) / order.unsqueeze(1) * torch.sin(order.unsqueeze(1) * half) * swing
+        series = series * torch.sinc(order.unsqueeze(1) * values["edge"])
         coefficients = torch.cat([self.mean(values).unsqueeze(0), series])
         if self._is_short:
             to_powers = torch.as_tensor(_chebyshev_to_powers(self.chosen["n_harmonics"]))
