@@ -92,8 +92,8 @@ def _tacho(case: Case, answer: dict) -> dict[str, bool | None]:
 
 
 def _unidentifiable(case: Case, answer: dict) -> dict[str, bool | None]:
-    name = names(case)[-1]
-    wrong = answer["verdict"] == "explained" and not any(same_class(name, o) for o in offered(answer))
+    found = any(same_class(name, other) for name in names(case) for other in offered(answer))
+    wrong = answer["verdict"] == "explained" and not found
     return {"unidentifiable, explained by another": wrong}
 
 

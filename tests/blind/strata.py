@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 from hidden import EFFECTS
 
-# Effects that no excess can be had from: they are one class with the load's calibration, or plain noise.
-UNSIZED = ("sensor_gain", "inertia_error", "load_noise", "sensor_quantisation")
+# Effects that no excess can be had from: they are one class with the load's calibration, or plain noise, or (an
+# unbalance) move so little beside the bearing that lets them show that the excess is the bearing's.
+UNSIZED = ("sensor_gain", "inertia_error", "load_noise", "sensor_quantisation", "unbalance")
 NAMEABLE = tuple(name for name in EFFECTS if name not in UNSIZED)
 COMMON = tuple(
-    name for name in NAMEABLE if name not in ("backlash", "squeeze_film_damping", "unbalance", "tooth_friction")
+    name for name in NAMEABLE if name not in ("backlash", "squeeze_film_damping", "tooth_friction")
 )  # of the full plan
 
 CLASSES = (
@@ -46,7 +47,7 @@ class Question:
 # stratum -> cases in a full run
 COUNTS = {
     "null": 60, "single": 3 * len(NAMEABLE), "faint": len(NAMEABLE), "pairs": 24, "outside": 25, "one_record": 20,
-    "removed": 2 * len(COMMON), "tacho_error": 10, "below": 10, "unidentifiable": 4, "data_fault": 24,
+    "removed": 2 * len(COMMON), "tacho_error": 10, "below": 10, "unidentifiable": 5, "data_fault": 24,
 }  # fmt: skip
 MEANING = {
     "null": "nothing is hidden, the stiffness has another shape",
@@ -58,7 +59,7 @@ MEANING = {
     "removed": "the true effect is taken out of the catalogue",
     "one_record": "one record, then the records that the experiment adds",
     "tacho_error": "a wrong shaft angle, alone or with one effect",
-    "unidentifiable": "a gain or an inertia without a stated uncertainty, or noise",
+    "unidentifiable": "a gain or an inertia without a stated uncertainty, an unbalance, or noise",
     "data_fault": "a damaged file",
 }
 
