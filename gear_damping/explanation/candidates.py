@@ -143,6 +143,7 @@ SAME_RECORD = {  # what no record of this channel can tell apart, and is never t
     "gear_eccentricity": ("encoder_error",),
     "sensor_gain": ("inertia_error",),
 }
+SIMPLER = {"asymmetric_friction": "coulomb_friction"}  # what an effect contains, with fewer parameters
 NEUTRAL = {"sensor_gain": 1.0}
 UNSEEN = 50.0  # times smaller than where it begins, a parameter that has no size yet does nothing
 ANGLE_SCALE = 0.1  # rad, a step of order one of an angle that is freed

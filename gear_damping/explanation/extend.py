@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 from gear_damping.explanation.calibrate import restarted
-from gear_damping.explanation.candidates import candidates_for
+from gear_damping.explanation.candidates import SIMPLER, candidates_for
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Hypothesis, Outcome, fit_hypothesis
 from gear_damping.explanation.noise import NoiseLevel
@@ -101,6 +101,7 @@ def search(nominal: Outcome, evidence: Evidence, noise: NoiseLevel, say: Say, so
             if current.percent <= REST * first.percent:
                 break
         ranked = _ranked(found.outcome, evidence, noise, solver)
+    found.accepted = [_simplified(cause, found, evidence, noise, say, solver) for cause in found.accepted]
     if len(found.accepted) > 1:
         _prune(found, evidence, say, solver)
         found.accepted = [_beside_the_others(cause, found, evidence, noise, solver) for cause in found.accepted]
@@ -205,6 +206,26 @@ def _simplest(best: Refit, fits: Sequence[Refit], evidence: Evidence) -> tuple[R
 def _as_good(fit: Outcome, best: Outcome, block: int, noise: float) -> bool:
     gain, t = paired_gain(fit.holdout, best.holdout, block)
     return t < RIVAL or gain < SAME * noise**2
+
+
+def _simplified(
+    cause: Accepted, found: Search, evidence: Evidence, noise: NoiseLevel, say: Say, solver: Solver | None
+) -> Accepted:
+    """The cause, or the simpler one that it contains where that does as well beside the other causes."""
+    simpler = SIMPLER.get(cause.name)
+    if simpler is None or simpler in {accepted.name for accepted in found.accepted}:
+        return cause
+    states, block = found.outcome.fitted.states, block_samples(found.outcome, evidence.sampling_rate)
+    without = fit_hypothesis(_without(found.outcome.hypothesis, cause.name), evidence, None, states, solver=solver)
+    tried = [c for c in candidates_for(without.hypothesis, evidence.duration) if c.name == simpler]
+    ranked = scores(without, evidence, tried, noise.value, solver)
+    fit = refitted(ranked[0], without, evidence, solver) if ranked else None
+    if fit is None or not _as_good(fit.outcome, found.outcome, block, evidence.noise):
+        return cause
+    say(f"{simpler} does as well as {cause.name}, with fewer parameters")
+    found.outcome = fit.outcome
+    others = tuple(name for name in cause.confusable if name != simpler)
+    return Accepted(simpler, fit, cause.share, others)
 
 
 def _beside_the_others(

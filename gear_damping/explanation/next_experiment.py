@@ -26,7 +26,8 @@ WANTED = {
     "tooth_friction": "torque", "backlash": "reversal", "pinion_eccentricity": "torque_channel",
     "gear_eccentricity": "torque_channel", "encoder_error": "remount", "pinion_stiffness_modulation": "torque",
     "gear_stiffness_modulation": "torque", "profile_error": "torque", "pitch_error": "torque", "tooth_crack": "torque",
-    "torque_ripple": "torque_channel", "torque_variation": "torque_channel", "bearing_flexibility": "bearing", "shaft_torsion": "bearing",
+    "torque_variation": "torque_channel", "torque_ripple": "torque_channel",
+    "bearing_flexibility": "bearing", "shaft_torsion": "bearing",
     "load_dependent_contact": "torque", "windage_drag": "speed", "sensor_gain": "torque", "sensor_offset": "torque",
     "sensor_drift": "torque", "sensor_delay": "speed", "sensor_lowpass": "speed", "shaft_angle_error": "torque",
 }  # fmt: skip

@@ -19,7 +19,10 @@ class FourierMeshStiffness(MeshStiffness):
     """Two tooth pairs carry on the mesh angle 0 … 2 pi (contact_ratio - 1), one pair elsewhere."""
 
     name = "fourier_mesh_stiffness"
-    equation = "k = k_mean + sum_h w_h sinc(h edge) 2 (k_max - k_min) / (h pi) sin(h pi (eps - 1)) cos(h (theta_M - pi (eps - 1)))"
+    equation = (
+        "k = k_mean + sum_h w_h sinc(h edge) 2 (k_max - k_min) / (h pi) "
+        "sin(h pi (eps - 1)) cos(h (theta_M - pi (eps - 1)))"
+    )
     reference = "Kahraman & Singh (1991), J. Sound Vib. 146(1)"
     parameters: ClassVar = (
         Parameter("maximum", "N/m", 4e8, "stiffness with two tooth pairs in contact", 0, 1e14, "paper"),
