@@ -122,7 +122,7 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
         for cause in found.accepted
     ]
     if not listed and judged.verdict.word != CONSISTENT:
-        for refit in [r for r in found.rejected if r.gain > 0][:1]:
+        for refit in [r for r in found.rejected if r.gain > 0 and r.is_seen_in_fit][:1]:
             spread = gain.spread_of(refit.outcome, evidence)
             own = gain.parameters_of(refit.outcome, spread, refit.name, evidence)
             alike = confusable_beforehand(found.first_scores, refit.name)[: LARGEST_SET - 1]

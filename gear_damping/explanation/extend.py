@@ -134,7 +134,7 @@ def _exchanged(
         before, states = found.outcome, found.outcome.fitted.states
         without = fit_hypothesis(_without(before.hypothesis, cause.name), evidence, None, states, solver=solver)
         fits = _full_fits(_ranked(without, evidence, noise, solver), without, before, evidence, solver)
-        if fits and fits[0].t > BORNE_OUT:
+        if fits and fits[0].t > BORNE_OUT and fits[0].is_seen_in_fit:
             best, rivals = _simplest(fits[0], fits, evidence)
             gained = excess(before.holdout, evidence.holdout, noise).percent
             gained -= excess(best.outcome.holdout, evidence.holdout, noise).percent
@@ -182,10 +182,10 @@ def _best(fits: Sequence[Refit], evidence: Evidence, current: Excess, noise: Noi
     """The best full fit, where held-out records bear it out."""
     if not fits:
         return None
-    best = fits[0]
+    best = next((fit for fit in fits if fit.is_seen_in_fit), fits[0])
     after = excess(best.outcome.holdout, evidence.holdout, noise)
     takes = (current.percent - after.percent) / current.percent
-    return best if best.t > BORNE_OUT and takes >= LEAST_SHARE else None
+    return best if best.is_seen_in_fit and best.t > BORNE_OUT and takes >= LEAST_SHARE else None
 
 
 def _simplest(best: Refit, fits: Sequence[Refit], evidence: Evidence) -> tuple[Refit, tuple[str, ...]]:

@@ -22,6 +22,7 @@ CAUTIOUS = 0.3  # of the linearised optimum: the second start, where the first o
 FIRST_PART = 0.25  # of the records, by which the better start is chosen
 ONE = 1e-9  # share of the starts that goes on: the best
 SETTLED = 1e-5  # relative fall of the cost: about a tenth of what a parameter of no use gains from noise
+SEEN = 25.0  # noise variances, five standard deviations of one parameter
 FIRST_ITERATIONS, LAST_ITERATIONS = 10, 30
 VARIANTS_KEPT = 0.25  # of the sizes of an effect that is tried as a whole, after the first round
 
@@ -35,12 +36,19 @@ class Refit:
         outcome: What came of it.
         gain: Mean fall of held-out squared residuals.
         t: Its t statistic over blocks.
+        fit_gain: Fall of the fitted records' squared residuals, in noise variances.
     """
 
     score: Score
     outcome: Outcome
     gain: float
     t: float
+    fit_gain: float
+
+    @property
+    def is_seen_in_fit(self) -> bool:
+        """Whether the records to which it was fitted show it: what only held-out records show is their luck."""
+        return self.fit_gain > SEEN
 
     @property
     def name(self) -> str:
@@ -103,9 +111,9 @@ def refitted(
         found = fit_hypothesis(freed, evidence, None, found.fitted.states, **options)
     if not torch.isfinite(torch.tensor(found.holdout_cost)):
         return None
-    before = (against or outcome).holdout
-    gain, t = paired_gain(before, found.holdout, block_samples(outcome, evidence.sampling_rate))
-    return Refit(score, found, gain, t)
+    against = against or outcome
+    gain, t = paired_gain(against.holdout, found.holdout, block_samples(outcome, evidence.sampling_rate))
+    return Refit(score, found, gain, t, (against.fitted.cost - found.fitted.cost) / max(evidence.noise, 1e-300) ** 2)
 
 
 def _starts(score: Score) -> Tensor:
