@@ -48,7 +48,7 @@ $(BENCH_VENV)/.installed: benchmarks/requirements.txt
 
 bench-setup: $(BENCH_VENV)/.installed  ## create .venv-bench with the libraries that `make bench` compares with
 
-bench: setup  ## time simulation, transforms and training beside other libraries (about 20 minutes)
+bench: setup  ## time simulation, transforms and training beside other libraries (about 15 minutes)
 	$(BIN)/python -m benchmarks $(ARGS)
 
 blind: setup  ## hide effects in measurements, have them explained, write outputs/blind (resumes; 85 minutes at most)

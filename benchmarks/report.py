@@ -32,7 +32,7 @@ REASONS = {
     (
         "cwt",
         "ptwt",
-    ): "ours is within a third of the bare inverse FFTs; runs on a shared machine gave 9.6 to 13.5",
+    ): "ours is within a third of the bare inverse FFTs, so that little is left to save; runs gave 9.1 to 13.5",
     ("cwt", "irfft"): "beside the inverse FFT there are the product with the spectrum, the copy without the padding "
     "and the memory of the result",
     ("train", "keras"): "on this processor TensorFlow's LSTM is as fast as PyTorch's, whose two calls (forward, "

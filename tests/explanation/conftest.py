@@ -20,9 +20,16 @@ DURATION = 0.02  # s
 
 
 @cache
-def _explained(stratum: str, seed: int, snr_db: float, removed: str | None, records: tuple[int, ...]) -> dict[str, Any]:
-    duration = 0.03 if len(records) == 1 else DURATION
-    case = draw_case(stratum, seed, duration=duration, snr_db=snr_db, target_excess=5.0)
+def _explained(
+    stratum: str,
+    seed: int,
+    snr_db: float | None,
+    removed: str | None,
+    records: tuple[int, ...],
+    duration: float,
+    target_excess: float | None,
+) -> dict[str, Any]:
+    case = draw_case(stratum, seed, duration=duration, snr_db=snr_db, target_excess=target_excess)
     case = replace(case, records=tuple(case.records[i] for i in records))
     library = {name: recipe for name, recipe in candidates.RECIPES.items() if name != removed}
     with tempfile.TemporaryDirectory() as folder, patch.object(candidates, "RECIPES", library):
@@ -34,7 +41,17 @@ def _explained(stratum: str, seed: int, snr_db: float, removed: str | None, reco
 def explained():
     """Explain a case of (stratum, seed): the content of explanation.json, and the truth beside it."""
 
-    def run(stratum: str, seed: int, snr_db: float = 25.0, removed: str | None = None, records=RECORDS):
-        return _explained(stratum, seed, snr_db, removed, records)
+    def run(
+        stratum: str,
+        seed: int,
+        snr_db: float | None = 25.0,
+        removed: str | None = None,
+        records=RECORDS,
+        duration: float | None = None,
+        target_excess: float | None = 5.0,
+    ):
+        records = tuple(records)
+        duration = duration or (0.03 if len(records) == 1 else DURATION)
+        return _explained(stratum, seed, snr_db, removed, records, duration, target_excess)
 
     return run

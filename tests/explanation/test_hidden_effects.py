@@ -25,6 +25,8 @@ def test_a_null_names_no_cause(explained, seed, snr_db):
         ("pinion_eccentricity", "amplitude", 0.05, {"encoder_error"}),  # the same signal
         ("cubic_stiffness", "coefficient", 0.08, set()),
         ("windage_drag", "coefficient", 0.05, set()),
+        ("torque_variation", "ramp_change", 0.05, set()),
+        ("load_dependent_contact", "growth", 0.1, set()),
     ],
 )
 def test_a_hidden_effect_is_named_first_with_its_size(explained, effect, parameter, tolerance, alike):
@@ -38,6 +40,24 @@ def test_a_hidden_effect_is_named_first_with_its_size(explained, effect, paramet
     low, high = stated["interval95"]
     assert low < stated["value"] < high
     assert found["misfit"]["after"] < 1.4 < found["misfit"]["before"]
+
+
+@pytest.mark.slow
+def test_of_two_causes_neither_keeps_the_name_of_its_neighbour(explained):
+    """Before the profile is known, other laws come as near as the dry friction; it takes their place."""
+    found = explained("pairs", 1001, None, records=range(8), duration=0.05, target_excess=None)
+    hidden = {effect["name"] for effect in found["truth"]["effects"]}
+    assert {cause["name"] for cause in found["causes"]} == hidden == {"profile_error", "coulomb_friction"}
+    assert found["verdict"] == "explained"
+    assert found["misfit"]["after"] < 1.1
+
+
+@pytest.mark.slow
+def test_what_an_effect_only_led_to_is_not_its_merit(explained):
+    """From the first calibration a soft shaft leads to a better one, which needs no shaft."""
+    found = explained("squeeze_film_damping", 35, None, records=range(8), duration=0.05, target_excess=2.0)
+    assert found["verdict"] == "consistent"
+    assert found["misfit"]["before"] < 1.1
 
 
 def test_without_the_true_effect_no_other_explains(explained):

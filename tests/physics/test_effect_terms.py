@@ -38,6 +38,21 @@ def test_fourier_mesh_stiffness(options, given, case):
     close(found, sampled(replace(CASE, **case), "stiffness", bench.times().numpy()))
 
 
+def test_edges_take_up_the_load_over_a_share_of_the_mesh_period():
+    """The harmonics of a rectangle that is averaged over the edge, by integration."""
+    own = {"fourier_mesh_stiffness.edge": 0.2, "fourier_mesh_stiffness.contact_ratio": 1.45}
+    bench = Bench("fourier_mesh_stiffness", {"n_harmonics": 5}, {"mesh_phase": 0.0} | own, batch=50)
+    place = (np.arange(200_000) + 0.5) / 200_000  # of the mesh period
+    ramp = np.clip((0.45 / 2 + 0.1 - np.abs((place - 0.45 / 2 + 0.5) % 1 - 0.5)) / 0.2, 0, 1)
+    lines = [2 * np.mean(2e8 * ramp * np.exp(-2j * np.pi * h * place)) for h in range(1, 6)]
+    turns = np.arange(50) / 50
+    wanted = 2e8 + 2e8 * ramp.mean() + sum(
+        (line * np.exp(2j * np.pi * h * turns)).real for h, line in enumerate(lines, start=1)
+    )
+    now = bench.evaluated(time=torch.as_tensor(turns * CASE.mesh_period))
+    close(now.stiffness * bench.unit("N/m"), wanted, 1e-8)
+
+
 def test_rectangular_mesh_stiffness():
     given = TURNED | {"rectangular_mesh_stiffness.contact_ratio": 1.4}
     bench = Bench("rectangular_mesh_stiffness", {}, given, batch=200)
