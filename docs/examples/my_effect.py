@@ -4,6 +4,7 @@ from typing import ClassVar
 
 from torch import Tensor
 
+from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import DampingForce, Values
@@ -20,6 +21,11 @@ class ShearThinningDamping(DampingForce):
         Parameter("thinning_velocity", "m/s", 0.1, "v, at which half of it is left", 1e-9, 1e9),
     )
     dissipative = True
+    cause: ClassVar = Cause(
+        "a damping that thins under shear",
+        (Recipe({"damping_coefficient": 0.01}, scanned={"thinning_velocity": 1.0}),),
+        separated_by="ring_down",
+    )
 
     def damping_force(self, now: Moment, p: Values) -> Tensor:
         """The force at this instant, positive where it opposes a positive rate."""

@@ -12,7 +12,8 @@ from gear_damping.config.folders import unusable
 from gear_damping.config.quantities import SUFFIXES
 from gear_damping.config.simulator import SimulatorSettings
 from gear_damping.config.source import ORDER, Origin
-from gear_damping.errors import InputError, Problem
+from gear_damping.errors import InputError, Problem, nearest
+from gear_damping.physics.catalogue import catalogue
 from gear_damping.physics.terms import DampingLaw
 from gear_damping.simulation.families import DAMPING_RATIO, coefficients_for
 from gear_damping.simulation.runs import reference_velocity
@@ -81,6 +82,13 @@ def _measurement(whole: Whole) -> Found:
         yield "measurement.path", rule, None, "measurement.path=PATH/measurement.yaml"
     elif not whole.measurement.is_file():
         yield "measurement.path", _no_file(whole.measurement), path, "give the path of a measurement.yaml"
+
+
+def _ruled_out(whole: Whole) -> Found:
+    known = list(catalogue(whole.simulator.plugins))
+    for name in whole["ruled_out"] or ():
+        if name not in known:
+            yield "ruled_out", "no such effect", name, nearest(name, known)
 
 
 def _no_file(path: Path) -> str:
@@ -227,6 +235,7 @@ CHECKS: tuple[tuple[tuple[str, ...], Callable[[Whole], Found]], ...] = (
     (("task", "checkpoint"), _checkpoint),
     (("resume",), _resume),
     (("task", "measurement"), _measurement),
+    (("ruled_out", "simulator"), _ruled_out),
     (("task", "data_folder"), _data_folder),
     (("task", "protocol", "simulator"), _windows),
     (("task", "protocol", "simulator"), _split),

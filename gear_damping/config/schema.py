@@ -43,6 +43,7 @@ SCHEMA: dict[str, Any] = {
     "resume": Key("text", optional=True),
     "data_folder": Key("text"),
     "progress": Key("bool"),
+    "ruled_out": Key("names", optional=True),
     "write_measurement": Key("bool"),
     "protocol": {
         "name": Key("text", choices=("by_run", "paper", "paper_many_runs")),

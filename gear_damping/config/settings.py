@@ -25,6 +25,7 @@ class Settings:
     resume: Path | None
     data_folder: Path
     progress: bool
+    ruled_out: tuple[str, ...]
     write_measurement: bool
     simulator: SimulatorSettings
     protocol: dict[str, Any]
@@ -73,6 +74,7 @@ def read_settings(config: Mapping[str, Any], origin: Origin) -> Settings:
         resume=_path(config["resume"]),
         data_folder=Path(config["data_folder"]),
         progress=config["progress"],
+        ruled_out=tuple(config["ruled_out"] or ()),
         write_measurement=config["write_measurement"],
         simulator=simulator,
         protocol=dict(config["protocol"]),

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from typing import Any
 
 from gear_damping.explanation import gain
-from gear_damping.explanation.candidates import SAME_RECORD
 from gear_damping.explanation.data_faults import sentences
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Outcome
@@ -116,7 +115,7 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
             "name": cause.name,
             "parameters": gain.parameters_of(last, spread, cause.name, evidence),
             "excess_explained": cause.share,
-            "confusable_with": [*cause.confusable, *SAME_RECORD.get(cause.name, ())][: LARGEST_SET - 1],
+            "confusable_with": [*cause.confusable, *cause.effect.cause.looks_like][: LARGEST_SET - 1],
             "status": statuses(judged.verdict.word),
         }
         for cause in found.accepted

@@ -1,7 +1,7 @@
 """Step 1: what was measured, as the fits see it: records to fit, records held out, what is known of the rig."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import pi
 
 import torch
@@ -10,6 +10,8 @@ from torch import Tensor
 from gear_damping.errors import InputError, Problem
 from gear_damping.identification.output_error.problem import FitRecord
 from gear_damping.measurement.record import Channel, Measurement, Record
+from gear_damping.physics.catalogue import builtin_effects
+from gear_damping.physics.terms import Effect
 
 RESPONSES = {"gear_pair": "transmission_error", "oscillator": "displacement"}
 INPUTS = {"gear_pair": ("pinion_torque", "gear_torque", "pinion_angle"), "oscillator": ("force",)}
@@ -30,6 +32,7 @@ class Evidence:
         one_record: Whether there was but one record, cut in two.
         gear_torque_mode: What holds the gear.
         noise: Standard deviation of the noise over all records, once it is known.
+        library: Effects that may be causes, by name.
     """
 
     system: str
@@ -40,6 +43,7 @@ class Evidence:
     one_record: bool
     gear_torque_mode: str = "balanced"
     noise: float = 0.0
+    library: Mapping[str, type[Effect]] = field(default_factory=builtin_effects)
 
     @property
     def sampling_rate(self) -> float:

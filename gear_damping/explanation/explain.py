@@ -1,6 +1,6 @@
 """Measured data in, named cause out: the steps in the order in which they are done."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -13,6 +13,7 @@ from gear_damping.explanation.noise import NoiseLevel, noise_level, weighted
 from gear_damping.explanation.significance import excess
 from gear_damping.explanation.verdict import Judged, verdict
 from gear_damping.measurement.record import Measurement
+from gear_damping.physics.terms import Effect
 from gear_damping.simulation.solver_settings import Solver
 
 Say = Callable[[str], None]
@@ -42,6 +43,7 @@ def explain(
     say: Say = lambda text: None,
     report: Callable[[int, int], None] | None = None,
     solver: Solver | None = None,
+    library: Mapping[str, type[Effect]] | None = None,
 ) -> Explanation:
     """Explain a measurement.
 
@@ -50,6 +52,7 @@ def explain(
         say: Told what is found on the way.
         report: Told (done, total) steps.
         solver: Settings of the solver.
+        library: Effects that may be causes, by name; the whole catalogue where absent.
 
     Raises:
         InputError: a record lacks the channel that its system is explained from.
@@ -66,6 +69,7 @@ def explain(
     say(f"noise {noise.value / evidence.channel.declared_factor:.3g} {evidence.channel.declared_unit} ({noise.method})")
     fit, holdout = weighted(evidence.fit, noise), weighted(evidence.holdout, noise)
     evidence = replace(evidence, fit=fit, holdout=holdout, noise=noise.value)
+    evidence = evidence if library is None else replace(evidence, library=library)
     solver = solver or Solver()
     solver = replace(solver, accuracy=max(solver.accuracy, FIT_ACCURACY))
     step(1, STEPS)

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 from gear_damping.explanation.calibrate import restarted
-from gear_damping.explanation.candidates import SIMPLER, candidates_for
+from gear_damping.explanation.candidates import candidates_for
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Hypothesis, Outcome, fit_hypothesis
 from gear_damping.explanation.noise import NoiseLevel
@@ -12,6 +12,7 @@ from gear_damping.explanation.ranking import Score, contains, scores
 from gear_damping.explanation.refit import Refit, block_samples, chosen, refitted
 from gear_damping.explanation.significance import Excess, excess, paired_gain
 from gear_damping.identification.output_error.problem import FreeParameter
+from gear_damping.physics.terms import Effect
 from gear_damping.simulation.solver_settings import Solver
 
 BORNE_OUT = 3.0  # t of the held-out gain that a cause needs
@@ -40,6 +41,11 @@ class Accepted:
     refit: Refit
     share: float
     confusable: tuple[str, ...]
+
+    @property
+    def effect(self) -> Effect:
+        """The effect itself."""
+        return next(e for e in self.refit.outcome.hypothesis.effects if e.name == self.name)
 
 
 @dataclass
@@ -120,7 +126,7 @@ def _settled_without(best: Refit, evidence: Evidence, solver: Solver | None) -> 
 
 
 def _ranked(outcome: Outcome, evidence: Evidence, noise: NoiseLevel, solver: Solver | None) -> list[Score]:
-    return scores(outcome, evidence, candidates_for(outcome.hypothesis, evidence.duration), noise.value, solver)
+    return scores(outcome, evidence, candidates_for(outcome.hypothesis, evidence), noise.value, solver)
 
 
 def _exchanged(
@@ -212,12 +218,12 @@ def _simplified(
     cause: Accepted, found: Search, evidence: Evidence, noise: NoiseLevel, say: Say, solver: Solver | None
 ) -> Accepted:
     """The cause, or the simpler one that it contains where that does as well beside the other causes."""
-    simpler = SIMPLER.get(cause.name)
+    simpler = cause.effect.cause.simpler
     if simpler is None or simpler in {accepted.name for accepted in found.accepted}:
         return cause
     states, block = found.outcome.fitted.states, block_samples(found.outcome, evidence.sampling_rate)
     without = fit_hypothesis(_without(found.outcome.hypothesis, cause.name), evidence, None, states, solver=solver)
-    tried = [c for c in candidates_for(without.hypothesis, evidence.duration) if c.name == simpler]
+    tried = [c for c in candidates_for(without.hypothesis, evidence) if c.name == simpler]
     ranked = scores(without, evidence, tried, noise.value, solver)
     fit = refitted(ranked[0], without, evidence, solver) if ranked else None
     if fit is None or not _as_good(fit.outcome, found.outcome, block, evidence.noise):
@@ -238,7 +244,7 @@ def _beside_the_others(
         return replace(cause, confusable=())
     states, block = found.outcome.fitted.states, block_samples(found.outcome, evidence.sampling_rate)
     without = fit_hypothesis(_without(found.outcome.hypothesis, cause.name), evidence, None, states, solver=solver)
-    tried = [c for c in candidates_for(without.hypothesis, evidence.duration) if c.name in rivals]
+    tried = [c for c in candidates_for(without.hypothesis, evidence) if c.name in rivals]
     best: dict[str, Score] = {}
     for score in scores(without, evidence, tried, noise.value, solver):
         best.setdefault(score.candidate.name, score)

@@ -19,18 +19,6 @@ SEPARATES = {
     "amplitude": "excite at half and at twice the level: nonlinear forces change their share, linear ones do not",
     "reversal": "reverse the torque slowly: the mean deflection steps by the gap, and offsets separate from friction",
 }
-WANTED = {
-    "power_law_damping": "ring_down", "coulomb_friction": "ring_down", "hysteretic_damping": "speed",
-    "asymmetric_friction": "reversal", "hunt_crossley_damping": "torque", "squeeze_film_damping": "torque",
-    "cubic_stiffness": "torque", "quadratic_stiffness": "torque", "hertz_stiffness": "torque",
-    "tooth_friction": "torque", "backlash": "reversal", "pinion_eccentricity": "torque_channel",
-    "gear_eccentricity": "torque_channel", "encoder_error": "remount", "pinion_stiffness_modulation": "torque",
-    "gear_stiffness_modulation": "torque", "profile_error": "torque", "pitch_error": "torque", "tooth_crack": "torque",
-    "torque_variation": "torque_channel", "torque_ripple": "torque_channel",
-    "bearing_flexibility": "bearing", "shaft_torsion": "bearing",
-    "load_dependent_contact": "torque", "windage_drag": "speed", "sensor_gain": "torque", "sensor_offset": "torque",
-    "sensor_drift": "torque", "sensor_delay": "speed", "sensor_lowpass": "speed", "shaft_angle_error": "torque",
-}  # fmt: skip
 
 
 def confusable_beforehand(scores: Sequence[Score], name: str) -> list[str]:
@@ -53,9 +41,8 @@ def next_experiment(names: Sequence[str], evidence: Evidence) -> dict[str, objec
         names: Effects that the data do not tell apart, or the one cause that was named.
         evidence: The records, which say what has been varied already.
     """
-    wishes = [_for_system(WANTED.get(name, "torque"), evidence) for name in names] or [
-        _for_system("torque", evidence)
-    ]
+    wanted = [evidence.library[name].cause.separated_by for name in names if name in evidence.library]
+    wishes = [_for_system(kind, evidence) for kind in wanted or ["torque"]]
     chosen = max(dict.fromkeys(wishes), key=wishes.count)
     known = {"separates": list(names), "conditions_so_far": evidence.conditions}
     return {"kind": chosen, "what": f"{SEPARATES[chosen][0].upper()}{SEPARATES[chosen][1:]}."} | known

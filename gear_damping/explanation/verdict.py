@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from gear_damping.explanation.candidates import SAME_RECORD
 from gear_damping.explanation.extend import REST, Accepted, Search
 from gear_damping.explanation.next_experiment import LARGEST_SET
 from gear_damping.explanation.significance import Excess
+from gear_damping.physics.catalogue import builtin_effects
 
 CONSISTENT, EXPLAINED, AMBIGUOUS = "consistent", "explained", "ambiguous"
 PARTLY, UNEXPLAINED, DATA_PROBLEM = "partly_explained", "unexplained", "data_problem"
@@ -15,45 +15,6 @@ MOST = 0.85  # of the excess that causes must take to be established although a 
 HALF = 0.5  # or half of it, where the rest is
 CLOSE = 1.2  # noise variances up to which a significant rest may be the form of an effect that is right
 SMALL_REST = 3.0  # no more than this many noise variances
-
-SENTENCES = {
-    "viscous_damping": "a damping force proportional to the rate",
-    "power_law_damping": "a damping force that grows with a power of the rate",
-    "coulomb_friction": "a dry friction force",
-    "asymmetric_friction": "a friction force that differs between the two directions of motion",
-    "hysteretic_damping": "a hysteretic force, whose loss does not hang on the rate",
-    "hunt_crossley_damping": "a damping force that grows with the deflection",
-    "squeeze_film_damping": "the damping of an oil film squeezed between the flanks",
-    "cubic_stiffness": "a restoring force that hardens or softens with the cube of the deflection",
-    "quadratic_stiffness": "a restoring force that differs between the two directions of deflection",
-    "hertz_stiffness": "a contact stiffness that grows with the load",
-    "sine_restoring": "the restoring force of a pendulum",
-    "tooth_friction": "the sliding friction of the teeth, which turns round at the pitch point",
-    "backlash": "the gap between the flanks",
-    "pinion_eccentricity": "the eccentricity of the pinion",
-    "gear_eccentricity": "the eccentricity of the gear",
-    "encoder_error": "an error of the encoders",
-    "pinion_stiffness_modulation": "a mesh stiffness that varies over a turn of the pinion",
-    "gear_stiffness_modulation": "a mesh stiffness that varies over a turn of the gear",
-    "profile_error": "errors of the tooth profile",
-    "pitch_error": "errors of the pitch, tooth by tooth",
-    "tooth_crack": "a tooth that is softer than the others",
-    "torque_ripple": "a ripple of the torque that the torque channel does not show",
-    "torque_variation": "a change of the torque during the records that the torque channel does not show",
-    "bearing_flexibility": "the flexibility of a bearing",
-    "shaft_torsion": "the torsion of a shaft or coupling",
-    "load_dependent_contact": "a contact ratio that grows with the load",
-    "windage_drag": "a drag that grows with the square of the speed",
-    "unbalance": "an unbalance",
-    "sensor_gain": "a wrong gain of the sensor",
-    "sensor_offset": "an offset of the sensor",
-    "sensor_drift": "a drift of the sensor",
-    "sensor_delay": "a delay of the sensor",
-    "sensor_lowpass": "the low-pass of the sensor",
-    "sensor_saturation": "a sensor that saturates",
-    "inertia_error": "a moment of inertia other than the one that was stated",
-    "shaft_angle_error": "an error of the shaft angle",
-}
 
 
 @dataclass(frozen=True)
@@ -117,7 +78,7 @@ def statuses(word: str) -> str:
 
 
 def _named(accepted: Sequence[Accepted]) -> str:
-    return " and ".join(f"{SENTENCES.get(cause.name, cause.name)} (`{cause.name}`)" for cause in accepted)
+    return " and ".join(f"{cause.effect.cause.sentence} (`{cause.name}`)" for cause in accepted)
 
 
 def _not_told_apart(confused: Sequence[Accepted]) -> tuple[str, ...]:
@@ -127,9 +88,9 @@ def _not_told_apart(confused: Sequence[Accepted]) -> tuple[str, ...]:
 
 def _same_record(accepted: Sequence[Accepted]) -> tuple[str, ...]:
     return tuple(
-        f"In this channel {SENTENCES.get(other, other)} (`{other}`) would look the same as `{cause.name}`."
+        f"In this channel {builtin_effects()[other].cause.sentence} (`{other}`) would look the same as `{cause.name}`."
         for cause in accepted
-        for other in SAME_RECORD.get(cause.name, ())
+        for other in cause.effect.cause.looks_like
     )
 
 

@@ -16,6 +16,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.errors import InputError
+from gear_damping.physics.cause import Cause
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.scales import Scales
@@ -34,6 +35,7 @@ class Effect(ABC):
     systems: ClassVar[tuple[str, ...]] = ("gear_pair", "oscillator")
     dissipative: ClassVar[bool] = False
     requires: ClassVar[tuple[str, ...]] = ()  # names of effects that must be there too
+    cause: ClassVar[Cause | None] = None  # what `task=explain` tries and says of it; None: it is no candidate
     refinement: ClassVar[float] = 1.0  # of the steps, where the force bends too sharply for them; measured
 
     def __init__(self, **options: object) -> None:

@@ -9,6 +9,8 @@ from gear_damping.explanation.explain import Explanation, explain
 from gear_damping.explanation.extended_simulator import write_extended
 from gear_damping.measurement.load import load_measurement
 from gear_damping.measurement.record import Measurement
+from gear_damping.physics.catalogue import catalogue
+from gear_damping.physics.terms import Effect
 from gear_damping.reporting.explanation_report import write_report
 from gear_damping.tasks import statements
 from gear_damping.tasks.progress import progress_bar
@@ -23,7 +25,7 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     measurement = load_measurement(settings.measurement_path)
     _note_inputs(measurement, folder)
     with progress_bar("explaining", settings.progress) as progress:
-        found = explain(measurement, statements.say, progress, settings.simulator.solver)
+        found = explain(measurement, statements.say, progress, settings.simulator.solver, _library(settings))
     folder.write_json("explanation.json", found.content)
     if found.found is not None:
         _write_extended(folder.path / EXTENDED, found, measurement)
@@ -32,6 +34,12 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
         statements.say(sentence)
     statements.say(f"verdict: {found.content['verdict']}; the report is {folder.path / 'report.html'}")
     return _metrics(found.content)
+
+
+def _library(settings: Settings) -> dict[str, type[Effect]]:
+    """The catalogue with the user's own effects, without those that are ruled out."""
+    known = catalogue(settings.simulator.plugins)
+    return {name: kind for name, kind in known.items() if name not in settings.ruled_out}
 
 
 def _refuse_used(folder: Path) -> None:

@@ -10,14 +10,13 @@ import warnings
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
-from unittest.mock import patch
 
 from hidden import HiddenCase, draw_case, write_case
 
 from gear_damping.errors import InputError
-from gear_damping.explanation import candidates
 from gear_damping.explanation.explain import explain
 from gear_damping.measurement.load import load_measurement
+from gear_damping.physics.catalogue import builtin_effects
 
 from .strata import Question
 
@@ -43,11 +42,11 @@ def explained(case: HiddenCase, removed: str | None = None, everything: bool = F
     """The explanation of a case; without an effect of the catalogue where one is `removed`."""
     with tempfile.TemporaryDirectory() as folder:
         path = write_case(case, Path(folder) / "measured", case.records if everything else case.first)
-        library = {name: recipe for name, recipe in candidates.RECIPES.items() if name != removed}
-        with patch.object(candidates, "RECIPES", library), warnings.catch_warnings():
+        library = {name: kind for name, kind in builtin_effects().items() if name != removed}
+        with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             try:
-                content = explain(load_measurement(path)).content
+                content = explain(load_measurement(path), library=library).content
             except InputError as error:
                 return {"verdict": REFUSED, "causes": [], "sentences": [str(error).replace(folder, "")]}
             except Exception as error:  # the run goes on, the case counts as failed

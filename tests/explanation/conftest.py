@@ -5,14 +5,13 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
-from unittest.mock import patch
 
 import pytest
 from hidden import draw_case, write_case
 
-from gear_damping.explanation import candidates
 from gear_damping.explanation.explain import explain
 from gear_damping.measurement.load import load_measurement
+from gear_damping.physics.catalogue import builtin_effects
 
 RECORDS = (0, 3, 4, 6)  # of the full plan: three speeds, two torques, a fourth condition held out
 ONE = (3,)
@@ -31,9 +30,9 @@ def _explained(
 ) -> dict[str, Any]:
     case = draw_case(stratum, seed, duration=duration, snr_db=snr_db, target_excess=target_excess)
     case = replace(case, records=tuple(case.records[i] for i in records))
-    library = {name: recipe for name, recipe in candidates.RECIPES.items() if name != removed}
-    with tempfile.TemporaryDirectory() as folder, patch.object(candidates, "RECIPES", library):
-        content = explain(load_measurement(write_case(case, Path(folder) / "measured"))).content
+    library = {name: kind for name, kind in builtin_effects().items() if name != removed}
+    with tempfile.TemporaryDirectory() as folder:
+        content = explain(load_measurement(write_case(case, Path(folder) / "measured")), library=library).content
     return content | {"truth": case.truth}
 
 

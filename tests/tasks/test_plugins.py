@@ -65,6 +65,30 @@ def test_the_run_remembers_the_file(recorded):
     assert str(EXAMPLE) in json.loads((recorded / "run.json").read_text())["inputs"]
 
 
+@pytest.mark.parametrize("ruled_out", [False, True])
+def test_it_is_found_as_the_cause_unless_it_is_ruled_out(tmp_path, ruled_out):
+    size = ["simulator.n_runs=2", "write_measurement=true"]
+    assert main(decay(tmp_path, "simulator.sensor_noise.snr_db=40", *size)) == 0
+    measurement = tmp_path / "run" / "measurement" / "measurement.yaml"
+    explain = [
+        "task=explain", "simulator=oscillator", "family=none", f"simulator.plugins=[{EXAMPLE}]", "progress=false",
+        f"measurement.path={measurement}", f"hydra.run.dir={tmp_path / 'explained'}",
+    ]  # fmt: skip
+    assert main([*explain, *([f"ruled_out=[{NAME}]"] if ruled_out else [])]) == 0
+    found = json.loads((tmp_path / "explained" / "explanation.json").read_text())
+    named = {cause["name"]: cause["parameters"] for cause in found["causes"] if cause["status"] == "established"}
+    assert (NAME in named) is not ruled_out
+    if not ruled_out:
+        assert found["verdict"] == "explained"
+        assert named[NAME]["damping_coefficient"]["value"] == pytest.approx(COEFFICIENT, rel=0.05)
+        assert named[NAME]["thinning_velocity"]["value"] == pytest.approx(VELOCITY, rel=0.05)
+
+
+def test_what_is_ruled_out_must_exist(tmp_path, caplog):
+    assert main(decay(tmp_path, "ruled_out=[backlsh]")) == 1
+    assert "did you mean 'backlash'?" in caplog.text
+
+
 def test_it_is_identified_from_the_record(recorded):
     identify = runpy.run_path(str(EXAMPLE.with_name("identify_my_effect.py")))["identify"]
     measurement = recorded / "measurement" / "measurement.yaml"
@@ -124,11 +148,11 @@ BROKEN = {
         "gives the parameter damping_coefficient the default -200.0: must lie within 0 … 1e+12",
     ),
     "empty": (lambda text: "", "declares no effect"),
-    "fails_while_it_loads": (lambda text: text + "\n1 / 0\n", "line 28: ZeroDivisionError"),
+    "fails_while_it_loads": (lambda text: text + "\n1 / 0\n", "line 34: ZeroDivisionError"),
     "stops": (lambda text: "import sys\nsys.exit(3)\n", "line 2: SystemExit"),
     "wrong_parameter": (
         lambda text: text.replace('p["thinning_velocity"]', 'p["velocity"]'),
-        "line 26, in damping_force",
+        "line 32, in damping_force",
     ),
     "wrong_field": (lambda text: text.replace("now.delta_rate.abs", "now.rate.abs"), "no attribute 'rate'"),
 }

@@ -5,6 +5,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
+from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.shapes import sign_change_rate
@@ -25,6 +26,23 @@ class AsymmetricFriction(DampingForce):
         Parameter("width", "1", 0.05, "w, width of the sign change relative to the reference velocity", 1e-6, 10),
     )
     dissipative = True
+    cause: ClassVar = Cause(
+        "a friction force that differs between the two directions of motion",
+        (
+            Recipe(
+                {"force_forward": 0.005, "force_backward": 0.005},
+                scanned={"width": 0.05},
+                within={"asymmetric_friction.width": (0.02, 0.5)},
+            ),
+            Recipe(
+                {"force_forward": 0.005, "force_backward": 0.005, "damping_forward": 0.01, "damping_backward": 0.01},
+                scanned={"width": 0.05},
+                within={"asymmetric_friction.width": (0.02, 0.5)},
+            ),
+        ),
+        separated_by="reversal",
+        simpler="coulomb_friction",
+    )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
         """Means and halves of the differences of the two directions."""

@@ -5,6 +5,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
+from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.terms import Contact, Values
@@ -22,6 +23,11 @@ class Backlash(Contact):
     parameters: ClassVar = (Parameter("gap", "m", 1e-4, "whole clearance; the drive flank is at 0", 0, 0.01),)
     options: ClassVar = (
         Option("as_printed", (False, True), False, "flanks at -gap/2 and gap/2, damping also in free flight"),
+    )
+    cause: ClassVar = Cause(
+        "the gap between the flanks",
+        tuple(Recipe({"gap": gap}, presence=True, in_si=True) for gap in (3e-5, 6e-5, 1.2e-4, 2.4e-4)),
+        separated_by="reversal",
     )
 
     def _datum(self, p: Values) -> Tensor:

@@ -5,6 +5,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
+from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import ExtraStates, TransmissionErrorSource, Values
@@ -25,6 +26,15 @@ class BearingFlexibility(ExtraStates, TransmissionErrorSource):
     )
     systems: ClassVar = ("gear_pair",)
     states: ClassVar = {"displacement": "m", "velocity": "m/s"}
+    cause: ClassVar = Cause(
+        "the flexibility of a bearing",
+        tuple(
+            Recipe({"stiffness": k}, presence=True, scanned={"mass": m, "damping_ratio": 0.02}, in_si=True)
+            for k in (5e8, 2e9, 1e10, 4e10)
+            for m in (1.5, 4.0)
+        ),
+        separated_by="bearing",
+    )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
         """The bearing, and a bound on the fastest rate of mesh and bearing together."""

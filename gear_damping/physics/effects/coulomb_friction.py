@@ -5,6 +5,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
+from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.shapes import sign_change_rate
@@ -22,6 +23,11 @@ class CoulombFriction(DampingForce):
         Parameter("width", "1", 0.05, "w, width of the sign change relative to the reference velocity", 1e-6, 10),
     )
     dissipative = True
+    cause: ClassVar = Cause(
+        "a dry friction force",
+        (Recipe({"force": 0.005}, scanned={"width": 0.05}, within={"coulomb_friction.width": (0.02, 0.5)}),),
+        separated_by="ring_down",
+    )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
         """In natural units the reference velocity is 1."""

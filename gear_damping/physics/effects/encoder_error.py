@@ -5,6 +5,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
+from gear_damping.physics.cause import Cause
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import Recording, Sensor, Values
 
@@ -30,6 +31,10 @@ class EncoderError(Sensor):
         Parameter("gear_line_amplitude", "rad", 0.0, "B2", 0, 0.1),
     )
     systems: ClassVar = ("gear_pair",)
+    cause: ClassVar = Cause(
+        "an error of the encoders",
+        separated_by="remount",
+    )
 
     def measure(self, signal: Tensor, values: Values, recording: Recording) -> Tensor:
         """The response as the encoders see it."""

@@ -1,5 +1,8 @@
 """Eccentricity of the gear."""
 
+from typing import ClassVar
+
+from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.shaft_order import Eccentricity
 
 
@@ -9,3 +12,9 @@ class GearEccentricity(Eccentricity):
     name = "gear_eccentricity"
     equation = "e = E cos(theta_2 + phi), delta = x - e"
     shaft = "gear"
+    cause: ClassVar = Cause(
+        "the eccentricity of the gear",
+        (Recipe({"amplitude": None}, {"amplitude": "phase"}),),
+        separated_by="torque_channel",
+        looks_like=("encoder_error",),
+    )

@@ -1,5 +1,8 @@
 """Modulation of the mesh stiffness by the gear shaft."""
 
+from typing import ClassVar
+
+from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.shaft_order import StiffnessModulation
 
 
@@ -9,3 +12,7 @@ class GearStiffnessModulation(StiffnessModulation):
     name = "gear_stiffness_modulation"
     equation = "k (1 + eps cos(theta_2 + phi))"
     shaft = "gear"
+    cause: ClassVar = Cause(
+        "a mesh stiffness that varies over a turn of the gear",
+        (Recipe({"amplitude": None}, {"amplitude": "phase"}),),
+    )

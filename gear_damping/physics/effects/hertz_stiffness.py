@@ -5,6 +5,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
+from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.shapes import power_of_size
@@ -23,6 +24,10 @@ class HertzStiffness(StiffnessFactor):
     parameters: ClassVar = (
         Parameter("exponent", "1", 0.1, "p", 0, 2),
         Parameter("reference_deflection", "m", 1.66e-5, "delta_0, at which the stiffness is k", 1e-9, 1e9),
+    )
+    cause: ClassVar = Cause(
+        "a contact stiffness that grows with the load",
+        (Recipe({"exponent": 0.05}, fixed={"reference_deflection": 1.0}),),
     )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:

@@ -4,6 +4,7 @@ from typing import ClassVar
 
 from torch import Tensor
 
+from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.shapes import power_of_size
@@ -23,6 +24,10 @@ class HuntCrossleyDamping(DampingForce):
         Parameter("reference_deflection", "m", 1.66e-5, "delta_0, a fixed length", 1e-9, 1e9),
     )
     dissipative = True
+    cause: ClassVar = Cause(
+        "a damping force that grows with the deflection",
+        (Recipe({"damping_coefficient": 0.01}, fixed={"exponent": 1.0, "reference_deflection": 1.0}),),
+    )
 
     def damping_force(self, now: Moment, p: Values) -> Tensor:
         """The force at this instant."""

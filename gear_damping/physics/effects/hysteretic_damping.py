@@ -5,6 +5,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
+from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.shapes import power_of_size
@@ -29,6 +30,11 @@ class HystereticDamping(ExtraStates, DampingForce):
     )
     states: ClassVar = {"deflection": "m"}
     dissipative = True
+    cause: ClassVar = Cause(
+        "a hysteretic force, whose loss does not hang on the rate",
+        (Recipe({"share": 0.02}, fixed={"yield_deflection": 0.2, "exponent": 1.0}),),
+        separated_by="speed",
+    )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
         """The stiffness that yields, and a rate at which yielding is stable, if not resolved."""

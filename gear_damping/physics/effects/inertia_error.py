@@ -5,6 +5,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
+from gear_damping.physics.cause import Cause
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import SystemChange, Values
 
@@ -17,6 +18,9 @@ class InertiaError(SystemChange):
     reference = "Özgüven & Houser (1988), J. Sound Vib. 121(3)"
     parameters: ClassVar = (Parameter("share", "1", 0.1, "kappa", -0.9, 10),)
     systems: ClassVar = ("gear_pair",)
+    cause: ClassVar = Cause(
+        "a moment of inertia other than the one that was stated",
+    )
 
     def change(self, values: Values, derived: dict[str, Tensor]) -> dict[str, Tensor]:
         """Mass and natural frequency."""

@@ -6,6 +6,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
+from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import ContactChange, Values
 
@@ -23,6 +24,21 @@ class LoadDependentContact(ContactChange):
         Parameter("reference_load", "N", 5321.0, "F_ref; 5321 N is 150 N m on the default pinion", 1e-6, 1e9),
     )
     systems: ClassVar = ("gear_pair",)
+    cause: ClassVar = Cause(
+        "a contact ratio that grows with the load",
+        (
+            Recipe(  # what it changes are the edges, which the free shape of the stiffness hid so far
+                {"growth": None},
+                beside={
+                    "mesh_phase": None,
+                    "fourier_mesh_stiffness.contact_ratio": None,
+                    "fourier_mesh_stiffness.minimum": None,
+                    "fourier_mesh_stiffness.edge": 0.1,
+                },
+                within={"fourier_mesh_stiffness.edge": (0.02, 0.3)},
+            ),
+        ),
+    )
 
     def contact(self, values: Values, contact_ratio: Tensor, derived: Values) -> tuple[Tensor, Tensor]:
         """The contact ratio under load, and the mesh angle by which double contact begins early."""

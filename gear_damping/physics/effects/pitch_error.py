@@ -7,6 +7,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.shaft_order import harmonics
@@ -30,6 +31,10 @@ class PitchError(TransmissionErrorSource):
     )
     options: ClassVar = (Option("shaft", ("pinion", "gear"), "pinion", "which of the two gears"),)
     systems: ClassVar = ("gear_pair",)
+    cause: ClassVar = Cause(
+        "errors of the pitch, tooth by tooth",
+        (Recipe({"values": 3e-6}, in_si=True),),
+    )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
         """Cosine and sine parts by shaft order."""

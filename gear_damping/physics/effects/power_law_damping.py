@@ -5,6 +5,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
+from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.damping_ratio import equivalent_damping_ratio, power_law_coefficient
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Option, Parameter
@@ -25,6 +26,11 @@ class PowerLawDamping(DampingLaw):
     )
     options: ClassVar = (Option("as_printed", (False, True), False, "alpha |delta'|^(n+1), which does not dissipate"),)
     dissipative = True
+    cause: ClassVar = Cause(
+        "a damping force that grows with a power of the rate",
+        tuple(Recipe({"coefficient": 0.01}, scanned={"exponent": n}) for n in (2.0, 0.5, 3.0)),
+        separated_by="ring_down",
+    )
 
     def to_natural(self, values: Values, scales: Scales) -> dict[str, Tensor]:
         """Alpha has the unit N (s/m)^n, which depends on n."""

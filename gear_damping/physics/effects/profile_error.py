@@ -5,6 +5,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
+from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.shaft_order import harmonics
@@ -23,6 +24,10 @@ class ProfileError(TransmissionErrorSource):
         Parameter("phases", "rad", (0.0, 0.0), "phi_h by harmonic", vector=True),
     )
     systems: ClassVar = ("gear_pair",)
+    cause: ClassVar = Cause(
+        "errors of the tooth profile",
+        (Recipe({"amplitudes": None}, {"amplitudes": "phases"}, length=4),),
+    )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
         """Cosine and sine parts by harmonic."""

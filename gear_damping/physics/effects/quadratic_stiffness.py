@@ -4,6 +4,7 @@ from typing import ClassVar
 
 from torch import Tensor
 
+from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import ElasticForce, Values
@@ -17,6 +18,10 @@ class QuadraticStiffness(ElasticForce):
     reference = "Nayfeh & Mook (1979), Nonlinear Oscillations, Wiley"
     parameters: ClassVar = (Parameter("coefficient", "N/m^2", 0.1, "k2", -1e24, 1e24),)
     systems: ClassVar = ("oscillator",)
+    cause: ClassVar = Cause(
+        "a restoring force that differs between the two directions of deflection",
+        (Recipe({"coefficient": 0.02}),),
+    )
 
     def elastic_force(self, now: Moment, p: Values) -> Tensor:
         """The force at this instant."""

@@ -6,6 +6,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
+from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.record_filter import filtered
 from gear_damping.physics.terms import Recording, Sensor, Values
@@ -19,6 +20,11 @@ class SensorDelay(Sensor):
     reference = "Laakso et al. (1996), IEEE Signal Process. Mag. 13(1)"
     parameters: ClassVar = (Parameter("delay", "s", 2e-5, "tau", -1e3, 1e3),)
     position = 50
+    cause: ClassVar = Cause(
+        "a delay of the sensor",
+        (Recipe({"delay": 0.05}),),
+        separated_by="speed",
+    )
 
     def measure(self, signal: Tensor, values: Values, recording: Recording) -> Tensor:
         """The record, band-limited interpolated at earlier instants."""

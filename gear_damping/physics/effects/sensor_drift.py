@@ -5,6 +5,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
+from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import Recording, Sensor, Values
 
@@ -17,6 +18,10 @@ class SensorDrift(Sensor):
     reference = "Doebelin (2003), Measurement Systems"
     parameters: ClassVar = (Parameter("rate", "m/s", 2e-5, "d", -1e9, 1e9),)
     position = 30
+    cause: ClassVar = Cause(
+        "a drift of the sensor",
+        (Recipe({"rate": 0.001}),),
+    )
 
     def measure(self, signal: Tensor, values: Values, recording: Recording) -> Tensor:
         """The drifting record."""

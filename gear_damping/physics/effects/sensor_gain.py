@@ -4,6 +4,7 @@ from typing import ClassVar
 
 from torch import Tensor
 
+from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import Recording, Sensor, Values
 
@@ -16,6 +17,11 @@ class SensorGain(Sensor):
     reference = "Doebelin (2003), Measurement Systems"
     parameters: ClassVar = (Parameter("gain", "1", 1.05, "g", 0.01, 100),)
     position = 10
+    cause: ClassVar = Cause(
+        "a wrong gain of the sensor",
+        (Recipe({"gain": None}, neutral=1.0),),
+        looks_like=("inertia_error",),
+    )
 
     def measure(self, signal: Tensor, values: Values, recording: Recording) -> Tensor:
         """The scaled record."""

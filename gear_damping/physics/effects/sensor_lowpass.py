@@ -6,6 +6,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
+from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.record_filter import filtered
 from gear_damping.physics.terms import Recording, Sensor, Values
@@ -20,6 +21,15 @@ class SensorLowpass(Sensor):
     parameters: ClassVar = (Parameter("cutoff", "Hz", 1e4, "f_c, where half the power is left", 1e-6, 1e12),)
     options: ClassVar = (Option("order", (1, 2, 4), 2, "number of poles"),)
     position = 40
+    cause: ClassVar = Cause(
+        "the low-pass of the sensor",
+        tuple(
+            Recipe({"cutoff": size}, presence=True, options={"order": order})
+            for order in (1, 2)
+            for size in (0.5, 1.5, 4.0)
+        ),
+        separated_by="speed",
+    )
 
     def measure(self, signal: Tensor, values: Values, recording: Recording) -> Tensor:
         """The filtered record."""

@@ -4,6 +4,7 @@ from typing import ClassVar
 
 from torch import Tensor
 
+from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import Recording, Sensor, Values
 
@@ -16,6 +17,10 @@ class SensorOffset(Sensor):
     reference = "Doebelin (2003), Measurement Systems"
     parameters: ClassVar = (Parameter("offset", "m", 2e-6, "y0", -1e9, 1e9),)
     position = 20
+    cause: ClassVar = Cause(
+        "an offset of the sensor",
+        (Recipe({"offset": None}),),
+    )
 
     def measure(self, signal: Tensor, values: Values, recording: Recording) -> Tensor:
         """The shifted record."""

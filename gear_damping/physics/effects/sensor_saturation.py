@@ -5,6 +5,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
+from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import Recording, Sensor, Values
 
@@ -17,6 +18,10 @@ class SensorSaturation(Sensor):
     reference = "Doebelin (2003), Measurement Systems"
     parameters: ClassVar = (Parameter("limit", "m", 3e-5, "y_max", 0, 1e9),)
     position = 80
+    cause: ClassVar = Cause(
+        "a sensor that saturates",
+        (Recipe({"limit": None}, presence=True),),
+    )
 
     def measure(self, signal: Tensor, values: Values, recording: Recording) -> Tensor:
         """The clipped record."""

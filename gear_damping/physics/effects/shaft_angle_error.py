@@ -5,6 +5,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
+from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import Recording, Sensor, Values
 
@@ -21,6 +22,10 @@ class ShaftAngleError(Sensor):
     )
     systems: ClassVar = ("gear_pair",)
     channel = "pinion_angle"
+    cause: ClassVar = Cause(
+        "an error of the shaft angle",
+        (Recipe({"amplitude": None}, {"amplitude": "phase"}),),
+    )
 
     def undo(self, signal: Tensor, values: Values) -> Tensor:
         """The true angle from the recorded one; the error is small, so two rounds settle it."""

@@ -5,6 +5,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
+from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import ExtraStates, LoadPath, Values
@@ -29,6 +30,15 @@ class ShaftTorsion(ExtraStates, LoadPath):
     )
     systems: ClassVar = ("gear_pair",)
     states: ClassVar = {"twist": "rad", "twist_rate": "rad/s"}
+    cause: ClassVar = Cause(
+        "the torsion of a shaft or coupling",
+        tuple(
+            Recipe({"stiffness": k}, presence=True, scanned={"motor_inertia": j, "damping_ratio": 0.02}, in_si=True)
+            for k in (3e3, 1e4, 3e4, 1e5)
+            for j in (4e-3, 1.5e-2)
+        ),
+        separated_by="bearing",
+    )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
         """The shaft between the inertias, which are scaled where an equivalent mass was given."""

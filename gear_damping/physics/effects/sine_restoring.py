@@ -5,6 +5,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
+from gear_damping.physics.cause import Cause
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import ElasticForce, Values
@@ -21,6 +22,9 @@ class SineRestoring(ElasticForce):
         Parameter("length", "m", 1.0, "l, one radian in the unit of the displacement", 1e-9, 1e9),
     )
     systems: ClassVar = ("oscillator",)
+    cause: ClassVar = Cause(
+        "the restoring force of a pendulum",
+    )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
         """The parameters, and the rate of small oscillations."""

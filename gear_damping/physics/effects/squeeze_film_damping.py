@@ -4,6 +4,7 @@ from typing import ClassVar
 
 from torch import Tensor
 
+from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import DampingForce, Values
@@ -24,6 +25,10 @@ class SqueezeFilmDamping(DampingForce):
     dissipative = True
     acts_in_gap = True
     requires: ClassVar = ("backlash",)
+    cause: ClassVar = Cause(
+        "the damping of an oil film squeezed between the flanks",
+        (Recipe({"damping_coefficient": 0.01}),),
+    )
 
     def damping_force(self, now: Moment, p: Values) -> Tensor:
         """The force at this instant."""

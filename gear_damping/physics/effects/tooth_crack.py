@@ -6,6 +6,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
+from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.terms import StiffnessFactor, Switch, Values
@@ -29,6 +30,18 @@ class ToothCrack(StiffnessFactor, Switch):
         Option("edges", ("smooth", "switched"), "smooth", "a tanh at either edge, or a jump"),
     )
     systems: ClassVar = ("gear_pair",)
+    cause: ClassVar = Cause(
+        "a tooth that is softer than the others",
+        tuple(
+            Recipe(
+                {"depth": None},
+                scanned={"phase": 2 * pi * i / 20, "edge": 0.1},
+                within={"tooth_crack.edge": (0.02, 0.3)},
+                in_si=True,
+            )
+            for i in range(20)
+        ),
+    )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
         """The centre of the contact and the cosine of half its width."""

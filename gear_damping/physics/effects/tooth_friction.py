@@ -6,6 +6,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
+from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import MeshForceFactor, Switch, Values
@@ -32,6 +33,10 @@ class ToothFriction(MeshForceFactor, Switch):
         Parameter("pitch_point_shift", "1", 0.0, "mesh periods from the pitch point of standard teeth", -1, 1),
     )
     systems: ClassVar = ("gear_pair",)
+    cause: ClassVar = Cause(
+        "the sliding friction of the teeth, which turns round at the pitch point",
+        (Recipe({"friction_coefficient": None}),),
+    )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
         """Lever arms and zones, as angles and their cosines and sines."""

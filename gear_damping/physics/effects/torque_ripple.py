@@ -5,6 +5,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
+from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.terms import Load, LoadFactor, Values
@@ -24,6 +25,21 @@ class TorqueRipple(Load, LoadFactor):
     )
     options: ClassVar = (Option("proportional", (False, True), False, "a share of the load instead of a torque"),)
     systems: ClassVar = ("gear_pair",)
+    cause: ClassVar = Cause(
+        "a ripple of the torque that the torque channel does not show",
+        tuple(
+            Recipe(
+                {strength: None},
+                {strength: "phase"},
+                fixed={"order": order, other: 0.0},
+                options={"proportional": strength == "share"},
+                in_si=True,
+            )
+            for strength, other in (("amplitude", "share"), ("share", "amplitude"))
+            for order in (1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
+        ),
+        separated_by="torque_channel",
+    )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
         """The amplitude as a force, or as a share."""

@@ -6,6 +6,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
+from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.shapes import same_length
@@ -32,6 +33,30 @@ class TorqueVariation(Load, Switch):
     )
     options: ClassVar = (Option("form", ("steps", "ramp", "sine"), "steps", "what the torque does"),)
     systems: ClassVar = ("gear_pair",)
+    cause: ClassVar = Cause(
+        "a change of the torque during the records that the torque channel does not show",
+        (
+            *(
+                Recipe(
+                    {"sine_amplitude": None},
+                    {"sine_amplitude": "sine_phase"},
+                    timed={"sine_frequency": cycles},
+                    options={"form": "sine"},
+                )
+                for cycles in (0.7, 1.0, 1.4, 1.8, 2.2, 2.6, 3.0)
+            ),
+            *(
+                Recipe(
+                    {"ramp_change": None},
+                    timed={"ramp_start": at, "ramp_end": at + length},
+                    options={"form": "ramp"},
+                )
+                for at in (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7)
+                for length in (0.02, 0.25)
+            ),
+        ),
+        separated_by="torque_channel",
+    )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
         """Torques as forces along the line of action."""

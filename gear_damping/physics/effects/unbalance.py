@@ -5,6 +5,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
+from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import BearingForce, Values
@@ -22,6 +23,10 @@ class Unbalance(BearingForce):
     )
     systems: ClassVar = ("gear_pair",)
     requires: ClassVar = ("bearing_flexibility",)
+    cause: ClassVar = Cause(
+        "an unbalance",
+        (Recipe({"unbalance": None}, {"unbalance": "phase"}),),
+    )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
         """Cosine and sine parts."""

@@ -5,6 +5,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
+from gear_damping.physics.cause import Cause
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import DampingLaw, Values
@@ -20,6 +21,9 @@ class ViscousDamping(DampingLaw):
         Parameter("damping_coefficient", "N*s/m", 64.5, "c; 64.5 is 0.35 % of critical for the default pair", 0, 1e12),
     )
     dissipative = True
+    cause: ClassVar = Cause(
+        "a damping force proportional to the rate",
+    )
 
     def damping_force(self, now: Moment, p: Values) -> Tensor:
         """C times the rate."""

@@ -4,6 +4,7 @@ from typing import ClassVar
 
 from torch import Tensor
 
+from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import Load, Values
@@ -17,6 +18,11 @@ class WindageDrag(Load):
     reference = "Diab, Ville, Velex & Changenet (2004), J. Mech. Des. 126(5)"
     parameters: ClassVar = (Parameter("coefficient", "N*m*s^2", 4e-6, "c_w; 0.9 N m at 4600 rpm", 0, 1),)
     systems: ClassVar = ("gear_pair",)
+    cause: ClassVar = Cause(
+        "a drag that grows with the square of the speed",
+        (Recipe({"coefficient": None}),),
+        separated_by="speed",
+    )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
         """The coefficient as a force along the line of action."""
