@@ -8,7 +8,7 @@ from torch import Tensor
 
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.identification.output_error.holdout import predict_holdout
-from gear_damping.identification.output_error.least_squares import SMALLEST_GAIN, Fitted, fit
+from gear_damping.identification.output_error.least_squares import Fitted, fit
 from gear_damping.identification.output_error.problem import OFFSET, FreeParameter, OutputErrorProblem
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.base import System
@@ -108,7 +108,7 @@ def fit_hypothesis(
     horizons: Sequence[int] | None = None,
     solver: Solver | None = None,
     kept: float = 0.5,
-    settled: float = SMALLEST_GAIN,
+    enough: float = 0.0,
 ) -> Outcome:
     """Fit to the records to fit, then predict the held-out ones with the parameters frozen.
 
@@ -121,14 +121,14 @@ def fit_hypothesis(
         horizons: Samples of growing rounds.
         solver: Settings of the solver.
         kept: Share of the starts that goes on from round to round.
-        settled: Relative fall of the cost below which the fit has come to rest.
+        enough: Fall of the cost, in noise variances, below which the fit has come to rest.
     """
     model, known = hypothesis.model, hypothesis.given
     problem = OutputErrorProblem(model, known, hypothesis.free, evidence.fit, solver, evidence.noise)
     if starts is None:
         starts = torch.zeros(1, problem.n_shared, dtype=torch.float64)
     begun = None if states is None else states.expand(len(starts), -1, -1).clone()
-    fitted = fit(problem, starts, horizons, iterations, begun, kept=kept, settled=settled)
+    fitted = fit(problem, starts, horizons, iterations, begun, kept=kept, enough=enough * evidence.noise**2)
     values = {name: float(value) for name, value in problem.parameters(fitted.shared).items()}
     given = placed(hypothesis.given, values)
     frequency = natural_frequency_hz(hypothesis.model, given)

@@ -21,7 +21,7 @@ BLOCK_PERIODS = 6.0  # natural periods of a block of the paired test
 CAUTIOUS = 0.3  # of the linearised optimum: the second start, where the first one leads too far
 FIRST_PART = 0.25  # of the records, by which the better start is chosen
 ONE = 1e-9  # share of the starts that goes on: the best
-SETTLED = 1e-5  # relative fall of the cost: about a tenth of what a parameter of no use gains from noise
+ENOUGH = 0.1  # noise variances: a tenth of what a parameter of no use gains from noise
 SEEN = 25.0  # noise variances, five standard deviations of one parameter
 FIRST_ITERATIONS, LAST_ITERATIONS = 10, 30
 VARIANTS_KEPT = 0.25  # of the sizes of an effect that is tried as a whole, after the first round
@@ -91,7 +91,7 @@ def refitted(
     """The candidate's full fit from `outcome`, held against it or another; None where the fit ran away."""
     candidate = score.candidate
     hypothesis, states = candidate.hypothesis, outcome.fitted.states
-    options = {"solver": solver, "settled": SETTLED}
+    options = {"solver": solver, "enough": ENOUGH}
     total = max(len(record.response) for record in evidence.fit)
     found = fit_hypothesis(
         hypothesis,

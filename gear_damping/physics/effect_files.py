@@ -6,9 +6,11 @@ import traceback
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from types import ModuleType
+from typing import get_args
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.physics import terms
+from gear_damping.physics.cause import Cause, Experiment, Recipe
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.terms import Effect, ExtraStates, MeshStiffness
 from gear_damping.units import parse_unit
@@ -89,6 +91,7 @@ def _faults(kind: type[Effect]) -> Iterator[str]:
     if not _all(kind.systems, str) or not set(kind.systems) <= {"gear_pair", "oscillator"}:
         yield f"goes with the systems {kind.systems!r}: choose from ('gear_pair', 'oscillator')"
     yield from _parameter_faults(kind)
+    yield from cause_faults(kind)
     if issubclass(kind, ExtraStates):
         states = getattr(kind, "states", None)
         if not isinstance(states, dict):
@@ -120,6 +123,23 @@ def _parameter_faults(kind: type[Effect]) -> Iterator[str]:
         elif parameter.default is not None and any(parameter.problem(value, "") for value in values):
             bounds = f"{parameter.lower:g} … {parameter.upper:g}"
             yield f"gives {whole} the default {parameter.default!r}: must lie within {bounds}"
+
+
+def cause_faults(kind: type[Effect]) -> Iterator[str]:
+    """What is wrong with how an effect is tried as a cause; its parameters must be right themselves."""
+    if kind.cause is None or not _all(getattr(kind, "parameters", None), Parameter):
+        return
+    if not isinstance(kind.cause, Cause) or not _all(kind.cause.recipes, Recipe):
+        yield "has a cause that is no Cause('what it is called', (Recipe(…), …))"
+        return
+    if kind.cause.separated_by not in get_args(Experiment):
+        yield f"is separated by {kind.cause.separated_by!r}: choose from {get_args(Experiment)}"
+    declared = {parameter.name for parameter in kind.parameters}
+    for recipe in kind.cause.recipes:
+        named = {*recipe.strengths, *recipe.phases, *recipe.phases.values()}
+        named |= {*recipe.scanned, *recipe.timed, *recipe.fixed}
+        for name in sorted(named - declared):
+            yield f"has a recipe with {name!r}, which is none of its parameters"
 
 
 def _unit_faults(what: str, unit: object) -> Iterator[str]:

@@ -6,6 +6,7 @@ import pytest
 from effect_bench import EFFECTS
 
 from gear_damping.physics.catalogue import SYSTEMS
+from gear_damping.physics.effect_files import cause_faults
 from gear_damping.units import parse_unit
 
 CATALOGUE = """
@@ -62,3 +63,14 @@ def test_options_have_their_default_among_the_choices(name):
         assert option.problem(option.default, option.name) is None
         assert option.meaning
         assert option.name not in {p.name for p in EFFECTS[name].parameters}
+
+
+@pytest.mark.parametrize("name", [name for name, kind in EFFECTS.items() if kind.cause])
+def test_as_a_cause_it_names_its_own_parameters_and_known_effects(name):
+    cause = EFFECTS[name].cause
+    assert list(cause_faults(EFFECTS[name])) == []
+    assert set(cause.looks_like) <= set(EFFECTS)
+    assert cause.simpler is None or cause.simpler in EFFECTS
+    for recipe in cause.recipes:
+        EFFECTS[name](**recipe.options)
+        assert all("." in flat for flat in recipe.within)

@@ -147,6 +147,12 @@ BROKEN = {
         lambda text: text.replace("200.0", "-200.0"),
         "gives the parameter damping_coefficient the default -200.0: must lie within 0 … 1e+12",
     ),
+    "recipe_of_another": (
+        lambda text: text.replace('scanned={"thinning_velocity"', 'scanned={"velocity"'),
+        "has a recipe with 'velocity', which is none of its parameters",
+    ),
+    "unknown_experiment": (lambda text: text.replace('"ring_down"', '"ringdown"'), "is separated by 'ringdown'"),
+    "no_cause": (lambda text: text.replace("= Cause(", '= "thin"\n    other = Cause('), "has a cause that is no Cause"),
     "empty": (lambda text: "", "declares no effect"),
     "fails_while_it_loads": (lambda text: text + "\n1 / 0\n", "line 34: ZeroDivisionError"),
     "stops": (lambda text: "import sys\nsys.exit(3)\n", "line 2: SystemExit"),

@@ -9,7 +9,7 @@ from torch import Tensor
 from gear_damping.identification.output_error.problem import OutputErrorProblem, Prediction
 
 FIRST_DAMPING, LARGEST_DAMPING, SMALLEST_DAMPING = 1e-2, 1e10, 1e-12
-SMALLEST_GAIN = 1e-7
+SMALLEST_GAIN = 1e-7  # relative fall of the cost below which a start has converged
 LONGEST_STEP = 2.0  # of any coordinate in one iteration
 
 
@@ -68,7 +68,7 @@ def fit(
     states: Tensor | None = None,
     report: Callable[[int, int], None] | None = None,
     kept: float = 0.5,
-    settled: float = SMALLEST_GAIN,
+    enough: float = 0.0,
 ) -> Fitted:
     """The best of several starts.
 
@@ -80,7 +80,7 @@ def fit(
         states: Initial states of the starts, (starts, records, 2); from the records where absent.
         report: Told (done, total) rounds.
         kept: Share of the starts, the best ones, that goes on from round to round.
-        settled: Relative fall of the cost below which a start has converged.
+        enough: Fall of the cost below which a start has converged, whatever share of the cost it is.
     """
     if states is None:
         states = problem.first_states().expand(shared.shape[0], -1, -1).clone()
@@ -88,7 +88,7 @@ def fit(
     rounds = list(horizons or [problem.response.shape[1]])
     most = [iterations] * len(rounds) if isinstance(iterations, int) else iterations
     for number, samples in enumerate(rounds):
-        points, prediction, cost, converged = _round(problem, points, samples, most[number], settled)
+        points, prediction, cost, converged = _round(problem, points, samples, most[number], enough)
         if report:
             report(number + 1, len(rounds))
         if number < len(rounds) - 1:
@@ -99,7 +99,7 @@ def fit(
 
 
 def _round(
-    problem: OutputErrorProblem, points: Points, samples: int, iterations: int, settled: float
+    problem: OutputErrorProblem, points: Points, samples: int, iterations: int, enough: float
 ) -> tuple[Points, Prediction, Tensor, Tensor]:
     now = problem.linearise(points.shared, points.states, samples)
     cost = _cost(problem, points, now)
@@ -111,7 +111,8 @@ def _round(
         new_cost = _cost(problem, trial, new)
         better = new_cost < cost
         gain = torch.where(better, (cost - new_cost) / cost.clamp(min=1e-300), torch.zeros_like(cost))
-        converged = (better & (gain < settled)) | (damping >= LARGEST_DAMPING) | (converged & ~better)
+        small = (gain < SMALLEST_GAIN) | (cost - new_cost < enough)
+        converged = (better & small) | (damping >= LARGEST_DAMPING) | (converged & ~better)
         points = Points(_select(better, trial.shared, points.shared), _select(better, trial.states, points.states))
         now = Prediction(_select(better, new.residual, now.residual), _select(better, new.sensitivity, now.sensitivity))
         cost = torch.where(better, new_cost, cost)
