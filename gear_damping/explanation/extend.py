@@ -198,14 +198,15 @@ def _simplest(best: Refit, fits: Sequence[Refit], evidence: Evidence) -> tuple[R
     """The explanation with its rivals, the effects whose full fit is not worse by the paired test.
 
     Of two of which one contains the other (a friction with two sides contains one with equal sides), the
-    smaller is taken where the larger does no better.
+    smaller is taken where the larger does no better; and of several that the data do not tell apart the one with
+    the fewest parameters is named first.
     """
     block = block_samples(best.outcome, evidence.sampling_rate)
     alike = [f for f in fits if f is best or _as_good(f.outcome, best.outcome, block, evidence.noise)]
     inner = [f for f in alike if any(contains(o.score, f.score) for o in alike if o.name != f.name)]
     outer = {f.name for f in alike if any(contains(f.score, other.score) for other in inner if other.name != f.name)}
     kept = [f for f in alike if f.name not in outer] or alike
-    first = min(kept, key=lambda fit: fit.outcome.holdout_cost)
+    first = min(kept, key=lambda fit: (len(fit.outcome.hypothesis.free), fit.outcome.holdout_cost))
     return first, tuple(dict.fromkeys(f.name for f in kept if f.name != first.name))
 
 
