@@ -8,9 +8,10 @@ from gear_damping.explanation import content
 from gear_damping.explanation.calibrate import calibrated
 from gear_damping.explanation.data_faults import data_faults, mesh_order_faults
 from gear_damping.explanation.evidence import Evidence, evidence_of
-from gear_damping.explanation.extend import Search, search
+from gear_damping.explanation.extend import search
 from gear_damping.explanation.noise import NoiseLevel, noise_level, weighted
 from gear_damping.explanation.significance import excess
+from gear_damping.explanation.trying import Search
 from gear_damping.explanation.verdict import Judged, verdict
 from gear_damping.measurement.record import Measurement
 from gear_damping.physics.terms import Effect

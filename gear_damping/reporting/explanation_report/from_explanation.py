@@ -8,9 +8,10 @@ import numpy as np
 
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.explain import Explanation
-from gear_damping.explanation.extend import LEAST_SHARE, Search
+from gear_damping.explanation.extend import LEAST_SHARE
 from gear_damping.explanation.gain import parameters_of, spread_of
 from gear_damping.explanation.hypothesis import Outcome
+from gear_damping.explanation.trying import Search
 from gear_damping.reporting.explanation_report.render import render
 from gear_damping.reporting.explanation_report.report_input import Overlay, ReportInput
 from gear_damping.reporting.explanation_report.residual_arrays import force_map, force_surface, spectrum

@@ -9,8 +9,8 @@ from scipy.stats import binned_statistic_2d
 from torch import Tensor
 
 from gear_damping.explanation.evidence import Evidence
-from gear_damping.explanation.extend import Search
 from gear_damping.explanation.hypothesis import Outcome, natural_frequency_hz
+from gear_damping.explanation.trying import Search
 from gear_damping.explanation.unexplained import Shaft, residual_force, shaft_of
 from gear_damping.reporting.explanation_report.report_input import ForceMap, ForceSurface, ResidualSpectrum
 from gear_damping.signals.spectra import amplitude_spectrum, order_spectrum

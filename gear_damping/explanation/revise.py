@@ -1,0 +1,66 @@
+"""Second thoughts of the search: causes that give way to others, to simpler ones, or to nothing."""
+
+from dataclasses import replace
+
+from gear_damping.explanation.ranking import Score
+from gear_damping.explanation.significance import Excess
+from gear_damping.explanation.trying import BORNE_OUT, Accepted, Bench, Search
+
+
+def exchanged(found: Search, first: Excess, bench: Bench) -> None:
+    """Earlier causes give way to what explains more now that a further one is known.
+
+    A cause that was accepted while another was missing may have been its neighbour that came nearest to both.
+    """
+    for place, cause in enumerate(found.accepted[:-1]):
+        before = found.outcome
+        without = bench.without(before, cause.name)
+        fits = bench.full_fits(bench.ranked(without), without, before)
+        if fits and fits[0].t > BORNE_OUT and fits[0].is_seen_in_fit:
+            best, rivals = bench.simplest(fits[0], fits)
+            gained = bench.excess(before).percent - bench.excess(best.outcome).percent
+            if best.name != cause.name:
+                bench.say(f"{best.name} takes the place of {cause.name} beside the others")
+            share = cause.share + gained / max(first.percent, 1e-300)
+            found.accepted[place] = Accepted(best.name, best, share, rivals)
+            found.outcome = best.outcome
+
+
+def simplified(cause: Accepted, found: Search, bench: Bench) -> Accepted:
+    """The cause, or the simpler one that it contains where that does as well beside the other causes."""
+    simpler = cause.effect.cause.simpler
+    if simpler is None or simpler in {accepted.name for accepted in found.accepted}:
+        return cause
+    without = bench.without(found.outcome, cause.name)
+    ranked = bench.ranked(without, {simpler})
+    fit = bench.full_fit(ranked[0], without) if ranked else None
+    if fit is None or not bench.is_as_good(fit.outcome, found.outcome):
+        return cause
+    bench.say(f"{simpler} does as well as {cause.name}, with fewer parameters")
+    found.outcome = fit.outcome
+    return Accepted(simpler, fit, cause.share, tuple(name for name in cause.confusable if name != simpler))
+
+
+def pruned(found: Search, bench: Bench) -> None:
+    """Drop a cause whose removal costs nothing that held-out records show."""
+    for accepted in found.accepted[:-1]:
+        without = bench.without(found.outcome, accepted.name)
+        if bench.paired_gain(without, found.outcome)[1] < BORNE_OUT:
+            bench.say(f"{accepted.name} is not needed beside the others")
+            found.outcome = without
+            found.accepted = [other for other in found.accepted if other is not accepted]
+
+
+def beside_the_others(cause: Accepted, found: Search, bench: Bench) -> Accepted:
+    """The cause with those of its rivals that do no worse in its place, now that the other causes are known."""
+    named = {accepted.name for accepted in found.accepted}
+    rivals = [name for name in cause.confusable if name not in named]
+    if not rivals:
+        return replace(cause, confusable=())
+    without = bench.without(found.outcome, cause.name)
+    best: dict[str, Score] = {}
+    for score in bench.ranked(without, rivals):
+        best.setdefault(score.candidate.name, score)
+    fits = [bench.full_fit(score, without) for score in best.values() if score.gain > 0]
+    kept = [fit.name for fit in fits if fit is not None and bench.is_as_good(fit.outcome, found.outcome)]
+    return replace(cause, confusable=tuple(kept))

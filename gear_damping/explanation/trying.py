@@ -1,0 +1,143 @@
+"""What the search and its second thoughts both do: score, fit in full, compare on held-out records."""
+
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass, field, replace
+
+from gear_damping.explanation.candidates import candidates_for
+from gear_damping.explanation.evidence import Evidence
+from gear_damping.explanation.hypothesis import Hypothesis, Outcome, fit_hypothesis
+from gear_damping.explanation.noise import NoiseLevel
+from gear_damping.explanation.ranking import Score, contains, scores
+from gear_damping.explanation.refit import Refit, block_samples, chosen, refitted
+from gear_damping.explanation.significance import Excess, excess, paired_gain
+from gear_damping.identification.output_error.problem import FreeParameter
+from gear_damping.physics.terms import Effect
+from gear_damping.simulation.solver_settings import Solver
+
+BORNE_OUT = 3.0  # t of the held-out gain that a cause needs
+RIVAL = 2.0  # t below which two explanations are not told apart
+SAME = 1e-3  # of the noise variance: a mean difference below it is none
+Say = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Accepted:
+    """A cause that held-out records bear out.
+
+    Args:
+        name: The effect.
+        refit: Its full fit when it was accepted.
+        share: Share of the excess that it took, held out.
+        confusable: Other effects that fit no worse.
+    """
+
+    name: str
+    refit: Refit
+    share: float
+    confusable: tuple[str, ...]
+
+    @property
+    def effect(self) -> Effect:
+        """The effect itself."""
+        return next(e for e in self.refit.outcome.hypothesis.effects if e.name == self.name)
+
+
+@dataclass
+class Search:
+    """What the search found.
+
+    Args:
+        nominal: The calibrated nominal model.
+        outcome: The model at the end.
+        accepted: Causes in the order in which they were accepted.
+        first_scores: Every candidate's score beside the nominal model.
+        rejected: Full fits of the last round that were not accepted.
+        first_fits: Full fits of the first round, the best first.
+    """
+
+    nominal: Outcome
+    outcome: Outcome
+    accepted: list[Accepted] = field(default_factory=list)
+    first_scores: list[Score] = field(default_factory=list)
+    rejected: list[Refit] = field(default_factory=list)
+    first_fits: list[Refit] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Bench:
+    """Where candidates are tried.
+
+    Args:
+        evidence: The records, with their noise.
+        noise: The same in full.
+        say: Told what is found on the way.
+        solver: Settings of the solver.
+    """
+
+    evidence: Evidence
+    noise: NoiseLevel
+    say: Say
+    solver: Solver | None
+
+    def excess(self, outcome: Outcome) -> Excess:
+        """What a model leaves of the held-out records."""
+        return excess(outcome.holdout, self.evidence.holdout, self.noise)
+
+    def ranked(self, outcome: Outcome, names: Collection[str] | None = None) -> list[Score]:
+        """Every candidate beside a model, or those of some effects, the most promising first."""
+        tried = candidates_for(outcome.hypothesis, self.evidence)
+        tried = tried if names is None else [candidate for candidate in tried if candidate.name in names]
+        return scores(outcome, self.evidence, tried, self.noise.value, self.solver)
+
+    def full_fit(self, score: Score, outcome: Outcome, against: Outcome | None = None) -> Refit | None:
+        """A candidate fitted in full from a model, held against it or another."""
+        return refitted(score, outcome, self.evidence, self.solver, against)
+
+    def full_fits(self, ranked: Sequence[Score], outcome: Outcome, against: Outcome) -> list[Refit]:
+        """The candidates worth it, fitted in full; the best first."""
+        if not ranked:
+            return []
+        fits = (self.full_fit(score, outcome, against) for score in chosen(ranked) if score.gain > 0)
+        return sorted((fit for fit in fits if fit is not None), key=lambda fit: fit.outcome.holdout_cost)
+
+    def without(self, outcome: Outcome, name: str) -> Outcome:
+        """A model without one of its causes, fitted from where it was."""
+        return fit_hypothesis(
+            _without(outcome.hypothesis, name), self.evidence, None, outcome.fitted.states, solver=self.solver
+        )
+
+    def is_as_good(self, outcome: Outcome, best: Outcome) -> bool:
+        """Whether a model is not worse than another by the paired test."""
+        gain, t = self.paired_gain(outcome, best)
+        return t < RIVAL or gain < SAME * self.noise.value**2
+
+    def paired_gain(self, before: Outcome, after: Outcome) -> tuple[float, float]:
+        """Gain of the second over the first on held-out records, with its t."""
+        return paired_gain(before.holdout, after.holdout, block_samples(after, self.evidence.sampling_rate))
+
+    def simplest(self, best: Refit, fits: Sequence[Refit]) -> tuple[Refit, tuple[str, ...]]:
+        """The explanation with its rivals, the effects whose full fit is not worse by the paired test.
+
+        Of two of which one contains the other (a friction with two sides contains one with equal sides), the
+        smaller is taken where the larger does no better; and of several that the data do not tell apart the one
+        with the fewest parameters is named first.
+        """
+        alike = [f for f in fits if f is best or (f.is_seen_in_fit and self.is_as_good(f.outcome, best.outcome))]
+        inner = [f for f in alike if any(contains(o.score, f.score) for o in alike if o.name != f.name)]
+        outer = {f.name for f in alike if any(contains(f.score, o.score) for o in inner if o.name != f.name)}
+        kept = [f for f in alike if f.name not in outer] or alike
+        first = min(kept, key=lambda fit: (len(fit.outcome.hypothesis.free), fit.outcome.holdout_cost))
+        return first, tuple(dict.fromkeys(f.name for f in kept if f.name != first.name))
+
+
+def _without(hypothesis: Hypothesis, name: str) -> Hypothesis:
+    def other(parameter: FreeParameter) -> bool:
+        return not parameter.name.startswith(name + ".")
+
+    return replace(
+        hypothesis,
+        effects=tuple(effect for effect in hypothesis.effects if effect.name != name),
+        given={key: value for key, value in hypothesis.given.items() if not key.startswith(name + ".")},
+        free=tuple(parameter for parameter in hypothesis.free if other(parameter)),
+        causes=tuple(cause for cause in hypothesis.causes if cause != name),
+    )
