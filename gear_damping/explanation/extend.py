@@ -61,9 +61,7 @@ def _next(found: Search, ranked: Sequence, current: Excess, bench: Bench) -> tup
     return (None, ()) if best is None else bench.simplest(best, fits)
 
 
-def _accept(
-    found: Search, best: Refit, rivals: tuple[str, ...], current: Excess, first: Excess, bench: Bench
-) -> None:
+def _accept(found: Search, best: Refit, rivals: tuple[str, ...], current: Excess, first: Excess, bench: Bench) -> None:
     share = (current.percent - bench.excess(best.outcome).percent) / max(first.percent, 1e-300)
     found.accepted.append(Accepted(best.name, best, share, rivals))
     found.outcome = best.outcome

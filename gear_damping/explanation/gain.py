@@ -15,6 +15,7 @@ from gear_damping.physics.terms import DampingLaw
 from gear_damping.simulation.runs import reference_velocity
 
 CORRELATED_PERIODS = 3.0  # natural periods over which residuals may be correlated
+SILENT = 0.1  # noise levels that a step of order one moves the records by, in all: less says nothing of a parameter
 STEP = 1e-4  # of a coordinate, for the slope of the damping ratio
 
 
@@ -49,7 +50,10 @@ def spread_of(outcome: Outcome, evidence: Evidence) -> Tensor:
 
 
 def parameters_of(outcome: Outcome, spread: Tensor, cause: str, evidence: Evidence) -> dict[str, dict[str, object]]:
-    """The fitted parameters of an effect with 95 % intervals, by own name."""
+    """The fitted parameters of an effect with 95 % intervals, by own name.
+
+    Of one that the records say nothing of (a gap whose far flank is never touched) it is its whole range.
+    """
     found = {}
     declared = outcome.hypothesis.model.parameters()
     for place, parameter in enumerate(outcome.problem.free):
@@ -58,8 +62,11 @@ def parameters_of(outcome: Outcome, spread: Tensor, cause: str, evidence: Eviden
             continue
         z, half = outcome.fitted.shared[place], QUANTILE * float(spread[place, place].clamp(min=0).sqrt())
         ends = sorted(float(parameter.value(z + shift)) for shift in (-half, half))
-        value = float(parameter.value(z))
-        unit = rig_unit(declared[parameter.name.partition("[")[0]].unit, evidence)
+        value, known = float(parameter.value(z)), declared[parameter.name.partition("[")[0]]
+        moved = float(outcome.fitted.prediction.sensitivity[..., place].norm())
+        if moved < SILENT * evidence.noise and parameter.lower < value < parameter.upper:
+            ends = [known.lower, known.upper]
+        unit = rig_unit(known.unit, evidence)
         found[own] = Interval(value, (ends[0], ends[1]), unit).plain()
     return found
 

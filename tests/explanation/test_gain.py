@@ -1,0 +1,38 @@
+"""What is said of fitted parameters."""
+
+import torch
+
+from gear_damping.explanation.evidence import Evidence
+from gear_damping.explanation.gain import parameters_of, spread_of
+from gear_damping.explanation.hypothesis import Hypothesis, fit_hypothesis
+from gear_damping.identification.output_error.problem import FitRecord, FreeParameter
+from gear_damping.physics.catalogue import effect_class
+from gear_damping.physics.model import Model
+from gear_damping.physics.systems.gear_pair import GearPair
+from gear_damping.simulation.simulate import simulate
+
+NOISE = 1e-8
+
+
+def test_a_gap_whose_far_flank_is_never_touched_has_its_whole_range_as_interval():
+    effects = [effect_class(name)() for name in ("fourier_mesh_stiffness", "viscous_damping", "backlash")]
+    model = Model(GearPair(), effects)
+    given = {"pinion_torque": 150.0, "pinion_speed": 300.0, "backlash.gap": 1e-4}
+    start = {"initial_displacement": 1.8e-5}
+    runs = simulate(model, model.values(1, **given, **start), sampling_rate=40e3, n_samples=300)
+    response = runs.response[0] + NOISE * torch.randn(300, generator=torch.Generator().manual_seed(0)).double()
+    records = (FitRecord("run", response, 40e3),)
+    evidence = Evidence("gear_pair", records, records, {}, None, one_record=False, noise=NOISE)
+    free = (
+        FreeParameter("viscous_damping.damping_coefficient", 60.0, logarithmic=True),
+        FreeParameter("backlash.gap", 8e-5, logarithmic=True, lower=0, upper=1e-2),
+    )
+    outcome = fit_hypothesis(Hypothesis(GearPair(), tuple(effects), given, free), evidence)
+    spread = spread_of(outcome, evidence)
+    gap = parameters_of(outcome, spread, "backlash", evidence)["gap"]
+    declared = model.parameters()["backlash.gap"]
+    assert gap["interval95"] == [declared.lower, declared.upper]
+    damping = parameters_of(outcome, spread, "viscous_damping", evidence)["damping_coefficient"]
+    low, high = damping["interval95"]
+    assert low < 64.5 < high
+    assert high - low < 6.0
