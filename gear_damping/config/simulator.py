@@ -11,7 +11,7 @@ from gear_damping.config.quantities import split_suffix
 from gear_damping.config.reader import Reader
 from gear_damping.config.schema import Key
 from gear_damping.config.source import COMMAND_LINE, Origin
-from gear_damping.errors import InputError, Problem
+from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.physics.catalogue import SYSTEMS, catalogue
 from gear_damping.physics.model import Model
 from gear_damping.physics.parameter import Parameter
@@ -170,7 +170,9 @@ def _refuse_unknown(
         elif options is not None:
             ours = {*HOW, "system", *options}
             if key not in ours and split_suffix(key, numbers)[0] not in numbers:
-                reader.refuse_unknown(full, [*known, *numbers, *ours], "no such effect or parameter")
+                remedy = nearest(key, [*known, *numbers, *ours])
+                own = "; an effect of your own needs simulator.plugins=[its file]" if isinstance(value, Mapping) else ""
+                reader.refuse(full, "no such effect or parameter", remedy=remedy + own)
 
 
 def _effect(reader: Reader, kind: type[Effect], node: Any, given: dict[str, Any]) -> Effect | None:

@@ -84,6 +84,12 @@ def test_it_is_found_as_the_cause_unless_it_is_ruled_out(tmp_path, ruled_out):
         assert named[NAME]["thinning_velocity"]["value"] == pytest.approx(VELOCITY, rel=0.05)
 
 
+def test_without_its_file_it_is_asked_for(tmp_path, caplog):
+    arguments = [one for one in decay(tmp_path) if "plugins" not in one]
+    assert main(arguments) == 1
+    assert "an effect of your own needs simulator.plugins=[its file]" in caplog.text
+
+
 def test_what_is_ruled_out_must_exist(tmp_path, caplog):
     assert main(decay(tmp_path, "ruled_out=[backlsh]")) == 1
     assert "did you mean 'backlash'?" in caplog.text
