@@ -21,8 +21,8 @@ def iterate_coefficients(
     Args:
         wavelet: The transform.
         signals: Records of shape (run, time); may lie in a memory-mapped file.
-        records: Runs in one step; memory is a few times records * scale * time. Blocks of about 32 MiB and more are
-            kept by some C libraries after they are freed, so that more at once is not faster.
+        records: Runs in one step; memory is a few times records * scale * time. Some C libraries keep freed
+            blocks for a while, which counts as memory too.
         device: Where to compute; by default where the signals are. The coefficients stay there.
     """
     require_records(signals, "signals")
