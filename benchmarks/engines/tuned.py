@@ -38,4 +38,4 @@ def _library(cosines: bool, exact_power: bool) -> ctypes.CDLL:
     chosen = {"WIDTH 8": True, "COSINES": cosines, "EXACT_POWER": exact_power}
     defined = [f"#define {name}" for name, wanted in chosen.items() if wanted]
     own = Path(__file__).with_name("tuned.cpp").read_text()
-    return build.compiled("\n".join([*defined, (source.HERE / "vectors.h").read_text(), own]))
+    return build.compiled("\n".join([*defined, (source.HERE / "vectors.h").read_text(), source.tableau(), own]))

@@ -1,34 +1,34 @@
 """Memory that a training step frees serves the next one."""
 
 import ctypes
+import json
+import statistics
 import subprocess
 import sys
 
 import pytest
 
-# In a process of its own: the setting cannot be taken back.
+# In a process of its own: the setting cannot be taken back. Six blocks at once are more than glibc keeps of itself;
+# each is small enough for the heap.
 PROGRAM = """
-import resource, sys, torch
+import json, resource, torch
 from gear_damping.identification.lightning_support import keep_memory
-if sys.argv[1] == "keep":
-    keep_memory()
+keep_memory()
+def page_faults():
+    return resource.getrusage(resource.RUSAGE_SELF).ru_minflt
 def step():
-    return [torch.ones(6 << 20).sum(), torch.cat([torch.ones(6 << 20), torch.ones(1 << 20)]).sum()]
-step(); step()
-before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
-for _ in range(4):
-    step()
-print(resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before)
+    before = page_faults()
+    [torch.ones(6 << 20) for _ in range(6)]
+    return page_faults() - before
+print(json.dumps([step() for _ in range(25)]))
 """
-
-
-def page_faults(what):
-    done = subprocess.run([sys.executable, "-c", PROGRAM, what], capture_output=True, text=True, check=True)
-    return int(done.stdout)
 
 
 @pytest.mark.skipif(
     sys.platform != "linux" or not hasattr(ctypes.CDLL(None), "mallopt"), reason="only glibc can be told"
 )
 def test_repeated_steps_touch_no_new_pages():
-    assert page_faults("keep") < 0.02 * page_faults("leave")
+    done = subprocess.run([sys.executable, "-c", PROGRAM], capture_output=True, text=True, check=True)
+    first, *others = json.loads(done.stdout)
+    # The heap may grow once more, whenever its free blocks happen to lie badly: the step in the middle counts.
+    assert statistics.median(others) < 0.02 * first

@@ -1,22 +1,13 @@
 // Walks members over output intervals with the region-locked method of Tsitouras (see stepper.py, which
 // does the same in PyTorch). Above this text stand: WIDTH, VECTORS, N_STATE, N_FIXED, N_SERIES, N_SWITCH, N_KEPT,
-// the vector types and functions, and the traced functions setup, rates and switches.
+// the vector types and functions, the method's NODES, STAGES and WEIGHTS, and the traced functions setup, rates and
+// switches.
 
 struct Block {
   vd P[N_FIXED + 1], S[N_SERIES + 1], L[N_SWITCH + 1], Q[N_KEPT + 1];
   double index;
 };
 
-static const double NODES[6] = {0.0, 0.161, 0.327, 0.9, 0.9800255409045097, 1.0};
-static const double STAGES[6][5] = {
-    {0},
-    {0.161},
-    {-0.008480655492356989, 0.335480655492357},
-    {2.8971530571054935, -6.359448489975075, 4.3622954328695815},
-    {5.325864828439257, -11.748883564062828, 7.4955393428898365, -0.09249506636175525},
-    {5.86145544294642, -12.92096931784711, 8.159367898576159, -0.071584973281401, -0.028269050394068383}};
-static const double WEIGHTS[6] = {0.09646076681806523, 0.01, 0.4798896504144996,
-                                  1.379008574103742, -3.290069515436081, 2.324710524099774};
 static const double WATCHED[2] = {1.0 / 3.0, 2.0 / 3.0};
 static const double SAME_INSTANT = 1e-5;
 static const int ROOT_STEPS = 6, MOST_SPLITS = 8;

@@ -1,11 +1,13 @@
 """The C++ source of a model's kernel."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 import torch
 from torch import Tensor
 
+from gear_damping.simulation import tsit5
 from gear_damping.simulation.kernel import Kernel, Members
 from gear_damping.simulation.native.emit import Written
 from gear_damping.simulation.native.expressions import Program
@@ -52,7 +54,24 @@ def kernel_source(kernel: Kernel, members: Members, state: Tensor, width: int) -
     numbers = (width, vectors_of(sizes[0]), *sizes, len(written.kept))
     defined = [f"#define {n} {v}" for n, v in zip(names, numbers, strict=True)]
     driver = (HERE / "driver.cpp").read_text()
-    return "\n".join([*defined, (HERE / "vectors.h").read_text(), *parts, driver])
+    return "\n".join([*defined, (HERE / "vectors.h").read_text(), tableau(), *parts, driver])
+
+
+def tableau() -> str:
+    """The coefficients of the method as C++: NODES, STAGES and WEIGHTS."""
+    count = len(tsit5.NODES)
+    rows = ", ".join(_listed([*row, *[0.0] * (count - 1 - len(row))]) for row in tsit5.STAGES)
+    return "\n".join(
+        [
+            f"static const double NODES[{count}] = {_listed(tsit5.NODES)};",
+            f"static const double STAGES[{count}][{count - 1}] = {{{rows}}};",
+            f"static const double WEIGHTS[{count}] = {_listed(tsit5.WEIGHTS)};",
+        ]
+    )
+
+
+def _listed(values: Sequence[float]) -> str:
+    return "{" + ", ".join(map(repr, values)) + "}"
 
 
 def _flat(results: list[np.ndarray]) -> list:
