@@ -81,7 +81,7 @@ def _gear_pair(evidence: Evidence, solver: Solver | None) -> Outcome:
 
 def _shaped(rough: Outcome, evidence: Evidence, iterations: int, solver: Solver | None) -> Outcome:
     shaped = _with_shape(rough.hypothesis, _shape_harmonics(rough, evidence))
-    return fit_hypothesis(shaped, evidence, states=rough.fitted.states, iterations=iterations, solver=solver)
+    return fit_hypothesis(shaped, evidence, after=rough, iterations=iterations, solver=solver)
 
 
 def _rough_gear_pair(evidence: Evidence, solver: Solver | None) -> Outcome:

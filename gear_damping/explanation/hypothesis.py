@@ -102,7 +102,7 @@ def fit_hypothesis(
     hypothesis: Hypothesis,
     evidence: Evidence,
     starts: Tensor | None = None,
-    states: Tensor | None = None,
+    after: Outcome | None = None,
     *,
     iterations: int | Sequence[int] = 30,
     horizons: Sequence[int] | None = None,
@@ -116,7 +116,7 @@ def fit_hypothesis(
         hypothesis: What is fitted; its free parameters start where they say.
         evidence: The records.
         starts: Coordinates of several starts, (starts, n_free); at the parameters' own starts where absent.
-        states: Initial states of the records to fit, (records, 2), to start from.
+        after: A fit from whose initial states of the records to fit this one starts.
         iterations: At most so many in each round, or in each of the rounds.
         horizons: Samples of growing rounds.
         solver: Settings of the solver.
@@ -127,17 +127,22 @@ def fit_hypothesis(
     problem = OutputErrorProblem(model, known, hypothesis.free, evidence.fit, solver, evidence.noise)
     if starts is None:
         starts = torch.zeros(1, problem.n_shared, dtype=torch.float64)
-    begun = None if states is None else states.expand(len(starts), -1, -1).clone()
+    begun = None if after is None else begun_from(problem, after, len(starts))
     fitted = fit(problem, starts, horizons, iterations, begun, kept=kept, enough=enough * evidence.noise**2)
     values = {name: float(value) for name, value in problem.parameters(fitted.shared).items()}
     given = placed(hypothesis.given, values)
-    frequency = natural_frequency_hz(hypothesis.model, given)
+    frequency = slowest_frequency_hz(hypothesis.model, given)
     predicted = predict_holdout(hypothesis.model, given, values.get(OFFSET, 0.0), evidence.holdout, frequency, solver)
     holdout = [record.response - found for record, found in zip(evidence.holdout, predicted, strict=True)]
     residual = fitted.prediction.residual[0]
     fit_residuals = [residual[i, : len(r.response)] / r.weight for i, r in enumerate(evidence.fit)]
     settled = tuple(_settled(p, values[p.name]) for p in hypothesis.free)
     return Outcome(replace(hypothesis, free=settled, given=given), problem, fitted, values, holdout, fit_residuals)
+
+
+def begun_from(problem: OutputErrorProblem, after: Outcome, points: int) -> Tensor:
+    """Initial states of several points of a problem, (points, records, local), from a fit to the same records."""
+    return problem.states_of(after.problem, after.fitted.states).repeat(points, 1, 1)
 
 
 def _settled(parameter: FreeParameter, value: float) -> FreeParameter:
@@ -148,3 +153,11 @@ def natural_frequency_hz(model: Model, given: Given) -> float:
     """Natural frequency of a model in Hz."""
     derived = model.prepare(model.values(1, **given)).derived
     return float(derived["natural_frequency"][0]) / (2 * torch.pi)
+
+
+def slowest_frequency_hz(model: Model, given: Given) -> float:
+    """Natural frequency of a model in Hz, or that of a slower mode which one of its effects adds."""
+    prepared = model.prepare(model.values(1, **given))
+    rates = [float(term["slowest_rate"][0]) for term in prepared.terms.values() if "slowest_rate" in term]
+    added = [rate / (2 * torch.pi * float(prepared.scales.time[0])) for rate in rates]
+    return min([natural_frequency_hz(model, given), *added])

@@ -8,9 +8,9 @@ from torch import Tensor
 
 from gear_damping.explanation.candidates import Candidate
 from gear_damping.explanation.evidence import Evidence
-from gear_damping.explanation.hypothesis import Outcome
+from gear_damping.explanation.hypothesis import Outcome, begun_from
 from gear_damping.identification.output_error.least_squares import full_jacobian
-from gear_damping.identification.output_error.problem import OutputErrorProblem
+from gear_damping.identification.output_error.problem import DIFFERENCE, OutputErrorProblem
 from gear_damping.simulation.solver_settings import Solver
 
 PROBE = 0.05  # share of a strength's size that its slope is taken over
@@ -99,7 +99,7 @@ def _score(
     free = candidate.hypothesis.free
     problem = OutputErrorProblem(candidate.hypothesis.model, candidate.hypothesis.given, free, evidence.fit, solver)
     points, steps = _probes(candidate, len(free))
-    states = outcome.fitted.states.expand(len(points), -1, -1)
+    states = begun_from(problem, outcome, len(points))
     found = (problem.predict(points, states) * problem.weights).reshape(len(points), -1)
     if not bool(found.isfinite().all()):
         return None
@@ -110,14 +110,42 @@ def _score(
     beside = torch.where(own, beside, torch.zeros_like(beside))
     if not bool(own.any()):
         return _unseen(candidate, len(free), len(residual))
-    coefficients = torch.linalg.lstsq(beside, residual.unsqueeze(1), rcond=1e-9, driver="gelsd").solution[:, 0]
+    coefficients = _coefficients(beside, residual)
     explained = beside @ coefficients
-    gain = float((residual @ explained) / residual.square().sum())
+    wide = torch.cat([beside, project(_within_reach(candidate, problem, states[:1], project))], 1)
+    gain = float(residual @ _explained(wide, residual) / residual.square().sum())
     basis, spread, _ = torch.linalg.svd(beside, full_matrices=False)
     kept = basis[:, spread > 1e-6 * spread[0]]
     smallest = VISIBLE * noise / float(beside[:, 0].norm().clamp(min=1e-300)) * _unit(candidate)
     start = _start(candidate, coefficients, len(free))
     return Score(candidate, gain, start, explained / explained.norm().clamp(min=1e-300), smallest, kept)
+
+
+def _coefficients(columns: Tensor, signal: Tensor) -> Tensor:
+    return torch.linalg.lstsq(columns, signal.unsqueeze(1), rcond=1e-9, driver="gelsd").solution[:, 0]
+
+
+def _explained(columns: Tensor, signal: Tensor) -> Tensor:
+    return columns @ _coefficients(columns, signal)
+
+
+def _within_reach(candidate: Candidate, problem: OutputErrorProblem, states: Tensor, project: Projector) -> Tensor:
+    """What another size of an effect that is tried as a whole would change, and another start of its states.
+
+    Far from linear as it is, an effect whose size is not among those tried would otherwise be judged by a size
+    that fits badly.
+    """
+    if not candidate.presence:
+        return torch.zeros(len(project.basis), 0, dtype=torch.float64)
+    own = [i for i, p in enumerate(candidate.hypothesis.free) if p.name.startswith(candidate.name + ".")]
+    places = [*own, *(problem.n_shared + 2 + i for i in range(len(problem.extra)))]
+    moves = torch.zeros(len(places) + 1, problem.n_shared + len(problem.local), dtype=torch.float64)
+    moves[range(1, len(moves)), places] = DIFFERENCE
+    shared, moved = moves[:, : problem.n_shared], states + moves[:, None, problem.n_shared :]
+    found = problem.predict(shared, moved) * problem.weights
+    slopes = ((found[1:] - found[0]) / DIFFERENCE).permute(1, 2, 0).unsqueeze(0)
+    flat = full_jacobian(slopes, len(own))[0]
+    return torch.nn.functional.pad(flat, (0, 0, 0, len(project.expected)))
 
 
 def _unseen(candidate: Candidate, n_free: int, samples: int) -> Score:

@@ -90,14 +90,14 @@ def refitted(
 ) -> Refit | None:
     """The candidate's full fit from `outcome`, held against it or another; None where the fit ran away."""
     candidate = score.candidate
-    hypothesis, states = candidate.hypothesis, outcome.fitted.states
+    hypothesis = candidate.hypothesis
     options = {"solver": solver, "enough": ENOUGH}
     total = max(len(record.response) for record in evidence.fit)
     found = fit_hypothesis(
         hypothesis,
         evidence,
         _starts(score),
-        states,
+        outcome,
         horizons=[max(2, round(FIRST_PART * total)), total],
         iterations=(FIRST_ITERATIONS, LAST_ITERATIONS),
         kept=VARIANTS_KEPT if candidate.presence else ONE,
@@ -108,7 +108,7 @@ def refitted(
         freed = replace(
             freed, free=tuple(replace(p, start=float(found.hypothesis.given.get(p.name, p.start))) for p in freed.free)
         )
-        found = fit_hypothesis(freed, evidence, None, found.fitted.states, **options)
+        found = fit_hypothesis(freed, evidence, None, found, **options)
     if not torch.isfinite(torch.tensor(found.holdout_cost)):
         return None
     against = against or outcome

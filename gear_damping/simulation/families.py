@@ -164,12 +164,12 @@ def _imposed(model: Model, prepared: Prepared) -> tuple[Tensor, Tensor]:
     """What the flanks and the states of effects impose at the start, and its rate, natural units."""
     zero = torch.zeros_like(prepared.base["equivalent_mass"])
     equation = EquationOfMotion(model)
-    now = equation.moment(zero, (zero, zero, *extra_states(model, prepared)), {}, prepared.base)
+    now = equation.moment(zero, (zero, zero, *extra_states(model, prepared).values()), {}, prepared.base)
     return equation.imposed_error(now, prepared.terms)
 
 
-def extra_states(model: Model, prepared: Prepared) -> list[Tensor]:
-    """The states of effects at the start in natural units, in the order of the equation."""
+def extra_states(model: Model, prepared: Prepared) -> dict[str, Tensor]:
+    """The states of effects at the start in natural units, by flat name in the order of the equation."""
     with_states = [effect for effect in model.effects if isinstance(effect, ExtraStates)]
     found = {e.name: e.initial(prepared.terms[e.name], prepared.base) for e in with_states}
-    return [found[effect.name][state] for effect in with_states for state in effect.states]
+    return {f"{e.name}.{state}": found[e.name][state] for e in with_states for state in e.states}

@@ -31,6 +31,7 @@ def integrate(
     n_samples: int,
     solver: Solver,
     progress: Progress | None = None,
+    departures: Mapping[str, Tensor] | None = None,
 ) -> tuple[list[str], Tensor]:
     """Names of the states and their values in natural units, (n_state, batch, time).
 
@@ -38,7 +39,7 @@ def integrate(
     its batch-mates.
     """
     layout, series = Layout(prepared), Series(tuple(sorted(inputs)))
-    fixed, start = layout.pack(prepared, interval), initial_states(model, prepared)
+    fixed, start = layout.pack(prepared, interval), initial_states(model, prepared, departures)
     packed = series.pack(inputs, units, n_samples - 1, interval.shape[0]).to(fixed.device)
     example = Members(fixed, packed[0], fixed.new_zeros(()))
     kernel = kernel_of(model, layout, series, example, start)
@@ -77,10 +78,13 @@ def groups_of(prepared: Prepared, interval: Tensor, intervals: int, solver: Solv
     return [(n, lanes) for n, all_lanes in members for lanes in all_lanes.split(solver.chunk)]
 
 
-def initial_states(model: Model, prepared: Prepared) -> Tensor:
-    """States at the start in natural units, (n_state, batch)."""
+def initial_states(model: Model, prepared: Prepared, departures: Mapping[str, Tensor] | None = None) -> Tensor:
+    """States at the start, (n_state, batch), and how far those of effects depart from theirs, all in natural units."""
     own = [prepared.base["initial_displacement"], prepared.base["initial_velocity"]]
-    return torch.stack([*own, *extra_states(model, prepared)])
+    extra = extra_states(model, prepared)
+    for name, departure in (departures or {}).items():
+        extra[name] = extra[name] + departure
+    return torch.stack([*own, *extra.values()])
 
 
 def _share(progress: Progress | None, done: int, own: int, work: int) -> Progress | None:

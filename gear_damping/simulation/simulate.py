@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import torch
 from torch import Tensor
 
-from gear_damping.errors import InputError, Problem
+from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.physics.equation import HELD_LOAD
 from gear_damping.physics.model import Model, Prepared
 from gear_damping.physics.terms import HeldLoad, Sensor
@@ -27,6 +27,7 @@ def simulate(
     solver: Solver | None = None,
     seed: int = 0,
     progress: Progress | None = None,
+    departures: Mapping[str, Tensor] | None = None,
 ) -> Runs:
     """Simulate every member of a batch, each with its own parameters, inputs and start.
 
@@ -40,6 +41,8 @@ def simulate(
         solver: Settings; the defaults when None.
         seed: Seed of drawn loads.
         progress: Called with (done, total) as the work proceeds.
+        departures: How far states of effects depart at the start from where their effect puts them, (batch,) in SI
+            by flat name (`shaft_torsion.twist`).
 
     Raises:
         InputError: an input is unknown to the system or has the wrong shape.
@@ -49,11 +52,14 @@ def simulate(
     batch = prepared.base["equivalent_mass"].shape[0]
     inputs = dict(inputs or {})
     _check_inputs(model, inputs, (batch, n_samples))
+    _check_departures(model, departures or {})
     inputs = true_inputs(model, values, inputs, batch)
     series = inputs | _held_loads(model, values, prepared, n_samples - 1, seed)
     units = input_units(model, inputs, prepared)
     interval = 1 / (sampling_rate * prepared.scales.time)
-    names, states = integrate(model, prepared, series, units, interval, n_samples, solver, progress)
+    scale = natural_units(model, prepared)
+    moved = {name: value / scale[name] for name, value in (departures or {}).items()}
+    names, states = integrate(model, prepared, series, units, interval, n_samples, solver, progress, moved)
     low, high = states.aminmax(dim=-1)  # nan, too, shows in the extremes
     fine = (low.isfinite() & high.isfinite()).all(0) & (low[0] > -FAR) & (high[0] < FAR)
     return Runs(
@@ -61,7 +67,7 @@ def simulate(
         values=dict(values),
         derived=prepared.derived,
         sampling_rate=sampling_rate,
-        states=_in_si(model, names, states, prepared),
+        states=_in_si(names, states, scale),
         inputs={name: value.repeat(batch // len(value), 1) for name, value in inputs.items()},
         status=torch.where(fine, FINE, DIVERGED),
         reference_velocity=reference_velocity(prepared.derived),
@@ -79,6 +85,17 @@ def _check_inputs(model: Model, inputs: Mapping[str, Tensor], shape: tuple[int, 
         Problem(f"inputs.{name}", f"must have the shape (batch, time) = {shape}", tuple(value.shape))
         for name, value in inputs.items()
         if value.ndim != 2 or value.shape[1] != shape[1] or not len(value) or shape[0] % len(value)
+    ]
+    if problems:
+        raise InputError(problems)
+
+
+def _check_departures(model: Model, departures: Mapping[str, Tensor]) -> None:
+    known = [name for name in state_units(model) if name not in ("displacement", "velocity")]
+    problems = [
+        Problem(f"departures.{name}", "no effect of the model has such a state", remedy=nearest(name, known))
+        for name in departures
+        if name not in known
     ]
     if problems:
         raise InputError(problems)
@@ -102,6 +119,12 @@ def input_units(model: Model, inputs: Mapping[str, Tensor], prepared: Prepared) 
     return {name: prepared.scales.unit_of(parse_unit(model.system.inputs[name]).dimension) for name in inputs}
 
 
+def natural_units(model: Model, prepared: Prepared) -> dict[str, Tensor]:
+    """Natural unit of every state by its name in `Runs.states`, (batch,)."""
+    units = state_units(model)
+    return {name: prepared.scales.unit_of(parse_unit(unit).dimension) for name, unit in units.items()}
+
+
 def _held_loads(
     model: Model, values: Mapping[str, Tensor], prepared: Prepared, intervals: int, seed: int
 ) -> dict[str, Tensor]:
@@ -115,9 +138,6 @@ def _held_loads(
     return {} if total is None else {HELD_LOAD: total / prepared.scales.force.unsqueeze(1)}
 
 
-def _in_si(model: Model, names: list[str], states: Tensor, prepared: Prepared) -> dict[str, Tensor]:
-    units = state_units(model)
-    return {  # in place: fresh memory for every state costs more than the product
-        name: state.mul_(prepared.scales.unit_of(parse_unit(units[name]).dimension).unsqueeze(1))
-        for name, state in zip(names, states, strict=True)
-    }
+def _in_si(names: list[str], states: Tensor, scale: Mapping[str, Tensor]) -> dict[str, Tensor]:
+    # in place: fresh memory for every state costs more than the product
+    return {name: state.mul_(scale[name].unsqueeze(1)) for name, state in zip(names, states, strict=True)}

@@ -11,7 +11,8 @@ from gear_damping.identification.output_error.problem import OFFSET, FitRecord, 
 from gear_damping.physics.model import Model
 from gear_damping.simulation.solver_settings import Solver
 
-START_PERIODS = 1.25  # natural periods at the start of a record that its initial state is found from
+START_PERIODS = 1.25  # natural periods at the start of a record that its initial state is found from,
+LARGEST_START = 0.25  # but at most this share of the shortest record
 
 
 def predict_holdout(
@@ -29,18 +30,18 @@ def predict_holdout(
         given: Every parameter, by flat name.
         offset: Constant that is added to the response.
         records: The records; beyond their first 1.25 natural periods only their inputs are used.
-        natural_frequency_hz: Sets those periods.
+        natural_frequency_hz: Of the slowest mode; sets those periods.
         solver: Settings of the solver.
     """
-    samples = max(6, round(START_PERIODS / natural_frequency_hz * records[0].sampling_rate))
+    wanted = START_PERIODS / natural_frequency_hz * records[0].sampling_rate
+    samples = max(6, round(min(wanted, LARGEST_START * min(len(record.response) for record in records))))
     beginnings = [_beginning(record, samples) for record in records]
     frozen = [FreeParameter(OFFSET, offset, scale=0.0)]
     none = torch.zeros(1, 1, dtype=torch.float64)
     short = OutputErrorProblem(model, given, frozen, beginnings, solver)
     start = fit(short, none)
     whole = OutputErrorProblem(model, given, frozen, records, solver)
-    scales = [torch.stack([p.spread, p.rate_scale], dim=1) for p in (short, whole)]
-    found = whole.predict(none, (start.states * scales[0] / scales[1]).unsqueeze(0))[0]
+    found = whole.predict(none, whole.states_of(short, start.states).unsqueeze(0))[0]
     return [found[i, : len(record.response)] for i, record in enumerate(records)]
 
 

@@ -19,7 +19,7 @@ class Points:
 
     Args:
         shared: Coordinates of the shared parameters, (starts, n_shared).
-        states: Initial states, (starts, records, 2).
+        states: Initial states, (starts, records, local).
     """
 
     shared: Tensor
@@ -77,7 +77,7 @@ def fit(
         shared: Coordinates of the starts, (starts, n_shared).
         horizons: Samples of each round, growing; a short first round keeps away from local minima.
         iterations: At most so many in each round, or in each of the rounds.
-        states: Initial states of the starts, (starts, records, 2); from the records where absent.
+        states: Initial states of the starts, (starts, records, local); from the records where absent.
         report: Told (done, total) rounds.
         kept: Share of the starts, the best ones, that goes on from round to round.
         enough: Fall of the cost below which a start has converged, whatever share of the cost it is.

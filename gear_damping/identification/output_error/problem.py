@@ -8,13 +8,14 @@ import torch
 from torch import Tensor
 
 from gear_damping.physics.model import Model
-from gear_damping.simulation.simulate import simulate
+from gear_damping.simulation.runs import state_units
+from gear_damping.simulation.simulate import natural_units, simulate
 from gear_damping.simulation.solver_settings import Solver
 
 SENSOR_NOISE = "sensor_noise"
 OFFSET = "response_offset"  # a free parameter that is added to the prediction itself
 DIFFERENCE = 1e-6  # step of the sensitivities, in units of each parameter's scale
-LOCAL = ("initial_displacement", "initial_velocity")
+PROBED = 64  # samples from which the scale of an initial state of an effect is found
 
 
 @dataclass(frozen=True)
@@ -72,7 +73,7 @@ class FitRecord:
 class Prediction:
     """Weighted residuals (starts, records, time) and sensitivities (starts, records, time, columns).
 
-    The columns are the shared parameters, then displacement and velocity at the start of the record.
+    The columns are the shared parameters, then the states at the start of the record (`OutputErrorProblem.local`).
     Samples beyond the end of a shorter record are zero in both.
     """
 
@@ -97,7 +98,7 @@ class OutputErrorProblem:
         Args:
             model: The simulator.
             given: Parameters that are known, by flat name.
-            free: Parameters to fit; every record's initial state is free besides.
+            free: Parameters to fit; every record's initial state is free besides, those of effects with it.
             records: At least one; all of one sampling rate.
             solver: Settings of the solver; its sub-steps are fixed, so that sensitivities are smooth.
             noise: Standard deviation of the records' noise, against which expectations are weighed.
@@ -110,6 +111,8 @@ class OutputErrorProblem:
         self.weights = _padded([torch.full_like(record.response, record.weight) for record in records])
         self.spread = torch.stack([r.response.std().clamp(min=1e-300) for r in self.records])
         self.rate_scale = torch.stack([_rate_spread(r) for r in self.records])
+        self.extra = tuple(state_units(model))[2:]
+        self.scales = self._scales()
 
     @property
     def n_shared(self) -> int:
@@ -117,12 +120,45 @@ class OutputErrorProblem:
         return len(self.free)
 
     def first_states(self) -> Tensor:
-        """A first guess of every initial state in its own scale, (records, 2): the first samples of the record."""
-        guesses = []
+        """A first guess of every initial state in its own scale, (records, local): the first samples of the record."""
+        guesses = torch.zeros_like(self.scales)
         for i, record in enumerate(self.records):
-            slope = (record.response[1] - record.response[0]) * record.sampling_rate
-            guesses.append(torch.stack([record.response[0] / self.spread[i], slope / self.rate_scale[i]]))
-        return torch.stack(guesses)
+            guesses[i, 0] = record.response[0]
+            guesses[i, 1] = (record.response[1] - record.response[0]) * record.sampling_rate
+        return guesses / self.scales
+
+    def states_of(self, other: "OutputErrorProblem", states: Tensor) -> Tensor:
+        """Initial states found by another problem of the same records, (..., records, local), as they are called here.
+
+        States of effects that the other does not have are those where the effect puts them.
+        """
+        found = states.new_zeros(*states.shape[:-1], len(self.local))
+        for place, name in enumerate(self.local):
+            if name in other.local:
+                there = other.local.index(name)
+                found[..., place] = states[..., there] * other.scales[:, there] / self.scales[:, place]
+        return found
+
+    @property
+    def local(self) -> tuple[str, ...]:
+        """What every record has of its own: displacement and velocity at its start, and departures of other states."""
+        return ("displacement", "velocity", *self.extra)
+
+    def _scales(self) -> Tensor:
+        """Scale of every initial state, (records, local); of an effect's, what moves the response by its spread."""
+        own = torch.stack([self.spread, self.rate_scale], dim=1)
+        if not self.extra:
+            return own
+        units = natural_units(self.model, self.model.prepare(self.model.values(1, **self.given)))
+        steps = torch.stack([DIFFERENCE * units[name].expand(len(own)) for name in self.extra], dim=1)
+        self.scales = torch.cat([own, steps], dim=1)
+        states = self.first_states().repeat(len(self.extra) + 1, 1, 1)
+        states[1:, :, 2:] += torch.eye(len(self.extra), dtype=states.dtype).unsqueeze(1)
+        shared = torch.zeros(len(states), self.n_shared, dtype=torch.float64)
+        found = self.predict(shared, states, min(PROBED, self.response.shape[1]))
+        moved = (found[1:] - found[:1]).square().mean(-1).sqrt().T / self.spread.unsqueeze(1)
+        factor = torch.where(moved.isfinite() & (moved > 0), 1 / moved, torch.ones_like(moved))
+        return torch.cat([own, steps * factor], dim=1)
 
     def parameters(self, shared: Tensor) -> dict[str, Tensor]:
         """Values of the shared parameters from their coordinates (..., n_shared)."""
@@ -135,7 +171,7 @@ class OutputErrorProblem:
         return -(start + slope * shared), slope
 
     def predict(self, shared: Tensor, states: Tensor, samples: int | None = None) -> Tensor:
-        """Predicted responses (points, records, time) for coordinates (points, n_shared) and (points, records, 2)."""
+        """Predicted responses (points, records, time) at coordinates (points, n_shared), (points, records, local)."""
         points, n_records = shared.shape[0], len(self.records)
         samples = samples or self.response.shape[1]
         batch = points * n_records
@@ -147,25 +183,34 @@ class OutputErrorProblem:
         for name in {name for record in self.records for name in record.conditions}:
             known = torch.tensor([r.conditions.get(name, float("nan")) for r in self.records], dtype=torch.float64)
             values[name] = torch.where(known.isnan().repeat(points), values[name], known.repeat(points))
-        values["initial_displacement"] = (states[..., 0] * self.spread).reshape(-1)
-        values["initial_velocity"] = (states[..., 1] * self.rate_scale).reshape(-1)
+        start = (states * self.scales).reshape(batch, -1)
+        values["initial_displacement"], values["initial_velocity"] = start[:, 0], start[:, 1]
+        departures = {name: start[:, 2 + i] for i, name in enumerate(self.extra)}
         names = self.records[0].inputs
         inputs = {n: _padded([r.inputs[n] for r in self.records])[:, :samples] for n in names}
         rate = self.records[0].sampling_rate
-        runs = simulate(self.model, values, sampling_rate=rate, n_samples=samples, inputs=inputs, solver=self.solver)
+        runs = simulate(
+            self.model,
+            values,
+            sampling_rate=rate,
+            n_samples=samples,
+            inputs=inputs,
+            solver=self.solver,
+            departures=departures,
+        )
         recorded = runs.record(torch.Generator().manual_seed(0), skip=(SENSOR_NOISE,))
         return recorded.reshape(points, n_records, samples) + offset.reshape(-1, 1, 1)
 
     def linearise(self, shared: Tensor, states: Tensor, samples: int | None = None) -> Prediction:
         """Residuals and sensitivities at several starts at once; every column is a member of one batch."""
         samples = samples or self.response.shape[1]
-        starts, columns = shared.shape[0], self.n_shared + len(LOCAL)
+        starts, columns = shared.shape[0], self.n_shared + len(self.local)
         steps = torch.zeros(columns + 1, columns, dtype=torch.float64)
         steps[1:] = DIFFERENCE * torch.eye(columns, dtype=torch.float64)
         all_shared = shared.unsqueeze(1) + steps[:, : self.n_shared]
         all_states = states.unsqueeze(1) + steps[:, self.n_shared :].unsqueeze(1)
         points = starts * (columns + 1)
-        found = self.predict(all_shared.reshape(points, -1), all_states.reshape(points, -1, 2), samples)
+        found = self.predict(all_shared.reshape(points, -1), all_states.reshape(points, len(self.records), -1), samples)
         found = found.reshape(starts, columns + 1, len(self.records), samples)
         weights = self.weights[:, :samples]
         residual = (self.response[:, :samples] - found[:, 0]) * weights

@@ -42,7 +42,9 @@ class BearingFlexibility(ExtraStates, TransmissionErrorSource):
         damping = 2 * values["damping_ratio"] * torch.sqrt(stiffness * mass)
         mesh = base["mean_stiffness"]
         fastest = torch.sqrt(mesh / base["equivalent_mass"] + (mesh + stiffness) / mass)
-        return {"stiffness": stiffness, "mass": mass, "damping": damping, "fastest_rate": fastest}
+        slowest = torch.sqrt(stiffness / mass)
+        found = {"stiffness": stiffness, "mass": mass, "damping": damping}
+        return found | {"slowest_rate": slowest, "fastest_rate": fastest}
 
     def initial(self, p: Values, base: Values) -> dict[str, Tensor]:
         """Where the mean load holds it."""

@@ -60,6 +60,7 @@ class ShaftTorsion(ExtraStates, LoadPath):
             "per_pinion_torque": base["load_per_pinion_torque"],
             "per_gear_torque": base["load_per_gear_torque"],
             "gear_torque": base["gear_torque"],
+            "slowest_rate": torch.sqrt(stiffness * (1 / motor + 1 / gears)),
             "fastest_rate": torch.sqrt(mesh_rate + stiffness * (1 / motor + 1 / pinion)),
         }
 
