@@ -1,13 +1,14 @@
 """Step 1: what was measured, as the fits see it: records to fit, records held out, what is known of the rig."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from math import pi
 
 import torch
 from torch import Tensor
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.identification.output_error.pieces import part
 from gear_damping.identification.output_error.problem import FitRecord
 from gear_damping.measurement.record import Channel, Measurement, Record
 from gear_damping.physics.catalogue import builtin_effects
@@ -33,6 +34,8 @@ class Evidence:
         gear_torque_mode: What holds the gear.
         noise: Standard deviation of the noise over all records, once it is known.
         library: Effects that may be causes, by name.
+        piece: Samples after which the state of a record is found anew, because it cannot be predicted for longer;
+            0 where it can.
     """
 
     system: str
@@ -44,6 +47,7 @@ class Evidence:
     gear_torque_mode: str = "balanced"
     noise: float = 0.0
     library: Mapping[str, type[Effect]] = field(default_factory=builtin_effects)
+    piece: int = 0
 
     @property
     def sampling_rate(self) -> float:
@@ -144,18 +148,9 @@ def _cut(records: Sequence[FitRecord]) -> tuple[list[FitRecord], list[FitRecord]
     fit, holdout = [], []
     for record in records:
         at = round(SPLIT * len(record.response))
-        fit.append(_part(record, slice(None, at), " (first part)"))
-        holdout.append(_part(record, slice(at, None), " (last part)"))
-        if "pinion_angle" not in record.inputs and "pinion_speed" in record.conditions:
-            turned = record.conditions["pinion_speed"] * at / record.sampling_rate
-            turned += record.conditions.get("pinion_angle", 0.0)
-            holdout[-1] = replace(holdout[-1], conditions={**record.conditions, "pinion_angle": turned})
+        fit.append(part(record, slice(None, at), " (first part)"))
+        holdout.append(part(record, slice(at, None), " (last part)"))
     return fit, holdout
-
-
-def _part(record: FitRecord, piece: slice, suffix: str) -> FitRecord:
-    inputs = {name: series[piece] for name, series in record.inputs.items()}
-    return replace(record, name=record.name + suffix, response=record.response[piece], inputs=inputs)
 
 
 def stacked(series: Sequence[Tensor]) -> Tensor:

@@ -9,7 +9,8 @@ from torch import Tensor
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.identification.output_error.holdout import predict_holdout
 from gear_damping.identification.output_error.least_squares import Fitted, fit
-from gear_damping.identification.output_error.problem import OFFSET, FreeParameter, OutputErrorProblem
+from gear_damping.identification.output_error.pieces import in_pieces, joined
+from gear_damping.identification.output_error.problem import OFFSET, FreeParameter, OutputErrorProblem, growth
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.base import System
 from gear_damping.physics.terms import Effect
@@ -65,6 +66,7 @@ class Outcome:
         values: Fitted values by flat name.
         holdout: Residuals of held-out records, each (time,).
         fit_residuals: Residuals of fitted records.
+        growth: How much an error of the initial state grows over a record, in the one where it grows most.
     """
 
     hypothesis: Hypothesis
@@ -73,6 +75,7 @@ class Outcome:
     values: dict[str, float]
     holdout: list[Tensor] = field(repr=False)
     fit_residuals: list[Tensor] = field(repr=False)
+    growth: float = 0.0
 
     @property
     def holdout_cost(self) -> float:
@@ -124,7 +127,8 @@ def fit_hypothesis(
         enough: Fall of the cost, in noise variances, below which the fit has come to rest.
     """
     model, known = hypothesis.model, hypothesis.given
-    problem = OutputErrorProblem(model, known, hypothesis.free, evidence.fit, solver, evidence.noise)
+    pieces = in_pieces(evidence.fit, evidence.piece)
+    problem = OutputErrorProblem(model, known, hypothesis.free, pieces, solver, evidence.noise)
     if starts is None:
         starts = torch.zeros(1, problem.n_shared, dtype=torch.float64)
     begun = None if after is None else begun_from(problem, after, len(starts))
@@ -132,12 +136,15 @@ def fit_hypothesis(
     values = {name: float(value) for name, value in problem.parameters(fitted.shared).items()}
     given = placed(hypothesis.given, values)
     frequency = slowest_frequency_hz(hypothesis.model, given)
-    predicted = predict_holdout(hypothesis.model, given, values.get(OFFSET, 0.0), evidence.holdout, frequency, solver)
-    holdout = [record.response - found for record, found in zip(evidence.holdout, predicted, strict=True)]
-    residual = fitted.prediction.residual[0]
-    fit_residuals = [residual[i, : len(r.response)] / r.weight for i, r in enumerate(evidence.fit)]
-    settled = tuple(_settled(p, values[p.name]) for p in hypothesis.free)
-    return Outcome(replace(hypothesis, free=settled, given=given), problem, fitted, values, holdout, fit_residuals)
+    offset, piece = values.get(OFFSET, 0.0), evidence.piece
+    held = predict_holdout(hypothesis.model, given, offset, evidence.holdout, frequency, solver, piece)
+    holdout = [record.response - found for record, found in zip(evidence.holdout, held.predictions, strict=True)]
+    residual = joined(fitted.prediction.residual[0], evidence.fit, piece)
+    fit_residuals = [found / record.weight for found, record in zip(residual, evidence.fit, strict=True)]
+    grown = max(held.growth, growth(fitted.prediction, problem.n_shared))
+    free = tuple(_settled(p, values[p.name]) for p in hypothesis.free)
+    settled = replace(hypothesis, free=free, given=given)
+    return Outcome(settled, problem, fitted, values, holdout, fit_residuals, grown)
 
 
 def begun_from(problem: OutputErrorProblem, after: Outcome, points: int) -> Tensor:

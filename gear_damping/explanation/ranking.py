@@ -7,13 +7,13 @@ import torch
 from torch import Tensor
 
 from gear_damping.explanation.candidates import Candidate
-from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Outcome, begun_from
-from gear_damping.identification.output_error.least_squares import full_jacobian
+from gear_damping.identification.output_error.least_squares import own_basis, without_own
 from gear_damping.identification.output_error.problem import DIFFERENCE, OutputErrorProblem
 from gear_damping.simulation.solver_settings import Solver
 
 PROBE = 0.05  # share of a strength's size that its slope is taken over
+NEGLIGIBLE = 1e-3  # of the residual, for what an effect tried as a whole would change
 CONTAINED = 0.99  # cosine with what another can do, from which it contains this one
 VISIBLE = 5.0  # standard deviations at which an effect counts as visible
 
@@ -44,38 +44,76 @@ class Score:
 class Projector:
     """Takes out of a signal what the free parameters of a fit could do.
 
-    What is expected of the parameters counts as further samples, one for each, behind those of the records.
+    A signal has the samples of the records one after another, and behind them one for each free parameter: what
+    is expected of it.
     """
 
-    def __init__(self, outcome: Outcome) -> None:
-        jacobian = full_jacobian(outcome.fitted.prediction.sensitivity, outcome.problem.n_shared)[0]
-        expected, slope = outcome.problem.expectation(outcome.fitted.shared)
-        self.expected = expected
-        rows = torch.nn.functional.pad(torch.diag(slope), (0, jacobian.shape[1] - len(slope)))
-        jacobian = torch.cat([jacobian, rows])
+    def __init__(self, sensitivity: Tensor, expected: Tensor, slope: Tensor) -> None:
+        """Prepare it.
+
+        Args:
+            sensitivity: (records, time, shared and own columns).
+            expected: Residuals of what is expected of the first shared parameters, (n,).
+            slope: Their slopes, (n,).
+        """
+        self.sensitivity, self.expected, self.slope = sensitivity, expected, slope
+        self.own = own_basis(sensitivity, len(slope))
+        shared = without_own(sensitivity[..., : len(slope)], self.own).flatten(0, 1)
+        jacobian = torch.cat([shared, torch.diag(slope)])
         norms = jacobian.norm(dim=0).clamp(min=1e-300)
         self.basis = torch.linalg.qr(jacobian / norms).Q
 
     def __call__(self, signal: Tensor) -> Tensor:
-        """`signal` (samples + n_shared, n) without its part in the span of the sensitivities."""
-        return signal - self.basis @ (self.basis.T @ signal)
+        """`signal` (samples + n, m) without its part in the span of the sensitivities."""
+        samples = len(signal) - len(self.slope)
+        rows = signal[:samples].reshape(*self.own.shape[:2], -1)
+        beside = torch.cat([without_own(rows, self.own).flatten(0, 1), signal[samples:]])
+        return beside - self.basis @ (self.basis.T @ beside)
+
+    def beside_own(self, columns: Tensor) -> "Projector":
+        """With columns (records, time, l) more that every record has of its own."""
+        return Projector(torch.cat([self.sensitivity, columns], -1), self.expected, self.slope)
+
+
+def _projector(outcome: Outcome) -> Projector:
+    return Projector(outcome.fitted.prediction.sensitivity[0], *outcome.problem.expectation(outcome.fitted.shared))
+
+
+@dataclass(frozen=True)
+class Base:
+    """The model beside which candidates are scored.
+
+    Args:
+        outcome: The fitted model.
+        project: Takes out what its own parameters could do.
+        residual: What it leaves of the fitted records, (samples + n,).
+        predicted: What it predicts of them, (samples,).
+        noise: Standard deviation of the noise.
+        solver: Settings of the solver.
+    """
+
+    outcome: Outcome
+    project: Projector
+    residual: Tensor
+    predicted: Tensor
+    noise: float
+    solver: Solver | None
 
 
 def scores(
     outcome: Outcome,
-    evidence: Evidence,
     candidates: Sequence[Candidate],
     noise: float,
     solver: Solver | None = None,
     report: Callable[[int, int], None] | None = None,
 ) -> list[Score]:
     """Every candidate's score, the most promising first."""
-    project = Projector(outcome)
+    project = _projector(outcome)
     residual = torch.cat([outcome.fitted.prediction.residual[0].reshape(-1), project.expected])
-    base = _predicted(outcome)
+    base = Base(outcome, project, residual, _predicted(outcome), noise, solver)
     found = []
     for number, candidate in enumerate(candidates):
-        score = _score(candidate, outcome, evidence, project, residual, base, noise, solver)
+        score = _score(candidate, base)
         found += [score] if score is not None else []
         if report:
             report(number + 1, len(candidates))
@@ -86,38 +124,30 @@ def _predicted(outcome: Outcome) -> Tensor:
     return (outcome.problem.response * outcome.problem.weights - outcome.fitted.prediction.residual[0]).reshape(-1)
 
 
-def _score(
-    candidate: Candidate,
-    outcome: Outcome,
-    evidence: Evidence,
-    project: Projector,
-    residual: Tensor,
-    base: Tensor,
-    noise: float,
-    solver: Solver | None,
-) -> Score | None:
-    free = candidate.hypothesis.free
-    problem = OutputErrorProblem(candidate.hypothesis.model, candidate.hypothesis.given, free, evidence.fit, solver)
-    points, steps = _probes(candidate, len(free))
-    states = begun_from(problem, outcome, len(points))
+def _score(candidate: Candidate, base: Base) -> Score | None:
+    hypothesis, residual = candidate.hypothesis, base.residual
+    records, n_free = base.outcome.problem.records, len(hypothesis.free)
+    problem = OutputErrorProblem(hypothesis.model, hypothesis.given, hypothesis.free, records, base.solver)
+    points, steps = _probes(candidate, n_free)
+    states = begun_from(problem, base.outcome, len(points))
     found = (problem.predict(points, states) * problem.weights).reshape(len(points), -1)
     if not bool(found.isfinite().all()):
         return None
-    columns = torch.nn.functional.pad((found - base) / steps.unsqueeze(1), (0, len(project.expected))).T
-    beside = project(columns)
+    columns = (found - base.predicted) / steps.unsqueeze(1)
+    columns = torch.nn.functional.pad(columns, (0, len(base.project.expected))).T
+    beside = base.project(columns)
     # What the nuisance takes but for rounding is nothing of its own.
     own = beside.norm(dim=0) > 1e-6 * columns.norm(dim=0).clamp(min=1e-300)
     beside = torch.where(own, beside, torch.zeros_like(beside))
     if not bool(own.any()):
-        return _unseen(candidate, len(free), len(residual))
+        return _unseen(candidate, n_free, len(residual))
     coefficients = _coefficients(beside, residual)
     explained = beside @ coefficients
-    wide = torch.cat([beside, project(_within_reach(candidate, problem, states[:1], project))], 1)
-    gain = float(residual @ _explained(wide, residual) / residual.square().sum())
     basis, spread, _ = torch.linalg.svd(beside, full_matrices=False)
     kept = basis[:, spread > 1e-6 * spread[0]]
-    smallest = VISIBLE * noise / float(beside[:, 0].norm().clamp(min=1e-300)) * _unit(candidate)
-    start = _start(candidate, coefficients, len(free))
+    smallest = VISIBLE * base.noise / float(beside[:, 0].norm().clamp(min=1e-300)) * _unit(candidate)
+    gain = _gain(candidate, problem, states[:1], beside, base)
+    start = _start(candidate, coefficients, n_free)
     return Score(candidate, gain, start, explained / explained.norm().clamp(min=1e-300), smallest, kept)
 
 
@@ -125,27 +155,34 @@ def _coefficients(columns: Tensor, signal: Tensor) -> Tensor:
     return torch.linalg.lstsq(columns, signal.unsqueeze(1), rcond=1e-9, driver="gelsd").solution[:, 0]
 
 
-def _explained(columns: Tensor, signal: Tensor) -> Tensor:
-    return columns @ _coefficients(columns, signal)
+def _gain(candidate: Candidate, problem: OutputErrorProblem, states: Tensor, beside: Tensor, base: Base) -> float:
+    """Share of the residual's energy that a candidate would take, linearised.
 
-
-def _within_reach(candidate: Candidate, problem: OutputErrorProblem, states: Tensor, project: Projector) -> Tensor:
-    """What another size of an effect that is tried as a whole would change, and another start of its states.
-
-    Far from linear as it is, an effect whose size is not among those tried would otherwise be judged by a size
-    that fits badly.
+    An effect that is tried as a whole is far from linear: what another size of it would change counts with it, and
+    another start of its states; otherwise it would be judged by a size that fits badly.
     """
-    if not candidate.presence:
-        return torch.zeros(len(project.basis), 0, dtype=torch.float64)
-    own = [i for i, p in enumerate(candidate.hypothesis.free) if p.name.startswith(candidate.name + ".")]
-    places = [*own, *(problem.n_shared + 2 + i for i in range(len(problem.extra)))]
+    project = base.project
+    residual = project(base.residual.unsqueeze(1))[:, 0]
+    free = residual.square().sum()
+    if candidate.presence:
+        own = [i for i, p in enumerate(candidate.hypothesis.free) if p.name.startswith(candidate.name + ".")]
+        slopes = _slopes(problem, [*own, *range(problem.n_shared + 2, problem.n_shared + len(problem.local))], states)
+        project = project.beside_own(slopes[..., len(own) :])
+        sizes = torch.nn.functional.pad(slopes[..., : len(own)].flatten(0, 1), (0, 0, 0, len(project.slope)))
+        residual, beside = project(base.residual.unsqueeze(1))[:, 0], project(torch.cat([beside, sizes], 1))
+        # A difference far below the residual is the integrator's: no size that makes sense would lift it to that.
+        beside = beside[:, beside.norm(dim=0) > NEGLIGIBLE * residual.norm()]
+    left = residual - beside @ _coefficients(beside, residual)
+    return float((free - left.square().sum()) / base.residual.square().sum())
+
+
+def _slopes(problem: OutputErrorProblem, places: Sequence[int], states: Tensor) -> Tensor:
+    """Slopes of the prediction at coordinates 0 in shared and own coordinates of these places, (records, time, n)."""
     moves = torch.zeros(len(places) + 1, problem.n_shared + len(problem.local), dtype=torch.float64)
     moves[range(1, len(moves)), places] = DIFFERENCE
-    shared, moved = moves[:, : problem.n_shared], states + moves[:, None, problem.n_shared :]
-    found = problem.predict(shared, moved) * problem.weights
-    slopes = ((found[1:] - found[0]) / DIFFERENCE).permute(1, 2, 0).unsqueeze(0)
-    flat = full_jacobian(slopes, len(own))[0]
-    return torch.nn.functional.pad(flat, (0, 0, 0, len(project.expected)))
+    moved = states + moves[:, None, problem.n_shared :]
+    found = problem.predict(moves[:, : problem.n_shared], moved) * problem.weights
+    return ((found[1:] - found[0]) / DIFFERENCE).permute(1, 2, 0)
 
 
 def _unseen(candidate: Candidate, n_free: int, samples: int) -> Score:

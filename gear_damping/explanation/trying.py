@@ -87,7 +87,7 @@ class Bench:
         """Every candidate beside a model, or those of some effects, the most promising first."""
         tried = candidates_for(outcome.hypothesis, self.evidence)
         tried = tried if names is None else [candidate for candidate in tried if candidate.name in names]
-        return scores(outcome, self.evidence, tried, self.noise.value, self.solver)
+        return scores(outcome, tried, self.noise.value, self.solver)
 
     def full_fit(self, score: Score, outcome: Outcome, against: Outcome | None = None) -> Refit | None:
         """A candidate fitted in full from a model, held against it or another."""

@@ -87,7 +87,7 @@ def fit_oscillator(
     natural = found["natural_frequency_hz"].value
     predictions = _fit_predictions(problem, fitted)
     if holdout_records:
-        held = predict_holdout(problem.model, given, offset, holdout_records, natural, solver)
+        held = predict_holdout(problem.model, given, offset, holdout_records, natural, solver).predictions
         predictions |= {record.name: found for record, found in zip(holdout_records, held, strict=True)}
     return OscillatorFit(
         parameters={k: v for k, v in found.items() if k in (STIFFNESS, GAIN, "damping_coefficient")},

@@ -1,18 +1,38 @@
 """A fitted model on records that it never met: parameters frozen, only the start of each is found."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass
 
 import torch
 from torch import Tensor
 
 from gear_damping.identification.output_error.least_squares import fit
-from gear_damping.identification.output_error.problem import OFFSET, FitRecord, FreeParameter, OutputErrorProblem
+from gear_damping.identification.output_error.pieces import in_pieces, joined, part
+from gear_damping.identification.output_error.problem import (
+    OFFSET,
+    FitRecord,
+    FreeParameter,
+    OutputErrorProblem,
+    growth,
+)
 from gear_damping.physics.model import Model
 from gear_damping.simulation.solver_settings import Solver
 
 START_PERIODS = 1.25  # natural periods at the start of a record that its initial state is found from,
 LARGEST_START = 0.25  # but at most this share of the shortest record
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """Predictions of records that were held out.
+
+    Args:
+        predictions: Each (time,).
+        growth: How much an error of the initial state grew at most, in the record where it grew most.
+    """
+
+    predictions: list[Tensor]
+    growth: float
 
 
 def predict_holdout(
@@ -22,8 +42,9 @@ def predict_holdout(
     records: Sequence[FitRecord],
     natural_frequency_hz: float,
     solver: Solver | None = None,
-) -> list[Tensor]:
-    """The predictions of records of one sampling rate, each (time,).
+    piece: int = 0,
+) -> HeldOut:
+    """Predict records of one sampling rate.
 
     Args:
         model: The simulator.
@@ -32,22 +53,21 @@ def predict_holdout(
         records: The records; beyond their first 1.25 natural periods only their inputs are used.
         natural_frequency_hz: Of the slowest mode; sets those periods.
         solver: Settings of the solver.
+        piece: Samples after which the state is found anew; 0 for once in each record.
     """
+    pieces = in_pieces(records, piece)
     wanted = START_PERIODS / natural_frequency_hz * records[0].sampling_rate
-    samples = max(6, round(min(wanted, LARGEST_START * min(len(record.response) for record in records))))
-    beginnings = [_beginning(record, samples) for record in records]
+    samples = max(6, round(min(wanted, LARGEST_START * min(len(record.response) for record in pieces))))
+    beginnings = [part(record, slice(0, samples)) for record in pieces]
     frozen = [FreeParameter(OFFSET, offset, scale=0.0)]
     none = torch.zeros(1, 1, dtype=torch.float64)
     short = OutputErrorProblem(model, given, frozen, beginnings, solver)
     start = fit(short, none)
-    whole = OutputErrorProblem(model, given, frozen, records, solver)
-    found = whole.predict(none, whole.states_of(short, start.states).unsqueeze(0))[0]
-    return [found[i, : len(record.response)] for i, record in enumerate(records)]
-
-
-def _beginning(record: FitRecord, samples: int) -> FitRecord:
-    inputs = {name: series[:samples] for name, series in record.inputs.items()}
-    return replace(record, response=record.response[:samples], inputs=inputs)
+    whole = OutputErrorProblem(model, given, frozen, pieces, solver)
+    states = whole.states_of(short, start.states)
+    found = whole.linearise(none, states.unsqueeze(0))
+    predicted = whole.response - found.residual[0] / whole.weights.clamp(min=1e-300)
+    return HeldOut(joined(predicted, records, piece), growth(found, whole.n_shared))
 
 
 def rmse(measured: Sequence[Tensor], predicted: Sequence[Tensor]) -> float:

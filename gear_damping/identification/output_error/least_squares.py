@@ -1,7 +1,7 @@
 """Levenberg–Marquardt over several starts at once, the starts being members of one batch."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import torch
 from torch import Tensor
@@ -10,6 +10,7 @@ from gear_damping.identification.output_error.problem import OutputErrorProblem,
 
 FIRST_DAMPING, LARGEST_DAMPING, SMALLEST_DAMPING = 1e-2, 1e10, 1e-12
 SMALLEST_GAIN = 1e-7  # relative fall of the cost below which a start has converged
+INDEPENDENT = 1e-9  # of the largest: a direction that counts
 LONGEST_STEP = 2.0  # of any coordinate in one iteration
 
 
@@ -41,23 +42,73 @@ class Fitted:
     converged: bool
 
 
-def normal_equations(prediction: Prediction, n_shared: int) -> tuple[Tensor, Tensor]:
-    """J'J and J'r over shared columns and every record's own ones, (starts, p, p) and (starts, p)."""
-    jacobian = full_jacobian(prediction.sensitivity, n_shared)
-    residual = prediction.residual.reshape(jacobian.shape[0], -1)
-    return jacobian.transpose(1, 2) @ jacobian, (jacobian.transpose(1, 2) @ residual.unsqueeze(-1)).squeeze(-1)
+@dataclass(frozen=True)
+class NormalEquations:
+    """J'J and J'r of several starts, in blocks: what a record has of its own meets only that record.
+
+    Args:
+        shared: Of the shared parameters, (starts, p, p).
+        between: Of these and every record's own, (starts, records, p, l).
+        own: Of every record's own, (starts, records, l, l).
+        pull: J'r of the shared parameters, (starts, p).
+        own_pull: J'r of every record's own, (starts, records, l).
+    """
+
+    shared: Tensor
+    between: Tensor
+    own: Tensor
+    pull: Tensor
+    own_pull: Tensor
+
+    def step(self, damping: Tensor) -> tuple[Tensor, Tensor]:
+        """The damped step, (starts, p) and (starts, records, l), by elimination of what is the records' own."""
+        diagonals = self.shared.diagonal(dim1=-2, dim2=-1), self.own.diagonal(dim1=-2, dim2=-1)
+        largest = torch.cat([d.flatten(1) for d in diagonals], 1).amax(1).clamp(min=1e-30)
+        ridges = [_like(damping, d) * d + _like(1e-12 * largest, d) for d in diagonals]
+        own = self.own + torch.diag_embed(ridges[1])
+        right = torch.cat([self.between.transpose(-1, -2), self.own_pull.unsqueeze(-1)], -1)
+        solved = torch.linalg.solve(own, right)
+        reduced = (self.between @ solved).sum(1)
+        matrix = self.shared + torch.diag_embed(ridges[0]) - reduced[..., :-1]
+        shared = torch.linalg.solve(matrix, self.pull - reduced[..., -1])
+        return shared, solved[..., -1] - (solved[..., :-1] @ shared[:, None, :, None]).squeeze(-1)
 
 
-def full_jacobian(sensitivity: Tensor, n_shared: int) -> Tensor:
-    """(starts, records * time, n_shared + records * local) from (starts, records, time, columns)."""
-    starts, records, samples, columns = sensitivity.shape
-    local = columns - n_shared
-    jacobian = sensitivity.new_zeros(starts, records, samples, n_shared + records * local)
-    jacobian[..., :n_shared] = sensitivity[..., :n_shared]
-    for r in range(records):
-        first = n_shared + r * local
-        jacobian[:, r, :, first : first + local] = sensitivity[:, r, :, n_shared:]
-    return jacobian.reshape(starts, records * samples, -1)
+def normal_equations(prediction: Prediction, n_shared: int) -> NormalEquations:
+    """J'J and J'r of a linearisation."""
+    sensitivity, residual = prediction.sensitivity, prediction.residual.unsqueeze(-1)
+    shared, own = sensitivity[..., :n_shared], sensitivity[..., n_shared:]
+    flat = shared.flatten(1, 2)
+    return NormalEquations(
+        (flat.transpose(1, 2) @ flat).nan_to_num(0, 0, 0),
+        (shared.transpose(-1, -2) @ own).nan_to_num(0, 0, 0),
+        (own.transpose(-1, -2) @ own).nan_to_num(0, 0, 0),
+        (flat.transpose(1, 2) @ residual.flatten(1, 2)).squeeze(-1).nan_to_num(0, 0, 0),
+        (own.transpose(-1, -2) @ residual).squeeze(-1).nan_to_num(0, 0, 0),
+    )
+
+
+def own_basis(sensitivity: Tensor, n_shared: int) -> Tensor:
+    """Orthonormal columns that span what every record has of its own, (records, time, l); zero where it is less.
+
+    Args:
+        sensitivity: Of one start, (records, time, n_shared + l).
+        n_shared: Number of shared parameters.
+    """
+    own = sensitivity[..., n_shared:]
+    columns = own / own.norm(dim=1, keepdim=True).clamp(min=1e-300)
+    basis, sizes, _ = torch.linalg.svd(columns, full_matrices=False)
+    return basis * (sizes > INDEPENDENT * sizes.amax(-1, keepdim=True)).unsqueeze(1)
+
+
+def without_own(signal: Tensor, basis: Tensor) -> Tensor:
+    """`signal` (records, time, n) without what the records' own columns could do."""
+    return signal - basis @ (basis.transpose(-1, -2) @ signal)
+
+
+def _like(value: Tensor, other: Tensor) -> Tensor:
+    """(starts,) with the number of dimensions of another."""
+    return value.reshape(-1, *[1] * (other.ndim - 1))
 
 
 def fit(
@@ -123,18 +174,12 @@ def _round(
 
 
 def _step(problem: OutputErrorProblem, points: Points, now: Prediction, damping: Tensor) -> Points:
-    matrix, gradient = normal_equations(now, problem.n_shared)
-    matrix, gradient = matrix.nan_to_num(0, 0, 0), gradient.nan_to_num(0, 0, 0)
+    equations = normal_equations(now, problem.n_shared)
     expected, slope = problem.expectation(points.shared)
-    own = torch.cat([slope, slope.new_zeros(matrix.shape[1] - len(slope))])
-    matrix = matrix + torch.diag(own.square())
-    gradient[:, : len(slope)] += slope * expected
-    diagonal = matrix.diagonal(dim1=1, dim2=2)
-    ridge = damping.unsqueeze(1) * diagonal + 1e-12 * diagonal.amax(1, keepdim=True).clamp(min=1e-30)
-    step = torch.linalg.solve(matrix + torch.diag_embed(ridge), gradient)
-    step = step.clamp(-LONGEST_STEP, LONGEST_STEP)
-    moved = points.states + step[:, problem.n_shared :].reshape(points.states.shape)
-    return Points(points.shared + step[:, : problem.n_shared], moved)
+    matrix, pull = equations.shared + torch.diag(slope.square()), equations.pull + slope * expected
+    shared, own = replace(equations, shared=matrix, pull=pull).step(damping)
+    shared, own = (step.clamp(-LONGEST_STEP, LONGEST_STEP) for step in (shared, own))
+    return Points(points.shared + shared, points.states + own)
 
 
 def _cost(problem: OutputErrorProblem, points: Points, prediction: Prediction) -> Tensor:

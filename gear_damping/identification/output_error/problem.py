@@ -15,6 +15,7 @@ from gear_damping.simulation.solver_settings import Solver
 SENSOR_NOISE = "sensor_noise"
 OFFSET = "response_offset"  # a free parameter that is added to the prediction itself
 DIFFERENCE = 1e-6  # step of the sensitivities, in units of each parameter's scale
+STRETCHES = 8  # of a record, over which the growth of an error is followed
 PROBED = 64  # samples from which the scale of an initial state of an effect is found
 
 
@@ -203,7 +204,7 @@ class OutputErrorProblem:
 
     def linearise(self, shared: Tensor, states: Tensor, samples: int | None = None) -> Prediction:
         """Residuals and sensitivities at several starts at once; every column is a member of one batch."""
-        samples = samples or self.response.shape[1]
+        samples = min(samples or self.response.shape[1], self.response.shape[1])
         starts, columns = shared.shape[0], self.n_shared + len(self.local)
         steps = torch.zeros(columns + 1, columns, dtype=torch.float64)
         steps[1:] = DIFFERENCE * torch.eye(columns, dtype=torch.float64)
@@ -216,6 +217,18 @@ class OutputErrorProblem:
         residual = (self.response[:, :samples] - found[:, 0]) * weights
         sensitivity = (found[:, 1:] - found[:, :1]) / DIFFERENCE * weights
         return Prediction(residual, sensitivity.permute(0, 2, 3, 1))
+
+
+def growth(prediction: Prediction, n_shared: int) -> float:
+    """How much an error of the initial state grows from the beginning of a record, in the record where it grows most.
+
+    The largest of several stretches counts, against the first one. Where it exceeds 1, the record can be predicted
+    from its start no better than it is known.
+    """
+    error = prediction.sensitivity[0, ..., n_shared:].square().sum(-1)
+    stretches = torch.stack([stretch.mean(-1) for stretch in error.tensor_split(STRETCHES, dim=-1)])
+    found = (stretches.amax(0) / stretches[0].clamp(min=1e-300)).max().sqrt()
+    return float(found) if bool(found.isfinite()) else inf
 
 
 def set_value(values: dict[str, Tensor], name: str, value: Tensor) -> None:

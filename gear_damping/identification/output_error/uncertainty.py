@@ -9,7 +9,7 @@ from collections.abc import Callable
 import torch
 from torch import Tensor
 
-from gear_damping.identification.output_error.least_squares import Fitted, full_jacobian
+from gear_damping.identification.output_error.least_squares import Fitted, own_basis, without_own
 from gear_damping.identification.output_error.problem import OutputErrorProblem
 
 QUANTILE = 1.959964
@@ -24,19 +24,20 @@ def covariance(problem: OutputErrorProblem, fitted: Fitted, correlated_samples: 
         correlated_samples: Samples over which residuals may be correlated, some natural periods.
     """
     sensitivity, residual = fitted.prediction.sensitivity, fitted.prediction.residual[0]
-    jacobian = full_jacobian(sensitivity, problem.n_shared)[0]
-    expected = torch.zeros(jacobian.shape[1], dtype=torch.float64)
-    expected[: problem.n_shared] = problem.expectation(fitted.shared)[1].square()
+    shared = sensitivity[0, ..., : problem.n_shared]
+    beside = without_own(shared, own_basis(sensitivity[0], problem.n_shared))
+    jacobian = beside.flatten(0, 1)
+    expected = problem.expectation(fitted.shared)[1].square()
     inverse = torch.linalg.pinv(jacobian.T @ jacobian + torch.diag(expected), hermitian=True)
-    scores = jacobian.reshape(*residual.shape, -1) * residual.unsqueeze(-1)
+    scores = beside * residual.unsqueeze(-1)
     meat = sum(_long_run(one, correlated_samples) for one in scores)
-    samples, parameters = float((problem.weights > 0).sum()), jacobian.shape[1]
+    parameters = problem.n_shared + len(problem.records) * len(problem.local)
+    samples = float((problem.weights > 0).sum())
     sandwich = inverse @ meat @ inverse * samples / max(samples - parameters, 1.0)
     plain = inverse * residual.square().sum() / max(samples - parameters, 1.0)
     wide = torch.maximum(sandwich.diagonal(), plain.diagonal()) / sandwich.diagonal().clamp(min=1e-300)
     scale = wide.clamp(min=1).sqrt()
-    found = sandwich * scale.unsqueeze(0) * scale.unsqueeze(1)
-    return found[: problem.n_shared, : problem.n_shared]
+    return sandwich * scale.unsqueeze(0) * scale.unsqueeze(1)
 
 
 def _long_run(scores: Tensor, lags: int) -> Tensor:
