@@ -1,6 +1,6 @@
 """Step 3: the nominal simulation at its best, so that wrong parameters do not masquerade as physics."""
 
-from math import ceil, pi
+from math import ceil, log, pi
 
 import torch
 
@@ -25,13 +25,14 @@ RENAMED = {
     "backlash_gap": "backlash.gap",
 }
 NOT_OF_THE_MODEL = ("damping_ratio", "torque_gain", "torque_offset", "damping_coefficient")
+LESS_DAMPING = 0.05  # of what was found: what a local minimum takes for damping
 PHASES = 18  # starts of the mesh phase
 SHAPE_ITERATIONS = 30
 SHAPE_BAND = 1.6  # harmonics of the stiffness count up to this many natural frequencies, at the slowest record,
 FEWEST_HARMONICS, MOST_HARMONICS = 6, 20  # within these
 EXPECTED_SHAPE = 0.1  # of the mean stiffness over the harmonic: what real teeth add to the ideal wave
 SHORT_PERIODS = 40.0  # natural periods of the first round
-FIRST_RATIO = 0.01
+FIRST_RATIO, MOST_RATIO = 0.01, 0.5  # damping ratio at the start, and the largest: no mesh is damped more
 
 
 def calibrated(evidence: Evidence, solver: Solver | None = None) -> Outcome:
@@ -63,12 +64,20 @@ def _oscillator(evidence: Evidence, solver: Solver | None) -> Outcome:
     return fit_hypothesis(nominal, evidence, solver=solver)
 
 
+def recalibrated(nominal: Outcome, evidence: Evidence, solver: Solver | None = None) -> Outcome:
+    """The nominal model fitted to the evidence in pieces, from where it was and from little damping."""
+    hypothesis = nominal.hypothesis
+    starts = torch.zeros(2, len(hypothesis.free), dtype=torch.float64)
+    starts[1, [p.name for p in hypothesis.free].index(DAMPING)] = log(LESS_DAMPING)
+    return fit_hypothesis(hypothesis, evidence, starts, iterations=SHAPE_ITERATIONS, solver=solver)
+
+
 def restarted(evidence: Evidence, solver: Solver | None = None) -> Outcome | None:
     """A gear pair's nominal model before the shape of its stiffness was fitted, with that shape free.
 
     Where much is missing, the free shape bends to what it is not made for; a cause is better sought from here.
     """
-    if evidence.system != "gear_pair":
+    if evidence.system != "gear_pair" or evidence.piece:
         return None
     rough = _rough_gear_pair(evidence, solver)
     return _shaped(rough, evidence, 0, solver)
@@ -105,9 +114,10 @@ def _first_gear_pair(evidence: Evidence) -> Hypothesis:
         given.pop("backlash.gap", None)
     high, low = given.get(f"{MESH}.maximum", 4e8), given.get(f"{MESH}.minimum", 2e8)
     ratio = evidence.parameters.get("damping_ratio", FIRST_RATIO)
+    per_ratio = 2 * ((high + low) / 2 * 0.27) ** 0.5
     free = (
         FreeParameter("mesh_phase", 0.0),
-        FreeParameter(DAMPING, 2 * ratio * ((high + low) / 2 * 0.27) ** 0.5, logarithmic=True, lower=1e-3),
+        FreeParameter(DAMPING, ratio * per_ratio, logarithmic=True, lower=1e-3, upper=MOST_RATIO * per_ratio),
         FreeParameter(f"{MESH}.maximum", high, logarithmic=True),
         FreeParameter(f"{MESH}.minimum", low, logarithmic=True),
         FreeParameter(f"{MESH}.contact_ratio", given.get(f"{MESH}.contact_ratio", 1.6), 0.2, lower=1.02, upper=1.98),

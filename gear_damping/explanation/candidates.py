@@ -29,6 +29,7 @@ class Candidate:
         strengths: Places of its strengths among the free parameters.
         phases: Place of the phase by place of its strength.
         begun: Coordinates at which other parameters begin in the full fit, by their place.
+        moved: How far other parameters are moved for further starts, in coordinates by place.
         later: Free parameters that join in the full fit only.
         presence: Whether it is tried as a whole.
     """
@@ -39,6 +40,7 @@ class Candidate:
     strengths: tuple[int, ...]
     phases: Mapping[int, int]
     begun: Mapping[int, float]
+    moved: Mapping[int, float]
     later: tuple[FreeParameter, ...]
     presence: bool
 
@@ -85,6 +87,7 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, duration: f
             begun[first + len(free)] = log(UNSEEN)
         if name in given or name in base.given:
             free.append(_freed(base.model.parameters()[name], name, base.given | given, recipe.within))
+    moved = {i: log(recipe.stood_in[p.name]) for i, p in enumerate(base.free) if p.name in recipe.stood_in}
     return Candidate(
         kind.name,
         _label(kind, recipe),
@@ -92,6 +95,7 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, duration: f
         tuple(strengths),
         phases,
         begun,
+        moved,
         tuple(later),
         recipe.presence,
     )

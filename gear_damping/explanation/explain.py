@@ -5,10 +5,11 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from gear_damping.explanation import content
-from gear_damping.explanation.calibrate import calibrated
+from gear_damping.explanation.calibrate import calibrated, recalibrated
 from gear_damping.explanation.data_faults import data_faults, mesh_order_faults
 from gear_damping.explanation.evidence import Evidence, evidence_of
 from gear_damping.explanation.extend import search
+from gear_damping.explanation.hypothesis import MOST_GROWTH, Outcome, piece_samples
 from gear_damping.explanation.noise import NoiseLevel, noise_level, weighted
 from gear_damping.explanation.significance import excess
 from gear_damping.explanation.trying import Search
@@ -19,6 +20,7 @@ from gear_damping.simulation.solver_settings import Solver
 
 Say = Callable[[str], None]
 STEPS = 4
+MOST_SUBSTEPS = 24  # of an output interval: only forces far beyond the load would need more
 FIT_ACCURACY = 1e-4  # of the deflection: far below the noise of any record that is explained
 
 
@@ -72,16 +74,28 @@ def explain(
     evidence = replace(evidence, fit=fit, holdout=holdout, noise=noise.value)
     evidence = evidence if library is None else replace(evidence, library=library)
     solver = solver or Solver()
-    solver = replace(solver, accuracy=max(solver.accuracy, FIT_ACCURACY))
+    solver = replace(solver, accuracy=max(solver.accuracy, FIT_ACCURACY), most_substeps=MOST_SUBSTEPS)
     step(1, STEPS)
     nominal = calibrated(evidence, solver)
-    before = excess(nominal.holdout, evidence.holdout, noise)
-    say(f"the calibrated nominal model leaves {before.percent:.3g} % of the signal's variance beyond the noise")
+    _tell(nominal, evidence, noise, say)
     step(2, STEPS)
-    found = search(nominal, evidence, noise, say, solver)
+    if nominal.growth <= MOST_GROWTH:
+        found = search(nominal, evidence, noise, say, solver)
+    if nominal.growth > MOST_GROWTH or found.growth > MOST_GROWTH:
+        evidence = replace(evidence, piece=piece_samples(nominal.hypothesis, evidence))
+        milliseconds = 1e3 * evidence.piece / evidence.sampling_rate
+        say(f"an error of the initial state grows: records are predicted in pieces of {milliseconds:.3g} ms")
+        nominal = recalibrated(nominal, evidence, solver)
+        _tell(nominal, evidence, noise, say)
+        found = search(nominal, evidence, noise, say, solver)
     step(3, STEPS)
     before = excess(found.nominal.holdout, evidence.holdout, noise)
     after = excess(found.outcome.holdout, evidence.holdout, noise)
     judged = Judged(found, before, after, verdict(found, before, after, found.outcome.fitted.converged))
     step(4, STEPS)
     return Explanation(content.of_search(measurement, evidence, noise, judged), evidence, noise, found)
+
+
+def _tell(nominal: Outcome, evidence: Evidence, noise: NoiseLevel, say: Say) -> None:
+    before = excess(nominal.holdout, evidence.holdout, noise)
+    say(f"the calibrated nominal model leaves {before.percent:.3g} % of the signal's variance beyond the noise")

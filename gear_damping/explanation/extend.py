@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from gear_damping.explanation.calibrate import restarted
 from gear_damping.explanation.evidence import Evidence
-from gear_damping.explanation.hypothesis import Outcome
+from gear_damping.explanation.hypothesis import MOST_GROWTH, Outcome
 from gear_damping.explanation.noise import NoiseLevel
 from gear_damping.explanation.refit import Refit
 from gear_damping.explanation.revise import beside_the_others, exchanged, pruned, simplified
@@ -57,6 +57,8 @@ def _next(found: Search, ranked: Sequence, current: Excess, bench: Bench) -> tup
     else:
         fits = found.first_fits = _first_fits(found, current, bench)
     found.rejected = fits
+    if found.growth > MOST_GROWTH and not bench.evidence.piece:
+        return None, ()  # nothing that was predicted over whole records counts
     best = _best(fits, current, bench)
     return (None, ()) if best is None else bench.simplest(best, fits)
 

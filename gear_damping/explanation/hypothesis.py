@@ -10,12 +10,22 @@ from gear_damping.explanation.evidence import Evidence
 from gear_damping.identification.output_error.holdout import predict_holdout
 from gear_damping.identification.output_error.least_squares import Fitted, fit
 from gear_damping.identification.output_error.pieces import in_pieces, joined
-from gear_damping.identification.output_error.problem import OFFSET, FreeParameter, OutputErrorProblem, growth
+from gear_damping.identification.output_error.problem import (
+    OFFSET,
+    FitRecord,
+    FreeParameter,
+    OutputErrorProblem,
+    growth,
+)
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.base import System
-from gear_damping.physics.terms import Effect
+from gear_damping.physics.terms import Contact, Effect
 from gear_damping.simulation.solver_settings import Solver
 
+MOST_GROWTH = 2.0  # of an error of the initial state over a record that is predicted from its start
+PIECE_PERIODS = 5.0  # natural periods of a piece of a record that cannot be predicted for longer
+FEWEST_SAMPLES = 24  # of such a piece
+ITERATIONS_NEAR = 20  # to get near enough for the whole records
 Given = dict[str, float | tuple[float, ...]]
 
 
@@ -126,12 +136,22 @@ def fit_hypothesis(
         kept: Share of the starts that goes on from round to round.
         enough: Fall of the cost, in noise variances, below which the fit has come to rest.
     """
-    model, known = hypothesis.model, hypothesis.given
+    if not evidence.piece and any(isinstance(effect, Contact) for effect in hypothesis.effects):
+        # Where flanks part, the cost over whole records has many minima; over short pieces it has few.
+        short = replace(evidence, piece=piece_samples(hypothesis, evidence))
+        rounds = {"horizons": [evidence.piece] * 2, "iterations": (ITERATIONS_NEAR, ITERATIONS_NEAR)}
+        near = fit_hypothesis(hypothesis, short, starts, **rounds, solver=solver, kept=kept, enough=enough)
+        grown = growth_over(near.hypothesis, evidence.fit, solver)
+        if grown > MOST_GROWTH:
+            return replace(near, growth=grown)
+        hypothesis, starts, after = near.hypothesis, None, near
     pieces = in_pieces(evidence.fit, evidence.piece)
-    problem = OutputErrorProblem(model, known, hypothesis.free, pieces, solver, evidence.noise)
+    problem = OutputErrorProblem(hypothesis.model, hypothesis.given, hypothesis.free, pieces, solver, evidence.noise)
     if starts is None:
         starts = torch.zeros(1, problem.n_shared, dtype=torch.float64)
     begun = None if after is None else begun_from(problem, after, len(starts))
+    if evidence.piece:  # short already, and begun from what was measured: another model's states lead astray
+        begun, horizons = None, horizons and [problem.response.shape[1]] * len(horizons)
     fitted = fit(problem, starts, horizons, iterations, begun, kept=kept, enough=enough * evidence.noise**2)
     values = {name: float(value) for name, value in problem.parameters(fitted.shared).items()}
     given = placed(hypothesis.given, values)
@@ -147,13 +167,31 @@ def fit_hypothesis(
     return Outcome(settled, problem, fitted, values, holdout, fit_residuals, grown)
 
 
+def growth_over(hypothesis: Hypothesis, records: Sequence[FitRecord], solver: Solver | None) -> float:
+    """How much an error of the initial state grows over whole records, in the one where it grows most."""
+    problem = OutputErrorProblem(hypothesis.model, hypothesis.given, (), records, solver)
+    none = torch.zeros(1, 0, dtype=torch.float64)
+    return growth(problem.linearise(none, problem.first_states().unsqueeze(0)), 0)
+
+
 def begun_from(problem: OutputErrorProblem, after: Outcome, points: int) -> Tensor:
-    """Initial states of several points of a problem, (points, records, local), from a fit to the same records."""
+    """Initial states of several points of a problem, (points, records, local), from a fit to the same records.
+
+    From the records themselves where that fit cut them otherwise.
+    """
+    if len(after.problem.records) != len(problem.records):
+        return problem.first_states().repeat(points, 1, 1)
     return problem.states_of(after.problem, after.fitted.states).repeat(points, 1, 1)
 
 
 def _settled(parameter: FreeParameter, value: float) -> FreeParameter:
     return replace(parameter, start=value)
+
+
+def piece_samples(hypothesis: Hypothesis, evidence: Evidence) -> int:
+    """Samples of a piece of a record that can be predicted from its start wherever flanks part."""
+    frequency = natural_frequency_hz(hypothesis.model, hypothesis.given)
+    return max(FEWEST_SAMPLES, round(PIECE_PERIODS * evidence.sampling_rate / frequency))
 
 
 def natural_frequency_hz(model: Model, given: Given) -> float:

@@ -117,7 +117,15 @@ def refitted(
 
 
 def _starts(score: Score) -> Tensor:
-    """Coordinates of the starts, (starts, n_free): the linearised optimum and less of it, or every size."""
+    """Coordinates of the starts, (starts, n_free), and those with what stood in for the effect moved back."""
+    starts, moved = _sizes_of(score), torch.zeros_like(score.start)
+    for place, coordinate in score.candidate.moved.items():
+        moved[place] = coordinate
+    return torch.cat([starts, starts + moved]) if score.candidate.moved else starts
+
+
+def _sizes_of(score: Score) -> Tensor:
+    """The linearised optimum and less of it, or every size."""
     candidate = score.candidate
     if not candidate.presence:
         starts = score.start.repeat(2, 1)

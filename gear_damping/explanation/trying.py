@@ -62,6 +62,12 @@ class Search:
     rejected: list[Refit] = field(default_factory=list)
     first_fits: list[Refit] = field(default_factory=list)
 
+    @property
+    def growth(self) -> float:
+        """How much an error of the initial state grows over a record, by the model or the best of the first round."""
+        best = [fit.outcome for fit in self.first_fits[:1] if fit.is_seen_in_fit]
+        return max(outcome.growth for outcome in (self.nominal, self.outcome, *best))
+
 
 @dataclass(frozen=True)
 class Bench:

@@ -21,6 +21,8 @@ class Recipe:
         timed: As `scanned` for times and frequencies, in durations of the longest record and cycles of it.
         beside: Parameters of other effects that are fitted with it; with the value at which the full fit begins,
             where they have no size yet.
+        stood_in: Parameters, by flat name, that bend far off where the effect is missing, with the factor by which
+            they are moved for further starts of the full fit.
         fixed: Parameters that stay.
         neutral: Value of the strengths without the effect.
         presence: The effect has no neutral value (a stiffness that was rigid): it is tried as a whole, at the
@@ -36,6 +38,7 @@ class Recipe:
     within: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     timed: Mapping[str, float] = field(default_factory=dict)
     beside: Mapping[str, float | None] = field(default_factory=dict)
+    stood_in: Mapping[str, float] = field(default_factory=dict)
     fixed: Mapping[str, float] = field(default_factory=dict)
     neutral: float = 0.0
     presence: bool = False

@@ -71,7 +71,7 @@ def solve(stepper: Stepper, start: Tensor, n_samples: int, substeps: int, progre
 def groups_of(prepared: Prepared, interval: Tensor, intervals: int, solver: Solver) -> list[tuple[int, Tensor]]:
     """Sub-steps and the members that take them, in chunks that bound the memory."""
     if solver.substeps is None:
-        substeps = substeps_for(solver.accuracy, prepared, interval, intervals)
+        substeps = substeps_for(solver.accuracy, prepared, interval, intervals).clamp(max=solver.most_substeps)
     else:
         substeps = torch.full(interval.shape, solver.substeps, device=interval.device)
     members = [(int(n), (substeps == n).nonzero().squeeze(1)) for n in substeps.unique()]
