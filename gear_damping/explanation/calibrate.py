@@ -32,7 +32,7 @@ SHAPE_BAND = 1.6  # harmonics of the stiffness count up to this many natural fre
 FEWEST_HARMONICS, MOST_HARMONICS = 6, 20  # within these
 EXPECTED_SHAPE = 0.1  # of the mean stiffness over the harmonic: what real teeth add to the ideal wave
 SHORT_PERIODS = 40.0  # natural periods of the first round
-FIRST_RATIO, MOST_RATIO = 0.01, 0.5  # damping ratio at the start, and the largest: no mesh is damped more
+FIRST_RATIO = 0.01
 
 
 def calibrated(evidence: Evidence, solver: Solver | None = None) -> Outcome:
@@ -114,10 +114,9 @@ def _first_gear_pair(evidence: Evidence) -> Hypothesis:
         given.pop("backlash.gap", None)
     high, low = given.get(f"{MESH}.maximum", 4e8), given.get(f"{MESH}.minimum", 2e8)
     ratio = evidence.parameters.get("damping_ratio", FIRST_RATIO)
-    per_ratio = 2 * ((high + low) / 2 * 0.27) ** 0.5
     free = (
         FreeParameter("mesh_phase", 0.0),
-        FreeParameter(DAMPING, ratio * per_ratio, logarithmic=True, lower=1e-3, upper=MOST_RATIO * per_ratio),
+        FreeParameter(DAMPING, 2 * ratio * ((high + low) / 2 * 0.27) ** 0.5, logarithmic=True, lower=1e-3),
         FreeParameter(f"{MESH}.maximum", high, logarithmic=True),
         FreeParameter(f"{MESH}.minimum", low, logarithmic=True),
         FreeParameter(f"{MESH}.contact_ratio", given.get(f"{MESH}.contact_ratio", 1.6), 0.2, lower=1.02, upper=1.98),

@@ -79,15 +79,16 @@ def explain(
     nominal = calibrated(evidence, solver)
     _tell(nominal, evidence, noise, say)
     step(2, STEPS)
+    found = Search(nominal, nominal)
     if nominal.growth <= MOST_GROWTH:
         found = search(nominal, evidence, noise, say, solver)
-    if nominal.growth > MOST_GROWTH or found.growth > MOST_GROWTH:
+    if found.growth > MOST_GROWTH:
         evidence = replace(evidence, piece=piece_samples(nominal.hypothesis, evidence))
         milliseconds = 1e3 * evidence.piece / evidence.sampling_rate
         say(f"an error of the initial state grows: records are predicted in pieces of {milliseconds:.3g} ms")
         nominal = recalibrated(nominal, evidence, solver)
         _tell(nominal, evidence, noise, say)
-        found = search(nominal, evidence, noise, say, solver)
+        found = search(nominal, evidence, noise, say, solver, found.first_fits[:1])
     step(3, STEPS)
     before = excess(found.nominal.holdout, evidence.holdout, noise)
     after = excess(found.outcome.holdout, evidence.holdout, noise)

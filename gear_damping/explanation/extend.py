@@ -6,21 +6,39 @@ from gear_damping.explanation.calibrate import restarted
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import MOST_GROWTH, Outcome
 from gear_damping.explanation.noise import NoiseLevel
-from gear_damping.explanation.refit import Refit
+from gear_damping.explanation.refit import Refit, again
 from gear_damping.explanation.revise import beside_the_others, exchanged, pruned, simplified
 from gear_damping.explanation.significance import Excess
 from gear_damping.explanation.trying import BORNE_OUT, Accepted, Bench, Say, Search
 from gear_damping.simulation.solver_settings import Solver
 
 LEAST_SHARE = 0.25  # of the remaining excess that a cause must take
+LEAST_OF_PAIR = 0.5  # that two causes must take of which neither is borne out alone
+PAIRS_TRIED = 2  # first causes of such a pair
 MOST_CAUSES = 4
 MOST_ANEW = 3  # times that a search begins anew from a better calibration
 BENT = 4.0  # noise variances left by a nominal model whose free shape is no good place to begin
 REST = 0.02  # of the first excess: less is not worth a cause
 
 
-def search(nominal: Outcome, evidence: Evidence, noise: NoiseLevel, say: Say, solver: Solver | None = None) -> Search:
-    """Extend the nominal model until nothing significant is missing or nothing more is borne out."""
+def search(
+    nominal: Outcome,
+    evidence: Evidence,
+    noise: NoiseLevel,
+    say: Say,
+    solver: Solver | None = None,
+    begun: Sequence[Refit] = (),
+) -> Search:
+    """Extend the nominal model until nothing significant is missing or nothing more is borne out.
+
+    Args:
+        nominal: The calibrated model.
+        evidence: The records.
+        noise: Their noise.
+        say: Told what is found on the way.
+        solver: Settings of the solver.
+        begun: Full fits to other evidence that are carried on.
+    """
     bench = Bench(evidence, noise, say, solver)
     found = Search(nominal, nominal, first_scores=bench.ranked(nominal))
     ranked, first, anew = found.first_scores, bench.excess(nominal), 0
@@ -28,9 +46,13 @@ def search(nominal: Outcome, evidence: Evidence, noise: NoiseLevel, say: Say, so
         current = bench.excess(found.outcome)
         if not current.significant or (found.accepted and current.percent <= REST * first.percent):
             break
-        best, rivals = _next(found, ranked, current, bench)
+        best, rivals = _next(found, ranked, current, bench, begun)
         if best is None:
-            break
+            pair = _pair(found, current, bench)
+            if pair is None:
+                break
+            _accept(found, pair[0], (), current, first, bench)
+            best, rivals, current = *pair[1:], bench.excess(found.outcome)
         settled = bench.without(best.outcome, best.name) if anew < MOST_ANEW else None
         if settled is not None and bench.is_as_good(settled, best.outcome):
             # The effect only led the fit out of a local minimum: it has no part in the gain.
@@ -50,17 +72,38 @@ def search(nominal: Outcome, evidence: Evidence, noise: NoiseLevel, say: Say, so
     return found
 
 
-def _next(found: Search, ranked: Sequence, current: Excess, bench: Bench) -> tuple[Refit | None, tuple[str, ...]]:
+def _next(
+    found: Search, ranked: Sequence, current: Excess, bench: Bench, begun: Sequence[Refit]
+) -> tuple[Refit | None, tuple[str, ...]]:
     """The next cause with its rivals; None where nothing more is borne out."""
     if found.accepted:
         fits = bench.full_fits(ranked, found.outcome, found.outcome)
     else:
-        fits = found.first_fits = _first_fits(found, current, bench)
+        fits = found.first_fits = _first_fits(found, current, bench, begun)
     found.rejected = fits
-    if found.growth > MOST_GROWTH and not bench.evidence.piece:
-        return None, ()  # nothing that was predicted over whole records counts
+    if _is_unpredictable(found, bench):
+        return None, ()
     best = _best(fits, current, bench)
     return (None, ()) if best is None else bench.simplest(best, fits)
+
+
+def _pair(found: Search, current: Excess, bench: Bench) -> tuple[Refit, Refit, tuple[str, ...]] | None:
+    """Two causes that explain together what neither does alone, with the rivals of the second."""
+    if found.accepted or _is_unpredictable(found, bench):
+        return None
+    promising = {fit.name: fit for fit in reversed(found.rejected) if fit.is_seen_in_fit and fit.gain > 0}
+    for one in list(reversed(promising.values()))[:PAIRS_TRIED]:
+        fits = bench.full_fits(bench.ranked(one.outcome), one.outcome, found.outcome)
+        best = _best(fits, current, bench, LEAST_OF_PAIR)
+        if best is not None and bench.paired_gain(one.outcome, best.outcome)[1] > BORNE_OUT:
+            bench.say(f"{one.name} and {best.name} explain together what neither does alone")
+            return one, *bench.simplest(best, fits)
+    return None
+
+
+def _is_unpredictable(found: Search, bench: Bench) -> bool:
+    """Whether records were predicted over more than they can be: nothing of that counts."""
+    return found.growth > MOST_GROWTH and not bench.evidence.piece
 
 
 def _accept(found: Search, best: Refit, rivals: tuple[str, ...], current: Excess, first: Excess, bench: Bench) -> None:
@@ -70,13 +113,13 @@ def _accept(found: Search, best: Refit, rivals: tuple[str, ...], current: Excess
     bench.say(f"{best.name} takes {100 * share:.1f} % of the excess on held-out records")
 
 
-def _first_fits(found: Search, current: Excess, bench: Bench) -> list[Refit]:
+def _first_fits(found: Search, current: Excess, bench: Bench, begun: Sequence[Refit]) -> list[Refit]:
     """Full fits of the first round: from the nominal model, and from before its free shape was fitted.
 
     Where much is missing that shape has bent to what it is not made for, so the other place comes first;
     the second one is tried only where nothing is borne out from the first.
     """
-    fits: list[Refit] = []
+    fits = [again(refit, found.nominal, bench.evidence, bench.solver) for refit in begun]
     for place in ("shaped", "unshaped") if current.misfit < BENT else ("unshaped", "shaped"):
         begin, ranked = found.nominal, found.first_scores
         if place == "unshaped":
@@ -91,10 +134,10 @@ def _first_fits(found: Search, current: Excess, bench: Bench) -> list[Refit]:
     return fits
 
 
-def _best(fits: Sequence[Refit], current: Excess, bench: Bench) -> Refit | None:
+def _best(fits: Sequence[Refit], current: Excess, bench: Bench, least: float = LEAST_SHARE) -> Refit | None:
     """The best full fit, where held-out records bear it out."""
     best = next((fit for fit in fits if fit.is_seen_in_fit), None)
     if best is None:
         return None
     takes = (current.percent - bench.excess(best.outcome).percent) / current.percent
-    return best if best.t > BORNE_OUT and takes >= LEAST_SHARE else None
+    return best if best.t > BORNE_OUT and takes >= least else None

@@ -111,8 +111,17 @@ def refitted(
         found = fit_hypothesis(freed, evidence, None, found, **options)
     if not torch.isfinite(torch.tensor(found.holdout_cost)):
         return None
-    against = against or outcome
-    gain, t = paired_gain(against.holdout, found.holdout, block_samples(outcome, evidence.sampling_rate))
+    return _compared(score, found, against or outcome, evidence)
+
+
+def again(refit: Refit, against: Outcome, evidence: Evidence, solver: Solver | None = None) -> Refit:
+    """A full fit carried on with other evidence, as with the same records in pieces, and held against another model."""
+    found = fit_hypothesis(refit.outcome.hypothesis, evidence, solver=solver, enough=ENOUGH)
+    return _compared(refit.score, found, against, evidence)
+
+
+def _compared(score: Score, found: Outcome, against: Outcome, evidence: Evidence) -> Refit:
+    gain, t = paired_gain(against.holdout, found.holdout, block_samples(against, evidence.sampling_rate))
     return Refit(score, found, gain, t, (against.fitted.cost - found.fitted.cost) / max(evidence.noise, 1e-300) ** 2)
 
 

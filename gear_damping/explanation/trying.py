@@ -108,9 +108,7 @@ class Bench:
 
     def without(self, outcome: Outcome, name: str) -> Outcome:
         """A model without one of its causes, fitted from where it was."""
-        return fit_hypothesis(
-            _without(outcome.hypothesis, name), self.evidence, None, outcome, solver=self.solver
-        )
+        return fit_hypothesis(_without(outcome.hypothesis, name), self.evidence, None, outcome, solver=self.solver)
 
     def is_as_good(self, outcome: Outcome, best: Outcome) -> bool:
         """Whether a model is not worse than another by the paired test."""

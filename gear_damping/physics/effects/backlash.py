@@ -28,7 +28,7 @@ class Backlash(Contact):
         "the gap between the flanks",
         tuple(
             # What is lost in impacts passes for damping as long as the flanks cannot part.
-            Recipe({"gap": gap}, presence=True, in_si=True, stood_in={"viscous_damping.damping_coefficient": 0.05})
+            Recipe({"gap": gap}, presence=True, in_si=True, stood_in={"viscous_damping.damping_coefficient": 0.02})
             for gap in (3e-5, 6e-5, 1.2e-4, 2.4e-4)
         ),
         separated_by="reversal",
