@@ -53,6 +53,19 @@ def test_of_two_causes_neither_keeps_the_name_of_its_neighbour(explained):
 
 
 @pytest.mark.slow
+def test_a_shaft_that_still_rings_is_found_with_its_size(explained):
+    """Every record begins with the shaft in motion, and no size that is tried is the true one."""
+    found = explained("shaft_torsion", 1, 30.0, duration=0.03)
+    first = found["causes"][0]
+    assert (first["name"], first["status"], first["confusable_with"]) == ("shaft_torsion", "established", [])
+    for name, true in found["truth"]["effects"][0]["parameters"].items():
+        assert first["parameters"][name]["value"] == pytest.approx(true, rel=0.03)
+        low, high = first["parameters"][name]["interval95"]
+        assert low < true < high
+    assert found["misfit"]["after"] < 1.2
+
+
+@pytest.mark.slow
 def test_what_an_effect_only_led_to_is_not_its_merit(explained):
     """From the first calibration a soft shaft leads to a better one, which needs no shaft."""
     found = explained("squeeze_film_damping", 35, None, records=range(8), duration=0.05, target_excess=2.0)

@@ -1,0 +1,78 @@
+"""Records in pieces, and the linear algebra of what every record has of its own, against dense matrices."""
+
+import math
+
+import pytest
+import torch
+
+from gear_damping.identification.output_error.least_squares import normal_equations, own_basis, without_own
+from gear_damping.identification.output_error.pieces import in_pieces, joined
+from gear_damping.identification.output_error.problem import FitRecord, Prediction, growth
+
+STARTS, RECORDS, SAMPLES, SHARED, OWN = 2, 3, 20, 4, 2
+
+
+@pytest.fixture
+def prediction():
+    generator = torch.Generator().manual_seed(0)
+    residual = torch.randn(STARTS, RECORDS, SAMPLES, generator=generator, dtype=torch.float64)
+    sensitivity = torch.randn(*residual.shape, SHARED + OWN, generator=generator, dtype=torch.float64)
+    return Prediction(residual, sensitivity)
+
+
+def dense(sensitivity):
+    """Of one start: (records * time, shared + records * own), with zeros where a column is another record's own."""
+    blocks = torch.block_diag(*sensitivity[..., SHARED:])
+    return torch.cat([sensitivity[..., :SHARED].reshape(-1, SHARED), blocks], 1)
+
+
+def test_the_step_solves_the_whole_system(prediction):
+    damping = torch.tensor([1e-2, 0.3], dtype=torch.float64)
+    shared, own = normal_equations(prediction, SHARED).step(damping)
+    for i in range(STARTS):
+        jacobian = dense(prediction.sensitivity[i])
+        matrix = jacobian.T @ jacobian
+        ridge = torch.diag(damping[i] * matrix.diagonal())
+        step = torch.linalg.solve(matrix + ridge, jacobian.T @ prediction.residual[i].reshape(-1))
+        torch.testing.assert_close(torch.cat([shared[i], own[i].reshape(-1)]), step, rtol=1e-9, atol=1e-12)
+
+
+def test_what_records_have_of_their_own_is_projected_out(prediction):
+    sensitivity = prediction.sensitivity[0].clone()
+    sensitivity[1, :, -1] = 0.0  # a state that one record does not show
+    left = without_own(prediction.residual[0].unsqueeze(-1), own_basis(sensitivity, SHARED)).reshape(-1)
+    columns = dense(sensitivity)[:, SHARED:]
+    signal = prediction.residual[0].reshape(-1)
+    best = torch.linalg.lstsq(columns, signal.unsqueeze(1), driver="gelsd").solution
+    torch.testing.assert_close(left, signal - (columns @ best)[:, 0], rtol=1e-9, atol=1e-12)
+
+
+def test_pieces_hold_every_sample_once_and_the_shaft_turns_on():
+    records = [
+        FitRecord(name, samples, 100.0, {"pinion_torque": -samples}, {"pinion_speed": 3.0})
+        for name, samples in (("a", torch.arange(103.0)), ("b", torch.arange(50.0)))
+    ]
+    pieces = in_pieces(records, 25)
+    assert [len(piece.response) for piece in pieces] == [26, 26, 25, 26, 25, 25]
+    assert all(torch.equal(piece.inputs["pinion_torque"], -piece.response) for piece in pieces)
+    # the record counts its own samples, so that a piece's first sample says how many went before
+    angles = [piece.conditions.get("pinion_angle", 0.0) for piece in pieces]
+    assert angles == pytest.approx([3.0 * float(piece.response[0]) / 100.0 for piece in pieces])
+    padded = torch.nn.utils.rnn.pad_sequence([piece.response for piece in pieces], batch_first=True)
+    for found, record in zip(joined(padded, records, 25), records, strict=True):
+        assert torch.equal(found, record.response)
+
+
+def test_records_stay_whole_without_a_length():
+    record = FitRecord("a", torch.arange(10.0), 100.0)
+    assert len(in_pieces([record], 0)) == 1
+    assert torch.equal(joined([record.response], [record], 0)[0], record.response)
+
+
+@pytest.mark.parametrize(("rate", "expected"), [(-3.0, 1.0), (2.0, math.exp(2.0 * 7 / 8))])
+def test_growth_is_that_of_the_record_that_grows_most(rate, expected):
+    time = torch.linspace(0, 1, 8001, dtype=torch.float64)[:-1]
+    errors = torch.stack([torch.exp(-time), torch.exp(rate * time)])
+    shared = torch.full_like(errors, 1e6)
+    sensitivity = torch.stack([shared, errors], -1).unsqueeze(0)
+    assert growth(Prediction(errors.unsqueeze(0), sensitivity), 1) == pytest.approx(expected, rel=1e-6)
