@@ -13,8 +13,6 @@ from gear_damping.explanation.trying import BORNE_OUT, Accepted, Bench, Say, Sea
 from gear_damping.simulation.solver_settings import Solver
 
 LEAST_SHARE = 0.25  # of the remaining excess that a cause must take
-LEAST_OF_PAIR = 0.5  # that two causes must take of which neither is borne out alone
-PAIRS_TRIED = 2  # first causes of such a pair
 MOST_CAUSES = 4
 MOST_ANEW = 3  # times that a search begins anew from a better calibration
 BENT = 4.0  # noise variances left by a nominal model whose free shape is no good place to begin
@@ -48,11 +46,7 @@ def search(
             break
         best, rivals = _next(found, ranked, current, bench, begun)
         if best is None:
-            pair = _pair(found, current, bench)
-            if pair is None:
-                break
-            _accept(found, pair[0], (), current, first, bench)
-            best, rivals, current = *pair[1:], bench.excess(found.outcome)
+            break
         settled = bench.without(best.outcome, best.name) if anew < MOST_ANEW else None
         if settled is not None and bench.is_as_good(settled, best.outcome):
             # The effect only led the fit out of a local minimum: it has no part in the gain.
@@ -85,20 +79,6 @@ def _next(
         return None, ()
     best = _best(fits, current, bench)
     return (None, ()) if best is None else bench.simplest(best, fits)
-
-
-def _pair(found: Search, current: Excess, bench: Bench) -> tuple[Refit, Refit, tuple[str, ...]] | None:
-    """Two causes that explain together what neither does alone, with the rivals of the second."""
-    if found.accepted or _is_unpredictable(found, bench):
-        return None
-    promising = {fit.name: fit for fit in reversed(found.rejected) if fit.is_seen_in_fit and fit.gain > 0}
-    for one in list(reversed(promising.values()))[:PAIRS_TRIED]:
-        fits = bench.full_fits(bench.ranked(one.outcome), one.outcome, found.outcome)
-        best = _best(fits, current, bench, LEAST_OF_PAIR)
-        if best is not None and bench.paired_gain(one.outcome, best.outcome)[1] > BORNE_OUT:
-            bench.say(f"{one.name} and {best.name} explain together what neither does alone")
-            return one, *bench.simplest(best, fits)
-    return None
 
 
 def _is_unpredictable(found: Search, bench: Bench) -> bool:
@@ -134,10 +114,10 @@ def _first_fits(found: Search, current: Excess, bench: Bench, begun: Sequence[Re
     return fits
 
 
-def _best(fits: Sequence[Refit], current: Excess, bench: Bench, least: float = LEAST_SHARE) -> Refit | None:
+def _best(fits: Sequence[Refit], current: Excess, bench: Bench) -> Refit | None:
     """The best full fit, where held-out records bear it out."""
     best = next((fit for fit in fits if fit.is_seen_in_fit), None)
     if best is None:
         return None
     takes = (current.percent - bench.excess(best.outcome).percent) / current.percent
-    return best if best.t > BORNE_OUT and takes >= least else None
+    return best if best.t > BORNE_OUT and takes >= LEAST_SHARE else None
