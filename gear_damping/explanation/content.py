@@ -82,7 +82,7 @@ def of_search(measurement: Measurement, evidence: Evidence, noise: NoiseLevel, j
         "calibration": {
             "converged": first.fitted.converged,
             "parameters": dict(first.values),
-            "steps": _steps(judged),
+            "steps": _steps(judged, evidence),
         },
         "findings": _findings(measurement.findings),
     }
@@ -96,13 +96,18 @@ def _findings(findings: Sequence[Finding]) -> list[dict[str, Any]]:
     ]
 
 
-def _steps(judged: Judged) -> list[str]:
+def _steps(judged: Judged, evidence: Evidence) -> list[str]:
     before = judged.before
     rest = "came to rest" if judged.found.nominal.fitted.converged else "did not come to rest: take it with care"
+    pieces = (
+        f"An error of the initial state grows in these records: they were fitted and scored in pieces of "
+        f"{1e3 * evidence.piece / evidence.sampling_rate:.3g} ms, each from a start of its own."
+    )
     return [
         f"The nominal simulation was fitted first, so that no wrong parameter passes for physics; the fit {rest}.",
         f"It leaves {before.percent:.3g} % of the signal's variance beyond the noise on held-out records; "
         f"more than {before.threshold:.2g} % counts as significant.",
+        *([pieces] if evidence.piece else []),
     ]
 
 
