@@ -8,7 +8,7 @@ from gear_damping.explanation.hypothesis import MOST_GROWTH, Outcome
 from gear_damping.explanation.noise import NoiseLevel
 from gear_damping.explanation.refit import Refit, again
 from gear_damping.explanation.revise import beside_the_others, exchanged, pruned, simplified
-from gear_damping.explanation.significance import Excess
+from gear_damping.explanation.significance import Excess, is_settled
 from gear_damping.explanation.trying import BORNE_OUT, Accepted, Bench, Say, Search
 from gear_damping.simulation.solver_settings import Solver
 
@@ -16,7 +16,6 @@ LEAST_SHARE = 0.25  # of the remaining excess that a cause must take
 MOST_CAUSES = 4
 MOST_ANEW = 3  # times that a search begins anew from a better calibration
 BENT = 4.0  # noise variances left by a nominal model whose free shape is no good place to begin
-REST = 0.02  # of the first excess: less is not worth a cause
 
 
 def search(
@@ -42,7 +41,7 @@ def search(
     ranked, first, anew = found.first_scores, bench.excess(nominal), 0
     while len(found.accepted) < MOST_CAUSES:
         current = bench.excess(found.outcome)
-        if not current.significant or (found.accepted and current.percent <= REST * first.percent):
+        if is_settled(current, first):
             break
         best, rivals = _next(found, ranked, current, bench, begun)
         if best is None:
@@ -56,7 +55,7 @@ def search(
                 found.nominal, found.first_scores, first = settled, ranked, bench.excess(settled)
             continue
         _accept(found, best, rivals, current, first, bench)
-        if bench.excess(found.outcome).percent > REST * first.percent:
+        if not is_settled(bench.excess(found.outcome), first):
             exchanged(found, first, bench)
             ranked = bench.ranked(found.outcome)
     found.accepted = [simplified(cause, found, bench) for cause in found.accepted]

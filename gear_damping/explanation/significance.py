@@ -11,6 +11,8 @@ from gear_damping.identification.output_error.problem import FitRecord
 
 SMALLEST = 0.03  # % of the channel's AC variance; less is never called significant
 ERRORS = 3.0  # standard errors
+REST = 0.02  # of the first excess: less is the form of an effect that is right,
+CLOSE = 1.2  # where it leaves no more than so many noise variances
 
 
 @dataclass(frozen=True)
@@ -33,6 +35,11 @@ class Excess:
     def significant(self) -> bool:
         """Whether the data show that something is missing."""
         return self.percent > self.threshold
+
+
+def is_settled(left: Excess, first: Excess) -> bool:
+    """Whether nothing is left of a first excess that is worth another cause."""
+    return not left.significant or (left.percent <= REST * first.percent and left.misfit <= CLOSE)
 
 
 def excess(residuals: Sequence[Tensor], records: Sequence[FitRecord], noise: NoiseLevel) -> Excess:

@@ -3,9 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from gear_damping.explanation.extend import REST
 from gear_damping.explanation.next_experiment import LARGEST_SET
-from gear_damping.explanation.significance import Excess
+from gear_damping.explanation.significance import Excess, is_settled
 from gear_damping.explanation.trying import Accepted, Search
 from gear_damping.physics.catalogue import builtin_effects
 
@@ -14,7 +13,6 @@ PARTLY, UNEXPLAINED, DATA_PROBLEM = "partly_explained", "unexplained", "data_pro
 VERDICTS = (CONSISTENT, EXPLAINED, AMBIGUOUS, PARTLY, UNEXPLAINED, DATA_PROBLEM)
 MOST = 0.85  # of the excess that causes must take to be established although a rest is left,
 HALF = 0.5  # or half of it, where the rest is
-CLOSE = 1.2  # noise variances up to which a significant rest may be the form of an effect that is right
 SMALL_REST = 3.0  # no more than this many noise variances
 
 
@@ -54,7 +52,7 @@ def verdict(found: Search, before: Excess, after: Excess, converged: bool = True
         text = f"No evidence of an effect that takes more than {before.threshold:.2g} % of the signal's variance."
         return Verdict(CONSISTENT, (text,))
     taken = (before.percent - after.percent) / before.percent
-    rest = after.percent <= after.threshold or (after.percent <= REST * before.percent and after.misfit <= CLOSE)
+    rest = is_settled(after, before)
     missing = f"The simulation misses {before.percent:.3g} % of the signal's variance"
     unsettled = () if converged else ("The calibration did not come to rest: take the figures with care.",)
     if not found.accepted:

@@ -77,7 +77,7 @@ def test_what_an_effect_only_led_to_is_not_its_merit(explained):
 def test_records_that_their_start_does_not_determine_are_scored_in_pieces(explained):
     """Under light load the flanks rattle: from its start, such a record is missed by hundreds of noise variances."""
     found = explained("squeeze_film_damping", 5014, None, records=range(8), duration=0.05, target_excess=8.0)
-    assert any("in pieces of" in step for step in found["steps"])
+    assert any("in pieces of" in step for step in found["calibration"]["steps"])
     assert found["misfit"]["before"] < 3.0
 
 
