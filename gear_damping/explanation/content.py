@@ -101,7 +101,7 @@ def _steps(judged: Judged, evidence: Evidence) -> list[str]:
     rest = "came to rest" if judged.found.nominal.fitted.converged else "did not come to rest: take it with care"
     pieces = (
         f"An error of the initial state grows in these records: they were fitted and scored in pieces of "
-        f"{1e3 * evidence.piece / evidence.sampling_rate:.3g} ms, each from a start of its own."
+        f"{evidence.piece_ms:.3g} ms, each from a start of its own."
     )
     return [
         f"The nominal simulation was fitted first, so that no wrong parameter passes for physics; the fit {rest}.",

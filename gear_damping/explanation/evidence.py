@@ -60,6 +60,11 @@ class Evidence:
         return max(len(record.response) for record in (*self.fit, *self.holdout)) / self.sampling_rate
 
     @property
+    def piece_ms(self) -> float:
+        """Length of a piece in ms."""
+        return 1e3 * self.piece / self.sampling_rate
+
+    @property
     def conditions(self) -> int:
         """How many operating conditions the records hold."""
         return len({_condition(record) for record in (*self.fit, *self.holdout)})

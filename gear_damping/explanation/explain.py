@@ -84,8 +84,7 @@ def explain(
         found = search(nominal, evidence, noise, say, solver)
     if found.growth > MOST_GROWTH:
         evidence = replace(evidence, piece=piece_samples(nominal.hypothesis, evidence))
-        milliseconds = 1e3 * evidence.piece / evidence.sampling_rate
-        say(f"an error of the initial state grows: records are predicted in pieces of {milliseconds:.3g} ms")
+        say(f"an error of the initial state grows: records are predicted in pieces of {evidence.piece_ms:.3g} ms")
         nominal = recalibrated(nominal, evidence, solver)
         _tell(nominal, evidence, noise, say)
         found = search(nominal, evidence, noise, say, solver, found.first_fits[:1])

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import torch
 from torch import Tensor
@@ -137,13 +138,9 @@ def fit_hypothesis(
         enough: Fall of the cost, in noise variances, below which the fit has come to rest.
     """
     if not evidence.piece and any(isinstance(effect, Contact) for effect in hypothesis.effects):
-        # Where flanks part, the cost over whole records has many minima; over short pieces it has few.
-        short = replace(evidence, piece=piece_samples(hypothesis, evidence))
-        rounds = {"horizons": [evidence.piece] * 2, "iterations": (ITERATIONS_NEAR, ITERATIONS_NEAR)}
-        near = fit_hypothesis(hypothesis, short, starts, **rounds, solver=solver, kept=kept, enough=enough)
-        grown = growth_over(near.hypothesis, evidence.fit, solver)
-        if grown > MOST_GROWTH:
-            return replace(near, growth=grown)
+        near = _fit_in_pieces(hypothesis, evidence, starts, solver=solver, kept=kept, enough=enough)
+        if near.growth > MOST_GROWTH:
+            return near
         hypothesis, starts, after = near.hypothesis, None, near
     pieces = in_pieces(evidence.fit, evidence.piece)
     problem = OutputErrorProblem(hypothesis.model, hypothesis.given, hypothesis.free, pieces, solver, evidence.noise)
@@ -165,6 +162,17 @@ def fit_hypothesis(
     free = tuple(_settled(p, values[p.name]) for p in hypothesis.free)
     settled = replace(hypothesis, free=free, given=given)
     return Outcome(settled, problem, fitted, values, holdout, fit_residuals, grown)
+
+
+def _fit_in_pieces(hypothesis: Hypothesis, evidence: Evidence, starts: Tensor | None, **options: Any) -> Outcome:
+    """A fit to pieces of the records, with the growth over whole ones.
+
+    Where flanks part, the cost over whole records has many minima; over short pieces it has few.
+    """
+    short = replace(evidence, piece=piece_samples(hypothesis, evidence))
+    rounds = {"horizons": [short.piece] * 2, "iterations": (ITERATIONS_NEAR, ITERATIONS_NEAR)}
+    near = fit_hypothesis(hypothesis, short, starts, **rounds, **options)
+    return replace(near, growth=growth_over(near.hypothesis, evidence.fit, options["solver"]))
 
 
 def growth_over(hypothesis: Hypothesis, records: Sequence[FitRecord], solver: Solver | None) -> float:

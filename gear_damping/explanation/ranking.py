@@ -87,6 +87,7 @@ class Base:
         outcome: The fitted model.
         project: Takes out what its own parameters could do.
         residual: What it leaves of the fitted records, (samples + n,).
+        beside: The same without what the model's own parameters could do.
         predicted: What it predicts of them, (samples,).
         noise: Standard deviation of the noise.
         solver: Settings of the solver.
@@ -95,6 +96,7 @@ class Base:
     outcome: Outcome
     project: Projector
     residual: Tensor
+    beside: Tensor
     predicted: Tensor
     noise: float
     solver: Solver | None
@@ -110,7 +112,8 @@ def scores(
     """Every candidate's score, the most promising first."""
     project = _projector(outcome)
     residual = torch.cat([outcome.fitted.prediction.residual[0].reshape(-1), project.expected])
-    base = Base(outcome, project, residual, _predicted(outcome), noise, solver)
+    beside = project(residual.unsqueeze(1))[:, 0]
+    base = Base(outcome, project, residual, beside, _predicted(outcome), noise, solver)
     found = []
     for number, candidate in enumerate(candidates):
         score = _score(candidate, base)
@@ -161,8 +164,7 @@ def _gain(candidate: Candidate, problem: OutputErrorProblem, states: Tensor, bes
     An effect that is tried as a whole is far from linear: what another size of it would change counts with it, and
     another start of its states; otherwise it would be judged by a size that fits badly.
     """
-    project = base.project
-    residual = project(base.residual.unsqueeze(1))[:, 0]
+    project, residual = base.project, base.beside
     free = residual.square().sum()
     if candidate.presence:
         own = [i for i, p in enumerate(candidate.hypothesis.free) if p.name.startswith(candidate.name + ".")]

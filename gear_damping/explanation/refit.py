@@ -70,14 +70,14 @@ def chosen(scores: Sequence[Score]) -> list[Score]:
     variants: dict[str, list[Score]] = {}
     for score in scores:
         variants.setdefault(score.candidate.name, []).append(score)
-    ranked = [replace(found[0], variants=_sizes(found)) for found in variants.values()]
+    ranked = [replace(found[0], variants=_other_sizes(found)) for found in variants.values()]
     first = ranked[:FULL_FITS]
     promising = [score for score in ranked[FULL_FITS:] if score.gain > LEAST_PROMISE * ranked[0].gain]
     alike = [score for score in promising if collinearity(ranked[0], score) > NEARLY_COLLINEAR]
     return (first + alike)[:MOST_FITS]
 
 
-def _sizes(found: Sequence[Score]) -> tuple[Candidate, ...]:
+def _other_sizes(found: Sequence[Score]) -> tuple[Candidate, ...]:
     """The other sizes of the best variant of an effect that is tried as a whole."""
     best = found[0].candidate
     options = best.hypothesis.effects[-1].chosen
@@ -127,13 +127,13 @@ def _compared(score: Score, found: Outcome, against: Outcome, evidence: Evidence
 
 def _starts(score: Score) -> Tensor:
     """Coordinates of the starts, (starts, n_free), and those with what stood in for the effect moved back."""
-    starts, moved = _sizes_of(score), torch.zeros_like(score.start)
+    starts, moved = _begun_at(score), torch.zeros_like(score.start)
     for place, coordinate in score.candidate.moved.items():
         moved[place] = coordinate
     return torch.cat([starts, starts + moved]) if score.candidate.moved else starts
 
 
-def _sizes_of(score: Score) -> Tensor:
+def _begun_at(score: Score) -> Tensor:
     """The linearised optimum and less of it, or every size."""
     candidate = score.candidate
     if not candidate.presence:

@@ -140,11 +140,13 @@ class Runs:
 
 def state_units(model: Model) -> dict[str, str]:
     """The SI unit of every state by its name in `Runs.states`."""
-    units = {"displacement": "m", "velocity": "m/s"}
-    for effect in model.effects:
-        if isinstance(effect, ExtraStates):
-            units |= {f"{effect.name}.{state}": unit for state, unit in effect.states.items()}
-    return units
+    return {"displacement": "m", "velocity": "m/s"} | effect_state_units(model)
+
+
+def effect_state_units(model: Model) -> dict[str, str]:
+    """The SI unit of every state that an effect brings."""
+    extended = [effect for effect in model.effects if isinstance(effect, ExtraStates)]
+    return {f"{effect.name}.{state}": unit for effect in extended for state, unit in effect.states.items()}
 
 
 def reference_velocity(derived: dict[str, Tensor]) -> Tensor:

@@ -10,7 +10,7 @@ from gear_damping.physics.equation import HELD_LOAD
 from gear_damping.physics.model import Model, Prepared
 from gear_damping.physics.terms import HeldLoad, Sensor
 from gear_damping.simulation.integrate import Progress, integrate
-from gear_damping.simulation.runs import DIVERGED, FINE, Runs, reference_velocity, state_units
+from gear_damping.simulation.runs import DIVERGED, FINE, Runs, effect_state_units, reference_velocity, state_units
 from gear_damping.simulation.solver_settings import Solver
 from gear_damping.units import parse_unit
 
@@ -91,7 +91,7 @@ def _check_inputs(model: Model, inputs: Mapping[str, Tensor], shape: tuple[int, 
 
 
 def _check_departures(model: Model, departures: Mapping[str, Tensor]) -> None:
-    known = [name for name in state_units(model) if name not in ("displacement", "velocity")]
+    known = list(effect_state_units(model))
     problems = [
         Problem(f"departures.{name}", "no effect of the model has such a state", remedy=nearest(name, known))
         for name in departures

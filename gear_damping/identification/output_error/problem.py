@@ -8,7 +8,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.physics.model import Model
-from gear_damping.simulation.runs import state_units
+from gear_damping.simulation.runs import effect_state_units
 from gear_damping.simulation.simulate import natural_units, simulate
 from gear_damping.simulation.solver_settings import Solver
 
@@ -112,7 +112,7 @@ class OutputErrorProblem:
         self.weights = _padded([torch.full_like(record.response, record.weight) for record in records])
         self.spread = torch.stack([r.response.std().clamp(min=1e-300) for r in self.records])
         self.rate_scale = torch.stack([_rate_spread(r) for r in self.records])
-        self.extra = tuple(state_units(model))[2:]
+        self.extra = tuple(effect_state_units(model))
         self.scales = self._scales()
 
     @property
