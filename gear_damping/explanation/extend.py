@@ -55,8 +55,8 @@ def search(
                 found.nominal, found.first_scores, first = settled, ranked, bench.excess(settled)
             continue
         _accept(found, best, rivals, current, first, bench)
+        exchanged(found, first, bench)
         if not is_settled(bench.excess(found.outcome), first):
-            exchanged(found, first, bench)
             ranked = bench.ranked(found.outcome)
     found.accepted = [simplified(cause, found, bench) for cause in found.accepted]
     if len(found.accepted) > 1:

@@ -86,9 +86,17 @@ def _other_sizes(found: Sequence[Score]) -> tuple[Candidate, ...]:
 
 
 def refitted(
-    score: Score, outcome: Outcome, evidence: Evidence, solver: Solver | None = None, against: Outcome | None = None
+    score: Score,
+    outcome: Outcome,
+    evidence: Evidence,
+    solver: Solver | None = None,
+    against: Outcome | None = None,
+    least: float = 0.0,
 ) -> Refit | None:
-    """The candidate's full fit from `outcome`, held against it or another; None where the fit ran away."""
+    """The candidate's full fit from `outcome`, held against it or another; None where the fit ran away.
+
+    Parameters that join later do so where the cost has fallen by at least `least` without them.
+    """
     candidate = score.candidate
     hypothesis = candidate.hypothesis
     options = {"solver": solver, "enough": ENOUGH}
@@ -103,7 +111,7 @@ def refitted(
         kept=VARIANTS_KEPT if candidate.presence else ONE,
         **options,
     )
-    if candidate.later:
+    if candidate.later and outcome.fitted.cost - found.fitted.cost >= least:
         freed = replace(found.hypothesis, free=(*found.hypothesis.free, *candidate.later))
         freed = replace(
             freed, free=tuple(replace(p, start=float(found.hypothesis.given.get(p.name, p.start))) for p in freed.free)

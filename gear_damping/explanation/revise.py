@@ -10,7 +10,8 @@ from gear_damping.explanation.trying import BORNE_OUT, Accepted, Bench, Search
 def exchanged(found: Search, first: Excess, bench: Bench) -> None:
     """Earlier causes give way to what explains more now that a further one is known.
 
-    A cause that was accepted while another was missing may have been its neighbour that came nearest to both.
+    A cause that was accepted while another was missing may have been its neighbour that came nearest to both. What
+    does no worse in its place is its rival.
     """
     for place, cause in enumerate(found.accepted[:-1]):
         before = found.outcome
@@ -24,6 +25,10 @@ def exchanged(found: Search, first: Excess, bench: Bench) -> None:
             share = cause.share + gained / max(first.percent, 1e-300)
             found.accepted[place] = Accepted(best.name, best, share, rivals)
             found.outcome = best.outcome
+        else:
+            alike = [fit.name for fit in fits if fit.is_seen_in_fit and bench.is_as_good(fit.outcome, before)]
+            rivals = tuple(dict.fromkeys((*cause.confusable, *(name for name in alike if name != cause.name))))
+            found.accepted[place] = replace(cause, confusable=rivals)
 
 
 def simplified(cause: Accepted, found: Search, bench: Bench) -> Accepted:

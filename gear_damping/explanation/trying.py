@@ -16,6 +16,7 @@ from gear_damping.simulation.solver_settings import Solver
 
 BORNE_OUT = 3.0  # t of the held-out gain that a cause needs
 RIVAL = 2.0  # t below which two explanations are not told apart
+LEAST_TAKEN = 0.25  # of what another takes of the fitted records, for a fit to be carried to its end
 SAME = 1e-3  # of the noise variance: a mean difference below it is none
 Say = Callable[[str], None]
 
@@ -95,16 +96,22 @@ class Bench:
         tried = tried if names is None else [candidate for candidate in tried if candidate.name in names]
         return scores(outcome, tried, self.noise.value, self.solver)
 
-    def full_fit(self, score: Score, outcome: Outcome, against: Outcome | None = None) -> Refit | None:
-        """A candidate fitted in full from a model, held against it or another."""
-        return refitted(score, outcome, self.evidence, self.solver, against)
+    def full_fit(
+        self, score: Score, outcome: Outcome, against: Outcome | None = None, least: float = 0.0
+    ) -> Refit | None:
+        """A candidate fitted in full from a model, held against it or another; no further where it takes too little."""
+        return refitted(score, outcome, self.evidence, self.solver, against, least)
 
     def full_fits(self, ranked: Sequence[Score], outcome: Outcome, against: Outcome) -> list[Refit]:
         """The candidates worth it, fitted in full; the best first."""
         if not ranked:
             return []
-        fits = (self.full_fit(score, outcome, against) for score in chosen(ranked) if score.gain > 0)
-        return sorted((fit for fit in fits if fit is not None), key=lambda fit: fit.outcome.holdout_cost)
+        fits: list[Refit] = []
+        for score in chosen(ranked):
+            most = max((outcome.fitted.cost - fit.outcome.fitted.cost for fit in fits), default=0.0)
+            fit = self.full_fit(score, outcome, against, LEAST_TAKEN * most) if score.gain > 0 else None
+            fits += [] if fit is None else [fit]
+        return sorted(fits, key=lambda fit: fit.outcome.holdout_cost)
 
     def without(self, outcome: Outcome, name: str) -> Outcome:
         """A model without one of its causes, fitted from where it was."""

@@ -12,7 +12,7 @@ CONSISTENT, EXPLAINED, AMBIGUOUS = "consistent", "explained", "ambiguous"
 PARTLY, UNEXPLAINED, DATA_PROBLEM = "partly_explained", "unexplained", "data_problem"
 VERDICTS = (CONSISTENT, EXPLAINED, AMBIGUOUS, PARTLY, UNEXPLAINED, DATA_PROBLEM)
 MOST = 0.85  # of the excess that causes must take to be established although a rest is left,
-HALF = 0.5  # or half of it, where the rest is
+HALF = 0.5  # or half of it by one cause (several that leave much stand in for something else), where the rest is
 SMALL_REST = 3.0  # no more than this many noise variances
 
 
@@ -64,7 +64,8 @@ def verdict(found: Search, before: Excess, after: Excess, converged: bool = True
         return Verdict(EXPLAINED, (f"{missing}: {said}.", _left(taken), *_same_record(found.accepted), *unsettled))
     if rest:
         return Verdict(AMBIGUOUS, (f"{missing}.", *_not_told_apart(confused), _left(taken), *unsettled))
-    if taken >= MOST or (taken >= HALF and after.misfit <= SMALL_REST):
+    one_takes_half = len(found.accepted) == 1 and taken >= HALF and after.misfit <= SMALL_REST
+    if taken >= MOST or one_takes_half:
         text = f"{missing}. Part of it has a name: {said}. A significant rest of {after.percent:.3g} % has none."
         return Verdict(PARTLY, (text, _left(taken), *_not_told_apart(confused), *unsettled))
     text = f"{missing}. {said[0].upper()}{said[1:]} would take part of it, but too much is left to name a cause."

@@ -46,8 +46,10 @@ def test_edges_take_up_the_load_over_a_share_of_the_mesh_period():
     ramp = np.clip((0.45 / 2 + 0.1 - np.abs((place - 0.45 / 2 + 0.5) % 1 - 0.5)) / 0.2, 0, 1)
     lines = [2 * np.mean(2e8 * ramp * np.exp(-2j * np.pi * h * place)) for h in range(1, 6)]
     turns = np.arange(50) / 50
-    wanted = 2e8 + 2e8 * ramp.mean() + sum(
-        (line * np.exp(2j * np.pi * h * turns)).real for h, line in enumerate(lines, start=1)
+    wanted = (
+        2e8
+        + 2e8 * ramp.mean()
+        + sum((line * np.exp(2j * np.pi * h * turns)).real for h, line in enumerate(lines, start=1))
     )
     now = bench.evaluated(time=torch.as_tensor(turns * CASE.mesh_period))
     close(now.stiffness * bench.unit("N/m"), wanted, 1e-8)
@@ -269,14 +271,18 @@ def test_hertz_stiffness():
 
 @pytest.mark.parametrize("shaft", ["pinion", "gear"])
 @pytest.mark.parametrize("edges", ["switched", "smooth"])
-def test_tooth_crack_softens_the_mesh_while_the_tooth_is_in_contact(shaft, edges):
+@pytest.mark.parametrize("extent", [0.4, 1.0])
+def test_tooth_crack_softens_the_mesh_in_the_middle_of_the_contact_of_its_tooth(shaft, edges, extent):
     given = {"tooth_crack.depth": 0.2, "tooth_crack.phase": 0.4, "tooth_crack.edge": 1e-6, "pinion_angle": 0.3}
+    given["tooth_crack.extent"] = extent
     bench = Bench("tooth_crack", {"shaft": shaft, "edges": edges}, given, batch=400)
     speed, teeth = 4600 * math.pi / 30, 20
     angle = 0.3 + speed * bench.times().numpy()
     angle, teeth = (angle, teeth) if shaft == "pinion" else (angle / 2, 40)
-    inside = np.mod(angle + 0.4, 2 * np.pi) < 2 * np.pi * 1.6 / teeth
-    assert 0.02 < inside.mean() < 0.15
+    contact = 2 * np.pi * 1.6 / teeth
+    since = np.mod(angle + 0.4, 2 * np.pi)
+    inside = (since > contact * (1 - extent) / 2) & (since < contact * (1 + extent) / 2)
+    assert 0.01 < inside.mean() < 0.15
     close(bench.effect.factor(bench.evaluated(), bench.p), 1 - 0.2 * inside)
 
 

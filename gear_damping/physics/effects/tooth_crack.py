@@ -18,11 +18,12 @@ class ToothCrack(StiffnessFactor, Switch):
     """The mesh is softer while one tooth is in contact, once per turn of its shaft."""
 
     name = "tooth_crack"
-    equation = "k (1 - d) while 0 < theta + phi < 2 pi eps / z"
+    equation = "k (1 - d) while |theta + phi - pi eps / z| < s pi eps / z"
     reference = "Chaari, Fakhfakh & Haddar (2009), Eur. J. Mech. A/Solids 28(3)"
     parameters: ClassVar = (
         Parameter("depth", "1", 0.1, "d, share of the stiffness that is lost", 0, 0.9),
         Parameter("phase", "rad", 0.0, "phi; the tooth enters at theta = -phi"),
+        Parameter("extent", "1", 1.0, "s, share of the contact over which the tooth is softer", 0.05, 1.5),
         Parameter("edge", "rad", 0.02, "shaft angle over which a smooth edge goes from 12 to 88 %", 1e-6, 1),
     )
     options: ClassVar = (
@@ -35,8 +36,8 @@ class ToothCrack(StiffnessFactor, Switch):
         tuple(
             Recipe(
                 {"depth": None},
-                scanned={"phase": 2 * pi * i / 20, "edge": 0.1},
-                within={"tooth_crack.edge": (0.02, 0.3)},
+                scanned={"phase": 2 * pi * i / 20, "extent": 0.8, "edge": 0.1},
+                within={"tooth_crack.edge": (0.02, 0.6), "tooth_crack.extent": (0.2, 1.2)},
                 in_si=True,
             )
             for i in range(20)
@@ -44,9 +45,9 @@ class ToothCrack(StiffnessFactor, Switch):
     )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
-        """The centre of the contact and the cosine of half its width."""
-        half = pi * base["contact_ratio"] / base[f"n_teeth_{self.chosen['shaft']}"]
-        centre = half - values["phase"]
+        """The centre of the contact and the cosine of half the width of what is softer."""
+        contact = pi * base["contact_ratio"] / base[f"n_teeth_{self.chosen['shaft']}"]
+        half, centre = values["extent"] * contact, contact - values["phase"]
         found = {"depth": values["depth"], "centre_cos": torch.cos(centre), "centre_sin": torch.sin(centre)}
         return found | {"limit": torch.cos(half), "steepness": 2 / (values["edge"] * torch.sin(half))}
 
