@@ -52,7 +52,8 @@ def spread_of(outcome: Outcome, evidence: Evidence) -> Tensor:
 def parameters_of(outcome: Outcome, spread: Tensor, cause: str, evidence: Evidence) -> dict[str, dict[str, object]]:
     """The fitted parameters of an effect with 95 % intervals, by own name.
 
-    Of one that the records say nothing of (a gap whose far flank is never touched) it is its whole range.
+    Of one that the records say nothing of (a gap whose far flank is never touched) it is its whole range; of one
+    that the fit has driven to its bound, what lies beyond.
     """
     found = {}
     declared = outcome.hypothesis.model.parameters()
@@ -64,8 +65,11 @@ def parameters_of(outcome: Outcome, spread: Tensor, cause: str, evidence: Eviden
         ends = sorted(float(parameter.value(z + shift)) for shift in (-half, half))
         value, known = float(parameter.value(z)), declared[parameter.name.partition("[")[0]]
         moved = float(outcome.fitted.prediction.sensitivity[..., place].norm())
-        if moved < SILENT * evidence.noise and parameter.lower < value < parameter.upper:
-            ends = [known.lower, known.upper]
+        if moved < SILENT * evidence.noise:
+            ends = [
+                value if value >= parameter.upper else known.lower,
+                value if value <= parameter.lower else known.upper,
+            ]
         unit = rig_unit(known.unit, evidence)
         found[own] = Interval(value, (ends[0], ends[1]), unit).plain()
     return found

@@ -48,8 +48,11 @@ class ToothCrack(StiffnessFactor, Switch):
         """The centre of the contact and the cosine of half the width of what is softer."""
         contact = pi * base["contact_ratio"] / base[f"n_teeth_{self.chosen['shaft']}"]
         half, centre = values["extent"] * contact, contact - values["phase"]
-        found = {"depth": values["depth"], "centre_cos": torch.cos(centre), "centre_sin": torch.sin(centre)}
-        return found | {"limit": torch.cos(half), "steepness": 2 / (values["edge"] * torch.sin(half))}
+        limit, steepness = torch.cos(half), 2 / (values["edge"] * torch.sin(half))
+        found = {"depth": values["depth"], "limit": limit, "steepness": steepness}
+        if self.chosen["edges"] == "smooth":  # edges that meet leave less than all of it in the middle
+            found["depth"] = values["depth"] * 2 / (1 + torch.tanh(steepness * (1 - limit)))
+        return found | {"centre_cos": torch.cos(centre), "centre_sin": torch.sin(centre)}
 
     def _inside(self, now: Moment, p: Values) -> Tensor:
         """Positive while the tooth is in contact."""
