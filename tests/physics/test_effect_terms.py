@@ -286,7 +286,7 @@ def test_tooth_crack_softens_the_mesh_in_the_middle_of_the_contact_of_its_tooth(
     close(bench.effect.factor(bench.evaluated(), bench.p), 1 - 0.2 * inside)
 
 
-@pytest.mark.parametrize("extent, edge", [(1.0, 0.02), (0.2, 0.3)])
+@pytest.mark.parametrize(("extent", "edge"), [(1.0, 0.02), (0.2, 0.3)])
 def test_a_crack_with_smooth_edges_takes_its_whole_depth_in_the_middle_of_the_contact(extent, edge):
     middle = math.pi * 1.6 / 20 - 0.4  # pinion angle at which the tooth is half through its contact
     given = {"tooth_crack.depth": 0.2, "tooth_crack.phase": 0.4, "tooth_crack.extent": extent}
