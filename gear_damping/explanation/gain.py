@@ -53,10 +53,11 @@ def parameters_of(outcome: Outcome, spread: Tensor, cause: str, evidence: Eviden
     """The fitted parameters of an effect with 95 % intervals, by own name.
 
     Of one that the records say nothing of (a gap whose far flank is never touched) it is its whole range; of one
-    that the fit has driven to its bound, what lies beyond.
+    that the fit has driven to its bound, it takes in what lies beyond.
     """
     found = {}
     declared = outcome.hypothesis.model.parameters()
+    at_bound = outcome.problem.within(outcome.fitted.shared)[1]
     for place, parameter in enumerate(outcome.problem.free):
         effect, _, own = parameter.name.partition(".")
         if effect != cause:
@@ -65,11 +66,9 @@ def parameters_of(outcome: Outcome, spread: Tensor, cause: str, evidence: Eviden
         ends = sorted(float(parameter.value(z + shift)) for shift in (-half, half))
         value, known = float(parameter.value(z)), declared[parameter.name.partition("[")[0]]
         moved = float(outcome.fitted.prediction.sensitivity[..., place].norm())
-        if moved < SILENT * evidence.noise:
-            ends = [
-                value if value >= parameter.upper else known.lower,
-                value if value <= parameter.lower else known.upper,
-            ]
+        silent = moved < SILENT * evidence.noise
+        ends[0] = known.lower if silent or at_bound[place] < 0 else ends[0]
+        ends[1] = known.upper if silent or at_bound[place] > 0 else ends[1]
         unit = rig_unit(known.unit, evidence)
         found[own] = Interval(value, (ends[0], ends[1]), unit).plain()
     return found

@@ -17,6 +17,7 @@ from gear_damping.simulation.solver_settings import Solver
 BORNE_OUT = 3.0  # t of the held-out gain that a cause needs
 RIVAL = 2.0  # t below which two explanations are not told apart
 LEAST_TAKEN = 0.25  # of what another takes of the fitted records, for a fit to be carried to its end
+LAST_ITERATIONS = 60  # of a cause that is accepted before its fit has come to rest
 SAME = 1e-3  # of the noise variance: a mean difference below it is none
 Say = Callable[[str], None]
 
@@ -116,6 +117,13 @@ class Bench:
     def without(self, outcome: Outcome, name: str) -> Outcome:
         """A model without one of its causes, fitted from where it was."""
         return fit_hypothesis(_without(outcome.hypothesis, name), self.evidence, None, outcome, solver=self.solver)
+
+    def at_rest(self, outcome: Outcome) -> Outcome:
+        """A model whose fit is carried on where it had not come to rest."""
+        if outcome.fitted.converged:
+            return outcome
+        options = {"iterations": LAST_ITERATIONS, "solver": self.solver}
+        return fit_hypothesis(outcome.hypothesis, self.evidence, None, outcome, **options)
 
     def is_as_good(self, outcome: Outcome, best: Outcome) -> bool:
         """Whether a model is not worse than another by the paired test."""

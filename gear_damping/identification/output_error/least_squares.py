@@ -11,7 +11,7 @@ from gear_damping.identification.output_error.problem import OutputErrorProblem,
 FIRST_DAMPING, LARGEST_DAMPING, SMALLEST_DAMPING = 1e-2, 1e10, 1e-12
 SMALLEST_GAIN = 1e-7  # relative fall of the cost below which a start has converged
 INDEPENDENT = 1e-9  # of the largest: a direction that counts
-LONGEST_STEP = 2.0  # of any coordinate in one iteration
+LONGEST_STEP = 2.0  # of any coordinate in one iteration; far out, that many times the way from the start
 
 
 @dataclass
@@ -59,6 +59,12 @@ class NormalEquations:
     own: Tensor
     pull: Tensor
     own_pull: Tensor
+
+    def only(self, free: Tensor) -> "NormalEquations":
+        """With the shared parameters held that are not free, (starts, p)."""
+        kept = free.to(self.pull.dtype)
+        shared = self.shared * kept.unsqueeze(-1) * kept.unsqueeze(-2)
+        return replace(self, shared=shared, between=self.between * kept[:, None, :, None], pull=self.pull * kept)
 
     def step(self, damping: Tensor) -> tuple[Tensor, Tensor]:
         """The damped step, (starts, p) and (starts, records, l), by elimination of what is the records' own."""
@@ -135,7 +141,7 @@ def fit(
     """
     if states is None:
         states = problem.first_states().expand(shared.shape[0], -1, -1).clone()
-    points = Points(shared.clone(), states)
+    points = Points(problem.within(shared)[0], states)
     rounds = list(horizons or [problem.response.shape[1]])
     most = [iterations] * len(rounds) if isinstance(iterations, int) else iterations
     for number, samples in enumerate(rounds):
@@ -174,12 +180,16 @@ def _round(
 
 
 def _step(problem: OutputErrorProblem, points: Points, now: Prediction, damping: Tensor) -> Points:
+    """The damped step within the bounds; a parameter that is pulled beyond its bound stays there."""
     equations = normal_equations(now, problem.n_shared)
     expected, slope = problem.expectation(points.shared)
     matrix, pull = equations.shared + torch.diag(slope.square()), equations.pull + slope * expected
-    shared, own = replace(equations, shared=matrix, pull=pull).step(damping)
-    shared, own = (step.clamp(-LONGEST_STEP, LONGEST_STEP) for step in (shared, own))
-    return Points(points.shared + shared, points.states + own)
+    equations = replace(equations, shared=matrix, pull=pull)
+    free = problem.within(points.shared)[1] * pull <= 0
+    shared, own = equations.only(free).step(damping)
+    longest = LONGEST_STEP * torch.where(problem.logarithmic, 1.0, points.shared.abs().clamp(min=1))
+    shared, own = shared.clamp(-longest, longest), own.clamp(-LONGEST_STEP, LONGEST_STEP)
+    return Points(problem.within(points.shared + shared)[0], points.states + own)
 
 
 def _cost(problem: OutputErrorProblem, points: Points, prediction: Prediction) -> Tensor:

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from math import inf
+from math import inf, isinf, log
 
 import torch
 from torch import Tensor
@@ -47,6 +47,19 @@ class FreeParameter:
         """The parameter from its fitted coordinate."""
         found = self.start * torch.exp(z) if self.logarithmic else self.start + self.scale * z
         return found.clamp(self.lower, self.upper)
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """Coordinates between which the fit moves: at either end a step of the sensitivities still counts."""
+        ends = (self._coordinate(self.lower), self._coordinate(self.upper))
+        return min(ends), max(ends) - 2 * DIFFERENCE
+
+    def _coordinate(self, bound: float) -> float:
+        if isinf(bound):
+            return bound
+        if not self.logarithmic:
+            return (bound - self.start) / self.scale
+        return log(bound / self.start) if bound / self.start > 0 else -inf
 
 
 @dataclass(frozen=True)
@@ -112,6 +125,7 @@ class OutputErrorProblem:
         self.weights = _padded([torch.full_like(record.response, record.weight) for record in records])
         self.spread = torch.stack([r.response.std().clamp(min=1e-300) for r in self.records])
         self.rate_scale = torch.stack([_rate_spread(r) for r in self.records])
+        self.logarithmic = torch.tensor([parameter.logarithmic for parameter in self.free], dtype=torch.bool)
         self.extra = tuple(effect_state_units(model))
         self.scales = self._scales()
 
@@ -170,6 +184,11 @@ class OutputErrorProblem:
         slope = torch.tensor([self.noise * p.scale / p.deviation for p in self.free], dtype=torch.float64)
         start = torch.tensor([self.noise * p.start / p.deviation for p in self.free], dtype=torch.float64)
         return -(start + slope * shared), slope
+
+    def within(self, shared: Tensor) -> tuple[Tensor, Tensor]:
+        """Coordinates of the shared parameters (..., n_shared) within their bounds, and at which they are: -1, 0, 1."""
+        low, high = torch.tensor([p.range for p in self.free], dtype=torch.float64).reshape(-1, 2).T
+        return shared.clamp(low, high), (shared >= high).long() - (shared <= low).long()
 
     def predict(self, shared: Tensor, states: Tensor, samples: int | None = None) -> Tensor:
         """Predicted responses (points, records, time) at coordinates (points, n_shared), (points, records, local)."""
