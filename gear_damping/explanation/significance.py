@@ -13,6 +13,7 @@ SMALLEST = 0.03  # % of the channel's AC variance; less is never called signific
 ERRORS = 3.0  # standard errors
 REST = 0.02  # of the first excess: less is the form of an effect that is right,
 CLOSE = 1.2  # where it leaves no more than so many noise variances
+PART = 0.05  # of the first excess: more, if noise alone would not leave it, is a part without a name
 
 
 @dataclass(frozen=True)
@@ -22,12 +23,14 @@ class Excess:
     Args:
         percent: D.
         threshold: Above it D is significant.
+        chance: What noise alone may leave of it.
         misfit: Mean squared residual over the noise variance.
         per_record: The same by record name.
     """
 
     percent: float
     threshold: float
+    chance: float
     misfit: float
     per_record: dict[str, float]
 
@@ -40,6 +43,11 @@ class Excess:
 def is_settled(left: Excess, first: Excess) -> bool:
     """Whether nothing is left of a first excess that is worth another cause."""
     return not left.significant or (left.percent <= REST * first.percent and left.misfit <= CLOSE)
+
+
+def is_all(left: Excess, first: Excess) -> bool:
+    """Whether causes explain a first excess: what they leave is settled, and noise or a small part of it."""
+    return is_settled(left, first) and left.percent <= max(left.chance, PART * first.percent)
 
 
 def excess(residuals: Sequence[Tensor], records: Sequence[FitRecord], noise: NoiseLevel) -> Excess:
@@ -58,8 +66,8 @@ def excess(residuals: Sequence[Tensor], records: Sequence[FitRecord], noise: Noi
         record.name: float(residual.square().mean()) / max(floors[record.name], 1e-300)
         for record, residual in zip(records, residuals, strict=True)
     }
-    threshold = max(SMALLEST, 100 * ERRORS * widened / variance)
-    return Excess(100 * (mean_square - floor) / variance, threshold, relative, each)
+    chance = float(100 * ERRORS * widened / variance)
+    return Excess(100 * (mean_square - floor) / variance, max(SMALLEST, chance), chance, relative, each)
 
 
 def paired_gain(before: Sequence[Tensor], after: Sequence[Tensor], block: int) -> tuple[float, float]:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from gear_damping.explanation.next_experiment import LARGEST_SET
-from gear_damping.explanation.significance import Excess, is_settled
+from gear_damping.explanation.significance import Excess, is_all
 from gear_damping.explanation.trying import Accepted, Search
 from gear_damping.physics.catalogue import builtin_effects
 
@@ -52,7 +52,7 @@ def verdict(found: Search, before: Excess, after: Excess, converged: bool = True
         text = f"No evidence of an effect that takes more than {before.threshold:.2g} % of the signal's variance."
         return Verdict(CONSISTENT, (text,))
     taken = (before.percent - after.percent) / before.percent
-    rest = is_settled(after, before)
+    rest = is_all(after, before)
     missing = f"The simulation misses {before.percent:.3g} % of the signal's variance"
     unsettled = () if converged else ("The calibration did not come to rest: take the figures with care.",)
     if not found.accepted:
@@ -66,7 +66,7 @@ def verdict(found: Search, before: Excess, after: Excess, converged: bool = True
         return Verdict(AMBIGUOUS, (f"{missing}.", *_not_told_apart(confused), _left(taken), *unsettled))
     one_takes_half = len(found.accepted) == 1 and taken >= HALF and after.misfit <= SMALL_REST
     if taken >= MOST or one_takes_half:
-        text = f"{missing}. Part of it has a name: {said}. A significant rest of {after.percent:.3g} % has none."
+        text = f"{missing}. Part of it has a name: {said}. A rest of {after.percent:.3g} % has none."
         return Verdict(PARTLY, (text, _left(taken), *_not_told_apart(confused), *unsettled))
     text = f"{missing}. {said[0].upper()}{said[1:]} would take part of it, but too much is left to name a cause."
     return Verdict(UNEXPLAINED, (text, *unsettled))
