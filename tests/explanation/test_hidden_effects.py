@@ -1,5 +1,7 @@
 """Effects hidden by the independent generator have to be found, and nothing may be found where none is hidden."""
 
+import math
+
 import pytest
 
 ONE_RECORD = (3,)
@@ -63,6 +65,25 @@ def test_a_shaft_that_still_rings_is_found_with_its_size(explained):
         low, high = first["parameters"][name]["interval95"]
         assert low < true < high
     assert found["misfit"]["after"] < 1.2
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("effect", "seed", "sizes"),
+    [("power_law_damping", 6000, ("coefficient", "exponent")), ("tooth_crack", 7007, ("depth", "phase"))],
+)
+def test_a_cause_of_another_form_or_far_from_what_is_tried_is_fitted_to_rest(explained, effect, seed, sizes):
+    """A steep law begins two hundred times too weak; a crack opens within a part of its contact."""
+    found = explained(effect, seed, None, records=range(8), duration=0.05, target_excess=8.0)
+    assert [(cause["name"], cause["status"]) for cause in found["causes"]] == [(effect, "established")]
+    assert found["verdict"] == "explained"
+    for name in sizes:
+        true = found["truth"]["effects"][0]["parameters"][name]
+        true = true % (2 * math.pi) if name == "phase" else true
+        low, high = found["causes"][0]["parameters"][name]["interval95"]
+        assert low - 0.02 * true < true < high + 0.02 * true
+        assert high - low < 0.3 * true
+    assert found["misfit"]["after"] < 1.1
 
 
 @pytest.mark.slow
