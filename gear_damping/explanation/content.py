@@ -140,7 +140,7 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
 
 def _share(outcome: Outcome, nominal: Outcome) -> float:
     """Share of the held-out squared residual that an outcome takes."""
-    return 1 - outcome.holdout_cost / max(nominal.holdout_cost, 1e-300)
+    return 1 - (gain.rmse(outcome.holdout) / max(gain.rmse(nominal.holdout), 1e-300)) ** 2
 
 
 def _residual(before: Sequence, after: Sequence, unit: str, factor: float) -> dict[str, Any]:

@@ -76,6 +76,7 @@ class Outcome:
         fitted: The fit.
         values: Fitted values by flat name.
         holdout: Residuals of held-out records, each (time,).
+        compared: The same without what another initial state would have changed: by these, models are compared.
         fit_residuals: Residuals of fitted records.
         growth: How much an error of the initial state grows over a record, in the one where it grows most.
     """
@@ -85,13 +86,14 @@ class Outcome:
     fitted: Fitted
     values: dict[str, float]
     holdout: list[Tensor] = field(repr=False)
+    compared: list[Tensor] = field(repr=False)
     fit_residuals: list[Tensor] = field(repr=False)
     growth: float = 0.0
 
     @property
     def holdout_cost(self) -> float:
-        """Sum of squares over held-out samples."""
-        return sum(float(r.square().sum()) for r in self.holdout)
+        """Sum of squares over held-out samples, whatever their initial states."""
+        return sum(float(r.square().sum()) for r in self.compared)
 
     def flat_given(self) -> Given:
         """Every value of the model by flat name, lists as tuples."""
@@ -161,7 +163,7 @@ def fit_hypothesis(
     grown = max(held.growth, growth(fitted.prediction, problem.n_shared))
     free = tuple(_settled(p, values[p.name]) for p in hypothesis.free)
     settled = replace(hypothesis, free=free, given=given)
-    return Outcome(settled, problem, fitted, values, holdout, fit_residuals, grown)
+    return Outcome(settled, problem, fitted, values, holdout, held.beside_start, fit_residuals, grown)
 
 
 def _fit_in_pieces(hypothesis: Hypothesis, evidence: Evidence, starts: Tensor | None, **options: Any) -> Outcome:

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from math import isclose
 
 import torch
 from torch import Tensor
@@ -24,6 +25,7 @@ ONE = 1e-9  # share of the starts that goes on: the best
 ENOUGH = 0.1  # noise variances: a tenth of what a parameter of no use gains from noise
 SEEN = 25.0  # noise variances, five standard deviations of one parameter
 FIRST_ITERATIONS, LAST_ITERATIONS = 10, 30
+AT_BOUND = 0.05  # of a bound: a parameter as near to it as that has run into it
 VARIANTS_KEPT = 0.25  # of the sizes of an effect that is tried as a whole, after the first round
 
 
@@ -49,6 +51,13 @@ class Refit:
     def is_seen_in_fit(self) -> bool:
         """Whether the records to which it was fitted show it: what only held-out records show is their luck."""
         return self.fit_gain > SEEN
+
+    @property
+    def is_at_bound(self) -> bool:
+        """Whether a parameter of the effect itself has run into a bound of what is tried."""
+        own = [p for p in self.outcome.problem.free if p.name.startswith(self.name + ".")]
+        values = self.outcome.values
+        return any(isclose(values[p.name], end, rel_tol=AT_BOUND) for p in own for end in (p.lower, p.upper) if end)
 
     @property
     def name(self) -> str:
@@ -129,7 +138,7 @@ def again(refit: Refit, against: Outcome, evidence: Evidence, solver: Solver | N
 
 
 def _compared(score: Score, found: Outcome, against: Outcome, evidence: Evidence) -> Refit:
-    gain, t = paired_gain(against.holdout, found.holdout, block_samples(against, evidence.sampling_rate))
+    gain, t = paired_gain(against.compared, found.compared, block_samples(against, evidence.sampling_rate))
     return Refit(score, found, gain, t, (against.fitted.cost - found.fitted.cost) / max(evidence.noise, 1e-300) ** 2)
 
 

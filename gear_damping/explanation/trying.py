@@ -9,7 +9,7 @@ from gear_damping.explanation.hypothesis import Hypothesis, Outcome, fit_hypothe
 from gear_damping.explanation.noise import NoiseLevel
 from gear_damping.explanation.ranking import Score, contains, scores
 from gear_damping.explanation.refit import Refit, block_samples, chosen, refitted
-from gear_damping.explanation.significance import Excess, excess, paired_gain
+from gear_damping.explanation.significance import CLOSE, Excess, excess, paired_gain
 from gear_damping.identification.output_error.problem import FreeParameter
 from gear_damping.physics.terms import Effect
 from gear_damping.simulation.solver_settings import Solver
@@ -132,7 +132,7 @@ class Bench:
 
     def paired_gain(self, before: Outcome, after: Outcome) -> tuple[float, float]:
         """Gain of the second over the first on held-out records, with its t."""
-        return paired_gain(before.holdout, after.holdout, block_samples(after, self.evidence.sampling_rate))
+        return paired_gain(before.compared, after.compared, block_samples(after, self.evidence.sampling_rate))
 
     def simplest(self, best: Refit, fits: Sequence[Refit]) -> tuple[Refit, tuple[str, ...]]:
         """The explanation with its rivals, the effects whose full fit is not worse by the paired test.
@@ -145,8 +145,20 @@ class Bench:
         inner = [f for f in alike if any(contains(o.score, f.score) for o in alike if o.name != f.name)]
         outer = {f.name for f in alike if any(contains(f.score, o.score) for o in inner if o.name != f.name)}
         kept = [f for f in alike if f.name not in outer] or alike
-        first = min(kept, key=lambda fit: (len(fit.outcome.hypothesis.free), fit.outcome.holdout_cost))
+        first = self._within_bounds(_least(kept), fits)
         return first, tuple(dict.fromkeys(f.name for f in kept if f.name != first.name))
+
+    def _within_bounds(self, first: Refit, fits: Sequence[Refit]) -> Refit:
+        """The explanation, or where it has run into a bound and so stands in for another, the one that settles too."""
+        if not first.is_at_bound:
+            return first
+        others = [fit for fit in fits if fit.is_seen_in_fit and not fit.is_at_bound]
+        return _least([fit for fit in others if self.excess(fit.outcome).misfit <= CLOSE] or [first])
+
+
+def _least(fits: Sequence[Refit]) -> Refit:
+    """The fit with the fewest parameters; of several the one that held-out records like best."""
+    return min(fits, key=lambda fit: (len(fit.outcome.hypothesis.free), fit.outcome.holdout_cost))
 
 
 def _without(hypothesis: Hypothesis, name: str) -> Hypothesis:

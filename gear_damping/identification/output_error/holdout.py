@@ -6,13 +6,14 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
-from gear_damping.identification.output_error.least_squares import fit
+from gear_damping.identification.output_error.least_squares import fit, own_basis, without_own
 from gear_damping.identification.output_error.pieces import in_pieces, joined, part
 from gear_damping.identification.output_error.problem import (
     OFFSET,
     FitRecord,
     FreeParameter,
     OutputErrorProblem,
+    Prediction,
     growth,
 )
 from gear_damping.physics.model import Model
@@ -28,10 +29,13 @@ class HeldOut:
 
     Args:
         predictions: Each (time,).
+        beside_start: Residuals without what another initial state would have changed, each (time,): the start is
+            found from few samples, and its error tells nothing of the model.
         growth: How much an error of the initial state grew at most, in the record where it grew most.
     """
 
     predictions: list[Tensor]
+    beside_start: list[Tensor]
     growth: float
 
 
@@ -66,8 +70,18 @@ def predict_holdout(
     whole = OutputErrorProblem(model, given, frozen, pieces, solver)
     states = whole.states_of(short, start.states)
     found = whole.linearise(none, states.unsqueeze(0))
-    predicted = whole.response - found.residual[0] / whole.weights.clamp(min=1e-300)
-    return HeldOut(joined(predicted, records, piece), growth(found, whole.n_shared))
+    weights = whole.weights.clamp(min=1e-300)
+    predicted = whole.response - found.residual[0] / weights
+    beside = _beside_start(found, whole.n_shared) / weights
+    return HeldOut(joined(predicted, records, piece), joined(beside, records, piece), growth(found, whole.n_shared))
+
+
+def _beside_start(found: Prediction, n_shared: int) -> Tensor:
+    """Weighted residuals (records, time) of one start beside what the initial states could change."""
+    residual, sensitivity = found.residual[0], found.sensitivity[0]
+    if not bool(sensitivity.isfinite().all() & residual.isfinite().all()):
+        return residual
+    return without_own(residual.unsqueeze(-1), own_basis(sensitivity, n_shared)).squeeze(-1)
 
 
 def rmse(measured: Sequence[Tensor], predicted: Sequence[Tensor]) -> float:
