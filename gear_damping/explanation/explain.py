@@ -6,6 +6,7 @@ from typing import Any
 
 from gear_damping.explanation import content
 from gear_damping.explanation.calibrate import calibrated, recalibrated
+from gear_damping.explanation.calibration_error import calibration_error
 from gear_damping.explanation.data_faults import data_faults, mesh_order_faults
 from gear_damping.explanation.evidence import Evidence, evidence_of
 from gear_damping.explanation.extend import search
@@ -77,6 +78,7 @@ def explain(
     solver = replace(solver, accuracy=max(solver.accuracy, FIT_ACCURACY), most_substeps=MOST_SUBSTEPS)
     step(1, STEPS)
     nominal = calibrated(evidence, solver)
+    noise = replace(noise, scatter=calibration_error(nominal, evidence, solver))
     _tell(nominal, evidence, noise, say)
     step(2, STEPS)
     found = Search(nominal, nominal)
@@ -86,6 +88,7 @@ def explain(
         evidence = replace(evidence, piece=piece_samples(nominal.hypothesis, evidence))
         say(f"an error of the initial state grows: records are predicted in pieces of {evidence.piece_ms:.3g} ms")
         nominal = recalibrated(nominal, evidence, solver)
+        noise = replace(noise, scatter=calibration_error(nominal, evidence, solver))
         _tell(nominal, evidence, noise, say)
         found = search(nominal, evidence, noise, say, solver, found.first_fits[:1])
     step(3, STEPS)

@@ -18,6 +18,14 @@ WEIGHTS = (0.2, 5.0)
 
 
 @dataclass(frozen=True)
+class Scatter:
+    """What else chance adds to a mean squared residual, in noise variances: its mean and its deviation."""
+
+    expected: float = 0.0
+    deviation: float = 0.0
+
+
+@dataclass(frozen=True)
 class NoiseLevel:
     """Standard deviation of the sensor noise of each record.
 
@@ -27,6 +35,7 @@ class NoiseLevel:
         degrees_of_freedom: Of the estimate of the variance.
         agree: Whether the estimates are within 20 % of each other.
         correlation: Sum of its squared autocorrelations: samples for one that is independent.
+        scatter: What errors of the calibration add on held-out records.
     """
 
     by_record: dict[str, float]
@@ -34,6 +43,7 @@ class NoiseLevel:
     degrees_of_freedom: float
     agree: bool
     correlation: float = 1.0
+    scatter: Scatter = Scatter()
 
     @property
     def value(self) -> float:

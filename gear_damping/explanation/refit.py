@@ -71,16 +71,20 @@ def block_samples(outcome: Outcome, rate: float) -> int:
     return max(8, round(BLOCK_PERIODS * rate / frequency))
 
 
-def chosen(scores: Sequence[Score]) -> list[Score]:
+def chosen(scores: Sequence[Score], least: float = 0.0) -> list[Score]:
     """The candidates worth a full fit: the best variant of the best effects, and who resembles the first.
 
     An effect that is tried as a whole keeps its other sizes as starts: it is far from linear between them.
+
+    Args:
+        scores: Every candidate, the best first.
+        least: What it has to promise, as a share of what the first one does.
     """
     variants: dict[str, list[Score]] = {}
     for score in scores:
         variants.setdefault(score.candidate.name, []).append(score)
     ranked = [replace(found[0], variants=_other_sizes(found)) for found in variants.values()]
-    first = ranked[:FULL_FITS]
+    first = [score for score in ranked[:FULL_FITS] if score.gain >= least * ranked[0].gain]
     promising = [score for score in ranked[FULL_FITS:] if score.gain > LEAST_PROMISE * ranked[0].gain]
     alike = [score for score in promising if collinearity(ranked[0], score) > NEARLY_COLLINEAR]
     return (first + alike)[:MOST_FITS]

@@ -6,6 +6,8 @@ from gear_damping.explanation.ranking import Score
 from gear_damping.explanation.significance import Excess
 from gear_damping.explanation.trying import BORNE_OUT, Accepted, Bench, Search
 
+PROMISE = 0.6  # of the best one's, for an effect to be tried in the place of a cause
+
 
 def exchanged(found: Search, first: Excess, bench: Bench) -> None:
     """Earlier causes give way to what explains more now that a further one is known.
@@ -16,7 +18,7 @@ def exchanged(found: Search, first: Excess, bench: Bench) -> None:
     for place, cause in enumerate(found.accepted[:-1]):
         before = found.outcome
         without = bench.without(before, cause.name)
-        fits = bench.full_fits(bench.ranked(without), without, before)
+        fits = bench.full_fits(bench.ranked(without), without, before, PROMISE)
         if fits and fits[0].t > BORNE_OUT and fits[0].is_seen_in_fit:
             best, rivals = bench.simplest(fits[0], fits)
             gained = bench.excess(before).percent - bench.excess(best.outcome).percent

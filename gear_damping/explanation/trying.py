@@ -103,12 +103,14 @@ class Bench:
         """A candidate fitted in full from a model, held against it or another; no further where it takes too little."""
         return refitted(score, outcome, self.evidence, self.solver, against, least)
 
-    def full_fits(self, ranked: Sequence[Score], outcome: Outcome, against: Outcome) -> list[Refit]:
+    def full_fits(
+        self, ranked: Sequence[Score], outcome: Outcome, against: Outcome, promise: float = 0.0
+    ) -> list[Refit]:
         """The candidates worth it, fitted in full; the best first."""
         if not ranked:
             return []
         fits: list[Refit] = []
-        for score in chosen(ranked):
+        for score in chosen(ranked, promise):
             most = max((outcome.fitted.cost - fit.outcome.fitted.cost for fit in fits), default=0.0)
             fit = self.full_fit(score, outcome, against, LEAST_TAKEN * most) if score.gain > 0 else None
             fits += [] if fit is None else [fit]

@@ -11,7 +11,7 @@ from gear_damping.physics.catalogue import builtin_effects
 CONSISTENT, EXPLAINED, AMBIGUOUS = "consistent", "explained", "ambiguous"
 PARTLY, UNEXPLAINED, DATA_PROBLEM = "partly_explained", "unexplained", "data_problem"
 VERDICTS = (CONSISTENT, EXPLAINED, AMBIGUOUS, PARTLY, UNEXPLAINED, DATA_PROBLEM)
-MOST = 0.85  # of the excess that causes must take to be established although a rest is left,
+MOST = 0.9  # of the excess that causes must take to be established although a rest is left,
 HALF = 0.5  # or half of it by one cause (several that leave much stand in for something else), where the rest is
 SMALL_REST = 3.0  # no more than this many noise variances
 

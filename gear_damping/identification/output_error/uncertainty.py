@@ -23,12 +23,8 @@ def covariance(problem: OutputErrorProblem, fitted: Fitted, correlated_samples: 
         fitted: The fit.
         correlated_samples: Samples over which residuals may be correlated, some natural periods.
     """
-    sensitivity, residual = fitted.prediction.sensitivity, fitted.prediction.residual[0]
-    shared = sensitivity[0, ..., : problem.n_shared]
-    beside = without_own(shared, own_basis(sensitivity[0], problem.n_shared))
-    jacobian = beside.flatten(0, 1)
-    expected = problem.expectation(fitted.shared)[1].square()
-    inverse = torch.linalg.pinv(jacobian.T @ jacobian + torch.diag(expected), hermitian=True)
+    residual = fitted.prediction.residual[0]
+    beside, inverse = _information(problem, fitted)
     scores = beside * residual.unsqueeze(-1)
     meat = sum(_long_run(one, correlated_samples) for one in scores)
     parameters = problem.n_shared + len(problem.records) * len(problem.local)
@@ -38,6 +34,20 @@ def covariance(problem: OutputErrorProblem, fitted: Fitted, correlated_samples: 
     wide = torch.maximum(sandwich.diagonal(), plain.diagonal()) / sandwich.diagonal().clamp(min=1e-300)
     scale = wide.clamp(min=1).sqrt()
     return sandwich * scale.unsqueeze(0) * scale.unsqueeze(1)
+
+
+def noise_covariance(problem: OutputErrorProblem, fitted: Fitted) -> Tensor:
+    """The same where nothing but white noise is left, (n_shared, n_shared)."""
+    return _information(problem, fitted)[1] * problem.noise**2
+
+
+def _information(problem: OutputErrorProblem, fitted: Fitted) -> tuple[Tensor, Tensor]:
+    """Sensitivities beside the records' own (records, time, n_shared), and the inverse of their products."""
+    sensitivity = fitted.prediction.sensitivity[0]
+    beside = without_own(sensitivity[..., : problem.n_shared], own_basis(sensitivity, problem.n_shared))
+    jacobian = beside.flatten(0, 1)
+    expected = problem.expectation(fitted.shared)[1].square()
+    return beside, torch.linalg.pinv(jacobian.T @ jacobian + torch.diag(expected), hermitian=True)
 
 
 def _long_run(scores: Tensor, lags: int) -> Tensor:

@@ -1,0 +1,31 @@
+"""Step 3b: what errors of the calibrated parameters leave on held-out records, though nothing is wrong."""
+
+import torch
+
+from gear_damping.explanation.evidence import Evidence
+from gear_damping.explanation.hypothesis import Outcome
+from gear_damping.explanation.noise import Scatter
+from gear_damping.identification.output_error.pieces import in_pieces
+from gear_damping.identification.output_error.problem import OutputErrorProblem
+from gear_damping.identification.output_error.uncertainty import noise_covariance
+from gear_damping.simulation.solver_settings import Solver
+
+
+def calibration_error(nominal: Outcome, evidence: Evidence, solver: Solver | None = None) -> Scatter:
+    """Mean and deviation of the squared prediction error that noise in the fitted records causes.
+
+    A held-out operating condition may show what the fitted ones hardly do, such as a harmonic of the stiffness at
+    resonance: the error of a parameter weighs more there.
+    """
+    hypothesis = nominal.hypothesis
+    pieces = in_pieces(evidence.holdout, evidence.piece)
+    problem = OutputErrorProblem(hypothesis.model, hypothesis.given, hypothesis.free, pieces, solver, evidence.noise)
+    settled = torch.zeros(1, problem.n_shared, dtype=torch.float64)
+    found = problem.linearise(settled, problem.first_states().unsqueeze(0)).sensitivity[0]
+    sensitivity = found[..., : problem.n_shared].flatten(0, 1)
+    if not bool(sensitivity.isfinite().all()):
+        return Scatter()
+    samples = sum(len(piece.response) for piece in pieces)
+    shares = sensitivity.T @ sensitivity @ noise_covariance(nominal.problem, nominal.fitted)
+    shares = shares / (samples * max(evidence.noise, 1e-300) ** 2)
+    return Scatter(float(shares.trace()), float((2 * (shares @ shares).trace()).clamp(min=0).sqrt()))
