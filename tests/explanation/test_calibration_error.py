@@ -1,0 +1,70 @@
+"""What errors of the calibration leave on held-out records, against many fits to as many draws of the noise."""
+
+import math
+
+import pytest
+import torch
+
+from gear_damping.explanation.calibration_error import calibration_error
+from gear_damping.explanation.evidence import Evidence
+from gear_damping.explanation.hypothesis import Hypothesis, fit_hypothesis
+from gear_damping.explanation.noise import NoiseLevel, Scatter
+from gear_damping.explanation.significance import excess
+from gear_damping.identification.output_error.problem import FitRecord, FreeParameter
+from gear_damping.physics.effects.viscous_damping import ViscousDamping
+from gear_damping.physics.systems.oscillator import Oscillator
+
+STIFFNESS, DAMPING, RATE, NOISE, DRAWS = (2 * math.pi * 10) ** 2, 1.0, 400.0, 2e-3, 60
+COEFFICIENT = "viscous_damping.damping_coefficient"
+
+
+def decay(stiffness, damping, samples):
+    """The closed form of a free decay from 0.05 at rest."""
+    time = torch.arange(samples, dtype=torch.float64) / RATE
+    rate, decrement = math.sqrt(stiffness - damping**2 / 4), damping / 2
+    shape = torch.cos(rate * time) + decrement / rate * torch.sin(rate * time)
+    return 0.05 * torch.exp(-decrement * time) * shape
+
+
+def calibrated(seed):
+    """A fit to the first half second; held out are three seconds, over which an error of the frequency adds up."""
+    generator = torch.Generator().manual_seed(seed)
+
+    def record(name, samples):
+        clean = decay(STIFFNESS, DAMPING, samples)
+        return FitRecord(name, clean + NOISE * torch.randn(samples, generator=generator, dtype=torch.float64), RATE)
+
+    fit, held = (record("fit", 200),), (record("held", 1200),)
+    evidence = Evidence("oscillator", fit, held, {}, None, one_record=False, noise=NOISE)
+    free = (
+        FreeParameter("stiffness", 1.01 * STIFFNESS, logarithmic=True),
+        FreeParameter(COEFFICIENT, 1.2 * DAMPING, logarithmic=True),
+    )
+    return fit_hypothesis(Hypothesis(Oscillator(), (ViscousDamping(),), {"amplitude": 0.05}, free), evidence), evidence
+
+
+def test_it_is_what_fits_to_other_draws_of_the_noise_miss_on_average():
+    true = decay(STIFFNESS, DAMPING, 1200)
+    stated, missed = [], []
+    for seed in range(DRAWS):
+        outcome, evidence = calibrated(seed)
+        stated.append(calibration_error(outcome, evidence))
+        found = decay(outcome.values["stiffness"], outcome.values[COEFFICIENT], 1200)
+        missed.append(float((found - true).square().mean()) / NOISE**2)
+    mean, deviation = torch.tensor(missed).mean(), torch.tensor(missed).std()
+    error = float(deviation) / DRAWS**0.5
+    expected = sum(s.expected for s in stated) / DRAWS
+    assert expected == pytest.approx(float(mean), abs=3 * error)
+    assert expected > 2 * error
+    assert sum(s.deviation for s in stated) / DRAWS == pytest.approx(float(deviation), rel=0.5)
+
+
+def test_chance_is_wider_where_the_calibration_is_uncertain():
+    outcome, evidence = calibrated(0)
+    noise = NoiseLevel({"fit": NOISE, "held": NOISE}, "declared", 1e9, True)
+    scattered = NoiseLevel({"fit": NOISE, "held": NOISE}, "declared", 1e9, True, scatter=Scatter(0.5, 0.3))
+    found, wider = (excess(outcome.holdout, evidence.holdout, level) for level in (noise, scattered))
+    assert wider.percent == found.percent
+    floor = 100 * NOISE**2 / float((evidence.holdout[0].response - evidence.holdout[0].response.mean()).square().mean())
+    plain = found.chance / 3  # one standard error, in % of the channel's variance
+    assert wider.chance == pytest.approx(0.5 * floor + 3 * math.hypot(plain, 0.3 * floor), rel=1e-9)
