@@ -44,6 +44,11 @@ class Candidate:
     later: tuple[FreeParameter, ...]
     presence: bool
 
+    @property
+    def options(self) -> tuple[tuple[str, object], ...]:
+        """The form of the effect, as (option, choice)."""
+        return tuple(sorted(self.hypothesis.effects[-1].chosen.items()))
+
 
 def candidates_for(base: Hypothesis, evidence: Evidence) -> list[Candidate]:
     """Every variant of every effect of the library that goes with the system and is not there yet."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import isclose
+from math import inf, isclose
 
 import torch
 from torch import Tensor
@@ -17,6 +17,7 @@ from gear_damping.simulation.solver_settings import Solver
 FULL_FITS = 4  # of the most promising candidates
 MOST_FITS = 9  # with those that resemble the first
 NEARLY_COLLINEAR = 0.7
+OTHER_FORM = 0.95  # of what the best form of an effect promises, for a full fit of another form
 LEAST_PROMISE = 0.3  # of the first one's, for a full fit of one that resembles it
 BLOCK_PERIODS = 6.0  # natural periods of a block of the paired test
 CAUTIOUS = 0.3  # of the linearised optimum: the second start, where the first one leads too far
@@ -74,28 +75,31 @@ def block_samples(outcome: Outcome, rate: float) -> int:
 def chosen(scores: Sequence[Score], least: float = 0.0) -> list[Score]:
     """The candidates worth a full fit: the best variant of the best effects, and who resembles the first.
 
-    An effect that is tried as a whole keeps its other sizes as starts: it is far from linear between them.
+    An effect that is tried as a whole keeps its other sizes as starts: it is far from linear between them. Another
+    form of an effect (a filter of another order) is tried too where it promises nearly as much.
 
     Args:
         scores: Every candidate, the best first.
         least: What it has to promise, as a share of what the first one does.
     """
-    variants: dict[str, list[Score]] = {}
+    forms: dict[tuple, list[Score]] = {}
     for score in scores:
-        variants.setdefault(score.candidate.name, []).append(score)
-    ranked = [replace(found[0], variants=_other_sizes(found)) for found in variants.values()]
+        forms.setdefault((score.candidate.name, *score.candidate.options), []).append(score)
+    every = [replace(found[0], variants=_other_sizes(found)) for found in forms.values()]
+    best: dict[str, Score] = {}
+    for score in every:
+        best.setdefault(score.candidate.name, score)
+    ranked = list(best.values())
     first = [score for score in ranked[:FULL_FITS] if score.gain >= least * ranked[0].gain]
     promising = [score for score in ranked[FULL_FITS:] if score.gain > LEAST_PROMISE * ranked[0].gain]
     alike = [score for score in promising if collinearity(ranked[0], score) > NEARLY_COLLINEAR]
-    return (first + alike)[:MOST_FITS]
+    worth = {score.candidate.name: score.gain for score in (first + alike)[:MOST_FITS]}
+    return [s for s in every if s.gain >= OTHER_FORM * worth.get(s.candidate.name, inf)]
 
 
 def _other_sizes(found: Sequence[Score]) -> tuple[Candidate, ...]:
-    """The other sizes of the best variant of an effect that is tried as a whole."""
-    best = found[0].candidate
-    options = best.hypothesis.effects[-1].chosen
-    others = (score.candidate for score in found[1:])
-    return tuple(o for o in others if o.presence and o.hypothesis.effects[-1].chosen == options)
+    """The other sizes of the best variant of one form of an effect that is tried as a whole."""
+    return tuple(score.candidate for score in found[1:] if score.candidate.presence)
 
 
 def refitted(

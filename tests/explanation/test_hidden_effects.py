@@ -96,6 +96,15 @@ def test_a_cause_of_another_form_or_far_from_what_is_tried_is_fitted_to_rest(exp
 
 
 @pytest.mark.slow
+def test_another_form_of_an_effect_is_fitted_too(explained):
+    """At first sight a filter of order one promises as much as the true one of order two, and a delay fits better."""
+    found = explained("sensor_lowpass", 11008, None, records=range(8), duration=0.05, target_excess=0.7)
+    assert [cause["name"] for cause in found["causes"]] == ["sensor_lowpass"]
+    true = found["truth"]["effects"][0]["parameters"]["cutoff"]
+    assert found["causes"][0]["parameters"]["cutoff"]["value"] == pytest.approx(true, rel=0.03)
+
+
+@pytest.mark.slow
 def test_what_an_effect_only_led_to_is_not_its_merit(explained):
     """From the first calibration a soft shaft leads to a better one, which needs no shaft."""
     found = explained("squeeze_film_damping", 35, None, records=range(8), duration=0.05, target_excess=2.0)
