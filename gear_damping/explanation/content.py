@@ -170,7 +170,8 @@ def _gain(judged: Judged, evidence: Evidence, noise: NoiseLevel) -> dict[str, An
 def _candidates(judged: Judged) -> list[dict[str, Any]]:
     """Every effect that was tried: what it promised on fitted records, and what a full fit took of held-out ones."""
     found = judged.found
-    taken = {refit.name: _share(refit.outcome, found.nominal) for refit in found.first_fits}
+    best_last = reversed(found.first_fits)  # of several forms of an effect the best one counts
+    taken = {refit.name: _share(refit.outcome, found.nominal) for refit in best_last}
     accepted = {cause.name for cause in found.accepted}
     alike = {name for cause in found.accepted for name in cause.confusable}
     best: dict[str, Score] = {}
