@@ -172,7 +172,7 @@ def _candidates(judged: Judged) -> list[dict[str, Any]]:
     found = judged.found
     best_last = reversed(found.first_fits)  # of several forms of an effect the best one counts
     taken = {refit.name: _share(refit.outcome, found.nominal) for refit in best_last}
-    accepted = {cause.name for cause in found.accepted}
+    accepted = {cause.name: cause.share for cause in found.accepted}
     alike = {name for cause in found.accepted for name in cause.confusable}
     best: dict[str, Score] = {}
     for score in found.first_scores:
@@ -184,7 +184,7 @@ def _candidates(judged: Judged) -> list[dict[str, Any]]:
         return "confusable" if name in alike else "rejected"
 
     return [
-        {"name": name, "promised": score.gain, "share": taken.get(name), "status": status(name)}
+        {"name": name, "promised": score.gain, "share": accepted.get(name, taken.get(name)), "status": status(name)}
         for name, score in best.items()
     ]
 

@@ -50,6 +50,8 @@ def test_of_two_causes_neither_keeps_the_name_of_its_neighbour(explained):
     found = explained("pairs", 1001, None, records=range(8), duration=0.05, target_excess=None)
     hidden = {effect["name"] for effect in found["truth"]["effects"]}
     assert {cause["name"] for cause in found["causes"]} == hidden == {"profile_error", "coulomb_friction"}
+    shares = {c["name"]: c["share"] for c in found["candidates"] if c["status"] == "established"}
+    assert sum(shares.values()) == pytest.approx(1.0, abs=0.05)  # the later cause has its share too
     assert found["verdict"] == "explained"
     assert found["misfit"]["after"] < 1.1
 
