@@ -57,7 +57,7 @@ def parameters_of(outcome: Outcome, spread: Tensor, cause: str, evidence: Eviden
     """
     found = {}
     declared = outcome.hypothesis.model.parameters()
-    at_bound = outcome.problem.within(outcome.fitted.shared)[1]
+    at_bound = outcome.problem.at_bound(outcome.fitted.shared)
     for place, parameter in enumerate(outcome.problem.free):
         effect, _, own = parameter.name.partition(".")
         if effect != cause:

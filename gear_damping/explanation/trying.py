@@ -124,8 +124,8 @@ class Bench:
         """A model whose fit is carried on where it had not come to rest."""
         if outcome.fitted.converged:
             return outcome
-        options = {"iterations": LAST_ITERATIONS, "solver": self.solver}
-        return fit_hypothesis(outcome.hypothesis, self.evidence, None, outcome, **options)
+        hypothesis, solver = outcome.hypothesis, self.solver
+        return fit_hypothesis(hypothesis, self.evidence, None, outcome, iterations=LAST_ITERATIONS, solver=solver)
 
     def is_as_good(self, outcome: Outcome, best: Outcome) -> bool:
         """Whether a model is not worse than another by the paired test."""

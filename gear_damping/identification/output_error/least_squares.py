@@ -141,7 +141,7 @@ def fit(
     """
     if states is None:
         states = problem.first_states().expand(shared.shape[0], -1, -1).clone()
-    points = Points(problem.within(shared)[0], states)
+    points = Points(problem.within(shared), states)
     rounds = list(horizons or [problem.response.shape[1]])
     most = [iterations] * len(rounds) if isinstance(iterations, int) else iterations
     for number, samples in enumerate(rounds):
@@ -185,11 +185,11 @@ def _step(problem: OutputErrorProblem, points: Points, now: Prediction, damping:
     expected, slope = problem.expectation(points.shared)
     matrix, pull = equations.shared + torch.diag(slope.square()), equations.pull + slope * expected
     equations = replace(equations, shared=matrix, pull=pull)
-    free = problem.within(points.shared)[1] * pull <= 0
+    free = problem.at_bound(points.shared) * pull <= 0
     shared, own = equations.only(free).step(damping)
     longest = LONGEST_STEP * torch.where(problem.logarithmic, 1.0, points.shared.abs().clamp(min=1))
     shared, own = shared.clamp(-longest, longest), own.clamp(-LONGEST_STEP, LONGEST_STEP)
-    return Points(problem.within(points.shared + shared)[0], points.states + own)
+    return Points(problem.within(points.shared + shared), points.states + own)
 
 
 def _cost(problem: OutputErrorProblem, points: Points, prediction: Prediction) -> Tensor:

@@ -126,6 +126,7 @@ class OutputErrorProblem:
         self.spread = torch.stack([r.response.std().clamp(min=1e-300) for r in self.records])
         self.rate_scale = torch.stack([_rate_spread(r) for r in self.records])
         self.logarithmic = torch.tensor([parameter.logarithmic for parameter in self.free], dtype=torch.bool)
+        self.bounds = torch.tensor([p.range for p in self.free], dtype=torch.float64).reshape(-1, 2).unbind(1)
         self.extra = tuple(effect_state_units(model))
         self.scales = self._scales()
 
@@ -185,10 +186,14 @@ class OutputErrorProblem:
         start = torch.tensor([self.noise * p.start / p.deviation for p in self.free], dtype=torch.float64)
         return -(start + slope * shared), slope
 
-    def within(self, shared: Tensor) -> tuple[Tensor, Tensor]:
-        """Coordinates of the shared parameters (..., n_shared) within their bounds, and at which they are: -1, 0, 1."""
-        low, high = torch.tensor([p.range for p in self.free], dtype=torch.float64).reshape(-1, 2).T
-        return shared.clamp(low, high), (shared >= high).long() - (shared <= low).long()
+    def within(self, shared: Tensor) -> Tensor:
+        """Coordinates of the shared parameters (..., n_shared) within their bounds."""
+        return shared.clamp(*self.bounds)
+
+    def at_bound(self, shared: Tensor) -> Tensor:
+        """-1 where a shared parameter (..., n_shared) is at its lower bound, 1 at its upper one, 0 between."""
+        low, high = self.bounds
+        return (shared >= high).long() - (shared <= low).long()
 
     def predict(self, shared: Tensor, states: Tensor, samples: int | None = None) -> Tensor:
         """Predicted responses (points, records, time) at coordinates (points, n_shared), (points, records, local)."""
