@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-ROLES = ("fit", "holdout")
+ROLES = ("fit", "holdout", "reference")
 SEVERITIES = ("data_problem", "note")
 
 
@@ -58,16 +58,21 @@ class Channel:
         declared_unit: The unit in the file; residuals are reported in it.
         declared_factor: One `declared_unit` in `unit`.
         lowpass: Corner of the sensor's low-pass in Hz.
+        lowpass_order: Poles of that Butterworth filter.
         highpass: Corner of its high-pass in Hz.
+        highpass_order: Poles of that Butterworth filter.
         coupling: `DC` or `AC`; an AC channel knows nothing of the mean.
         delay: How late the channel is, in s.
         range: Full scale, in `unit`.
         noise: Standard deviation of the sensor noise, in `unit`.
         uncertainty: Relative uncertainty of the gain; 0 means known.
         polarity: The sign that the file's values were multiplied by.
-        datum: `absolute`, or `arbitrary` where the zero means nothing.
+        gain: What the sensor multiplies by; the file's values were divided by it.
+        datum: `absolute`, or `arbitrary` where the zero means nothing; resolved, never "by default".
         mounting: `tangential` or `casing`, for the acceleration of a gear pair.
         radius: Radius in m at which a tangential acceleration is measured.
+        shaft: `pinion` or `gear`, on which a tangential accelerometer sits.
+        frame: Of an oscillator on a base whose acceleration is measured: `absolute`, or `relative` to the base.
     """
 
     name: str
@@ -76,16 +81,21 @@ class Channel:
     declared_unit: str = ""
     declared_factor: float = 1.0
     lowpass: float | None = None
+    lowpass_order: int = 2
     highpass: float | None = None
+    highpass_order: int = 1
     coupling: str = "DC"
     delay: float = 0.0
     range: float | None = None
     noise: float | None = None
     uncertainty: float = 0.0
     polarity: int = 1
+    gain: float = 1.0
     datum: str = "absolute"
     mounting: str | None = None
     radius: float | None = None
+    shaft: str | None = None
+    frame: str | None = None
 
     def __post_init__(self) -> None:
         if np.ndim(self.values) != 1:
@@ -103,7 +113,8 @@ class Record:
         name: Unique within the measurement.
         file: The file that the values come from.
         sha256: The digest of that file in hexadecimal.
-        role: `fit`, `holdout`, or None where the program holds out operating conditions itself.
+        role: `fit`, `holdout`, `reference` (a healthy record of a casing, to compare with), or None where the
+            program holds out operating conditions itself.
         sampling_rate: In Hz; for uneven stamps one over their median step.
         time: (n,) float64, the stamps of the samples in s.
         channels: Channel by name, all of n samples.
@@ -154,12 +165,14 @@ class Measurement:
         parameters: Nominal values of the rig by name, in SI or the rig's own units.
         records: The records in the order of the file.
         source: The measurement.yaml that they were declared in.
+        segment_s: Length in s of the segments that records are fitted and scored in; None where the file says none.
     """
 
     system: str
     parameters: Mapping[str, Quantity]
     records: tuple[Record, ...]
     source: Path
+    segment_s: float | None = None
 
     @property
     def findings(self) -> tuple[Finding, ...]:
@@ -167,5 +180,5 @@ class Measurement:
         return tuple(finding for record in self.records for finding in record.findings)
 
     def with_role(self, role: str | None) -> tuple[Record, ...]:
-        """The records of one role: `fit`, `holdout` or None (not said)."""
+        """The records of one role: `fit`, `holdout`, `reference` or None (not said)."""
         return tuple(record for record in self.records if record.role == role)
