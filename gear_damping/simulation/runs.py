@@ -103,7 +103,13 @@ class Runs:
 
     def measured(self, channel: str, generator: torch.Generator, skip: tuple[str, ...] = ()) -> Tensor:
         """Any channel behind the sensors that act on it, (batch, time)."""
-        signal = self.channel(channel)
+        return self._through(self._sensors(channel, skip), self.channel(channel), generator)
+
+    def behind_sensors(self, signal: Tensor, generator: torch.Generator, skip: tuple[str, ...] = ()) -> Tensor:
+        """A response, whatever quantity it is, behind the sensors that act on the response, (batch, time)."""
+        return self._through(self._sensors(self.model.system.response, skip), signal, generator)
+
+    def _through(self, sensors: list[Sensor], signal: Tensor, generator: torch.Generator) -> Tensor:
         about = Recording(
             self.sampling_rate,
             generator,
@@ -111,7 +117,7 @@ class Runs:
             self.angles.get("pinion_angle"),
             self.angles.get("gear_angle"),
         )
-        for sensor in self._sensors(channel, skip):
+        for sensor in sensors:
             own = {p.name: self.values[f"{sensor.name}.{p.name}"] for p in sensor.parameters}
             signal = sensor.measure(signal, own, about)
         return signal
