@@ -11,6 +11,7 @@ from gear_damping.physics.terms import DampingLaw, ExtraStates, Recording, Senso
 from gear_damping.simulation.series import ANGLE, ANGLE_RATE
 
 FINE, DIVERGED = 0, 1
+ACCELERATION = "acceleration"  # its name among the states
 
 
 @dataclass(frozen=True)
@@ -22,7 +23,8 @@ class Runs:
         values: Its parameters by flat name, (batch,) or (n, batch).
         derived: Derived quantities of the system, each (batch,).
         sampling_rate: Output samples per second.
-        states: `displacement`, `velocity` and the states of effects by flat name, (batch, time).
+        states: `displacement`, `velocity` and the states of effects by flat name, (batch, time); with them
+            `acceleration` where it was asked for.
         inputs: Series that were given to the simulation, (batch, time).
         status: 0 for a fine run, 1 for one that diverged, (batch,).
         reference_velocity: Velocity amplitude that equivalent damping ratios belong to, m/s, (batch,).
@@ -145,7 +147,7 @@ class Runs:
 
 
 def state_units(model: Model) -> dict[str, str]:
-    """The SI unit of every state by its name in `Runs.states`."""
+    """The SI unit of every state of the integration by its name in `Runs.states`."""
     return {"displacement": "m", "velocity": "m/s"} | effect_state_units(model)
 
 
