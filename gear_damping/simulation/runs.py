@@ -160,7 +160,10 @@ def effect_state_units(model: Model) -> dict[str, str]:
 def reference_velocity(derived: dict[str, Tensor]) -> Tensor:
     """The velocity amplitude omega_n F0 / k0 that equivalent damping ratios belong to, m/s, (batch,).
 
-    An oscillator has no mean load: its reference amplitude takes the place of F0 / k0.
+    An oscillator has no mean load: its reference amplitude takes the place of F0 / k0. Without a spring the inverse
+    of its characteristic time takes the place of omega_n.
     """
-    amplitude = (derived["mean_load"] / derived["mean_stiffness"]).abs()
-    return derived["natural_frequency"] * derived.get("amplitude", amplitude)
+    frequency = derived["natural_frequency"]
+    if "amplitude" in derived:
+        return derived["amplitude"] * torch.where(frequency > 0, frequency, 1 / derived["characteristic_time"])
+    return frequency * (derived["mean_load"] / derived["mean_stiffness"]).abs()

@@ -46,7 +46,8 @@ def simulate(
         sampling_rate: Output samples per second.
         n_samples: Output samples of each run, the first at time 0.
         inputs: Measured series at the output instants, (batch, time), or fewer rows that the batch repeats:
-            `force` (oscillator), `pinion_torque`, `gear_torque` in N m, `pinion_angle` in rad, unwrapped.
+            `force`, `base_acceleration` in m/s^2 (oscillator), `pinion_torque`, `gear_torque` in N m, `pinion_angle`
+            in rad, unwrapped.
         solver: Settings; the defaults when None.
         seed: Seed of drawn loads.
         progress: Called with (done, total) as the work proceeds.
