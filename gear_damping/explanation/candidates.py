@@ -6,7 +6,7 @@ from math import inf, log
 
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Given, Hypothesis
-from gear_damping.identification.output_error.problem import FreeParameter
+from gear_damping.identification.output_error.records import FreeParameter
 from gear_damping.physics.cause import Recipe
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import Effect

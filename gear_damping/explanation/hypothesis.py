@@ -10,7 +10,7 @@ from torch import Tensor
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.identification.output_error.holdout import predict_holdout
 from gear_damping.identification.output_error.least_squares import Fitted, fit
-from gear_damping.identification.output_error.problem import OutputErrorProblem, growth, is_of_model
+from gear_damping.identification.output_error.problem import GAIN, OutputErrorProblem, growth, is_of_model
 from gear_damping.identification.output_error.records import SEPARATOR, FitRecord, FreeParameter
 from gear_damping.identification.output_error.segments import Segments, in_segments, joined
 from gear_damping.identification.time_scale import characteristic_time
@@ -35,6 +35,7 @@ class Hypothesis:
         given: Known values by flat name.
         free: What is fitted.
         causes: Names of the effects beyond the nominal model.
+        gains: Of channels whose gain is known with an uncertainty only, as fitted.
     """
 
     system: System
@@ -42,6 +43,7 @@ class Hypothesis:
     given: Given
     free: tuple[FreeParameter, ...]
     causes: tuple[str, ...] = ()
+    gains: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def model(self) -> Model:
@@ -106,7 +108,7 @@ def placed(given: Given, values: dict[str, float]) -> Given:
             listed = list(merged[flat])
             listed[int(index.rstrip("]"))] = value
             merged[flat] = tuple(listed)
-        elif is_of_model(name) or name in given:
+        elif is_of_model(name):
             merged[name] = value
     return merged
 
@@ -152,7 +154,8 @@ def fit_hypothesis(
     values = {name: float(value) for name, value in problem.parameters(fitted.shared).items()}
     given = placed(hypothesis.given, values)
     free = tuple(_settled(p, values.get(p.name, p.start)) for p in hypothesis.free)
-    return _outcome(replace(hypothesis, free=free, given=given), problem, fitted, values, evidence, solver)
+    gains = {name: value for name, value in values.items() if name.startswith(f"{GAIN}.")}
+    return _outcome(replace(hypothesis, free=free, given=given, gains=gains), problem, fitted, values, evidence, solver)
 
 
 def _begin(
@@ -169,7 +172,7 @@ def _begin(
     begun = None if after is None else begun_from(problem, after, len(starts))
     shared = problem.completed(starts)
     if after is not None:
-        shared[:, problem.n_common :] = problem.own_of(after.problem, after.fitted.shared)
+        shared = shared + problem.own_of(after.problem, after.fitted.shared)
     for place, parameter in enumerate(problem.free):
         if parameter.name in own:
             shared[:, place] = parameter.coordinate(own[parameter.name])
@@ -188,7 +191,7 @@ def _outcome(
     scale = slowest_time(settled, evidence)
     own = [parameter for parameter in settled.free if parameter.per_record]
     held = predict_holdout(
-        settled.model, settled.given, evidence.holdout, scale, solver, evidence.segments, own
+        settled.model, {**settled.given, **settled.gains}, evidence.holdout, scale, solver, evidence.segments, own
     )
     residual = joined(fitted.prediction.residual[0], evidence.fitted, evidence.segments, len(problem.channels))
     fit_residuals = [found / record.weight for found, record in zip(residual, evidence.fit, strict=True)]

@@ -10,7 +10,7 @@ from gear_damping.explanation.noise import NoiseLevel
 from gear_damping.explanation.ranking import Score, contains, scores
 from gear_damping.explanation.refit import Refit, block_samples, chosen, refitted
 from gear_damping.explanation.significance import CLOSE, Excess, excess, paired_gain
-from gear_damping.identification.output_error.problem import FreeParameter
+from gear_damping.identification.output_error.records import FreeParameter
 from gear_damping.physics.terms import Effect
 from gear_damping.simulation.solver_settings import Solver
 
@@ -89,7 +89,7 @@ class Bench:
 
     def excess(self, outcome: Outcome) -> Excess:
         """What a model leaves of the held-out records."""
-        return excess(outcome.holdout, self.evidence.holdout, self.noise)
+        return excess(outcome.holdout, self.evidence.held, self.noise)
 
     def ranked(self, outcome: Outcome, names: Collection[str] | None = None) -> list[Score]:
         """Every candidate beside a model, or those of some effects, the most promising first."""
@@ -134,7 +134,7 @@ class Bench:
 
     def paired_gain(self, before: Outcome, after: Outcome) -> tuple[float, float]:
         """Gain of the second over the first on held-out records, with its t."""
-        return paired_gain(before.compared, after.compared, block_samples(after, self.evidence.sampling_rate))
+        return paired_gain(before.holdout, after.holdout, block_samples(after, self.evidence))
 
     def simplest(self, best: Refit, fits: Sequence[Refit]) -> tuple[Refit, tuple[str, ...]]:
         """The explanation with its rivals, the effects whose full fit is not worse by the paired test.

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
+from gear_damping.identification.output_error.angles import scanned
 from gear_damping.identification.output_error.least_squares import fit, own_basis, without_own
 from gear_damping.identification.output_error.problem import OutputErrorProblem, Prediction, growth
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
@@ -58,6 +59,9 @@ def predict_holdout(
     problem = OutputErrorProblem(model, given, list(own), pieces, solver)
     starts = torch.zeros(1, problem.n_shared, dtype=torch.float64)
     rounds = [FIRST_PERIODS * characteristic_s, None]
+    for name, angle in scanned(problem, starts[0]).items():
+        place = next(i for i, parameter in enumerate(problem.free) if parameter.name == name)
+        starts[0, place] = problem.free[place].coordinate(angle)
     found = fit(problem, starts, rounds, (FIRST_ITERATIONS, LAST_ITERATIONS))
     prediction, weights = found.prediction, problem.weights.clamp(min=1e-300)
     left = prediction.residual[0] / weights

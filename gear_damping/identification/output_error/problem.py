@@ -70,6 +70,7 @@ class OutputErrorProblem:
         """
         self.model, self.records = model, list(records)
         self.given = {name: value for name, value in given.items() if _is_of_model(name)}
+        self.gains = {name: value for name, value in given.items() if name.startswith(f"{GAIN}.")}
         self.solver, self.noise = solver or Solver(), noise
         self.channels = tuple(dict.fromkeys(c.name for record in self.records for c in record.channels))
         self.length = max(len(record.response) for record in self.records)
@@ -79,6 +80,7 @@ class OutputErrorProblem:
         own = [_own(template, record) for template in free if template.per_record for record in self._firsts]
         own += [_own(template, record) for record in self._firsts for template in record.own]
         self.free = [*common, *self._gains(common), *own, *self._offsets()]
+        self.n_free = len(common)
         self.n_common = len(self.free) - len([p for p in self.free if SEPARATOR in p.name])
         self.logarithmic = torch.tensor([parameter.logarithmic for parameter in self.free], dtype=torch.bool)
         self.bounds = torch.tensor([p.range for p in self.free], dtype=torch.float64).reshape(-1, 2).unbind(1)
@@ -113,7 +115,7 @@ class OutputErrorProblem:
         return [
             FreeParameter(f"{GAIN}.{name}", 1.0, logarithmic=True, deviation=relative)
             for name, relative in known.items()
-            if relative and f"{GAIN}.{name}" not in names and f"{GAIN}.{name}" not in self.given
+            if relative and f"{GAIN}.{name}" not in {*names, *self.gains}
         ]
 
     def _offsets(self) -> list[FreeParameter]:
@@ -178,10 +180,18 @@ class OutputErrorProblem:
         return found
 
     def own_of(self, other: "OutputErrorProblem", shared: Tensor) -> Tensor:
-        """Coordinates here of what single records have of their own, from another problem's, (n_shared - n_common,)."""
-        known = {p.name: float(p.value(shared[i])) for i, p in enumerate(other.free)}
-        values = [p.coordinate(known[p.name]) if p.name in known else 0.0 for p in self.free[self.n_common :]]
-        return torch.tensor(values, dtype=torch.float64)
+        """Coordinates here of gains and of what single records have of their own, as another problem found them.
+
+        Args:
+            other: The problem.
+            shared: Its coordinates, (other.n_shared,).
+
+        Returns:
+            (n_shared,), 0 for the free parameters.
+        """
+        known = {p.name: float(p.value(shared[i])) for i, p in enumerate(other.free[other.n_free :], other.n_free)}
+        values = [p.coordinate(known[p.name]) if p.name in known else 0.0 for p in self.free[self.n_free :]]
+        return torch.tensor([0.0] * self.n_free + values, dtype=torch.float64)
 
     def completed(self, shared: Tensor) -> Tensor:
         """Coordinates of the free parameters (..., any number of the first) with zeros for the others."""
@@ -329,8 +339,8 @@ class OutputErrorProblem:
             shown = recorded(runs, channel, number == 0).reshape(points, n_rows, samples)
             shown = shown + self._left_of_start(runs, channel, modes, number == 0)
             shown = _between(shown, [self._places[i][number] for i in rows])
-            if (gain := values.get(f"{GAIN}.{channel.name}")) is not None:
-                shown = shown * gain[:, rows].unsqueeze(-1)
+            gain = values.get(f"{GAIN}.{channel.name}")
+            shown = shown * (self.gains.get(f"{GAIN}.{channel.name}", 1.0) if gain is None else gain[:, rows, None])
             if (offset := values.get(f"{OFFSET}.{channel.name}")) is not None:
                 shown = shown + offset[:, rows].nan_to_num(0.0).unsqueeze(-1)
             scale = shown.new_tensor([self.records[i].channels[number].scale for i in rows]).unsqueeze(1)

@@ -32,7 +32,6 @@ class SensorLowpass(Sensor):
 
     def measure(self, signal: Tensor, values: Values, recording: Recording) -> Tensor:
         """The filtered record."""
-
         response, cutoff = butterworth_response(self.chosen["order"]), values["cutoff"].unsqueeze(1)
         return filtered(signal, recording.sampling_rate, lambda frequency: response(frequency / cutoff))
 
