@@ -36,6 +36,7 @@ class Hypothesis:
         free: What is fitted.
         causes: Names of the effects beyond the nominal model.
         gains: Of channels whose gain is known with an uncertainty only, as fitted.
+        replaced: Free parameters that causes took the place of, by cause.
     """
 
     system: System
@@ -44,6 +45,7 @@ class Hypothesis:
     free: tuple[FreeParameter, ...]
     causes: tuple[str, ...] = ()
     gains: Mapping[str, float] = field(default_factory=dict)
+    replaced: Mapping[str, tuple[FreeParameter, ...]] = field(default_factory=dict)
 
     @property
     def model(self) -> Model:

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field, replace
 
-from gear_damping.explanation.candidates import candidates_for
+from gear_damping.explanation.candidates import candidates_for, restored
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Hypothesis, Outcome, fit_hypothesis
 from gear_damping.explanation.noise import NoiseLevel
@@ -93,7 +93,8 @@ class Bench:
 
     def ranked(self, outcome: Outcome, names: Collection[str] | None = None) -> list[Score]:
         """Every candidate beside a model, or those of some effects, the most promising first."""
-        tried = candidates_for(outcome.hypothesis, self.evidence)
+        residuals = list(zip(self.evidence.fitted, outcome.fit_residuals, strict=True))
+        tried = candidates_for(outcome.hypothesis, self.evidence, residuals)
         tried = tried if names is None else [candidate for candidate in tried if candidate.name in names]
         return scores(outcome, tried, self.noise.value, self.solver)
 
@@ -167,10 +168,11 @@ def _without(hypothesis: Hypothesis, name: str) -> Hypothesis:
     def other(parameter: FreeParameter) -> bool:
         return not parameter.name.startswith(name + ".")
 
-    return replace(
+    left = replace(
         hypothesis,
         effects=tuple(effect for effect in hypothesis.effects if effect.name != name),
         given={key: value for key, value in hypothesis.given.items() if not key.startswith(name + ".")},
         free=tuple(parameter for parameter in hypothesis.free if other(parameter)),
         causes=tuple(cause for cause in hypothesis.causes if cause != name),
     )
+    return restored(left, name)

@@ -10,12 +10,16 @@ from typing import get_args
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.physics import terms
-from gear_damping.physics.cause import Cause, Experiment, Recipe
+from gear_damping.physics.cause import Cause, Experiment, Recipe, Rig
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.terms import Effect, ExtraStates, MeshStiffness
 from gear_damping.units import parse_unit
 
 KEY = "simulator.plugins"
+SOME_RIGS = {  # on which recipes are looked at that depend on the rig
+    "gear_pair": (Rig("gear_pair", 20, 40, mesh_harmonics=4), Rig("gear_pair", 17, 43)),
+    "oscillator": (Rig("oscillator", radian=1.0), Rig("oscillator", inputs=("force",))),
+}
 REMEDY = "correct the file"
 _SLOTS = tuple(c for c in vars(terms).values() if inspect.isclass(c) and issubclass(c, Effect) and c is not Effect)
 _TEXTS = {
@@ -129,17 +133,31 @@ def cause_faults(kind: type[Effect]) -> Iterator[str]:
     """What is wrong with how an effect is tried as a cause; its parameters must be right themselves."""
     if kind.cause is None or not _all(getattr(kind, "parameters", None), Parameter):
         return
-    if not isinstance(kind.cause, Cause) or not _all(kind.cause.recipes, Recipe):
+    if not isinstance(kind.cause, Cause) or not (callable(kind.cause.recipes) or _all(kind.cause.recipes, Recipe)):
         yield "has a cause that is no Cause('what it is called', (Recipe(…), …))"
         return
     if kind.cause.separated_by not in get_args(Experiment):
         yield f"is separated by {kind.cause.separated_by!r}: choose from {get_args(Experiment)}"
+    recipes: list[Recipe] = []
+    for rig in (rig for name, rigs in SOME_RIGS.items() if name in kind.systems for rig in rigs):
+        try:
+            found = kind.cause.recipes_for(rig)
+        except Exception as error:  # the user's own code can fail in any way
+            yield f"has recipes that fail on a rig: {type(error).__name__}: {error}"
+            return
+        if not _all(found, Recipe):
+            yield "has recipes that give something else than a tuple of Recipe(…)"
+            return
+        recipes += found
+    yield from dict.fromkeys(fault for recipe in recipes for fault in _recipe_faults(kind, recipe))
+
+
+def _recipe_faults(kind: type[Effect], recipe: Recipe) -> Iterator[str]:
     declared = {parameter.name for parameter in kind.parameters}
-    for recipe in kind.cause.recipes:
-        named = {*recipe.strengths, *recipe.phases, *recipe.phases.values()}
-        named |= {*recipe.scanned, *recipe.timed, *recipe.fixed}
-        for name in sorted(named - declared):
-            yield f"has a recipe with {name!r}, which is none of its parameters"
+    named = {*recipe.strengths, *recipe.phases, *recipe.phases.values()}
+    named |= {*recipe.scanned, *recipe.timed, *recipe.fixed, *recipe.replaces.values()}
+    for name in sorted(named - declared):
+        yield f"has a recipe with {name!r}, which is none of its parameters"
 
 
 def _unit_faults(what: str, unit: object) -> Iterator[str]:
