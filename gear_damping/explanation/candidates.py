@@ -1,6 +1,6 @@
 """Step 5a: what could be missing. Every effect of the catalogue as something that can be switched on gradually."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import inf, log
 
