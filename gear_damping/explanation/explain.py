@@ -10,6 +10,7 @@ from gear_damping.explanation.calibration_error import calibration_error
 from gear_damping.explanation.data_faults import data_faults, mesh_order_faults
 from gear_damping.explanation.evidence import Evidence, evidence_of
 from gear_damping.explanation.extend import search
+from gear_damping.explanation.homogeneity import homogeneity
 from gear_damping.explanation.hypothesis import MOST_GROWTH, SEGMENT_TIMES, Outcome, segments_of
 from gear_damping.explanation.noise import NoiseLevel, noise_of, weighted
 from gear_damping.explanation.significance import ac_energy, excess
@@ -99,7 +100,8 @@ def explain(
     step(3, STEPS)
     before = excess(found.nominal.holdout, evidence.held, noise)
     after = excess(found.outcome.holdout, evidence.held, noise)
-    judged = Judged(found, before, after, verdict(found, before, after, found.outcome.fitted.converged))
+    one = _is_one(found, evidence)
+    judged = Judged(found, before, after, verdict(found, before, after, found.outcome.fitted.converged, one))
     step(4, STEPS)
     return Explanation(content.of_search(measurement, evidence, noise, judged), evidence, noise, found)
 
@@ -115,6 +117,14 @@ def is_lost_by(nominal: Outcome, evidence: Evidence) -> bool:
     """Whether the nominal model leaves more than half of any fitted record's variance."""
     left = zip(nominal.fit_residuals, evidence.fitted, strict=True)
     return any(float(residual.square().sum()) > LOST * ac_energy(record) for residual, record in left)
+
+
+def _is_one(found: Search, evidence: Evidence) -> bool | None:
+    """Whether every cause has one size over all records; None where too few records tell of one."""
+    tests = [homogeneity(found.outcome, cause.name, evidence) for cause in found.accepted]
+    if not all(test.testable for test in tests):
+        return None
+    return all(test.holds for test in tests)
 
 
 def _tell(nominal: Outcome, evidence: Evidence, noise: NoiseLevel, say: Say) -> None:

@@ -14,7 +14,7 @@ from gear_damping.identification.output_error.records import FreeParameter
 from gear_damping.physics.terms import Effect
 from gear_damping.simulation.solver_settings import Solver
 
-BORNE_OUT = 3.0  # t of the held-out gain that a cause needs
+ACCEPTED_AT = 3.0  # t of the held-out gain that a cause needs
 RIVAL = 2.0  # t below which two explanations are not told apart
 LEAST_TAKEN = 0.25  # of what another takes of the fitted records, for a fit to be carried to its end
 LAST_ITERATIONS = 60  # of a cause that is accepted before its fit has come to rest

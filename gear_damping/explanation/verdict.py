@@ -39,14 +39,17 @@ class Judged:
     verdict: Verdict
 
 
-def verdict(found: Search, before: Excess, after: Excess, converged: bool = True) -> Verdict:
+def verdict(
+    found: Search, before: Excess, after: Excess, converged: bool = True, is_one: bool | None = None
+) -> Verdict:
     """What the search amounts to.
 
     Args:
         found: The search.
         before: Excess of the calibrated nominal model.
         after: Excess of the extended one.
-        converged: Whether the calibration came to rest.
+        converged: Whether the calibration converged.
+        is_one: Whether every cause has one size over all records; None where too few records tell of one.
     """
     if not before.significant:
         text = f"No evidence of an effect that takes more than {before.threshold:.2g} % of the signal's variance."
@@ -54,7 +57,7 @@ def verdict(found: Search, before: Excess, after: Excess, converged: bool = True
     taken = (before.percent - after.percent) / before.percent
     rest = is_all(after, before)
     missing = f"The simulation misses {before.percent:.3g} % of the signal's variance"
-    unsettled = () if converged else ("The calibration did not come to rest: take the figures with care.",)
+    unsettled = () if converged else ("The calibration did not converge: take the figures with care.",)
     if not found.accepted:
         text = f"{missing}, and no effect of the catalogue is borne out by held-out records."
         return Verdict(UNEXPLAINED, (text, *unsettled))
@@ -64,7 +67,7 @@ def verdict(found: Search, before: Excess, after: Excess, converged: bool = True
         return Verdict(EXPLAINED, (f"{missing}: {said}.", _left(taken), *_same_record(found.accepted), *unsettled))
     if rest:
         return Verdict(AMBIGUOUS, (f"{missing}.", *_not_told_apart(confused), _left(taken), *unsettled))
-    one_takes_half = len(found.accepted) == 1 and taken >= HALF and after.misfit <= SMALL_REST
+    one_takes_half = len(found.accepted) == 1 and taken >= HALF and (after.misfit <= SMALL_REST or bool(is_one))
     if taken >= MOST or one_takes_half:
         text = f"{missing}. Part of it has a name: {said}. A rest of {after.percent:.3g} % has none."
         return Verdict(PARTLY, (text, _left(taken), *_not_told_apart(confused), *unsettled))
