@@ -64,14 +64,15 @@ class GearPair(System):
         v = values
         radius_1, radius_2 = self._base_radii(v)
         inertia_1, inertia_2 = v["inertia_pinion"], v["inertia_gear"]
-        mass = inertia_1 * inertia_2 / (inertia_1 * radius_2**2 + inertia_2 * radius_1**2)
-        mass = torch.where(v["equivalent_mass"] > 0, v["equivalent_mass"], mass)
+        drawn = inertia_1 * inertia_2 / (inertia_1 * radius_2**2 + inertia_2 * radius_1**2)
+        mass = torch.where(v["equivalent_mass"] > 0, v["equivalent_mass"], drawn)
         if self.chosen["as_printed"]:
             mass = torch.full_like(mass, PRINTED_MASS)
         if self.chosen["gear_torque_mode"] == "balanced":
             per_pinion, per_gear = 1 / radius_1, torch.zeros_like(radius_1)
         else:
-            per_pinion, per_gear = mass * radius_1 / inertia_1, mass * radius_2 / inertia_2
+            # a stated mass scales both inertias, which leaves the load as it is
+            per_pinion, per_gear = drawn * radius_1 / inertia_1, drawn * radius_2 / inertia_2
         return {
             "base_radius_pinion": radius_1,
             "base_radius_gear": radius_2,
