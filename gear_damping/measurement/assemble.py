@@ -35,6 +35,7 @@ class Assembler:
                 channels[channel.plan.name] = self._channel(channel, raw, notes, findings)
         with self.problems.collecting():
             self._from_encoders(raw, channels, notes)
+        self._give_mean(raw, channels, notes)
         conditions = self._conditions(raw, channels, notes)
         if raw.complete and len(self.problems) == before:
             self._torque_settled(raw, channels, conditions)
@@ -100,11 +101,19 @@ class Assembler:
         )  # fmt: skip
         return Channel("transmission_error", raw.base.resample(values), "m", datum="arbitrary")
 
+    def _give_mean(self, raw: RawRecord, channels: dict[str, Channel], notes: list[str]) -> None:
+        """A speed that has lost its mean gets the one under conditions."""
+        speed, stated = channels.get("pinion_speed"), raw.plan.conditions.get("pinion_speed")
+        if speed is not None and stated is not None and _mean_lost(speed):
+            values = speed.values - speed.values.mean() + stated.value
+            channels["pinion_speed"] = replace(speed, values=values)
+            notes.append("pinion_speed: its mean is the one under conditions")
+
     def _conditions(self, raw: RawRecord, channels: dict[str, Channel], notes: list[str]) -> dict[str, Quantity]:
         """A channel beats a condition of the same name."""
         kept = {}
         for name, quantity in raw.plan.conditions.items():
-            if name in channels:
+            if name in channels and not _mean_lost(channels[name]):
                 notes.append(f"{name}: the channel is used, not the value under conditions")
                 continue
             kept[name] = quantity
@@ -122,6 +131,10 @@ class Assembler:
             rule = "the pinion torque varies and nothing says what the gear torque does"
             remedy = "write gear_torque: balanced (or held) beside pinion_torque, or its channel"
             self.problems.append(Problem(f"{raw.plan.key}.channels", rule, None, remedy, self.source))
+
+
+def _mean_lost(channel: Channel) -> bool:
+    return channel.coupling == "AC" or channel.highpass is not None
 
 
 def _unwrapped(angle: NDArray[np.float64], notes: list[str]) -> NDArray[np.float64]:

@@ -86,38 +86,29 @@ class Response(Delayed, Ranged, Scaled):
     noise: Annotated[Quantity, Measured(None)] = key(
         "Standard deviation of the sensor's noise; absent, it is estimated.", "weight of the channel"
     )
-
-
-class HighPassed(Response):
-    """A response whose slow part may be lost."""
-
     highpass: Annotated[Corner, Cutoff(usual=1)] = key(
         "High-pass of the sensor or its amplifier.", "filters the prediction"
     )
-
-    @model_validator(mode="after")
-    def _band(self) -> "HighPassed":
-        if self.lowpass and self.highpass and self.lowpass.frequency <= self.highpass.frequency:
-            refuse("must lie above highpass", self.lowpass.frequency, "exchange the two", "lowpass")
-        return self
-
-
-class Sensed(HighPassed):
-    """A response with a zero."""
 
     coupling: Annotated[str, OneOf(("DC", "AC"))] = key(
         "`AC`: the channel has lost its mean, so that its datum is arbitrary.", "offset of each record", "DC"
     )
     datum: Annotated[str, OneOf(("absolute", "arbitrary"))] = key(
         "`arbitrary`: the zero means nothing, and every record has an offset of its own. Absent, arbitrary for an "
-        "oscillator's displacement and for whatever is AC-coupled, absolute otherwise.", "offset of each record",
+        "oscillator's displacement, a speed and whatever is AC-coupled, absolute otherwise.", "offset of each record",
     )  # fmt: skip
 
     @model_validator(mode="after")
-    def _zero(self) -> "Sensed":
+    def _filters(self) -> "Response":
+        problems = []
+        if self.lowpass and self.highpass and self.lowpass.frequency <= self.highpass.frequency:
+            rule = "must lie above highpass"
+            problems.append(Problem("lowpass", rule, self.lowpass.frequency, "exchange the two"))
         if self.coupling == "AC" and self.datum == "absolute":
             rule = "an AC-coupled channel has lost its mean, so that its zero cannot be absolute"
-            refuse(rule, self.datum, "leave out datum: absolute, or coupling: AC", "datum")
+            problems.append(Problem("datum", rule, self.datum, "leave out datum: absolute, or coupling: AC"))
+        if problems:
+            raise InputError(problems)
         return self
 
 
@@ -183,44 +174,35 @@ class Angle(Delayed):
     )
 
 
-_FLUCTUATION = "what is compared of a speed is its fluctuation, whatever its mean"
-_OF_A_SPEED = dict.fromkeys(("coupling", "datum"), (_FLUCTUATION, "leave it out"))
-_MEAN = "the mean of the pinion's speed gives its angle, which such a channel has lost"
-_ADD_SPEED = "declare the pinion's speed as it was before, or under conditions beside a gear_speed"
+class Speed(Response):
+    """The speed of a shaft."""
 
-
-class GearSpeed(HighPassed):
-    """The speed of the gear's shaft."""
-
-    title: ClassVar[str] = "the speed of the gear"
+    title: ClassVar[str] = "a speed"
     si: ClassVar[str | None] = "rad/s"
     usual_datum: ClassVar[str] = "arbitrary"
-    refused: ClassVar[Reasons] = Frozen(_OF_A_SPEED)
+
+    @model_validator(mode="after")
+    def _fluctuates(self) -> "Speed":
+        if self.datum == "absolute":
+            rule = "what is compared of a speed is its fluctuation, whose zero is always arbitrary"
+            refuse(rule, self.datum, "leave it out", "datum")
+        return self
 
 
-class PinionSpeed(Response):
-    """The speed of the pinion's shaft."""
-
-    title: ClassVar[str] = "the speed of the pinion"
-    si: ClassVar[str | None] = "rad/s"
-    usual_datum: ClassVar[str] = "arbitrary"
-    refused: ClassVar[Reasons] = Frozen(_OF_A_SPEED | {"highpass": (_MEAN, _ADD_SPEED)})
-
-
-class TransmissionError(Sensed):
+class TransmissionError(Response):
     """x = r_b1 theta_1 - r_b2 theta_2 along the line of action."""
 
     title: ClassVar[str] = "a transmission error"
     si: ClassVar[str | None] = "m"
 
 
-_CASING = "the path from the mesh to a casing is unknown, its gain, delay and zero too"
-_OF_A_SHAFT = (
+CASING = "the path from the mesh to a casing is unknown, its gain, delay and zero too"
+OF_A_SHAFT = (
     "shaft", "radius", "lowpass", "highpass", "coupling", "delay", "noise", "uncertainty", "datum", "polarity",
 )  # fmt: skip
 
 
-class GearAcceleration(Sensed):
+class GearAcceleration(Response):
     """An accelerometer on a shaft, at a radius, or on the casing."""
 
     title: ClassVar[str] = "the acceleration of a gear pair"
@@ -236,8 +218,8 @@ class GearAcceleration(Sensed):
     def _mounted(self) -> "GearAcceleration":
         problems = []
         if self.mounting == "casing":
-            rule, remedy = f"has no meaning on a casing: {_CASING}", "leave it out, or write mounting: tangential"
-            problems = [Problem(name, rule, None, remedy) for name in _OF_A_SHAFT if self.given(name)]
+            rule, remedy = f"has no meaning on a casing: {CASING}", "leave it out, or write mounting: tangential"
+            problems = [Problem(name, rule, None, remedy) for name in OF_A_SHAFT if self.given(name)]
         else:
             if not self.given("shaft"):
                 problems.append(Problem("shaft", "is missing", None, "say on which it sits, shaft: pinion (or gear)"))
@@ -249,7 +231,7 @@ class GearAcceleration(Sensed):
         return self
 
 
-class Motion(Sensed):
+class Motion(Response):
     """A motion of an oscillator."""
 
     usual_frame: ClassVar[str] = "relative"

@@ -7,7 +7,7 @@ from gear_damping.measurement import layout
 from gear_damping.measurement.structure import names
 
 _OSCILLATOR_RESPONSES = ("displacement", "velocity", "acceleration")
-_OF_A_RESPONSE = ("lowpass", "noise")
+_OF_A_RESPONSE = ("lowpass", "highpass", "coupling", "noise", "datum")
 Found = Iterator[Problem]
 
 
@@ -124,6 +124,17 @@ def _speed_as_an_angle(seen: _Seen) -> Found:
             yield seen.problem(f"channels.pinion_speed.{name}", rule, "leave it out")
 
 
+def _speed_has_its_mean(seen: _Seen) -> Found:
+    """The mean of the pinion's speed gives the angle, where nothing else does."""
+    speed = seen.channels.get("pinion_speed")
+    if speed is None or seen.error or not (speed.highpass or speed.coupling == "AC"):
+        return
+    if not ({"pinion_angle"} & {*seen.channels} or "pinion_speed" in seen.conditions or seen.encoders):
+        at = "coupling" if speed.coupling == "AC" else "highpass"
+        rule = "the mean of the pinion's speed gives its angle, and this channel has lost it"
+        yield seen.problem(f"channels.pinion_speed.{at}", rule, "give the mean as conditions.pinion_speed")
+
+
 def _encoder_beside_a_channel(seen: _Seen) -> Found:
     if "gear" in seen.encoders and "transmission_error" in seen.channels:
         rule = "has no meaning beside channels.transmission_error, which it would give"
@@ -151,7 +162,7 @@ def _frame_without_base(seen: _Seen) -> Found:
 
 _GEAR: tuple[Callable[[_Seen], Found], ...] = (
     _something_measured, _gear_response, _gear_angle, _gear_load, _shaft_needs_inertia, _speed_as_an_angle,
-    _encoder_beside_a_channel, _reference,
+    _speed_has_its_mean, _encoder_beside_a_channel, _reference,
 )  # fmt: skip
 _OSCILLATOR: tuple[Callable[[_Seen], Found], ...] = (
     _something_measured, _oscillator_response, _frame_without_base, _reference,

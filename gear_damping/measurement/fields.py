@@ -227,7 +227,7 @@ class Measured(Value):
 
     @property
     def _example(self) -> str:
-        return self.unit if self.unit and self.unit != "own" else "V"
+        return {None: "V", "own": "m/s^2/V"}.get(self.unit, self.unit)
 
     def _unknown(self, value: dict) -> Found:
         found = []

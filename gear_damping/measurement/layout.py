@@ -111,10 +111,10 @@ class GearChannels(c.Timed):
         "Load, positive where it resists; or `balanced` (it follows the pinion's torque) or `held`.", "load"
     )
     pinion_angle: c.Angle = key("Angle of the pinion; may wrap.", "angle of the shafts")
-    pinion_speed: c.PinionSpeed = key(
+    pinion_speed: c.Speed = key(
         "Speed of the pinion.", "angle of the shafts; response where no transmission error is declared"
     )
-    gear_speed: c.GearSpeed = key("Speed of the gear.", "response")
+    gear_speed: c.Speed = key("Speed of the gear.", "response")
     acceleration: c.GearAcceleration = key("An accelerometer.", "response, or findings of a casing")
 
 

@@ -120,5 +120,3 @@ class OscillatorConditions(Declared):
 
     title: ClassVar[str] = "an oscillator"
     force: Annotated[Quantity, Measured(None, "any", uncertain=True)] = key("Constant force.", "load")
-
-
