@@ -63,6 +63,7 @@ class Draft:
     rig: Rig
     setup: Setup
     n: int  # samples of each record
+    usual: bool  # neither rig nor sensors were asked for
 
     @property
     def settle(self) -> int:
@@ -102,7 +103,7 @@ def draft(wanted: Wanted) -> Draft:
         targets, float(sizes.uniform(20.0, 40.0)) if wanted.snr_db is None else wanted.snr_db,
         FAULTS[seed % len(FAULTS)] if stratum == "data_fault" else None,
         _nominal(nominal_source, shape, given, bench), shape, 0.03 * noise.normal(size=(2, len(conditions))), noise,
-        bench, setup, n,
+        bench, setup, n, wanted.rig is None and wanted.sensors is None,
     )  # fmt: skip
 
 

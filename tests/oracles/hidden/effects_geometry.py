@@ -8,7 +8,6 @@ from . import pair
 from .effect import Effect, Params, phase
 from .knobs import N_PROFILE, Knobs
 
-
 SHAFTS = ("pinion", "gear")
 
 

@@ -35,7 +35,8 @@ DIMENSIONS: dict[str, dict[str, dict[str, float]]] = {
     "sensor_offset": {"offset": {"reading": 1}}, "sensor_drift": {"rate": {"reading": 1}},
     "sensor_saturation": {"limit": {"reading": 1}}, "sensor_quantisation": {"step": {"reading": 1}},
     "sensor_delay": {"delay": TIME}, "sensor_lowpass": {"cutoff": RATE},
-    "delayed_feedback": {"delay": TIME}, "belt_order": {"torque": TORQUE}, "mains_pickup": {"amplitude": {"reading": 1}},
+    "delayed_feedback": {"delay": TIME}, "belt_order": {"torque": TORQUE},
+    "mains_pickup": {"amplitude": {"reading": 1}},
     "impacts": {"force": FORCE, "width": TIME},
     "unbalance": {"unbalance": {"force": 1, "turn": 2}},
 }  # fmt: skip

@@ -46,6 +46,7 @@ class Sized:
     params: list[Params]
     promised: list[float | None]
     basis: Basis
+    sizes: list[float | None]
 
 
 def lanes_of(knobs: Arrays, own: slice) -> Arrays:
@@ -110,11 +111,12 @@ def _trials(one: Draft) -> list[Knobs]:
 
 def _chosen(one: Draft, basis: Basis, differences: np.ndarray) -> Sized:
     """Log-log interpolation of D; the nearest size on trial where the target is out of reach."""
-    chosen, promised, first = [], [], 0
+    chosen, promised, sizes, first = [], [], [], 0
     for effect, params, target in zip(one.effects, one.params, one.targets, strict=True):
         if target is None:
             chosen.append(params)
             promised.append(None)
+            sizes.append(None)
             continue
         left = [basis.excess(differences[:, first + j])["excess_percent"] for j in range(LADDER)]
         finite = np.cumprod(np.isfinite(left)).astype(bool)  # up to the first trial that diverged
@@ -123,7 +125,20 @@ def _chosen(one: Draft, basis: Basis, differences: np.ndarray) -> Sized:
         rising = np.maximum.accumulate(np.log(np.array(left)[finite] + 1e-12)) + 1e-9 * np.arange(finite.sum())
         log_sizes = np.log(_sizes(effect.least))[finite]
         log_size = np.interp(np.log(target), rising, log_sizes)
-        chosen.append(effect.at(params, float(np.exp(log_size))))
+        sizes.append(float(np.exp(log_size)))
+        chosen.append(effect.at(params, sizes[-1]))
         promised.append(float(np.exp(np.interp(log_size, log_sizes, rising))))
         first += LADDER
-    return Sized(chosen, promised, basis)
+    return Sized(chosen, promised, basis, sizes)
+
+
+def corrected(one: Draft, sized: Sized, reached: float) -> bool:
+    """Change the size of a single effect whose excess the trials, far apart, were wrong about; whether it was."""
+    if len(one.effects) != 1 or sized.sizes[0] is None:
+        return False
+    ratio = sized.promised[0] / max(reached, 1e-9)
+    size = min(max(sized.sizes[0] * float(np.clip(ratio, 0.05, 20.0)) ** 0.5, one.effects[0].least), 1.0)
+    if not np.isfinite(reached) or 0.75 < ratio < 1.35 or size == sized.sizes[0]:
+        return False
+    sized.sizes[0], sized.params[0] = size, one.effects[0].at(one.params[0], size)
+    return True

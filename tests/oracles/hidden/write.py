@@ -68,7 +68,7 @@ def _declare(setup: Setup, record: HiddenRecord, sheet: Sheet) -> None:
         radius = {"value": round(setup.radius * 1e3, 6), "unit": "mm"}
         response |= {"mounting": "tangential", "radius": radius, "shaft": setup.shaft}
     if setup.counts is not None:
-        for shaft, count in zip(("pinion", "gear"), setup.counts, strict=True):
+        for shaft in ("pinion", "gear"):
             sheet.columns[f"count_{shaft}"] = record.channels[f"{shaft}_counts"]
         said["encoders"] = {shaft: {"column": f"count_{shaft}", "counts_per_revolution": count}
                             for shaft, count in zip(("pinion", "gear"), setup.counts, strict=True)}  # fmt: skip
