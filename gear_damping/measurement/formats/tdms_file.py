@@ -1,0 +1,72 @@
+"""TDMS files of LabVIEW and DIAdem: channels as `group/channel`, with their units and rates."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.formats.table import (
+    ArrayTable,
+    Held,
+    Table,
+    extra_library,
+    is_real,
+    refuse_size,
+    unreadable,
+)
+
+_UNIT_PROPERTIES = ("unit_string", "NI_UnitDescription", "unit", "Unit")
+
+
+def read_tdms(path: Path, max_bytes: int) -> Table:
+    """The channels of a TDMS file as columns; time stamps are seconds since the first one of their channel.
+
+    Raises:
+        InputError: not a TDMS file, too large when unpacked, no real numbers, or npTDMS is missing.
+    """
+    nptdms = extra_library("nptdms", path)
+    held, left_out = [], []
+    _refuse_other(path)
+    with unreadable(path, "not a readable TDMS file", "export it again"), nptdms.TdmsFile.open(path) as file:
+        channels = [channel for group in file.groups() for channel in group.channels()]
+        refuse_size(path, sum(8 * len(channel) for channel in channels), max_bytes)
+        for channel in channels:
+            name = f"{channel.group_name}/{channel.name}"
+            dtype = np.dtype(channel.dtype)
+            if len(channel) and (is_real(dtype) or dtype.kind == "M"):
+                held.append(_held(nptdms, path, name, channel))
+            else:
+                left_out.append(f"{name} ({'empty' if not len(channel) else dtype})")
+    return ArrayTable(path, held, left_out)
+
+
+def _refuse_other(path: Path) -> None:
+    """The library takes a file that does not begin as TDMS for an empty one."""
+    with path.open("rb") as file:
+        if file.read(4) != b"TDSm":
+            rule = "not a readable TDMS file (it does not begin with TDSm)"
+            raise InputError(Problem("file", rule, str(path), "export it again"))
+
+
+def _held(nptdms: Any, path: Path, name: str, channel: Any) -> Held:
+    group, own = channel.group_name, channel.name
+    stamps = np.dtype(channel.dtype).kind == "M"
+
+    def read() -> NDArray:
+        with nptdms.TdmsFile.open(path) as file:
+            values = file[group][own][:]
+        return (values - values[0]) / np.timedelta64(1, "s") if stamps else values
+
+    unit = "s" if stamps else next((channel.properties[u] for u in _UNIT_PROPERTIES if channel.properties.get(u)), None)
+    return Held(name, (len(channel),), read, unit, _clock(channel.properties))
+
+
+def _clock(properties: dict[str, Any]) -> tuple[float, float] | None:
+    """Start in s and rate in Hz of a waveform; the increment of one over time is in s, over frequency in Hz."""
+    step = properties.get("wf_increment")
+    in_time = properties.get("wf_xname", "Time") != "Frequency" and properties.get("wf_xunit_string", "s") == "s"
+    if not step or step <= 0 or not in_time:
+        return None
+    return float(properties.get("wf_start_offset", 0.0)), 1 / float(step)
