@@ -13,6 +13,7 @@ from gear_damping.measurement.formats.table import (
     Table,
     extra_library,
     is_real,
+    kind_of,
     refuse_size,
     squeezed,
     unreadable,
@@ -35,7 +36,8 @@ def read_hdf5(path: Path, max_bytes: int) -> Table:
         for dataset in datasets:
             found = [field for field in _fields(dataset) if is_real(field[2])]
             if not found or not dataset.size:
-                left_out.append(f"{dataset.name.strip('/')} ({'empty' if not dataset.size else dataset.dtype})")
+                kind = "text" if h5py.check_string_dtype(dataset.dtype) else kind_of(dataset.dtype)
+                left_out.append(f"{dataset.name.strip('/')} ({kind if dataset.size else 'empty'})")
                 continue
             held += [_held(h5py, path, dataset, field) for field in found]
     return ArrayTable(path, held, left_out)

@@ -47,13 +47,16 @@ def find_header(rows: Sequence[Sequence[str]], width: int) -> Header:
         width: The number of filled cells that a row of values has.
 
     Returns:
-        The header is the first row of texts as wide as the values; without one the values begin at the first row.
+        The first row of texts as wide as the values, of those before the first row of values; else the last one.
+        Without a row of texts the values begin at the first row.
     """
-    start = next((k for k, row in enumerate(rows) if _filled(row) >= width), 0)
-    exact = next((k for k, row in enumerate(rows) if _filled(row) == width), start)
-    start = exact if not _has_number(rows[start]) and not _has_number(rows[exact]) else start
-    if _has_number(rows[start]):
-        return Header((), (), start, start)
+    end = next((k for k, row in enumerate(rows) if _is_values(row, width)), len(rows))
+    texts = [k for k in range(end) if not _has_number(rows[k])]
+    if not texts:
+        return Header((), (), 0)
+    exact = [k for k in texts if _filled(rows[k]) == width]
+    wide = [k for k in texts if _filled(rows[k]) > width]
+    start = (exact or wide or [texts[-1]])[0]
     names, first = tuple(cell.strip() for cell in rows[start]), start + 1
     units: tuple[str, ...] = ()
     if first < len(rows) and _is_units(rows[first]):
@@ -78,6 +81,13 @@ def is_number(cell: str) -> bool:
 
 def _has_number(row: Sequence[str]) -> bool:
     return any(is_number(cell.replace(",", ".")) for cell in row)
+
+
+def _is_values(row: Sequence[str], width: int) -> bool:
+    """Whether a row holds numbers alone, or is as wide as the values and at least half of it are numbers."""
+    filled = [cell.replace(",", ".") for cell in row if cell.strip()]
+    numbers = sum(is_number(cell) for cell in filled)
+    return numbers > 0 and (numbers == len(filled) or (_filled(row) >= width and 2 * numbers >= len(filled)))
 
 
 def _filled(row: Sequence[str]) -> int:

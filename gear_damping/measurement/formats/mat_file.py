@@ -94,7 +94,14 @@ def _read_hdf5(path: Path, max_bytes: int) -> dict[str, Any]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # of classes, which are left out here and said
         content = pymatreader.read_mat(path, variable_names=plain) if plain else {}
-    return {name: content.get(name, _OBJECT) for name in names}
+    for place in objects:
+        *parents, last = place.split("/")
+        inner = content
+        for parent in parents:
+            inner = inner.get(parent) if isinstance(inner, dict) else None
+        if isinstance(inner, dict):
+            inner[last] = _OBJECT
+    return {name: content[name] for name in names}
 
 
 def _flat(value: Any, name: str) -> Iterator[tuple[str, NDArray | str]]:

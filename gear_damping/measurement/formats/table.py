@@ -195,11 +195,12 @@ def held_arrays(arrays: Mapping[str, NDArray]) -> tuple[list[Held], list[str]]:
         if is_real(array.dtype) and array.size:
             held.append(Held(name, squeezed(array.shape), lambda array=array: array))
         else:
-            left_out.append(f"{name} ({'empty' if not array.size else _kind(array.dtype)})")
+            left_out.append(f"{name} ({'empty' if not array.size else kind_of(array.dtype)})")
     return held, left_out
 
 
-def _kind(dtype: np.dtype) -> str:
+def kind_of(dtype: np.dtype) -> str:
+    """What values of this kind are, for messages."""
     return {"c": "complex", "U": "text", "S": "text", "O": "objects"}.get(dtype.kind, str(dtype))
 
 

@@ -1,5 +1,7 @@
 """TDMS files of LabVIEW and DIAdem: channels as `group/channel`, with their units and rates."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +15,7 @@ from gear_damping.measurement.formats.table import (
     Table,
     extra_library,
     is_real,
+    kind_of,
     refuse_size,
     unreadable,
 )
@@ -29,7 +32,7 @@ def read_tdms(path: Path, max_bytes: int) -> Table:
     nptdms = extra_library("nptdms", path)
     held, left_out = [], []
     _refuse_other(path)
-    with unreadable(path, "not a readable TDMS file", "export it again"), nptdms.TdmsFile.open(path) as file:
+    with unreadable(path, "not a readable TDMS file", "export it again"), _opened(nptdms, path) as file:
         channels = [channel for group in file.groups() for channel in group.channels()]
         refuse_size(path, sum(8 * len(channel) for channel in channels), max_bytes)
         for channel in channels:
@@ -38,7 +41,7 @@ def read_tdms(path: Path, max_bytes: int) -> Table:
             if len(channel) and (is_real(dtype) or dtype.kind == "M"):
                 held.append(_held(nptdms, path, name, channel))
             else:
-                left_out.append(f"{name} ({'empty' if not len(channel) else dtype})")
+                left_out.append(f"{name} ({'empty' if not len(channel) else kind_of(dtype)})")
     return ArrayTable(path, held, left_out)
 
 
@@ -50,12 +53,19 @@ def _refuse_other(path: Path) -> None:
             raise InputError(Problem("file", rule, str(path), "export it again"))
 
 
+@contextmanager
+def _opened(nptdms: Any, path: Path) -> Iterator[Any]:
+    """The open file; the library itself leaves a damaged one open."""
+    with path.open("rb") as stream, nptdms.TdmsFile.open(stream) as file:
+        yield file
+
+
 def _held(nptdms: Any, path: Path, name: str, channel: Any) -> Held:
     group, own = channel.group_name, channel.name
     stamps = np.dtype(channel.dtype).kind == "M"
 
     def read() -> NDArray:
-        with nptdms.TdmsFile.open(path) as file:
+        with _opened(nptdms, path) as file:
             values = file[group][own][:]
         return (values - values[0]) / np.timedelta64(1, "s") if stamps else values
 
