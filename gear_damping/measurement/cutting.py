@@ -12,7 +12,6 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
-from scipy.signal import firwin, kaiser_beta, oaconvolve
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.timebase import TimeBase, moved_to, refuse_uncovered
@@ -149,6 +148,8 @@ class _Filter:
     @cached_property
     def taps(self) -> NDArray[np.float64]:
         """The filter at `up` times the recorded rate; each of its `up` phases sums to one."""
+        from scipy.signal import firwin, kaiser_beta  # here, since few records need what takes long to import
+
         half = self.reach * self.up
         cutoff = (PASS + STOP) / 2 * self.step / self.up  # of the rate of the taps
         taps = firwin(2 * half + 1, 2 * cutoff, window=("kaiser", kaiser_beta(_ATTENUATION)))
@@ -174,6 +175,8 @@ class _Filter:
 
     def applied(self, padded: NDArray[np.float64]) -> NDArray[np.float64]:
         """The filtered signal at `up` times the recorded rate, from the first recorded sample to the last."""
+        from scipy.signal import oaconvolve
+
         stuffed = np.zeros((padded.size - 1) * self.up + 1)
         stuffed[:: self.up] = padded
         return oaconvolve(stuffed, self.taps, mode="valid")

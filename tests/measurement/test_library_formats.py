@@ -269,6 +269,19 @@ def test_uff_without_a_readable_set_is_one_message(tmp_path, content):
         read_table(tmp_path / "a.uff")
 
 
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+@pytest.mark.parametrize("binary", [0, 1])
+def test_uff_that_was_cut_off_is_refused_instead_of_losing_a_set(tmp_path, binary):
+    path = _write_uff(tmp_path / "a.uff", _set58(WAVE, binary=binary), _set58(np.tile(WAVE, 30), binary=binary))
+    whole = path.read_bytes()
+    path.write_bytes(whole[:-200])
+    with pytest.raises(InputError, match="holds no set 58 or 58b that can be read to its end"):
+        read_table(path)
+    path.write_bytes(whole[:-3000] + whole[-8:])
+    with pytest.raises(InputError, match=r"set 1 holds \d+ of the 1800 values that it announces"):
+        read_table(path)
+
+
 # TDMS
 
 
@@ -305,6 +318,20 @@ def test_tdms_channels_are_group_and_channel_with_unit_and_rate(tdms):
     np.testing.assert_array_equal(_values(table, "Vibration/NDE"), np.trunc(1000 * WAVE))
     np.testing.assert_allclose(_values(table, "Log/when"), TIME, atol=1e-6)
     assert table.left_out[0].startswith("Log/remark")
+
+
+def test_a_tdms_file_that_was_cut_off_says_so(tdms, tmp_path, capsys):
+    path = tmp_path / "a.tdms"
+    with TdmsWriter(str(path)) as writer:
+        writer.write_segment([_channel("g", "x", WAVE), _channel("g", "y", WAVE)])
+    path.write_bytes(path.read_bytes()[:-100])
+    table = read_table(path)
+    np.testing.assert_array_equal(_values(table, "g/x")[:30], WAVE[:30])
+    assert any("Last segment of file has less data than expected" in note for note in table.notes)
+    tdms.write_bytes(tdms.read_bytes()[:-600])
+    with pytest.raises(InputError, match=r"not a readable TDMS file \(Last segment of file has less data"):
+        read_table(tdms)
+    assert "segment" not in capsys.readouterr().err
 
 
 def test_a_damaged_tdms_file_is_one_message(tdms, tmp_path):

@@ -1,5 +1,6 @@
 """TDMS files of LabVIEW and DIAdem: channels as `group/channel`, with their units and rates."""
 
+import logging
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -30,9 +31,9 @@ def read_tdms(path: Path, max_bytes: int) -> Table:
         InputError: not a TDMS file, too large when unpacked, no real numbers, or npTDMS is missing.
     """
     nptdms = extra_library("nptdms", path)
-    held, left_out = [], []
+    held, left_out, said = [], [], _Said()
     _refuse_other(path)
-    with unreadable(path, "not a readable TDMS file", "export it again"), _opened(nptdms, path) as file:
+    with unreadable(path, "not a readable TDMS file", "export it again"), _opened(nptdms, path, said) as file:
         channels = [channel for group in file.groups() for channel in group.channels()]
         refuse_size(path, sum(8 * len(channel) for channel in channels), max_bytes)
         for channel in channels:
@@ -42,7 +43,12 @@ def read_tdms(path: Path, max_bytes: int) -> Table:
                 held.append(_held(nptdms, path, name, channel))
             else:
                 left_out.append(f"{name} ({'empty' if not len(channel) else kind_of(dtype)})")
-    return ArrayTable(path, held, left_out)
+    if not held and said.messages:
+        rule = f"not a readable TDMS file ({said.messages[0]})"
+        raise InputError(Problem("file", rule, str(path), "export it again"))
+    table = ArrayTable(path, held, left_out)
+    table.notes = tuple(f"{path.name}: {message}" for message in dict.fromkeys(said.messages))
+    return table
 
 
 def _refuse_other(path: Path) -> None:
@@ -53,11 +59,33 @@ def _refuse_other(path: Path) -> None:
             raise InputError(Problem("file", rule, str(path), "export it again"))
 
 
+class _Said(logging.Handler):
+    """Keeps what the library logs, such as that the last segment was cut off."""
+
+    def __init__(self) -> None:
+        super().__init__(logging.WARNING)
+        self.messages: list[str] = []
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Take a message."""
+        self.messages.append(record.getMessage())
+
+
 @contextmanager
-def _opened(nptdms: Any, path: Path) -> Iterator[Any]:
-    """The open file; the library itself leaves a damaged one open."""
-    with path.open("rb") as stream, nptdms.TdmsFile.open(stream) as file:
-        yield file
+def _opened(nptdms: Any, path: Path, said: _Said) -> Iterator[Any]:
+    """The open file; the library itself leaves a damaged one open, and logs to the console."""
+    manager = nptdms.log.log_manager
+    level = manager.console_handler.level
+    manager.console_handler.setLevel(logging.CRITICAL + 1)
+    for log in manager.loggers.values():
+        log.addHandler(said)
+    try:
+        with path.open("rb") as stream, nptdms.TdmsFile.open(stream) as file:
+            yield file
+    finally:
+        manager.console_handler.setLevel(level)
+        for log in manager.loggers.values():
+            log.removeHandler(said)
 
 
 def _held(nptdms: Any, path: Path, name: str, channel: Any) -> Held:
@@ -65,7 +93,7 @@ def _held(nptdms: Any, path: Path, name: str, channel: Any) -> Held:
     stamps = np.dtype(channel.dtype).kind == "M"
 
     def read() -> NDArray:
-        with _opened(nptdms, path) as file:
+        with _opened(nptdms, path, _Said()) as file:
             values = file[group][own][:]
         return (values - values[0]) / np.timedelta64(1, "s") if stamps else values
 

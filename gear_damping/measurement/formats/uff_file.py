@@ -10,6 +10,7 @@ from gear_damping.measurement.formats.table import ArrayTable, Held, Table, extr
 
 _TIME = 17  # the specific data type of an abscissa in seconds
 _FREQUENCY = 18
+_TAIL = 1024  # bytes in which the mark of the last set's end stands
 _WRITTEN = 5e-6  # the increment stands in the file with six digits
 
 
@@ -21,12 +22,17 @@ def read_uff(path: Path, max_bytes: int) -> Table:
     """
     pyuff = extra_library("pyuff", path)
     remedy = "export the channels as UFF 58 or 58b"
+    _refuse_cut_off(path, remedy)
     with unreadable(path, "not a readable UFF file", remedy):
         file = pyuff.UFF(str(path))
         found = [k for k, kind in enumerate(file.get_set_types()) if kind == 58]
         sets = [file.read_sets(k) for k in found]
     if not sets:
         raise InputError(Problem("file", "holds no set 58 or 58b that can be read", str(path), remedy))
+    for k, one in enumerate(sets):
+        if np.size(one["data"]) != one["num_pts"]:
+            rule = f"set {k} holds {np.size(one['data'])} of the {one['num_pts']} values that it announces"
+            raise InputError(Problem("file", rule, str(path), remedy))
     real = [one for one in sets if np.isrealobj(one["data"]) and np.size(one["data"])]
     left_out = [f"{_name(one)} (complex or empty)" for one in sets if not any(one is kept for kept in real)]
     if not real:
@@ -34,6 +40,15 @@ def read_uff(path: Path, max_bytes: int) -> Table:
     held = [_abscissa(real[0])]
     held += [_held(_name(one), one["data"], _unit(one["ordinate_axis_units_lab"]), _clock(one)) for one in real]
     return ArrayTable(path, held, left_out)
+
+
+def _refuse_cut_off(path: Path, remedy: str) -> None:
+    """The library leaves out a last set whose end is missing."""
+    with path.open("rb") as file:
+        file.seek(max(0, path.stat().st_size - _TAIL))
+        if b"    -1" not in file.read():
+            rule = "holds no set 58 or 58b that can be read to its end"
+            raise InputError(Problem("file", rule, str(path), remedy))
 
 
 def _held(name: str, values: Any, unit: str | None, clock: tuple[float, float] | None) -> Held:
