@@ -1,6 +1,5 @@
 """What is wrong with values that are each right by themselves."""
 
-import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,6 +8,7 @@ from typing import Any
 import torch
 
 from gear_damping.config.folders import unusable
+from gear_damping.config.light import no_file, wrong_measurement, wrong_name
 from gear_damping.config.quantities import SUFFIXES
 from gear_damping.config.simulator import SimulatorSettings
 from gear_damping.config.source import ORDER, Origin
@@ -20,7 +20,6 @@ from gear_damping.simulation.runs import reference_velocity
 
 SIMULATING = ("train", "simulate", "evaluate")  # tasks that simulate runs of the configured simulator
 RESUMABLE = "*/seed_*/last.ckpt"  # what an interrupted training leaves in its folder
-_NAME = re.compile(r"^[\w][\w.-]*$")
 Found = Iterator[tuple[str, str, Any, str]]  # key, rule, value, remedy
 
 
@@ -30,7 +29,6 @@ class Whole:
 
     config: Mapping[str, Any]
     simulator: SimulatorSettings | None
-    measurement: Path | None
     origin: Origin
 
     def __getitem__(self, key: str) -> Any:
@@ -55,14 +53,13 @@ def combination_problems(whole: Whole, wrong: set[str]) -> list[Problem]:
 
 
 def _name(whole: Whole) -> Found:
-    if not _NAME.match(whole["name"]):
-        yield "name", "names a folder: letters, digits, '_', '-' and '.'", whole["name"], "rename it"
+    yield from wrong_name(whole.config)
 
 
 def _checkpoint(whole: Whole) -> Found:
     path = whole["checkpoint"]
     if path is not None and not Path(path).is_file():
-        yield "checkpoint", _no_file(Path(path)), path, "give the path of a best.ckpt"
+        yield "checkpoint", no_file(Path(path)), path, "give the path of a best.ckpt"
     if whole["task"] == "evaluate" and path is None:
         yield "checkpoint", "task=evaluate needs a trained estimator", None, "checkpoint=…/best.ckpt"
 
@@ -74,14 +71,7 @@ def _resume(whole: Whole) -> Found:
 
 
 def _measurement(whole: Whole) -> Found:
-    path = whole["measurement"]["path"]
-    if whole["task"] not in ("identify", "explain"):
-        return
-    if path is None:
-        rule = f"task={whole['task']} needs a measurement"
-        yield "measurement.path", rule, None, "measurement.path=PATH/measurement.yaml"
-    elif not whole.measurement.is_file():
-        yield "measurement.path", _no_file(whole.measurement), path, "give the path of a measurement.yaml"
+    yield from wrong_measurement(whole.config)
 
 
 def _ruled_out(whole: Whole) -> Found:
@@ -91,10 +81,6 @@ def _ruled_out(whole: Whole) -> Found:
     for name in whole["ruled_out"]:
         if name not in known:
             yield "ruled_out", "no such effect", name, nearest(name, known)
-
-
-def _no_file(path: Path) -> str:
-    return "is a folder, no file" if path.is_dir() else "no such file"
 
 
 def _data_folder(whole: Whole) -> Found:

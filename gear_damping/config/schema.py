@@ -8,7 +8,7 @@ from typing import Any
 from gear_damping.config.source import Origin
 from gear_damping.errors import Problem, nearest
 
-TASKS = ("train", "simulate", "evaluate", "identify", "explain")
+TASKS = ("train", "simulate", "evaluate", "identify", "explain", "inspect")
 MODELS = ("raw_lstm", "cwt_lstm")
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from gear_damping.config import schema
 from gear_damping.config.combinations import Whole, combination_problems
-from gear_damping.config.locate import conf_folder
+from gear_damping.config.light import measurement_file
 from gear_damping.config.simulator import SimulatorSettings, read_simulator
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
@@ -60,8 +60,7 @@ def read_settings(config: Mapping[str, Any], origin: Origin) -> Settings:
         except InputError as error:
             problems += error.problems
     path = (config.get("measurement") or {}).get("path")
-    measurement = _measurement(path) if isinstance(path, str) else None
-    whole = Whole(config, simulator, measurement, origin)
+    whole = Whole(config, simulator, origin)
     problems += combination_problems(whole, {problem.key for problem in problems})
     if problems:
         raise InputError(problems)
@@ -81,17 +80,10 @@ def read_settings(config: Mapping[str, Any], origin: Origin) -> Settings:
         wavelet={key: value for key, value in config["wavelet"].items() if value is not None},
         model=dict(config["model"]),
         training=dict(config["training"]),
-        measurement_path=measurement,
+        measurement_path=measurement_file(path) if path else None,
         measurement_channel=config["measurement"]["channel"],
     )
 
 
 def _path(text: str | None) -> Path | None:
     return None if text is None else Path(text)
-
-
-def _measurement(text: str) -> Path:
-    """The measurement file; one that comes with the package is found from any folder."""
-    path = Path(text)
-    packaged = conf_folder().parent / path
-    return packaged if not path.exists() and text.startswith("conf/") and packaged.exists() else path

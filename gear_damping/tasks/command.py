@@ -18,6 +18,7 @@ from gear_damping.tasks.composed import choices_of, plain, problems_of
 from gear_damping.tasks.dispatch import INTERRUPTED_CODE, OK, WRONG_INPUT, run_job, say_problems
 
 _codes: list[int] = []
+_CHOOSING = {"task", "experiment", "measurement", "measurement.path"}  # what decides which measurement is read
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -38,8 +39,8 @@ def _problems_of(typed: CommandLine) -> list[Problem]:
     """What is wrong with the configuration; of a sweep, what every job of it shares."""
     if typed.shows:
         return []
-    problems = problems_of(typed.first_job())
     swept = swept_keys(typed.overrides) if typed.many else []
+    problems = problems_of(typed.first_job(), declared=not _CHOOSING & {*swept})
     return [problem for problem in problems if not any(_concerns(problem, key) for key in swept)]
 
 
@@ -94,9 +95,10 @@ def help_text() -> str:
         "",
         "  python -m gear_damping experiment=backlash",
         "  python -m gear_damping --multirun experiment=noise simulator.load_noise.snr_db=1,10,20,30,40,50",
+        "  python -m gear_damping task=inspect measurement.path=PATH/FILE",
         "  python -m gear_damping task=identify measurement.path=PATH/measurement.yaml",
         "",
-        "task        train (default), simulate, evaluate, identify, explain",
+        "task        train (default), simulate, evaluate, identify, explain, inspect",
         "groups      choose with group=choice:",
     ]
     lines += [f"  {group:<12}{', '.join(choices)}" for group, choices in groups().items()]

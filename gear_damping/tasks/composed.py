@@ -1,6 +1,11 @@
-"""The configuration of a command: composed by Hydra, in plain containers."""
+"""The configuration of a command: composed by Hydra, in plain containers, and what is wrong with it.
 
-from collections.abc import Sequence
+What simulates is imported only where the configuration is to be read whole: a mistake in a measurement.yaml is
+answered before, and task=inspect does without it.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,11 +15,14 @@ from hydra.errors import HydraException
 from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
+from gear_damping.config.command_line import parse
 from gear_damping.config.folders import unusable
+from gear_damping.config.light import INSPECT, MEASURED, YAML_SUFFIXES, light_problems, measurement_file
 from gear_damping.config.locate import conf_folder, groups
-from gear_damping.config.settings import read_settings
+from gear_damping.config.schema import ELSEWHERE
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.load import check_declaration
 from gear_damping.tasks.own_effects import errors_in, plugins_of
 
 
@@ -35,15 +43,52 @@ def composed(overrides: Sequence[str]) -> tuple[dict[str, Any], Origin]:
         raise InputError(Problem("configuration", said, remedy="see python -m gear_damping --help")) from error
 
 
-def problems_of(overrides: Sequence[str]) -> list[Problem]:
-    """Everything that is wrong with the configuration of these overrides."""
+def problems_of(overrides: Sequence[str], declared: bool = True) -> list[Problem]:
+    """Everything that is wrong with the configuration of these overrides.
+
+    Args:
+        overrides: As Hydra shall see them.
+        declared: Whether a measurement.yaml that they name is looked into.
+    """
     try:
         config, origin = composed(overrides)
+        problems = _problems_of_measurement(config, origin, declared)
+        if problems or (config.get("task") == INSPECT and not _physics_typed(overrides)):
+            return problems
+        from gear_damping.config.settings import read_settings
+
         with errors_in(plugins_of(config), origin.of("simulator.plugins")):
             read_settings(config, origin)
     except InputError as error:
         return error.problems
     return []
+
+
+def _problems_of_measurement(config: Mapping[str, Any], origin: Origin, declared: bool) -> list[Problem]:
+    """What is wrong with the YAML of a task that reads one, and with the keys beside it.
+
+    Where only the path is wrong, and the task simulates, the check of the whole configuration says it.
+    """
+    task = config.get("task")
+    if task not in MEASURED:
+        return []
+    problems = light_problems(config, origin)
+    path = (config.get("measurement") or {}).get("path")
+    file = measurement_file(path) if isinstance(path, str) else None
+    declares = file is not None and file.is_file() and (task != INSPECT or file.suffix.lower() in YAML_SUFFIXES)
+    try:
+        if declared and declares:
+            check_declaration(file)
+    except InputError as error:
+        key = "measurement.path"
+        found = [replace(p, source=origin.of(key)) if p.key == key and not p.source else p for p in error.problems]
+        return problems + found
+    return problems if task == INSPECT else []
+
+
+def _physics_typed(overrides: Sequence[str]) -> bool:
+    """Whether the command line says something of the simulator, which is then to be right, used or not."""
+    return any(parse(override).key_or_group.split(".")[0] in ELSEWHERE for override in overrides)
 
 
 def plain(config: DictConfig) -> dict[str, Any]:

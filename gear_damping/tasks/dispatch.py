@@ -8,13 +8,16 @@ from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from types import FrameType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from gear_damping.config.settings import Settings, read_settings
+from gear_damping.config.light import INSPECT, InspectSettings, read_inspect_settings
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
 from gear_damping.tasks.own_effects import errors_in, plugins_of
 from gear_damping.tasks.run_folder import FAILED, FINISHED, INTERRUPTED, RunFolder
+
+if TYPE_CHECKING:
+    from gear_damping.config.settings import Settings
 
 log = logging.getLogger("gear_damping")
 OK, WRONG_INPUT, INTERRUPTED_CODE = 0, 1, 130
@@ -30,7 +33,7 @@ def run_job(config: Mapping[str, Any], origin: Origin, folder: Path) -> int:
         return WRONG_INPUT
     try:
         with errors_in(plugins_of(config), origin.of("simulator.plugins")):
-            settings = read_settings(config, origin)
+            settings = _settings(config, origin)
             metrics = task_of(settings)(settings, run_folder)
         run_folder.close(FINISHED, metrics)
     except InputError as error:
@@ -47,6 +50,15 @@ def run_job(config: Mapping[str, Any], origin: Origin, folder: Path) -> int:
         return WRONG_INPUT
     log.info("everything lies in %s", folder)
     return OK
+
+
+def _settings(config: Mapping[str, Any], origin: Origin) -> "Settings | InspectSettings":
+    """The settings of the task; what simulates is imported where the task needs it."""
+    if config.get("task") == INSPECT:
+        return read_inspect_settings(config, origin)
+    from gear_damping.config.settings import read_settings
+
+    return read_settings(config, origin)
 
 
 def _whose(plugins: list[str]) -> str:
@@ -90,7 +102,7 @@ def _not_written(error: OSError, folder: Path) -> Problem:
     return Problem("hydra.run.dir", rule, str(folder), "make room there and in data_folder, or name other folders")
 
 
-def task_of(settings: Settings) -> Callable[[Settings, RunFolder], dict[str, Any]]:
+def task_of(settings: "Settings | InspectSettings") -> Callable[[Any, RunFolder], dict[str, Any]]:
     """The function that does the task."""
     return import_module(f"gear_damping.tasks.{settings.task}").run
 

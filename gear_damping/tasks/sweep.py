@@ -9,7 +9,6 @@ from hydra.experimental.callback import Callback
 from omegaconf import DictConfig
 
 from gear_damping.config.command_line import swept_keys
-from gear_damping.reporting import figures, tables
 from gear_damping.tasks.run_folder import FINISHED
 
 current: list[tuple[Path, list[str]]] = []  # the sweep of this process: folder and swept keys
@@ -25,6 +24,8 @@ class SweepSummary(Callback):
 
 def summarise(folder: Path, keys: Sequence[str]) -> int:
     """Write sweep.csv and sweep.png; returns how many jobs did not finish."""
+    from gear_damping.reporting import figures, tables  # here, since every command imports this file
+
     rows = [_row(path, keys) for path in sorted(folder.glob("*/run.json"), key=_number)]
     if not rows:
         return 0

@@ -1,0 +1,87 @@
+"""Checks of a configuration that need no physics: they are done before anything that takes long is imported."""
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from gear_damping.config import schema
+from gear_damping.config.locate import conf_folder
+from gear_damping.config.source import Origin
+from gear_damping.errors import InputError, Problem
+
+MEASURED = ("identify", "explain", "inspect")  # tasks that read a measurement
+INSPECT = "inspect"
+YAML_SUFFIXES = (".yaml", ".yml")
+_NAME = re.compile(r"^[\w][\w.-]*$")
+Found = Iterator[tuple[str, str, Any, str]]  # key, rule, value, remedy
+
+
+@dataclass(frozen=True)
+class InspectSettings:
+    """What task=inspect is told: nothing of it is simulated, so that its simulator is not read.
+
+    Args:
+        task: `inspect`.
+        name: Of the experiment.
+        measurement_path: A measurement.yaml or a file of data.
+    """
+
+    task: str
+    name: str
+    measurement_path: Path
+
+
+def read_inspect_settings(config: Mapping[str, Any], origin: Origin) -> InspectSettings:
+    """The settings of task=inspect.
+
+    Raises:
+        InputError: every problem outside the simulator and its family.
+    """
+    problems = light_problems(config, origin)
+    if problems:
+        raise InputError(problems)
+    return InspectSettings(config["task"], config["name"], measurement_file(config["measurement"]["path"]))
+
+
+def light_problems(config: Mapping[str, Any], origin: Origin) -> list[Problem]:
+    """The problems with the keys outside simulator and family, and with the path of the measurement."""
+    plain = {key: value for key, value in config.items() if key != "hydra"}
+    problems = schema.check(plain, origin)
+    wrong = {problem.key.split(".")[0] for problem in problems}
+    for needed, check in ((("name",), wrong_name), (("task", "measurement"), wrong_measurement)):
+        if not wrong & set(needed):
+            problems += [Problem(key, rule, value, remedy, origin.of(key)) for key, rule, value, remedy in check(plain)]
+    return problems
+
+
+def wrong_name(config: Mapping[str, Any]) -> Found:
+    """The name of the experiment is one of a folder."""
+    if not _NAME.match(config["name"]):
+        yield "name", "names a folder: letters, digits, '_', '-' and '.'", config["name"], "rename it"
+
+
+def wrong_measurement(config: Mapping[str, Any]) -> Found:
+    """A task that reads a measurement is given one."""
+    path, task = config["measurement"]["path"], config["task"]
+    if task not in MEASURED:
+        return
+    kind = "a measurement.yaml or of a file of data" if task == INSPECT else "a measurement.yaml"
+    if path is None:
+        example = "PATH/FILE" if task == INSPECT else "PATH/measurement.yaml"
+        yield "measurement.path", f"task={task} needs a measurement", None, f"measurement.path={example}"
+    elif not measurement_file(path).is_file():
+        yield "measurement.path", no_file(measurement_file(path)), path, f"give the path of {kind}"
+
+
+def no_file(path: Path) -> str:
+    """Why there is no file at a path."""
+    return "is a folder, no file" if path.is_dir() else "no such file"
+
+
+def measurement_file(text: str) -> Path:
+    """The measurement file; one that comes with the package is found from any folder."""
+    path = Path(text)
+    packaged = conf_folder().parent / path
+    return packaged if not path.exists() and text.startswith("conf/") and packaged.exists() else path
