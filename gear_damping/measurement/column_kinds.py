@@ -1,0 +1,99 @@
+"""What a column looks like: constant, an angle that turns, a counter, a pulse train, or a plain signal."""
+
+import re
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_damping.errors import InputError
+from gear_damping.units import parse_unit
+
+TIME, CONSTANT, EMPTY, TURNING, COUNTER, PULSES, SIGNAL = (
+    "time stamps", "constant", "empty", "turning angle", "counter", "pulses", "signal",
+)  # fmt: skip
+_ANGLE = re.compile(r"angle|winkel|theta|phi|phase|encoder|azimuth|rotation|revol|position", re.I)
+_LEVELS, _AT_LEVEL, _FEWEST_PULSES = 0.15, 0.95, 4  # of the range; of the samples; rises
+_FEWEST_JUMPS, _ONE_WAY, _COARSE = 2, 0.9, 50  # wraps; of the steps; steps that a direction is seen by
+_TURNS = {"rad": 2 * np.pi, "deg": 360.0, "rev": 1.0}
+_NEAR_TURN = 0.03
+
+
+def kind_of(values: NDArray[np.float64], name: str, unit: str | None) -> tuple[str, str]:
+    """The kind of a column, and what it was seen by.
+
+    Args:
+        values: (n,) finite samples.
+        name: Its name.
+        unit: Its unit where the file says it.
+    """
+    if not values.size:
+        return EMPTY, "no finite value"
+    if np.ptp(values) == 0:
+        return CONSTANT, f"every sample is {values[0]:.6g}"
+    for kind in (_pulses, _wrapping, _advancing):
+        found = kind(values, name, unit)
+        if found is not None:
+            return found
+    return SIGNAL, ""
+
+
+def turn_of(values: NDArray[np.float64]) -> float | None:
+    """The height that an angle falls back by at each turn, None where the column is no sawtooth."""
+    steps, span = np.diff(values), float(np.ptp(values))
+    back = np.abs(steps) > span / 2
+    if not _FEWEST_JUMPS <= back.sum() <= steps.size / 4:
+        return None
+    jumps, forth = steps[back], steps[~back]
+    direction = -np.sign(jumps[0])
+    if np.any(np.sign(jumps) == direction) or np.mean(forth * direction >= 0) < _ONE_WAY:
+        return None
+    return float(np.median(np.abs(jumps)) + np.median(np.abs(forth)))
+
+
+def unit_of_turn(turn: float) -> str | None:
+    """The unit in which a turn has a height, None where it is none of a plain angle."""
+    return next((unit for unit, one in _TURNS.items() if abs(turn / one - 1) < _NEAR_TURN), None)
+
+
+def _pulses(values: NDArray, name: str, unit: str | None) -> tuple[str, str] | None:
+    low, span = float(values.min()), float(np.ptp(values))
+    high = values > low + span / 2
+    at = np.minimum(np.abs(values - low), np.abs(values - low - span)) < _LEVELS * span
+    rises = int(np.sum(high[1:] & ~high[:-1]))
+    if rises < _FEWEST_PULSES or np.mean(at) < _AT_LEVEL:
+        return None
+    return PULSES, f"two levels, {low:.4g} and {low + span:.4g}, with {rises} rises"
+
+
+def _wrapping(values: NDArray, name: str, unit: str | None) -> tuple[str, str] | None:
+    turn = turn_of(values)
+    if turn is None:
+        return None
+    unit = unit_of_turn(turn)
+    jumps = int(np.sum(np.abs(np.diff(values)) > np.ptp(values) / 2))
+    return TURNING, f"a sawtooth that falls back by {turn:.5g} {unit or ''}".rstrip() + f", {jumps} times"
+
+
+def _advancing(values: NDArray, name: str, unit: str | None) -> tuple[str, str] | None:
+    """A counter, or an angle that goes on for a turn and more; one way, apart from its noise."""
+    coarse = np.diff(values[:: max(1, values.size // _COARSE)])
+    if max(np.mean(coarse > 0), np.mean(coarse < 0)) < _ONE_WAY or coarse.size < _FEWEST_PULSES:
+        return None
+    gone = float(abs(values[-1] - values[0]))
+    turn = _turn_in(unit)
+    if turn is None and np.all(values == np.round(values)) and gone >= _COARSE:
+        return COUNTER, f"whole numbers that advance by {gone:.0f}"
+    if gone > (turn or _TURNS["rad"]) and (turn is not None or (unit is None and _ANGLE.search(name))):
+        turns = f", by {gone / turn:.4g} turns" if turn else ""
+        return TURNING, f"advances one way{turns}"
+    return None
+
+
+def _turn_in(unit: str | None) -> float | None:
+    """One turn in a unit of angle; None for any other unit."""
+    try:
+        found = parse_unit(unit) if unit else None
+    except InputError:
+        return None
+    plain = found is not None and found.dimension == parse_unit("rad").dimension
+    return 2 * np.pi / found.factor if plain else None

@@ -1,0 +1,164 @@
+"""What a bare file of data holds: its time, and what each column looks like."""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_damping.errors import InputError
+from gear_damping.measurement.column_kinds import CONSTANT, EMPTY, SIGNAL, TIME, kind_of
+from gear_damping.measurement.formats.table import Table
+from gear_damping.measurement.raw import LEAST_SAMPLES
+from gear_damping.measurement.resolution import step_of
+from gear_damping.measurement.spectral_floor import Spectrum, spectrum_of
+from gear_damping.measurement.stamps import Stamps, find_stamps
+from gear_damping.measurement.timebase import TimeBase, stamped_time, steady_time
+
+
+@dataclass(frozen=True, eq=False)
+class Column:
+    """A column of a file and what it looks like.
+
+    Args:
+        reference: What a measurement.yaml calls it: its name, or its index where it has none of its own.
+        values: (n,) all of it.
+        finite: (first, stop) of its longest stretch of finite values.
+        unit: The unit that the file gives, or None.
+        kind: One of those of `column_kinds`.
+        says: What that was seen by, for people.
+        step: The quantisation step, 0.0 where none was seen.
+        spectrum: Of a signal with a constant rate; in cycles a sample where no rate is known.
+    """
+
+    reference: str | int
+    values: NDArray[np.float64]
+    finite: tuple[int, int]
+    unit: str | None
+    kind: str = SIGNAL
+    says: str = ""
+    step: float = 0.0
+    spectrum: Spectrum | None = None
+
+    @property
+    def inside(self) -> NDArray[np.float64]:
+        """The longest stretch of finite values."""
+        return self.values[self.finite[0] : self.finite[1]]
+
+    @property
+    def spread(self) -> float:
+        """The standard deviation about the line through the values."""
+        values = self.inside
+        place = np.linspace(-1.0, 1.0, values.size)
+        centred = values - values.mean() if values.size else values
+        return float(np.std(centred - place * (centred @ place) / (place @ place))) if values.size > 1 else 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Inspection:
+    """What a file holds.
+
+    Args:
+        table: The file.
+        columns: Every column, in the order of the file.
+        length: The rows of a record: the length that most columns have.
+        time: The column of the time stamps, if there is one, with their unit.
+        base: The time of the rows `rows`; None where no rate is known.
+        rows: (first, stop) of the longest stretch in which every column of that length is finite.
+        faults: What is wrong with the stamps, for people.
+    """
+
+    table: Table
+    columns: tuple[Column, ...]
+    length: int
+    time: Stamps | None
+    base: TimeBase | None
+    rows: tuple[int, int]
+    faults: tuple[str, ...] = ()
+
+    @property
+    def rate(self) -> float | None:
+        """Samples a second, or None."""
+        return None if self.base is None else self.base.sampling_rate
+
+    @property
+    def measured(self) -> list[Column]:
+        """The columns of the record that say something: neither stamps, nor constant, nor of another length."""
+        dull = (TIME, CONSTANT, EMPTY)
+        return [c for c in self.columns if c.values.size == self.length and c.kind not in dull]
+
+
+def inspect_table(table: Table) -> Inspection:
+    """Look at every column of a file.
+
+    Raises:
+        InputError: a column cannot be read.
+    """
+    columns = [_column(table, index) for index in range(len(table.names))]
+    stamps = find_stamps(columns)
+    length = _length(columns, stamps)
+    rows = _rows([c for c in columns if c.values.size == length])
+    base, faults = _base(table, columns, stamps, length, rows)
+    found = [_seen(c, stamps, columns, base, length) for c in columns]
+    return Inspection(table, tuple(found), length, stamps, base, rows, faults)
+
+
+def _column(table: Table, index: int) -> Column:
+    values, name = table.values(index), table.names[index]
+    alone = bool(name) and table.names.count(name) == 1
+    return Column(name if alone else index, values, _finite(values), table.unit(index))
+
+
+def _finite(values: NDArray[np.float64]) -> tuple[int, int]:
+    """First row and end of the longest stretch of finite values."""
+    edges = np.flatnonzero(np.diff(np.r_[False, np.isfinite(values), False]))
+    starts, stops = edges[::2], edges[1::2]
+    if not starts.size:
+        return 0, 0
+    longest = int(np.argmax(stops - starts))
+    return int(starts[longest]), int(stops[longest])
+
+
+def _length(columns: Sequence[Column], stamps: Stamps | None) -> int:
+    """The length that most columns have, the stamps' where several are as frequent, else the longest."""
+    sizes = Counter(c.values.size for c in columns)
+    own = columns[stamps.index].values.size if stamps else 0
+    return max(sizes, key=lambda size: (size >= LEAST_SAMPLES, sizes[size], size == own, size))
+
+
+def _rows(columns: Sequence[Column]) -> tuple[int, int]:
+    """The longest stretch in which every column that has finite values is finite."""
+    held = [np.isfinite(c.values) for c in columns if c.finite[1] > c.finite[0]]
+    return _finite(np.where(np.logical_and.reduce(held), 0.0, np.nan)) if held else (0, 0)
+
+
+def _base(
+    table: Table, columns: Sequence[Column], stamps: Stamps | None, length: int, rows: tuple[int, int]
+) -> tuple[TimeBase | None, tuple[str, ...]]:
+    """The time of the rows, and what is wrong with the stamps; then the rate is that of their median step."""
+    if stamps is None or columns[stamps.index].values.size != length:
+        clock = next((table.clock(k) for k, c in enumerate(columns) if c.values.size == length), None)
+        return (steady_time(clock[1], rows[0], rows[1] - rows[0], clock[0]) if clock else None), ()
+    seconds = columns[stamps.index].values[rows[0] : rows[1]] * stamps.in_seconds
+    if seconds.size < 2:
+        return None, ()
+    try:
+        return stamped_time(seconds, f"column '{columns[stamps.index].reference}'", str(table.path), rows[0]), ()
+    except InputError as error:
+        steps = np.diff(seconds)
+        faults = tuple(problem.rule for problem in error.problems)
+        span = float(np.abs(seconds[-1] - seconds[0])) or float(np.median(np.abs(steps))) * steps.size
+        return (steady_time(steps.size / span, 0, seconds.size) if span else None), faults
+
+
+def _seen(
+    column: Column, stamps: Stamps | None, columns: Sequence[Column], base: TimeBase | None, length: int
+) -> Column:
+    if stamps is not None and column is columns[stamps.index]:
+        return replace(column, kind=TIME, says=stamps.says)
+    kind, says = kind_of(column.inside, str(column.reference), column.unit)
+    if kind in (CONSTANT, EMPTY):
+        return replace(column, kind=kind, says=says)
+    rate = base.sampling_rate if base is not None and column.values.size == length else 1.0
+    return replace(column, kind=kind, says=says, step=step_of(column.inside), spectrum=spectrum_of(column.inside, rate))

@@ -1,0 +1,76 @@
+"""The power spectral density of a channel and the noise that its floor stands for."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+FEWEST = 64  # samples; with fewer there is no floor to be seen
+_LONGEST = 8192  # samples of a segment
+_AVERAGED = 4  # segments, at least, where the record is long enough
+_NUTTALL = (0.3635819, -0.4891775, 0.1365995, -0.0106411)  # side lobes 98 dB down: what is strong hides no floor
+_SKIPPED, _TOP = 4, 0.95  # lowest lines, which hold trends; share of the band below the anti-alias corner
+_QUANTILE, _DEVIATE = 0.2, -0.8416  # of the lines that count as floor; the normal deviate of that quantile
+
+
+@dataclass(frozen=True, eq=False)
+class Spectrum:
+    """A one-sided power spectral density.
+
+    Args:
+        frequency: (m,) in Hz, or in cycles a sample where no rate is known.
+        density: (m,) in the unit of the values squared over that of the frequency.
+        averaged: Segments that were averaged.
+    """
+
+    frequency: NDArray[np.float64]
+    density: NDArray[np.float64]
+    averaged: int
+
+    @property
+    def floor(self) -> float:
+        """The density of the quietest fifth of the band as white noise has it."""
+        top = int(_TOP * self.density.size)
+        quiet = float(np.quantile(self.density[_SKIPPED:top], _QUANTILE))
+        ninth = 1 / (9 * self.averaged)  # Wilson & Hilferty (1931): what that quantile is of the mean
+        return quiet / (1 - ninth + _DEVIATE * ninth**0.5) ** 3
+
+    @property
+    def noise(self) -> float:
+        """Standard deviation of white noise with that floor, in the unit of the values."""
+        return float((self.floor * self.frequency[-1]) ** 0.5)
+
+    @property
+    def strongest(self) -> float:
+        """The frequency of the highest line above the lowest ones."""
+        return float(self.frequency[_SKIPPED // 2 + np.argmax(self.density[_SKIPPED // 2 :])])
+
+    @property
+    def centroid(self) -> float:
+        """The mean frequency of the power."""
+        return float(self.frequency @ self.density / max(self.density.sum(), np.finfo(float).tiny))
+
+
+def spectrum_of(values: NDArray[np.float64], rate: float = 1.0) -> Spectrum | None:
+    """The spectrum of a channel by Welch's method, without the trend of each segment.
+
+    Args:
+        values: (n,) finite samples at a constant rate.
+        rate: In Hz; 1 where it is not known.
+
+    Returns:
+        None where there are too few samples.
+    """
+    n = values.size
+    if n < FEWEST:
+        return None
+    length = min(_LONGEST, max(FEWEST // 2, 2 * (n // (_AVERAGED + 1))))
+    segments = np.lib.stride_tricks.sliding_window_view(values, length)[:: length // 2]
+    angle = 2 * np.pi * (np.arange(length) + 0.5) / length
+    window = sum(weight * np.cos(k * angle) for k, weight in enumerate(_NUTTALL))
+    place = np.linspace(-1.0, 1.0, length)
+    centred = segments - segments.mean(axis=1, keepdims=True)
+    level = centred - np.outer(centred @ place / (place @ place), place)
+    power = np.abs(np.fft.rfft(level * window, axis=1)) ** 2
+    density = 2 * power.mean(axis=0) / (rate * (window @ window))
+    return Spectrum(np.fft.rfftfreq(length, 1 / rate), density, len(segments))

@@ -1,0 +1,115 @@
+"""Which column of a file holds the time stamps, and in what unit."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_damping.errors import InputError
+from gear_damping.units import to_si
+
+NAMED = re.compile(r"^(t|ts|tt)$|time|zeit|temps|tiempo|stamp|second|millis|micros|elapsed|clock|abscissa", re.I)
+_SUFFIX = re.compile(r"[_ .\-/](s|sec|ms|us|µs|min|h)$", re.I)
+_EPOCHS = ((1e8, 1e10, "s"), (1e11, 1e13, "ms"), (1e14, 1e16, "us"))  # counted from 1970
+_FEWEST = 8  # stamps
+_ADVANCING = 0.9  # share of the steps of a named column that go forward
+_EVEN = 0.05  # of the median step; how far the steps of an unnamed column may differ
+
+
+@dataclass(frozen=True)
+class Stamps:
+    """A column of time stamps.
+
+    Args:
+        index: Its 0-based index.
+        unit: Of the stamps.
+        guessed: Why that unit was taken; "" where the file says it.
+        says: What it was recognised by.
+    """
+
+    index: int
+    unit: str
+    guessed: str
+    says: str
+
+    @property
+    def in_seconds(self) -> float:
+        """One of its units in s."""
+        return to_si(1.0, self.unit, "s")
+
+
+class _Column(Protocol):
+    reference: str | int
+    unit: str | None
+
+    @property
+    def inside(self) -> NDArray[np.float64]: ...
+
+
+def find_stamps(columns: Sequence[_Column]) -> Stamps | None:
+    """The column that advances and bears the unit or the name of time, else a first one that advances evenly."""
+    for by in (_by_unit, _by_name, _by_steps):
+        for index, column in enumerate(columns):
+            says = by(index, column) if column.inside.size >= _FEWEST else ""
+            if says:
+                unit, guessed = _unit(column)
+                return Stamps(index, unit, guessed, says)
+    return None
+
+
+def _by_unit(index: int, column: _Column) -> str:
+    return "advances, in a unit of time" if _is_time(column.unit) and _advances(column) else ""
+
+
+def _by_name(index: int, column: _Column) -> str:
+    named = NAMED.search(_bare(column.reference)) or _SUFFIX.search(_bare(column.reference))
+    free = column.unit is None or _is_time(column.unit)
+    return "advances and is named like a time" if named and free and _advances(column) else ""
+
+
+def _by_steps(index: int, column: _Column) -> str:
+    if index or column.unit is not None or (isinstance(column.reference, str) and column.reference.strip()):
+        return ""
+    steps = np.diff(column.inside)
+    median = float(np.median(steps))
+    even = median > 0 and bool(np.all(np.abs(steps / median - 1) < _EVEN))
+    return "is the first column and advances evenly" if even else ""
+
+
+def _advances(column: _Column) -> bool:
+    return bool(np.mean(np.diff(column.inside) > 0) > _ADVANCING)
+
+
+def _bare(reference: str | int) -> str:
+    """A name without the unit in its brackets and without the path before it."""
+    return re.sub(r"[(\[].*$", "", str(reference)).strip().split("/")[-1].split(".")[-1]
+
+
+def _is_time(unit: str | None) -> bool:
+    try:
+        return unit is not None and to_si(1.0, unit, "s") > 0
+    except InputError:
+        return False
+
+
+def _unit(column: _Column) -> tuple[str, str]:
+    """The unit of the stamps, and why where the file does not say it."""
+    if _is_time(column.unit):
+        return column.unit, ""
+    suffix = _SUFFIX.search(_bare(column.reference))
+    if suffix:
+        return {"sec": "s", "µs": "us"}.get(suffix[1].lower(), suffix[1].lower()), "from its name"
+    name = _bare(column.reference).lower()
+    for word, unit in (("milli", "ms"), ("micro", "us")):
+        if word in name:
+            return unit, "from its name"
+    first = float(column.inside[0])
+    for low, high, unit in _EPOCHS:
+        if low < first < high:
+            return unit, "counted from 1970"
+    if np.all(column.inside == np.round(column.inside)):
+        return "ms", "whole numbers; where they are seconds, write s, where they count samples, give sampling_rate"
+    return "s", "usual"
