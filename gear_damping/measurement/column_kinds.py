@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from gear_damping.errors import InputError
 from gear_damping.units import parse_unit
 
-TIME, CONSTANT, EMPTY, TURNING, COUNTER, PULSES, SIGNAL = (
-    "time stamps", "constant", "empty", "turning angle", "counter", "pulses", "signal",
+TIME, CONSTANT, EMPTY, UNREADABLE, TURNING, COUNTER, PULSES, SIGNAL = (
+    "time stamps", "constant", "empty", "not readable", "turning angle", "counter", "pulses", "signal",
 )  # fmt: skip
 _ANGLE = re.compile(r"angle|winkel|theta|phi|phase|encoder|azimuth|rotation|revol|position", re.I)
 _LEVELS, _AT_LEVEL, _FEWEST_PULSES = 0.15, 0.95, 4  # of the range; of the samples; rises

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError
-from gear_damping.measurement.column_kinds import CONSTANT, EMPTY, SIGNAL, TIME, kind_of
+from gear_damping.measurement.column_kinds import CONSTANT, EMPTY, SIGNAL, TIME, UNREADABLE, kind_of
 from gear_damping.measurement.formats.table import Table
 from gear_damping.measurement.raw import LEAST_SAMPLES
 from gear_damping.measurement.resolution import step_of
@@ -85,16 +85,12 @@ class Inspection:
     @property
     def measured(self) -> list[Column]:
         """The columns of the record that say something: neither stamps, nor constant, nor of another length."""
-        dull = (TIME, CONSTANT, EMPTY)
+        dull = (TIME, CONSTANT, EMPTY, UNREADABLE)
         return [c for c in self.columns if c.values.size == self.length and c.kind not in dull]
 
 
 def inspect_table(table: Table) -> Inspection:
-    """Look at every column of a file.
-
-    Raises:
-        InputError: a column cannot be read.
-    """
+    """Look at every column of a file."""
     columns = [_column(table, index) for index in range(len(table.names))]
     stamps = find_stamps(columns)
     length = _length(columns, stamps)
@@ -105,9 +101,13 @@ def inspect_table(table: Table) -> Inspection:
 
 
 def _column(table: Table, index: int) -> Column:
-    values, name = table.values(index), table.names[index]
-    alone = bool(name) and table.names.count(name) == 1
-    return Column(name if alone else index, values, _finite(values), table.unit(index))
+    name = table.names[index]
+    reference = name if name and table.names.count(name) == 1 else index
+    try:
+        values = table.values(index)
+    except InputError as error:
+        return Column(reference, np.empty(0), (0, 0), None, UNREADABLE, error.problems[0].rule)
+    return Column(reference, values, _finite(values), table.unit(index))
 
 
 def _finite(values: NDArray[np.float64]) -> tuple[int, int]:
@@ -157,6 +157,8 @@ def _seen(
 ) -> Column:
     if stamps is not None and column is columns[stamps.index]:
         return replace(column, kind=TIME, says=stamps.says)
+    if column.kind == UNREADABLE:
+        return column
     kind, says = kind_of(column.inside, str(column.reference), column.unit)
     if kind in (CONSTANT, EMPTY):
         return replace(column, kind=kind, says=says)

@@ -112,4 +112,4 @@ def _unit(column: _Column) -> tuple[str, str]:
             return unit, "counted from 1970"
     if np.all(column.inside == np.round(column.inside)):
         return "ms", "whole numbers; where they are seconds, write s, where they count samples, give sampling_rate"
-    return "s", "usual"
+    return "s", "the usual one"

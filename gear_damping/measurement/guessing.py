@@ -1,0 +1,249 @@
+"""Which channel of a measurement.yaml each column of a bare file may be: by its name, its unit and its looks."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_damping.errors import InputError
+from gear_damping.measurement.column_kinds import COUNTER, PULSES, TURNING, turn_of, unit_of_turn
+from gear_damping.measurement.inspection import Column, Inspection
+from gear_damping.measurement.vocabulary import INPUTS
+from gear_damping.units import parse_unit
+
+GEAR, OSCILLATOR = "gear_pair", "oscillator"
+UNKNOWN = "???"
+_OF_THE_PINION = r"pinion|ritzel|_?1$|drive|(?<![a-z])in"
+_OF_THE_GEAR = r"gear|wheel|_?2$|driven|(?<![a-z])out"
+# The first that fits counts; names in lower case without units and paths.
+_GEAR_NAMES = (
+    ("transmission_error", r"transmission|^d?te$|dte|^te_|_te$"),
+    ("torque", r"torque|moment|^t[12]$|^m[12]$"),
+    ("speed", r"speed|rpm|omega|drehzahl|^n[12]?$"),
+    ("angle", r"angle|theta|phi|winkel|encoder|enc"),
+    ("tacho", r"tacho|tach|pulse|keyphas|trigger|once"),
+    ("acceleration", r"acc|^a_?[xyz]?\d?$|vibration|casing|housing"),
+)
+_OSCILLATOR_NAMES = (
+    ("base_acceleration", r"(base|ground|table|shaker).*(acc|^a)"),
+    ("acceleration", r"acc|^a_?[xyz]?$|ddot"),
+    ("force", r"force|kraft|torque|load|input|excit|command|voltage|current|^u_?\d?$|^f_?\d?$|^tau|^vir$|^i$"),
+    ("velocity", r"vel|speed|rate|gyro|omega|dot$|^v$|^dq"),
+    ("displacement", r"disp|pos|angle|theta|phi|roll|pitch|yaw|heave|deflec|output|^[qxyz](_?\w)?$|^s$|way|weg"),
+)
+_NAMED_UNITS = {
+    "mm": "mm", "um": "um", "cm": "cm", "deg": "deg", "mrad": "mrad", "rad": "rad", "rpm": "rpm", "nm": "N*m",
+    "mv": "mV", "volt": "V", "volts": "V", "degrees": "deg", "radians": "rad", "mps2": "m/s^2",
+}  # fmt: skip
+_OTHERWISE = {"torque": "N*m", "tacho": "V"}
+_LOWEST, _CLEARLY = 4, 1.2  # lines of a spectrum that hold drifts; ratio by which one column beats an earlier one
+_DERIVED = 0.98  # correlation of a column with the slope of another
+_HIGHER = 1.3  # ratio of the mean frequencies from which the faster column may be the input
+_SOME_TURNS = 7.0  # an angle within this is more likely in rad than in deg
+
+
+@dataclass(frozen=True, eq=False)
+class Guess:
+    """What a column may be.
+
+    Args:
+        column: The column.
+        channel: The channel, `pinion`, `gear` or `tacho` of the encoders, or None where nothing says.
+        why: What the channel was guessed by.
+        unit: Its unit, or UNKNOWN.
+        unit_by: What the unit was guessed by; "" where the file says it.
+        used: Whether it is the one of its channel that the YAML declares.
+    """
+
+    column: Column
+    channel: str | None
+    why: str
+    unit: str
+    unit_by: str
+    used: bool = True
+
+
+def system_of(found: Inspection) -> tuple[str, str]:
+    """The system that a file may be of, and what says so."""
+    for column in found.measured:
+        if _by_name(column, _GEAR_NAMES) == "transmission_error":
+            return GEAR, f"the name of column '{column.reference}'"
+        if column.kind in (TURNING, COUNTER):
+            return GEAR, f"column '{column.reference}' may be of a shaft that turns: {column.says}"
+    pulses = [column for column in found.measured if column.kind == PULSES]
+    driven = {_oscillator_channel(column)[0] for column in found.measured} & {"displacement", "force"}
+    if pulses and not driven:
+        return GEAR, f"column '{pulses[0].reference}' may be a tacho: {pulses[0].says}"
+    return OSCILLATOR, "no column looks like a shaft that turns"
+
+
+def guesses(found: Inspection, system: str) -> list[Guess]:
+    """What each column that says something may be, in the order of the file; one is used for each channel."""
+    read = _gear_channel if system == GEAR else _oscillator_channel
+    named = [(column, *read(column)) for column in found.measured]
+    if system == OSCILLATOR:
+        named = _completed(named)
+    listed = [_guess(column, channel, why) for column, channel, why in named]
+    listed = _one_each(listed)
+    return _derived(listed, found) if system == OSCILLATOR else listed
+
+
+def _oscillator_channel(column: Column) -> tuple[str | None, str]:
+    by_unit = _channel_of_unit(column.unit)
+    if by_unit:
+        return by_unit, f"by its unit {column.unit}"
+    name = _by_name(column, _OSCILLATOR_NAMES)
+    return name, "by its name" if name else ""
+
+
+def _channel_of_unit(unit: str | None) -> str | None:
+    """What an oscillator's channel in this unit is, where there is no doubt."""
+    kinds = {
+        "displacement": ("m", "rad"), "velocity": ("m/s", "rad/s"), "acceleration": ("m/s^2", "rad/s^2"),
+        "force": ("N", "N*m"),
+    }  # fmt: skip
+    try:
+        dimension = parse_unit(unit).dimension if unit else None
+    except InputError:
+        return None
+    return next((name for name, units in kinds.items() if dimension in [parse_unit(u).dimension for u in units]), None)
+
+
+def _completed(named: list[tuple[Column, str | None, str]]) -> list[tuple[Column, str | None, str]]:
+    """The same where names say too little: the slower column answers, the faster one drives it."""
+    channels = {channel for _, channel, _ in named}
+    if channels & {"displacement", "velocity", "acceleration"}:
+        return named
+    free = sorted((c for c, channel, _ in named if channel is None and c.spectrum), key=lambda c: c.spectrum.centroid)
+    if not free:
+        return named
+    chosen = {id(free[0]): ("displacement", "the slowest column; what it is, only you know")}
+    if "force" not in channels and len(free) == 2 and free[1].spectrum.centroid > _HIGHER * free[0].spectrum.centroid:
+        chosen[id(free[1])] = ("force", f"its content lies higher than that of '{free[0].reference}': an input?")
+    return [(column, *chosen.get(id(column), (channel, why))) for column, channel, why in named]
+
+
+def _gear_channel(column: Column) -> tuple[str | None, str]:
+    name = _by_name(column, _GEAR_NAMES)
+    shaft = "gear" if re.search(_OF_THE_GEAR, _plain(column)) else "pinion"
+    if re.search(_OF_THE_PINION, _plain(column)):
+        shaft = "pinion"
+    if column.kind == COUNTER:
+        return shaft, column.says
+    if column.kind == PULSES:
+        return "tacho", column.says
+    if column.kind == TURNING:
+        return ("pinion_angle", column.says) if shaft == "pinion" else (None, "the angle of the gear")
+    if name == "angle":
+        return None, "named like an angle, and does not turn"
+    if name in ("torque", "speed"):
+        return f"{shaft}_{name}", "by its name"
+    if name is None and _channel_of_unit(column.unit) == "acceleration":
+        return "acceleration", f"by its unit {column.unit}"
+    return name, "by its name" if name else ""
+
+
+def _by_name(column: Column, names: Sequence[tuple[str, str]]) -> str | None:
+    return next((channel for channel, words in names if re.search(words, _plain(column))), None)
+
+
+def _plain(column: Column) -> str:
+    """A name in lower case, without the unit in its brackets, the path before it and a unit at its end."""
+    if isinstance(column.reference, int):
+        return ""
+    bare = re.sub(r"[(\[][^)\]]*[)\]]\s*$", "", column.reference).strip().lower()
+    words = [word for word in re.split(r"[/\s]+|\.(?=\D)", bare) if word]
+    kept = words[-1] if words else ""
+    head, _, tail = kept.rpartition("_")
+    return head if head and tail in _NAMED_UNITS else kept
+
+
+def _guess(column: Column, channel: str | None, why: str) -> Guess:
+    unit, by = _unit(column, channel)
+    return Guess(column, channel, why, unit, by, channel is not None)
+
+
+def _unit(column: Column, channel: str | None) -> tuple[str, str]:
+    """The unit and what it was guessed by: "" where the file says it."""
+    if column.unit:
+        try:
+            parse_unit(column.unit)
+        except InputError:
+            return UNKNOWN, f"the file says '{column.unit}', which is no unit that is known"
+        return column.unit, ""
+    last = re.split(r"[_\s/.\[\](]+", str(column.reference).strip(")] ").lower())[-1]
+    if last in _NAMED_UNITS and last != str(column.reference).lower():
+        return _NAMED_UNITS[last], "from its name"
+    if re.match(r"^[uv]\d+$", last):
+        return "V", "from its name"
+    turn = turn_of(column.inside)
+    if turn is not None and unit_of_turn(turn):
+        return unit_of_turn(turn), f"it falls back by {turn:.4g}"
+    return _unit_by_meaning(column, channel)
+
+
+def _unit_by_meaning(column: Column, channel: str | None) -> tuple[str, str]:
+    name = _plain(column)
+    meant = "torque" if re.search("torque", name) else channel
+    if meant in _OTHERWISE:
+        return _OTHERWISE[meant], "the usual one"
+    if channel in ("displacement", "pinion_angle") and re.search("angle|theta|phi|roll|pitch|yaw|winkel", name):
+        if column.kind != TURNING and np.max(np.abs(column.inside)) <= _SOME_TURNS:
+            return "rad", f"an angle within {np.max(np.abs(column.inside)):.3g}"
+        return ("deg", "an angle by its name") if column.kind != TURNING else (UNKNOWN, "")
+    return UNKNOWN, ""
+
+
+def _one_each(listed: list[Guess]) -> list[Guess]:
+    """One column for each channel: the one that stands out most from its noise and moves most to and fro."""
+    best: dict[str, Guess] = {}
+    for guess in listed:
+        held = best.get(guess.channel) if guess.channel else None
+        if guess.channel and (held is None or _prominence(guess.column) > _CLEARLY * _prominence(held.column)):
+            best[guess.channel] = guess
+    return [replace(guess, used=guess.channel is not None and best[guess.channel] is guess) for guess in listed]
+
+
+def _prominence(column: Column) -> float:
+    """The swing above the lowest lines of the spectrum over the noise or the step, less where it drifts instead."""
+    if column.spectrum is None:
+        return 0.0
+    tiny = np.finfo(float).tiny
+    swing = float(column.spectrum.density[_LOWEST:].sum() * column.spectrum.frequency[1]) ** 0.5
+    return swing * (swing / max(column.spread, tiny)) ** 2 / max(column.spectrum.noise, column.step, tiny)
+
+
+def _derived(listed: list[Guess], found: Inspection) -> list[Guess]:
+    """A velocity or acceleration that is the slope of a declared column is not declared beside it."""
+    base = next((g for g in listed if g.used and g.channel == "displacement"), None)
+    if base is None or found.rate is None:
+        return listed
+    result = []
+    for guess in listed:
+        order = {"velocity": 1, "acceleration": 2}.get(guess.channel or "")
+        if guess.used and order and _is_slope(base.column.inside, guess.column.inside, order):
+            why = f"{guess.why}; it is the slope of '{base.column.reference}': declare it where a sensor of its own "
+            result.append(replace(guess, why=why + "measured it", used=False))
+        else:
+            result.append(guess)
+    return result
+
+
+def _is_slope(base: NDArray[np.float64], values: NDArray[np.float64], order: int) -> bool:
+    """Whether a column goes up and down with the slope of another, seen with the noise of both smoothed."""
+    n = min(base.size, values.size)
+    slope = base[:n]
+    for _ in range(order):
+        slope = np.gradient(slope)
+    width = max(1, n // 500)
+    smooth = [np.convolve(one, np.ones(width) / width, "valid") for one in (slope, values[:n])]
+    if min(np.ptp(one) for one in smooth) == 0:
+        return False
+    return bool(abs(np.corrcoef(*smooth)[0, 1]) > _DERIVED)
+
+
+def inputs(listed: Sequence[Guess]) -> list[Guess]:
+    """Those that may drive the system."""
+    return [guess for guess in listed if guess.channel in INPUTS]
