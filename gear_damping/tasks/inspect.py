@@ -1,0 +1,226 @@
+"""task=inspect: what a bare file or a measurement.yaml holds, a picture of it, and a YAML to start from.
+
+Nothing is simulated or fitted here, and nothing that needs torch is imported.
+"""
+
+import logging
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from gear_damping.config.light import YAML_SUFFIXES, InspectSettings
+from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.column_kinds import CONSTANT
+from gear_damping.measurement.formats.registry import read_table
+from gear_damping.measurement.guessing import UNKNOWN, Guess, guesses, system_of
+from gear_damping.measurement.inspection import Column, Inspection, inspect_table
+from gear_damping.measurement.load import load_measurement
+from gear_damping.measurement.record import Channel, Measurement, Record
+from gear_damping.measurement.resolution import step_of
+from gear_damping.measurement.spectral_floor import Spectrum, spectrum_of
+from gear_damping.measurement.starting_yaml import starting_yaml
+from gear_damping.reporting.inspection import Panel, inspection_figure
+from gear_damping.reporting.style import save
+from gear_damping.tasks.run_folder import RunFolder
+
+YAML_NAME, TEXT_NAME, FIGURE_NAME = "measurement.yaml", "inspection.txt", "inspection.png"
+say = logging.getLogger("gear_damping").info
+
+
+def run(settings: InspectSettings, folder: RunFolder) -> dict[str, Any]:
+    """Inspect; returns the metrics for run.json."""
+    path = settings.measurement_path
+    if path.suffix.lower() in YAML_SUFFIXES:
+        return _declared(load_measurement(path), folder)
+    return _bare(path, folder)
+
+
+def _bare(path: Path, folder: RunFolder) -> dict[str, Any]:
+    start = folder.path / YAML_NAME
+    if start.exists():
+        rule, remedy = f"holds a {YAML_NAME} already", "give another folder, or move the file away"
+        raise InputError(Problem("hydra.run.dir", rule, str(folder.path), remedy))
+    found = inspect_table(read_table(path))
+    folder.add_input(path)
+    system = system_of(found)
+    listed = guesses(found, system[0])
+    text = starting_yaml(found, system, listed)
+    with start.open("x", encoding="utf-8") as file:
+        file.write(text)
+    save(inspection_figure(list(_panels(found, listed)), found.base is not None), folder.path / FIGURE_NAME)
+    _say(folder, [*_file_lines(found), *_column_lines(found, listed)])
+    blanks = sum(line.count(UNKNOWN) for line in text.splitlines() if not line.lstrip().startswith("#"))
+    wanted = (
+        f"fill in its {blanks} {UNKNOWN}, correct its guesses" if blanks else "nothing is left open; check its guesses"
+    )
+    say(f"\n{start} declares it: {wanted}, and go on with")
+    say(f"  python -m gear_damping task=inspect measurement.path={start}")
+    return {"system": system[0], "columns": len(found.columns), "sampling_rate": found.rate, "open": blanks}
+
+
+def _say(folder: RunFolder, lines: Sequence[str]) -> None:
+    text = "\n".join(lines)
+    folder.write_text(TEXT_NAME, text + "\n")
+    say(text)
+
+
+def _file_lines(found: Inspection) -> Iterator[str]:
+    table = found.table
+    yield f"{table.path.name}: {len(found.columns)} columns in {len(table.shapes)} arrays, {found.length} rows"
+    if table.left_out:
+        yield f"  no real numbers: {', '.join(table.left_out)}"
+    yield from (f"  {note}" for note in table.notes)
+    yield f"  time: {_time(found)}"
+    notes = found.base.notes + tuple(finding.message for finding in found.base.findings) if found.base else ()
+    yield from (f"  time: {said}" for said in (*notes, *found.faults))
+    if found.rows != (0, found.length):
+        yield f"  rows {found.rows[0]} to {found.rows[1] - 1} are the longest stretch in which every value is finite"
+
+
+def _time(found: Inspection) -> str:
+    if found.time is None and found.rate is None:
+        return "no column looks like time stamps, and the file says no rate"
+    n = found.rows[1] - found.rows[0]
+    lasts = f"{found.rate:.6g} Hz, {n / found.rate:.4g} s" if found.rate else "no rate"
+    if found.time is None:
+        return f"{lasts}, as the file says"
+    guessed = f", a guess: {found.time.guessed}" if found.time.guessed else ""
+    name = found.columns[found.time.index].reference
+    return f"{lasts}; column '{name}' {found.time.says}; its unit is {found.time.unit}{guessed}"
+
+
+def _column_lines(found: Inspection, listed: Sequence[Guess]) -> Iterator[str]:
+    told = {id(guess.column): guess for guess in listed}
+    shapes = {name: " x ".join(map(str, shape)) for name, shape in found.table.shapes if name}
+    for column in found.columns:
+        shape = shapes.get(str(column.reference).split("[")[0], str(column.values.size))
+        yield f"column '{column.reference}' ({shape}), {_unit(column, told.get(id(column)))}: {column.kind}"
+        yield from (f"    {line}" for line in _looks(column, found) if line)
+        guess = told.get(id(column))
+        if guess is not None and guess.channel:
+            yield f"    may be {guess.channel}: {guess.why}"
+
+
+def _unit(column: Column, guess: Guess | None) -> str:
+    if guess is None or guess.unit == UNKNOWN:
+        return f"in '{column.unit}'" if column.unit else "unit not known"
+    return f"in {guess.unit}, a guess: {guess.unit_by}" if guess.unit_by else f"in {guess.unit}"
+
+
+def _looks(column: Column, found: Inspection) -> Iterator[str]:
+    values = column.inside
+    yield column.says
+    missing = int(np.sum(~np.isfinite(column.values)))
+    if missing:
+        yield f"{missing} of {column.values.size} values are not finite"
+    if values.size and column.kind != CONSTANT:
+        yield f"from {values.min():.5g} to {values.max():.5g}, offset (mean) {values.mean():.5g}"
+    yield _noise(column.spectrum, column.step, found.rate)
+
+
+def _noise(spectrum: Spectrum | None, step: float, rate: float | None) -> str:
+    """The floor of a spectrum, its highest line, and the step with the noise that it makes."""
+    parts = []
+    if spectrum is not None:
+        parts.append(f"noise {spectrum.noise:.3g} (floor of the spectrum)")
+        parts.append(f"strongest at {spectrum.strongest:.4g} {'Hz' if rate else 'cycles a sample'}")
+    if step:
+        parts.append(f"steps of {step:.4g}, whose rounding makes {step / 12**0.5:.2g}")
+    return ", ".join(parts)
+
+
+def _panels(found: Inspection, listed: Sequence[Guess]) -> Iterator[Panel]:
+    units = {id(guess.column): guess.unit for guess in listed if guess.unit != UNKNOWN}
+    for column in found.measured:
+        time = np.arange(found.length, dtype=float)
+        if found.base is not None:
+            time = (time - found.rows[0]) / found.rate + found.base.time[0]
+            time[found.rows[0] : found.rows[1]] = found.base.time
+        yield _panel(str(column.reference), units.get(id(column), ""), time, column.values, column.spectrum)
+
+
+def _panel(name: str, unit: str, time: np.ndarray, values: np.ndarray, spectrum: Spectrum | None) -> Panel:
+    if spectrum is None:
+        return Panel(name, unit, time, values)
+    return Panel(name, unit, time, values, spectrum.frequency, spectrum.density, spectrum.floor)
+
+
+def _declared(measurement: Measurement, folder: RunFolder) -> dict[str, Any]:
+    for path in dict.fromkeys([measurement.source, *(record.file for record in measurement.records)]):
+        folder.add_input(path)
+    lines, panels = list(_measurement_lines(measurement)), []
+    for record in measurement.records:
+        lines += _record_lines(record)
+        for channel in record.channels.values():
+            spectrum = _spectrum(record, channel)
+            values = channel.values / channel.declared_factor
+            lines.append(f"    {channel.name}: {_channel(channel, values, spectrum, record.sampling_rate)}")
+            panels.append(
+                _panel(f"{record.name}: {channel.name}", channel.declared_unit, record.time, values, spectrum)
+            )
+        lines += [f"    {said}" for said in _findings(record)]
+    save(inspection_figure(panels), folder.path / FIGURE_NAME)
+    _say(folder, lines)
+    return {
+        "system": measurement.system,
+        "records": len(measurement.records),
+        "data_problems": sum(finding.severity == "data_problem" for finding in measurement.findings),
+    }
+
+
+def _spectrum(record: Record, channel: Channel) -> Spectrum | None:
+    constant = np.ptp(channel.values) == 0
+    return None if constant else spectrum_of(channel.values / channel.declared_factor, record.sampling_rate)
+
+
+def _measurement_lines(measurement: Measurement) -> Iterator[str]:
+    yield f"{measurement.source.name}: {measurement.system}, {len(measurement.records)} records"
+    for name, quantity in measurement.parameters.items():
+        yield f"  {name}: {_quantity(quantity)}"
+    for role, word in (("fit", "fitted"), ("holdout", "held out"), ("reference", "compared with")):
+        named = [record.name for record in measurement.with_role(role)]
+        if named:
+            yield f"  {word}: {', '.join(named)}"
+    free = [record.name for record in measurement.with_role(None)]
+    if free:
+        yield f"  role not said: {', '.join(free)}" + ("" if len(free) < len(measurement.records) else _AUTOMATIC)
+    if measurement.segment_s:
+        yield f"  segments of exactly {measurement.segment_s:g} s are fitted and scored"
+    else:
+        yield "  segments: none stated; records are cut only where the system or the model needs it"
+
+
+_AUTOMATIC = "; a part of them is held out by itself"
+
+
+def _record_lines(record: Record) -> Iterator[str]:
+    even = "" if record.uniform else ", uneven"
+    yield (
+        f"record '{record.name}', {record.role or 'role not said'}: {record.file.name}, {record.time.size} samples, "
+        f"{record.sampling_rate:.6g} Hz{even}, {record.duration:.4g} s from {record.time[0]:.4g} s on"
+    )
+    for name, quantity in record.conditions.items():
+        yield f"    {name}: constant, {_quantity(quantity)}"
+    if record.gear_torque_mode:
+        yield f"    gear_torque: {record.gear_torque_mode}"
+
+
+def _channel(channel: Channel, values: np.ndarray, spectrum: Spectrum | None, rate: float) -> str:
+    said = f"{values.min():.5g} to {values.max():.5g} {channel.declared_unit}, offset (mean) {values.mean():.5g}"
+    noise = _noise(spectrum, step_of(values), rate)
+    datum = "" if channel.datum == "absolute" else ", datum arbitrary"
+    return f"{said}{datum}{', ' if noise else ''}{noise}"
+
+
+def _findings(record: Record) -> Iterator[str]:
+    yield from (f"note: {note}" for note in record.notes)
+    for finding in record.findings:
+        word = "data problem" if finding.severity == "data_problem" else "note"
+        yield f"{word}: {finding.kind}: {finding.message}"
+
+
+def _quantity(quantity: Any) -> str:
+    known = f" ± {100 * quantity.uncertainty:g} %" if quantity.uncertainty else ""
+    return f"{quantity.value:.6g} {quantity.unit}{known}"
