@@ -14,6 +14,11 @@ from gear_damping.measurement.formats.table import Table, is_real
 SHOWN = 3  # faults of one kind that are listed one by one
 
 
+def decimal_commas(path: Path) -> str:
+    """What is noted where decimal commas were read."""
+    return f"{path.name}: read with decimal commas"
+
+
 @dataclass(frozen=True, eq=False)
 class Cells:
     """A column: (n,) numbers, or (n,) texts where not every cell is a number.
@@ -61,7 +66,7 @@ class CellTable(Table):
         """Cells with decimal points; where a column has points and commas the commas stay, and fail."""
         if not self._commas or not any("," in cell for cell in cells) or any("." in cell for cell in cells):
             return cells
-        note = f"{self.path.name}: read with decimal commas"
+        note = decimal_commas(self.path)
         self.notes = self.notes if note in self.notes else (*self.notes, note)
         return [cell.replace(",", ".") for cell in cells]
 

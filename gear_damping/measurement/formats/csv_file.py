@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.formats.cells import SHOWN, Cells, CellTable
-from gear_damping.measurement.formats.header import Header, find_header
+from gear_damping.measurement.formats.cells import SHOWN, Cells, CellTable, decimal_commas
+from gear_damping.measurement.formats.header import Header, find_header, is_number
 from gear_damping.measurement.formats.table import Table, is_real, refuse_size, unreadable
 
 _HEAD = 100  # rows among which the header is looked for
@@ -29,7 +29,8 @@ def read_csv(path: Path, max_bytes: int) -> Table:
     """
     text = _Text(path, _bytes(path, max_bytes))
     header, first_line = _header(text)
-    frame = _frame(text, header, first_line)
+    decimal = "," if _decimal_comma(text, first_line) else "."
+    frame = _frame(text, header, first_line, decimal)
     width = frame.shape[1] - 1
     if any(not is_real(frame[k].dtype) for k in range(width)) or not (frame[width] == "").all():
         _refuse_ragged(text, header.names or ("",) * width, first_line)
@@ -39,7 +40,9 @@ def read_csv(path: Path, max_bytes: int) -> Table:
     columns = [Cells(header.name(k), header.unit(k), frame[k].to_numpy(), lines) for k in range(width)]
     table = CellTable(path, columns, decimal_commas=text.delimiter != ",")
     if header.skipped:
-        table.notes = (f"{path.name}: {header.skipped} line(s) before the header are left out",)
+        table.notes += (f"{path.name}: {header.skipped} line(s) before the header are left out",)
+    if decimal == ",":
+        table.notes += (decimal_commas(path),)
     return table
 
 
@@ -131,7 +134,13 @@ def _header(text: _Text) -> tuple[Header, int]:
     return header, lines[header.first]
 
 
-def _frame(text: _Text, header: Header, first_line: int) -> Any:
+def _decimal_comma(text: _Text, first_line: int) -> bool:
+    """Whether numbers among the first values have a comma; columns that have points are read by themselves."""
+    first = (cell for _, row in islice(_values(text, first_line), _HEAD) for cell in row)
+    return text.delimiter != "," and any("," in cell and is_number(cell.replace(",", ".")) for cell in first)
+
+
+def _frame(text: _Text, header: Header, first_line: int, decimal: str) -> Any:
     """The values by pandas, with one column more than the header has: it takes what is too much in a row."""
     import pandas as pd  # here, since it takes long to import and most of the program does not need it
 
@@ -145,7 +154,8 @@ def _frame(text: _Text, header: Header, first_line: int) -> Any:
             return pd.read_csv(
                 handle, sep=r"\s+" if text.delimiter == " " else text.delimiter, header=None,
                 names=range(width + 1), index_col=False, skipinitialspace=True, keep_default_na=False,
-                na_values=list(_NAN), low_memory=False, comment="#" if _COMMENT.search(text.utf8) else None,
+                na_values=list(_NAN), low_memory=False, decimal=decimal,
+                comment="#" if _COMMENT.search(text.utf8) else None,
             )  # fmt: skip
     except (pd.errors.ParserError, pd.errors.EmptyDataError) as error:
         _refuse_ragged(text, header.names, first_line)
