@@ -24,7 +24,7 @@ _GEAR_NAMES = (
     ("speed", r"speed|rpm|omega|drehzahl|^n[12]?$"),
     ("angle", r"angle|theta|phi|winkel|encoder|enc"),
     ("tacho", r"tacho|tach|pulse|keyphas|trigger|once"),
-    ("acceleration", r"acc|^a_?[xyz]?\d?$|vibration|casing|housing"),
+    ("acceleration", r"acc|^a_?[xyz]?\d?$|vibration|^case|casing|housing"),
 )
 _OSCILLATOR_NAMES = (
     ("base_acceleration", r"(base|ground|table|shaker).*(acc|^a)"),
@@ -91,9 +91,10 @@ def guesses(found: Inspection, system: str) -> list[Guess]:
 
 
 def _oscillator_channel(column: Column) -> tuple[str | None, str]:
-    by_unit = _channel_of_unit(column.unit)
+    unit = column.unit or _unit_of_name(column)
+    by_unit = _channel_of_unit(unit)
     if by_unit:
-        return by_unit, f"by its unit {column.unit}"
+        return by_unit, f"by its unit {unit}"
     name = _by_name(column, _OSCILLATOR_NAMES)
     return name, "by its name" if name else ""
 
@@ -140,8 +141,9 @@ def _gear_channel(column: Column) -> tuple[str | None, str]:
         return None, "named like an angle, and does not turn"
     if name in ("torque", "speed"):
         return f"{shaft}_{name}", "by its name"
-    if name is None and _channel_of_unit(column.unit) == "acceleration":
-        return "acceleration", f"by its unit {column.unit}"
+    unit = column.unit or _unit_of_name(column)
+    if name is None and _channel_of_unit(unit) == "acceleration":
+        return "acceleration", f"by its unit {unit}"
     return name, "by its name" if name else ""
 
 
@@ -173,15 +175,21 @@ def _unit(column: Column, channel: str | None) -> tuple[str, str]:
         except InputError:
             return UNKNOWN, f"the file says '{column.unit}', which is no unit that is known"
         return column.unit, ""
-    last = re.split(r"[_\s/.\[\](]+", str(column.reference).strip(")] ").lower())[-1]
-    if last in _NAMED_UNITS and last != str(column.reference).lower():
-        return _NAMED_UNITS[last], "from its name"
-    if re.match(r"^[uv]\d+$", last):
-        return "V", "from its name"
+    named = _unit_of_name(column)
+    if named:
+        return named, "from its name"
     turn = turn_of(column.inside)
     if turn is not None and unit_of_turn(turn):
         return unit_of_turn(turn), f"it falls back by {turn:.4g}"
     return _unit_by_meaning(column, channel)
+
+
+def _unit_of_name(column: Column) -> str | None:
+    """The unit that a name ends in, as in `speed_rpm`, or that it is, as in `V1`."""
+    words = re.split(r"[_\s/.\[\](]+", str(column.reference).strip(")] ").lower())
+    if len(words) > 1 and words[-1] in _NAMED_UNITS:
+        return _NAMED_UNITS[words[-1]]
+    return "V" if re.match(r"^[uv]\d+$", words[-1]) else None
 
 
 def _unit_by_meaning(column: Column, channel: str | None) -> tuple[str, str]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_damping.errors import InputError
+from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.column_kinds import CONSTANT, EMPTY, SIGNAL, TIME, UNREADABLE, kind_of
 from gear_damping.measurement.formats.table import Table
 from gear_damping.measurement.raw import LEAST_SAMPLES
@@ -90,8 +90,15 @@ class Inspection:
 
 
 def inspect_table(table: Table) -> Inspection:
-    """Look at every column of a file."""
+    """Look at every column of a file.
+
+    Raises:
+        InputError: none of them holds numbers.
+    """
     columns = [_column(table, index) for index in range(len(table.names))]
+    if not any(column.values.size for column in columns):
+        rule = f"no column holds numbers; the first: {columns[0].says}"
+        raise InputError(Problem("file", rule, str(table.path), "export the channels as numbers"))
     stamps = find_stamps(columns)
     length = _length(columns, stamps)
     rows = _rows([c for c in columns if c.values.size == length])

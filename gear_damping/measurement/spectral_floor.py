@@ -21,11 +21,13 @@ class Spectrum:
         frequency: (m,) in Hz, or in cycles a sample where no rate is known.
         density: (m,) in the unit of the values squared over that of the frequency.
         averaged: Segments that were averaged.
+        strongest: The frequency of the highest line of the whole record, above its lowest lines.
     """
 
     frequency: NDArray[np.float64]
     density: NDArray[np.float64]
     averaged: int
+    strongest: float
 
     @property
     def floor(self) -> float:
@@ -39,11 +41,6 @@ class Spectrum:
     def noise(self) -> float:
         """Standard deviation of white noise with that floor, in the unit of the values."""
         return float((self.floor * self.frequency[-1]) ** 0.5)
-
-    @property
-    def strongest(self) -> float:
-        """The frequency of the highest line above the lowest ones."""
-        return float(self.frequency[_SKIPPED // 2 + np.argmax(self.density[_SKIPPED // 2 :])])
 
     @property
     def centroid(self) -> float:
@@ -73,4 +70,10 @@ def spectrum_of(values: NDArray[np.float64], rate: float = 1.0) -> Spectrum | No
     level = centred - np.outer(centred @ place / (place @ place), place)
     power = np.abs(np.fft.rfft(level * window, axis=1)) ** 2
     density = 2 * power.mean(axis=0) / (rate * (window @ window))
-    return Spectrum(np.fft.rfftfreq(length, 1 / rate), density, len(segments))
+    return Spectrum(np.fft.rfftfreq(length, 1 / rate), density, len(segments), _strongest(values) * rate)
+
+
+def _strongest(values: NDArray[np.float64]) -> float:
+    """In cycles a sample."""
+    lines = np.abs(np.fft.rfft((values - values.mean()) * np.hanning(values.size)))
+    return float(_SKIPPED - 1 + np.argmax(lines[_SKIPPED - 1 :])) / values.size

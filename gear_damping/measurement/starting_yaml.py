@@ -12,6 +12,7 @@ _WORDS = ("y", "n", "yes", "no", "on", "off", "true", "false", "null")
 _ENCODERS = ("pinion", "gear", "tacho")
 _COUNTS = {"pinion": "counts_per_revolution", "gear": "counts_per_revolution", "tacho": "pulses_per_revolution"}
 _GEOMETRY = {"n_teeth_pinion": None, "n_teeth_gear": None, "module": "mm", "pressure_angle": "deg"}
+_WITH_TORQUE = {"transmission_error", "pinion_speed", "gear_speed", "gear"}  # responses that need a torque beside them
 _ROLE = "fit, or holdout for a record to be judged by; without it a part is held out by itself"
 _CASING = "taken as on a casing; on a shaft add mounting: tangential, shaft: pinion and radius: {value: …, unit: mm}"
 
@@ -143,7 +144,7 @@ def _gear(listed: Sequence[Guess]) -> Iterator[str]:
     missing = {}
     if not used.keys() & {"pinion_angle", "pinion_speed", "pinion", "gear", "tacho"}:
         missing["pinion_speed"] = "rpm"
-    if "pinion_torque" not in used and used.keys() - {"acceleration", "tacho", "pinion_angle", None}:
+    if "pinion_torque" not in used and ("acceleration" not in used or used.keys() & _WITH_TORQUE):
         missing["pinion_torque"] = "N*m"
     if missing:
         yield "    conditions:"

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from gear_damping.reporting.style import BLUE, PALE, RED, new_figure, say_empty, styled
 
 MOST_PANELS = 16
-_ROW, _TITLE = 1.5, 0.5  # inches
+_ROW, _MARGINS, _WIDTH = 1.7, (0.55, 0.35), 10.0  # inches; below and above the rows
 _DRAWN = 2000  # pairs of lowest and highest value that a long channel is drawn by
-_BELOW_FLOOR = 1e-2  # of the floor; what lies lower is no more shown
+_BELOW_FLOOR = 1e-4  # of the floor; what lies lower is no more shown
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +50,10 @@ def inspection_figure(panels: Sequence[Panel], in_seconds: bool = True) -> Figur
     """
     shown = panels[:MOST_PANELS]
     with styled():
-        figure = new_figure(_TITLE + _ROW * max(1, len(shown)), 10.0)
+        height = _MARGINS[0] + _MARGINS[1] + _ROW * max(1, len(shown))
+        figure = new_figure(height, _WIDTH, None)  # the constrained layout takes as long as all the drawing
+        bottom, top = _MARGINS[0] / height, 1 - _MARGINS[1] / height
+        figure.subplots_adjust(left=0.09, right=0.98, bottom=bottom, top=top, hspace=0.55, wspace=0.3)
         rows = figure.subplots(max(1, len(shown)), 2, squeeze=False, width_ratios=(3, 2))
         for (left, right), panel in zip(rows, shown, strict=False):
             left.plot(*drawn(panel.time, panel.values), color=BLUE, linewidth=0.8)

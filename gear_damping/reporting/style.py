@@ -65,9 +65,9 @@ class StyledFigure(Figure):
             super().draw(renderer)
 
 
-def new_figure(height: float = 4.0, width: float = WIDTH) -> Figure:
+def new_figure(height: float = 4.0, width: float = WIDTH, layout: str | None = "constrained") -> Figure:
     """An empty figure (inches) that belongs to no window."""
-    figure = StyledFigure(figsize=(width, height), layout="constrained")
+    figure = StyledFigure(figsize=(width, height), layout=layout)
     FigureCanvasAgg(figure)
     return figure
 

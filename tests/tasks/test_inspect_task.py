@@ -1,0 +1,256 @@
+"""task=inspect on a file of every format, on a measurement.yaml, and on what cannot be read."""
+
+import gzip
+import json
+import re
+from pathlib import Path
+
+import h5py
+import numpy as np
+import openpyxl
+import pytest
+import pyuff
+import yaml
+from nptdms import ChannelObject, RootObject, TdmsWriter
+from scipy.io import savemat, wavfile
+
+from gear_damping.measurement.load import check_declaration, load_measurement
+from gear_damping.tasks.command import main
+
+RATE = 500.0
+TIME = np.arange(1000) / RATE
+ANGLE = 0.4 * np.exp(-0.3 * TIME) * np.cos(2 * np.pi * 3 * TIME) + 0.1
+TORQUE = 2.0 * np.sin(2 * np.pi * 7 * TIME)
+
+
+def _csv(path, opener=open):
+    with opener(path, "wt", encoding="utf-8") as file:
+        file.write("time (s),angle (rad),torque (N*m)\n")
+        np.savetxt(file, np.column_stack([TIME, ANGLE, TORQUE]), delimiter=",", fmt="%.9g")
+
+
+def _xlsx(path):
+    book = openpyxl.Workbook()
+    book.active.append(["time (s)", "angle (rad)", "torque (N*m)"])
+    for row in zip(TIME.tolist(), ANGLE.tolist(), TORQUE.tolist(), strict=True):
+        book.active.append(row)
+    book.save(path)
+
+
+def _hdf5(path):
+    with h5py.File(path, "w") as file:
+        for name, values, unit in (("time", TIME, "s"), ("angle", ANGLE, "rad"), ("torque", TORQUE, "N*m")):
+            file[f"run/{name}"] = values
+            file[f"run/{name}"].attrs["unit"] = unit
+
+
+def _tdms(path):
+    with TdmsWriter(path) as file:
+        waveform = {"wf_increment": 1 / RATE, "wf_samples": len(TIME), "wf_start_offset": 0.0}
+        channels = [
+            ChannelObject("run", name, values, {**waveform, "unit_string": unit})
+            for name, values, unit in (("angle", ANGLE, "rad"), ("torque", TORQUE, "N*m"))
+        ]
+        file.write_segment([RootObject(), *channels])
+
+
+def _uff(path):
+    sets = [
+        pyuff.prepare_58(
+            func_type=1, rsp_node=1, rsp_dir=1, ref_node=1, ref_dir=1, abscissa_spec_data_type=17,
+            ordinate_spec_data_type=12, orddenom_spec_data_type=0, id1=name, binary=0, abscissa_spacing=1,
+            data=values, x=TIME, ordinate_axis_units_lab=unit, abscissa_axis_units_lab="s",
+        )
+        for name, values, unit in (("angle", ANGLE, "rad"), ("torque", TORQUE, "N*m"))
+    ]  # fmt: skip
+    pyuff.UFF(str(path)).write_sets(sets, "add")
+
+
+def _wav(path):
+    wavfile.write(path, int(RATE), np.column_stack([ANGLE, TORQUE / 3]).astype(np.float32))
+
+
+WRITERS = {
+    "run.csv": _csv,
+    "run.csv.gz": lambda path: _csv(path, gzip.open),
+    "run.xlsx": _xlsx,
+    "run.h5": _hdf5,
+    "run.tdms": _tdms,
+    "run.uff": _uff,
+    "run.wav": _wav,
+    "run.mat": lambda path: savemat(path, {"time": TIME, "angle": ANGLE, "torque": TORQUE, "gain": 2.5}),
+    "run.npz": lambda path: np.savez(path, time=TIME, angle=ANGLE, torque=TORQUE),
+}
+
+
+def inspected(path, folder):
+    """The exit code and what the run left."""
+    code = main(["task=inspect", f"measurement.path={path}", f"hydra.run.dir={folder}"])
+    return code, json.loads((folder / "run.json").read_text())
+
+
+@pytest.mark.parametrize("name", WRITERS)
+def test_a_bare_file_of_every_format_is_told_drawn_and_declared(name, tmp_path):
+    WRITERS[name](tmp_path / name)
+    code, left = inspected(tmp_path / name, tmp_path / "out")
+    assert code == 0
+    assert left["status"] == "finished"
+    assert str(tmp_path / name) in left["inputs"]
+    assert left["metrics"]["sampling_rate"] == pytest.approx(RATE, rel=1e-6)
+    assert (tmp_path / "out" / "inspection.png").stat().st_size > 10_000
+    text = (tmp_path / "out" / "inspection.txt").read_text()
+    assert "500 Hz" in text
+    assert "strongest at 3" in text
+    start = tmp_path / "out" / "measurement.yaml"
+    filled = start.read_text().replace('unit: "???"', "unit: rad")
+    if name == "run.wav":  # which has neither names nor units
+        start.write_text(filled)
+    assert '"???"' not in start.read_text()  # everything else was guessed, or stood in the file
+    record = load_measurement(start).records[0]
+    assert record.sampling_rate == pytest.approx(RATE, rel=1e-6)
+    np.testing.assert_allclose(record.channels["displacement"].values, ANGLE, atol=1e-6)
+    if name != "run.wav":
+        assert set(record.channels) == {"displacement", "force"}
+        assert record.channels["force"].declared_unit == "N*m"
+        assert record.channels["displacement"].declared_unit == "rad"
+
+
+def test_the_start_of_a_file_that_says_nothing_asks_for_what_is_missing(tmp_path):
+    np.savetxt(tmp_path / "bare.txt", np.column_stack([ANGLE, TORQUE]))
+    code, left = inspected(tmp_path / "bare.txt", tmp_path / "out")
+    assert (code, left["metrics"]["sampling_rate"], left["metrics"]["open"]) == (0, None, 3)
+    start = tmp_path / "out" / "measurement.yaml"
+    text = start.read_text()
+    assert '# nothing in the file says it' in text
+    start.write_text(text.replace('{value: "???", unit: Hz}', "{value: 500, unit: Hz}").replace('"???"', "V"))
+    record = load_measurement(start).records[0]
+    assert record.sampling_rate == RATE
+    np.testing.assert_allclose(record.channels["displacement"].values, ANGLE)
+    np.testing.assert_allclose(record.channels["force"].values, TORQUE)
+
+
+def test_a_yaml_that_was_begun_is_not_written_over(tmp_path, caplog, capsys):
+    _csv(tmp_path / "run.csv")
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "measurement.yaml").write_text("mine\n")
+    assert inspected(tmp_path / "run.csv", tmp_path / "out")[0] == 1
+    assert "holds a measurement.yaml already; remedy: " in caplog.text + capsys.readouterr().err
+    assert (tmp_path / "out" / "measurement.yaml").read_text() == "mine\n"
+    assert not (tmp_path / "out" / "inspection.png").exists()
+
+
+def test_a_yaml_is_told_with_roles_channels_rates_conditions_findings_and_segments(tmp_path):
+    _csv(tmp_path / "run.csv")
+    channels = {
+        "time": {"column": "time (s)"},
+        "displacement": {"column": "angle (rad)", "range": {"value": 0.2, "unit": "rad"}},
+    }
+    records = [
+        {"name": "a", "file": "run.csv", "role": "fit", "slice": [0, 600], "channels": channels,
+         "conditions": {"force": {"value": 3, "unit": "N*m"}}},
+        {"name": "b", "file": "run.csv", "role": "holdout", "slice": [600, 1000], "channels": channels,
+         "conditions": {"force": {"value": 4, "unit": "N*m"}}},
+    ]  # fmt: skip
+    content = {"system": "oscillator", "segments": {"value": 0.5, "unit": "s"}, "records": records}
+    content["parameters"] = {"stiffness": {"value": 355, "unit": "1/s^2", "uncertainty": 0.02}}
+    path = tmp_path / "measurement.yaml"
+    path.write_text(yaml.safe_dump(content))
+    before = path.read_bytes()
+    code, left = inspected(path, tmp_path / "out")
+    assert (code, left["metrics"]) == (0, {"system": "oscillator", "records": 2, "data_problems": 2})
+    assert str(tmp_path / "run.csv") in left["inputs"]
+    text = (tmp_path / "out" / "inspection.txt").read_text()
+    for words in (
+        "measurement.yaml: oscillator, 2 records", "stiffness: 355 1/s^2 ± 2 %", "fitted: a", "held out: b",
+        "segments of exactly 0.5 s", "record 'a', fit: run.csv, 600 samples, 500 Hz, 1.198 s from 0 s on",
+        "force: constant, 3 N*m", "displacement: ", "rad, offset (mean)", "datum arbitrary", "data problem: clipped: ",
+    ):  # fmt: skip
+        assert words in text
+    assert path.read_bytes() == before
+    assert (tmp_path / "out" / "inspection.png").exists()
+    assert not (tmp_path / "out" / "measurement.yaml").exists()
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "words"),
+    [
+        ("run.mat", b"MATLAB 5.0 and nothing else", "run.mat"),
+        ("run.h5", b"\x89HDF\r\n\x1a\n and nothing else", "run.h5"),
+        ("run.csv", b"", "the file is empty"),
+        ("run.csv", b"a,b\nx,y\n", "no column holds numbers; the first: not a number"),
+        ("run.bin", b"123", "unknown format '.bin'"),
+        ("measurement.yaml", b"", "must be a mapping with keys among"),
+        ("measurement.yaml", b"system: oscillator\nrecords:\n- {file: no.csv, channels: {displacement: {column: x}}}\n",
+         "no such file"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_read_ends_in_one_message(name, content, words, tmp_path, caplog, capsys):
+    (tmp_path / name).write_bytes(content)
+    assert main(["task=inspect", f"measurement.path={tmp_path / name}", f"hydra.run.dir={tmp_path / 'out'}"]) == 1
+    said = caplog.text + capsys.readouterr().err
+    assert said.count("This cannot run") == 1
+    assert words in said
+    assert "remedy: " in said
+    assert "Traceback" not in said
+
+
+def test_no_such_file_and_a_wrong_simulator_are_said(tmp_path, caplog, capsys):
+    missing = f"measurement.path={tmp_path / 'no.csv'}"
+    assert main(["task=inspect", missing]) == 1
+    assert "no such file; remedy: give the path of a measurement.yaml or of a file of data" in caplog.text
+    _csv(tmp_path / "run.csv")
+    place = [f"measurement.path={tmp_path / 'run.csv'}", f"hydra.run.dir={tmp_path / 'out'}"]
+    assert main(["task=inspect", *place, "simulator.stifness=3"]) == 1
+    assert "simulator.stifness: no such effect or parameter" in caplog.text + capsys.readouterr().err
+
+
+def test_the_guess_of_a_gear_file_passes_the_check_where_the_blanks_are_filled(tmp_path):
+    shaft = np.unwrap(2 * np.pi * 12 * TIME + 0.01 * np.sin(40 * TIME))
+    rng = np.random.default_rng(3)
+    columns = {
+        "t": TIME,
+        "theta1 (rad)": np.mod(shaft, 2 * np.pi),
+        "dte (um)": 8 + np.sin(300 * TIME) + 0.01 * rng.normal(size=TIME.size),
+        "T1 (N*m)": 150 + np.sin(40 * TIME),
+    }
+    np.savetxt(
+        tmp_path / "g.csv", np.column_stack(list(columns.values())), delimiter=",", header=",".join(columns),
+        comments="", fmt="%.12g",
+    )  # fmt: skip
+    code, left = inspected(tmp_path / "g.csv", tmp_path / "out")
+    assert (code, left["metrics"]["system"], left["metrics"]["open"]) == (0, "gear_pair", 0)
+    record = load_measurement(tmp_path / "out" / "measurement.yaml").records[0]
+    assert set(record.channels) == {"pinion_angle", "transmission_error", "pinion_torque"}
+    assert record.gear_torque_mode == "balanced"
+    assert record.findings == ()
+
+
+def test_two_counters_a_tacho_and_a_casing_are_declared(tmp_path):
+    turns = 12 * TIME
+    columns = {
+        "time": TIME,
+        "enc_pinion": np.floor(2048 * turns),
+        "enc_gear": np.floor(2048 * turns / 2),
+        "case_mps2": np.random.default_rng(1).normal(size=TIME.size),
+    }
+    for name, kept in (("counts.csv", list(columns)), ("casing.csv", ["time", "tacho", "case_mps2"])):
+        columns["tacho"] = 5.0 * (np.mod(turns, 1) < 0.3)
+        table = np.column_stack([columns[key] for key in kept])
+        np.savetxt(tmp_path / name, table, delimiter=",", header=",".join(kept), comments="", fmt="%.9g")
+        code, _ = inspected(tmp_path / name, tmp_path / name.split(".")[0])
+        assert code == 0
+    blanks = {
+        r'(_per_revolution: )"\?\?\?"': r"\g<1>2048", r'(n_teeth_\w+: {value: )"\?\?\?"': r"\g<1>20",
+        r'(module: {value: )"\?\?\?"': r"\g<1>3", r'(pressure_angle: {value: )"\?\?\?"': r"\g<1>20",
+        r'({value: )"\?\?\?"(, unit: N)': r"\g<1>100\2",
+    }  # fmt: skip
+    for name, expected in (("counts", {"pinion", "gear"}), ("casing", {"tacho"})):
+        path = tmp_path / name / "measurement.yaml"
+        text = path.read_text()
+        for blank, value in blanks.items():
+            text = re.sub(blank, value, text)
+        path.write_text(text)
+        plan = check_declaration(path)
+        assert {encoder.name for encoder in plan.records[0].encoders} == expected
+    assert [channel.name for channel in plan.records[0].channels] == ["acceleration"]
+    assert isinstance(load_measurement(path).source, Path)
