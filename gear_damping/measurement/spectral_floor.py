@@ -74,6 +74,9 @@ def spectrum_of(values: NDArray[np.float64], rate: float = 1.0) -> Spectrum | No
 
 
 def _strongest(values: NDArray[np.float64]) -> float:
-    """In cycles a sample."""
-    lines = np.abs(np.fft.rfft((values - values.mean()) * np.hanning(values.size)))
+    """In cycles a sample, without the line through the values."""
+    place = np.linspace(-1.0, 1.0, values.size)
+    centred = values - values.mean()
+    level = centred - place * (centred @ place) / (place @ place)
+    lines = np.abs(np.fft.rfft(level * np.hanning(values.size)))
     return float(_SKIPPED - 1 + np.argmax(lines[_SKIPPED - 1 :])) / values.size

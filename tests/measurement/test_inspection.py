@@ -1,0 +1,149 @@
+"""What an inspection says of columns that were made to be known."""
+
+import numpy as np
+import pytest
+
+from gear_damping.measurement.column_kinds import CONSTANT, COUNTER, PULSES, SIGNAL, TIME, TURNING
+from gear_damping.measurement.formats.registry import read_table
+from gear_damping.measurement.guessing import UNKNOWN, guesses, system_of
+from gear_damping.measurement.inspection import inspect_table
+from gear_damping.measurement.spectral_floor import spectrum_of
+
+RATE = 1000.0
+N = 6000
+T = np.arange(N) / RATE
+RNG = np.random.default_rng
+
+
+def inspected(tmp_path, **columns):
+    np.savez(tmp_path / "a.npz", **columns)
+    return inspect_table(read_table(tmp_path / "a.npz"))
+
+
+def column(found, name):
+    return next(one for one in found.columns if one.reference == name)
+
+
+@pytest.mark.parametrize("n", [400, 6000, 50_000])
+@pytest.mark.parametrize("sigma", [1e-4, 0.2])
+def test_the_floor_of_the_spectrum_is_the_noise_below_a_strong_decay(n, sigma):
+    time = np.arange(n) / RATE
+    signal = 3 + time + np.exp(-0.2 * time) * np.cos(2 * np.pi * 13.3 * time)
+    found = spectrum_of(signal + sigma * RNG(n).normal(size=n), RATE)
+    assert found.noise == pytest.approx(sigma, rel=0.15)
+    assert found.strongest == pytest.approx(13.3, abs=max(0.1, RATE / n))
+
+
+def test_a_record_too_short_for_a_floor_has_none():
+    assert spectrum_of(np.arange(63.0)) is None
+
+
+def test_offset_step_and_constant_are_seen(tmp_path):
+    wave = np.sin(2 * np.pi * 7 * T) + 5
+    found = inspected(tmp_path, time=T, x=np.round(wave / 0.01) * 0.01, level=np.full(N, 3.0), y=wave)
+    assert column(found, "x").step == pytest.approx(0.01, rel=1e-6)
+    assert column(found, "x").inside.mean() == pytest.approx(5, abs=0.01)
+    assert column(found, "y").step == 0
+    assert (column(found, "level").kind, column(found, "time").kind) == (CONSTANT, TIME)
+    assert [one.reference for one in found.measured] == ["x", "y"]
+
+
+def test_shafts_counters_and_pulses_are_told_from_signals(tmp_path):
+    turns = 11.3 * T + 0.01 * np.sin(9 * T)
+    found = inspected(
+        tmp_path,
+        time=T,
+        wrapped=np.mod(2 * np.pi * turns, 2 * np.pi),
+        in_degrees=-np.mod(360 * turns, 360),
+        theta=2 * np.pi * turns,
+        counts=np.floor(1024 * turns),
+        tacho=4.0 * (np.mod(turns, 1) < 0.2) + 0.05 * RNG(1).normal(size=N),
+        wave=np.sin(2 * np.pi * 7 * T),
+        saw_of_noise=RNG(2).normal(size=N),
+        drift=np.exp(-T) + 0.001 * RNG(3).normal(size=N),
+    )
+    kinds = {one.reference: one.kind for one in found.columns}
+    assert kinds == {
+        "time": TIME, "wrapped": TURNING, "in_degrees": TURNING, "theta": TURNING, "counts": COUNTER, "tacho": PULSES,
+        "wave": SIGNAL, "saw_of_noise": SIGNAL, "drift": SIGNAL,
+    }  # fmt: skip
+    assert "6.28" in column(found, "wrapped").says
+    assert "rad" in column(found, "wrapped").says
+    assert "deg" in column(found, "in_degrees").says
+
+
+@pytest.mark.parametrize(
+    ("stamps", "unit"),
+    [(T, "s"), (1.7e9 + T, "s"), (1.7e12 + 1000 * T, "ms"), (np.arange(N) * 2.0, "ms"), (1.7e15 + 1e6 * T, "us")],
+)
+def test_the_unit_of_stamps_is_guessed(stamps, unit, tmp_path):
+    found = inspected(tmp_path, x=np.sin(9 * T), timestamp=stamps)
+    assert (found.time.index, found.time.unit) == (1, unit)
+    assert found.time.guessed
+    assert found.rate == pytest.approx(500 if stamps[1] == 2 else RATE, rel=1e-3)
+
+
+@pytest.mark.parametrize(("name", "unit"), [("time_ms", "ms"), ("t us", "us"), ("elapsed_s", "s")])
+def test_a_name_says_the_unit_of_stamps(name, unit, tmp_path):
+    assert inspected(tmp_path, **{name: T, "x": np.sin(9 * T)}).time.unit == unit
+
+
+def test_jitter_gaps_and_repeats_are_said(tmp_path):
+    wave = np.sin(9 * T)
+    jitter = inspected(tmp_path, time=T + 1e-6 * RNG(1).normal(size=N), x=wave)
+    assert "vary by up to" in jitter.base.notes[0]
+    kept = np.r_[0:2000, 2004:N]
+    gap = inspected(tmp_path, time=T[kept], x=wave[kept])
+    assert [finding.kind for finding in gap.base.findings] == ["dropped_samples"]
+    repeated = T.copy()
+    repeated[77] = repeated[76]
+    twice = inspected(tmp_path, time=repeated, x=wave)
+    assert twice.faults == ("1 repeated time stamp(s), the first at sample 77",)
+    assert twice.rate == pytest.approx(RATE, rel=1e-3)
+
+
+def test_gaps_in_values_leave_the_longest_stretch(tmp_path):
+    x, y = np.sin(9 * T), np.cos(9 * T)
+    x[100], y[5000:5003] = np.nan, np.inf
+    found = inspected(tmp_path, time=T, x=x, y=y, empty=np.full(N, np.nan))
+    assert found.rows == (101, 5000)
+    assert found.base.time.size == 4899
+
+
+def test_columns_of_other_lengths_are_no_part_of_the_record(tmp_path):
+    found = inspected(tmp_path, mass=np.array([3.5]), time=T, x=np.sin(9 * T), index=np.arange(40) / 3)
+    assert found.length == N
+    assert [one.reference for one in found.measured] == ["x"]
+
+
+def channels(tmp_path, **columns):
+    found = inspected(tmp_path, **columns)
+    system = system_of(found)[0]
+    return system, {g.column.reference: g.channel for g in guesses(found, system) if g.used}
+
+
+def test_the_input_is_guessed_by_its_higher_content(tmp_path):
+    noise = RNG(4).normal(size=N)
+    answer = np.convolve(noise, np.exp(-np.arange(200) / 40) * np.sin(np.arange(200) / 6), "full")[:N]
+    assert channels(tmp_path, time=T, a1=noise, b1=answer) == ("oscillator", {"b1": "displacement", "a1": "force"})
+
+
+def test_the_slope_of_a_displacement_is_not_declared_beside_it(tmp_path):
+    noise = 1e-3 * RNG(5).normal(size=N)
+    x, v = np.sin(20 * T), 20 * np.cos(20 * T)
+    assert channels(tmp_path, time=T, pos=x + noise, vel=v + noise)[1] == {"pos": "displacement"}
+    other = channels(tmp_path, time=T, pos=x + noise, vel=np.cos(33 * T) + noise)[1]
+    assert other == {"pos": "displacement", "vel": "velocity"}
+
+
+def test_of_several_displacements_the_one_that_swings_is_declared(tmp_path):
+    noise = 1e-3 * RNG(6).normal(size=(3, N))
+    swings = np.exp(-0.3 * T) * np.sin(20 * T)
+    used = channels(tmp_path, time=T, x=noise[0] + 9, y=noise[1] + T**2, phi=noise[2] + swings)[1]
+    assert used == {"phi": "displacement"}
+
+
+def test_a_unit_that_nobody_knows_stays_open(tmp_path):
+    found = inspected(tmp_path, time=T, x=np.sin(20 * T), angle=np.sin(9 * T), travel_mm=np.cos(7 * T))
+    units = {g.column.reference: g.unit for g in guesses(found, "oscillator")}
+    assert units == {"x": UNKNOWN, "angle": "rad", "travel_mm": "mm"}
