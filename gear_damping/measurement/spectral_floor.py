@@ -21,7 +21,7 @@ class Spectrum:
         frequency: (m,) in Hz, or in cycles a sample where no rate is known.
         density: (m,) in the unit of the values squared over that of the frequency.
         averaged: Segments that were averaged.
-        strongest: The frequency of the highest line of the whole record, above its lowest lines.
+        strongest: The frequency of the highest line of the whole record.
     """
 
     frequency: NDArray[np.float64]
@@ -79,4 +79,4 @@ def _strongest(values: NDArray[np.float64]) -> float:
     centred = values - values.mean()
     level = centred - place * (centred @ place) / (place @ place)
     lines = np.abs(np.fft.rfft(level * np.hanning(values.size)))
-    return float(_SKIPPED - 1 + np.argmax(lines[_SKIPPED - 1 :])) / values.size
+    return float(1 + np.argmax(lines[1:])) / values.size
