@@ -13,7 +13,7 @@ from gear_damping.measurement.formats.table import Table
 from gear_damping.measurement.raw import LEAST_SAMPLES
 from gear_damping.measurement.resolution import step_of
 from gear_damping.measurement.spectral_floor import Spectrum, spectrum_of
-from gear_damping.measurement.stamps import Stamps, find_stamps
+from gear_damping.measurement.time_column import Stamps, find_stamps
 from gear_damping.measurement.timebase import TimeBase, stamped_time, steady_time
 
 
