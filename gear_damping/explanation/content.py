@@ -18,7 +18,7 @@ from gear_damping.measurement.record import Finding, Measurement
 
 SCHEMA_VERSION = 1
 KEYS = (
-    "schema_version", "system", "verdict", "sentences", "causes", "misfit", "residual", "gain", "noise",
+    "schema_version", "system", "verdict", "sentences", "causes", "misfit", "residual", "parameters", "gain", "noise",
     "candidates", "not_observable", "next_experiment", "unexplained", "records", "calibration", "findings",
 )  # fmt: skip
 
@@ -65,7 +65,9 @@ def of_search(measurement: Measurement, evidence: Evidence, noise: NoiseLevel, j
         "residual": {
             "fit": _residual(first.fit_residuals, last.fit_residuals, unit, factor),
             "holdout": _residual(first.holdout, last.holdout, unit, factor),
+            "segment_s": evidence.segments.seconds or None,
         },
+        "parameters": gain.final_parameters(last, gain.spread_of(last, evidence), evidence),
         "gain": _gain(judged, evidence, noise),
         "noise": {
             "channel": evidence.channel.name,
@@ -127,7 +129,8 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
         for cause in found.accepted
     ]
     if not listed and judged.verdict.word != CONSISTENT:
-        for refit in [r for r in found.rejected if r.gain > 0 and r.is_seen_in_fit][:1]:
+        helping = (r for r in found.rejected if r.gain > 0 and r.is_seen_in_fit)
+        for refit in [r for r in helping if _share(r.outcome, found.nominal) > 0][:1]:
             spread = gain.spread_of(refit.outcome, evidence)
             own = gain.parameters_of(refit.outcome, spread, refit.name, evidence)
             alike = confusable_beforehand(found.first_scores, refit.name)[: LARGEST_SET - 1]
@@ -154,17 +157,19 @@ def _gain(judged: Judged, evidence: Evidence, noise: NoiseLevel) -> dict[str, An
     floor = sum(len(r.stacked) * noise.by_record[r.name] ** 2 for r in evidence.held)
     damping = {
         key: gain.damping_ratio(outcome, gain.spread_of(outcome, evidence))
-        | {"velocity_unit": rig_unit("m/s", evidence)}
         for key, outcome in (("before", first), ("after", last))
     }
+    whole = all(damping.values())
+    if whole:
+        damping = {key: found | {"velocity_unit": rig_unit("m/s", evidence)} for key, found in damping.items()}
+        damping["bias_of_the_nominal"] = damping["before"]["value"] - damping["after"]["value"]
     return {
         "nrmse": {
             "before": gain.nrmse(first.holdout, evidence.held),
             "after": gain.nrmse(last.holdout, evidence.held),
             "floor": (floor / max(spread, 1e-300)) ** 0.5,
         },
-        "damping_ratio_percent": damping
-        | {"bias_of_the_nominal": damping["before"]["value"] - damping["after"]["value"]},
+        "damping_ratio_percent": damping if whole else None,
     }
 
 
@@ -184,8 +189,10 @@ def _candidates(judged: Judged) -> list[dict[str, Any]]:
             return statuses(judged.verdict.word)
         return "confusable" if name in alike else "rejected"
 
+    bounded = {refit.name for refit in found.first_fits if refit.is_at_bound}
     return [
         {"name": name, "promised": score.gain, "share": accepted.get(name, taken.get(name)), "status": status(name)}
+        | {"at_bound": name in bounded, "failed": found.failed.get(name) or score.failed or None}
         for name, score in best.items()
     ]
 

@@ -1,7 +1,7 @@
 """Step 5b: what each candidate could explain, by its sensitivity with the nuisance projected out (score test)."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import torch
 from torch import Tensor
@@ -31,6 +31,7 @@ class Score:
         smallest: Size of its first strength that would just be visible, in the strength's own unit.
         columns: Orthonormal basis of what it can do beside the nuisance, (samples, n).
         variants: Of an effect that is tried as a whole, its other sizes.
+        failed: Why it could not be scored; empty where it could.
     """
 
     candidate: Candidate
@@ -40,6 +41,7 @@ class Score:
     smallest: float
     columns: Tensor
     variants: tuple[Candidate, ...] = ()
+    failed: str = ""
 
 
 class Projector:
@@ -117,8 +119,7 @@ def scores(
     base = Base(outcome, project, residual, beside, _predicted(outcome), noise, solver)
     found = []
     for number, candidate in enumerate(candidates):
-        score = _score(candidate, base)
-        found += [score] if score is not None else []
+        found.append(_score(candidate, base))
         if report:
             report(number + 1, len(candidates))
     return sorted(found, key=lambda score: -score.gain)
@@ -128,7 +129,7 @@ def _predicted(outcome: Outcome) -> Tensor:
     return (outcome.problem.response * outcome.problem.weights - outcome.fitted.prediction.residual[0]).reshape(-1)
 
 
-def _score(candidate: Candidate, base: Base) -> Score | None:
+def _score(candidate: Candidate, base: Base) -> Score:
     hypothesis, residual = candidate.hypothesis, base.residual
     records, n_free = base.outcome.problem.records, len(hypothesis.free)
     problem = OutputErrorProblem(hypothesis.model, hypothesis.given, hypothesis.free, records, base.solver)
@@ -137,7 +138,7 @@ def _score(candidate: Candidate, base: Base) -> Score | None:
     states = begun_from(problem, base.outcome, len(points))
     found = (problem.predict(points, states) * problem.weights).reshape(len(points), -1)
     if not bool(found.isfinite().all()):
-        return None
+        return replace(_unseen(candidate, n_free, len(residual)), failed="its prediction diverged")
     columns = (found - base.predicted) / steps.unsqueeze(1)
     columns = torch.nn.functional.pad(columns, (0, len(base.project.expected))).T
     beside = base.project(columns)

@@ -9,6 +9,7 @@ from torch import Tensor
 from gear_damping.errors import InputError
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Hypothesis
+from gear_damping.explanation.rig_units import length_unit
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.physics.cause import Rig
 from gear_damping.units import Dimension, parse_unit
@@ -36,7 +37,7 @@ def rig_of(base: Hypothesis, evidence: Evidence, residuals: Residuals | None = N
     inputs = tuple(dict.fromkeys(name for record in evidence.fit for name in record.inputs))
     common = {"system": base.system.name, "inputs": inputs, "values": values}
     if base.system.name != "gear_pair":
-        return Rig(radian=_radian(evidence.channel.unit), **common)
+        return Rig(radian=_radian(length_unit(evidence.channel)), **common)
     values["contact_ratio"] = float(prepared.base["contact_ratio"][0])
     pinion, gear = round(values["n_teeth_pinion"]), round(values["n_teeth_gear"])
     lines = strongest_orders(residuals or (), pinion, gear, values["pinion_speed"])

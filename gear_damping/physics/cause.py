@@ -96,6 +96,8 @@ class Cause:
         separated_by: The experiment that separates it from what it resembles.
         looks_like: Effects that no record of this channel can tell from it and that are never tried by themselves.
         simpler: An effect that it contains, with fewer parameters.
+        one_class: What else no record of this channel parts from it, as words for a sentence: then several names are
+            one answer.
     """
 
     sentence: str
@@ -103,6 +105,7 @@ class Cause:
     separated_by: Experiment = "torque"
     looks_like: tuple[str, ...] = ()
     simpler: str | None = None
+    one_class: tuple[str, ...] = ()
 
     def recipes_for(self, rig: Rig) -> tuple[Recipe, ...]:
         """Its variants on this rig."""
