@@ -29,9 +29,9 @@ class BearingFlexibility(ExtraStates, TransmissionErrorSource):
     cause: ClassVar = Cause(
         "the flexibility of a bearing",
         tuple(
-            Recipe({"stiffness": k}, presence=True, scanned={"mass": m, "damping_ratio": 0.02}, in_si=True)
-            for k in (5e8, 2e9, 1e10, 4e10)
-            for m in (1.5, 4.0)
+            Recipe({"stiffness": k}, presence=True, scanned={"mass": m, "damping_ratio": 0.02})
+            for k in (1.5, 6.0, 30.0, 120.0)  # of the mean mesh stiffness
+            for m in (5.5, 15.0)  # of the equivalent mass
         ),
         separated_by="bearing",
     )
