@@ -14,7 +14,7 @@ PLACE, RATE = "bearing_flexibility.displacement", "bearing_flexibility.velocity"
 
 
 class BearingFlexibility(ExtraStates, TransmissionErrorSource):
-    """The pinion gives way along the line of action: one more degree of freedom y."""
+    """The pinion gives way along the line of action: one more degree of freedom y. The gear's bearing does the same."""
 
     name = "bearing_flexibility"
     equation = "delta = x - e - y, m_b y'' + c_b y' + k_b y = N + F_d, c_b = 2 zeta_b sqrt(k_b m_b)"
