@@ -1,13 +1,13 @@
 """Step 5a: what could be missing. Every effect of the catalogue as something that can be switched on gradually."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import inf, log
 
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Given, Hypothesis
 from gear_damping.explanation.rig import Residuals, rig_of
-from gear_damping.identification.output_error.problem import FreeParameter
+from gear_damping.identification.output_error.records import FreeParameter
 from gear_damping.physics.cause import Recipe
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import Effect
@@ -33,7 +33,7 @@ class Candidate:
         moved: How far other parameters are moved for further starts, in coordinates by place.
         later: Free parameters that join in the full fit only.
         presence: Whether it is tried as a whole.
-        replaced: Free parameters that it took the place of; `restored` brings them back.
+        replaced: Free parameters that it took the place of.
         sharpest: Names of parameters that may rest at their lower bound without having run into it.
     """
 
@@ -75,10 +75,12 @@ def candidates_for(base: Hypothesis, evidence: Evidence, residuals: Residuals | 
     ]
 
 
-def restored(hypothesis: Hypothesis, replaced: Sequence[FreeParameter]) -> Hypothesis:
+def restored(hypothesis: Hypothesis, cause: str) -> Hypothesis:
     """A model from which a cause was taken, with what the cause had replaced free again."""
+    replaced = hypothesis.replaced.get(cause, ())
     given = hypothesis.given | {parameter.name: parameter.start for parameter in replaced}
-    return replace(hypothesis, given=given, free=(*replaced, *hypothesis.free))
+    others = {name: parameters for name, parameters in hypothesis.replaced.items() if name != cause}
+    return replace(hypothesis, given=given, free=(*replaced, *hypothesis.free), replaced=others)
 
 
 def _value(base: Hypothesis, name: str) -> float:
@@ -122,7 +124,7 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Si
     return Candidate(
         kind.name,
         _label(kind, recipe),
-        base.with_effect([effect], given, free, kind.name),
+        replace(base.with_effect([effect], given, free, kind.name), replaced=base.replaced | {kind.name: replaced}),
         tuple(strengths),
         phases,
         begun,

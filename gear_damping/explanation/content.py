@@ -11,6 +11,7 @@ from gear_damping.explanation.next_experiment import LARGEST_SET, confusable_bef
 from gear_damping.explanation.noise import NoiseLevel
 from gear_damping.explanation.ranking import Score
 from gear_damping.explanation.rig_units import rig_unit
+from gear_damping.explanation.significance import ac_energy
 from gear_damping.explanation.unexplained import leftover
 from gear_damping.explanation.verdict import CONSISTENT, DATA_PROBLEM, Judged, statuses
 from gear_damping.measurement.record import Finding, Measurement
@@ -99,15 +100,15 @@ def _findings(findings: Sequence[Finding]) -> list[dict[str, Any]]:
 def _steps(judged: Judged, evidence: Evidence) -> list[str]:
     before = judged.before
     rest = "came to rest" if judged.found.nominal.fitted.converged else "did not come to rest: take it with care"
-    pieces = (
-        f"An error of the initial state grows in these records: they were fitted and scored in pieces of "
-        f"{evidence.piece_ms:.3g} ms, each from a start of its own."
+    segments = (
+        f"These records cannot be predicted from their start alone: they were fitted and scored in segments of "
+        f"{evidence.segments.seconds:.3g} s, each from an initial state of its own."
     )
     return [
         f"The nominal simulation was fitted first, so that no wrong parameter passes for physics; the fit {rest}.",
         f"It leaves {before.percent:.3g} % of the signal's variance beyond the noise on held-out records; "
         f"more than {before.threshold:.2g} % counts as significant.",
-        *([pieces] if evidence.piece else []),
+        *([segments] if evidence.segments else []),
     ]
 
 
@@ -149,8 +150,8 @@ def _residual(before: Sequence, after: Sequence, unit: str, factor: float) -> di
 
 def _gain(judged: Judged, evidence: Evidence, noise: NoiseLevel) -> dict[str, Any]:
     first, last = judged.found.nominal, judged.found.outcome
-    spread = sum(float((r.response - r.response.mean()).square().sum()) for r in evidence.holdout)
-    floor = sum(len(r.response) * noise.by_record[r.name] ** 2 for r in evidence.holdout)
+    spread = sum(ac_energy(record) for record in evidence.held)
+    floor = sum(len(r.stacked) * noise.by_record[r.name] ** 2 for r in evidence.held)
     damping = {
         key: gain.damping_ratio(outcome, gain.spread_of(outcome, evidence))
         | {"velocity_unit": rig_unit("m/s", evidence)}
@@ -158,8 +159,8 @@ def _gain(judged: Judged, evidence: Evidence, noise: NoiseLevel) -> dict[str, An
     }
     return {
         "nrmse": {
-            "before": gain.nrmse(first.holdout, evidence.holdout),
-            "after": gain.nrmse(last.holdout, evidence.holdout),
+            "before": gain.nrmse(first.holdout, evidence.held),
+            "after": gain.nrmse(last.holdout, evidence.held),
             "floor": (floor / max(spread, 1e-300)) ** 0.5,
         },
         "damping_ratio_percent": damping

@@ -22,7 +22,9 @@ def mesh_order_faults(evidence: Evidence) -> list[Finding]:
     """A finding where the tooth meshing order is absent and another comb stands out instead."""
     if evidence.system != "gear_pair":
         return []
-    records = (*evidence.fit, *evidence.holdout)
+    if evidence.channel.name != "transmission_error":
+        return []
+    records = evidence.records
     teeth = round(evidence.parameters.get("n_teeth_pinion", 20))
     orders = [n for n in range(max(5, round(LEAST_ORDER * teeth)), 2 * teeth) if n == teeth or n % teeth]
     energy = np.zeros(len(orders))

@@ -82,7 +82,7 @@ def _next(
 
 def _is_unpredictable(found: Search, bench: Bench) -> bool:
     """Whether records were predicted over more than they can be: nothing of that counts."""
-    return found.growth > MOST_GROWTH and not bench.evidence.piece
+    return found.growth > MOST_GROWTH and not bench.evidence.segments
 
 
 def _accept(found: Search, best: Refit, rivals: tuple[str, ...], current: Excess, first: Excess, bench: Bench) -> None:

@@ -7,14 +7,16 @@ import torch
 from torch import Tensor
 
 from gear_damping.explanation.evidence import Evidence
-from gear_damping.explanation.hypothesis import Outcome, natural_frequency_hz
+from gear_damping.explanation.hypothesis import Outcome, time_scale
 from gear_damping.explanation.rig_units import rig_unit
-from gear_damping.identification.output_error.problem import OFFSET, FitRecord, set_value
+from gear_damping.explanation.significance import ac_energy
+from gear_damping.identification.output_error.problem import is_of_model, set_value
+from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.uncertainty import QUANTILE, covariance
 from gear_damping.physics.terms import DampingLaw
 from gear_damping.simulation.runs import reference_velocity
 
-CORRELATED_PERIODS = 3.0  # natural periods over which residuals may be correlated
+CORRELATED_PERIODS = 3.0  # characteristic times over which residuals may be correlated
 SILENT = 0.1  # noise levels that a step of order one moves the records by, in all: less says nothing of a parameter
 STEP = 1e-4  # of a coordinate, for the slope of the damping ratio
 
@@ -39,14 +41,14 @@ def rmse(residuals: Sequence[Tensor]) -> float:
 
 def nrmse(residuals: Sequence[Tensor], records: Sequence[FitRecord]) -> float:
     """Root mean square residual over the standard deviation of the channel within records."""
-    spread = sum(float((r.response - r.response.mean()).square().sum()) for r in records)
+    spread = sum(ac_energy(record) for record in records)
     return (sum(float(r.square().sum()) for r in residuals) / max(spread, 1e-300)) ** 0.5
 
 
 def spread_of(outcome: Outcome, evidence: Evidence) -> Tensor:
     """Covariance of the fitted coordinates; residuals may be coloured."""
-    frequency = natural_frequency_hz(outcome.hypothesis.model, outcome.flat_given())
-    return covariance(outcome.problem, outcome.fitted, round(CORRELATED_PERIODS * evidence.sampling_rate / frequency))
+    scale = time_scale(outcome.hypothesis, evidence)
+    return covariance(outcome.problem, outcome.fitted, CORRELATED_PERIODS * scale)
 
 
 def parameters_of(outcome: Outcome, spread: Tensor, cause: str, evidence: Evidence) -> dict[str, dict[str, object]]:
@@ -91,7 +93,7 @@ def _ratios(outcome: Outcome, free: Mapping[str, Tensor], batch: int) -> tuple[T
     model = outcome.hypothesis.model
     values = model.values(batch, **outcome.flat_given())
     for name, value in free.items():
-        if name != OFFSET:
+        if is_of_model(name):
             set_value(values, name, value)
     derived = model.prepare(values).derived
     speed = reference_velocity(derived)

@@ -9,7 +9,8 @@ from torch import Tensor
 from gear_damping.explanation.candidates import Candidate
 from gear_damping.explanation.hypothesis import Outcome, begun_from
 from gear_damping.identification.output_error.least_squares import own_basis, without_own
-from gear_damping.identification.output_error.problem import DIFFERENCE, OutputErrorProblem
+from gear_damping.identification.output_error.problem import OutputErrorProblem
+from gear_damping.identification.output_error.records import DIFFERENCE
 from gear_damping.simulation.solver_settings import Solver
 
 PROBE = 0.05  # share of a strength's size that its slope is taken over
@@ -132,6 +133,7 @@ def _score(candidate: Candidate, base: Base) -> Score | None:
     records, n_free = base.outcome.problem.records, len(hypothesis.free)
     problem = OutputErrorProblem(hypothesis.model, hypothesis.given, hypothesis.free, records, base.solver)
     points, steps = _probes(candidate, n_free)
+    points = problem.completed(points) + problem.own_of(base.outcome.problem, base.outcome.fitted.shared)
     states = begun_from(problem, base.outcome, len(points))
     found = (problem.predict(points, states) * problem.weights).reshape(len(points), -1)
     if not bool(found.isfinite().all()):
@@ -168,7 +170,8 @@ def _gain(candidate: Candidate, problem: OutputErrorProblem, states: Tensor, bes
     free = residual.square().sum()
     if candidate.presence:
         own = [i for i, p in enumerate(candidate.hypothesis.free) if p.name.startswith(candidate.name + ".")]
-        slopes = _slopes(problem, [*own, *range(problem.n_shared + 2, problem.n_shared + len(problem.local))], states)
+        places = [*own, *range(problem.n_shared + 2, problem.n_shared + len(problem.local))]
+        slopes = _slopes(problem, places, states, problem.own_of(base.outcome.problem, base.outcome.fitted.shared))
         project = project.beside_own(slopes[..., len(own) :])
         sizes = torch.nn.functional.pad(slopes[..., : len(own)].flatten(0, 1), (0, 0, 0, len(project.slope)))
         residual, beside = project(base.residual.unsqueeze(1))[:, 0], project(torch.cat([beside, sizes], 1))
@@ -178,12 +181,12 @@ def _gain(candidate: Candidate, problem: OutputErrorProblem, states: Tensor, bes
     return float((free - left.square().sum()) / base.residual.square().sum())
 
 
-def _slopes(problem: OutputErrorProblem, places: Sequence[int], states: Tensor) -> Tensor:
-    """Slopes of the prediction at coordinates 0 in shared and own coordinates of these places, (records, time, n)."""
+def _slopes(problem: OutputErrorProblem, places: Sequence[int], states: Tensor, at: Tensor) -> Tensor:
+    """Slopes of the prediction at coordinates `at` in these shared and local coordinates, (records, time, n)."""
     moves = torch.zeros(len(places) + 1, problem.n_shared + len(problem.local), dtype=torch.float64)
     moves[range(1, len(moves)), places] = DIFFERENCE
     moved = states + moves[:, None, problem.n_shared :]
-    found = problem.predict(moves[:, : problem.n_shared], moved) * problem.weights
+    found = problem.predict(at + moves[:, : problem.n_shared], moved) * problem.weights
     return ((found[1:] - found[0]) / DIFFERENCE).permute(1, 2, 0)
 
 

@@ -9,7 +9,7 @@ from torch import Tensor
 from gear_damping.errors import InputError
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Hypothesis
-from gear_damping.identification.output_error.problem import FitRecord
+from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.physics.cause import Rig
 from gear_damping.units import Dimension, parse_unit
 

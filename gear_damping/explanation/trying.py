@@ -3,14 +3,14 @@
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field, replace
 
-from gear_damping.explanation.candidates import candidates_for
+from gear_damping.explanation.candidates import candidates_for, restored
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Hypothesis, Outcome, fit_hypothesis
 from gear_damping.explanation.noise import NoiseLevel
 from gear_damping.explanation.ranking import Score, contains, scores
 from gear_damping.explanation.refit import Refit, block_samples, chosen, refitted
 from gear_damping.explanation.significance import CLOSE, Excess, excess, paired_gain
-from gear_damping.identification.output_error.problem import FreeParameter
+from gear_damping.identification.output_error.records import FreeParameter
 from gear_damping.physics.terms import Effect
 from gear_damping.simulation.solver_settings import Solver
 
@@ -89,11 +89,12 @@ class Bench:
 
     def excess(self, outcome: Outcome) -> Excess:
         """What a model leaves of the held-out records."""
-        return excess(outcome.holdout, self.evidence.holdout, self.noise)
+        return excess(outcome.holdout, self.evidence.held, self.noise)
 
     def ranked(self, outcome: Outcome, names: Collection[str] | None = None) -> list[Score]:
         """Every candidate beside a model, or those of some effects, the most promising first."""
-        tried = candidates_for(outcome.hypothesis, self.evidence)
+        residuals = list(zip(self.evidence.fitted, outcome.fit_residuals, strict=True))
+        tried = candidates_for(outcome.hypothesis, self.evidence, residuals)
         tried = tried if names is None else [candidate for candidate in tried if candidate.name in names]
         return scores(outcome, tried, self.noise.value, self.solver)
 
@@ -134,7 +135,7 @@ class Bench:
 
     def paired_gain(self, before: Outcome, after: Outcome) -> tuple[float, float]:
         """Gain of the second over the first on held-out records, with its t."""
-        return paired_gain(before.compared, after.compared, block_samples(after, self.evidence.sampling_rate))
+        return paired_gain(before.holdout, after.holdout, block_samples(after, self.evidence))
 
     def simplest(self, best: Refit, fits: Sequence[Refit]) -> tuple[Refit, tuple[str, ...]]:
         """The explanation with its rivals, the effects whose full fit is not worse by the paired test.
@@ -167,10 +168,11 @@ def _without(hypothesis: Hypothesis, name: str) -> Hypothesis:
     def other(parameter: FreeParameter) -> bool:
         return not parameter.name.startswith(name + ".")
 
-    return replace(
+    left = replace(
         hypothesis,
         effects=tuple(effect for effect in hypothesis.effects if effect.name != name),
         given={key: value for key, value in hypothesis.given.items() if not key.startswith(name + ".")},
         free=tuple(parameter for parameter in hypothesis.free if other(parameter)),
         causes=tuple(cause for cause in hypothesis.causes if cause != name),
     )
+    return restored(left, name)

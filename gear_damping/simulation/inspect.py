@@ -20,7 +20,7 @@ def forces_of(runs: Runs, member: int) -> dict[str, Tensor]:
     scales = prepared.scales
     equation = EquationOfMotion(runs.model)
     units = state_units(runs.model)
-    state = [runs.states[n][member] / scales.unit_of(parse_unit(units[n]).dimension) for n in runs.states]
+    state = [runs.states[n][member] / scales.unit_of(parse_unit(units[n]).dimension) for n in units]
     given = {name: value[member] for name, value in runs.inputs.items()}
     if "pinion_angle" in given:
         given["pinion_angle_rate"] = torch.gradient(given["pinion_angle"])[0]

@@ -217,7 +217,7 @@ def test_without_the_pendulum_the_spring_is_back():
         free=tuple(p for p in candidate.hypothesis.free if not p.name.startswith("sine_restoring.")),
         causes=(),
     )
-    back = restored(taken, candidate.replaced)
+    back = restored(taken, "sine_restoring")
     assert back.given == base.given
     assert set(back.free) == set(base.free)
 

@@ -35,7 +35,7 @@ class AsymmetricFriction(DampingForce):
         Parameter("force_backward", "N", 10.0, "dry friction where it falls", 0, 1e18),
         Parameter("damping_forward", "N*s/m", 0.0, "viscous coefficient where the deflection grows", 0, 1e12),
         Parameter("damping_backward", "N*s/m", 0.0, "viscous coefficient where it falls", 0, 1e12),
-        Parameter("width", "1", 0.05, "w, width of the sign change relative to the reference velocity", 1e-6, 10),
+        Parameter("width", "1", 0.05, "w, width of the sign change relative to the unit of velocity V", 1e-6, 10),
     )
     dissipative = True
     cause: ClassVar = Cause(
@@ -51,8 +51,9 @@ class AsymmetricFriction(DampingForce):
         for kind in ("force", "damping"):
             forward, backward = values[f"{kind}_forward"], values[f"{kind}_backward"]
             found |= {f"{kind}_mean": (forward + backward) / 2, f"{kind}_half": (forward - backward) / 2}
-        largest = torch.maximum(values["force_forward"], values["force_backward"])
-        return found | {"fastest_rate": sign_change_rate(largest, values["width"], base["equivalent_mass"])}
+        force, damping = (torch.maximum(values[f"{k}_forward"], values[f"{k}_backward"]) for k in ("force", "damping"))
+        turning = sign_change_rate(force, values["width"], base["equivalent_mass"])
+        return found | {"fastest_rate": torch.maximum(turning, damping / base["equivalent_mass"])}
 
     def damping_force(self, now: Moment, p: Values) -> Tensor:
         """The force at this instant."""

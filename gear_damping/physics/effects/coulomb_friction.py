@@ -21,11 +21,11 @@ class CoulombFriction(DampingForce):
     """A force of constant size against the motion, smoothed about zero."""
 
     name = "coulomb_friction"
-    equation = "F_d = F_c tanh(delta' / (w V)), V = omega_n F0 / k0"
+    equation = "F_d = F_c tanh(delta' / (w V)), V = omega_n F0 / k0 (oscillator: amplitude / characteristic_time)"
     reference = "Threlfall (1978), Mech. Mach. Theory 13(4)"
     parameters: ClassVar = (
         Parameter("force", "N", 20.0, "F_c", 0, 1e18),
-        Parameter("width", "1", 0.05, "w, width of the sign change relative to the reference velocity", 1e-6, 10),
+        Parameter("width", "1", 0.05, "w, width of the sign change relative to the unit of velocity V", 1e-6, 10),
     )
     dissipative = True
     cause: ClassVar = Cause(
@@ -35,7 +35,7 @@ class CoulombFriction(DampingForce):
     )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
-        """In natural units the reference velocity is 1."""
+        """In natural units V is 1."""
         steepness = 1 / values["width"]
         return {
             "force": values["force"],
