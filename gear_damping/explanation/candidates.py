@@ -34,6 +34,7 @@ class Candidate:
         later: Free parameters that join in the full fit only.
         presence: Whether it is tried as a whole.
         replaced: Free parameters that it took the place of.
+        sharpest: Names of parameters that may rest at their lower bound without having run into it.
     """
 
     name: str
@@ -46,6 +47,7 @@ class Candidate:
     later: tuple[FreeParameter, ...]
     presence: bool
     replaced: tuple[FreeParameter, ...] = ()
+    sharpest: tuple[str, ...] = ()
 
     @property
     def options(self) -> tuple[tuple[str, object], ...]:
@@ -130,6 +132,7 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Si
         tuple(later),
         recipe.presence,
         replaced,
+        tuple(f"{kind.name}.{name}" for name in recipe.sharpest),
     )
 
 

@@ -1,7 +1,7 @@
 """What candidates may depend on: the rig of the records, and the orders at which something is left of them."""
 
 from collections.abc import Sequence
-from math import floor, pi
+from math import ceil, floor, pi
 
 import torch
 from torch import Tensor
@@ -19,6 +19,7 @@ MESHES = 3  # orders are looked at up to so many mesh orders
 LINES = 8  # that are kept
 POINTS = 10  # samples a tooth that are enough to see them
 LEAST_TURNS = 1.0  # of the pinion in a record: less does not tell one order from the next
+MOST_TURNS = 20.0  # of a record that are looked at
 GEAR_ORDERS = 3  # of the gear's shaft
 
 
@@ -84,6 +85,8 @@ def _by_angle(record: FitRecord, left: Tensor, teeth: int, speed: float) -> tupl
     turns = float((angle[-1] - angle[0]).abs()) / (2 * pi)
     if turns < LEAST_TURNS:
         return None
+    kept = ceil(len(left) * min(1.0, MOST_TURNS / turns))
+    angle, left, turns = angle[:kept], left[:kept], min(turns, MOST_TURNS)
     block = max(1, floor(len(left) / turns / (POINTS * teeth)))
     count = len(left) // block * block
     return tuple(series[:count].reshape(-1, block).mean(1) for series in (angle, left))

@@ -55,6 +55,8 @@ class Recipe:
             where they have no size yet.
         stood_in: Parameters, by flat name, that bend far off where the effect is missing, with the factor by which
             they are moved for further starts of the full fit.
+        sharpest: Parameters, by own name, whose lower bound is where finer steps would cost more and show no more: one
+            that comes to rest there has run into nothing.
         fixed: Parameters that stay.
         neutral: Value of the strengths without the effect.
         presence: The effect has no neutral value (a stiffness that was rigid): it is tried as a whole, at the
@@ -73,6 +75,7 @@ class Recipe:
     timed: Mapping[str, float] = field(default_factory=dict)
     beside: Mapping[str, float | None] = field(default_factory=dict)
     stood_in: Mapping[str, float] = field(default_factory=dict)
+    sharpest: tuple[str, ...] = ()
     fixed: Mapping[str, float] = field(default_factory=dict)
     neutral: float = 0.0
     presence: bool = False

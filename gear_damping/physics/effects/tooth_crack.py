@@ -27,6 +27,7 @@ def _one_tooth(number: int, shaft: str, teeth: int) -> Recipe:
         scanned={"phase": number * pitch, "extent": 0.8, "edge": EDGE * pitch},
         within={"tooth_crack.edge": (EDGES[0] * pitch, EDGES[1] * pitch), "tooth_crack.extent": (0.2, 1.2)},
         in_si=True,
+        sharpest=("edge",),
         options={"shaft": shaft},
     )
 
