@@ -18,7 +18,7 @@ help:  ## list the targets
 # The environment is remade whenever what it should hold has changed.
 $(VENV)/.installed: pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/pip install --quiet --disable-pip-version-check $(PIP_OPTIONS) -c constraints.txt -e ".[dev,joblib]"
+	$(BIN)/pip install --quiet --disable-pip-version-check $(PIP_OPTIONS) -c constraints.txt -e ".[dev,joblib,formats]"
 	@touch $@
 
 setup: $(VENV)/.installed  ## create .venv with everything that development needs

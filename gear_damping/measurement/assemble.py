@@ -7,13 +7,13 @@ from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.checks import check_record
+from gear_damping.measurement.cutting import moved
 from gear_damping.measurement.encoders import base_radius, transmission_error
 from gear_damping.measurement.fields import Problems
 from gear_damping.measurement.own_units import Conversion, UnitSystem
 from gear_damping.measurement.plan import Plan
 from gear_damping.measurement.raw import RawChannel, RawRecord
 from gear_damping.measurement.record import Channel, Finding, Quantity, Record
-from gear_damping.measurement.timebase import moved_to
 from gear_damping.units import parse_unit
 
 _GEOMETRY = ("n_teeth_pinion", "n_teeth_gear", "module", "pressure_angle")
@@ -67,7 +67,7 @@ class Assembler:
         if raw.own_time is None:
             values = record.base.resample(values)
         else:
-            values = moved_to(record.base.time, raw.own_time, values, plan.key, str(record.table.path))
+            values = moved(record.base, raw.own_time, values, plan.key, str(record.table.path))
             rate = raw.own_time.sampling_rate
             notes.append(f"{plan.name}: interpolated from {rate:.6g} Hz to the record's time")
         return Channel(plan.name, values, conversion.unit, raw.unit, conversion.factor, **limits, **plan.sensor)

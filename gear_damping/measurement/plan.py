@@ -47,7 +47,7 @@ class EncoderPlan:
 class RecordPlan:
     """A declared record; `conditions` are SI for a gear pair and as declared for an oscillator.
 
-    `window` is from and to in s, `resample` the rate in Hz to come down to.
+    `window` is begin and end in s on the record's own clock, `resample` the rate in Hz that it is to have.
     """
 
     key: str

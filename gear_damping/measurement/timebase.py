@@ -31,9 +31,9 @@ class TimeBase:
         return values if self.stamps is None else CubicSpline(self.stamps, values)(self.time)
 
 
-def steady_time(rate: float, first: int, n: int) -> TimeBase:
-    """The times of `n` samples at a rate in Hz, counted from row `first`."""
-    return TimeBase((first + np.arange(n)) / rate, rate)
+def steady_time(rate: float, first: int, n: int, start: float = 0.0) -> TimeBase:
+    """The times of `n` samples at a rate in Hz from row `first` on, where row 0 lies at `start` in s."""
+    return TimeBase(start + (first + np.arange(n)) / rate, rate)
 
 
 def stamped_time(stamps: NDArray[np.float64], key: str, source: str, first: int = 0) -> TimeBase:
@@ -102,9 +102,14 @@ def moved_to(
     Raises:
         InputError: the record lasts longer than the channel.
     """
+    refuse_uncovered(time, own, key, source)
+    return CubicSpline(own.time, own.resample(values))(time)
+
+
+def refuse_uncovered(time: NDArray[np.float64], own: TimeBase, key: str, source: str) -> None:
+    """Raise InputError where the record's `time` reaches more than one step beyond a channel's own."""
     step = 1 / own.sampling_rate
     if time[0] < own.time[0] - step or time[-1] > own.time[-1] + step:
         rule = f"covers {own.time[0]:.6g} to {own.time[-1]:.6g} s"
         rule += f", the record {time[0]:.6g} to {time[-1]:.6g} s"
         raise InputError(Problem(key, rule, remedy="shorten the record with slice", source=source))
-    return CubicSpline(own.time, own.resample(values))(time)
