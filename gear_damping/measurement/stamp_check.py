@@ -13,6 +13,7 @@ from scipy.ndimage import median_filter, uniform_filter1d
 from gear_damping.measurement.record import Finding, Record
 
 _LOCAL = 9  # samples about which a stamp's place is judged; slower wandering of a clock is left alone
+_MATTERS = 1e-4  # share of the signal's variance that s' e must have to matter
 _FEWEST = 64  # samples, below which nothing is decided
 _NEIGHBOURS = 33  # frequencies that give the level about a line
 _SLOPE_ERROR = 0.1  # of the power of s' e; nothing is weighted higher than this error of the slope allows
@@ -38,7 +39,7 @@ def stamps_against_values(record: Record) -> Finding | None:
 
 
 def share_at_stamps(values: NDArray[np.float64], stamps: NDArray[np.float64]) -> tuple[float, float]:
-    """The share of the stamps' jitter that values show, and its standard error (infinite where nothing shows).
+    """The share of the stamps' jitter that values show, and its standard error (infinite where none can matter).
 
     Args:
         values: (n,) samples.
@@ -50,13 +51,13 @@ def share_at_stamps(values: NDArray[np.float64], stamps: NDArray[np.float64]) ->
     slope, start = np.polyfit(index, values, 1)
     straight = start + slope * index
     moved = (slope + np.gradient(_quiet(values - straight))) * place
+    if np.var(moved) <= _MATTERS * np.var(values):
+        return 1.0, np.inf
     taper = np.hanning(values.size)
     seen, due = np.fft.rfft((values - straight) * taper), np.fft.rfft((moved - moved.mean()) * taper)
     power = np.abs(seen) ** 2
     due_power = np.abs(due) ** 2
     level = power + median_filter(power, _NEIGHBOURS, mode="nearest") + _SLOPE_ERROR * (due_power + due_power.mean())
-    if not np.any(due) or not np.all(level > 0):
-        return 1.0, np.inf
     total = float(np.sum(due_power / level))
     share = float(np.sum((due.conj() * seen).real / level)) / total
     spread = np.sum(due_power * np.abs(seen - share * due) ** 2 / level**2)
