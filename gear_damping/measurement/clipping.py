@@ -102,7 +102,8 @@ def _reach(side: NDArray) -> int:
     reach = _LEAST
     while reach < side.size:
         moves = np.abs(np.diff(side[-reach:]))
-        if np.mean(moves == 0) <= _HOLDS or np.ptp(side[-reach:]) >= _TRAVEL * np.median(moves[moves > 0]):
+        moving = moves[moves > 0]
+        if moving.size and (moving.size >= (1 - _HOLDS) * moves.size or np.ptp(side[-reach:]) >= _TRAVEL * np.median(moving)):
             break
         reach += reach // 2
     return min(reach, side.size)

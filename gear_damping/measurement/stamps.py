@@ -19,6 +19,7 @@ REMEDY = "or give sampling_rate instead of the time column, where the stamps are
 _HALF = 0.5  # of a step; a stamp that far from where it is due counts as another sample's
 _WHOLE = 0.05  # of a gap; how near a whole number of steps it must be, beside what the jitter allows
 _RUN = 0.8  # share of gaps behind a gap from which they are a lower rate, not losses
+_MANY = 0.1  # share of the steps; so many are no jumps but another rate
 _SIDE = 8  # samples at either side of a gap that say whether the shift lasts
 _LATE_SHARE = 1e-3  # of the stamps that may come late
 _RATE = 0.01  # relative change of rate that is no longer the same rate
@@ -77,7 +78,8 @@ def irregularity(stamps: NDArray[np.float64]) -> Finding | None:
     run = np.mean(np.diff(lasting) == 1) if lasting.size > 2 else 0.0
     if lasting.size and run < _RUN and _are_whole(gaps, _scatter(steps) / usual):
         return _dropped(np.round(gaps).astype(int) - 1, lasting)
-    changes = _change_of_rate(steps if run >= _RUN else np.delete(steps, lasting))
+    few = run < _RUN and lasting.size < _MANY * steps.size
+    changes = _change_of_rate(np.delete(steps, lasting) if few else steps)
     if changes is not None:
         return _unexplained(steps, changes, "the clock changes its rate")
     if lasting.size:
