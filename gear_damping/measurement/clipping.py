@@ -50,7 +50,7 @@ def _would_go_on(outward: NDArray, at: NDArray) -> bool:
     plateaus = list(_plateaus(at))
     lengths = [last + 1 - first for first, last in plateaus]
     moves = np.sign(steps[steps != 0])
-    restless = np.mean(moves[1:] != moves[:-1]) > _RESTLESS
+    restless = np.sum(moves[1:] != moves[:-1]) > _RESTLESS * moves.size
     if sum(length > 1 for length in lengths) > 1 and (restless or (held < _HELD and np.median(lengths) < _LEAST)):
         return True
     step = max(step_of(outward), _held_step(outward, at)) if held >= _HELD else step_of(outward)
@@ -85,7 +85,7 @@ def _cut(outward: NDArray, first: int, last: int, step: float) -> bool:
 
 def _leads_beyond(side: NDArray, top: float, length: int, step: float) -> bool:
     """Whether samples before a plateau at `top` lead more than a step and a half beyond it within half its length."""
-    side = side[-_reach(side) :]
+    side = side[-_reach(side, length // 2) :]
     moves = np.abs(np.diff(side))
     if top - side[-1] > _JUMP * float(moves.max()) > 0:
         return True
@@ -97,13 +97,13 @@ def _leads_beyond(side: NDArray, top: float, length: int, step: float) -> bool:
     return bool(height + slope * ahead + bend * ahead**2 - top > max(1.5 * step, 2 * abs(bend)))
 
 
-def _reach(side: NDArray) -> int:
+def _reach(side: NDArray, least: int) -> int:
     """How many samples next to a plateau are enough: coarse values that repeat must move through several steps."""
-    reach = _LEAST
+    reach = max(_LEAST, least)
     while reach < side.size:
         moves = np.abs(np.diff(side[-reach:]))
-        moving = moves[moves > 0]
-        if moving.size and (moving.size >= (1 - _HOLDS) * moves.size or np.ptp(side[-reach:]) >= _TRAVEL * np.median(moving)):
+        moving, way = moves[moves > 0], np.ptp(side[-reach:])
+        if moving.size and (moving.size >= (1 - _HOLDS) * moves.size or way >= _TRAVEL * np.median(moving)):
             break
         reach += reach // 2
     return min(reach, side.size)
