@@ -70,7 +70,7 @@ def _from_here(parameter: FreeParameter, value: float) -> FreeParameter:
 def recalibrated(nominal: Outcome, evidence: Evidence, solver: Solver | None = None) -> Outcome:
     """The nominal model fitted to the evidence in segments, from where it was and from little damping."""
     hypothesis = nominal.hypothesis
-    starts = torch.zeros(2, len(hypothesis.free), dtype=torch.float64)
+    starts = torch.zeros(2, len(hypothesis.common), dtype=torch.float64)
     places = [i for i, parameter in enumerate(hypothesis.free) if parameter.name == DAMPING]
     starts[1, places] = log(LESS_DAMPING)
     return fit_hypothesis(hypothesis, evidence, starts, iterations=SHAPE_ITERATIONS, solver=solver)
@@ -104,7 +104,7 @@ def _rough_gear_pair(evidence: Evidence, solver: Solver | None) -> Outcome:
     horizons = [short, None] if short < evidence.duration else [None]
     options = {"horizons": horizons, "iterations": 12, "solver": solver}
     if evidence.has_index:
-        starts = torch.zeros(STARTS, len(first.free), dtype=torch.float64)
+        starts = torch.zeros(STARTS, len(first.common), dtype=torch.float64)
         places = [i for i, p in enumerate(first.free) if p.name == "mesh_phase"]
         starts[:, places] = torch.linspace(0, 2 * pi, STARTS + 1, dtype=torch.float64)[:-1, None]
         return fit_hypothesis(first, evidence, starts if places else None, kept=0.12, **options)

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from gear_damping.explanation import gain
+from gear_damping.explanation.candidates import untried
 from gear_damping.explanation.data_faults import sentences
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Outcome
@@ -77,7 +78,7 @@ def of_search(measurement: Measurement, evidence: Evidence, noise: NoiseLevel, j
             "method": noise.method,
             "estimates_agree": noise.agree,
         },
-        "candidates": _candidates(judged),
+        "candidates": _candidates(judged, evidence),
         "not_observable": _not_observable(found.first_scores, names, evidence),
         "next_experiment": next_experiment(names, evidence),
         "unexplained": None if judged.verdict.word == CONSISTENT else leftover(last, evidence),
@@ -173,7 +174,7 @@ def _gain(judged: Judged, evidence: Evidence, noise: NoiseLevel) -> dict[str, An
     }
 
 
-def _candidates(judged: Judged) -> list[dict[str, Any]]:
+def _candidates(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
     """Every effect that was tried: what it promised on fitted records, and what a full fit took of held-out ones."""
     found = judged.found
     best_last = reversed(found.first_fits)  # of several forms of an effect the best one counts
@@ -189,12 +190,16 @@ def _candidates(judged: Judged) -> list[dict[str, Any]]:
             return statuses(judged.verdict.word)
         return "confusable" if name in alike else "rejected"
 
+    untold = [
+        {"name": name, "promised": None, "share": None, "status": "rejected", "at_bound": False, "failed": reason}
+        for name, reason in untried(evidence).items()
+    ]
     bounded = {refit.name for refit in found.first_fits if refit.is_at_bound}
     return [
         {"name": name, "promised": score.gain, "share": accepted.get(name, taken.get(name)), "status": status(name)}
         | {"at_bound": name in bounded, "failed": found.failed.get(name) or score.failed or None}
         for name, score in best.items()
-    ]
+    ] + untold
 
 
 def _not_observable(scores: Sequence[Score], named: Sequence[str], evidence: Evidence) -> list[dict[str, Any]]:
@@ -209,7 +214,7 @@ def _not_observable(scores: Sequence[Score], named: Sequence[str], evidence: Evi
         if name in named:
             continue
         place = score.candidate.strengths[0]
-        flat = score.candidate.hypothesis.free[place].name
+        flat = score.candidate.hypothesis.common[place].name
         unit = rig_unit(score.candidate.hypothesis.model.parameters()[flat.partition("[")[0]].unit, evidence)
         listed.append({"name": name, "parameter": flat, "smallest": score.smallest, "unit": unit})
     return listed

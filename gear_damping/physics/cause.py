@@ -99,6 +99,9 @@ class Cause:
         separated_by: The experiment that separates it from what it resembles.
         looks_like: Effects that no record of this channel can tell from it and that are never tried by themselves.
         simpler: An effect that it contains, with fewer parameters.
+        turns_with: Whether its phases turn with a shaft (`shaft`) and not with the mesh, or even tell single teeth
+            apart (`tooth`): where no index says how the shaft stands, every record has phases of its own, and teeth
+            have no number.
         one_class: What else no record of this channel parts from it, as words for a sentence: then several names are
             one answer.
     """
@@ -108,6 +111,7 @@ class Cause:
     separated_by: Experiment = "torque"
     looks_like: tuple[str, ...] = ()
     simpler: str | None = None
+    turns_with: Literal["", "shaft", "tooth"] = ""
     one_class: tuple[str, ...] = ()
 
     def recipes_for(self, rig: Rig) -> tuple[Recipe, ...]:

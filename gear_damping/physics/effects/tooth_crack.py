@@ -52,6 +52,7 @@ class ToothCrack(StiffnessFactor, Switch):
     cause: ClassVar = Cause(
         "a tooth that is softer than the others",
         _every_tooth,
+        turns_with="tooth",
     )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
