@@ -20,6 +20,7 @@ from scipy.signal import lfilter
 from gear_damping.explanation.casing.heard import Heard
 
 Array = NDArray[np.float64]
+SHAFTS = ("pinion", "gear")
 SPEED_POWERS = 3  # of the slow part: a mesh line that crosses a resonance is bent
 SLOWEST = 0.5  # of the slower shaft's order: below, a variation is no pattern of teeth
 MEMORY = 1e-3  # s of the prediction filter: it shortens the ringing of the path
@@ -32,7 +33,7 @@ class Patterns:
 
     Args:
         teeth: Of pinion and gear.
-        cycles: How many mesh cycles were used.
+        cut: (cycles, t) the signal cycle by cycle.
         mesh: (t,) the mean mesh cycle.
         pinion: (z1 // 2, t) complex: pattern of the pinion's teeth by tooth frequency 1 … z1 // 2.
         gear: (z2 // 2, t) the same of the gear.
@@ -41,12 +42,27 @@ class Patterns:
     """
 
     teeth: tuple[int, int]
-    cycles: int
+    cut: Array
     mesh: Array
     pinion: NDArray[np.complex128]
     gear: NDArray[np.complex128]
     rest: Array
     rate: float
+
+    @property
+    def cycles(self) -> int:
+        """How many mesh cycles were used."""
+        return len(self.cut)
+
+    def shaft(self, name: str) -> NDArray[np.complex128]:
+        """The pattern of one shaft."""
+        return self.pinion if name == "pinion" else self.gear
+
+    def without_mesh(self) -> Array:
+        """(cycles, t) all but the mesh and its slow variation."""
+        number = np.arange(self.cycles)
+        own = [series(self.shaft(s), z)[number % z] for s, z in zip(SHAFTS, self.teeth, strict=True)]
+        return self.rest + sum(own)
 
 
 def patterns(heard: Heard, whiten: bool = True) -> Patterns:
@@ -63,7 +79,7 @@ def patterns(heard: Heard, whiten: bool = True) -> Patterns:
         cut, _, _ = _cut(heard, whitened(heard.values, (cut - slow).ravel(), heard.rate))
     found = design.solve(cut)
     rate = samples * heard.speed * heard.teeth[0]
-    return Patterns(heard.teeth, len(cut), cut.mean(0), found["pinion"], found["gear"], found["rest"], rate)
+    return Patterns(heard.teeth, cut, cut.mean(0), found["pinion"], found["gear"], found["rest"], rate)
 
 
 def _cut(heard: Heard, values: Array) -> tuple[Array, Array, int]:
@@ -121,7 +137,8 @@ class Design:
         slow = np.column_stack([waves, *(scaled**power for power in range(1, SPEED_POWERS + 1))])
         common = teeth[1] // gcd(*teeth)  # every so many tooth frequencies of the gear are also the pinion's
         alone = np.array([j for j in range(1, teeth[1] // 2 + 1) if j % common], dtype=int)
-        return cls(slow, _waves(number, np.arange(1, teeth[0] // 2 + 1), teeth[0]), _waves(number, alone, teeth[1]), alone, teeth)
+        pinion = _waves(number, np.arange(1, teeth[0] // 2 + 1), teeth[0])
+        return cls(slow, pinion, _waves(number, alone, teeth[1]), alone, teeth)
 
     def solve(self, cut: Array) -> dict[str, Array]:
         """Complex patterns by tooth frequency and the rest; cycles at the ends count less."""
@@ -149,3 +166,12 @@ def _complex(fitted: Array, frequencies: NDArray, teeth: int) -> NDArray[np.comp
     found = fitted[:count].astype(complex)
     found[2 * frequencies != teeth] -= 1j * fitted[count:]
     return found
+
+
+def series(pattern: NDArray[np.complex128], teeth: int, least: int = 1) -> Array:
+    """(teeth, t) a pattern tooth by tooth, from tooth frequency `least` on."""
+    full = np.zeros((teeth // 2 + 1, pattern.shape[1]), complex)
+    full[least:] = pattern[least - 1 :] * (teeth / 2)
+    if teeth % 2 == 0:
+        full[-1] *= 2
+    return np.fft.irfft(full, teeth, axis=0)

@@ -40,7 +40,7 @@ class Localised:
     tooth: float
 
 
-def localised(pattern: NDArray[np.complex128], teeth: int, seed: int = 0) -> Localised | None:
+def localised(pattern: NDArray[np.complex128], teeth: int, draws: int = DRAWS, seed: int = 0) -> Localised | None:
     """Test a pattern (teeth // 2, t) of complex tooth frequencies; None where too few of them are known."""
     used = pattern.copy()
     used[:RUNOUT] = 0
@@ -51,7 +51,7 @@ def localised(pattern: NDArray[np.complex128], teeth: int, seed: int = 0) -> Loc
     rng = np.random.default_rng(seed)
     own = _shares(blocks[None], teeth)  # (1, window, place)
     drawn = []
-    for _ in range(0, DRAWS, _CHUNK):
+    for _ in range(0, draws, _CHUNK):
         phase = np.exp(2j * np.pi * rng.random((_CHUNK, len(used))))
         if teeth % 2 == 0:
             phase[:, -1] = np.sign(phase[:, -1].real)
@@ -90,7 +90,7 @@ def _judged(own: NDArray, drawn: NDArray) -> Localised:
     rank = np.argsort(np.argsort(-drawn, axis=0), axis=0) + 1  # 1: the highest of the draws
     least = rank.min(1)
     window = int(above.argmin())
-    p = (1 + np.sum(least <= above[window] )) / (1 + len(drawn))
+    p = (1 + np.sum(least <= above[window])) / (1 + len(drawn))
     return Localised(
         float(p), float(share[window]), float(np.median(drawn[:, window])), float(np.quantile(drawn[:, window], 0.99)),
         WINDOWS[window] / BLOCKS, float(own[window].argmax() / BLOCKS),
