@@ -85,7 +85,7 @@ def _harmonics() -> range:
 
 
 def asynchronous(found: Patterns) -> Asynchronous | None:
-    """The line that stands out most in what is not synchronous; None where shaft orders leave no room between them.
+    """The line that stands out most in what is not synchronous; None where none stands out or shafts leave no room.
 
     A synchronous line has a skirt, because path and load make it vary with the speed. A line counts therefore only
     where it is stronger than the synchronous ones beside it together.
@@ -101,7 +101,9 @@ def asynchronous(found: Patterns) -> Asynchronous | None:
     floor = median_filter(power[free], 2 * FLOOR + 1, mode="nearest") / np.log(2)  # of an exponential distribution
     ratio = np.where(power[free] > beside[free], power[free] / floor, 0)
     count, at = len(ratio), int(ratio.argmax())
-    p = -np.expm1(count * np.log1p(-np.exp(-max(ratio[at], 1e-9))))
+    if not ratio[at] > 0:
+        return None
+    p = -np.expm1(count * np.log1p(-np.exp(-ratio[at])))
     return Asynchronous(float(order[free][at]), float(ratio[at]), float(p), count)
 
 
