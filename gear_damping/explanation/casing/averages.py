@@ -24,8 +24,8 @@ class Average:
     Args:
         turn: (n,) turns of the shaft.
         values: (n,) average with the mesh in it, in the unit of the acceleration.
-        residual: (n,) the same without mesh and runout.
-        fm4: Kurtosis of the residual.
+        residual: (n,) the same without the mesh.
+        fm4: Kurtosis of the residual without runout.
         fm4_limit: Its 99 % point in sound gears with the same spectrum.
     """
 
@@ -55,17 +55,16 @@ def average(found: Patterns, shaft: str) -> Average:
     """The synchronous average of a shaft."""
     teeth = found.teeth[0] if shaft == "pinion" else found.teeth[1]
     pattern = found.shaft(shaft)
-    residual = series(pattern, teeth, RUNOUT + 1)
-    values = series(pattern, teeth) + found.mesh
+    residual = series(pattern, teeth)
     rng = np.random.default_rng(3)
     drawn = []
     for _ in range(FM4_DRAWS):
         phase = np.exp(2j * np.pi * rng.random(len(pattern)))
         phase[-1] = phase[-1] if teeth % 2 else np.sign(phase[-1].real)
         drawn.append(kurtosis(series(pattern * phase[:, None], teeth, RUNOUT + 1).ravel()))
-    turn = np.arange(values.size) / values.size
-    limit = float(np.quantile(drawn, LIMIT))
-    return Average(turn, values.ravel(), residual.ravel(), kurtosis(residual.ravel()), limit)
+    turn = np.arange(residual.size) / residual.size
+    fm4 = kurtosis(series(pattern, teeth, RUNOUT + 1).ravel())
+    return Average(turn, (residual + found.mesh).ravel(), residual.ravel(), fm4, float(np.quantile(drawn, LIMIT)))
 
 
 def kurtosis(values: Array) -> float:

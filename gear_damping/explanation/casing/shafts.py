@@ -1,6 +1,6 @@
 """Which shaft carries one tooth that stands out, and whether a shaft's pattern is there at all."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,9 +9,9 @@ from gear_damping.explanation.casing.cycles import SHAFTS, Patterns, series
 from gear_damping.explanation.casing.localised import DRAWS, RUNOUT, Localised, localised
 
 Array = NDArray[np.float64]
+SUSPECT = 0.05
 FLIPS = 2000
 FEWEST_GEAR_TURNS = 2.5  # fewer do not tell the patterns of the two shafts apart
-BURST = 2  # mesh periods that a burst may last where it is taken out
 
 
 @dataclass(frozen=True)
@@ -33,18 +33,19 @@ def one_tooth(found: Patterns, draws: int = DRAWS) -> dict[str, Localised | None
     """The test of either shaft; None where the record does not let it be made.
 
     Where the gear turns once in a whole number of turns of the pinion, all that repeats with the pinion repeats with
-    the gear as well. The gear is then judged by what the pinion cannot make, and its burst is taken out first.
+    the gear as well. The gear is then judged by what the pinion cannot make, and where it is suspect, a burst of the
+    pinion must be there in each of the turns that it makes within one of the gear.
     """
     z1, z2 = found.teeth
     result: dict[str, Localised | None] = dict.fromkeys(SHAFTS)
     if found.cycles / z2 >= FEWEST_GEAR_TURNS and z1 != z2:
         result["gear"] = localised(found.gear, z2, draws, seed=1)
-    pinion = found.pinion
-    if z2 % z1 == 0 and z1 != z2 and result["gear"] is not None and result["gear"].p < 0.05:
-        pinion = _without_burst(found, result["gear"])
-    elif z2 % z1:
-        pinion = pinion * _own(found.teeth)[:, None]
-    result["pinion"] = localised(pinion, z1, draws)
+    gear = result["gear"]
+    if z2 % z1 == 0 and gear is not None and gear.p < SUSPECT:
+        result["pinion"] = _in_every_turn(found, gear, draws)
+    else:
+        own = _own(found.teeth) if z2 % z1 else np.ones(z1 // 2)
+        result["pinion"] = localised(found.pinion * own[:, None], z1, draws)
     return result
 
 
@@ -54,20 +55,21 @@ def _own(teeth: tuple[int, int]) -> NDArray[np.bool_]:
     return (frequency * teeth[1]) % teeth[0] != 0
 
 
-def _without_burst(found: Patterns, gear: Localised) -> NDArray[np.complex128]:
-    """The pinion's pattern less what one tooth of the gear brings into it, once in z2 / z1 turns."""
+def _in_every_turn(found: Patterns, gear: Localised, draws: int) -> Localised | None:
+    """The test of the pinion in each of its turns within one of the gear; the least certain of them counts."""
     z1, z2 = found.teeth
-    per = z2 // z1
-    seen = series(found.gear, z2).ravel()  # what is left of a burst where its mean over the turns is taken out
-    samples = len(seen) // z2
-    begin = int((gear.tooth - 0.25) * samples)
-    window = np.arange(begin, begin + int(BURST * samples))
-    burst = np.zeros(z1 * samples)
-    burst[window % len(burst)] = seen[window % len(seen)] / (1 - 1 / per) / per
-    spectrum = np.fft.rfft(burst.reshape(z1, samples), axis=0)[1:] * (2 / z1)
-    if z1 % 2 == 0:
-        spectrum[-1] /= 2
-    return found.pinion - spectrum
+    whole = series(found.gear, z2) + np.tile(series(found.pinion, z1), (z2 // z1, 1))
+    begin = round(gear.tooth) - z1 // 2  # the gear's burst in the middle of a turn
+    tests = []
+    for turn in np.roll(whole, -begin, axis=0).reshape(-1, z1, whole.shape[1]):
+        spectrum = np.fft.rfft(turn, axis=0)[1:] * (2 / z1)
+        if z1 % 2 == 0:
+            spectrum[-1] /= 2
+        tests.append(localised(spectrum, z1, draws))
+    if any(test is None for test in tests):
+        return None
+    worst = max(tests, key=lambda test: test.p)
+    return replace(worst, tooth=(worst.tooth + begin) % z1)
 
 
 def presence(found: Patterns, shaft: str) -> Presence | None:
