@@ -16,6 +16,7 @@ from scipy.stats import ttest_ind
 from gear_damping.explanation.casing.averages import by_revolution
 from gear_damping.explanation.casing.cycles import Patterns, series
 from gear_damping.explanation.casing.localised import RUNOUT
+from gear_damping.explanation.casing.shafts import turns_of
 from gear_damping.explanation.casing.study import Study
 
 Array = NDArray[np.float64]
@@ -106,10 +107,8 @@ def _kurtosis(study: Study) -> Array:
 def _pattern(shaft: str) -> Callable[[Study], Array]:
     def level(study: Study) -> Array:
         """(turn,) power of the pattern that a turn shares with all others: chance has none on the average."""
-        found, teeth = study.plain, study.heard.teeth[shaft == "gear"]
-        number = np.arange(found.cycles)
-        own = found.rest + series(found.shaft(shaft), teeth, RUNOUT + 1)[number % teeth]
-        turns = _turns(own, teeth).reshape(found.cycles // teeth, -1)
+        turns = turns_of(study.plain, shaft)
+        turns = turns.reshape(len(turns), -1)
         if len(turns) < 2:
             return np.zeros(len(turns))
         others = (turns.sum(0) - turns) / (len(turns) - 1)

@@ -1,7 +1,7 @@
 """What explanation.json holds of a casing: findings and families, no cause."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from gear_damping.errors import InputError, Problem
@@ -14,6 +14,7 @@ from gear_damping.measurement.record import Measurement
 
 REFERENCE = "reference"
 MOST_DRAWS = 20_000
+UNSTEADY = 0.1  # relative range of the speed: beyond, mesh lines cross whole resonances of the path
 SENSOR = (
     "Measure the transmission error with an encoder on each shaft, or the acceleration tangentially on a shaft: "
     "a casing is heard through a path that nobody knows, so that no size and no cause can be read from it."
@@ -57,15 +58,16 @@ def explain_casing(measurement: Measurement, log: Callable[[str], None]) -> tupl
     return _content(measurement, records, references, limit), CasingStudy(records, references)
 
 
-def _content(
-    measurement: Measurement, records: Sequence[Study], references: Sequence[Study], limit: float
-) -> Content:
+def _content(measurement: Measurement, records: Sequence[Study], references: Sequence[Study], limit: float) -> Content:
     found = [entry for one in records for entry in findings.of_record(one, limit)]
-    changed = [entry for one in records for entry in findings.what_changed(one, references, limit)] if references else None
+    changed = None
+    if references:
+        changed = [entry for one in records for entry in findings.what_changed(one, references, limit)]
     families = [_family(name, found, changed or ()) for name in findings.FAMILIES]
     flagged = [family for family in families if family["flagged"]]
     said = [family["sentence"] for family in flagged] or ["Nothing stands out that sound gears do not show."]
     said += [] if references else ["There is no record of role: reference, so that slow wear would not be seen."]
+    said += [_unsteady(one) for one in records if one.heard.fluctuation > UNSTEADY]
     missing = [name for name in NAMES if name not in measurement.parameters]
     if missing:
         teeth = dict(zip(NAMES, records[0].heard.teeth, strict=True))
@@ -83,6 +85,13 @@ def _content(
             "sensor": SENSOR,
         },
     }
+
+
+def _unsteady(one: Study) -> str:
+    return (
+        f"{one.heard.name}: the speed varies by {100 * one.heard.fluctuation:.2g} %, and the path with it: "
+        "cut out a steadier stretch with slice."
+    )
 
 
 def _family(name: str, found: Sequence[Content], changed: Sequence[Content]) -> Content:
@@ -112,8 +121,7 @@ def _record(one: Study) -> Content:
         "teeth": {"pinion": heard.teeth[0], "gear": heard.teeth[1]},
         "orders": heard.orders,
         "lines": [
-            {"what": line.what, "order": line.order, "amplitude": line.amplitude, "floor": line.floor, "unit": heard.unit}
-            for line in one.lines
+            asdict(line) | {"unit": heard.unit} for line in one.lines
         ],
         "kurtosis_by_revolution": {"values": one.kurtosis.tolist(), "limit": one.kurtosis_limit},
         "modulation": {

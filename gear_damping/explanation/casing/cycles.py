@@ -33,6 +33,7 @@ class Patterns:
 
     Args:
         teeth: Of pinion and gear.
+        first: Number of the first cycle, counted from the zero of the angle.
         cut: (cycles, t) the signal cycle by cycle.
         mesh: (t,) the mean mesh cycle.
         pinion: (z1 // 2, t) complex: pattern of the pinion's teeth by tooth frequency 1 … z1 // 2.
@@ -42,6 +43,7 @@ class Patterns:
     """
 
     teeth: tuple[int, int]
+    first: int
     cut: Array
     mesh: Array
     pinion: NDArray[np.complex128]
@@ -54,14 +56,18 @@ class Patterns:
         """How many mesh cycles were used."""
         return len(self.cut)
 
+    @property
+    def number(self) -> NDArray[np.int_]:
+        """(cycles,) number of each cycle."""
+        return self.first + np.arange(self.cycles)
+
     def shaft(self, name: str) -> NDArray[np.complex128]:
         """The pattern of one shaft."""
         return self.pinion if name == "pinion" else self.gear
 
     def without_mesh(self) -> Array:
         """(cycles, t) all but the mesh and its slow variation."""
-        number = np.arange(self.cycles)
-        own = [series(self.shaft(s), z)[number % z] for s, z in zip(SHAFTS, self.teeth, strict=True)]
+        own = [series(self.shaft(s), z)[self.number % z] for s, z in zip(SHAFTS, self.teeth, strict=True)]
         return self.rest + sum(own)
 
 
@@ -73,13 +79,14 @@ def patterns(heard: Heard, whiten: bool = True) -> Patterns:
         whiten: Shorten the ringing of the path first, by a linear prediction of what is not mesh.
     """
     cut, speed, samples = _cut(heard, heard.values)
-    design = Design.of(heard.teeth, speed)
+    first = int(np.ceil(heard.turn[0] * heard.teeth[0]))
+    design = Design.of(heard.teeth, speed, first)
     if whiten:
         slow = design.slow @ np.linalg.lstsq(design.slow, cut, rcond=None)[0]
         cut, _, _ = _cut(heard, whitened(heard.values, (cut - slow).ravel(), heard.rate))
     found = design.solve(cut)
     rate = samples * heard.speed * heard.teeth[0]
-    return Patterns(heard.teeth, cut, cut.mean(0), found["pinion"], found["gear"], found["rest"], rate)
+    return Patterns(heard.teeth, first, cut, cut.mean(0), found["pinion"], found["gear"], found["rest"], rate)
 
 
 def _cut(heard: Heard, values: Array) -> tuple[Array, Array, int]:
@@ -90,7 +97,7 @@ def _cut(heard: Heard, values: Array) -> tuple[Array, Array, int]:
     starts = np.interp(np.arange(first, last + 1) / teeth, heard.turn, time)
     period = 1 / (heard.speed * teeth)
     starts = starts[starts + period * 1.05 < time[-1]]
-    samples = max(int(round(period * heard.rate)), 8)
+    samples = max(round(period * heard.rate), 8)
     places = starts[:, None] + np.arange(samples) * (period / samples)
     speed = period / np.gradient(starts) - 1
     return _between(values, places * heard.rate), speed, samples
@@ -108,7 +115,7 @@ def _between(values: Array, place: Array) -> Array:
 
 def whitened(values: Array, like: Array, rate: float) -> Array:
     """Values through the prediction-error filter of `like`, which has the same rate."""
-    order = max(8, int(round(MEMORY * rate)))
+    order = max(8, round(MEMORY * rate))
     spectrum = np.abs(np.fft.rfft(like, 2 * len(like))) ** 2
     covariance = np.fft.irfft(spectrum)[: order + 1]
     covariance[0] *= 1 + RIDGE
@@ -127,12 +134,12 @@ class Design:
     teeth: tuple[int, int]
 
     @classmethod
-    def of(cls, teeth: tuple[int, int], speed: Array) -> "Design":
-        """For cycles of these relative speeds."""
+    def of(cls, teeth: tuple[int, int], speed: Array, first: int) -> "Design":
+        """For cycles of these relative speeds, numbered from `first`."""
         count = len(speed)
-        number = np.arange(count)
+        number = first + np.arange(count)
         slowest = SLOWEST / max(teeth)  # cycles^-1
-        waves = np.cos(np.pi * np.outer(number + 0.5, np.arange(int(2 * slowest * count) + 1)) / count)
+        waves = np.cos(np.pi * np.outer(np.arange(count) + 0.5, np.arange(int(2 * slowest * count) + 1)) / count)
         scaled = speed / max(np.abs(speed).max(), 1e-12)
         slow = np.column_stack([waves, *(scaled**power for power in range(1, SPEED_POWERS + 1))])
         common = teeth[1] // gcd(*teeth)  # every so many tooth frequencies of the gear are also the pinion's

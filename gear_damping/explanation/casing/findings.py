@@ -40,31 +40,33 @@ def of_record(study: Study, limit: float) -> list[Entry]:
 
 
 def _of_shaft(study: Study, shaft: str, limit: float) -> list[Entry]:
-    order = study.heard.orders[shaft]
-    one, there, average = study.one_tooth[shaft], study.presence[shaft], study.averages[shaft]
-    common = {"record": study.heard.name, "family": ONCE[shaft], "shaft": shaft, "order": order}
-    found = []
-    if one is None:
-        said = f"The record holds too few turns of the {shaft}, or its teeth repeat with the other shaft's: one tooth "
-        said += "cannot be told from the others."
-        found.append(_entry(common, "one_tooth_stands_out", None, None, limit, False, said))
-    else:
-        flagged = one.p <= limit
-        said = (
-            f"A window of {one.window:g} mesh periods holds {100 * one.share:.2g} % of the energy of the {shaft}'s pattern "
-            f"({100 * one.usual:.2g} % is usual in sound gears)"
-        )
-        said += f": a burst once per turn of the {shaft}, {one.tooth:.3g} teeth after the zero of its angle." if flagged else "."
-        found.append(_entry(common, "one_tooth_stands_out", one.share, one.p, limit, flagged, said))
-        found[-1] |= {"usual": one.usual, "tooth": one.tooth, "window_mesh_periods": one.window}
+    common = {"record": study.heard.name, "family": ONCE[shaft], "shaft": shaft, "order": study.heard.orders[shaft]}
+    found = [_one_tooth(study, shaft, common, limit)]
+    there, average = study.presence[shaft], study.averages[shaft]
     if there is not None:
         repeats = there.p <= limit
-        said = f"The {there.turns} turns of the {shaft} {'share a' if repeats else 'show no common'} pattern beside the mesh"
-        said += "; sound gears have one too, of runout and pitch errors." if repeats else "."
+        said = f"The {there.turns} turns of the {shaft} {'share a' if repeats else 'show no common'} pattern "
+        said += (
+            "beside the mesh; sound gears have one too, of runout and pitch errors." if repeats else "beside the mesh."
+        )
         found.append(_entry(common, "pattern_of_the_turn", there.ratio, there.p, limit, False, said))
-    said = f"FM4 of the {shaft}'s average is {average.fm4:.3g} (99 % of sound gears of this spectrum: {average.fm4_limit:.3g})."
+    said = f"FM4 of the {shaft}'s average is {average.fm4:.3g}; "
+    said += f"99 % of sound gears with this spectrum stay below {average.fm4_limit:.3g}."
     found.append(_entry(common, "fm4", average.fm4, None, average.fm4_limit, False, said))
     return found
+
+
+def _one_tooth(study: Study, shaft: str, common: Entry, limit: float) -> Entry:
+    one = study.one_tooth[shaft]
+    if one is None:
+        said = f"The record holds too few turns of the {shaft} to tell one tooth from the others."
+        return _entry(common, "one_tooth_stands_out", None, None, limit, False, said)
+    flagged = one.p <= limit
+    said = f"A window of {one.window:g} mesh periods holds {100 * one.share:.2g} % of the energy of the {shaft}'s "
+    said += f"pattern ({100 * one.usual:.2g} % is usual in sound gears)"
+    burst = f": a burst once per turn of the {shaft}, {one.tooth:.3g} teeth after the zero of its angle."
+    found = _entry(common, "one_tooth_stands_out", one.share, one.p, limit, flagged, said + (burst if flagged else "."))
+    return found | {"usual": one.usual, "tooth": one.tooth, "window_mesh_periods": one.window}
 
 
 def _entry(
@@ -80,7 +82,7 @@ def _at_the_mesh(study: Study) -> Entry:
     share = float((study.plain.mesh**2).mean()) / whole if whole else 0.0
     order = study.heard.orders["mesh"]
     common = {"record": study.heard.name, "family": AT_MESH, "shaft": None, "order": order}
-    said = f"The mesh (order {order:g} and its harmonics) holds {100 * share:.3g} % of the signal, as every gear pair shows."
+    said = f"The mesh (order {order:g} and its harmonics) holds {100 * share:.3g} % of the signal; every pair has it."
     return _entry(common, "share_of_energy", share, None, None, False, said)
 
 
@@ -103,7 +105,8 @@ def what_changed(study: Study, references: Sequence[Study], limit: float) -> lis
     found = [_changed(change, limit, same) for change in changes(study, references)]
     for shaft in SHAFTS:
         value, top = na4(study, references, shaft), study.averages[shaft].fm4_limit
-        said = f"NA4 of the {shaft}'s residual over its reference is {value:.3g}; a sound pattern that has not grown stays below {top:.3g}."
+        said = f"NA4 of the {shaft}'s residual over its reference is {value:.3g}; "
+        said += f"a sound pattern that has not grown stays below {top:.3g}."
         found.append(
             {"record": study.heard.name, "what": f"NA4 of the {shaft}", "family": ONCE[shaft], "reference": None}
             | {"now": value, "unit": "1", "factor": None, "p": None, "limit": top, "flagged": False, "sentence": said}

@@ -49,6 +49,13 @@ class Heard:
         return self.turns / (len(self.turn) - 1) * self.rate
 
     @property
+    def fluctuation(self) -> float:
+        """Range of the speed over its mean, over parts of the record that hold about a turn."""
+        parts = self.turn[:: max(1, round(self.rate / self.speed))]
+        steps = np.diff(parts)
+        return float(np.ptp(steps) / steps.mean()) if len(steps) > 1 else 0.0
+
+    @property
     def orders(self) -> dict[str, float]:
         """Orders of the shafts and of the mesh, in cycles per turn of the pinion."""
         return {"pinion": 1.0, "gear": self.teeth[0] / self.teeth[1], "mesh": float(self.teeth[0])}

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import ttest_1samp
 
 from gear_damping.explanation.casing.cycles import SHAFTS, Patterns, series
 from gear_damping.explanation.casing.localised import DRAWS, RUNOUT, Localised, localised
@@ -46,6 +47,9 @@ def one_tooth(found: Patterns, draws: int = DRAWS) -> dict[str, Localised | None
     else:
         own = _own(found.teeth) if z2 % z1 else np.ones(z1 // 2)
         result["pinion"] = localised(found.pinion * own[:, None], z1, draws)
+    for shaft, one in result.items():
+        if one is not None:
+            result[shaft] = replace(one, p=max(one.p, repeated(found, shaft, one)))
     return result
 
 
@@ -72,6 +76,30 @@ def _in_every_turn(found: Patterns, gear: Localised, draws: int) -> Localised | 
     return replace(worst, tooth=(worst.tooth + begin) % z1)
 
 
+def turns_of(found: Patterns, shaft: str) -> Array:
+    """(turn, tooth, t) whole turns of a shaft: its pattern without runout, and what is not synchronous."""
+    teeth = found.teeth[SHAFTS.index(shaft)]
+    own = found.rest + series(found.shaft(shaft), teeth, RUNOUT + 1)[found.number % teeth]
+    turns = len(own) // teeth
+    return own[: turns * teeth].reshape(turns, teeth, -1)
+
+
+def repeated(found: Patterns, shaft: str, one: Localised) -> float:
+    """Probability that what stands out is no more than single impacts: it must be common to the turns.
+
+    Each turn's window is compared with the mean of the other turns' windows; a single impact has nothing in common.
+    """
+    turns = turns_of(found, shaft)
+    count, teeth, samples = turns.shape
+    if count < 3:
+        return 1.0
+    begin = round((one.tooth - found.first) % teeth * samples)
+    window = (begin + np.arange(round(one.window * samples))) % (teeth * samples)
+    own = turns.reshape(count, -1)[:, window]
+    others = (own.sum(0) - own) / (count - 1)
+    return float(ttest_1samp((own * others).sum(1), 0.0, alternative="greater").pvalue)
+
+
 def presence(found: Patterns, shaft: str) -> Presence | None:
     """Compare the pattern of a shaft with what chance makes of the same turns with random signs."""
     place = SHAFTS.index(shaft)
@@ -79,10 +107,7 @@ def presence(found: Patterns, shaft: str) -> Presence | None:
     turns = found.cycles // teeth
     if turns < 3:
         return None
-    number = np.arange(turns * teeth)
-    pattern = series(found.shaft(shaft), teeth, RUNOUT + 1)
-    own = found.rest[: len(number)] + pattern[number % teeth]
-    own = own.reshape(turns, -1)
+    own = turns_of(found, shaft).reshape(turns, -1)
     own = own - own.mean(1, keepdims=True)
     gram = own @ own.T
     signs = np.random.default_rng(2).choice([-1.0, 1.0], (FLIPS, turns))

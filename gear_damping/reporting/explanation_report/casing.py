@@ -92,7 +92,7 @@ def _figures(one: Study, reference: Study | None, findings: list[Mapping[str, An
         "The average over the turns of each shaft, without the mesh and with the ringing of the path "
         "shortened: sound teeth differ without order, one bad tooth makes a burst."
     )
-    said_kurtosis = "Kurtosis of each turn of the pinion without the mesh: bursts raise it above that of noise, which is 3."
+    said_kurtosis = "Kurtosis of each turn of the pinion without the mesh: bursts raise it above 3, that of noise."
     said_orders = "The casing over orders: sidebands at a shaft's order beside the mesh harmonics turn with that shaft."
     return [
         _shown(_orders(one, reference), said_orders + beside),

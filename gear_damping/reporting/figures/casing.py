@@ -113,7 +113,8 @@ def casing_kurtosis_figure(values: ArrayLike, limit: float, reference: ArrayLike
             look = {"color": PALE, "marker": "s", "markersize": 3, "linewidth": 0.7}
             axes.plot(1 + np.arange(len(reference)), reference, label="reference", **look)
         (values,) = series(values=values)
-        axes.plot(1 + np.arange(len(values)), values, color=BLUE, marker="o", markersize=3.5, linewidth=0.8, label="record")
+        look = {"color": BLUE, "marker": "o", "markersize": 3.5, "linewidth": 0.8}
+        axes.plot(1 + np.arange(len(values)), values, label="record", **look)
         axes.axhline(limit, color=INK, linestyle="--", linewidth=0.9, label="99 % of turns of noise")
         axes.axhline(3, color=INK, linestyle=":", linewidth=0.9, label="noise")
         axes.set(xlabel="turn of the pinion", ylabel="kurtosis")

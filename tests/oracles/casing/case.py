@@ -39,33 +39,36 @@ class CasingCase:
     speed: float
 
 
-def draw_case(seed: int, hidden: str, teeth: tuple[int, int] | None = None, seconds: float | None = None) -> CasingCase:
-    """The case of a seed; teeth and length are drawn where they are not given."""
+def draw_case(
+    seed: int, hidden: str, teeth: tuple[int, int] | None = None, seconds: float | None = None, run: int = 0
+) -> CasingCase:
+    """The case of a seed; teeth and length are drawn where they are not given.
+
+    Another `run` has the same gears, path and mean speed, but its own fluctuation, noise and start.
+    """
     rng = np.random.default_rng([seed, 4711])
     teeth = teeth or (int(rng.choice(TEETH[0])), int(rng.integers(TEETH[1][0], TEETH[1][1] + 1)))
     gears = _gears(rng, teeth, hidden)
     rpm, length = rng.uniform(600, 3000), float(rng.uniform(1, 3))
     length = seconds or length
-    count = round((length + SETTLING) * RATE)
-    time = np.arange(2 * count + 1) / (2 * RATE)
-    turn = _angle(rng, rpm / 60, time) / (2 * np.pi)
-    load = gears.load * (1 + 0.01 * np.sin(2 * np.pi * rng.uniform(0.2, 2) * time + rng.uniform(0, 6)))
-    force = mesh_force(gears, turn, load, 1 / RATE)
     modes = tuple(
         Mode(float(np.exp(rng.uniform(np.log(500), np.log(8000)))), float(rng.uniform(0.01, 0.05)), float(rng.normal()))
         for _ in range(rng.integers(2, 7))
     )
-    factor = int(rng.choice([2, 4, 5]))
+    factor, level = int(rng.choice([2, 4, 5])), 10 ** (-rng.uniform(10, 30) / 20)
+    colour, per_turn = float(rng.choice([0.0, 0.6, 0.9])), int(rng.choice([1, 2, 6, 12, 24, 60]))
+    rng = np.random.default_rng([seed, 4711, run])  # from here on what differs from run to run
+    count = round((length + SETTLING) * RATE)
+    time = np.arange(2 * count + 1) / (2 * RATE)
+    turn = _angle(rng, rpm / 60, time) / (2 * np.pi)
+    load = gears.load * (1 + 0.01 * np.sin(2 * np.pi * rng.uniform(0.2, 2) * time + rng.uniform(0, 6)))
+    force = mesh_force(gears, turn, load, 1 / RATE) * (100 / gears.load)  # a casing shakes with some m/s^2
     clean = sampled(heard(force, modes, RATE)[round(SETTLING * RATE) :], factor)
-    level = 10 ** (-rng.uniform(10, 30) / 20) * clean.std()
-    colour = float(rng.choice([0.0, 0.6, 0.9]))
-    values = clean + level * noise(rng, len(clean), colour)
-    per_turn = int(rng.choice([1, 2, 6, 12, 24, 60]))
+    values = clean + level * clean.std() * noise(rng, len(clean), colour)
     pulses = _pulses(rng, time, turn, per_turn)
     ends = (-0.5 / per_turn / (rpm / 60), len(values) / (RATE / factor) + 0.5 / per_turn / (rpm / 60))
     pulses = pulses[(pulses > ends[0]) & (pulses < ends[1])]
-    scale = 10.0 / clean.std()  # a casing shakes with some m/s^2
-    return CasingCase(hidden, gears, RATE / factor, scale * values, pulses, per_turn, rpm * np.pi / 30)
+    return CasingCase(hidden, gears, RATE / factor, values, pulses, per_turn, rpm * np.pi / 30)
 
 
 def _gears(rng: np.random.Generator, teeth: tuple[int, int], hidden: str) -> Gears:

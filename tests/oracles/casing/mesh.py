@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -42,7 +42,6 @@ class Gears:
     first: int = 0
     crack: float = 0.0
     cracked: tuple[int, int] = (0, 0)
-    name: str = field(default="", compare=False)
 
 
 def ramp(u: Array) -> Array:

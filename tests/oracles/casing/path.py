@@ -27,7 +27,8 @@ def heard(force: Array, modes: tuple[Mode, ...], rate: float) -> Array:
         warp = omega / np.tan(omega / (2 * rate))
         b = np.array([1.0, -2.0, 1.0]) * warp**2
         a0 = warp**2 + 2 * mode.damping_ratio * omega * warp + omega**2
-        a = np.array([1.0, 2 * (omega**2 - warp**2) / a0, (warp**2 - 2 * mode.damping_ratio * omega * warp + omega**2) / a0])
+        a2 = warp**2 - 2 * mode.damping_ratio * omega * warp + omega**2
+        a = np.array([1.0, 2 * (omega**2 - warp**2) / a0, a2 / a0])
         found += mode.size * lfilter(b / a0, a, force)
     return found
 

@@ -29,9 +29,11 @@ def write_case(
     given = [(cases, None)] if isinstance(cases, CasingCase) else cases
     records = [_record(folder, i, case, role, kind, train) for i, (case, role) in enumerate(given, start=1)]
     teeth = given[0][0].gears.teeth
-    parameters = {name: {"value": int(z), "unit": "1"} for name, z in zip(("n_teeth_pinion", "n_teeth_gear"), teeth, strict=True)}
+    names = ("n_teeth_pinion", "n_teeth_gear")
+    parameters = {name: {"value": int(z), "unit": "1"} for name, z in zip(names, teeth, strict=True)}
     path = folder / "measurement.yaml"
-    path.write_text(yaml.safe_dump({"system": "gear_pair", "parameters": parameters, "records": records}, sort_keys=False))
+    content = {"system": "gear_pair", "parameters": parameters, "records": records}
+    path.write_text(yaml.safe_dump(content, sort_keys=False), encoding="utf-8")
     return path
 
 
@@ -47,8 +49,8 @@ def _record(folder: Path, number: int, case: CasingCase, role: str | None, kind:
     if kind == "npz":
         np.savez(folder / name, **columns)
     else:
-        header = ",".join(columns)
-        np.savetxt(folder / name, np.column_stack(list(columns.values())), delimiter=",", header=header, comments="", fmt="%.6g")
+        table = np.column_stack(list(columns.values()))
+        np.savetxt(folder / name, table, delimiter=",", header=",".join(columns), comments="", fmt="%.6g")
     declared = {
         "file": name,
         "sampling_rate": {"value": case.rate, "unit": "Hz"},
