@@ -59,7 +59,8 @@ def _of_shaft(study: Study, shaft: str, limit: float) -> list[Entry]:
 def _one_tooth(study: Study, shaft: str, common: Entry, limit: float) -> Entry:
     one = study.one_tooth[shaft]
     if one is None:
-        said = f"The record holds too few turns of the {shaft} to tell one tooth from the others."
+        said = f"The record holds too few turns of the {shaft}, or its turns repeat with the other shaft: one tooth "
+        said += "cannot be told from the others."
         return _entry(common, "one_tooth_stands_out", None, None, limit, False, said)
     flagged = one.p <= limit
     said = f"A window of {one.window:g} mesh periods holds {100 * one.share:.2g} % of the energy of the {shaft}'s "
@@ -102,7 +103,11 @@ def _asynchronous(study: Study, limit: float) -> Entry:
 def what_changed(study: Study, references: Sequence[Study], limit: float) -> list[Entry]:
     """The levels of a record beside its references; flagged from a factor of two on, at one speed."""
     same = at_one_speed(study, references)
-    found = [_changed(change, limit, same) for change in changes(study, references)]
+    levels = changes(study, references)
+    found = [_changed(change, limit, same) for change in levels]
+    grown = max((change.factor for change in levels if change.family != ASYNCHRONOUS), default=0.0)
+    for entry in found:  # a burst is never quite alike in all turns: what it leaves is no sign of its own
+        entry["flagged"] &= entry["family"] != ASYNCHRONOUS or entry["factor"] > grown
     for shaft in SHAFTS:
         value, top = na4(study, references, shaft), study.averages[shaft].fm4_limit
         said = f"NA4 of the {shaft}'s residual over its reference is {value:.3g}; "

@@ -43,7 +43,9 @@ def one_tooth(found: Patterns, draws: int = DRAWS) -> dict[str, Localised | None
         result["gear"] = localised(found.gear, z2, draws, seed=1)
     gear = result["gear"]
     if z2 % z1 == 0 and gear is not None and gear.p < SUSPECT:
-        result["pinion"] = _in_every_turn(found, gear, draws)
+        whole = series(found.gear, z2) + np.tile(series(found.pinion, z1), (z2 // z1, 1))
+        gear = result["gear"] = _strongest(whole, gear, z1)
+        result["pinion"] = _in_every_turn(whole, gear, z1, draws)
     else:
         own = _own(found.teeth) if z2 % z1 else np.ones(z1 // 2)
         result["pinion"] = localised(found.pinion * own[:, None], z1, draws)
@@ -59,10 +61,17 @@ def _own(teeth: tuple[int, int]) -> NDArray[np.bool_]:
     return (frequency * teeth[1]) % teeth[0] != 0
 
 
-def _in_every_turn(found: Patterns, gear: Localised, draws: int) -> Localised | None:
+def _strongest(whole: Array, gear: Localised, z1: int) -> Localised:
+    """The gear's place among those that are turns of the pinion apart, where all that repeats is strongest."""
+    z2, samples = whole.shape
+    window = np.arange(round(gear.window * samples))
+    places = [(gear.tooth + turn * z1) % z2 for turn in range(z2 // z1)]
+    energy = [np.sum(whole.ravel()[(round(place * samples) + window) % whole.size] ** 2) for place in places]
+    return replace(gear, tooth=places[int(np.argmax(energy))])
+
+
+def _in_every_turn(whole: Array, gear: Localised, z1: int, draws: int) -> Localised | None:
     """The test of the pinion in each of its turns within one of the gear; the least certain of them counts."""
-    z1, z2 = found.teeth
-    whole = series(found.gear, z2) + np.tile(series(found.pinion, z1), (z2 // z1, 1))
     begin = round(gear.tooth) - z1 // 2  # the gear's burst in the middle of a turn
     tests = []
     for turn in np.roll(whole, -begin, axis=0).reshape(-1, z1, whole.shape[1]):
