@@ -18,7 +18,7 @@ help:  ## list the targets
 # The environment is remade whenever what it should hold has changed.
 $(VENV)/.installed: pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/pip install --quiet --disable-pip-version-check $(PIP_OPTIONS) -c constraints.txt -e ".[dev,joblib]"
+	$(BIN)/pip install --quiet --disable-pip-version-check $(PIP_OPTIONS) -c constraints.txt -e ".[dev,joblib,formats]"
 	@touch $@
 
 setup: $(VENV)/.installed  ## create .venv with everything that development needs
@@ -36,8 +36,9 @@ check: setup  ## everything `make test` runs and the slow tests
 	$(BIN)/lint-imports
 	$(PYTEST) $(ARGS)
 
-docs: setup  ## write docs/effects.md and its figures from the declarations of the effects
+docs: setup  ## write docs/effects.md with its figures and the reference of docs/measurement.md from the declarations
 	$(BIN)/python -m gear_damping.reporting.effects_page $(ARGS)
+	$(BIN)/python -m gear_damping.reporting.measurement_page
 
 # The peers have an environment of their own; the package needs none of them.
 BENCH_VENV := .venv-bench

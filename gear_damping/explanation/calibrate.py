@@ -1,38 +1,45 @@
 """Step 3: the nominal simulation at its best, so that wrong parameters do not masquerade as physics."""
 
-from math import ceil, log, pi
+from collections.abc import Mapping
+from dataclasses import replace
+from math import ceil, cos, log, pi, sin, sqrt
 
 import torch
 
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Hypothesis, Outcome, fit_hypothesis, natural_frequency_hz
-from gear_damping.identification.oscillator import fit_oscillator
-from gear_damping.identification.output_error.problem import OFFSET, FreeParameter
+from gear_damping.identification.oscillator import DAMPING, GAIN, expected_about, fit_oscillator, linear_model
+from gear_damping.identification.output_error.angles import STARTS, angle_bases, scanned
+from gear_damping.identification.output_error.problem import OutputErrorProblem
+from gear_damping.identification.output_error.records import FreeParameter
+from gear_damping.identification.output_error.segments import in_segments
 from gear_damping.physics.effects.backlash import Backlash
 from gear_damping.physics.effects.fourier_mesh_stiffness import FourierMeshStiffness
 from gear_damping.physics.effects.mesh_stiffness_shape import MeshStiffnessShape
 from gear_damping.physics.effects.offset_force import OffsetForce
 from gear_damping.physics.effects.viscous_damping import ViscousDamping
+from gear_damping.physics.model import Model
 from gear_damping.physics.systems.gear_pair import GearPair
 from gear_damping.physics.systems.oscillator import Oscillator
 from gear_damping.simulation.solver_settings import Solver
 
-MESH, DAMPING, SHAPE = "fourier_mesh_stiffness", "viscous_damping.damping_coefficient", "mesh_stiffness_shape"
+MESH, SHAPE = "fourier_mesh_stiffness", "mesh_stiffness_shape"
 RENAMED = {
     "mesh_stiffness_max": f"{MESH}.maximum",
     "mesh_stiffness_min": f"{MESH}.minimum",
     "contact_ratio": f"{MESH}.contact_ratio",
     "backlash_gap": "backlash.gap",
+    "damping_ratio": DAMPING,
 }
-NOT_OF_THE_MODEL = ("damping_ratio", "torque_gain", "torque_offset", "damping_coefficient")
 LESS_DAMPING = 0.05  # of what was found: what a local minimum takes for damping
-PHASES = 18  # starts of the mesh phase
 SHAPE_ITERATIONS = 30
 SHAPE_BAND = 1.6  # harmonics of the stiffness count up to this many natural frequencies, at the slowest record,
 FEWEST_HARMONICS, MOST_HARMONICS = 6, 20  # within these
 EXPECTED_SHAPE = 0.1  # of the mean stiffness over the harmonic: what real teeth add to the ideal wave
 SHORT_PERIODS = 40.0  # natural periods of the first round
 FIRST_RATIO = 0.01
+SCANS = 2  # of the records' angles, before and after a first fit
+LEAST_DAMPING = 1e-5  # of the first guess, N s/m
 
 
 def calibrated(evidence: Evidence, solver: Solver | None = None) -> Outcome:
@@ -42,33 +49,30 @@ def calibrated(evidence: Evidence, solver: Solver | None = None) -> Outcome:
 
 def _oscillator(evidence: Evidence, solver: Solver | None) -> Outcome:
     """Stiffness, damping, gain; offsets of force and response as nuisances."""
-    found = fit_oscillator(evidence.fit)
-    forced = "force" in evidence.fit[0].inputs
-    spread = float(torch.cat([record.response for record in evidence.fit]).std())
-    free = [
-        FreeParameter("stiffness", found.given["stiffness"], logarithmic=True),
-        FreeParameter(DAMPING, found.given[DAMPING], logarithmic=True),
-        FreeParameter(OFFSET, found.offset, scale=spread),
-    ]
-    effects = [ViscousDamping()]
-    if forced:
-        gain, force = found.given["force_gain"], found.given["offset_force.force"]
-        free += [
-            FreeParameter("force_gain", gain, logarithmic=True)
-            if gain > 0
-            else FreeParameter("force_gain", gain, abs(gain))
-        ]
-        free += [FreeParameter("offset_force.force", force, scale=found.given["stiffness"] * spread)]
-        effects.append(OffsetForce())
-    nominal = Hypothesis(Oscillator(), tuple(effects), {"amplitude": spread}, tuple(free))
+    found = fit_oscillator(evidence.fit, known=evidence.known, segments=evidence.segments)
+    free, given, _ = linear_model(evidence.fit, evidence.known)
+    effects = [ViscousDamping(), *([OffsetForce()] if evidence.fit[0].inputs else [])]
+    free = [_from_here(parameter, found.given[parameter.name]) for parameter in free]
+    nominal = Hypothesis(Oscillator(), tuple(effects), given, tuple(free))
     return fit_hypothesis(nominal, evidence, solver=solver)
 
 
+def _from_here(parameter: FreeParameter, value: float) -> FreeParameter:
+    """The parameter from a value that was found; a gain keeps its sign."""
+    logarithmic = parameter.logarithmic or (parameter.name == GAIN and value > 0)
+    expected = parameter.start if parameter.expected is None and parameter.logarithmic else parameter.expected
+    deviation = parameter.deviation
+    if logarithmic and not parameter.logarithmic:  # a relative one counts as such
+        deviation = parameter.deviation / abs(parameter.start)
+    return replace(parameter, start=value, logarithmic=logarithmic, expected=expected, deviation=deviation)
+
+
 def recalibrated(nominal: Outcome, evidence: Evidence, solver: Solver | None = None) -> Outcome:
-    """The nominal model fitted to the evidence in pieces, from where it was and from little damping."""
+    """The nominal model fitted to the evidence in segments, from where it was and from little damping."""
     hypothesis = nominal.hypothesis
     starts = torch.zeros(2, len(hypothesis.free), dtype=torch.float64)
-    starts[1, [p.name for p in hypothesis.free].index(DAMPING)] = log(LESS_DAMPING)
+    places = [i for i, parameter in enumerate(hypothesis.free) if parameter.name == DAMPING]
+    starts[1, places] = log(LESS_DAMPING)
     return fit_hypothesis(hypothesis, evidence, starts, iterations=SHAPE_ITERATIONS, solver=solver)
 
 
@@ -77,7 +81,7 @@ def restarted(evidence: Evidence, solver: Solver | None = None) -> Outcome | Non
 
     Where much is missing, the free shape bends to what it is not made for; a cause is better sought from here.
     """
-    if evidence.system != "gear_pair" or evidence.piece:
+    if evidence.system != "gear_pair" or evidence.segments:
         return None
     rough = _rough_gear_pair(evidence, solver)
     return _shaped(rough, evidence, 0, solver)
@@ -94,35 +98,76 @@ def _shaped(rough: Outcome, evidence: Evidence, iterations: int, solver: Solver 
 
 
 def _rough_gear_pair(evidence: Evidence, solver: Solver | None) -> Outcome:
+    """The contact ratio's wave, with the mesh phase tried all around: one phase, or one of every record."""
     first = _first_gear_pair(evidence)
-    rate = evidence.sampling_rate
-    total = max(len(record.response) for record in evidence.fit)
-    short = min(total, round(SHORT_PERIODS * rate / 5000.0))
-    starts = torch.zeros(PHASES, len(first.free), dtype=torch.float64)
-    starts[:, 0] = torch.linspace(0, 2 * pi, PHASES + 1, dtype=torch.float64)[:-1]
-    horizons = [short, total] if short < total else [total]
-    return fit_hypothesis(first, evidence, starts, horizons=horizons, iterations=12, kept=0.12, solver=solver)
+    short = SHORT_PERIODS / natural_frequency_hz(first.model, first.given)
+    horizons = [short, None] if short < evidence.duration else [None]
+    options = {"horizons": horizons, "iterations": 12, "solver": solver}
+    if evidence.has_index:
+        starts = torch.zeros(STARTS, len(first.free), dtype=torch.float64)
+        places = [i for i, p in enumerate(first.free) if p.name == "mesh_phase"]
+        starts[:, places] = torch.linspace(0, 2 * pi, STARTS + 1, dtype=torch.float64)[:-1, None]
+        return fit_hypothesis(first, evidence, starts if places else None, kept=0.12, **options)
+    found: Outcome | None = None
+    for _ in range(SCANS):
+        hypothesis = first if found is None else found.hypothesis
+        angles = _angles(hypothesis, evidence, short, solver)
+        again = fit_hypothesis(hypothesis, evidence, own=angles, **options)
+        found = again if found is None or again.fitted.cost < found.fitted.cost else found
+    return found
+
+
+def _angles(hypothesis: Hypothesis, evidence: Evidence, horizon: float, solver: Solver | None) -> Mapping[str, float]:
+    """The best angle of every record's mesh, of several."""
+    pieces = in_segments(evidence.fit, evidence.segments)
+    problem = OutputErrorProblem(hypothesis.model, hypothesis.given, hypothesis.free, pieces, solver, evidence.noise)
+    return scanned(problem, torch.zeros(problem.n_shared, dtype=torch.float64), horizon, angle_bases(problem))
 
 
 def _first_gear_pair(evidence: Evidence) -> Hypothesis:
-    given = {RENAMED.get(k, k): v for k, v in evidence.parameters.items() if k not in NOT_OF_THE_MODEL}
-    system = GearPair(gear_torque_mode=evidence.gear_torque_mode)
+    """The nominal gear pair with what the file says of it: known, expected, or a start."""
+    stated = {RENAMED.get(name, name): value for name, value in evidence.parameters.items()}
+    uncertain = {RENAMED.get(name, name): relative for name, relative in evidence.known.uncertainty.items()}
     effects = [FourierMeshStiffness(), ViscousDamping()]
-    if given.get("backlash.gap", 0.0) > 0:
+    ratio = stated.pop(DAMPING, FIRST_RATIO)
+    if stated.get("backlash.gap", 0.0) > 0:
         effects.append(Backlash())
     else:
-        given.pop("backlash.gap", None)
-    high, low = given.get(f"{MESH}.maximum", 4e8), given.get(f"{MESH}.minimum", 2e8)
-    ratio = evidence.parameters.get("damping_ratio", FIRST_RATIO)
-    free = (
-        FreeParameter("mesh_phase", 0.0),
-        FreeParameter(DAMPING, 2 * ratio * ((high + low) / 2 * 0.27) ** 0.5, logarithmic=True, lower=1e-3),
+        stated.pop("backlash.gap", None)
+    defaults = {p.name: p.default for p in FourierMeshStiffness.parameters}
+    high, low = (stated.get(f"{MESH}.{end}", defaults[end]) for end in ("maximum", "minimum"))
+    contact_ratio = stated.get(f"{MESH}.contact_ratio") or _contact_ratio(stated)
+    system = GearPair(gear_torque_mode=evidence.gear_torque_mode)
+    start = stated | {f"{MESH}.maximum": high, f"{MESH}.minimum": low, f"{MESH}.contact_ratio": contact_ratio}
+    derived = Model(system, effects).prepare(Model(system, effects).values(1, **start)).derived
+    damping = 2 * ratio * float((derived["mean_stiffness"] * derived["equivalent_mass"])[0]) ** 0.5
+    free = [
         FreeParameter(f"{MESH}.maximum", high, logarithmic=True),
         FreeParameter(f"{MESH}.minimum", low, logarithmic=True),
-        FreeParameter(f"{MESH}.contact_ratio", given.get(f"{MESH}.contact_ratio", 1.6), 0.2, lower=1.02, upper=1.98),
-    )
-    known = {k: v for k, v in given.items() if k not in {p.name for p in free}}
-    return Hypothesis(system, tuple(effects), known, free)
+        FreeParameter(f"{MESH}.contact_ratio", contact_ratio, 0.2, lower=1.02, upper=1.98),
+    ]
+    if damping > 0:
+        lower = LEAST_DAMPING * damping
+        free = [FreeParameter(DAMPING, damping, logarithmic=True, lower=lower), *free]
+    if evidence.has_index and any("mesh_phase" not in record.conditions for record in evidence.fit):
+        free = [FreeParameter("mesh_phase", 0.0), *free]
+    free = [expected_about(parameter, uncertain.pop(parameter.name, None)) for parameter in free]
+    free += [_uncertain(name, stated[name], relative) for name, relative in uncertain.items() if name in stated]
+    return Hypothesis(system, tuple(effects), start | {DAMPING: damping}, tuple(free))
+
+
+def _uncertain(name: str, value: float, relative: float) -> FreeParameter:
+    """A known parameter with its expectation."""
+    return expected_about(FreeParameter(name, value, abs(value), logarithmic=value > 0), relative)
+
+
+def _contact_ratio(stated: Mapping[str, float]) -> float:
+    """Of standard teeth with these numbers of teeth and pressure angle (ISO 21771), within what a spur pair has."""
+    default = {p.name: p.default for p in GearPair.parameters}
+    teeth = [stated.get(name, default[name]) for name in ("n_teeth_pinion", "n_teeth_gear")]
+    angle = stated.get("pressure_angle", default["pressure_angle"])
+    reach = sum(sqrt((z / 2 + 1) ** 2 - (z / 2 * cos(angle)) ** 2) for z in teeth) - sum(teeth) / 2 * sin(angle)
+    return min(max(reach / (pi * cos(angle)), 1.1), 1.9)
 
 
 def _shape_harmonics(rough: Outcome, evidence: Evidence) -> int:
@@ -139,7 +184,8 @@ def _shape_harmonics(rough: Outcome, evidence: Evidence) -> int:
 def _with_shape(rough: Hypothesis, harmonics: int) -> Hypothesis:
     """Free harmonics take over from the contact ratio, which they contain."""
     names = [f"{SHAPE}.{part}[{h}]" for part in ("in_phase", "quadrature") for h in range(harmonics)]
-    free = tuple(p for p in rough.free if p.name in (DAMPING, f"{MESH}.maximum"))
+    taken_over = ("mesh_phase", f"{MESH}.minimum", f"{MESH}.contact_ratio")
+    free = tuple(p for p in rough.free if p.name not in taken_over)
     zeros = (0.0,) * harmonics
     given = rough.given | {f"{SHAPE}.in_phase": zeros, f"{SHAPE}.quadrature": zeros}
     return Hypothesis(

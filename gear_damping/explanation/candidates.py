@@ -1,12 +1,13 @@
 """Step 5a: what could be missing. Every effect of the catalogue as something that can be switched on gradually."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf, log
 
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Given, Hypothesis
-from gear_damping.identification.output_error.problem import FreeParameter
+from gear_damping.explanation.rig import Residuals, rig_of
+from gear_damping.identification.output_error.records import FreeParameter
 from gear_damping.physics.cause import Recipe
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import Effect
@@ -32,6 +33,8 @@ class Candidate:
         moved: How far other parameters are moved for further starts, in coordinates by place.
         later: Free parameters that join in the full fit only.
         presence: Whether it is tried as a whole.
+        replaced: Free parameters that it took the place of.
+        sharpest: Names of parameters that may rest at their lower bound without having run into it.
     """
 
     name: str
@@ -43,6 +46,8 @@ class Candidate:
     moved: Mapping[int, float]
     later: tuple[FreeParameter, ...]
     presence: bool
+    replaced: tuple[FreeParameter, ...] = ()
+    sharpest: tuple[str, ...] = ()
 
     @property
     def options(self) -> tuple[tuple[str, object], ...]:
@@ -50,21 +55,44 @@ class Candidate:
         return tuple(sorted(self.hypothesis.effects[-1].chosen.items()))
 
 
-def candidates_for(base: Hypothesis, evidence: Evidence) -> list[Candidate]:
-    """Every variant of every effect of the library that goes with the system and is not there yet."""
+def candidates_for(base: Hypothesis, evidence: Evidence, residuals: Residuals | None = None) -> list[Candidate]:
+    """Every variant of every effect of the library that goes with the system and is not there yet.
+
+    Args:
+        base: The calibrated model.
+        evidence: The records.
+        residuals: What it leaves of them, in whose orders a ripple is sought beyond the low ones.
+    """
     there = {effect.name for effect in base.effects}
     refused = there | COVERED_BY_NUISANCE[base.system.name]
+    rig, sizes = rig_of(base, evidence, residuals), _Sizes(base, evidence.duration)
     return [
-        _candidate(base, kind, recipe, evidence.duration)
+        _candidate(base, kind, recipe, sizes)
         for name, kind in evidence.library.items()
         if kind.cause and base.system.name in kind.systems and name not in refused and set(kind.requires) <= there
-        for recipe in kind.cause.recipes
+        for recipe in kind.cause.recipes_for(rig)
+        if all(_value(base, parameter) > 0 for parameter in recipe.replaces)
     ]
 
 
-def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, duration: float) -> Candidate:
+def restored(hypothesis: Hypothesis, cause: str) -> Hypothesis:
+    """A model from which a cause was taken, with what the cause had replaced free again."""
+    replaced = hypothesis.replaced.get(cause, ())
+    given = hypothesis.given | {parameter.name: parameter.start for parameter in replaced}
+    others = {name: parameters for name, parameters in hypothesis.replaced.items() if name != cause}
+    return replace(hypothesis, given=given, free=(*replaced, *hypothesis.free), replaced=others)
+
+
+def _value(base: Hypothesis, name: str) -> float:
+    """Where a free parameter begins; 0 for one that is known."""
+    return next((p.start for p in base.free if p.name == name), 0.0)
+
+
+def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Sizes") -> Candidate:
+    replaced = tuple(p for p in base.free if p.name in recipe.replaces)
+    rest = tuple(p for p in base.free if p not in replaced)
+    base = replace(base, free=rest, given=base.given | {p.name: 0.0 for p in replaced})
     effect = kind(**recipe.options)
-    sizes = _Sizes(base, duration)
     given: Given = {}
     for parameter in kind.parameters:
         given[f"{kind.name}.{parameter.name}"] = sizes.default(kind, parameter, recipe)
@@ -96,13 +124,15 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, duration: f
     return Candidate(
         kind.name,
         _label(kind, recipe),
-        base.with_effect([effect], given, free, kind.name),
+        replace(base.with_effect([effect], given, free, kind.name), replaced=base.replaced | {kind.name: replaced}),
         tuple(strengths),
         phases,
         begun,
         moved,
         tuple(later),
         recipe.presence,
+        replaced,
+        tuple(f"{kind.name}.{name}" for name in recipe.sharpest),
     )
 
 
@@ -131,7 +161,7 @@ class _Sizes:
     """Sizes of an effect's parameters for this rig."""
 
     def __init__(self, base: Hypothesis, duration: float) -> None:
-        self.duration = duration
+        self.base, self.duration = base, duration
         self.scales = base.model.prepare(base.model.values(1, **base.given)).scales
 
     def natural(self, kind: type[Effect], parameter: Parameter, value: float, exponent: float = 1.0) -> float:
@@ -142,6 +172,9 @@ class _Sizes:
 
     def size(self, kind: type[Effect], name: str, size: float | None, recipe: Recipe) -> float:
         """The size of a strength that is tried."""
+        replaced = next((theirs for theirs, own in recipe.replaces.items() if own == name), None)
+        if replaced is not None:
+            return (size or 1.0) * _value(self.base, replaced)
         parameter = next(p for p in kind.parameters if p.name == name)
         if size is None or recipe.in_si:
             default = size or parameter.default

@@ -11,13 +11,14 @@ from gear_damping.explanation.next_experiment import LARGEST_SET, confusable_bef
 from gear_damping.explanation.noise import NoiseLevel
 from gear_damping.explanation.ranking import Score
 from gear_damping.explanation.rig_units import rig_unit
+from gear_damping.explanation.significance import ac_energy
 from gear_damping.explanation.unexplained import leftover
 from gear_damping.explanation.verdict import CONSISTENT, DATA_PROBLEM, Judged, statuses
 from gear_damping.measurement.record import Finding, Measurement
 
 SCHEMA_VERSION = 1
 KEYS = (
-    "schema_version", "system", "verdict", "sentences", "causes", "misfit", "residual", "gain", "noise",
+    "schema_version", "system", "verdict", "sentences", "causes", "misfit", "residual", "parameters", "gain", "noise",
     "candidates", "not_observable", "next_experiment", "unexplained", "records", "calibration", "findings",
     "casing",
 )  # fmt: skip
@@ -79,7 +80,9 @@ def of_search(measurement: Measurement, evidence: Evidence, noise: NoiseLevel, j
         "residual": {
             "fit": _residual(first.fit_residuals, last.fit_residuals, unit, factor),
             "holdout": _residual(first.holdout, last.holdout, unit, factor),
+            "segment_s": evidence.segments.seconds or None,
         },
+        "parameters": gain.final_parameters(last, gain.spread_of(last, evidence), evidence),
         "gain": _gain(judged, evidence, noise),
         "noise": {
             "channel": evidence.channel.name,
@@ -115,15 +118,15 @@ def _findings(findings: Sequence[Finding]) -> list[dict[str, Any]]:
 def _steps(judged: Judged, evidence: Evidence) -> list[str]:
     before = judged.before
     rest = "came to rest" if judged.found.nominal.fitted.converged else "did not come to rest: take it with care"
-    pieces = (
-        f"An error of the initial state grows in these records: they were fitted and scored in pieces of "
-        f"{evidence.piece_ms:.3g} ms, each from a start of its own."
+    segments = (
+        f"These records cannot be predicted from their start alone: they were fitted and scored in segments of "
+        f"{evidence.segments.seconds:.3g} s, each from an initial state of its own."
     )
     return [
         f"The nominal simulation was fitted first, so that no wrong parameter passes for physics; the fit {rest}.",
         f"It leaves {before.percent:.3g} % of the signal's variance beyond the noise on held-out records; "
         f"more than {before.threshold:.2g} % counts as significant.",
-        *([pieces] if evidence.piece else []),
+        *([segments] if evidence.segments else []),
     ]
 
 
@@ -142,7 +145,8 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
         for cause in found.accepted
     ]
     if not listed and judged.verdict.word != CONSISTENT:
-        for refit in [r for r in found.rejected if r.gain > 0 and r.is_seen_in_fit][:1]:
+        helping = (r for r in found.rejected if r.gain > 0 and r.is_seen_in_fit)
+        for refit in [r for r in helping if _share(r.outcome, found.nominal) > 0][:1]:
             spread = gain.spread_of(refit.outcome, evidence)
             own = gain.parameters_of(refit.outcome, spread, refit.name, evidence)
             alike = confusable_beforehand(found.first_scores, refit.name)[: LARGEST_SET - 1]
@@ -165,21 +169,23 @@ def _residual(before: Sequence, after: Sequence, unit: str, factor: float) -> di
 
 def _gain(judged: Judged, evidence: Evidence, noise: NoiseLevel) -> dict[str, Any]:
     first, last = judged.found.nominal, judged.found.outcome
-    spread = sum(float((r.response - r.response.mean()).square().sum()) for r in evidence.holdout)
-    floor = sum(len(r.response) * noise.by_record[r.name] ** 2 for r in evidence.holdout)
+    spread = sum(ac_energy(record) for record in evidence.held)
+    floor = sum(len(r.stacked) * noise.by_record[r.name] ** 2 for r in evidence.held)
     damping = {
         key: gain.damping_ratio(outcome, gain.spread_of(outcome, evidence))
-        | {"velocity_unit": rig_unit("m/s", evidence)}
         for key, outcome in (("before", first), ("after", last))
     }
+    whole = all(damping.values())
+    if whole:
+        damping = {key: found | {"velocity_unit": rig_unit("m/s", evidence)} for key, found in damping.items()}
+        damping["bias_of_the_nominal"] = damping["before"]["value"] - damping["after"]["value"]
     return {
         "nrmse": {
-            "before": gain.nrmse(first.holdout, evidence.holdout),
-            "after": gain.nrmse(last.holdout, evidence.holdout),
+            "before": gain.nrmse(first.holdout, evidence.held),
+            "after": gain.nrmse(last.holdout, evidence.held),
             "floor": (floor / max(spread, 1e-300)) ** 0.5,
         },
-        "damping_ratio_percent": damping
-        | {"bias_of_the_nominal": damping["before"]["value"] - damping["after"]["value"]},
+        "damping_ratio_percent": damping if whole else None,
     }
 
 
@@ -199,8 +205,10 @@ def _candidates(judged: Judged) -> list[dict[str, Any]]:
             return statuses(judged.verdict.word)
         return "confusable" if name in alike else "rejected"
 
+    bounded = {refit.name for refit in found.first_fits if refit.is_at_bound}
     return [
         {"name": name, "promised": score.gain, "share": accepted.get(name, taken.get(name)), "status": status(name)}
+        | {"at_bound": name in bounded, "failed": found.failed.get(name) or score.failed or None}
         for name, score in best.items()
     ]
 

@@ -2,20 +2,25 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from math import pi
+from math import floor, log10, pi
 
 import torch
 from torch import Tensor
 
-from gear_damping.errors import InputError, Problem
-from gear_damping.identification.output_error.pieces import part
-from gear_damping.identification.output_error.problem import FitRecord
-from gear_damping.measurement.record import Channel, Measurement, Record
+from gear_damping.identification.observation import (
+    Known,
+    fit_record,
+    has_index,
+    known_of,
+    require_alike,
+    response_names,
+)
+from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.identification.output_error.segments import WHOLE, Segments, covered, part
+from gear_damping.measurement.record import Channel, Measurement
 from gear_damping.physics.catalogue import builtin_effects
 from gear_damping.physics.terms import Effect
 
-RESPONSES = {"gear_pair": "transmission_error", "oscillator": "displacement"}
-INPUTS = {"gear_pair": ("pinion_torque", "gear_torque", "pinion_angle"), "oscillator": ("force",)}
 HELD_OUT = 4  # every so many operating conditions one is held out where the file does not say
 SPLIT = 2 / 3  # of a single record: fitted before, held out behind
 
@@ -28,102 +33,94 @@ class Evidence:
         system: `gear_pair` or `oscillator`.
         fit: Records to fit.
         holdout: Records that decide what is accepted.
-        parameters: Nominal values of the rig that the file states, by the file's names.
-        channel: The response channel of the first record, for units.
+        known: What the file states of the rig, by its names.
+        channel: The first response channel of the first record, for units.
         one_record: Whether there was but one record, cut in two.
         gear_torque_mode: What holds the gear.
-        noise: Standard deviation of the noise over all records, once it is known.
+        noise: Standard deviation of the noise over all records, once it is known, in the unit of the first channel.
         library: Effects that may be causes, by name.
-        piece: Samples after which the state of a record is found anew, because it cannot be predicted for longer;
-            0 where it can.
+        segments: How records are cut, because they cannot be predicted from their start for longer.
+        stated_segments: How the file says that they are cut; `WHOLE` where it does not.
+        has_index: Whether the angle of all records counts from one mark.
     """
 
     system: str
     fit: tuple[FitRecord, ...]
     holdout: tuple[FitRecord, ...]
-    parameters: Mapping[str, float]
-    channel: Channel
+    known: Known
+    channel: Channel | None
     one_record: bool
     gear_torque_mode: str = "balanced"
     noise: float = 0.0
     library: Mapping[str, type[Effect]] = field(default_factory=builtin_effects)
-    piece: int = 0
+    segments: Segments = WHOLE
+    stated_segments: Segments = WHOLE
+    has_index: bool = True
+
+    @property
+    def parameters(self) -> Mapping[str, float]:
+        """Nominal values of the rig that the file states, by the file's names."""
+        return self.known.values
+
+    @property
+    def records(self) -> tuple[FitRecord, ...]:
+        """Every record."""
+        return (*self.fit, *self.holdout)
 
     @property
     def sampling_rate(self) -> float:
-        """Hz, that of every record."""
-        return self.fit[0].sampling_rate
+        """Hz, the highest of the records."""
+        return max(record.sampling_rate for record in self.records)
 
     @property
     def duration(self) -> float:
         """Length of the longest record in s."""
-        return max(len(record.response) for record in (*self.fit, *self.holdout)) / self.sampling_rate
+        return max(record.duration for record in self.records)
 
     @property
-    def piece_ms(self) -> float:
-        """Length of a piece in ms."""
-        return 1e3 * self.piece / self.sampling_rate
+    def held(self) -> list[FitRecord]:
+        """Held-out records as far as segments cover them."""
+        return covered(self.holdout, self.segments)
+
+    @property
+    def fitted(self) -> list[FitRecord]:
+        """Fitted records as far as segments cover them."""
+        return covered(self.fit, self.segments)
 
     @property
     def conditions(self) -> int:
         """How many operating conditions the records hold."""
-        return len({_condition(record) for record in (*self.fit, *self.holdout)})
+        return len({_condition(record) for record in self.records})
 
 
 def evidence_of(measurement: Measurement) -> Evidence:
     """The records of a measurement in their roles.
 
     Raises:
-        InputError: a record lacks its response, or rates differ.
+        InputError: a record lacks a response that can be fitted, or some have an input that others lack.
     """
-    name = RESPONSES[measurement.system]
-    problems = [
-        Problem(
-            f"{record.name}.{name}", f"a {measurement.system} is explained from this channel", source=str(record.file)
-        )
-        for record in measurement.records
-        if name not in record.channels
-    ]
-    if len({round(record.sampling_rate, 3) for record in measurement.records}) > 1:
-        rule, remedy = "records of different sampling rates", "resample them to one rate"
-        problems.append(Problem("records", rule, remedy=remedy, source=str(measurement.source)))
-    if problems:
-        raise InputError(problems)
-    records = [(_fit_record(record, measurement.system), record.role) for record in measurement.records]
+    system, known = measurement.system, known_of(measurement)
+    spring = known.values.get("stiffness", 1.0) != 0
+    used = [record for record in measurement.records if record.role != "reference"]
+    records = [(fit_record(record, system, spring), record.role) for record in used]
+    if system == "oscillator":
+        require_alike([record for record, _ in records], str(measurement.source))
     fit, holdout = _roles(records)
     one = not holdout
     if one:
         fit, holdout = _cut(fit)
-    modes = {record.gear_torque_mode for record in measurement.records} - {None}
+    modes = {record.gear_torque_mode for record in used} - {None}
     return Evidence(
-        system=measurement.system,
+        system=system,
         fit=tuple(fit),
         holdout=tuple(holdout),
-        parameters={key: quantity.value for key, quantity in measurement.parameters.items()},
-        channel=measurement.records[0].channels[name],
-        one_record=one and len(measurement.records) == 1,
+        known=known,
+        channel=used[0].channels[response_names(used[0], system)[0]],
+        one_record=one and len(used) == 1,
         gear_torque_mode="held" if any("gear_torque" in r.inputs for r in fit) else next(iter(modes), "balanced"),
+        stated_segments=Segments(measurement.segment_s, exact=True) if measurement.segment_s else WHOLE,
+        has_index=all(has_index(record) for record in used),
     )
-
-
-def _fit_record(record: Record, system: str) -> FitRecord:
-    response = torch.as_tensor(record.channels[RESPONSES[system]].values, dtype=torch.float64)
-    inputs = {
-        name: torch.as_tensor(record.channels[name].values, dtype=torch.float64)
-        for name in INPUTS[system]
-        if name in record.channels
-    }
-    known = {name: quantity.value for name, quantity in record.conditions.items() if name not in inputs}
-    return FitRecord(record.name, response, record.sampling_rate, inputs, known | _means(inputs, record.sampling_rate))
-
-
-def _means(inputs: dict[str, Tensor], sampling_rate: float) -> dict[str, float]:
-    """Mean load and speed of a record: what hangs on the operating condition follows them."""
-    found = {name: float(inputs[name].mean()) for name in ("pinion_torque", "gear_torque") if name in inputs}
-    if "pinion_angle" in inputs:
-        angle = inputs["pinion_angle"]
-        found["pinion_speed"] = float(angle[-1] - angle[0]) / (len(angle) - 1) * sampling_rate
-    return found
 
 
 def _roles(records: Sequence[tuple[FitRecord, str | None]]) -> tuple[list[FitRecord], list[FitRecord]]:
@@ -140,12 +137,8 @@ def _roles(records: Sequence[tuple[FitRecord, str | None]]) -> tuple[list[FitRec
 def _condition(record: FitRecord) -> tuple[float, float]:
     """Speed and torque of a record, rounded so that repetitions fall together."""
     speed, torque = record.conditions.get("pinion_speed", 0.0), record.conditions.get("pinion_torque", 0.0)
-    if "pinion_angle" in record.inputs:
-        angle = record.inputs["pinion_angle"]
-        speed = float(angle[-1] - angle[0]) / (len(angle) - 1) * record.sampling_rate
-    if "pinion_torque" in record.inputs:
-        torque = float(record.inputs["pinion_torque"].mean())
-    return round(speed * 30 / pi, -1), round(torque, -int(torch.tensor(max(abs(torque), 1e-9)).log10().floor()) + 1)
+    digits = -floor(log10(max(abs(torque), 1e-9))) + 1
+    return round(speed * 30 / pi, -1), round(torque, digits)
 
 
 def _cut(records: Sequence[FitRecord]) -> tuple[list[FitRecord], list[FitRecord]]:

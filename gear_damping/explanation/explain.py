@@ -12,17 +12,21 @@ from gear_damping.explanation.casing.heard import is_casing
 from gear_damping.explanation.data_faults import data_faults, mesh_order_faults
 from gear_damping.explanation.evidence import Evidence, evidence_of
 from gear_damping.explanation.extend import search
-from gear_damping.explanation.hypothesis import MOST_GROWTH, Outcome, piece_samples
-from gear_damping.explanation.noise import NoiseLevel, noise_level, weighted
-from gear_damping.explanation.significance import excess
+from gear_damping.explanation.homogeneity import homogeneity
+from gear_damping.explanation.hypothesis import MOST_GROWTH, SEGMENT_TIMES, Outcome, segments_of
+from gear_damping.explanation.noise import NoiseLevel, noise_of, weighted
+from gear_damping.explanation.significance import ac_energy, excess
 from gear_damping.explanation.trying import Search
 from gear_damping.explanation.verdict import Judged, verdict
+from gear_damping.identification.output_error.segments import Segments
+from gear_damping.identification.time_scale import characteristic_time
 from gear_damping.measurement.record import Measurement
 from gear_damping.physics.terms import Effect
 from gear_damping.simulation.solver_settings import Solver
 
 Say = Callable[[str], None]
 STEPS = 4
+LOST = 0.5  # of the variance of a record
 MOST_SUBSTEPS = 24  # of an output interval: only forces far beyond the load would need more
 FIT_ACCURACY = 1e-4  # of the deflection: far below the noise of any record that is explained
 
@@ -76,36 +80,60 @@ def explain(
     faults = mesh_order_faults(evidence)
     if faults:
         return Explanation(content.of_faults(measurement, faults))
-    noise = noise_level((*evidence.fit, *evidence.holdout), evidence.channel)
+    fit, holdout, noise = noise_of(evidence.fit, evidence.holdout, measurement)
     say(f"noise {noise.value / evidence.channel.declared_factor:.3g} {evidence.channel.declared_unit} ({noise.method})")
-    fit, holdout = weighted(evidence.fit, noise), weighted(evidence.holdout, noise)
-    evidence = replace(evidence, fit=fit, holdout=holdout, noise=noise.value)
+    evidence = replace(evidence, fit=weighted(fit, noise), holdout=weighted(holdout, noise), noise=noise.value)
     evidence = evidence if library is None else replace(evidence, library=library)
     solver = solver or Solver()
     solver = replace(solver, accuracy=max(solver.accuracy, FIT_ACCURACY), most_substeps=MOST_SUBSTEPS)
     step(1, STEPS)
+    evidence = replace(evidence, segments=first_segments(evidence))
     nominal = calibrated(evidence, solver)
     noise = replace(noise, scatter=calibration_error(nominal, evidence, solver))
     _tell(nominal, evidence, noise, say)
     step(2, STEPS)
     found = Search(nominal, nominal)
-    if nominal.growth <= MOST_GROWTH:
+    is_lost = is_lost_by(nominal, evidence)
+    if evidence.segments or (nominal.growth <= MOST_GROWTH and not is_lost):
         found = search(nominal, evidence, noise, say, solver)
-    if found.growth > MOST_GROWTH:
-        evidence = replace(evidence, piece=piece_samples(nominal.hypothesis, evidence))
-        say(f"an error of the initial state grows: records are predicted in pieces of {evidence.piece_ms:.3g} ms")
+    if not evidence.segments and (is_lost or found.growth > MOST_GROWTH):
+        evidence = replace(evidence, segments=segments_of(nominal.hypothesis, evidence))
+        why = "the nominal model loses a record" if is_lost else "an error of the initial state grows"
+        say(f"{why}: records are predicted in segments of {evidence.segments.seconds:.3g} s")
         nominal = recalibrated(nominal, evidence, solver)
         noise = replace(noise, scatter=calibration_error(nominal, evidence, solver))
         _tell(nominal, evidence, noise, say)
         found = search(nominal, evidence, noise, say, solver, found.first_fits[:1])
     step(3, STEPS)
-    before = excess(found.nominal.holdout, evidence.holdout, noise)
-    after = excess(found.outcome.holdout, evidence.holdout, noise)
-    judged = Judged(found, before, after, verdict(found, before, after, found.outcome.fitted.converged))
+    before = excess(found.nominal.holdout, evidence.held, noise)
+    after = excess(found.outcome.holdout, evidence.held, noise)
+    one = _is_one(found, evidence)
+    judged = Judged(found, before, after, verdict(found, before, after, found.outcome.fitted.converged, one))
     step(4, STEPS)
     return Explanation(content.of_search(measurement, evidence, noise, judged), evidence, noise, found)
 
 
+def first_segments(evidence: Evidence) -> Segments:
+    """How records are cut before anything was fitted: as the file says, or where nothing pulls the rig back."""
+    if evidence.stated_segments or evidence.system == "gear_pair" or evidence.known.values.get("stiffness", 1.0) != 0:
+        return evidence.stated_segments
+    return Segments(SEGMENT_TIMES * characteristic_time(evidence.records))
+
+
+def is_lost_by(nominal: Outcome, evidence: Evidence) -> bool:
+    """Whether the nominal model leaves more than half of any fitted record's variance."""
+    left = zip(nominal.fit_residuals, evidence.fitted, strict=True)
+    return any(float(residual.square().sum()) > LOST * ac_energy(record) for residual, record in left)
+
+
+def _is_one(found: Search, evidence: Evidence) -> bool | None:
+    """Whether every cause has one size over all records; None where too few records tell of one."""
+    tests = [homogeneity(found.outcome, cause.name, evidence) for cause in found.accepted]
+    if not all(test.testable for test in tests):
+        return None
+    return all(test.holds for test in tests)
+
+
 def _tell(nominal: Outcome, evidence: Evidence, noise: NoiseLevel, say: Say) -> None:
-    before = excess(nominal.holdout, evidence.holdout, noise)
+    before = excess(nominal.holdout, evidence.held, noise)
     say(f"the calibrated nominal model leaves {before.percent:.3g} % of the signal's variance beyond the noise")

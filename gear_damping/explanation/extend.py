@@ -6,10 +6,11 @@ from gear_damping.explanation.calibrate import restarted
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import MOST_GROWTH, Outcome
 from gear_damping.explanation.noise import NoiseLevel
+from gear_damping.explanation.pairs import Pair, best_pair
 from gear_damping.explanation.refit import Refit, again
 from gear_damping.explanation.revise import beside_the_others, exchanged, pruned, simplified
 from gear_damping.explanation.significance import Excess, is_settled
-from gear_damping.explanation.trying import BORNE_OUT, Accepted, Bench, Say, Search
+from gear_damping.explanation.trying import ACCEPTED_AT, Accepted, Bench, Say, Search
 from gear_damping.simulation.solver_settings import Solver
 
 LEAST_SHARE = 0.25  # of the remaining excess that a cause must take
@@ -37,7 +38,7 @@ def search(
         begun: Full fits to other evidence that are carried on.
     """
     bench = Bench(evidence, noise, say, solver)
-    found = Search(nominal, nominal, first_scores=bench.ranked(nominal))
+    found = Search(nominal, nominal, first_scores=bench.ranked(nominal), failed=bench.failed)
     ranked, first, anew = found.first_scores, bench.excess(nominal), 0
     while len(found.accepted) < MOST_CAUSES:
         current = bench.excess(found.outcome)
@@ -45,7 +46,12 @@ def search(
             break
         best, rivals = _next(found, ranked, current, bench, begun)
         if best is None:
-            break
+            pair = None if _is_unpredictable(found, bench) else best_pair(found, current, bench)
+            if pair is None or len(found.accepted) + 2 - pair.replaces > MOST_CAUSES:
+                break
+            _accept_pair(found, pair, current, first, bench)
+            ranked = bench.ranked(found.outcome)
+            continue
         settled = bench.without(best.outcome, best.name) if anew < MOST_ANEW else None
         if settled is not None and bench.is_as_good(settled, best.outcome):
             # The effect only led the fit out of a local minimum: it has no part in the gain.
@@ -82,7 +88,7 @@ def _next(
 
 def _is_unpredictable(found: Search, bench: Bench) -> bool:
     """Whether records were predicted over more than they can be: nothing of that counts."""
-    return found.growth > MOST_GROWTH and not bench.evidence.piece
+    return found.growth > MOST_GROWTH and not bench.evidence.segments
 
 
 def _accept(found: Search, best: Refit, rivals: tuple[str, ...], current: Excess, first: Excess, bench: Bench) -> None:
@@ -90,6 +96,17 @@ def _accept(found: Search, best: Refit, rivals: tuple[str, ...], current: Excess
     share = (current.percent - bench.excess(found.outcome).percent) / max(first.percent, 1e-300)
     found.accepted.append(Accepted(best.name, best, share, rivals))
     bench.say(f"{best.name} takes {100 * share:.1f} % of the excess on held-out records")
+
+
+def _accept_pair(found: Search, pair: Pair, current: Excess, first: Excess, bench: Bench) -> None:
+    """Two causes that only together are accepted; each has half of what they take, until one is taken out."""
+    if pair.replaces:
+        bench.say(f"{pair.first.name} takes the place of {found.accepted[0].name}, with {pair.second.name} beside it")
+        found.accepted, current = [], first
+    found.outcome = bench.at_rest(pair.second.outcome)
+    share = (current.percent - bench.excess(found.outcome).percent) / max(first.percent, 1e-300) / 2
+    found.accepted += [Accepted(fit.name, pair.second, share, ()) for fit in (pair.first, pair.second)]
+    bench.say(f"{pair.first.name} and {pair.second.name} take {200 * share:.1f} % of the excess on held-out records")
 
 
 def _first_fits(found: Search, current: Excess, bench: Bench, begun: Sequence[Refit]) -> list[Refit]:
@@ -119,4 +136,4 @@ def _best(fits: Sequence[Refit], current: Excess, bench: Bench) -> Refit | None:
     if best is None:
         return None
     takes = (current.percent - bench.excess(best.outcome).percent) / current.percent
-    return best if best.t > BORNE_OUT and takes >= LEAST_SHARE else None
+    return best if best.t > ACCEPTED_AT and takes >= LEAST_SHARE else None

@@ -7,7 +7,6 @@ from typing import Any
 import yaml
 
 from gear_damping.explanation.hypothesis import Outcome
-from gear_damping.identification.output_error.problem import OFFSET
 
 NOT_OF_THE_RIG = ("initial_displacement", "initial_velocity")
 HEADER = (
@@ -26,7 +25,7 @@ def extended_node(outcome: Outcome) -> dict[str, Any]:
         plain = [float(v) for v in value] if isinstance(value, tuple) else float(value)
         if own:
             effects[effect][own] = plain
-        elif name not in (OFFSET, *NOT_OF_THE_RIG):
+        elif name not in NOT_OF_THE_RIG:
             node[name] = plain
     return node | effects
 

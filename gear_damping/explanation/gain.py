@@ -7,14 +7,16 @@ import torch
 from torch import Tensor
 
 from gear_damping.explanation.evidence import Evidence
-from gear_damping.explanation.hypothesis import Outcome, natural_frequency_hz
+from gear_damping.explanation.hypothesis import Outcome, time_scale
 from gear_damping.explanation.rig_units import rig_unit
-from gear_damping.identification.output_error.problem import OFFSET, FitRecord, set_value
+from gear_damping.explanation.significance import ac_energy
+from gear_damping.identification.output_error.problem import OFFSET, is_of_model, set_value
+from gear_damping.identification.output_error.records import SEPARATOR, FitRecord
 from gear_damping.identification.output_error.uncertainty import QUANTILE, covariance
 from gear_damping.physics.terms import DampingLaw
 from gear_damping.simulation.runs import reference_velocity
 
-CORRELATED_PERIODS = 3.0  # natural periods over which residuals may be correlated
+CORRELATED_PERIODS = 3.0  # characteristic times over which residuals may be correlated
 SILENT = 0.1  # noise levels that a step of order one moves the records by, in all: less says nothing of a parameter
 STEP = 1e-4  # of a coordinate, for the slope of the damping ratio
 
@@ -39,14 +41,14 @@ def rmse(residuals: Sequence[Tensor]) -> float:
 
 def nrmse(residuals: Sequence[Tensor], records: Sequence[FitRecord]) -> float:
     """Root mean square residual over the standard deviation of the channel within records."""
-    spread = sum(float((r.response - r.response.mean()).square().sum()) for r in records)
+    spread = sum(ac_energy(record) for record in records)
     return (sum(float(r.square().sum()) for r in residuals) / max(spread, 1e-300)) ** 0.5
 
 
 def spread_of(outcome: Outcome, evidence: Evidence) -> Tensor:
     """Covariance of the fitted coordinates; residuals may be coloured."""
-    frequency = natural_frequency_hz(outcome.hypothesis.model, outcome.flat_given())
-    return covariance(outcome.problem, outcome.fitted, round(CORRELATED_PERIODS * evidence.sampling_rate / frequency))
+    scale = time_scale(outcome.hypothesis, evidence)
+    return covariance(outcome.problem, outcome.fitted, CORRELATED_PERIODS * scale)
 
 
 def parameters_of(outcome: Outcome, spread: Tensor, cause: str, evidence: Evidence) -> dict[str, dict[str, object]]:
@@ -70,16 +72,37 @@ def parameters_of(outcome: Outcome, spread: Tensor, cause: str, evidence: Eviden
         ends[0] = known.lower if silent or at_bound[place] < 0 else ends[0]
         ends[1] = known.upper if silent or at_bound[place] > 0 else ends[1]
         unit = rig_unit(known.unit, evidence)
-        found[own] = Interval(value, (ends[0], ends[1]), unit).plain()
+        found[own] = Interval(value, (ends[0], ends[1]), unit).plain() | {"at_bound": bool(at_bound[place])}
     return found
 
 
-def damping_ratio(outcome: Outcome, spread: Tensor) -> dict[str, object]:
-    """The equivalent damping ratio of every damping law together, in % of critical, at its reference velocity."""
+def final_parameters(outcome: Outcome, spread: Tensor, evidence: Evidence) -> dict[str, dict[str, object]]:
+    """Every fitted parameter of a model with its 95 % interval, nuisances and those of single records included."""
+    declared, found = outcome.hypothesis.model.parameters(), {}
+    for place, parameter in enumerate(outcome.problem.free):
+        z, half = outcome.fitted.shared[place], QUANTILE * float(spread[place, place].clamp(min=0).sqrt())
+        ends = sorted(float(parameter.value(z + shift)) for shift in (-half, half))
+        flat = parameter.name.partition(SEPARATOR)[0].partition("[")[0]
+        kind, _, channel = flat.partition(".")
+        if kind == OFFSET:
+            unit = evidence.channel.unit if channel == evidence.channel.name else "own"
+        else:
+            unit = rig_unit(declared[flat].unit, evidence) if flat in declared else "1"
+        found[parameter.name] = Interval(float(parameter.value(z)), (ends[0], ends[1]), unit).plain()
+    return found
+
+
+def damping_ratio(outcome: Outcome, spread: Tensor) -> dict[str, object] | None:
+    """The equivalent damping ratio of every damping law together, in % of critical, at its reference velocity.
+
+    None where there is no linear stiffness, so that nothing is critical.
+    """
     problem, shared = outcome.problem, outcome.fitted.shared
     points = shared.repeat(len(shared) + 1, 1)
     points[1:] += STEP * torch.eye(len(shared), dtype=torch.float64)
     ratios, velocity = _ratios(outcome, problem.parameters(points), len(points))
+    if not bool(ratios.isfinite().all()):
+        return None
     slope = (ratios[1:] - ratios[0]) / STEP
     half = QUANTILE * float((slope @ spread @ slope).clamp(min=0).sqrt())
     value = float(ratios[0])
@@ -91,7 +114,7 @@ def _ratios(outcome: Outcome, free: Mapping[str, Tensor], batch: int) -> tuple[T
     model = outcome.hypothesis.model
     values = model.values(batch, **outcome.flat_given())
     for name, value in free.items():
-        if name != OFFSET:
+        if is_of_model(name):
             set_value(values, name, value)
     derived = model.prepare(values).derived
     speed = reference_velocity(derived)

@@ -1,6 +1,6 @@
 """A simulation as a hypothesis: base system, effects, what is known, what is free, and its fit to the evidence."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -10,22 +10,17 @@ from torch import Tensor
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.identification.output_error.holdout import predict_holdout
 from gear_damping.identification.output_error.least_squares import Fitted, fit
-from gear_damping.identification.output_error.pieces import in_pieces, joined
-from gear_damping.identification.output_error.problem import (
-    OFFSET,
-    FitRecord,
-    FreeParameter,
-    OutputErrorProblem,
-    growth,
-)
+from gear_damping.identification.output_error.problem import GAIN, OutputErrorProblem, growth, is_of_model
+from gear_damping.identification.output_error.records import SEPARATOR, FitRecord, FreeParameter
+from gear_damping.identification.output_error.segments import Segments, in_segments, joined
+from gear_damping.identification.time_scale import characteristic_time
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.base import System
 from gear_damping.physics.terms import Contact, Effect
 from gear_damping.simulation.solver_settings import Solver
 
 MOST_GROWTH = 2.0  # of an error of the initial state over a record that is predicted from its start
-PIECE_PERIODS = 5.0  # natural periods of a piece of a record that cannot be predicted for longer
-FEWEST_SAMPLES = 24  # of such a piece
+SEGMENT_TIMES = 5.0  # characteristic times of a segment of a record that cannot be predicted for longer
 ITERATIONS_NEAR = 20  # to get near enough for the whole records
 Given = dict[str, float | tuple[float, ...]]
 
@@ -40,6 +35,8 @@ class Hypothesis:
         given: Known values by flat name.
         free: What is fitted.
         causes: Names of the effects beyond the nominal model.
+        gains: Of channels whose gain is known with an uncertainty only, as fitted.
+        replaced: Free parameters that causes took the place of, by cause.
     """
 
     system: System
@@ -47,6 +44,8 @@ class Hypothesis:
     given: Given
     free: tuple[FreeParameter, ...]
     causes: tuple[str, ...] = ()
+    gains: Mapping[str, float] = field(default_factory=dict)
+    replaced: Mapping[str, tuple[FreeParameter, ...]] = field(default_factory=dict)
 
     @property
     def model(self) -> Model:
@@ -75,10 +74,10 @@ class Outcome:
         problem: The fit's statement.
         fitted: The fit.
         values: Fitted values by flat name.
-        holdout: Residuals of held-out records, each (time,).
-        compared: The same without what another initial state would have changed: by these, models are compared.
+        holdout: Residuals of held-out records, the channels of each one after another: by these, models are compared.
         fit_residuals: Residuals of fitted records.
         growth: How much an error of the initial state grows over a record, in the one where it grows most.
+        own: What held-out records have of their own, by name.
     """
 
     hypothesis: Hypothesis
@@ -86,14 +85,14 @@ class Outcome:
     fitted: Fitted
     values: dict[str, float]
     holdout: list[Tensor] = field(repr=False)
-    compared: list[Tensor] = field(repr=False)
     fit_residuals: list[Tensor] = field(repr=False)
     growth: float = 0.0
+    own: dict[str, float] = field(default_factory=dict, repr=False)
 
     @property
     def holdout_cost(self) -> float:
-        """Sum of squares over held-out samples, whatever their initial states."""
-        return sum(float(r.square().sum()) for r in self.compared)
+        """Sum of squares over held-out samples."""
+        return sum(float(r.square().sum()) for r in self.holdout)
 
     def flat_given(self) -> Given:
         """Every value of the model by flat name, lists as tuples."""
@@ -105,11 +104,13 @@ def placed(given: Given, values: dict[str, float]) -> Given:
     merged: Given = dict(given)
     for name, value in values.items():
         flat, _, index = name.partition("[")
+        if SEPARATOR in name:
+            continue
         if index:
             listed = list(merged[flat])
             listed[int(index.rstrip("]"))] = value
             merged[flat] = tuple(listed)
-        elif name != OFFSET:
+        elif is_of_model(name):
             merged[name] = value
     return merged
 
@@ -121,10 +122,11 @@ def fit_hypothesis(
     after: Outcome | None = None,
     *,
     iterations: int | Sequence[int] = 30,
-    horizons: Sequence[int] | None = None,
+    horizons: Sequence[float | None] | None = None,
     solver: Solver | None = None,
     kept: float = 0.5,
     enough: float = 0.0,
+    own: Mapping[str, float] | None = None,
 ) -> Outcome:
     """Fit to the records to fit, then predict the held-out ones with the parameters frozen.
 
@@ -134,45 +136,78 @@ def fit_hypothesis(
         starts: Coordinates of several starts, (starts, n_free); at the parameters' own starts where absent.
         after: A fit from whose initial states of the records to fit this one starts.
         iterations: At most so many in each round, or in each of the rounds.
-        horizons: Samples of growing rounds.
+        horizons: Seconds of growing rounds; None for all.
         solver: Settings of the solver.
         kept: Share of the starts that goes on from round to round.
-        enough: Fall of the cost, in noise variances, below which the fit has come to rest.
+        enough: Fall of the cost, in noise variances, below which the fit has converged.
+        own: Where parameters of single records begin, by name.
     """
-    if not evidence.piece and any(isinstance(effect, Contact) for effect in hypothesis.effects):
-        near = _fit_in_pieces(hypothesis, evidence, starts, solver=solver, kept=kept, enough=enough)
+    if not evidence.segments and any(isinstance(effect, Contact) for effect in hypothesis.effects):
+        near = _fit_in_segments(hypothesis, evidence, starts, solver=solver, kept=kept, enough=enough)
         if near.growth > MOST_GROWTH:
             return near
         hypothesis, starts, after = near.hypothesis, None, near
-    pieces = in_pieces(evidence.fit, evidence.piece)
+    pieces = in_segments(evidence.fit, evidence.segments)
     problem = OutputErrorProblem(hypothesis.model, hypothesis.given, hypothesis.free, pieces, solver, evidence.noise)
-    if starts is None:
-        starts = torch.zeros(1, problem.n_shared, dtype=torch.float64)
-    begun = None if after is None else begun_from(problem, after, len(starts))
-    if evidence.piece:  # short already, and begun from what was measured: another model's states lead astray
-        begun, horizons = None, horizons and [problem.response.shape[1]] * len(horizons)
-    fitted = fit(problem, starts, horizons, iterations, begun, kept=kept, enough=enough * evidence.noise**2)
+    begun, shared = _begin(problem, hypothesis, starts, after, own or {})
+    if evidence.segments:  # short already, and begun from what was measured: another model's states lead astray
+        begun, horizons = None, horizons and [None] * len(horizons)
+    fitted = fit(problem, shared, horizons, iterations, begun, kept=kept, enough=enough * evidence.noise**2)
     values = {name: float(value) for name, value in problem.parameters(fitted.shared).items()}
     given = placed(hypothesis.given, values)
-    frequency = slowest_frequency_hz(hypothesis.model, given)
-    offset, piece = values.get(OFFSET, 0.0), evidence.piece
-    held = predict_holdout(hypothesis.model, given, offset, evidence.holdout, frequency, solver, piece)
-    holdout = [record.response - found for record, found in zip(evidence.holdout, held.predictions, strict=True)]
-    residual = joined(fitted.prediction.residual[0], evidence.fit, piece)
+    free = tuple(_settled(p, values.get(p.name, p.start)) for p in hypothesis.free)
+    gains = {name: value for name, value in values.items() if name.startswith(f"{GAIN}.")}
+    return _outcome(replace(hypothesis, free=free, given=given, gains=gains), problem, fitted, values, evidence, solver)
+
+
+def _begin(
+    problem: OutputErrorProblem,
+    hypothesis: Hypothesis,
+    starts: Tensor | None,
+    after: Outcome | None,
+    own: Mapping[str, float],
+) -> tuple[Tensor | None, Tensor]:
+    """Initial states (None: from the records) and coordinates, those of single records among them."""
+    common = sum(not parameter.per_record for parameter in hypothesis.free)
+    if starts is None:
+        starts = torch.zeros(1, common, dtype=torch.float64)
+    begun = None if after is None else begun_from(problem, after, len(starts))
+    shared = problem.completed(starts)
+    if after is not None:
+        shared = shared + problem.own_of(after.problem, after.fitted.shared)
+    for place, parameter in enumerate(problem.free):
+        if parameter.name in own:
+            shared[:, place] = parameter.coordinate(own[parameter.name])
+    return begun, shared
+
+
+def _outcome(
+    settled: Hypothesis,
+    problem: OutputErrorProblem,
+    fitted: Fitted,
+    values: dict[str, float],
+    evidence: Evidence,
+    solver: Solver | None,
+) -> Outcome:
+    """The fit with its residuals, and the prediction of held-out records."""
+    scale = slowest_time(settled, evidence)
+    own = [parameter for parameter in settled.free if parameter.per_record]
+    held = predict_holdout(
+        settled.model, {**settled.given, **settled.gains}, evidence.holdout, scale, solver, evidence.segments, own
+    )
+    residual = joined(fitted.prediction.residual[0], evidence.fitted, evidence.segments, len(problem.channels))
     fit_residuals = [found / record.weight for found, record in zip(residual, evidence.fit, strict=True)]
     grown = max(held.growth, growth(fitted.prediction, problem.n_shared))
-    free = tuple(_settled(p, values[p.name]) for p in hypothesis.free)
-    settled = replace(hypothesis, free=free, given=given)
-    return Outcome(settled, problem, fitted, values, holdout, held.beside_start, fit_residuals, grown)
+    return Outcome(settled, problem, fitted, values, held.residuals, fit_residuals, grown, held.own)
 
 
-def _fit_in_pieces(hypothesis: Hypothesis, evidence: Evidence, starts: Tensor | None, **options: Any) -> Outcome:
-    """A fit to pieces of the records, with the growth over whole ones.
+def _fit_in_segments(hypothesis: Hypothesis, evidence: Evidence, starts: Tensor | None, **options: Any) -> Outcome:
+    """A fit to segments of the records, with the growth over whole ones.
 
-    Where flanks part, the cost over whole records has many minima; over short pieces it has few.
+    Where flanks part, the cost over whole records has many minima; over short segments it has few.
     """
-    short = replace(evidence, piece=piece_samples(hypothesis, evidence))
-    rounds = {"horizons": [short.piece] * 2, "iterations": (ITERATIONS_NEAR, ITERATIONS_NEAR)}
+    short = replace(evidence, segments=segments_of(hypothesis, evidence))
+    rounds = {"horizons": [None] * 2, "iterations": (ITERATIONS_NEAR, ITERATIONS_NEAR)}
     near = fit_hypothesis(hypothesis, short, starts, **rounds, **options)
     return replace(near, growth=growth_over(near.hypothesis, evidence.fit, options["solver"]))
 
@@ -180,8 +215,8 @@ def _fit_in_pieces(hypothesis: Hypothesis, evidence: Evidence, starts: Tensor | 
 def growth_over(hypothesis: Hypothesis, records: Sequence[FitRecord], solver: Solver | None) -> float:
     """How much an error of the initial state grows over whole records, in the one where it grows most."""
     problem = OutputErrorProblem(hypothesis.model, hypothesis.given, (), records, solver)
-    none = torch.zeros(1, 0, dtype=torch.float64)
-    return growth(problem.linearise(none, problem.first_states().unsqueeze(0)), 0)
+    none = torch.zeros(1, problem.n_shared, dtype=torch.float64)
+    return growth(problem.linearise(none, problem.first_states().unsqueeze(0)), problem.n_shared)
 
 
 def begun_from(problem: OutputErrorProblem, after: Outcome, points: int) -> Tensor:
@@ -195,13 +230,28 @@ def begun_from(problem: OutputErrorProblem, after: Outcome, points: int) -> Tens
 
 
 def _settled(parameter: FreeParameter, value: float) -> FreeParameter:
-    return replace(parameter, start=value)
+    expected = parameter.expected if parameter.expected is not None or not parameter.logarithmic else parameter.start
+    return replace(parameter, start=value, expected=expected)
 
 
-def piece_samples(hypothesis: Hypothesis, evidence: Evidence) -> int:
-    """Samples of a piece of a record that can be predicted from its start wherever flanks part."""
-    frequency = natural_frequency_hz(hypothesis.model, hypothesis.given)
-    return max(FEWEST_SAMPLES, round(PIECE_PERIODS * evidence.sampling_rate / frequency))
+def segments_of(hypothesis: Hypothesis, evidence: Evidence) -> Segments:
+    """How records are cut where they cannot be predicted from their start: as the file says, else by time scale."""
+    return evidence.stated_segments or Segments(SEGMENT_TIMES * time_scale(hypothesis, evidence))
+
+
+def time_scale(hypothesis: Hypothesis, evidence: Evidence) -> float:
+    """Characteristic time of a model on these records in s."""
+    frequency = 2 * torch.pi * natural_frequency_hz(hypothesis.model, hypothesis.given)
+    damping = hypothesis.given.get("viscous_damping.damping_coefficient", 0.0)
+    mass = hypothesis.model.prepare(hypothesis.model.values(1, **hypothesis.given)).derived["equivalent_mass"]
+    return characteristic_time(evidence.records, frequency, float(damping) / float(mass[0]))
+
+
+def slowest_time(hypothesis: Hypothesis, evidence: Evidence) -> float:
+    """The same, or the period of a slower mode that one of its effects adds."""
+    natural = natural_frequency_hz(hypothesis.model, hypothesis.given)
+    slowest = slowest_frequency_hz(hypothesis.model, hypothesis.given)
+    return 1 / slowest if slowest < natural else time_scale(hypothesis, evidence)
 
 
 def natural_frequency_hz(model: Model, given: Given) -> float:

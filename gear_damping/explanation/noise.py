@@ -1,12 +1,13 @@
 """Step 2: how much of a record is noise, from the record itself by two estimators."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gear_damping.identification.output_error.problem import FitRecord
-from gear_damping.measurement.record import Channel
+from gear_damping.identification.output_error.records import FitRecord, Observed
+from gear_damping.measurement.record import Channel, Measurement
+from gear_damping.measurement.resolution import step_of
 
 BANDS = ((0.6, 0.78), (0.78, 0.96))  # of the usable band; above the signal, below the anti-alias corner
 AGREEMENT = 1.2  # estimates farther apart than this are said, and widen the threshold
@@ -54,20 +55,22 @@ class NoiseLevel:
 def noise_level(records: Sequence[FitRecord], channel: Channel) -> NoiseLevel:
     """The declared noise, or the floor of the spectrum in two bands above the signal.
 
-    Where the bands differ the lower one counts; records that do not differ share one level.
+    Where the bands differ the lower one counts; records that do not differ share one level. A channel that was
+    recorded in steps has at least the noise of their rounding.
     """
-    nyquist = records[0].sampling_rate / 2
-    usable = min(nyquist, channel.lowpass or nyquist)
-    correlation = nyquist / usable
+    usable = {r.name: min(r.sampling_rate / 2, channel.lowpass or r.sampling_rate / 2) for r in records}
+    correlation = max(r.sampling_rate / 2 / usable[r.name] for r in records)
     if channel.noise is not None:
         return NoiseLevel({record.name: channel.noise for record in records}, "declared", 1e9, True, correlation)
-    found = {r.name: [_floor(r, low * usable, high * usable) for low, high in BANDS] for r in records}
+    found = {r.name: [_floor(r, low * usable[r.name], high * usable[r.name]) for low, high in BANDS] for r in records}
+    rounding = {record.name: _rounding(record) for record in records}
     levels, agree = {}, True
     for name, bands in found.items():
         variances, lines = np.array(bands).T
         apart = variances.max() > AGREEMENT**2 * max(variances.min(), 1e-300)
         agree &= not apart
-        levels[name] = variances.min() if apart else float((variances * lines).sum() / max(lines.sum(), 1))
+        level = variances.min() if apart else float((variances * lines).sum() / max(lines.sum(), 1))
+        levels[name] = max(float(level), rounding.get(name, 0.0))
     degrees = {name: DEGREES * sum(lines for _, lines in bands) for name, bands in found.items()}
     said = "spectral floor above the signal"
     pooled = _pooled(levels, degrees)
@@ -78,12 +81,42 @@ def noise_level(records: Sequence[FitRecord], channel: Channel) -> NoiseLevel:
     return NoiseLevel(own, said, min(degrees.values()), agree, correlation)
 
 
+def _rounding(record: FitRecord) -> float:
+    """Variance that the steps of the converter leave."""
+    return step_of(record.response.numpy()) ** 2 / 12
+
+
 def _pooled(levels: dict[str, float], degrees: dict[str, float]) -> float | None:
     """The one variance of all records; None where they differ by more than chance."""
     variance, freedom = np.array([levels[n] for n in levels]), np.array([degrees[n] for n in levels])
     mean = float((variance * freedom).sum() / max(freedom.sum(), 1e-300))
     error = (2 / np.maximum(freedom, 1)) ** 0.5
     return mean if (np.abs(variance / max(mean, 1e-300) - 1) < ALIKE * error).all() else None
+
+
+def noise_of(
+    fit: Sequence[FitRecord], holdout: Sequence[FitRecord], measurement: Measurement
+) -> tuple[list[FitRecord], list[FitRecord], NoiseLevel]:
+    """The noise of the first channel, and records whose further channels count by their own."""
+    records, channels = (*fit, *holdout), {n: c for r in measurement.records for n, c in r.channels.items()}
+    first = noise_level(records, channels[records[0].observed.name])
+    others: dict[str, NoiseLevel] = {}
+    for name in dict.fromkeys(channel.name for record in records for channel, _ in record.others):
+        alone = [replace(r, response=values) for r in records for channel, values in r.others if channel.name == name]
+        others[name] = noise_level(alone, channels[name])
+    return scaled(fit, first, others), scaled(holdout, first, others), first
+
+
+def scaled(records: Sequence[FitRecord], first: NoiseLevel, others: Mapping[str, NoiseLevel]) -> list[FitRecord]:
+    """Records whose further channels count by their noise: in the unit of the first, at its noise."""
+
+    def scaled_channel(channel: Observed, record: FitRecord) -> Observed:
+        own = others[channel.name].by_record.get(record.name, others[channel.name].value)
+        return replace(channel, scale=first.by_record[record.name] / max(own, 1e-300))
+
+    return [
+        replace(r, others=tuple((scaled_channel(channel, r), values) for channel, values in r.others)) for r in records
+    ]
 
 
 def weighted(records: Sequence[FitRecord], noise: NoiseLevel) -> tuple[FitRecord, ...]:

@@ -1,7 +1,7 @@
 """Step 5b: what each candidate could explain, by its sensitivity with the nuisance projected out (score test)."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import torch
 from torch import Tensor
@@ -9,7 +9,8 @@ from torch import Tensor
 from gear_damping.explanation.candidates import Candidate
 from gear_damping.explanation.hypothesis import Outcome, begun_from
 from gear_damping.identification.output_error.least_squares import own_basis, without_own
-from gear_damping.identification.output_error.problem import DIFFERENCE, OutputErrorProblem
+from gear_damping.identification.output_error.problem import OutputErrorProblem
+from gear_damping.identification.output_error.records import DIFFERENCE
 from gear_damping.simulation.solver_settings import Solver
 
 PROBE = 0.05  # share of a strength's size that its slope is taken over
@@ -30,6 +31,7 @@ class Score:
         smallest: Size of its first strength that would just be visible, in the strength's own unit.
         columns: Orthonormal basis of what it can do beside the nuisance, (samples, n).
         variants: Of an effect that is tried as a whole, its other sizes.
+        failed: Why it could not be scored; empty where it could.
     """
 
     candidate: Candidate
@@ -39,6 +41,7 @@ class Score:
     smallest: float
     columns: Tensor
     variants: tuple[Candidate, ...] = ()
+    failed: str = ""
 
 
 class Projector:
@@ -116,8 +119,7 @@ def scores(
     base = Base(outcome, project, residual, beside, _predicted(outcome), noise, solver)
     found = []
     for number, candidate in enumerate(candidates):
-        score = _score(candidate, base)
-        found += [score] if score is not None else []
+        found.append(_score(candidate, base))
         if report:
             report(number + 1, len(candidates))
     return sorted(found, key=lambda score: -score.gain)
@@ -127,15 +129,16 @@ def _predicted(outcome: Outcome) -> Tensor:
     return (outcome.problem.response * outcome.problem.weights - outcome.fitted.prediction.residual[0]).reshape(-1)
 
 
-def _score(candidate: Candidate, base: Base) -> Score | None:
+def _score(candidate: Candidate, base: Base) -> Score:
     hypothesis, residual = candidate.hypothesis, base.residual
     records, n_free = base.outcome.problem.records, len(hypothesis.free)
     problem = OutputErrorProblem(hypothesis.model, hypothesis.given, hypothesis.free, records, base.solver)
     points, steps = _probes(candidate, n_free)
+    points = problem.completed(points) + problem.own_of(base.outcome.problem, base.outcome.fitted.shared)
     states = begun_from(problem, base.outcome, len(points))
     found = (problem.predict(points, states) * problem.weights).reshape(len(points), -1)
     if not bool(found.isfinite().all()):
-        return None
+        return replace(_unseen(candidate, n_free, len(residual)), failed="its prediction diverged")
     columns = (found - base.predicted) / steps.unsqueeze(1)
     columns = torch.nn.functional.pad(columns, (0, len(base.project.expected))).T
     beside = base.project(columns)
@@ -168,7 +171,8 @@ def _gain(candidate: Candidate, problem: OutputErrorProblem, states: Tensor, bes
     free = residual.square().sum()
     if candidate.presence:
         own = [i for i, p in enumerate(candidate.hypothesis.free) if p.name.startswith(candidate.name + ".")]
-        slopes = _slopes(problem, [*own, *range(problem.n_shared + 2, problem.n_shared + len(problem.local))], states)
+        places = [*own, *range(problem.n_shared + 2, problem.n_shared + len(problem.local))]
+        slopes = _slopes(problem, places, states, problem.own_of(base.outcome.problem, base.outcome.fitted.shared))
         project = project.beside_own(slopes[..., len(own) :])
         sizes = torch.nn.functional.pad(slopes[..., : len(own)].flatten(0, 1), (0, 0, 0, len(project.slope)))
         residual, beside = project(base.residual.unsqueeze(1))[:, 0], project(torch.cat([beside, sizes], 1))
@@ -178,12 +182,12 @@ def _gain(candidate: Candidate, problem: OutputErrorProblem, states: Tensor, bes
     return float((free - left.square().sum()) / base.residual.square().sum())
 
 
-def _slopes(problem: OutputErrorProblem, places: Sequence[int], states: Tensor) -> Tensor:
-    """Slopes of the prediction at coordinates 0 in shared and own coordinates of these places, (records, time, n)."""
+def _slopes(problem: OutputErrorProblem, places: Sequence[int], states: Tensor, at: Tensor) -> Tensor:
+    """Slopes of the prediction at coordinates `at` in these shared and local coordinates, (records, time, n)."""
     moves = torch.zeros(len(places) + 1, problem.n_shared + len(problem.local), dtype=torch.float64)
     moves[range(1, len(moves)), places] = DIFFERENCE
     moved = states + moves[:, None, problem.n_shared :]
-    found = problem.predict(moves[:, : problem.n_shared], moved) * problem.weights
+    found = problem.predict(at + moves[:, : problem.n_shared], moved) * problem.weights
     return ((found[1:] - found[0]) / DIFFERENCE).permute(1, 2, 0)
 
 

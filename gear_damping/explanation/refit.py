@@ -9,7 +9,7 @@ from torch import Tensor
 
 from gear_damping.explanation.candidates import Candidate
 from gear_damping.explanation.evidence import Evidence
-from gear_damping.explanation.hypothesis import Outcome, fit_hypothesis, natural_frequency_hz
+from gear_damping.explanation.hypothesis import Outcome, fit_hypothesis, time_scale
 from gear_damping.explanation.ranking import Score, collinearity
 from gear_damping.explanation.significance import paired_gain
 from gear_damping.simulation.solver_settings import Solver
@@ -19,7 +19,9 @@ MOST_FITS = 9  # with those that resemble the first
 NEARLY_COLLINEAR = 0.7
 OTHER_FORM = 0.95  # of what the best form of an effect promises, for a full fit of another form
 LEAST_PROMISE = 0.3  # of the first one's, for a full fit of one that resembles it
-BLOCK_PERIODS = 6.0  # natural periods of a block of the paired test
+BLOCK_TIMES = 6.0  # characteristic times of a block of the paired test,
+FEWEST_BLOCKS = 8  # but at least so many blocks: the variance of fewer is anybody's guess
+SHORTEST_BLOCK = 4  # samples
 CAUTIOUS = 0.3  # of the linearised optimum: the second start, where the first one leads too far
 FIRST_PART = 0.25  # of the records, by which the better start is chosen
 ONE = 1e-9  # share of the starts that goes on: the best
@@ -66,10 +68,11 @@ class Refit:
         return self.score.candidate.name
 
 
-def block_samples(outcome: Outcome, rate: float) -> int:
-    """Samples of a block of the paired test."""
-    frequency = natural_frequency_hz(outcome.hypothesis.model, outcome.hypothesis.given)
-    return max(8, round(BLOCK_PERIODS * rate / frequency))
+def block_samples(outcome: Outcome, evidence: Evidence) -> list[int]:
+    """Samples of a block of the paired test, by held-out record; short records have shorter blocks."""
+    total = sum(record.duration for record in evidence.held)
+    seconds = min(BLOCK_TIMES * time_scale(outcome.hypothesis, evidence), total / FEWEST_BLOCKS)
+    return [max(SHORTEST_BLOCK, round(seconds * record.sampling_rate)) for record in evidence.held]
 
 
 def chosen(scores: Sequence[Score], least: float = 0.0) -> list[Score]:
@@ -117,13 +120,12 @@ def refitted(
     candidate = score.candidate
     hypothesis = candidate.hypothesis
     options = {"solver": solver, "enough": ENOUGH}
-    total = max(len(record.response) for record in evidence.fit)
     found = fit_hypothesis(
         hypothesis,
         evidence,
         _starts(score),
         outcome,
-        horizons=[max(2, round(FIRST_PART * total)), total],
+        horizons=[FIRST_PART * evidence.duration, None],
         iterations=(FIRST_ITERATIONS, LAST_ITERATIONS),
         kept=VARIANTS_KEPT if candidate.presence else ONE,
         **options,
@@ -146,7 +148,7 @@ def again(refit: Refit, against: Outcome, evidence: Evidence, solver: Solver | N
 
 
 def _compared(score: Score, found: Outcome, against: Outcome, evidence: Evidence) -> Refit:
-    gain, t = paired_gain(against.compared, found.compared, block_samples(against, evidence.sampling_rate))
+    gain, t = paired_gain(against.holdout, found.holdout, block_samples(against, evidence))
     return Refit(score, found, gain, t, (against.fitted.cost - found.fitted.cost) / max(evidence.noise, 1e-300) ** 2)
 
 

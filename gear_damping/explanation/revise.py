@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from gear_damping.explanation.ranking import Score
 from gear_damping.explanation.significance import Excess
-from gear_damping.explanation.trying import BORNE_OUT, Accepted, Bench, Search
+from gear_damping.explanation.trying import ACCEPTED_AT, Accepted, Bench, Search
 
 PROMISE = 0.6  # of the best one's, for an effect to be tried in the place of a cause
 
@@ -19,7 +19,7 @@ def exchanged(found: Search, first: Excess, bench: Bench) -> None:
         before = found.outcome
         without = bench.without(before, cause.name)
         fits = bench.full_fits(bench.ranked(without), without, before, PROMISE)
-        if fits and fits[0].t > BORNE_OUT and fits[0].is_seen_in_fit:
+        if fits and fits[0].t > ACCEPTED_AT and fits[0].is_seen_in_fit:
             best, rivals = bench.simplest(fits[0], fits)
             gained = bench.excess(before).percent - bench.excess(best.outcome).percent
             if best.name != cause.name:
@@ -52,7 +52,7 @@ def pruned(found: Search, bench: Bench) -> None:
     """Drop a cause whose removal costs nothing that held-out records show."""
     for accepted in found.accepted[:-1]:
         without = bench.without(found.outcome, accepted.name)
-        if bench.paired_gain(without, found.outcome)[1] < BORNE_OUT:
+        if bench.paired_gain(without, found.outcome)[1] < ACCEPTED_AT:
             bench.say(f"{accepted.name} is not needed beside the others")
             found.outcome = without
             found.accepted = [other for other in found.accepted if other is not accepted]

@@ -7,7 +7,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.explanation.noise import NoiseLevel
-from gear_damping.identification.output_error.problem import FitRecord
+from gear_damping.identification.output_error.records import FitRecord
 
 SMALLEST = 0.03  # % of the channel's AC variance; less is never called significant
 ERRORS = 3.0  # standard errors
@@ -54,9 +54,9 @@ def excess(residuals: Sequence[Tensor], records: Sequence[FitRecord], noise: Noi
     """D of these residuals, beside what chance would leave if they were noise alone."""
     total = sum(len(r) for r in residuals)
     mean_square = sum(float(r.square().sum()) for r in residuals) / total
-    variance = sum(float((r.response - r.response.mean()).square().sum()) for r in records) / total
+    variance = sum(ac_energy(record) for record in records) / total
     floors = {record.name: noise.by_record[record.name] ** 2 for record in records}
-    floor = sum(floors[r.name] * len(r.response) for r in records) / total
+    floor = sum(floors[r.name] * len(r.stacked) for r in records) / total
     effective = total / noise.correlation
     relative = mean_square / max(floor, 1e-300)
     beyond = max(mean_square - floor, 0.0) / variance
@@ -71,14 +71,20 @@ def excess(residuals: Sequence[Tensor], records: Sequence[FitRecord], noise: Noi
     return Excess(100 * (mean_square - floor) / variance, max(SMALLEST, chance), chance, relative, each)
 
 
-def paired_gain(before: Sequence[Tensor], after: Sequence[Tensor], block: int) -> tuple[float, float]:
-    """Mean gain of squared residuals per sample and its t statistic over blocks of so many samples.
+def ac_energy(record: FitRecord) -> float:
+    """Sum of squares of a record's channels about their means, in the unit of the first."""
+    channels = record.stacked.unflatten(0, (len(record.channels), -1))
+    return float((channels - channels.mean(1, keepdim=True)).square().sum())
+
+
+def paired_gain(before: Sequence[Tensor], after: Sequence[Tensor], blocks: Sequence[int]) -> tuple[float, float]:
+    """Mean gain of squared residuals per sample and its t statistic over blocks of so many samples, by record.
 
     The gain is tested as it is and relative to what either leaves of a block, and the clearer answer counts:
     in a decay the first blocks hold nearly all of it, which is no reason to doubt the others.
     """
     gains, shares = [], []
-    for old, new in zip(before, after, strict=True):
+    for old, new, block in zip(before, after, blocks, strict=True):
         count = max(1, len(old) // block)
         pairs = zip(*(r[: count * block].square().chunk(count) for r in (old, new)), strict=True)
         means = torch.stack([torch.stack([a.mean(), b.mean()]) for a, b in pairs])

@@ -3,18 +3,18 @@
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field, replace
 
-from gear_damping.explanation.candidates import candidates_for
+from gear_damping.explanation.candidates import candidates_for, restored
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Hypothesis, Outcome, fit_hypothesis
 from gear_damping.explanation.noise import NoiseLevel
 from gear_damping.explanation.ranking import Score, contains, scores
 from gear_damping.explanation.refit import Refit, block_samples, chosen, refitted
 from gear_damping.explanation.significance import CLOSE, Excess, excess, paired_gain
-from gear_damping.identification.output_error.problem import FreeParameter
+from gear_damping.identification.output_error.records import FreeParameter
 from gear_damping.physics.terms import Effect
 from gear_damping.simulation.solver_settings import Solver
 
-BORNE_OUT = 3.0  # t of the held-out gain that a cause needs
+ACCEPTED_AT = 3.0  # t of the held-out gain that a cause needs
 RIVAL = 2.0  # t below which two explanations are not told apart
 LEAST_TAKEN = 0.25  # of what another takes of the fitted records, for a fit to be carried to its end
 LAST_ITERATIONS = 60  # of a cause that is accepted before its fit has come to rest
@@ -55,6 +55,7 @@ class Search:
         first_scores: Every candidate's score beside the nominal model.
         rejected: Full fits of the last round that were not accepted.
         first_fits: Full fits of the first round, the best first.
+        failed: Why an effect could not be fitted in full, by its name.
     """
 
     nominal: Outcome
@@ -63,6 +64,7 @@ class Search:
     first_scores: list[Score] = field(default_factory=list)
     rejected: list[Refit] = field(default_factory=list)
     first_fits: list[Refit] = field(default_factory=list)
+    failed: dict[str, str] = field(default_factory=dict)
 
     @property
     def growth(self) -> float:
@@ -80,20 +82,23 @@ class Bench:
         noise: The same in full.
         say: Told what is found on the way.
         solver: Settings of the solver.
+        failed: Why an effect could not be fitted in full, by its name.
     """
 
     evidence: Evidence
     noise: NoiseLevel
     say: Say
     solver: Solver | None
+    failed: dict[str, str] = field(default_factory=dict)
 
     def excess(self, outcome: Outcome) -> Excess:
         """What a model leaves of the held-out records."""
-        return excess(outcome.holdout, self.evidence.holdout, self.noise)
+        return excess(outcome.holdout, self.evidence.held, self.noise)
 
     def ranked(self, outcome: Outcome, names: Collection[str] | None = None) -> list[Score]:
         """Every candidate beside a model, or those of some effects, the most promising first."""
-        tried = candidates_for(outcome.hypothesis, self.evidence)
+        residuals = list(zip(self.evidence.fitted, outcome.fit_residuals, strict=True))
+        tried = candidates_for(outcome.hypothesis, self.evidence, residuals)
         tried = tried if names is None else [candidate for candidate in tried if candidate.name in names]
         return scores(outcome, tried, self.noise.value, self.solver)
 
@@ -113,6 +118,8 @@ class Bench:
         for score in chosen(ranked, promise):
             most = max((outcome.fitted.cost - fit.outcome.fitted.cost for fit in fits), default=0.0)
             fit = self.full_fit(score, outcome, against, LEAST_TAKEN * most) if score.gain > 0 else None
+            if fit is None and score.gain > 0:
+                self.failed[score.candidate.name] = "its full fit ran away on held-out records"
             fits += [] if fit is None else [fit]
         return sorted(fits, key=lambda fit: fit.outcome.holdout_cost)
 
@@ -134,7 +141,7 @@ class Bench:
 
     def paired_gain(self, before: Outcome, after: Outcome) -> tuple[float, float]:
         """Gain of the second over the first on held-out records, with its t."""
-        return paired_gain(before.compared, after.compared, block_samples(after, self.evidence.sampling_rate))
+        return paired_gain(before.holdout, after.holdout, block_samples(after, self.evidence))
 
     def simplest(self, best: Refit, fits: Sequence[Refit]) -> tuple[Refit, tuple[str, ...]]:
         """The explanation with its rivals, the effects whose full fit is not worse by the paired test.
@@ -167,10 +174,11 @@ def _without(hypothesis: Hypothesis, name: str) -> Hypothesis:
     def other(parameter: FreeParameter) -> bool:
         return not parameter.name.startswith(name + ".")
 
-    return replace(
+    left = replace(
         hypothesis,
         effects=tuple(effect for effect in hypothesis.effects if effect.name != name),
         given={key: value for key, value in hypothesis.given.items() if not key.startswith(name + ".")},
         free=tuple(parameter for parameter in hypothesis.free if other(parameter)),
         causes=tuple(cause for cause in hypothesis.causes if cause != name),
     )
+    return restored(left, name)

@@ -10,7 +10,8 @@ from torch import Tensor
 
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Outcome
-from gear_damping.identification.output_error.problem import FitRecord
+from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.physics.systems.gear_pair import GearPair
 
 Array = NDArray[np.float64]
 SHAFT_ORDERS = 3  # harmonics of either shaft that are looked at
@@ -39,10 +40,10 @@ def leftover(outcome: Outcome, evidence: Evidence) -> dict[str, object]:
         `shares` of the residual's energy by family of features (held out: fitted on the other records'
         residuals), `orders` (gear pairs only), `contact_phase` and `kurtosis`.
     """
-    trained = [_features(record, outcome, evidence) for record in evidence.fit]
-    tested = [_features(record, outcome, evidence) for record in evidence.holdout]
-    residual_fit = [r.numpy() for r in outcome.fit_residuals]
-    residual_test = [r.numpy() for r in outcome.holdout]
+    trained = [_features(record, outcome, evidence) for record in evidence.fitted]
+    tested = [_features(record, outcome, evidence) for record in evidence.held]
+    residual_fit = first_channel(outcome.fit_residuals, evidence.fitted)
+    residual_test = first_channel(outcome.holdout, evidence.held)
     families = trained[0].keys()
     shares = {
         family: _share([f[family] for f in trained], residual_fit, [f[family] for f in tested], residual_test)
@@ -53,18 +54,23 @@ def leftover(outcome: Outcome, evidence: Evidence) -> dict[str, object]:
         "kurtosis": _kurtosis(residual_test),
         "bursts": _kurtosis(residual_test) > BURST_KURTOSIS,
     }
-    shafts = [shaft_of(record, evidence) for record in evidence.holdout]
+    shafts = [shaft_of(record, evidence) for record in evidence.held]
     if all(shafts):
         found["orders"] = _orders(residual_test, shafts)
         found["contact_phase"] = _contact_phase(residual_test, shafts)
     return found
 
 
+def first_channel(residuals: Sequence[Tensor], records: Sequence[FitRecord]) -> list[Array]:
+    """Residuals of the first response channel, (time,) each."""
+    return [r[: len(record.response)].numpy() for r, record in zip(residuals, records, strict=True)]
+
+
 def shaft_of(record: FitRecord, evidence: Evidence) -> Shaft | None:
     """The shaft of a record of a gear pair; None for an oscillator."""
     if evidence.system != "gear_pair":
         return None
-    teeth = round(evidence.parameters.get("n_teeth_pinion", 20)), round(evidence.parameters.get("n_teeth_gear", 40))
+    teeth = tuple(round(evidence.parameters.get(p.name, p.default)) for p in GearPair.parameters[:2])
     if "pinion_angle" in record.inputs:
         return Shaft(record.inputs["pinion_angle"].numpy(), teeth)
     time = np.arange(len(record.response)) / record.sampling_rate
@@ -77,7 +83,7 @@ def _features(record: FitRecord, outcome: Outcome, evidence: Evidence) -> dict[s
     response = record.response.numpy()
     middle, spread = response.mean(), response.std() or 1.0
     place = (response - middle) / spread
-    rate = np.gradient(response)
+    rate = np.gradient(response) if record.observed.derivatives == 0 else response
     rate = rate / (rate.std() or 1.0)
     powers = [place**i * rate**j for i in range(STATE_POWERS + 1) for j in range(STATE_POWERS + 1 - i) if i + j]
     found = {

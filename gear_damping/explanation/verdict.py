@@ -39,14 +39,17 @@ class Judged:
     verdict: Verdict
 
 
-def verdict(found: Search, before: Excess, after: Excess, converged: bool = True) -> Verdict:
+def verdict(
+    found: Search, before: Excess, after: Excess, converged: bool = True, is_one: bool | None = None
+) -> Verdict:
     """What the search amounts to.
 
     Args:
         found: The search.
         before: Excess of the calibrated nominal model.
         after: Excess of the extended one.
-        converged: Whether the calibration came to rest.
+        converged: Whether the calibration converged.
+        is_one: Whether every cause has one size over all records; None where too few records tell of one.
     """
     if not before.significant:
         text = f"No evidence of an effect that takes more than {before.threshold:.2g} % of the signal's variance."
@@ -54,17 +57,20 @@ def verdict(found: Search, before: Excess, after: Excess, converged: bool = True
     taken = (before.percent - after.percent) / before.percent
     rest = is_all(after, before)
     missing = f"The simulation misses {before.percent:.3g} % of the signal's variance"
-    unsettled = () if converged else ("The calibration did not come to rest: take the figures with care.",)
+    unsettled = () if converged else ("The calibration did not converge: take the figures with care.",)
     if not found.accepted:
         text = f"{missing}, and no effect of the catalogue is borne out by held-out records."
         return Verdict(UNEXPLAINED, (text, *unsettled))
     confused = [cause for cause in found.accepted if cause.confusable]
     said = _named(found.accepted)
+    classes = [cause for cause in found.accepted if cause.effect.cause.one_class]
+    if rest and classes:
+        return Verdict(AMBIGUOUS, (f"{missing}.", *_one_class(classes), *_not_told_apart(confused), _left(taken)))
     if rest and not confused:
         return Verdict(EXPLAINED, (f"{missing}: {said}.", _left(taken), *_same_record(found.accepted), *unsettled))
     if rest:
         return Verdict(AMBIGUOUS, (f"{missing}.", *_not_told_apart(confused), _left(taken), *unsettled))
-    one_takes_half = len(found.accepted) == 1 and taken >= HALF and after.misfit <= SMALL_REST
+    one_takes_half = len(found.accepted) == 1 and taken >= HALF and (after.misfit <= SMALL_REST or bool(is_one))
     if taken >= MOST or one_takes_half:
         text = f"{missing}. Part of it has a name: {said}. A rest of {after.percent:.3g} % has none."
         return Verdict(PARTLY, (text, _left(taken), *_not_told_apart(confused), *unsettled))
@@ -84,6 +90,16 @@ def _named(accepted: Sequence[Accepted]) -> str:
 def _not_told_apart(confused: Sequence[Accepted]) -> tuple[str, ...]:
     sets = (" or ".join(f"`{name}`" for name in (c.name, *c.confusable[: LARGEST_SET - 1])) for c in confused)
     return (f"These data do not tell apart: {'; '.join(sets)}.",) if confused else ()
+
+
+def _one_class(causes: Sequence[Accepted]) -> tuple[str, ...]:
+    """Names that are one answer in this channel."""
+    return tuple(
+        f"{cause.effect.cause.sentence[0].upper()}{cause.effect.cause.sentence[1:]} (`{cause.name}`), "
+        f"{', '.join(cause.effect.cause.one_class[:-1])} and {cause.effect.cause.one_class[-1]} look the same in this "
+        "channel: a calibrated torque and a calibrated sensor would tell which it is."
+        for cause in causes
+    )
 
 
 def _same_record(accepted: Sequence[Accepted]) -> tuple[str, ...]:

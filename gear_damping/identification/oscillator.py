@@ -1,17 +1,22 @@
 """A linear oscillator from measured records: mass-normalised parameters with intervals."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from math import pi
 
 import numpy as np
 import torch
 from torch import Tensor
 
+from gear_damping.identification.observation import Known
+from gear_damping.identification.output_error.first_guess import first_motion
 from gear_damping.identification.output_error.holdout import predict_holdout, rmse
 from gear_damping.identification.output_error.least_squares import Fitted, fit
-from gear_damping.identification.output_error.problem import OFFSET, FitRecord, FreeParameter, OutputErrorProblem
+from gear_damping.identification.output_error.problem import OutputErrorProblem
+from gear_damping.identification.output_error.records import FitRecord, FreeParameter
+from gear_damping.identification.output_error.segments import WHOLE, Segments, covered, in_segments, joined
 from gear_damping.identification.output_error.uncertainty import covariance, interval
+from gear_damping.identification.time_scale import characteristic_time
 from gear_damping.physics.effects.offset_force import OffsetForce
 from gear_damping.physics.effects.viscous_damping import ViscousDamping
 from gear_damping.physics.model import Model
@@ -19,10 +24,15 @@ from gear_damping.physics.systems.oscillator import Oscillator
 from gear_damping.simulation.solver_settings import Solver
 
 STIFFNESS, DAMPING, GAIN, FORCE = "stiffness", "viscous_damping.damping_coefficient", "force_gain", "offset_force.force"
+TIME = "characteristic_time"
 FIRST_RATIOS = (0.01, 0.05, 0.2)  # damping ratios of the starts
 FIRST_SHIFTS = (0.93, 1.0, 1.07)  # of the frequency of the starts
+FIRST_RATES = (0.1, 1.0, 10.0)  # damping coefficients of the starts without a spring, over one by characteristic time
 HORIZON_PERIODS = (4, 20, 100)  # natural periods of the rounds before the whole record
-CORRELATED_PERIODS = 3.0
+FEWEST_SAMPLES = 20  # of such a round
+CORRELATED_PERIODS = 3.0  # characteristic times over which residuals may be correlated
+SEGMENT_TIMES = 5.0  # characteristic times of a segment
+NOTHING = Known({}, {})
 
 
 @dataclass(frozen=True)
@@ -40,25 +50,29 @@ class OscillatorFit:
 
     Args:
         parameters: Mass-normalised stiffness, damping coefficient and force gain (forced records only).
-        damping_ratio_percent: In % of critical.
+        damping_ratio_percent: In % of critical; None without a spring, as the next two.
         natural_frequency_hz: Undamped.
         log_decrement: Of successive peaks.
-        predictions: By record name, (time,).
-        rmse: By role, `fit` and `holdout` (None without such records), in the unit of the response.
+        predictions: By record name, the response channels one after another.
+        residuals: The same of what is left.
+        rmse: By role, `fit` and `holdout` (None without such records), in the unit of the first channel.
         converged: Whether the search came to rest.
         given: Every parameter of the fitted model by flat name.
-        offset: Constant added to the response.
+        own: What single records have of their own, such as offsets, by name.
+        segments: How the records were cut.
     """
 
     parameters: dict[str, Estimate]
-    damping_ratio_percent: Estimate
-    natural_frequency_hz: Estimate
-    log_decrement: Estimate
+    damping_ratio_percent: Estimate | None
+    natural_frequency_hz: Estimate | None
+    log_decrement: Estimate | None
     predictions: dict[str, Tensor]
+    residuals: dict[str, Tensor]
     rmse: dict[str, float | None]
     converged: bool
     given: dict[str, float]
-    offset: float
+    own: dict[str, float]
+    segments: Segments = WHOLE
 
 
 def fit_oscillator(
@@ -66,40 +80,99 @@ def fit_oscillator(
     holdout_records: Sequence[FitRecord] = (),
     report: Callable[[int, int], None] | None = None,
     solver: Solver | None = None,
+    known: Known = NOTHING,
+    segments: Segments | None = None,
 ) -> OscillatorFit:
     """Stiffness, damping and gain per unit of mass; offsets of force and response are nuisances.
 
     Args:
-        fit_records: Records of one rig and one sampling rate, with the input `force` or as free decays.
+        fit_records: Records of one rig, all with the same inputs or as free decays.
         holdout_records: Records to predict with the parameters frozen.
         report: Told (done, total) rounds.
         solver: Settings of the solver.
+        known: What is stated of the rig: starts, expectations, and 0 for what is not there.
+        segments: How the records are cut; where absent they are whole, or in segments where there is no spring.
     """
-    forced = "force" in fit_records[0].inputs
-    frequency = first_frequency(fit_records[0])
-    problem = _problem(fit_records, frequency, forced, solver)
-    starts = _starts(problem, forced)
-    fitted = fit(problem, starts, _horizons(problem, frequency), report=report)
+    free, given, scale = linear_model(fit_records, known)
+    spring = any(parameter.name == STIFFNESS for parameter in free)
+    if segments is None:
+        segments = WHOLE if spring else Segments(SEGMENT_TIMES * scale)
+    pieces = in_segments(fit_records, segments)
+    problem = OutputErrorProblem(linear_effects(fit_records), given, free, pieces, solver)
+    fitted = fit(problem, _starts(problem, spring), _horizons(problem, scale), report=report)
     values = {name: float(value) for name, value in problem.parameters(fitted.shared).items()}
-    offset = values.pop(OFFSET)
-    given = problem.given | values
-    found = _estimates(problem, fitted, frequency)
-    natural = found["natural_frequency_hz"].value
-    predictions = _fit_predictions(problem, fitted)
+    found = _estimates(problem, fitted, scale)
+    given = problem.given | {p.name: values[p.name] for p in free}
+    residuals = _fit_residuals(problem, fitted, fit_records, segments)
+    own = {name: value for name, value in values.items() if name not in given}
     if holdout_records:
-        held = predict_holdout(problem.model, given, offset, holdout_records, natural, solver).predictions
-        predictions |= {record.name: found for record, found in zip(holdout_records, held, strict=True)}
+        held = predict_holdout(problem.model, given, holdout_records, scale, solver, segments)
+        residuals |= {record.name: left for record, left in zip(holdout_records, held.residuals, strict=True)}
+        own |= held.own
+    records = [*covered(fit_records, segments), *covered(holdout_records, segments)]
     return OscillatorFit(
         parameters={k: v for k, v in found.items() if k in (STIFFNESS, GAIN, "damping_coefficient")},
-        damping_ratio_percent=found["damping_ratio_percent"],
-        natural_frequency_hz=found["natural_frequency_hz"],
-        log_decrement=found["log_decrement"],
-        predictions=predictions,
-        rmse={"fit": _rmse(fit_records, predictions), "holdout": _rmse(holdout_records, predictions)},
+        damping_ratio_percent=found.get("damping_ratio_percent"),
+        natural_frequency_hz=found.get("natural_frequency_hz"),
+        log_decrement=found.get("log_decrement"),
+        predictions={record.name: record.stacked - residuals[record.name] for record in records},
+        residuals=residuals,
+        rmse={"fit": _rmse(fit_records, residuals), "holdout": _rmse(holdout_records, residuals)},
         converged=fitted.converged,
         given=given,
-        offset=offset,
+        own=own,
+        segments=segments,
     )
+
+
+def linear_effects(records: Sequence[FitRecord]) -> Model:
+    """The linear oscillator of these records; one that is driven has a constant force beside its input."""
+    return Model(Oscillator(), [ViscousDamping(), *([OffsetForce()] if records[0].inputs else [])])
+
+
+def linear_model(
+    records: Sequence[FitRecord], known: Known = NOTHING
+) -> tuple[list[FreeParameter], dict[str, float], float]:
+    """Free parameters of the linear oscillator with their starts, its given values, and its characteristic time."""
+    stated, spread = known.values, _amplitude(records)
+    spring = stated.get(STIFFNESS, 1.0) > 0
+    rate = (stated[STIFFNESS] ** 0.5 if stated.get(STIFFNESS) else 2 * pi * first_frequency(records[0])) * spring
+    scale = characteristic_time(records, rate, stated.get("damping_coefficient", 0.0))
+    given = {"amplitude": spread} | ({} if spring else {STIFFNESS: 0.0, TIME: scale})
+    free = [FreeParameter(STIFFNESS, rate**2, logarithmic=True)] if spring else []
+    damping = 2 * FIRST_RATIOS[0] * rate if spring else 1 / scale
+    if "damping_ratio" in stated and spring:
+        damping = 2 * stated["damping_ratio"] * rate
+    damping = stated.get("damping_coefficient", damping)
+    if damping > 0:
+        free.append(FreeParameter(DAMPING, damping, logarithmic=True, lower=1e-9 * (rate or 1 / scale)))
+    else:
+        given[DAMPING] = 0.0
+    if "force" in records[0].inputs:
+        force = torch.cat([record.inputs["force"] for record in records])
+        per_spread = rate**2 * 2 * FIRST_RATIOS[1] if spring else 1 / scale**2
+        size = per_spread * spread / float(force.std().clamp(min=1e-300))
+        gain = stated.get(GAIN, size)
+        free.append(FreeParameter(GAIN, gain, scale=abs(gain) or size))
+    if records[0].inputs:
+        free.append(FreeParameter(FORCE, 0.0, scale=(rate**2 if spring else 1 / scale**2) * spread))
+    names = {STIFFNESS: STIFFNESS, "damping_coefficient": DAMPING, "damping_ratio": DAMPING, GAIN: GAIN}
+    expected = {names[name]: relative for name, relative in known.uncertainty.items() if stated[name]}
+    return [expected_about(p, expected.get(p.name)) for p in free], given, scale
+
+
+def expected_about(parameter: FreeParameter, relative: float | None) -> FreeParameter:
+    """The parameter with the expectation that it lies about its start, within a relative uncertainty."""
+    if not relative:
+        return parameter
+    deviation = relative if parameter.logarithmic else relative * abs(parameter.start)
+    return replace(parameter, deviation=deviation, expected=parameter.start)
+
+
+def _amplitude(records: Sequence[FitRecord]) -> float:
+    """Typical displacement, from whatever was recorded."""
+    scales = [first_motion(record, 0.0, 0.0, Model(Oscillator(), ()), {})[1][0] for record in records]
+    return float(torch.stack(scales).square().mean().sqrt())
 
 
 def first_frequency(record: FitRecord) -> float:
@@ -110,82 +183,70 @@ def first_frequency(record: FitRecord) -> float:
     frequency = np.fft.rfftfreq(len(response), 1 / record.sampling_rate)
     width = max(1, len(spectrum) // 400)
     smooth = np.convolve(spectrum, np.ones(width) / width, mode="same")
-    if "force" in record.inputs:
-        force = record.inputs["force"].numpy()
+    drives = [record.inputs[name] for name in ("force", "base_acceleration") if name in record.inputs]
+    if drives:
+        force = drives[0].numpy()
         drive = np.convolve(np.abs(np.fft.rfft((force - force.mean()) * window)) ** 2, np.ones(width) / width, "same")
         smooth = np.where(drive > 1e-3 * drive.max(), smooth / np.maximum(drive, 1e-300), 0)
     first = max(1, width // 2)
     return float(frequency[first + int(np.argmax(smooth[first:]))])
 
 
-def _problem(records: Sequence[FitRecord], frequency: float, forced: bool, solver: Solver | None) -> OutputErrorProblem:
-    spread = float(torch.cat([r.response for r in records]).std())
-    rate = 2 * pi * frequency
-    free = [
-        FreeParameter(STIFFNESS, rate**2, logarithmic=True),
-        FreeParameter(DAMPING, 2 * FIRST_RATIOS[0] * rate, logarithmic=True, lower=1e-9 * rate),
-        FreeParameter(OFFSET, 0.0, scale=spread),
-    ]
-    effects = [ViscousDamping()]
-    if forced:
-        force = torch.cat([r.inputs["force"] for r in records])
-        gain = rate**2 * 2 * FIRST_RATIOS[1] * spread / float(force.std())
-        free += [FreeParameter(GAIN, gain, scale=gain), FreeParameter(FORCE, 0.0, scale=rate**2 * spread)]
-        effects.append(OffsetForce())
-    model = Model(Oscillator(), effects)
-    return OutputErrorProblem(model, {"amplitude": spread}, free, records, solver)
-
-
-def _starts(problem: OutputErrorProblem, forced: bool) -> Tensor:
-    """Coordinates of the starts: every frequency with every damping ratio."""
+def _starts(problem: OutputErrorProblem, spring: bool) -> Tensor:
+    """Coordinates of the starts: every frequency with every damping ratio, or every time constant."""
+    place = {parameter.name: i for i, parameter in enumerate(problem.free)}
     rows = []
-    for shift in FIRST_SHIFTS:
-        for ratio in FIRST_RATIOS:
+    for shift in FIRST_SHIFTS if spring else (1.0,):
+        for ratio in FIRST_RATIOS if spring else FIRST_RATES:
             row = torch.zeros(problem.n_shared, dtype=torch.float64)
-            row[0] = 2 * float(np.log(shift))
-            row[1] = float(np.log(ratio / FIRST_RATIOS[0]))
+            if spring:
+                row[place[STIFFNESS]] = 2 * float(np.log(shift))
+            if DAMPING in place:
+                row[place[DAMPING]] = float(np.log(ratio / (FIRST_RATIOS[0] if spring else 1.0)))
             rows.append(row)
     return torch.stack(rows)
 
 
-def _horizons(problem: OutputErrorProblem, frequency: float) -> list[int]:
-    total, rate = problem.response.shape[1], problem.records[0].sampling_rate
-    short = [round(periods * rate / frequency) for periods in HORIZON_PERIODS]
-    return [samples for samples in short if 20 <= samples < total] + [total]
+def _horizons(problem: OutputErrorProblem, scale: float) -> list[float | None]:
+    rate, total = (f(record.sampling_rate for record in problem.records) for f in (min, max))
+    whole = problem.length / total
+    return [p * scale for p in HORIZON_PERIODS if FEWEST_SAMPLES / rate <= p * scale < whole] + [None]
 
 
-def _estimates(problem: OutputErrorProblem, fitted: Fitted, frequency: float) -> dict[str, Estimate]:
-    lags = round(CORRELATED_PERIODS * problem.records[0].sampling_rate / frequency)
-    spread = covariance(problem, fitted, lags)
+def _estimates(problem: OutputErrorProblem, fitted: Fitted, scale: float) -> dict[str, Estimate]:
+    spread = covariance(problem, fitted, CORRELATED_PERIODS * scale)
     place = {parameter.name: i for i, parameter in enumerate(problem.free)}
 
     def value(name: str, shared: Tensor) -> Tensor:
+        if name not in place:
+            return shared.new_tensor(problem.given[name])
         return problem.free[place[name]].value(shared[place[name]])
 
     def ratio(shared: Tensor) -> Tensor:
         return value(DAMPING, shared) / (2 * value(STIFFNESS, shared).sqrt())
 
-    quantities = {
-        STIFFNESS: (lambda s: value(STIFFNESS, s), "1/s^2"),
-        "damping_coefficient": (lambda s: value(DAMPING, s), "1/s"),
-        "damping_ratio_percent": (lambda s: 100 * ratio(s), "%"),
-        "natural_frequency_hz": (lambda s: value(STIFFNESS, s).sqrt() / (2 * pi), "Hz"),
-        "log_decrement": (lambda s: 2 * pi * ratio(s) / (1 - ratio(s) ** 2).sqrt(), "1"),
-    }
+    quantities = {"damping_coefficient": (lambda s: value(DAMPING, s), "1/s")} if DAMPING in place else {}
+    if STIFFNESS in place:
+        quantities[STIFFNESS] = (lambda s: value(STIFFNESS, s), "1/s^2")
+        quantities["natural_frequency_hz"] = (lambda s: value(STIFFNESS, s).sqrt() / (2 * pi), "Hz")
+    if STIFFNESS in place and DAMPING in place:
+        quantities["damping_ratio_percent"] = (lambda s: 100 * ratio(s), "%")
+        quantities["log_decrement"] = (lambda s: 2 * pi * ratio(s) / (1 - ratio(s) ** 2).sqrt(), "1")
     if GAIN in place:
         quantities[GAIN] = (lambda s: value(GAIN, s), "response unit / force unit / s^2")
     found = {name: (interval(function, fitted.shared, spread), unit) for name, (function, unit) in quantities.items()}
     return {name: Estimate(number, bounds, unit) for name, ((number, bounds), unit) in found.items()}
 
 
-def _fit_predictions(problem: OutputErrorProblem, fitted: Fitted) -> dict[str, Tensor]:
-    return {
-        record.name: record.response - fitted.prediction.residual[0, i, : len(record.response)] / record.weight
-        for i, record in enumerate(problem.records)
-    }
+def _fit_residuals(
+    problem: OutputErrorProblem, fitted: Fitted, records: Sequence[FitRecord], segments: Segments
+) -> dict[str, Tensor]:
+    left = fitted.prediction.residual[0] / problem.weights.clamp(min=1e-300)
+    whole = joined(left, covered(records, segments), segments, len(problem.channels))
+    return {record.name: found for record, found in zip(records, whole, strict=True)}
 
 
-def _rmse(records: Sequence[FitRecord], predictions: dict[str, Tensor]) -> float | None:
+def _rmse(records: Sequence[FitRecord], residuals: Mapping[str, Tensor]) -> float | None:
     if not records:
         return None
-    return rmse([r.response for r in records], [predictions[r.name] for r in records])
+    return rmse([residuals[r.name] for r in records], [torch.zeros_like(residuals[r.name]) for r in records])

@@ -7,17 +7,17 @@ from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.checks import check_record
+from gear_damping.measurement.cutting import moved
 from gear_damping.measurement.encoders import base_radius, transmission_error
 from gear_damping.measurement.fields import Problems
 from gear_damping.measurement.own_units import Conversion, UnitSystem
 from gear_damping.measurement.plan import Plan
 from gear_damping.measurement.raw import RawChannel, RawRecord
 from gear_damping.measurement.record import Channel, Finding, Quantity, Record
-from gear_damping.measurement.timebase import moved_to
+from gear_damping.measurement.shaft_check import tooth_ratio
 from gear_damping.units import parse_unit
 
 _GEOMETRY = ("n_teeth_pinion", "n_teeth_gear", "module", "pressure_angle")
-_SPEEDS = ("pinion_angle", "pinion_speed")
 
 
 class Assembler:
@@ -35,10 +35,11 @@ class Assembler:
             with self.problems.collecting():
                 channels[channel.plan.name] = self._channel(channel, raw, notes, findings)
         with self.problems.collecting():
-            self._from_encoders(raw, channels, notes)
+            self._from_encoders(raw, channels, notes, findings)
+        self._give_mean(raw, channels, notes)
         conditions = self._conditions(raw, channels, notes)
         if raw.complete and len(self.problems) == before:
-            self._require(raw, channels, conditions)
+            self._torque_settled(raw, channels, conditions)
         if not raw.complete or len(self.problems) > before:
             return None
         plan, base = raw.plan, raw.base
@@ -47,7 +48,7 @@ class Assembler:
             plan.gear_torque_mode, plan.mesh_index, base.uniform, (*raw.table.notes, *notes),
         )  # fmt: skip
         named = tuple(replace(finding, record=name) for finding in findings)
-        return replace(record, findings=(*named, *check_record(record)))
+        return replace(record, findings=(*named, *check_record(replace(record, findings=named))))
 
     def _channel(self, raw: RawChannel, record: RawRecord, notes: list[str], findings: list[Finding]) -> Channel:
         plan = raw.plan
@@ -61,13 +62,13 @@ class Assembler:
         if record.table.full_scale is not None:
             factor = limits.get("range", factor)
             notes.append(f"{plan.name}: full scale is taken as {factor:.6g} {conversion.unit}")
-        values = raw.values * (factor * plan.sensor["polarity"])
+        values = raw.values * (factor * plan.sensor["polarity"] / plan.sensor["gain"])
         if plan.name == "pinion_angle":
             values = _unwrapped(values, notes)
         if raw.own_time is None:
             values = record.base.resample(values)
         else:
-            values = moved_to(record.base.time, raw.own_time, values, plan.key, str(record.table.path))
+            values = moved(record.base, raw.own_time, values, plan.key, str(record.table.path))
             rate = raw.own_time.sampling_rate
             notes.append(f"{plan.name}: interpolated from {rate:.6g} Hz to the record's time")
         return Channel(plan.name, values, conversion.unit, raw.unit, conversion.factor, **limits, **plan.sensor)
@@ -75,39 +76,48 @@ class Assembler:
     def _limit(self, name: str, quantity: Quantity, key: str) -> Conversion:
         return self.units.conversion(name, quantity.unit, key, self.source)
 
-    def _from_encoders(self, raw: RawRecord, channels: dict[str, Channel], notes: list[str]) -> None:
+    def _from_encoders(
+        self, raw: RawRecord, channels: dict[str, Channel], notes: list[str], findings: list[Finding]
+    ) -> None:
         """The pinion angle, and the transmission error where both shafts are measured."""
         shaft = raw.angles.get("pinion", raw.angles.get("tacho"))
-        if shaft is not None and "pinion_angle" not in channels:
-            angle = raw.base.resample(shaft)
-            channels["pinion_angle"] = Channel("pinion_angle", angle, "rad", datum="arbitrary")
-        if "gear" not in raw.angles or "transmission_error" in channels:
+        if shaft is not None and "pinion_angle" in channels:
+            notes.append("pinion_angle: the channel is used, not the one under encoders")
+        elif shaft is not None:
+            datum = "absolute" if raw.plan.mesh_index else "arbitrary"
+            channels["pinion_angle"] = Channel("pinion_angle", raw.base.resample(shaft), "rad", datum=datum)
+        if not {"pinion", "gear"} <= {*raw.angles} or "transmission_error" in channels:
             return
         key = f"{raw.plan.key}.encoders"
-        if "pinion" not in raw.angles:
-            rule = "the gear's encoder needs the pinion's beside it"
-            raise InputError(Problem(key, rule, remedy="declare encoders.pinion", source=self.source))
-        channels["transmission_error"] = self._error(raw.angles, raw, key)
+        channels["transmission_error"] = self._error(raw.angles, raw, key, findings)
         notes.append("transmission_error: r_b1 theta_1 - r_b2 theta_2 from the encoders, without its mean")
 
-    def _error(self, angles: dict[str, NDArray], raw: RawRecord, key: str) -> Channel:
+    def _error(self, angles: dict[str, NDArray], raw: RawRecord, key: str, findings: list[Finding]) -> Channel:
         missing = [name for name in _GEOMETRY if name not in self.plan.parameters]
         if missing:
             rule = "the transmission error from encoders needs the base radii"
             remedy = f"give {', '.join(missing)} under parameters"
             raise InputError(Problem(key, rule, None, remedy, self.source))
         teeth_1, teeth_2, module, pressure = (self.plan.parameters[name].value for name in _GEOMETRY)
-        values = transmission_error(
-            angles["pinion"], angles["gear"],
-            base_radius(teeth_1, module, pressure), base_radius(teeth_2, module, pressure),
-        )  # fmt: skip
+        radii = base_radius(teeth_1, module, pressure), base_radius(teeth_2, module, pressure)
+        values = transmission_error(angles["pinion"], angles["gear"], *radii)
+        found = tooth_ratio(angles["pinion"], angles["gear"], (teeth_1, teeth_2), radii[0])
+        findings += [replace(found, channel="transmission_error")] if found else []
         return Channel("transmission_error", raw.base.resample(values), "m", datum="arbitrary")
+
+    def _give_mean(self, raw: RawRecord, channels: dict[str, Channel], notes: list[str]) -> None:
+        """A speed that has lost its mean gets the one under conditions."""
+        speed, stated = channels.get("pinion_speed"), raw.plan.conditions.get("pinion_speed")
+        if speed is not None and stated is not None and _mean_lost(speed):
+            values = speed.values - speed.values.mean() + stated.value
+            channels["pinion_speed"] = replace(speed, values=values)
+            notes.append("pinion_speed: its mean is the one under conditions")
 
     def _conditions(self, raw: RawRecord, channels: dict[str, Channel], notes: list[str]) -> dict[str, Quantity]:
         """A channel beats a condition of the same name."""
         kept = {}
         for name, quantity in raw.plan.conditions.items():
-            if name in channels:
+            if name in channels and not _mean_lost(channels[name]):
                 notes.append(f"{name}: the channel is used, not the value under conditions")
                 continue
             kept[name] = quantity
@@ -117,30 +127,18 @@ class Assembler:
                     kept[name] = Quantity(quantity.value * unit.factor, unit.unit, quantity.uncertainty)
         return kept
 
-    def _require(self, raw: RawRecord, channels: dict[str, Channel], conditions: dict[str, Quantity]) -> None:
-        """What a record must have to be of use."""
-        have = {*channels, *conditions}
-        if self.plan.system == "oscillator":
-            self._missing(raw, {"displacement", "velocity", "acceleration"} & {*channels}, "a displacement")
-            return
-        self._missing(raw, {"transmission_error", "acceleration"} & {*channels}, "a transmission_error")
-        self._missing(raw, have & {*_SPEEDS}, "pinion_speed under conditions, or a pinion_angle")
-        if "transmission_error" not in channels:
-            return
-        self._missing(raw, have & {"pinion_torque"}, "pinion_torque under conditions, or its channel")
+    def _torque_settled(self, raw: RawRecord, channels: dict[str, Channel], conditions: dict[str, Quantity]) -> None:
+        """Where the pinion's torque varies, what the gear's does must be said."""
         torque = channels.get("pinion_torque")
-        settled = "gear_torque" in have or raw.plan.gear_torque_mode
+        settled = "gear_torque" in {*channels, *conditions} or raw.plan.gear_torque_mode
         if torque is not None and np.ptp(torque.values) > 0 and not settled:
             rule = "the pinion torque varies and nothing says what the gear torque does"
             remedy = "write gear_torque: balanced (or held) beside pinion_torque, or its channel"
-            self._problem(raw, rule, remedy)
+            self.problems.append(Problem(f"{raw.plan.key}.channels", rule, None, remedy, self.source))
 
-    def _missing(self, raw: RawRecord, found: set[str], needed: str) -> None:
-        if not found:
-            self._problem(raw, f"the record lacks {needed}", f"declare {needed}")
 
-    def _problem(self, raw: RawRecord, rule: str, remedy: str) -> None:
-        self.problems.append(Problem(f"{raw.plan.key}.channels", rule, None, remedy, self.source))
+def _mean_lost(channel: Channel) -> bool:
+    return channel.coupling == "AC" or channel.highpass is not None
 
 
 def _unwrapped(angle: NDArray[np.float64], notes: list[str]) -> NDArray[np.float64]:

@@ -1,28 +1,19 @@
 """From the YAML to a plan: every key, word and quantity is checked and every problem noted."""
 
-from gear_damping.measurement.fields import Fields, Problems
+from gear_damping.errors import InputError, Problem, nearest
+from gear_damping.measurement import layout
+from gear_damping.measurement.channels import AnyChannel, Response, Timed
+from gear_damping.measurement.consistency import inconsistencies
+from gear_damping.measurement.fields import OneOf, Problems
 from gear_damping.measurement.plan import ChannelPlan, EncoderPlan, Plan, RecordPlan, TimePlan
-from gear_damping.measurement.record import ROLES, Quantity
-from gear_damping.measurement.vocabulary import (
-    CHANNEL_KEYS,
-    CHANNELS,
-    CONDITIONS,
-    ENCODER_KEYS,
-    ENCODERS,
-    GEAR_TORQUE_MODES,
-    MAY_BE_NEGATIVE,
-    MAY_BE_ZERO,
-    MOUNTED_KEYS,
-    PARAMETERS,
-    RECORD_KEYS,
-    SYSTEMS,
-    TACHO_KEYS,
-    TIME_KEYS,
-    TIMING,
-    TOP_KEYS,
-    WHOLE,
-)
+from gear_damping.measurement.record import Quantity
+from gear_damping.measurement.structure import names, read_declared
+from gear_damping.measurement.vocabulary import CHANNEL_MODELS, PARAMETERS
 from gear_damping.units import parse_unit
+
+_SYSTEM = OneOf(layout.SYSTEMS)
+_SENSOR = ("coupling", "uncertainty", "polarity", "gain", "mounting", "shaft")  # kept as they are declared
+_ENCODERS = ("pinion", "gear", "tacho")
 
 
 def declared_plan(content: object, problems: Problems, source: str) -> Plan | None:
@@ -36,193 +27,156 @@ def declared_plan(content: object, problems: Problems, source: str) -> Plan | No
     Returns:
         The plan without its wrong records, or None where not even the system is known.
     """
-    top = Fields(content, "", TOP_KEYS, problems, source)
-    if "system" not in top:
-        top.missing("system", f"choose one of {', '.join(SYSTEMS)}")
-    system = top.choice("system", SYSTEMS)
+    system = _system(content, problems, source)
     if system is None:
         return None
-    parameters, own = _parameters(top.fields("parameters", tuple(PARAMETERS[system])), system)
-    listed = top.content.get("records")
-    if not isinstance(listed, list) or not listed:
-        top.add("records", "must be a list of at least one record", "begin each record with '- file: ...'")
-        listed = []
-    records = [
-        _record(Fields(item, f"records[{k}]", RECORD_KEYS, problems, source), system) for k, item in enumerate(listed)
-    ]
-    return Plan(system, parameters, own, tuple(record for record in records if record))
+    before = len(problems)
+    file = read_declared(layout.FILES[system], content, problems, source)
+    if file is None:
+        return None
+    wrong = {k for k in range(len(file.records)) if any(p.key.startswith(f"records[{k}]") for p in problems[before:])}
+    problems += [Problem(p.key, p.rule, p.value, p.remedy, source) for p in inconsistencies(file, wrong)]
+    parameters, own = _parameters(file, system)
+    records = tuple(
+        _record(record, f"records[{k}]", system, problems, source) for k, record in enumerate(file.records) if record
+    )
+    return Plan(system, parameters, own, records, file.segments.value if file.segments else None)
 
 
-def _parameters(fields: Fields, system: str) -> tuple[dict[str, Quantity], dict[str, Quantity]]:
-    parameters, own = {}, {}
-    for name in fields.content:
-        unit = PARAMETERS[system][name]
-        quantity = _own_parameter(fields, name) if unit == "own" else fields.quantity(name, unit)
-        if quantity is None:
-            continue
-        (own if unit == "own" else parameters)[name] = quantity
-        if quantity.value < 0 and name not in MAY_BE_NEGATIVE:
-            fields.add(name, "must not be negative")
-        elif quantity.value == 0 and name not in (*MAY_BE_NEGATIVE, *MAY_BE_ZERO):
-            fields.add(name, "must be positive")
-        elif name in WHOLE and quantity.value != round(quantity.value):
-            fields.add(name, "must be a whole number")
-    return parameters, own
+def _system(content: object, problems: Problems, source: str) -> str | None:
+    """The system, without which no other key has a meaning; misspelt keys beside it are named too."""
+    allowed = tuple(names(layout.GearFile))
+    if not isinstance(content, dict):
+        rule = f"must be a mapping with keys among {', '.join(allowed)}"
+        problems.append(Problem("the file", rule, content, "write `key: value` lines", source))
+    for name in content if isinstance(content, dict) else ():
+        if name not in allowed:
+            problems.append(Problem(str(name), "unknown key", None, nearest(str(name), allowed), source))
+    if not isinstance(content, dict) or "system" not in content:
+        remedy = names(layout.AnyFile)["system"].json_schema_extra["missing"]
+        problems.append(Problem("system", "is missing", None, remedy, source))
+        return None
+    try:
+        return _SYSTEM.read(content["system"], "system")
+    except InputError as error:
+        (problem,) = error.problems
+        problems.append(Problem("system", problem.rule, problem.value, problem.remedy, source))
+        return None
 
 
-def _own_parameter(fields: Fields, name: str) -> Quantity | None:
-    """A value in the rig's own units where no unit is given."""
-    value = fields.content[name]
-    if isinstance(value, dict) and "unit" not in value:
-        fields.content[name] = {**value, "unit": "own"}
-    return fields.quantity(name, None)
+def _parameters(file: layout.AnyFile, system: str) -> tuple[dict[str, Quantity], dict[str, Quantity]]:
+    """Those in SI, and those in units that are still to be compared with the channels'."""
+    given = file.parameters
+    found = {} if given is None else {name: getattr(given, name) for name in PARAMETERS[system] if given.given(name)}
+    own = {name: quantity for name, quantity in found.items() if PARAMETERS[system][name] == "own"}
+    return {name: quantity for name, quantity in found.items() if name not in own}, own
 
 
-def _record(fields: Fields, system: str) -> RecordPlan | None:
-    file = fields.text("file")
-    if "file" not in fields:
-        fields.missing("file", "name the file of the record, relative to this YAML")
-    channels = fields.fields("channels", (*TIMING, *CHANNELS[system]))
-    encoders = fields.fields("encoders", ENCODERS)
-    if "encoders" in fields and system != "gear_pair":
-        fields.add("encoders", "only a gear_pair has encoders", "declare the response under channels")
-    if "channels" not in fields and "encoders" not in fields:
-        fields.missing("channels", f"declare at least one of {', '.join(CHANNELS[system])}")
-    conditions, mode = _conditions(fields, channels, system)
-    plan = RecordPlan(
-        key=fields.key,
-        name=fields.text("name"),
-        file=file or "",
-        role=fields.choice("role", ROLES),
-        rows=_rows(fields),
-        timing=_record_timing(fields, channels),
-        channels=tuple(_channels(channels, system)),
-        encoders=tuple(plan for name in encoders.content if (plan := _encoder(encoders, name))),
+def _record(record: layout.AnyRecord, key: str, system: str, problems: Problems, source: str) -> RecordPlan:
+    declared = _declared_channels(record, system)
+    conditions, mode = _conditions(record)
+    based = "base_acceleration" in declared
+    gear = system == "gear_pair"
+    return RecordPlan(
+        key=key,
+        name=record.name,
+        file=record.file,
+        role=record.role,
+        rows=record.slice,
+        timing=_timing(record) or _timing(record.channels) or TimePlan(),
+        channels=tuple(
+            _channel(name, channel, f"{key}.channels.{name}", _resolved(name, channel, record, based), problems, source)
+            for name, channel in declared.items()
+        ),
+        encoders=tuple(_encoders(record, key)) if gear else (),
         conditions=conditions,
         gear_torque_mode=mode,
-        mesh_index=fields.flag("mesh_index"),
+        mesh_index=record.mesh_index if gear else False,
+        window=record.window.seconds if record.window else None,
+        resample=record.resample.value if record.resample else None,
     )
-    return plan if file else None
 
 
-def _conditions(record: Fields, channels: Fields, system: str) -> tuple[dict[str, Quantity], str | None]:
+def _declared_channels(record: layout.AnyRecord, system: str) -> dict[str, AnyChannel]:
+    """The channels by name, without words that stand for one."""
+    found = {name: getattr(record.channels, name, None) for name in CHANNEL_MODELS[system]}
+    return {name: channel for name, channel in found.items() if channel is not None and not isinstance(channel, str)}
+
+
+def _conditions(record: layout.AnyRecord) -> tuple[dict[str, Quantity], str | None]:
     """Constant conditions, and `balanced` or `held` where that stands for the gear torque."""
-    fields = record.fields("conditions", tuple(CONDITIONS[system]))
-    mode = None
-    for place in (fields, channels):
-        if isinstance(place.content.get("gear_torque"), str):
-            mode = place.choice("gear_torque", GEAR_TORQUE_MODES)
-            del place.content["gear_torque"]
-    found = {
-        name: fields.quantity(name, None if CONDITIONS[system][name] == "own" else CONDITIONS[system][name])
-        for name in fields.content
-    }
-    return {name: quantity for name, quantity in found.items() if quantity}, mode
+    held = record.conditions
+    found = {} if held is None else {n: getattr(held, n) for n in names(type(held)) if held.given(n)}
+    words = [getattr(record.channels, "gear_torque", None), found.get("gear_torque")]
+    mode = next((word for word in words if isinstance(word, str)), None)
+    return {name: quantity for name, quantity in found.items() if not isinstance(quantity, str)}, mode
 
 
-def _rows(fields: Fields) -> tuple[int, int] | None:
-    if "slice" not in fields:
-        return None
-    rows = fields.content["slice"]
-    rule = "must be [a, b] with 0 <= a < b: rows a to b-1, counted from 0"
-    whole = isinstance(rows, list) and all(isinstance(row, int) and not isinstance(row, bool) for row in rows)
-    if not whole or len(rows) != 2 or not 0 <= rows[0] < rows[1]:
-        return fields.add("slice", rule, "write for example slice: [0, 5000]")
-    return rows[0], rows[1]
-
-
-def _timing(fields: Fields) -> TimePlan | None:
+def _timing(place: Timed | layout.AnyRecord | None) -> TimePlan | None:
     """The time base that `time` or `sampling_rate` declares."""
-    if all(name in fields for name in TIMING):
-        fields.add("sampling_rate", "time and sampling_rate are both given", "keep the one that is right")
-    if "sampling_rate" in fields:
-        return TimePlan(sampling_rate=fields.positive("sampling_rate", "Hz"))
-    if "time" not in fields:
-        return None
-    inner = fields.fields("time", TIME_KEYS)
-    if "column" not in inner:
-        inner.missing("column", "name the column of the time stamps")
-    return TimePlan(inner.column(), inner.text("unit"))
+    time, rate = getattr(place, "time", None), getattr(place, "sampling_rate", None)
+    if rate is not None:
+        return TimePlan(sampling_rate=rate.value)
+    return None if time is None else TimePlan(time.column, time.unit)
 
 
-def _record_timing(record: Fields, channels: Fields) -> TimePlan:
-    inside = _timing(channels)
-    if "sampling_rate" in record and inside is not None:
-        record.add("sampling_rate", "the time base is given under channels too", "keep the one that is right")
-    if "sampling_rate" in record:
-        return TimePlan(sampling_rate=record.positive("sampling_rate", "Hz"))
-    return inside or TimePlan()
+def _channel(
+    name: str, channel: AnyChannel, key: str, sensor: dict[str, object], problems: Problems, source: str
+) -> ChannelPlan:
+    if channel.unit:
+        with problems.collecting():
+            parse_unit(channel.unit, f"{key}.unit", source)
+    limits = {limit: getattr(channel, limit, None) for limit in ("range", "noise")}
+    return ChannelPlan(
+        name, key, channel.column, channel.unit, sensor,
+        {limit: quantity for limit, quantity in limits.items() if quantity}, _timing(channel),
+    )  # fmt: skip
 
 
-def _channels(fields: Fields, system: str) -> list[ChannelPlan]:
-    plans = []
-    for name in fields.content:
-        if name in TIMING:
-            continue
-        mounted = name == "acceleration" and system == "gear_pair"
-        inner = fields.fields(name, CHANNEL_KEYS + (MOUNTED_KEYS if mounted else ()))
-        if "column" not in inner and isinstance(fields.content[name], dict):
-            inner.missing("column", "name the column by its header text or its 0-based index")
-        column, unit = inner.column(), inner.text("unit")
-        if unit:
-            with inner.problems.collecting():
-                parse_unit(unit, inner.path("unit"), inner.source)
-        plan = ChannelPlan(
-            name, inner.key, "" if column is None else column, unit,
-            _sensor(inner, mounted), _limits(inner), _timing(inner),
-        )  # fmt: skip
-        plans += [] if column is None else [plan]
-    return plans
-
-
-def _sensor(fields: Fields, mounted: bool) -> dict[str, object]:
-    delay = fields.quantity("delay", "s")
-    sensor = {
-        "lowpass": fields.positive("lowpass", "Hz"),
-        "highpass": fields.positive("highpass", "Hz"),
-        "coupling": fields.choice("coupling", ("DC", "AC"), "DC"),
-        "delay": delay.value if delay else 0.0,
-        "uncertainty": fields.number("uncertainty", least=0.0, default=0.0),
-        "polarity": fields.choice("polarity", (1, -1), 1),
-        "datum": fields.choice("datum", ("absolute", "arbitrary"), "absolute"),
-    }
-    if sensor["lowpass"] and sensor["highpass"] and sensor["lowpass"] <= sensor["highpass"]:
-        fields.add("lowpass", "must lie above highpass", "exchange the two")
-    if mounted:
-        sensor["mounting"] = fields.choice("mounting", ("tangential", "casing"), "casing")
-        sensor["radius"] = fields.positive("radius", "m")
-        if sensor["mounting"] == "tangential" and "radius" not in fields:
-            fields.missing("radius", "give the radius of the sensor, radius: {value: 30, unit: mm}")
+def _resolved(name: str, channel: AnyChannel, record: layout.AnyRecord, based: bool) -> dict[str, object]:
+    """What a Channel keeps of its sensor: what is absent in the file is resolved here."""
+    sensor = {key: value for key in _SENSOR if (value := getattr(channel, key, None)) is not None}
+    for corner in ("lowpass", "highpass"):
+        found = getattr(channel, corner, None)
+        if found:
+            sensor |= {corner: found.frequency, f"{corner}_order": found.order}
+    for length in ("delay", "radius"):
+        if quantity := getattr(channel, length, None):
+            sensor[length] = quantity.value
+    sensor["datum"] = _datum(name, channel, record)
+    if based and hasattr(channel, "frame"):
+        sensor["frame"] = channel.frame or channel.usual_frame
     return sensor
 
 
-def _limits(fields: Fields) -> dict[str, Quantity]:
-    """Full scale and noise level, which are in the unit of the channel or one of its kind."""
-    limits = {}
-    for name in ("range", "noise"):
-        quantity = fields.quantity(name, None)
-        if quantity and quantity.value < 0:
-            fields.add(name, "must not be negative")
-        elif quantity:
-            limits[name] = quantity
-    return limits
+def _datum(name: str, channel: AnyChannel, record: layout.AnyRecord) -> str:
+    if name == "pinion_angle":
+        return "absolute" if record.mesh_index else "arbitrary"
+    if not isinstance(channel, Response):
+        return "absolute"
+    lost = getattr(channel, "coupling", "DC") == "AC"
+    return getattr(channel, "datum", None) or ("arbitrary" if lost else channel.usual_datum)
 
 
-def _encoder(parent: Fields, name: str) -> EncoderPlan | None:
-    tacho = name == "tacho"
-    fields = parent.fields(name, TACHO_KEYS if tacho else ENCODER_KEYS)
-    per = "pulses_per_revolution" if tacho else "counts_per_revolution"
-    if per not in fields:
-        fields.missing(per, "give the number in one turn of its shaft")
-    count = fields.number(per, least=1)
-    if ("column" in fields) == ("timestamps" in fields):
-        fields.missing("column", "give either column (per sample) or timestamps (times of the pulses)")
-    column = fields.column("timestamps" if "timestamps" in fields else "column")
-    threshold = fields.quantity("threshold", None) if tacho else None
-    direction = fields.choice("direction", (1, -1), 1)
-    unit = fields.text("unit") or ("s" if "timestamps" in fields else "V")
-    index = None if tacho else fields.column("index")
-    if count is None or column is None:
-        return None
-    stamped = "timestamps" in fields
-    return EncoderPlan(name, fields.key, column, stamped, unit, count, index, direction, threshold)
+def _encoders(record: layout.GearRecord, key: str) -> list[EncoderPlan]:
+    plans = []
+    for name in _ENCODERS:
+        encoder = getattr(record.encoders, name, None)
+        if encoder is None:
+            continue
+        stamped = encoder.timestamps is not None
+        tacho = name == "tacho"
+        plans.append(
+            EncoderPlan(
+                name,
+                f"{key}.encoders.{name}",
+                encoder.timestamps if stamped else encoder.column,
+                stamped,
+                encoder.unit or ("s" if stamped else "V"),
+                encoder.pulses_per_revolution if tacho else encoder.counts_per_revolution,
+                None if tacho else encoder.index,
+                encoder.direction,
+                encoder.threshold if tacho else None,
+            )
+        )
+    return plans

@@ -1,13 +1,25 @@
-"""Reading a YAML mapping key by key: what is wrong is noted and reading goes on."""
+"""What a value of measurement.yaml may be: texts, words, columns, numbers and quantities with their unit.
 
-from collections.abc import Iterator, Sequence
+Each kind of value checks itself, says what is wrong in one message, and describes itself for the reference page.
+A check raises InputError with keys relative to the value ("" for the value itself, `unit` for its unit).
+"""
+
+from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from math import isfinite
+from typing import Any, NoReturn
+
+from pydantic import GetCoreSchemaHandler, ValidationInfo
+from pydantic_core import CoreSchema, core_schema
 
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.measurement.record import Quantity
-from gear_damping.measurement.vocabulary import QUANTITY_KEYS
-from gear_damping.units import to_si
+from gear_damping.units import parse_unit, to_si
+
+ORDERS = (1, 2, 4)  # of a Butterworth filter
+NOT_UNCERTAIN = "has no meaning here: only parameters, conditions and the gain of a channel may be uncertain"
+Found = list[Problem]
 
 
 class Problems(list[Problem]):
@@ -27,124 +39,261 @@ class Problems(list[Problem]):
             raise InputError([problem for k, problem in enumerate(self) if problem not in self[:k]])
 
 
-class Fields:
-    """A mapping of the YAML with the path that leads to it.
+def refuse(rule: str, value: object = None, remedy: str = "", at: str = "") -> NoReturn:
+    """Raise InputError about a value, or about the key `at` in it."""
+    raise InputError(Problem(at, rule, value, remedy))
+
+
+class Value:
+    """A kind of value: `read` checks it and `says` describes it."""
+
+    def read(self, value: Any, name: str) -> Any:
+        """The value in the form that the program keeps; raises InputError."""
+        raise NotImplementedError
+
+    def says(self) -> str:
+        """What may be written, for the reference page."""
+        raise NotImplementedError
+
+    def keys(self) -> tuple[str, ...]:
+        """The keys of a value that is a mapping; none for a plain one."""
+        return ()
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        def check(value: Any, info: ValidationInfo) -> Any:
+            return self.read(value, info.field_name or "")
+
+        return core_schema.with_info_plain_validator_function(check)
+
+
+class Text(Value):
+    """A text that is not empty."""
+
+    def read(self, value: Any, name: str) -> str:
+        """The text; `unit: 1`, a pure number, is one too."""
+        if isinstance(value, str) and value.strip():
+            return value
+        if type(value) is int and name == "unit":
+            return str(value)
+        return refuse("must be a text", value, "put it in quotes")
+
+    def says(self) -> str:
+        """A text."""
+        return "text"
+
+
+class Column(Value):
+    """The header text of a column, or its 0-based index."""
+
+    def read(self, value: Any, name: str) -> str | int:
+        """The text or the index."""
+        if isinstance(value, str | int) and not isinstance(value, bool):
+            return value
+        return refuse("must be the header text of a column or its 0-based index", value)
+
+    def says(self) -> str:
+        """A column."""
+        return "header text, or 0-based index"
+
+
+class Flag(Value):
+    """True or false."""
+
+    def read(self, value: Any, name: str) -> bool:
+        """The flag."""
+        if not isinstance(value, bool):
+            refuse("must be true or false", value)
+        return value
+
+    def says(self) -> str:
+        """A flag."""
+        return "`true` or `false`"
+
+
+@dataclass(frozen=True)
+class OneOf(Value):
+    """One of a few words or numbers."""
+
+    choices: tuple[object, ...]
+
+    def read(self, value: Any, name: str) -> Any:
+        """The word; Python takes True for 1, people do not."""
+        if not isinstance(value, bool) and isinstance(value, str | int) and value in self.choices:
+            return value
+        words = [str(choice) for choice in self.choices]
+        return refuse(f"must be one of {', '.join(words)}", value, nearest(str(value), words))
+
+    def says(self) -> str:
+        """The words."""
+        return ", ".join(f"`{choice}`" for choice in self.choices)
+
+
+@dataclass(frozen=True)
+class Number(Value):
+    """A finite number."""
+
+    least: float | None = None
+    nonzero: bool = False
+
+    def read(self, value: Any, name: str) -> float:
+        """The number as a float."""
+        if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value):
+            refuse("must be a finite number", value)
+        if self.least is not None and value < self.least:
+            refuse(f"must be at least {self.least:g}", value)
+        if self.nonzero and value == 0:
+            refuse("must not be 0", value)
+        return float(value)
+
+    def says(self) -> str:
+        """The number and its range."""
+        bounds = [f"at least {self.least:g}"] if self.least is not None else []
+        return ", ".join(["number", *bounds, *(["not 0"] if self.nonzero else [])])
+
+
+class Rows(Value):
+    """Rows a to b-1 as [a, b]."""
+
+    def read(self, value: Any, name: str) -> tuple[int, int]:
+        """The two row numbers."""
+        whole = isinstance(value, list) and all(type(row) is int for row in value)
+        if not whole or len(value) != 2 or not 0 <= value[0] < value[1]:
+            rule = "must be [a, b] with 0 <= a < b: rows a to b-1, counted from 0"
+            refuse(rule, value, "write for example slice: [0, 5000]")
+        return value[0], value[1]
+
+    def says(self) -> str:
+        """Two row numbers."""
+        return "`[a, b]`, 0 <= a < b"
+
+
+@dataclass(frozen=True)
+class Corner:
+    """A corner frequency in Hz and the order of the Butterworth filter that has it."""
+
+    frequency: float
+    order: int
+
+
+@dataclass(frozen=True)
+class Measured(Value):
+    """A value with its unit, as {value, unit}.
 
     Args:
-        content: What stands in the YAML.
-        key: Its path, for example `records[0].channels`.
-        allowed: The keys that may appear.
-        problems: Takes what is wrong.
-        source: The YAML file.
+        unit: The SI unit that it is converted to; None keeps it as declared, `own` lets the unit be absent and
+            means the rig's own one.
+        sign: `positive`, `not negative`, `not zero` or `any`.
+        uncertain: Whether a relative `uncertainty` has a meaning.
+        whole: Whether it is a count.
     """
 
-    def __init__(self, content: object, key: str, allowed: Sequence[str], problems: Problems, source: str) -> None:
-        self.key, self.problems, self.source = key, problems, source
-        if not isinstance(content, dict):
-            rule = f"must be a mapping with keys among {', '.join(allowed)}"
-            problems.append(Problem(key or "the file", rule, content, "write `key: value` lines", source))
-            content = {}
-        self.content = {name: value for name, value in content.items() if name in allowed}
-        for name in content:
-            if name not in allowed:
-                problems.append(Problem(self.path(name), "unknown key", None, nearest(name, allowed), source))
+    unit: str | None
+    sign: str = "positive"
+    uncertain: bool = False
+    whole: bool = False
 
-    def path(self, name: object) -> str:
-        """The full path of one of the keys."""
-        return f"{self.key}.{name}" if self.key else str(name)
+    def keys(self) -> tuple[str, ...]:
+        """The keys of the mapping."""
+        return ("value", "unit", "uncertainty") if self.uncertain else ("value", "unit")
 
-    def __contains__(self, name: str) -> bool:
-        return name in self.content
+    def says(self) -> str:
+        """The unit and the range."""
+        units = {"1": "a number or `{value}`", "own": "in the rig's own unit", None: "in a unit of the channel's kind"}
+        bounds = [self.sign] if self.sign != "any" else []
+        return ", ".join([units.get(self.unit, f"in `{self.unit}`"), *bounds, *(["whole"] if self.whole else [])])
 
-    def add(self, name: str, rule: str, remedy: str = "") -> None:
-        """Note that the value of `name` is wrong."""
-        self.problems.append(Problem(self.path(name), rule, self.content.get(name), remedy, self.source))
+    def read(self, value: Any, name: str) -> Any:
+        """The quantity in SI, or as declared."""
+        if self.unit == "1" and not isinstance(value, dict):
+            value = {"value": Number().read(value, name)}
+        if not isinstance(value, dict):
+            remedy = f"write {name}: {{value: 1.0, unit: {self._example}}}"
+            refuse("needs a value and a unit", value, remedy)
+        problems = self._unknown(value)
+        number = self._part(value, "value", Number(), None, problems)
+        unit = self._unit(value, problems)
+        uncertainty = self._part(value, "uncertainty", Number(least=0.0), 0.0, problems) if self.uncertain else 0.0
+        more = self.more(value, problems)
+        if problems:
+            raise InputError(problems)
+        return self.made(self._checked(Quantity(number, unit, uncertainty)), more)
 
-    def missing(self, name: str, remedy: str) -> None:
-        """Note that `name` is not there."""
-        self.problems.append(Problem(self.path(name), "is missing", None, remedy, self.source))
+    def more(self, value: dict, problems: Found) -> Any:
+        """What else the mapping holds."""
 
-    def fields(self, name: str, allowed: Sequence[str]) -> "Fields":
-        """The mapping under `name`; an empty one where the key is absent."""
-        return Fields(self.content.get(name, {}), self.path(name), allowed, self.problems, self.source)
+    def made(self, quantity: Quantity, more: Any) -> Any:
+        """What the program keeps."""
+        return quantity
 
-    def text(self, name: str) -> str | None:
-        """A text, or None where the key is absent."""
-        value = self.content.get(name)
-        if value is None or (isinstance(value, str) and value.strip()):
-            return value
-        if isinstance(value, int) and name == "unit":  # `unit: 1`, a pure number
-            return str(value)
-        return self.add(name, "must be a text", "put it in quotes")
+    @property
+    def _example(self) -> str:
+        return {None: "V", "own": "m/s^2/V"}.get(self.unit, self.unit)
 
-    def choice(self, name: str, choices: Sequence[object], default: object = None) -> object:
-        """One of `choices`."""
-        value = self.content.get(name, default)
-        if value in choices and not isinstance(value, bool):  # Python takes True for 1
-            return value
-        if name in self.content:
-            words = [str(choice) for choice in choices]
-            self.add(name, f"must be one of {', '.join(words)}", nearest(str(value), words))
-        return default
+    def _unknown(self, value: dict) -> Found:
+        found = []
+        for key in value:
+            if key == "uncertainty" and not self.uncertain:
+                found.append(Problem(key, NOT_UNCERTAIN, value[key], "leave it out"))
+            elif key not in self.keys():
+                found.append(Problem(str(key), "unknown key", None, nearest(str(key), self.keys())))
+        return found
 
-    def flag(self, name: str) -> bool:
-        """True or false; false where the key is absent."""
-        value = self.content.get(name, False)
-        if not isinstance(value, bool):
-            self.add(name, "must be true or false")
-        return value is True
-
-    def number(self, name: str, least: float | None = None, default: float | None = None) -> float | None:
-        """A finite number, at least `least`."""
-        if name not in self.content:
+    def _part(self, value: dict, key: str, kind: Value, default: Any, problems: Found) -> Any:
+        if key not in value and key == "value":
+            problems.append(Problem(key, "is missing", None, "give a number"))
+        if key not in value:
             return default
-        value = self.content[name]
-        if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value):
-            self.add(name, "must be a finite number")
-        elif least is not None and value < least:
-            self.add(name, f"must be at least {least:g}")
-        else:
-            return float(value)
-        return default
+        try:
+            return kind.read(value[key], key)
+        except InputError as error:
+            problems += [Problem(key, p.rule, p.value, p.remedy) for p in error.problems]
+            return default
 
-    def column(self, name: str = "column") -> str | int | None:
-        """A column: its header text, or its 0-based index."""
-        value = self.content.get(name)
-        if value is None or (isinstance(value, str | int) and not isinstance(value, bool)):
-            return value
-        return self.add(name, "must be the header text of a column or its 0-based index")
+    def _unit(self, value: dict, problems: Found) -> str:
+        assumed = self.unit if self.unit in ("1", "own") else None
+        if "unit" not in value and assumed is None:
+            problems.append(Problem("unit", "is missing", None, f"give a unit, for example {self._example}"))
+        return self._part(value, "unit", Text(), assumed, problems)
 
-    def quantity(self, name: str, expected: str | None) -> Quantity | None:
-        """A value with unit in SI; as declared where `expected` is None.
+    def _checked(self, found: Quantity) -> Quantity:
+        number = found.value
+        if self.sign == "positive" and not number > 0:
+            refuse("must be positive", number)
+        if self.sign == "not negative" and number < 0:
+            refuse("must not be negative", number)
+        if self.sign == "not zero" and number == 0:
+            refuse("must not be 0", number)
+        if self.whole and number != round(number):
+            refuse("must be a whole number", number)
+        if found.uncertainty and number == 0:
+            rule = "an uncertainty is relative, and there is nothing to relate it to where the value is 0"
+            refuse(rule, found.uncertainty, "state a value, or leave the uncertainty out", "uncertainty")
+        if self.unit in (None, "own"):
+            if found.unit != "own" or self.unit is None:
+                parse_unit(found.unit, "unit")
+            return found
+        return Quantity(to_si(number, found.unit, self.unit, ""), self.unit, found.uncertainty)
 
-        A pure number may stand alone where `expected` is "1".
-        """
-        if name not in self.content:
-            return None
-        if expected == "1" and not isinstance(self.content[name], dict):
-            value = self.number(name)
-            return None if value is None else Quantity(value, "1")
-        if not isinstance(self.content[name], dict):
-            unit = expected or "V"
-            return self.add(name, "needs a value and a unit", f"write {name}: {{value: 1.0, unit: {unit}}}")
-        inner = self.fields(name, QUANTITY_KEYS)
-        value, uncertainty = inner.number("value"), inner.number("uncertainty", least=0.0, default=0.0)
-        unit = inner.text("unit") or ("1" if expected == "1" else None)
-        if "value" not in inner:
-            inner.missing("value", "give a number")
-        if unit is None and "unit" not in inner:
-            inner.missing("unit", f"give a unit, for example {expected or 'V'}")
-        if value is None or unit is None:
-            return None
-        if expected is None:
-            return Quantity(value, unit, uncertainty)
-        with self.problems.collecting():
-            return Quantity(to_si(value, unit, expected, self.path(name), self.source), expected, uncertainty)
-        return None
 
-    def positive(self, name: str, expected: str) -> float | None:
-        """The value of a quantity that must be above zero, in SI."""
-        quantity = self.quantity(name, expected)
-        if quantity is not None and not quantity.value > 0:
-            return self.add(name, "must be positive")
-        return None if quantity is None else quantity.value
+@dataclass(frozen=True)
+class Cutoff(Measured):
+    """A corner frequency as {value, unit, order}."""
+
+    unit: str | None = "Hz"
+    usual: int = 2
+
+    def keys(self) -> tuple[str, ...]:
+        """The keys of the mapping."""
+        return ("value", "unit", "order")
+
+    def says(self) -> str:
+        """The unit, and the orders."""
+        return f"in `Hz`, positive; `order` {', '.join(map(str, ORDERS))} ({self.usual} where absent)"
+
+    def more(self, value: dict, problems: Found) -> int:
+        """The order of the filter."""
+        return self._part(value, "order", OneOf(ORDERS), self.usual, problems)
+
+    def made(self, quantity: Quantity, more: int) -> Corner:
+        """The corner with its order."""
+        return Corner(quantity.value, more)

@@ -1,28 +1,60 @@
-"""The door for measured data: a measurement.yaml becomes a Measurement, or one InputError."""
+"""The door for measured data: a measurement.yaml becomes a Measurement, or one InputError.
+
+What reads and assembles data is imported where data is read, so that a YAML alone is checked within a second.
+"""
 
 from collections import Counter
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from gear_damping.errors import Problem
-from gear_damping.measurement.assemble import Assembler
 from gear_damping.measurement.declaration import declared_plan
 from gear_damping.measurement.fields import Problems
-from gear_damping.measurement.formats.registry import MAX_BYTES
 from gear_damping.measurement.own_units import UnitSystem
 from gear_damping.measurement.plan import Plan, RecordPlan
-from gear_damping.measurement.raw import Files, RawReader, RawRecord
-from gear_damping.measurement.record import Finding, Measurement, Record
-from gear_damping.measurement.timebase import RATE_TOLERANCE
+from gear_damping.measurement.record import Finding, Measurement, Quantity, Record
 from gear_damping.measurement.yaml_file import read_yaml
 
+if TYPE_CHECKING:
+    from gear_damping.measurement.raw import RawRecord
 
-def load_measurement(path: str | Path, max_bytes: int = MAX_BYTES) -> Measurement:
+ONE_RATE = 1e-6  # rates that differ by less are one, written with other digits
+OTHER_RATE = 0.01  # rates that differ by more are said
+
+
+def check_declaration(path: str | Path) -> Plan:
+    """Check a measurement.yaml without opening the files that it names, and without importing what reads them.
+
+    Args:
+        path: The YAML file.
+
+    Returns:
+        What it declares.
+
+    Raises:
+        InputError: everything that is wrong with the YAML, all at once.
+    """
+    problems, source = Problems(), str(path)
+    plan = declared_plan(read_yaml(Path(path)), problems, source)
+    if plan is not None:
+        _names(plan.records, problems, source)
+        declared = list(_units(plan))
+        if plan.system == "gear_pair" or all(unit for _, unit, _ in declared):
+            known = [(name, unit, key) for name, unit, key in declared if unit]
+            units = UnitSystem(plan.system, [(name, unit) for name, unit, _ in known])
+            _compare_units(plan, units, problems, source)
+    problems.raise_any()
+    return plan
+
+
+def load_measurement(path: str | Path, max_bytes: int | None = None) -> Measurement:
     """Read a measurement.yaml and the files that it names.
 
     Args:
         path: The YAML file; the files in it are relative to its folder.
-        max_bytes: Larger files are refused before they are read.
+        max_bytes: Larger files are refused before they are read; the readers' own limit where None.
 
     Returns:
         The measurement; what is suspicious in it stands in `findings`.
@@ -30,6 +62,8 @@ def load_measurement(path: str | Path, max_bytes: int = MAX_BYTES) -> Measuremen
     Raises:
         InputError: everything that cannot be read or understood, all at once.
     """
+    from gear_damping.measurement.assemble import Assembler
+
     path = Path(path)
     content = read_yaml(path)
     problems, source = Problems(), str(path)
@@ -40,19 +74,44 @@ def load_measurement(path: str | Path, max_bytes: int = MAX_BYTES) -> Measuremen
     declared = [(channel.plan.name, channel.unit) for record in raw for channel in record.channels]
     declared += [(name, quantity.unit) for record in raw for name, quantity in record.plan.conditions.items()]
     units = UnitSystem(plan.system, declared)
-    own = {}
-    for name, quantity in plan.own.items():
-        with problems.collecting():
-            own[name] = units.force_gain(quantity, source)
+    own = _compare_units(plan, units, problems, source)
     names = _names(plan.records, problems, source)
     assembler = Assembler(plan, units, problems, source)
     records = [assembler.record(record, names[record.plan.key]) for record in raw]
     problems.raise_any()
-    return Measurement(plan.system, {**plan.parameters, **own}, _compared(records), path.resolve())
+    parameters = {**plan.parameters, **own}
+    return Measurement(plan.system, parameters, _compared(records), path.resolve(), plan.segment_s)
 
 
-def _read(plan: Plan, folder: Path, max_bytes: int, problems: Problems, source: str) -> list[RawRecord]:
-    files = Files(folder, max_bytes)
+def _units(plan: Plan) -> Iterable[tuple[str, str | None, str]]:
+    """Name, unit and key of what is declared with a unit that must fit the others."""
+    for record in plan.records:
+        for channel in record.channels:
+            yield channel.name, channel.unit, f"{channel.key}.unit"
+            for limit, quantity in channel.limits.items():
+                yield channel.name, quantity.unit, f"{channel.key}.{limit}"
+        for name, quantity in record.conditions.items():
+            yield name, quantity.unit, f"{record.key}.conditions.{name}"
+
+
+def _compare_units(plan: Plan, units: UnitSystem, problems: Problems, source: str) -> dict[str, Quantity]:
+    """Note every unit that is not of its kind; returns the parameters in the rig's own units."""
+    for name, unit, key in _units(plan):
+        with problems.collecting():
+            if unit:
+                units.conversion(name, unit, key, source)
+    own = {}
+    for name, quantity in plan.own.items():
+        with problems.collecting():
+            own[name] = units.force_gain(quantity, source)
+    return own
+
+
+def _read(plan: Plan, folder: Path, max_bytes: int | None, problems: Problems, source: str) -> "list[RawRecord]":
+    from gear_damping.measurement.formats.registry import MAX_BYTES
+    from gear_damping.measurement.raw import Files, RawReader
+
+    files = Files(folder, MAX_BYTES if max_bytes is None else max_bytes)
     records = []
     for record in plan.records:
         with problems.collecting():
@@ -80,13 +139,16 @@ def _names(plans: tuple[RecordPlan, ...], problems: Problems, source: str) -> di
 
 
 def _compared(records: list[Record]) -> tuple[Record, ...]:
-    """Note the records whose rate differs from the first one's."""
+    """Make one of rates that differ by rounding, and note the records whose rate differs from the first one's."""
     first = records[0]
-    compared = []
+    compared, rates = [], []
     for record in records:
-        if abs(record.sampling_rate / first.sampling_rate - 1) > RATE_TOLERANCE:
+        same = next((rate for rate in rates if abs(record.sampling_rate / rate - 1) < ONE_RATE), record.sampling_rate)
+        rates.append(same)
+        record = replace(record, sampling_rate=same)
+        if abs(same / first.sampling_rate - 1) > OTHER_RATE:
             message = (
-                f"sampled at {record.sampling_rate:.6g} Hz, '{first.name}' at {first.sampling_rate:.6g} Hz; "
+                f"sampled at {same:.6g} Hz, '{first.name}' at {first.sampling_rate:.6g} Hz; "
                 "check that both rates are right"
             )
             finding = Finding("mixed_rates", message, record.name, severity="note")

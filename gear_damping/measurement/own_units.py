@@ -14,6 +14,7 @@ from gear_damping.units import Dimension, Unit, parse_unit
 
 _PER_SECOND = Dimension(time=-1)
 _PER = {0: "", 1: "/s", 2: "/s^2"}
+_BASE = "base_acceleration"  # an input in the unit of the response's acceleration
 
 
 @dataclass(frozen=True)
@@ -46,6 +47,8 @@ class UnitSystem:
         self._response: _Reference | None = None
         self._force: _Reference | None = None
         for name, text in declared if system == "oscillator" else ():
+            if name == _BASE:
+                continue
             try:
                 unit = parse_unit(text)
             except InputError:
@@ -73,7 +76,7 @@ class UnitSystem:
         return Conversion(unit.factor / kept.unit.factor, kept.text)
 
     def _oscillator_unit(self, name: str, text: str, unit: Unit) -> _Reference:
-        order = OSCILLATOR_CHANNELS[name]
+        order = 2 if name == _BASE else OSCILLATOR_CHANNELS[name]
         reference = self._force if order is None else self._response
         if reference is None:
             return _Reference(unit, text, 0)

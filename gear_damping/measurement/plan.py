@@ -45,7 +45,10 @@ class EncoderPlan:
 
 @dataclass(frozen=True)
 class RecordPlan:
-    """A declared record; `conditions` are SI for a gear pair and as declared for an oscillator."""
+    """A declared record; `conditions` are SI for a gear pair and as declared for an oscillator.
+
+    `window` is begin and end in s on the record's own clock, `resample` the rate in Hz that it is to have.
+    """
 
     key: str
     name: str | None
@@ -58,6 +61,8 @@ class RecordPlan:
     conditions: Mapping[str, Quantity]
     gear_torque_mode: str | None
     mesh_index: bool
+    window: tuple[float, float] | None = None
+    resample: float | None = None
 
 
 @dataclass(frozen=True)
@@ -68,3 +73,4 @@ class Plan:
     parameters: Mapping[str, Quantity]
     own: Mapping[str, Quantity]
     records: tuple[RecordPlan, ...]
+    segment_s: float | None = None

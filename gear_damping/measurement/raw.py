@@ -1,6 +1,7 @@
 """Reading what a record's plan asks for out of its file, before units are compared."""
 
 import hashlib
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,16 +10,18 @@ from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.checks import refuse_not_finite
+from gear_damping.measurement.cutting import slower, window_rows
 from gear_damping.measurement.fields import Problems
 from gear_damping.measurement.formats.registry import read_table
 from gear_damping.measurement.formats.table import Table
 from gear_damping.measurement.paths import resolve_file
 from gear_damping.measurement.plan import ChannelPlan, RecordPlan, TimePlan
-from gear_damping.measurement.shaft import shaft_angle
+from gear_damping.measurement.shaft import ReadColumn, shaft_angle
 from gear_damping.measurement.timebase import TimeBase, stamped_time, steady_time
 from gear_damping.units import to_si
 
 LEAST_SAMPLES = 8
+_SAME_RATE = 1e-3  # how far a declared rate may lie from the file's
 
 
 class Files:
@@ -92,6 +95,8 @@ class RawReader:
                 angles[plan.name] = shaft_angle(plan, base, self.sliced, self.unsliced, self.file)
         if base is None:
             return None
+        with self.problems.collecting():
+            base = self._at_its_rate(base)
         complete = len(self.problems) == before
         return RawRecord(self.plan, self.table, sha256, base, channels, angles, complete)
 
@@ -112,9 +117,20 @@ class RawReader:
             rule, remedy = f"{self.table.path.name} has {n} rows", f"end the slice at {n} or before"
             raise InputError(Problem(f"{self.plan.key}.slice", rule, list(self.plan.rows), remedy, self.source))
         self.stop = self.stop or n
+        if self.plan.window:
+            rows = window_rows(self._seconds(), self.plan.window, f"{self.plan.key}.window", self.source)
+            self.first, self.stop = self.first + rows[0], self.first + rows[1]
         if self.stop - self.first < LEAST_SAMPLES:
             rule = f"{self.stop - self.first} samples; a record needs at least {LEAST_SAMPLES}"
-            raise InputError(Problem(self.plan.key, rule, None, "use a longer slice or file", self.source))
+            raise InputError(Problem(self.plan.key, rule, None, "use a longer slice, window or file", self.source))
+
+    def _seconds(self) -> NDArray[np.float64]:
+        """The times of the record's rows as they stand in the file, which may be no times at all."""
+        column = self.plan.timing.column
+        if column is None:
+            return self._steady().time
+        key = f"{self.plan.key}.channels.time"
+        return self._all(column, key)[self.first : self.stop] * self._in_seconds(self.plan.timing, key)
 
     def _size(self, column: str | int) -> int | None:
         """The length of a column; None where it cannot be read, which its channel will say."""
@@ -141,30 +157,54 @@ class RawReader:
         return f"{key}, {self.table.path.name} column '{column}'"
 
     def _base(self) -> TimeBase | None:
-        timing, n = self.plan.timing, self.stop - self.first
-        held = self.table.sampling_rate
-        if timing.column is not None:
-            return self._stamped(timing, f"{self.plan.key}.channels.time", self.sliced, self.first)
-        rate = timing.sampling_rate or held
-        if rate is None:
+        if self.plan.timing.column is not None:
+            return self._stamped(self.plan.timing, f"{self.plan.key}.channels.time", self.sliced, self.first)
+        return self._steady()
+
+    def _steady(self) -> TimeBase | None:
+        """The time base of the declared rate, else of the file's; None where the missing rate is said already."""
+        rate, clock = self.plan.timing.sampling_rate, self._clock()
+        if rate is None and clock is None:
             if not any(problem.key.startswith(self.plan.key) for problem in self.problems):
                 rule = "neither time nor sampling_rate is given"
                 remedy = "write sampling_rate: {value: 50, unit: kHz}"
                 raise InputError(Problem(f"{self.plan.key}.channels", rule, None, remedy, self.source))
             return None
-        if held and abs(rate / held - 1) > 1e-3:
-            rule, remedy = f"the file itself says {held:g} Hz", "leave sampling_rate out"
+        if rate and clock and abs(rate / clock[1] - 1) > _SAME_RATE:
+            rule, remedy = f"the file itself says {clock[1]:g} Hz", "leave sampling_rate out"
             raise InputError(Problem(f"{self.plan.key}.sampling_rate", rule, rate, remedy, self.source))
-        return steady_time(rate, self.first, n)
+        return steady_time(rate or clock[1], self.first, self.stop - self.first, clock[0] if clock else 0.0)
 
-    def _stamped(self, timing: TimePlan, key: str, read: object, first: int) -> TimeBase:
-        column = timing.column
-        values = read(column, key)
-        unit = timing.unit or self.table.unit(self.table.index(column, key))
+    def _clock(self) -> tuple[float, float] | None:
+        """Start in s and rate in Hz that the file gives for the first column that shares the record's time."""
+        shared = [plan.column for plan in self.plan.channels if plan.timing is None]
+        shared += [plan.column for plan in self.plan.encoders if not plan.timestamps]
+        for column in shared:
+            with suppress(InputError):  # which its channel will say
+                return self.table.clock(self.table.index(column, ""))
+        return None
+
+    def _at_its_rate(self, base: TimeBase) -> TimeBase:
+        """The time base at the rate that `resample` asks for."""
+        if self.plan.resample is None:
+            return base
+        key = f"{self.plan.key}.resample"
+        base = slower(base, self.plan.resample, key, self.source)
+        if base.time.size < LEAST_SAMPLES:
+            rule = f"leaves {base.time.size} samples; a record needs at least {LEAST_SAMPLES}"
+            raise InputError(Problem(key, rule, self.plan.resample, "give a higher rate", self.source))
+        return base
+
+    def _stamped(self, timing: TimePlan, key: str, read: ReadColumn, first: int) -> TimeBase:
+        seconds = read(timing.column, key) * self._in_seconds(timing, key)
+        return stamped_time(seconds, self._named(key, timing.column), self.file, first)
+
+    def _in_seconds(self, timing: TimePlan, key: str) -> float:
+        """One unit of the time stamps in s."""
+        unit = timing.unit or self.table.unit(self.table.index(timing.column, key))
         if unit is None:
             raise InputError(Problem(f"{key}.unit", "is missing", None, "give unit: s", self.source))
-        seconds = values * to_si(1.0, unit, "s", f"{key}.unit", self.source)
-        return stamped_time(seconds, self._named(key, column), self.file, first)
+        return to_si(1.0, unit, "s", f"{key}.unit", self.source)
 
     def _channel(self, plan: ChannelPlan) -> RawChannel:
         header = self.table.unit(self.table.index(plan.column, f"{plan.key}.column"))
@@ -172,10 +212,21 @@ class RawReader:
         if unit is None:
             remedy = "give the unit of the column"
             raise InputError(Problem(f"{plan.key}.unit", "is missing", None, remedy, self.source))
-        if plan.timing is None:
+        clock = self._other_clock(plan)
+        if plan.timing is None and clock is None:
             return RawChannel(plan, self.sliced(plan.column, f"{plan.key}.column"), unit, header)
         values = self.unsliced(plan.column, f"{plan.key}.column")
-        return RawChannel(plan, values, unit, header, self._own_time(plan, values.size))
+        own = self._own_time(plan, values.size) if clock is None else steady_time(clock[1], 0, values.size, clock[0])
+        return RawChannel(plan, values, unit, header, own)
+
+    def _other_clock(self, plan: ChannelPlan) -> tuple[float, float] | None:
+        """The file's own clock of a channel where the record follows another one of the file."""
+        if plan.timing is not None or self.plan.timing.column is not None:
+            return None
+        clock, record = self.table.clock(self.table.index(plan.column, "")), self._clock()
+        if clock is None or record is None or clock == record:
+            return None
+        return clock
 
     def unsliced(self, column: str | int, key: str) -> NDArray[np.float64]:
         """All finite values of a column."""

@@ -6,11 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.encoders import angle_from_counts, angle_from_pulses, rising_edges
+from gear_damping.measurement.encoders import TURN, angle_from_counts, angle_from_pulses, rising_edges
 from gear_damping.measurement.plan import EncoderPlan
 from gear_damping.measurement.timebase import TimeBase
 from gear_damping.units import parse_unit, to_si
 
+_TURN_TOLERANCE = 0.25  # of a turn; a pulse is known to a sample
 ReadColumn = Callable[[str | int, str], NDArray[np.float64]]
 
 
@@ -58,14 +59,25 @@ def _at_index_pulse(plan: EncoderPlan, angle: NDArray, rows: ReadColumn, file: s
     high = np.flatnonzero(signal > (signal.min() + signal.max()) / 2)
     if not high.size:
         raise InputError(Problem(f"{plan.key}.index", "holds no pulse", plan.index, "leave it out", file))
+    _refuse_turns(plan, angle[high[np.r_[True, np.diff(high) > 1]]], file)
     return float(angle[high[0]])
+
+
+def _refuse_turns(plan: EncoderPlan, at: NDArray, file: str) -> None:
+    """Index pulses come once a turn, or the counts per revolution are not those of this encoder."""
+    turns = float(np.median(np.abs(np.diff(at)))) / TURN if at.size > 1 else 1.0
+    if abs(turns - 1) > _TURN_TOLERANCE:
+        rule = f"its pulses are {turns:.3g} turns of {plan.per_revolution:g} counts apart"
+        raise InputError(Problem(f"{plan.key}.index", rule, plan.index, "check counts_per_revolution", file))
 
 
 def _at_index_stamp(plan: EncoderPlan, angle: NDArray, time: NDArray, whole: ReadColumn, file: str) -> float:
     """The same from the times of the index pulses."""
     key = f"{plan.key}.index"
-    seconds = whole(plan.index, key)[0] * to_si(1.0, plan.unit, "s", f"{plan.key}.unit", file)
+    stamps = whole(plan.index, key) * to_si(1.0, plan.unit, "s", f"{plan.key}.unit", file)
+    seconds = stamps[0]
     if not time[0] <= seconds <= time[-1]:
         rule = "the first index pulse lies outside the record"
         raise InputError(Problem(key, rule, plan.index, "shorten the record, or leave it out", file))
+    _refuse_turns(plan, np.interp(stamps[stamps <= time[-1]], time, angle), file)
     return float(np.interp(seconds, time, angle))

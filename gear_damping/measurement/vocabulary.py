@@ -1,89 +1,32 @@
-"""The words that measurement.yaml may use: channels, conditions and parameters of each system."""
+"""The words of measurement.yaml as plain tables, taken from their declarations."""
 
 from types import MappingProxyType as Frozen
 
-TOP_KEYS = ("system", "parameters", "records")
-RECORD_KEYS = (
-    "name",
-    "file",
-    "role",
-    "slice",
-    "sampling_rate",
-    "channels",
-    "encoders",
-    "conditions",
-    "mesh_index",
-)
-SOURCE_KEYS = ("column", "unit")
-TIME_KEYS = SOURCE_KEYS
-OWN_TIME_KEYS = ("time", "sampling_rate")
-SENSOR_KEYS = (
-    "lowpass",
-    "highpass",
-    "coupling",
-    "delay",
-    "range",
-    "noise",
-    "uncertainty",
-    "polarity",
-    "datum",
-)
-CHANNEL_KEYS = SOURCE_KEYS + SENSOR_KEYS + OWN_TIME_KEYS
-MOUNTED_KEYS = ("mounting", "radius")
-QUANTITY_KEYS = ("value", "unit", "uncertainty")
-TIMING = ("time", "sampling_rate")
-GEAR_TORQUE_MODES = ("balanced", "held")
-ENCODERS = ("pinion", "gear", "tacho")
-ENCODER_KEYS = ("column", "timestamps", "unit", "counts_per_revolution", "index", "direction")
-TACHO_KEYS = ("column", "timestamps", "unit", "pulses_per_revolution", "threshold", "direction")
+from gear_damping.measurement import layout, rig
+from gear_damping.measurement.channels import AnyChannel
+from gear_damping.measurement.structure import Declared, inner_model, kind_of, names
 
+SYSTEMS = layout.SYSTEMS
+GEAR_TORQUE_MODES = rig.GEAR_TORQUE_MODES
+
+
+def _channels(model: type[Declared]) -> dict[str, type[AnyChannel]]:
+    found = {name: inner_model(info) for name, info in names(model).items()}
+    return {name: kind for name, kind in found.items() if kind and issubclass(kind, AnyChannel)}
+
+
+def _units(model: type[Declared]) -> Frozen[str, str | None]:
+    return Frozen({name: kind_of(info).unit for name, info in names(model).items()})
+
+
+_GEAR, _OSCILLATOR = _channels(layout.GearChannels), _channels(layout.OscillatorChannels)
+CHANNEL_MODELS = Frozen({"gear_pair": Frozen(_GEAR), "oscillator": Frozen(_OSCILLATOR)})
+CHANNELS = Frozen({system: tuple(models) for system, models in CHANNEL_MODELS.items()})
 # channel -> the SI unit that its values are converted to
-GEAR_CHANNELS = Frozen(
-    {
-        "transmission_error": "m",
-        "pinion_torque": "N*m",
-        "gear_torque": "N*m",
-        "pinion_angle": "rad",
-        "pinion_speed": "rad/s",
-        "acceleration": "m/s^2",
-    }
-)
+GEAR_CHANNELS = Frozen({name: kind.si for name, kind in _GEAR.items()})
 # channel -> how many times the displacement is differentiated; None for an input
-OSCILLATOR_CHANNELS = Frozen({"displacement": 0, "velocity": 1, "acceleration": 2, "force": None})
-CHANNELS = Frozen({"gear_pair": tuple(GEAR_CHANNELS), "oscillator": tuple(OSCILLATOR_CHANNELS)})
-SYSTEMS = tuple(CHANNELS)
-INPUTS = ("pinion_torque", "gear_torque", "force")  # given to the system, not its response
-
-CONDITIONS = Frozen(
-    {
-        "gear_pair": Frozen({"pinion_speed": "rad/s", "pinion_torque": "N*m", "gear_torque": "N*m"}),
-        "oscillator": Frozen({"force": "own"}),
-    }
-)
-# "own": in the units that the oscillator was measured in
-PARAMETERS = Frozen(
-    {
-        "gear_pair": Frozen(
-            {
-                "n_teeth_pinion": "1",
-                "n_teeth_gear": "1",
-                "module": "m",
-                "pressure_angle": "rad",
-                "inertia_pinion": "kg*m^2",
-                "inertia_gear": "kg*m^2",
-                "mesh_stiffness_max": "N/m",
-                "mesh_stiffness_min": "N/m",
-                "contact_ratio": "1",
-                "damping_ratio": "1",
-                "equivalent_mass": "kg",
-                "backlash_gap": "m",
-                "torque_gain": "1",
-                "torque_offset": "N*m",
-            }
-        ),
-        "oscillator": Frozen({"stiffness": "1/s^2", "damping_coefficient": "1/s", "force_gain": "own"}),
-    }
-)
-MAY_BE_ZERO = ("stiffness", "damping_coefficient", "damping_ratio", "backlash_gap")
-MAY_BE_NEGATIVE = ("torque_offset", "torque_gain", "force_gain")
-WHOLE = ("n_teeth_pinion", "n_teeth_gear")
+OSCILLATOR_CHANNELS = Frozen({name: kind.derivative for name, kind in _OSCILLATOR.items()})
+# given to the system, not its response
+INPUTS = tuple(name for name, kind in (_GEAR | _OSCILLATOR).items() if kind.is_input)
+# name -> SI unit; "own": in the units that the oscillator was measured in
+PARAMETERS = Frozen({"gear_pair": _units(rig.GearParameters), "oscillator": _units(rig.OscillatorParameters)})

@@ -8,8 +8,11 @@ import numpy as np
 import yaml
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.declaration import declared_plan
+from gear_damping.measurement.fields import Problems
 from gear_damping.measurement.record import Channel, Quantity, Record
-from gear_damping.measurement.vocabulary import CHANNELS, SYSTEMS
+from gear_damping.measurement.structure import names
+from gear_damping.measurement.vocabulary import CHANNEL_MODELS, CHANNELS, SYSTEMS
 
 YAML_NAME = "measurement.yaml"
 _FILE_NAME = re.compile(r"^[A-Za-z0-9][\w.-]*$")
@@ -20,6 +23,7 @@ def write_measurement(
     system: str,
     records: Sequence[Record],
     parameters: Mapping[str, Quantity] | None = None,
+    segment_s: float | None = None,
 ) -> Path:
     """Write one CSV file per record and a measurement.yaml beside them.
 
@@ -28,12 +32,14 @@ def write_measurement(
         system: `gear_pair` or `oscillator`.
         records: Each with a unique name that can be a file name; `file` and `sha256` are not used.
         parameters: Nominal values of the rig, in SI or the oscillator's own units.
+        segment_s: Length of the segments that records are fitted and scored in, in s.
 
     Returns:
         The path of the measurement.yaml.
 
     Raises:
-        InputError: one of the files exists already; nothing is overwritten and nothing written.
+        InputError: one of the files exists already, or the records are none that could be read back: a response
+            or an input is missing, or a sensor is stated that its channel cannot have. Nothing is written then.
         ValueError: an unknown system or channel, or names that repeat or cannot be file names.
     """
     _refuse_names(system, records)
@@ -43,17 +49,21 @@ def write_measurement(
     if taken:
         remedy = "choose another folder, or remove it"
         raise InputError([Problem("folder", "the file exists already", str(path), remedy) for path in taken])
+    content = {
+        "system": system,
+        "segments": {"value": float(segment_s), "unit": "s"} if segment_s else None,
+        "parameters": {name: _quantity(quantity) for name, quantity in (parameters or {}).items()},
+        "records": [_declaration(system, record) for record in records],
+    }
+    content = {key: value for key, value in content.items() if value}
+    problems = Problems()
+    declared_plan(content, problems, str(folder / YAML_NAME))
+    problems.raise_any()
     folder.mkdir(parents=True, exist_ok=True)
     for record in records:
         _write_csv(files[record.name], record)
-    content = {
-        "system": system,
-        "parameters": {name: _quantity(quantity) for name, quantity in (parameters or {}).items()},
-        "records": [_declaration(record) for record in records],
-    }
-    text = yaml.safe_dump({key: value for key, value in content.items() if value}, sort_keys=False)
     with (folder / YAML_NAME).open("x", encoding="utf-8") as file:
-        file.write(text)
+        file.write(yaml.safe_dump(content, sort_keys=False))
     return folder / YAML_NAME
 
 
@@ -74,16 +84,19 @@ def _refuse_names(system: str, records: Sequence[Record]) -> None:
 
 
 def _write_csv(path: Path, record: Record) -> None:
-    """Seventeen digits bring every float64 back exactly."""
-    columns = [record.time, *(channel.values / channel.polarity for channel in record.channels.values())]
+    """Seventeen digits bring every float64 back exactly, where the file holds the quantity itself."""
+    columns = [record.time]
+    for channel in record.channels.values():
+        columns.append(channel.values * (channel.polarity * channel.gain / channel.declared_factor))
     with path.open("x", encoding="utf-8") as file:
         file.write(",".join(["time", *record.channels]) + "\n")
         np.savetxt(file, np.column_stack(columns), delimiter=",", fmt="%.17g")
 
 
-def _declaration(record: Record) -> dict[str, object]:
+def _declaration(system: str, record: Record) -> dict[str, object]:
+    models = CHANNEL_MODELS[system]
     channels: dict[str, object] = {"time": {"column": "time", "unit": "s"}}
-    channels |= {name: _channel(channel) for name, channel in record.channels.items()}
+    channels |= {name: _channel(channel, tuple(names(models[name]))) for name, channel in record.channels.items()}
     conditions: dict[str, object] = {name: _quantity(value) for name, value in record.conditions.items()}
     if record.gear_torque_mode:
         conditions["gear_torque"] = record.gear_torque_mode
@@ -98,9 +111,9 @@ def _declaration(record: Record) -> dict[str, object]:
     return {key: value for key, value in declaration.items() if value}
 
 
-def _channel(channel: Channel) -> dict[str, object]:
-    """The column, its unit and what differs from the defaults of a sensor."""
-    declared: dict[str, object] = {"column": channel.name, "unit": channel.unit}
+def _channel(channel: Channel, keys: Sequence[str]) -> dict[str, object]:
+    """The column, its unit and what differs from the defaults of a sensor; `keys` are those that it may have."""
+    declared: dict[str, object] = {"column": channel.name, "unit": channel.declared_unit}
     for name, unit in (
         ("lowpass", "Hz"), ("highpass", "Hz"), ("delay", "s"), ("radius", "m"),
         ("range", channel.unit), ("noise", channel.unit),
@@ -108,12 +121,17 @@ def _channel(channel: Channel) -> dict[str, object]:
         value = getattr(channel, name)
         if value:
             declared[name] = {"value": float(value), "unit": unit}
+        if value and name in ("lowpass", "highpass"):
+            declared[name]["order"] = getattr(channel, f"{name}_order")
     for name, default in (
-        ("coupling", "DC"), ("uncertainty", 0.0), ("polarity", 1), ("datum", "absolute"), ("mounting", None),
+        ("coupling", "DC"), ("uncertainty", 0.0), ("polarity", 1), ("gain", 1.0), ("mounting", None),
+        ("shaft", None), ("frame", None),
     ):  # fmt: skip
         value = getattr(channel, name)
         if value != default:
             declared[name] = value
+    if "datum" in keys and channel.mounting != "casing" and ("mounting" not in keys or channel.mounting):
+        declared["datum"] = channel.datum
     return declared
 
 

@@ -1,10 +1,42 @@
 """What an effect says of itself as a possible cause of what a simulation misses."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
 Experiment = Literal["torque", "speed", "torque_channel", "bearing", "remount", "ring_down", "amplitude", "reversal"]
+
+
+SHAFTS = ("pinion", "gear")
+
+
+@dataclass(frozen=True)
+class Rig:
+    """What a recipe may depend on: the rig and the records of it.
+
+    Args:
+        system: `gear_pair` or `oscillator`.
+        n_teeth_pinion: Teeth of the pinion; 0 without a mesh.
+        n_teeth_gear: Teeth of the gear; 0 without a mesh.
+        inputs: Names of the input series that were measured.
+        radian: One radian in the unit of the response; None where the response is no angle.
+        mesh_harmonics: Harmonics of the mesh that the sampling of at least one record shows.
+        lines: Orders of the pinion shaft at which most is left unexplained, the strongest first.
+        values: Parameters and derived quantities of the system by name, SI; of a mesh the `contact_ratio` too.
+    """
+
+    system: str
+    n_teeth_pinion: int = 0
+    n_teeth_gear: int = 0
+    inputs: tuple[str, ...] = ()
+    radian: float | None = None
+    mesh_harmonics: int = 0
+    lines: tuple[float, ...] = ()
+    values: Mapping[str, float] = field(default_factory=dict)
+
+    def teeth(self, shaft: str) -> int:
+        """Teeth of the gear on a shaft."""
+        return {"pinion": self.n_teeth_pinion, "gear": self.n_teeth_gear}[shaft]
 
 
 @dataclass(frozen=True)
@@ -23,6 +55,8 @@ class Recipe:
             where they have no size yet.
         stood_in: Parameters, by flat name, that bend far off where the effect is missing, with the factor by which
             they are moved for further starts of the full fit.
+        sharpest: Parameters, by own name, whose lower bound is where finer steps would cost more and show no more: one
+            that comes to rest there has run into nothing.
         fixed: Parameters that stay.
         neutral: Value of the strengths without the effect.
         presence: The effect has no neutral value (a stiffness that was rigid): it is tried as a whole, at the
@@ -30,6 +64,8 @@ class Recipe:
         in_si: Whether the sizes are in SI.
         options: Options of the effect.
         length: Elements of its lists; as declared where absent.
+        replaces: Parameters of the system that strengths take over, by own name: the parameter becomes 0 and is no
+            longer free, and the size of the strength counts in what it was. Goes with `presence`.
     """
 
     strengths: Mapping[str, float | None]
@@ -39,12 +75,17 @@ class Recipe:
     timed: Mapping[str, float] = field(default_factory=dict)
     beside: Mapping[str, float | None] = field(default_factory=dict)
     stood_in: Mapping[str, float] = field(default_factory=dict)
+    sharpest: tuple[str, ...] = ()
     fixed: Mapping[str, float] = field(default_factory=dict)
     neutral: float = 0.0
     presence: bool = False
     in_si: bool = False
     options: Mapping[str, object] = field(default_factory=dict)
     length: int | None = None
+    replaces: Mapping[str, str] = field(default_factory=dict)
+
+
+Recipes = tuple[Recipe, ...] | Callable[[Rig], tuple[Recipe, ...]]
 
 
 @dataclass(frozen=True)
@@ -53,14 +94,22 @@ class Cause:
 
     Args:
         sentence: What it is called in a sentence: 'the simulation misses …'.
-        recipes: Its variants, each tried; none for an effect that is never tried by itself.
+        recipes: Its variants, each tried; none for an effect that is never tried by itself. A function of the rig
+            where they depend on it.
         separated_by: The experiment that separates it from what it resembles.
         looks_like: Effects that no record of this channel can tell from it and that are never tried by themselves.
         simpler: An effect that it contains, with fewer parameters.
+        one_class: What else no record of this channel parts from it, as words for a sentence: then several names are
+            one answer.
     """
 
     sentence: str
-    recipes: tuple[Recipe, ...] = ()
+    recipes: Recipes = ()
     separated_by: Experiment = "torque"
     looks_like: tuple[str, ...] = ()
     simpler: str | None = None
+    one_class: tuple[str, ...] = ()
+
+    def recipes_for(self, rig: Rig) -> tuple[Recipe, ...]:
+        """Its variants on this rig."""
+        return tuple(self.recipes(rig)) if callable(self.recipes) else self.recipes

@@ -4,14 +4,20 @@ import importlib.util
 import inspect
 import traceback
 from collections.abc import Iterator, Sequence
+from functools import cache
 from pathlib import Path
 from types import ModuleType
 from typing import get_args
 
+import torch
+
 from gear_damping.errors import InputError, Problem
 from gear_damping.physics import terms
-from gear_damping.physics.cause import Cause, Experiment, Recipe
+from gear_damping.physics.cause import Cause, Experiment, Recipe, Rig
 from gear_damping.physics.parameter import Option, Parameter
+from gear_damping.physics.systems.base import System
+from gear_damping.physics.systems.gear_pair import GearPair
+from gear_damping.physics.systems.oscillator import Oscillator
 from gear_damping.physics.terms import Effect, ExtraStates, MeshStiffness
 from gear_damping.units import parse_unit
 
@@ -129,17 +135,48 @@ def cause_faults(kind: type[Effect]) -> Iterator[str]:
     """What is wrong with how an effect is tried as a cause; its parameters must be right themselves."""
     if kind.cause is None or not _all(getattr(kind, "parameters", None), Parameter):
         return
-    if not isinstance(kind.cause, Cause) or not _all(kind.cause.recipes, Recipe):
+    if not isinstance(kind.cause, Cause) or not (callable(kind.cause.recipes) or _all(kind.cause.recipes, Recipe)):
         yield "has a cause that is no Cause('what it is called', (Recipe(…), …))"
         return
     if kind.cause.separated_by not in get_args(Experiment):
         yield f"is separated by {kind.cause.separated_by!r}: choose from {get_args(Experiment)}"
+    recipes: list[Recipe] = []
+    for rig in (rig for name in kind.systems for rig in some_rigs(name)):
+        try:
+            found = kind.cause.recipes_for(rig)
+        except Exception as error:  # the user's own code can fail in any way
+            yield f"has recipes that fail on a rig: {type(error).__name__}: {error}"
+            return
+        if not _all(found, Recipe):
+            yield "has recipes that give something else than a tuple of Recipe(…)"
+            return
+        recipes += found
+    yield from dict.fromkeys(fault for recipe in recipes for fault in _recipe_faults(kind, recipe))
+
+
+@cache
+def some_rigs(system: str) -> tuple[Rig, ...]:
+    """Rigs of a system on which recipes are looked at that depend on the rig."""
+    if system == "oscillator":
+        values = _values(Oscillator(), None)
+        return Rig(system, radian=1.0, values=values), Rig(system, inputs=("force",), values=values)
+    values = _values(GearPair(), torch.tensor([3e8])) | {"contact_ratio": 1.6}
+    others = {"mesh_harmonics": 4, "values": values}
+    return Rig(system, 20, 40, **others), Rig(system, 17, 43, inputs=("pinion_angle",), lines=(12.0,), **others)
+
+
+def _values(system: System, mean_stiffness: torch.Tensor | None) -> dict[str, float]:
+    """Defaults of a system with what follows from them."""
+    own = {parameter.name: torch.tensor([parameter.default]) for parameter in system.parameters}
+    return {name: float(value) for name, value in (own | system.derived(own, mean_stiffness)).items()}
+
+
+def _recipe_faults(kind: type[Effect], recipe: Recipe) -> Iterator[str]:
     declared = {parameter.name for parameter in kind.parameters}
-    for recipe in kind.cause.recipes:
-        named = {*recipe.strengths, *recipe.phases, *recipe.phases.values()}
-        named |= {*recipe.scanned, *recipe.timed, *recipe.fixed}
-        for name in sorted(named - declared):
-            yield f"has a recipe with {name!r}, which is none of its parameters"
+    named = {*recipe.strengths, *recipe.phases, *recipe.phases.values()}
+    named |= {*recipe.scanned, *recipe.timed, *recipe.fixed, *recipe.sharpest, *recipe.replaces.values()}
+    for name in sorted(named - declared):
+        yield f"has a recipe with {name!r}, which is none of its parameters"
 
 
 def _unit_faults(what: str, unit: object) -> Iterator[str]:

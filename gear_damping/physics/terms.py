@@ -165,7 +165,7 @@ class LoadPath(Effect):
 
 
 class BearingForce(Effect):
-    """A force on the pinion in its bearing, along the line of action."""
+    """A force on a gear in its bearing, along the line of action."""
 
     @abstractmethod
     def bearing_force(self, now: Moment, p: Values) -> Tensor:
@@ -264,6 +264,15 @@ class Sensor(Effect):
     @abstractmethod
     def measure(self, signal: Tensor, values: Values, recording: Recording) -> Tensor:
         """The recorded signal from the true one; shape (batch, time), SI; `values` in SI."""
+
+    @property
+    def start_modes(self) -> int:
+        """How many states of its own the sensor has at the start of a record."""
+        return 0
+
+    def left_of_start(self, values: Values, time: Tensor) -> Tensor:
+        """What each of them leaves in the record where it is 1, (modes, batch, time) at times (time,) in s."""
+        return time.new_zeros(0, 1, len(time))
 
     def undo(self, signal: Tensor, values: Values) -> Tensor:
         """The true signal from a recorded one that drives a simulation; unchanged where nothing is known."""

@@ -23,7 +23,7 @@ def substeps_for(accuracy: float, prepared: Prepared, interval: Tensor, interval
         interval: Natural time between outputs, (batch,).
         intervals: Output intervals of a run.
     """
-    whole = (interval * intervals).clamp(min=10.0)
+    whole = (_turning_rate(prepared) * interval * intervals).clamp(min=10.0)
     radians = torch.minimum(whole, FORGETTING * (whole / FORGETTING) ** GROWTH)
     step = (accuracy / (CONSTANT * radians)) ** (1 / ORDER)
     step = step.clamp(max=(accuracy / CORNER) ** (1 / CORNER_ORDER))
@@ -35,11 +35,17 @@ def substeps_for(accuracy: float, prepared: Prepared, interval: Tensor, interval
 def fastest_rate(prepared: Prepared) -> Tensor:
     """The fastest angular rate that a step must resolve, natural units, (batch,).
 
-    The natural frequency is 1 in natural units; a term that brings a faster one says so with a value
-    called `fastest_rate`.
+    That of the unit of time is 1, and so is the natural frequency where it gives that unit. A term that brings a
+    faster rate says so with a value called `fastest_rate`.
     """
-    rate = torch.ones_like(prepared.base["equivalent_mass"])
+    rate = _turning_rate(prepared)
     for values in prepared.terms.values():
         if "fastest_rate" in values:
             rate = torch.maximum(rate, values["fastest_rate"])
     return rate
+
+
+def _turning_rate(prepared: Prepared) -> Tensor:
+    """The natural frequency, but at least 1; 1 where a stiffness below 0 has none."""
+    frequency = prepared.base["natural_frequency"]
+    return torch.where(frequency > 1, frequency, torch.ones_like(frequency))

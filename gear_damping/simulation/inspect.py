@@ -5,6 +5,8 @@ from torch import Tensor
 
 from gear_damping.physics.equation import EquationOfMotion
 from gear_damping.simulation.runs import Runs, state_units
+from gear_damping.simulation.series import Series
+from gear_damping.simulation.simulate import input_units
 from gear_damping.units import parse_unit
 
 
@@ -20,10 +22,8 @@ def forces_of(runs: Runs, member: int) -> dict[str, Tensor]:
     scales = prepared.scales
     equation = EquationOfMotion(runs.model)
     units = state_units(runs.model)
-    state = [runs.states[n][member] / scales.unit_of(parse_unit(units[n]).dimension) for n in runs.states]
-    given = {name: value[member] for name, value in runs.inputs.items()}
-    if "pinion_angle" in given:
-        given["pinion_angle_rate"] = torch.gradient(given["pinion_angle"])[0]
+    state = [runs.states[n][member] / scales.unit_of(parse_unit(units[n]).dimension) for n in units]
+    given = _inputs(runs, member)
     now = equation.moment(runs.time / scales.time, tuple(state), given, prepared.base)
     now.locked = {name: (value >= 0).to(value) for name, value in equation.switches(now, prepared.terms).items()}
     equation.rates(now, prepared.base, prepared.terms)
@@ -34,3 +34,17 @@ def forces_of(runs: Runs, member: int) -> dict[str, Tensor]:
         "mesh_force": now.mesh_force * scales.force,
         "load": now.load * scales.force,
     }
+
+
+def _inputs(runs: Runs, member: int) -> dict[str, Tensor]:
+    """Every input of one run at the outputs as the solver sees it, natural units, each (time,)."""
+    if not runs.inputs:
+        return {}
+    prepared = runs.model.prepare({name: value[..., member : member + 1] for name, value in runs.values.items()})
+    inputs = {name: value[member : member + 1] for name, value in runs.inputs.items()}
+    series, intervals = Series(tuple(sorted(inputs))), len(runs.time) - 1
+    packed = series.pack(inputs, input_units(runs.model, inputs, prepared), intervals, 1)
+    rows = torch.cat([packed, packed[-1:]])[..., 0].T  # the last output is the end of the last interval
+    u = torch.zeros(intervals + 1, dtype=rows.dtype)
+    u[-1] = 1
+    return series.at(rows, u, 1 / (runs.sampling_rate * prepared.scales.time))

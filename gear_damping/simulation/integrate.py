@@ -32,10 +32,11 @@ def integrate(
     solver: Solver,
     progress: Progress | None = None,
     departures: Mapping[str, Tensor] | None = None,
-) -> tuple[list[str], Tensor]:
-    """Names of the states and their values in natural units, (n_state, batch, time).
+    acceleration: bool = False,
+) -> tuple[list[str], Tensor, Tensor | None]:
+    """Names of the states, their values (n_state, batch, time), and the acceleration (batch, time) where it is asked.
 
-    Members that need the same number of sub-steps go together, so that no member's answer depends on
+    In natural units. Members that need the same number of sub-steps go together, so that no member's answer depends on
     its batch-mates.
     """
     layout, series = Layout(prepared), Series(tuple(sorted(inputs)))
@@ -46,17 +47,21 @@ def integrate(
     choice = choose(solver.engine, kernel, example, start)
     groups = groups_of(prepared, interval, n_samples - 1, solver)
     states = start.new_empty(*start.shape, n_samples)
+    accelerations = start.new_empty(start.shape[1], n_samples) if acceleration else None
     names = ["displacement", "velocity", *kernel.equation.extra_names]
     work, done = sum(n * len(lanes) for n, lanes in groups), 0
     for n, lanes in groups:
         stepper = choice.stepper(kernel, fixed[:, lanes].contiguous(), packed[:, :, lanes].contiguous())
+        stepper.acceleration = start.new_empty(len(lanes), n_samples) if acceleration else None
         share = _share(progress, done, n * len(lanes), work)
         found = solve(stepper, start[:, lanes], n_samples, n, share)
         if len(groups) == 1:
-            return names, found
+            return names, found, stepper.acceleration
         states[:, lanes] = found
+        if acceleration:
+            accelerations[lanes] = stepper.acceleration
         done += n * len(lanes)
-    return names, states
+    return names, states, accelerations
 
 
 def solve(stepper: Stepper, start: Tensor, n_samples: int, substeps: int, progress: Progress | None) -> Tensor:

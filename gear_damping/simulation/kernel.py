@@ -62,6 +62,11 @@ class Kernel:
         """`cross` as one compiled kernel."""
         return _fused(self.cross)
 
+    @cached_property
+    def fused_rates(self) -> Callable:
+        """`rates` as one compiled kernel."""
+        return _fused(self.rates)
+
     @property
     def is_compiled(self) -> bool:
         """Whether this process has compiled the kernel already."""
@@ -181,16 +186,17 @@ def holds_weights(part: object) -> bool:
 
 
 def _fused(function: Callable) -> Callable:
-    """Compile a step; the compiler sees nothing but tensors."""
+    """Compile a function of (..., members, locked); the compiler sees nothing but tensors."""
 
-    def flat(first: Tensor | tuple, start: Tensor, length: Tensor, fixed: Tensor, *rest: Tensor) -> tuple:
-        series, index, locked = rest
-        return function(first, start, length, Members(fixed, series, index), locked)
+    def flat(*given: Tensor | tuple) -> Tensor | tuple:
+        *front, fixed, series, index, locked = given
+        return function(*front, Members(fixed, series, index), locked)
 
     compiled = torch.compile(flat, dynamic=True, fullgraph=True)
 
-    def call(first: Tensor | tuple, start: Tensor, length: Tensor, members: Members, locked: Tensor) -> tuple:
-        return compiled(first, start, length, members.fixed, members.series, members.index, locked)
+    def call(*given: Tensor | tuple | Members) -> Tensor | tuple:
+        *front, members, locked = given
+        return compiled(*front, members.fixed, members.series, members.index, locked)
 
     return call
 

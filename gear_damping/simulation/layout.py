@@ -13,7 +13,7 @@ from gear_damping.physics.model import Prepared
 
 Named = dict[str, Tensor]
 BASE = ""  # the group of the system's own values
-INTERVAL = "output_interval"  # natural time between two outputs
+INTERVAL_ROW = 0  # of the natural time between two outputs
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Layout:
     """Which rows hold which value; the same for every batch of one model."""
 
     def __init__(self, prepared: Prepared) -> None:
-        """Number the rows of everything in `prepared`, after the output interval in row 0."""
+        """Number the rows of everything in `prepared`, after the output interval in its row."""
         self.entries: list[Entry] = []
         self.groups = (BASE, *prepared.terms)
         row = 1

@@ -11,6 +11,7 @@ from gear_damping.physics.terms import DampingLaw, ExtraStates, Recording, Senso
 from gear_damping.simulation.series import ANGLE, ANGLE_RATE
 
 FINE, DIVERGED = 0, 1
+ACCELERATION = "acceleration"  # its name among the states
 
 
 @dataclass(frozen=True)
@@ -22,7 +23,8 @@ class Runs:
         values: Its parameters by flat name, (batch,) or (n, batch).
         derived: Derived quantities of the system, each (batch,).
         sampling_rate: Output samples per second.
-        states: `displacement`, `velocity` and the states of effects by flat name, (batch, time).
+        states: `displacement`, `velocity` and the states of effects by flat name, (batch, time); with them
+            `acceleration` where it was asked for.
         inputs: Series that were given to the simulation, (batch, time).
         status: 0 for a fine run, 1 for one that diverged, (batch,).
         reference_velocity: Velocity amplitude that equivalent damping ratios belong to, m/s, (batch,).
@@ -103,7 +105,13 @@ class Runs:
 
     def measured(self, channel: str, generator: torch.Generator, skip: tuple[str, ...] = ()) -> Tensor:
         """Any channel behind the sensors that act on it, (batch, time)."""
-        signal = self.channel(channel)
+        return self._through(self._sensors(channel, skip), self.channel(channel), generator)
+
+    def behind_sensors(self, signal: Tensor, generator: torch.Generator, skip: tuple[str, ...] = ()) -> Tensor:
+        """A response, whatever quantity it is, behind the sensors that act on the response, (batch, time)."""
+        return self._through(self._sensors(self.model.system.response, skip), signal, generator)
+
+    def _through(self, sensors: list[Sensor], signal: Tensor, generator: torch.Generator) -> Tensor:
         about = Recording(
             self.sampling_rate,
             generator,
@@ -111,7 +119,7 @@ class Runs:
             self.angles.get("pinion_angle"),
             self.angles.get("gear_angle"),
         )
-        for sensor in self._sensors(channel, skip):
+        for sensor in sensors:
             own = {p.name: self.values[f"{sensor.name}.{p.name}"] for p in sensor.parameters}
             signal = sensor.measure(signal, own, about)
         return signal
@@ -139,7 +147,7 @@ class Runs:
 
 
 def state_units(model: Model) -> dict[str, str]:
-    """The SI unit of every state by its name in `Runs.states`."""
+    """The SI unit of every state of the integration by its name in `Runs.states`."""
     return {"displacement": "m", "velocity": "m/s"} | effect_state_units(model)
 
 
@@ -152,7 +160,12 @@ def effect_state_units(model: Model) -> dict[str, str]:
 def reference_velocity(derived: dict[str, Tensor]) -> Tensor:
     """The velocity amplitude omega_n F0 / k0 that equivalent damping ratios belong to, m/s, (batch,).
 
-    An oscillator has no mean load: its reference amplitude takes the place of F0 / k0.
+    An oscillator has no mean load: its reference amplitude takes the place of F0 / k0. Without a spring the inverse
+    of its characteristic time takes the place of omega_n.
     """
-    amplitude = (derived["mean_load"] / derived["mean_stiffness"]).abs()
-    return derived["natural_frequency"] * derived.get("amplitude", amplitude)
+    frequency = derived["natural_frequency"]
+    if "amplitude" in derived:
+        stated = derived["characteristic_time"]
+        rate = 1 / torch.where(stated > 0, stated, torch.ones_like(stated))
+        return derived["amplitude"] * torch.where(frequency > 0, frequency, rate)
+    return frequency * (derived["mean_load"] / derived["mean_stiffness"]).abs()

@@ -1,11 +1,12 @@
 """Input series between their samples: one polynomial for each output interval.
 
-A measured force or torque is band-limited: it is interpolated by a windowed sinc to five points of
-each interval, and the quartic through them is what the solver sees, smooth inside every step. A
-drawn load is held over its interval. A measured angle is linear between its samples.
+A measured series is band-limited: it is interpolated by a windowed sinc to five points of each
+interval, and the quartic through them is what the solver sees, smooth inside every step. Of an angle,
+which grows, that is done with what is left of it beside the straight line from its first to its last
+sample; its rate is the derivative of the quartic. A drawn load is held over its interval.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import torch
@@ -54,28 +55,54 @@ class Series:
         """Every input at position `u` (0…1) of the interval whose rows these are."""
         found, row = {}, 0
         for name, height in zip(self.names, self.heights, strict=True):
-            coefficients = rows[row : row + height]
-            value = coefficients[height - 1]
-            for k in range(height - 2, -1, -1):
-                value = value * u + coefficients[k]
-            found[name] = value
+            coefficients = rows[row : row + height].unbind(0)
+            found[name] = _polynomial(coefficients, u)
             if name == ANGLE:
-                found[ANGLE_RATE] = coefficients[1] / interval
+                slopes = [k * coefficient for k, coefficient in enumerate(coefficients)][1:]
+                found[ANGLE_RATE] = _polynomial(slopes, u) / interval
             row += height
         return found
 
 
+def continued(values: Tensor, length: int) -> Tensor:
+    """A series (time,) followed by its point reflection about its end, `length` samples in all.
+
+    That is how the interpolation takes it beyond its end: where series of one batch differ in length, the shorter
+    ones are interpolated as they would be alone. Zeros after the end would ring back into them.
+    """
+    while len(values) < length:
+        mirrored = 2 * values[-1] - values[:-1].flip(0) if len(values) > 1 else values
+        values = torch.cat([values, mirrored])
+    return values[:length]
+
+
+def _polynomial(coefficients: Sequence[Tensor], u: Tensor) -> Tensor:
+    """Value at u; powers of u ascending."""
+    value = coefficients[-1]
+    for coefficient in reversed(coefficients[:-1]):
+        value = value * u + coefficient
+    return value
+
+
 def _height(name: str) -> int:
-    return {HELD_LOAD: 1, ANGLE: 2}.get(name, POINTS + 1)
+    return 1 if name == HELD_LOAD else POINTS + 1
 
 
 def _coefficients(name: str, values: Tensor) -> Tensor:
     """Shape (height, intervals, batch), powers of u ascending."""
-    series = values.T
     if name == HELD_LOAD:
-        return series.unsqueeze(0)
-    if name == ANGLE:
-        return torch.stack([series[:-1], series[1:] - series[:-1]])
+        return values.T.unsqueeze(0)
+    if name != ANGLE:
+        return _quartics(values)
+    first, last, intervals = values[:, :1], values[:, -1:], values.shape[1] - 1
+    slope = (last - first) / max(intervals, 1)
+    line = first + slope * torch.arange(intervals + 1, dtype=values.dtype, device=values.device)
+    beside = _quartics(values - line)
+    return torch.cat([beside[:1] + line[:, :-1].T, beside[1:2] + slope.T, beside[2:]])
+
+
+def _quartics(values: Tensor) -> Tensor:
+    """The quartics through the band-limited interpolation of each interval, (POINTS + 1, intervals, batch)."""
     fine = _between_samples(values)
     windows = fine.unfold(-1, POINTS + 1, POINTS)  # (batch, intervals, points)
     return torch.einsum("kp,bip->kib", _TO_COEFFICIENTS.to(values), windows)

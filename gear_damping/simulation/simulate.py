@@ -10,7 +10,15 @@ from gear_damping.physics.equation import HELD_LOAD
 from gear_damping.physics.model import Model, Prepared
 from gear_damping.physics.terms import HeldLoad, Sensor
 from gear_damping.simulation.integrate import Progress, integrate
-from gear_damping.simulation.runs import DIVERGED, FINE, Runs, effect_state_units, reference_velocity, state_units
+from gear_damping.simulation.runs import (
+    ACCELERATION,
+    DIVERGED,
+    FINE,
+    Runs,
+    effect_state_units,
+    reference_velocity,
+    state_units,
+)
 from gear_damping.simulation.solver_settings import Solver
 from gear_damping.units import parse_unit
 
@@ -28,6 +36,7 @@ def simulate(
     seed: int = 0,
     progress: Progress | None = None,
     departures: Mapping[str, Tensor] | None = None,
+    acceleration: bool = False,
 ) -> Runs:
     """Simulate every member of a batch, each with its own parameters, inputs and start.
 
@@ -37,12 +46,16 @@ def simulate(
         sampling_rate: Output samples per second.
         n_samples: Output samples of each run, the first at time 0.
         inputs: Measured series at the output instants, (batch, time), or fewer rows that the batch repeats:
-            `force` (oscillator), `pinion_torque`, `gear_torque` in N m, `pinion_angle` in rad, unwrapped.
+            `force`, `base_acceleration` in m/s^2 (oscillator), `pinion_torque`, `gear_torque` in N m, `pinion_angle`
+            in rad, unwrapped.
         solver: Settings; the defaults when None.
         seed: Seed of drawn loads.
         progress: Called with (done, total) as the work proceeds.
         departures: How far states of effects depart at the start from where their effect puts them, (batch,) in SI
             by flat name (`shaft_torsion.twist`).
+        acceleration: Whether `Runs.states` shall have the `acceleration` too: the right-hand side of the equation of
+            motion at the output instants. Where it jumps at an output (a tooth pair, a held load), it is the value
+            before the jump, but for the first one.
 
     Raises:
         InputError: an input is unknown to the system or has the wrong shape.
@@ -59,7 +72,9 @@ def simulate(
     interval = 1 / (sampling_rate * prepared.scales.time)
     scale = natural_units(model, prepared)
     moved = {name: value / scale[name] for name, value in (departures or {}).items()}
-    names, states = integrate(model, prepared, series, units, interval, n_samples, solver, progress, moved)
+    names, states, rates = integrate(
+        model, prepared, series, units, interval, n_samples, solver, progress, moved, acceleration
+    )
     low, high = states.aminmax(dim=-1)  # nan, too, shows in the extremes
     fine = (low.isfinite() & high.isfinite()).all(0) & (low[0] > -FAR) & (high[0] < FAR)
     return Runs(
@@ -67,7 +82,7 @@ def simulate(
         values=dict(values),
         derived=prepared.derived,
         sampling_rate=sampling_rate,
-        states=_in_si(names, states, scale),
+        states=_in_si(names, states, scale) | _acceleration_in_si(prepared, rates),
         inputs={name: value.repeat(batch // len(value), 1) for name, value in inputs.items()},
         status=torch.where(fine, FINE, DIVERGED),
         reference_velocity=reference_velocity(prepared.derived),
@@ -141,3 +156,8 @@ def _held_loads(
 def _in_si(names: list[str], states: Tensor, scale: Mapping[str, Tensor]) -> dict[str, Tensor]:
     # in place: fresh memory for every state costs more than the product
     return {name: state.mul_(scale[name].unsqueeze(1)) for name, state in zip(names, states, strict=True)}
+
+
+def _acceleration_in_si(prepared: Prepared, rates: Tensor | None) -> dict[str, Tensor]:
+    unit = (prepared.scales.velocity / prepared.scales.time).unsqueeze(1)
+    return {} if rates is None else {ACCELERATION: rates.mul_(unit)}

@@ -6,15 +6,22 @@ import torch
 from torch import Tensor
 
 from gear_damping.simulation.kernel import Kernel, Members
+from gear_damping.simulation.layout import INTERVAL_ROW
 
 MOST_SPLITS = 8  # of one sub-step; a lane that grazes a corner more often keeps its branch to the end
 REPORT_EVERY = 16  # output intervals
+VELOCITY = 1  # row of the velocity among the states
 
 
 class Stepper:
-    """The region-locked fixed-step method for one batch; remembers the branch each member is on."""
+    """The region-locked fixed-step method for one batch; remembers the branch each member is on.
+
+    Where `acceleration`, (batch, time), is set before a walk, the walk fills it with the rate of the velocity at
+    every output, the first included, in natural units.
+    """
 
     lane_multiple = 4  # gathered lanes come in multiples of this, whole vector registers
+    acceleration: Tensor | None = None
 
     def __init__(self, kernel: Kernel, fixed: Tensor, series: Tensor, compiled: bool) -> None:
         """Prepare a batch.
@@ -29,6 +36,7 @@ class Stepper:
         self.advance: Callable = kernel.fused_advance if compiled else kernel.advance
         self.cross: Callable = kernel.fused_cross if compiled else kernel.cross
         self.locked = fixed.new_zeros(len(kernel.switch_names), fixed.shape[1])
+        self._rates: Callable = kernel.fused_rates if compiled else kernel.rates
         self._index = fixed.new_zeros(())
 
     def members(self, index: int) -> Members:
@@ -42,6 +50,13 @@ class Stepper:
         if self.kernel.switch_names:
             u = self.fixed.new_zeros(self.fixed.shape[1])
             self.locked = (self.kernel.switches(u, state, self.members(0)) >= 0).to(state)
+        if self.acceleration is not None:
+            self.acceleration[:, 0] = self._accelerated(0.0, state, self.members(0))
+
+    def _accelerated(self, u: float, state: Tensor, members: Members) -> Tensor:
+        """Rate of the velocity, (batch,), at position `u` of an interval on the branch that was reached."""
+        place = self.fixed.new_full((state.shape[1],), u)
+        return self._rates(place, state, members, self.locked)[VELOCITY] / members.fixed[INTERVAL_ROW]
 
     def rates(self, time: Tensor, state: Tensor) -> Tensor:
         """Rates at any position on the branch of that very instant, for torchdiffeq's other methods."""
@@ -64,6 +79,8 @@ class Stepper:
         for index in range(out.shape[0]):
             state = self.walk(state, index, substeps)
             out[index] = state
+            if self.acceleration is not None:
+                self.acceleration[:, index + 1] = self._accelerated(1.0, state, self.members(index))
             if index % REPORT_EVERY == 0:
                 report(index + 1)
 

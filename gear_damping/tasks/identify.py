@@ -1,18 +1,21 @@
 """task=identify: damping from a measured record, by output error or by a trained network."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
+import numpy as np
 import torch
 
 from gear_damping.config.settings import Settings
 from gear_damping.errors import InputError, Problem
 from gear_damping.identification.lightning_module import load_estimator
-from gear_damping.identification.oscillator import OscillatorFit, fit_oscillator
-from gear_damping.identification.output_error.problem import FitRecord
+from gear_damping.identification.observation import fit_record, known_of, require_alike
+from gear_damping.identification.oscillator import Estimate, OscillatorFit, fit_oscillator
+from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.identification.output_error.segments import Segments
 from gear_damping.measurement.load import load_measurement
-from gear_damping.measurement.record import Measurement, Record
+from gear_damping.measurement.record import Channel, Measurement, Record
 from gear_damping.reporting import figures, tables
 from gear_damping.tasks import statements
 from gear_damping.tasks.lack_of_fit import lack_of_fit, sentence
@@ -56,14 +59,20 @@ def _refuse_faults(measurement: Measurement) -> None:
 
 
 def _by_output_error(settings: Settings, measurement: Measurement, folder: RunFolder) -> dict[str, Any]:
-    fit_on = measurement.with_role("fit") or measurement.with_role(None)
-    holdout = measurement.with_role("holdout")
-    _require_response(fit_on + holdout, measurement)
-    fitted, held = [_fit_record(r) for r in fit_on], [_fit_record(r) for r in holdout]
+    known = known_of(measurement)
+    spring = known.values.get("stiffness", 1.0) != 0
+    roles = {
+        "fit": [fit_record(r, "oscillator", spring) for r in _fit_on(measurement)],
+        "holdout": [fit_record(r, "oscillator", spring) for r in measurement.with_role("holdout")],
+    }
+    require_alike([*roles["fit"], *roles["holdout"]], str(measurement.source))
+    channels = {name: c for record in measurement.records for name, c in record.channels.items()}
+    channel = channels[roles["fit"][0].observed.name]
+    stated = Segments(measurement.segment_s, exact=True) if measurement.segment_s else None
     with progress_bar("fitting", settings.progress) as progress:
-        found = fit_oscillator(fitted, held, progress, settings.simulator.solver)
-    content = _identification(found, measurement, fit_on, holdout)
-    lacking = lack_of_fit(found.predictions, fitted, held, fit_on[0].channels["displacement"])
+        found = fit_oscillator(roles["fit"], roles["holdout"], progress, settings.simulator.solver, known, stated)
+    content = _identification(found, measurement, roles, channel)
+    lacking = lack_of_fit(found.predictions, roles["fit"], roles["holdout"], channel)
     content["lack_of_fit"] = lacking
     folder.write_json("identification.json", content)
     text = _table(content)
@@ -72,63 +81,51 @@ def _by_output_error(settings: Settings, measurement: Measurement, folder: RunFo
     folder.write_text("identification.txt", text)
     statements.say(text)
     if not found.converged:
-        statements.say("the search did not come to rest: take the figures as a first guess")
-    figures.save(
-        _figure(found, fit_on[:MOST_PANELS] + holdout[-MOST_PANELS:], content), folder.path / "identification.png"
-    )
+        statements.say("the search did not converge: take the figures as a first guess")
+    figures.save(_figure(found, roles, content, channel), folder.path / "identification.png")
     return {
-        "damping_ratio_percent": found.damping_ratio_percent.value,
-        "natural_frequency_hz": found.natural_frequency_hz.value,
+        "damping_ratio_percent": found.damping_ratio_percent and found.damping_ratio_percent.value,
+        "natural_frequency_hz": found.natural_frequency_hz and found.natural_frequency_hz.value,
         "rmse_fit": content["residual"]["fit"]["rmse"],
         "rmse_holdout": (content["residual"]["holdout"] or {}).get("rmse"),
     }
 
 
-def _require_response(records: Sequence[Record], measurement: Measurement) -> None:
-    problems = [
-        Problem(
-            f"{record.name}.displacement", "an oscillator is identified from its displacement", source=str(record.file)
-        )
-        for record in records
-        if "displacement" not in record.channels
-    ]
-    if len({("force" in record.channels) for record in records}) > 1:
-        rule, remedy = "some records have a force and some do not", "identify free decays and forced records apart"
-        problems.append(Problem("records", rule, remedy=remedy, source=str(measurement.source)))
-    if problems:
-        raise InputError(problems)
-
-
-def _fit_record(record: Record) -> FitRecord:
-    inputs = {name: torch.as_tensor(c.values) for name, c in record.channels.items() if name == "force"}
-    return FitRecord(record.name, torch.as_tensor(record.channels["displacement"].values), record.sampling_rate, inputs)
+def _fit_on(measurement: Measurement) -> Sequence[Record]:
+    return measurement.with_role("fit") or measurement.with_role(None)
 
 
 def _identification(
-    found: OscillatorFit, measurement: Measurement, fit_on: Sequence[Record], holdout: Sequence[Record]
+    found: OscillatorFit, measurement: Measurement, roles: Mapping[str, Sequence[FitRecord]], channel: Channel
 ) -> dict[str, Any]:
-    channel = fit_on[0].channels["displacement"]
     unit, factor = channel.declared_unit, channel.declared_factor
 
     def residual(value: float | None) -> dict[str, Any] | None:
         return None if value is None else {"rmse": value / factor, "unit": unit}
 
-    records = {}
-    for record in (*fit_on, *holdout):
-        difference = torch.as_tensor(record.channels["displacement"].values) - found.predictions[record.name]
-        records[record.name] = {
-            "role": "fit" if record in fit_on else "holdout",
-            "rmse": float(difference.square().mean().sqrt()) / factor,
+    def plain(estimate: Estimate | None) -> dict[str, Any] | None:
+        return None if estimate is None else asdict(estimate)
+
+    records = {
+        record.name: {
+            "role": role,
+            "rmse": float(found.residuals[record.name].square().mean().sqrt()) / factor,
             "unit": unit,
         }
+        for role, listed in roles.items()
+        for record in listed
+    }
     return {
         "system": measurement.system,
         "method": "output_error",
+        "channel": channel.name,
         "parameters": {name.split(".")[-1]: asdict(value) for name, value in found.parameters.items()},
-        "damping_ratio_percent": asdict(found.damping_ratio_percent),
-        "natural_frequency_hz": asdict(found.natural_frequency_hz),
-        "log_decrement": asdict(found.log_decrement),
+        "damping_ratio_percent": plain(found.damping_ratio_percent),
+        "natural_frequency_hz": plain(found.natural_frequency_hz),
+        "log_decrement": plain(found.log_decrement),
         "residual": {"fit": residual(found.rmse["fit"]), "holdout": residual(found.rmse["holdout"])},
+        "segment_s": found.segments.seconds or None,
+        "own": found.own,
         "records": records,
         "converged": found.converged,
     }
@@ -138,31 +135,39 @@ def _table(content: dict[str, Any]) -> str:
     rows = []
     named = {key: content[key] for key in ("damping_ratio_percent", "natural_frequency_hz", "log_decrement")}
     for name, found in {**named, **content["parameters"]}.items():
-        low, high = found["interval95"]
-        rows.append((name, f"{found['value']:.6g}", f"{low:.6g} … {high:.6g}", found["unit"]))
+        if found is not None:
+            low, high = found["interval95"]
+            rows.append((name, f"{found['value']:.6g}", f"{low:.6g} … {high:.6g}", found["unit"]))
     for name, found in content["records"].items():
         rows.append((f"residual of {name} ({found['role']})", f"{found['rmse']:.4g}", "", found["unit"]))
-    return tables.parameter_table("identified by output error, per unit of mass", rows)
+    title = "identified by output error, per unit of mass"
+    if content["segment_s"]:
+        title += f", in segments of {content['segment_s']:.3g} s"
+    return tables.parameter_table(title, rows)
 
 
-def _figure(found: OscillatorFit, records: Sequence[Record], content: dict[str, Any]) -> figures.Figure:
-    factor = records[0].channels["displacement"].declared_factor
-    panels = [
-        {
-            "name": record.name,
-            "role": content["records"][record.name]["role"],
-            "time": record.time - record.time[0],
-            "measured": record.channels["displacement"].values / factor,
-            "simulated": found.predictions[record.name].numpy() / factor,
-        }
-        for record in records
-    ]
-    zeta, natural = content["damping_ratio_percent"], content["natural_frequency_hz"]
-    text = [
-        f"damping ratio {zeta['value']:.4g} % ({zeta['interval95'][0]:.4g} … {zeta['interval95'][1]:.4g})",
-        f"natural frequency {natural['value']:.5g} Hz",
-    ]
-    return figures.identification_figure(panels, content["residual"]["fit"]["unit"], text, "displacement")
+def _figure(
+    found: OscillatorFit, roles: Mapping[str, Sequence[FitRecord]], content: dict[str, Any], channel: Channel
+) -> figures.Figure:
+    factor, panels = channel.declared_factor, []
+    for record in (*roles["fit"][:MOST_PANELS], *roles["holdout"][-MOST_PANELS:]):
+        simulated = found.predictions[record.name]
+        samples = len(simulated) // len(record.channels)
+        panels.append(
+            {
+                "name": record.name,
+                "role": content["records"][record.name]["role"],
+                "time": np.arange(samples) / record.sampling_rate,
+                "measured": record.response[:samples].numpy() / factor,
+                "simulated": simulated[:samples].numpy() / factor,
+            }
+        )
+    stated = content["parameters"].items()
+    text = [f"{key.replace('_', ' ')} {entry['value']:.4g} {entry['unit']}" for key, entry in stated]
+    if zeta := content["damping_ratio_percent"]:
+        text = [f"damping ratio {zeta['value']:.4g} % ({zeta['interval95'][0]:.4g} … {zeta['interval95'][1]:.4g})"]
+        text.append(f"natural frequency {content['natural_frequency_hz']['value']:.5g} Hz")
+    return figures.identification_figure(panels, content["residual"]["fit"]["unit"], text, channel.name)
 
 
 def _by_network(settings: Settings, measurement: Measurement, folder: RunFolder) -> dict[str, Any]:

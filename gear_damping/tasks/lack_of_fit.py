@@ -1,6 +1,7 @@
 """Whether a fitted linear oscillator is enough for its records, judged as task=explain judges it."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from torch import Tensor
@@ -8,7 +9,7 @@ from torch import Tensor
 from gear_damping.explanation.noise import noise_level
 from gear_damping.explanation.significance import excess
 from gear_damping.identification.output_error.holdout import rmse
-from gear_damping.identification.output_error.problem import FitRecord
+from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.measurement.record import Channel
 
 
@@ -30,8 +31,8 @@ def lack_of_fit(
     noise = noise_level((*fit, *holdout), channel)
     if noise.degrees_of_freedom < 1:
         return None
-    judged = list(holdout or fit)
-    responses, predicted = [r.response for r in judged], [predictions[r.name] for r in judged]
+    judged = [replace(r, response=r.response[: len(predictions[r.name])], others=()) for r in holdout or fit]
+    responses, predicted = [r.response for r in judged], [predictions[r.name][: len(r.response)] for r in judged]
     residuals = [measured - found for measured, found in zip(responses, predicted, strict=True)]
     left = rmse(responses, predicted)
     signal = rmse(responses, [response.mean().expand_as(response) for response in responses])

@@ -6,7 +6,8 @@ import pytest
 import torch
 
 from gear_damping.identification.output_error.least_squares import fit
-from gear_damping.identification.output_error.problem import FitRecord, FreeParameter, OutputErrorProblem
+from gear_damping.identification.output_error.problem import OutputErrorProblem
+from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.physics.catalogue import effect_class
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.oscillator import Oscillator

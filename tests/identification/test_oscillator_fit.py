@@ -1,13 +1,16 @@
 """Output error on oscillators whose parameters are known, and on real records."""
 
+from dataclasses import replace
+
 import closed_forms
 import numpy as np
 import pytest
 import torch
 from scipy.integrate import solve_ivp
 
+from gear_damping.identification.observation import fit_record
 from gear_damping.identification.oscillator import DAMPING, first_frequency, fit_oscillator
-from gear_damping.identification.output_error.problem import FitRecord
+from gear_damping.identification.output_error.records import FitRecord, Observed
 from gear_damping.measurement.load import load_measurement
 from gear_damping.measurement.paths import data_root
 
@@ -19,7 +22,7 @@ def free_decay_record(seed, noise=0.0, name="decay"):
     times = np.arange(1500) / RATE
     clean, _ = closed_forms.free_decay(times, 1.0, 2 * RATIO * OMEGA, OMEGA**2, 2e-3, 0.05)
     noisy = clean + 1e-5 + noise * np.random.default_rng(seed).standard_normal(1500)
-    return FitRecord(name, torch.as_tensor(noisy), RATE)
+    return FitRecord(name, torch.as_tensor(noisy), RATE, observed=Observed(offset=True))
 
 
 def forced_record(seed, noise=0.0, name="forced"):
@@ -38,7 +41,7 @@ def forced_record(seed, noise=0.0, name="forced"):
     found = solve_ivp(slope, (0, times[-1]), [1e-3, 0.0], "DOP853", times, rtol=1e-9, atol=1e-12)
     response = found.y[0] + noise * generator.standard_normal(2000)
     measured = torch.as_tensor([force(t) for t in times])
-    return FitRecord(name, torch.as_tensor(response), RATE, {"force": measured})
+    return FitRecord(name, torch.as_tensor(response), RATE, {"force": measured}, observed=Observed(offset=True))
 
 
 def test_a_clean_free_decay_is_found_exactly():
@@ -47,7 +50,7 @@ def test_a_clean_free_decay_is_found_exactly():
     assert found.natural_frequency_hz.value == pytest.approx(FREQUENCY, rel=1e-6)
     assert found.damping_ratio_percent.value == pytest.approx(100 * RATIO, rel=1e-5)
     assert found.log_decrement.value == pytest.approx(2 * np.pi * RATIO / np.sqrt(1 - RATIO**2), rel=1e-5)
-    assert found.offset == pytest.approx(1e-5, rel=1e-3)
+    assert found.own["offset.displacement@decay"] == pytest.approx(1e-5, rel=1e-3)
     assert found.rmse["holdout"] is None
 
 
@@ -74,7 +77,7 @@ def test_intervals_cover_the_truth():
 
 def test_two_records_with_their_own_starts():
     records = [free_decay_record(0, name="a"), free_decay_record(0, name="b")]
-    records[1] = FitRecord("b", records[1].response[300:], RATE)
+    records[1] = replace(records[1], response=records[1].response[300:])
     found = fit_oscillator(records)
     assert found.damping_ratio_percent.value == pytest.approx(100 * RATIO, rel=1e-5)
     assert found.predictions["b"].shape == (1200,)
@@ -93,12 +96,8 @@ def real(name):
 
     measurement = load_measurement(conf_folder() / "measurement" / "records" / f"{name}.yaml")
 
-    def record(r):
-        inputs = {n: torch.as_tensor(c.values) for n, c in r.channels.items() if n == "force"}
-        return FitRecord(r.name, torch.as_tensor(r.channels["displacement"].values), r.sampling_rate, inputs)
-
     roles = ("fit", "holdout")
-    return [[record(r) for r in measurement.with_role(role)] for role in roles]
+    return [[fit_record(r, "oscillator") for r in measurement.with_role(role)] for role in roles]
 
 
 @pytest.mark.real_record

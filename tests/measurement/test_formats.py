@@ -60,7 +60,7 @@ def test_older_encodings_are_read(tmp_path):
 def test_a_file_without_header_is_read_by_index(tmp_path):
     table = _csv(tmp_path, "0,1\n1,2\n")
     assert _column(table, 1) == [1, 2]
-    with pytest.raises(InputError, match="give a 0-based index: 0, 1"):
+    with pytest.raises(InputError, match=r"give a 0-based index: 0 .2., 1 .2."):
         table.index("x", "column")
 
 
@@ -113,40 +113,13 @@ def test_npz_that_unpacks_to_too_much_is_refused(tmp_path):
         read_table(tmp_path / "a.npz", max_bytes=10_000)
 
 
-def test_mat_v5_gives_its_numeric_variables(tmp_path):
-    values = np.sin(np.arange(30.0))
-    savemat(tmp_path / "a.mat", {"X097_DE_time": values[:, None], "note": "text", "s": {"inner": 1.0}})
-    table = read_table(tmp_path / "a.mat")
-    assert table.names == ("X097_DE_time",)
-    np.testing.assert_array_equal(table.values(0), values)
-
-
 def test_mat_that_unpacks_to_too_much_is_refused(tmp_path):
     savemat(tmp_path / "a.mat", {"x": np.zeros(100_000)}, do_compression=True)
     with pytest.raises(InputError, match="1 MB are more than"):
         read_table(tmp_path / "a.mat", max_bytes=10_000)
 
 
-@pytest.mark.parametrize(
-    "head", [b"MATLAB 7.3 MAT-file, Platform: GLNXA64" + b" " * 90, b"\x89HDF\r\n\x1a\n" + b"\0" * 600]
-)
-def test_mat_7_3_names_the_extra(tmp_path, head):
-    (tmp_path / "a.mat").write_bytes(head)
-    with pytest.raises(InputError, match=r"extra \[formats\] \(h5py\).*save -v7"):
-        read_table(tmp_path / "a.mat")
-
-
-@pytest.mark.parametrize(
-    ("suffix", "library"),
-    [("h5", "h5py"), ("HDF5", "h5py"), ("uff", "pyuff"), ("unv", "pyuff"), ("tdms", "npTDMS")],
-)
-def test_formats_of_the_extra_name_it(tmp_path, suffix, library):
-    (tmp_path / f"a.{suffix}").write_bytes(b"something")
-    with pytest.raises(InputError, match=rf"extra \[formats\] \({library}\)"):
-        read_table(tmp_path / f"a.{suffix}")
-
-
-@pytest.mark.parametrize("suffix", ["npz", "mat", "wav"])
+@pytest.mark.parametrize("suffix", ["npz", "mat", "wav", "h5", "tdms", "xlsx", "gz"])
 def test_garbage_is_one_error_that_names_the_file(tmp_path, suffix):
     path = tmp_path / f"a.{suffix}"
     path.write_bytes(bytes(range(1, 250)) * 4)
@@ -155,9 +128,9 @@ def test_garbage_is_one_error_that_names_the_file(tmp_path, suffix):
 
 
 def test_an_unknown_format_lists_the_known(tmp_path):
-    (tmp_path / "a.xlsx").write_bytes(b"something")
-    with pytest.raises(InputError, match=r"unknown format '.xlsx'.*known are .*\.csv"):
-        read_table(tmp_path / "a.xlsx")
+    (tmp_path / "a.xls").write_bytes(b"something")
+    with pytest.raises(InputError, match=r"unknown format '.xls'.*known are .*\.csv.*\.hdf5.*\.tdms.*\.xlsx"):
+        read_table(tmp_path / "a.xls")
 
 
 def test_a_large_file_is_refused_before_it_is_read(tmp_path):

@@ -187,13 +187,13 @@ def test_a_missing_column_names_the_nearest(bench):
     bench.channels["transmission_error"]["column"] = "dtee"
     problem = bench.only_problem()
     assert "transmission_error.column = 'dtee': no such column" in problem
-    assert "did you mean 'dte'?" in problem
+    assert "did you mean 'dte'? run_1.csv holds t (400), dte (400)" in problem
 
 
 @pytest.mark.parametrize("index", [4, -1])
 def test_a_column_index_out_of_range_lists_the_columns(bench, index):
     bench.channels["transmission_error"]["column"] = index
-    assert "0 't', 1 'dte'" in bench.only_problem()
+    assert "0 't' (400), 1 'dte' (400)" in bench.only_problem()
 
 
 def test_a_run_of_nan_names_file_column_and_sample(bench):

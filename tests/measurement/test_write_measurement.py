@@ -22,7 +22,7 @@ def _record(name: str = "run_1", role: str | None = "fit") -> Record:
         ),
         "pinion_torque": Channel("pinion_torque", 150 + rng.standard_normal(300), "N*m"),
         "acceleration": Channel(
-            "acceleration", rng.standard_normal(300), "m/s^2", mounting="tangential", radius=0.03
+            "acceleration", rng.standard_normal(300), "m/s^2", mounting="tangential", shaft="gear", radius=0.03
         ),
     }  # fmt: skip
     conditions = {"pinion_speed": Quantity(480.123456789012345, "rad/s")}

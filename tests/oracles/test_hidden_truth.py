@@ -8,7 +8,7 @@ import pytest
 from hidden import EFFECTS, FOREIGN, draw_case, pair
 from hidden.catalogue import HIDDEN
 from hidden.contact import dry_friction, power
-from hidden.excitation import crack_window, error, load, measured_torques, pitch_steps, turning
+from hidden.excitation import Turning, crack_window, error, load, measured_torques, pitch_steps, turning
 from hidden.integrate import integrate
 from hidden.invariants import hysteretic_loss, memoryless_loss
 from hidden.knobs import NEUTRAL, stack
@@ -18,6 +18,11 @@ from hidden.tooth_friction import lever_arm
 
 RATE = 50e3
 EVEN = {"one_pair": 3e8, "two_pairs": 3e8}  # a mesh without parametric excitation
+
+
+def at(angle):
+    """Shafts at a pinion angle / rad."""
+    return Turning(angle, angle / 2.0, 20.0 * angle, np.ones_like(angle))
 
 
 def run(*lanes, n=400, **options):
@@ -112,14 +117,14 @@ def test_error_rates_are_the_derivatives_of_the_errors():
 def test_pitch_steps_hold_every_tooths_value():
     pitch = np.arange(20.0)
     middle = (np.arange(20)[:, None]) * 2 * np.pi / 20 + 1e-9
-    value, slope = pitch_steps(stack([{"pitch": pitch, "handover": 0.4}]), middle)
+    value, slope = pitch_steps(stack([{"pitch": pitch, "handover": 0.4}]), at(middle))
     assert value[:, 0] == pytest.approx(pitch)
     assert np.all(slope == 0.0)
 
 
 def test_a_crack_is_open_for_one_contact_and_its_area_is_half_of_it():
     angle = np.linspace(0, 2 * np.pi, 100_000, endpoint=False)[:, None]
-    window = crack_window(stack([{"contact_ratio": 1.6}]), angle)
+    window = crack_window(stack([{"contact_ratio": 1.6}]), at(angle))
     assert float(window.mean()) == pytest.approx(0.5 * 1.6 / 20, rel=1e-4)
 
 
@@ -140,7 +145,7 @@ def test_no_torque_channel_shows_a_ripple():
 
 
 def test_the_lever_of_friction_at_the_pitch_point_is_the_tangent():
-    assert lever_arm(0.0) == pytest.approx(math.tan(pair.PRESSURE_ANGLE))
+    assert lever_arm(0.0, NEUTRAL) == pytest.approx(math.tan(pair.PRESSURE_ANGLE))
 
 
 def test_a_bearing_in_series_deflects_by_the_load_over_its_stiffness():

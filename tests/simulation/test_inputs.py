@@ -10,7 +10,7 @@ from gear_damping.physics.equation import HELD_LOAD
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.oscillator import Oscillator
 from gear_damping.simulation.inspect import forces_of
-from gear_damping.simulation.series import ANGLE, ANGLE_RATE, Series
+from gear_damping.simulation.series import ANGLE, ANGLE_RATE, Series, continued
 from gear_damping.simulation.simulate import simulate
 
 
@@ -27,16 +27,81 @@ def test_a_band_limited_input_between_its_samples():
         assert (found - expected).abs().max() < 2e-3
 
 
-def test_a_held_load_and_a_linear_angle():
+def test_a_held_load_and_an_even_rotation():
     series = Series((HELD_LOAD, ANGLE))
     load = torch.tensor([[1.0, -2.0, 5.0]], dtype=torch.float64)
-    angle = torch.tensor([[0.0, 1.0, 3.0, 3.5]], dtype=torch.float64)
+    angle = torch.tensor([[0.5, 1.5, 2.5, 3.5]], dtype=torch.float64)
     packed = series.pack({HELD_LOAD: load, ANGLE: angle}, {}, 3, 1)
     half, interval = torch.tensor([0.5], dtype=torch.float64), torch.tensor([0.1], dtype=torch.float64)
     found = series.at(packed[1], half, interval)
     assert float(found[HELD_LOAD]) == -2
     assert float(found[ANGLE]) == 2
-    assert float(found[ANGLE_RATE]) == pytest.approx(20)
+    assert float(found[ANGLE_RATE]) == pytest.approx(10, rel=1e-14)
+
+
+def uneven_angle(index, turns=600.0):
+    """A shaft that turns fast and unevenly: thousands of rad, a sway of 0.2 rad once in 20 samples; its rate."""
+    rate = 2 * np.pi / 20
+    angle = turns * index + 0.2 * torch.sin(rate * index + 0.3)
+    return angle, turns + 0.2 * rate * torch.cos(rate * index + 0.3)
+
+
+def between(series, packed, index, u):
+    """Angle and rate per sample at u of the intervals `index`."""
+    one = torch.ones(len(index), dtype=torch.float64)
+    found = series.at(packed[index, :, 0].T, u * one, one)
+    return found[ANGLE], found[ANGLE_RATE]
+
+
+def test_an_uneven_rotation_between_its_samples():
+    """Band-limited: of what a straight line between the samples misses, less than 1e-4 is left."""
+    every = torch.arange(300, dtype=torch.float64)
+    angle, _ = uneven_angle(every)
+    series = Series((ANGLE,))
+    packed = series.pack({ANGLE: angle.unsqueeze(0)}, {}, 299, 1)
+    inside = torch.arange(40, 260)
+    for u in (0.1, 0.4, 0.5, 0.85):
+        found, rate = between(series, packed, inside, u)
+        true, true_rate = uneven_angle(inside.double() + u)
+        straight = angle[inside] + u * (angle[inside + 1] - angle[inside])
+        assert (found - true).abs().max() < 1e-4 * (straight - true).abs().max()
+        steps = angle[inside + 1] - angle[inside]
+        assert (rate - true_rate).abs().max() < 1e-3 * (steps - true_rate).abs().max()
+
+
+def test_the_rate_of_an_angle_does_not_jump_at_samples():
+    angle, true_rate = uneven_angle(torch.arange(300, dtype=torch.float64))
+    series, inside = Series((ANGLE,)), torch.arange(40, 260)
+    packed = series.pack({ANGLE: angle.unsqueeze(0)}, {}, 299, 1)
+    jump = between(series, packed, inside, 1.0)[1] - between(series, packed, inside + 1, 0.0)[1]
+    assert jump.abs().max() < 1e-4 * (true_rate - true_rate.mean()).abs().max()
+
+
+@pytest.mark.parametrize("length", [70, 400])
+def test_a_shorter_series_is_continued_as_it_is_interpolated_alone(length):
+    index = torch.arange(60, dtype=torch.float64)
+    given = {ANGLE: uneven_angle(index, 3.0)[0], "pinion_torque": 150 + 30 * torch.cos(index / 5)}
+    series = Series(tuple(given))
+    alone = series.pack({name: value.unsqueeze(0) for name, value in given.items()}, {}, 59, 1)
+    longer = {name: continued(value, length).unsqueeze(0) for name, value in given.items()}
+    together = series.pack(longer, {}, length - 1, 1)[:59]
+    one = torch.ones(59, dtype=torch.float64)
+    for u in (0.0, 0.3, 1.0):
+        expected, found = (series.at(p[..., 0].T, u * one, one) for p in (alone, together))
+        for name, value in expected.items():
+            torch.testing.assert_close(found[name], value, rtol=1e-6, atol=0)
+    assert len(continued(torch.ones(1), 3)) == 3
+
+
+def test_an_even_rotation_is_exact():
+    """Also after ten thousand turns."""
+    series = Series((ANGLE,))
+    angle = 3.0 + 2.5 * torch.arange(25000, dtype=torch.float64).unsqueeze(0)
+    packed = series.pack({ANGLE: angle}, {}, 24999, 1)
+    inside = torch.arange(24999)
+    found, rate = between(series, packed, inside, 0.37)
+    assert (found - (3.0 + 2.5 * (inside.double() + 0.37))).abs().max() < 1e-10
+    assert (rate - 2.5).abs().max() < 1e-10
 
 
 def test_a_measured_angle_takes_the_place_of_the_speed(bench_model):
@@ -82,6 +147,22 @@ def test_forces_balance_the_acceleration(bench_model):
     inside = forces["contact"][1:-1] == 1
     difference = (mass * acceleration - expected)[inside]
     assert float(difference.abs().median()) < 2e-3 * float(expected.abs().max())
+
+
+def test_forces_under_measured_inputs_are_those_of_the_run(bench_model):
+    """m x'' of the run is load less mesh force at every output, with a torque and an angle from outside."""
+    model, values = bench_model
+    eccentric = Model(model.system, [*model.effects, effect_class("pinion_eccentricity")()])
+    index = torch.arange(120, dtype=torch.float64)
+    inputs = {
+        "pinion_torque": (150 + 30 * torch.sin(index / 6)).unsqueeze(0),
+        "pinion_angle": uneven_angle(index, turns=0.012)[0].unsqueeze(0),
+    }
+    given = {**eccentric.values(2), **values(2)}
+    runs = simulate(eccentric, given, sampling_rate=40e3, n_samples=120, inputs=inputs, acceleration=True)
+    forces = forces_of(runs, 1)
+    expected = runs.derived["equivalent_mass"][1] * runs.states["acceleration"][1]
+    torch.testing.assert_close(forces["load"] - forces["mesh_force"], expected, rtol=1e-6, atol=1e-3)
 
 
 def test_rows_that_a_batch_repeats_are_the_same_as_rows_given_in_full():

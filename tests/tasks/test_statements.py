@@ -13,6 +13,7 @@ from gear_damping.tasks.composed import composed
 from gear_damping.tasks.simulated import plan_of
 
 UNDRIVEN = ["simulator=oscillator", "family=none", "simulator.initial_displacement=0.1"]
+PENDULUM = ["simulator.sine_restoring.stiffness=10000", "simulator.viscous_damping.damping_coefficient=2"]
 NO_LAW = ["simulator.damping_law=null", "simulator.viscous_damping=null"]
 GEAR_AS_GIVEN = ["simulator.damping_law=null", "family.spreads.damping_ratio_percent=null"]
 
@@ -56,10 +57,16 @@ def test_without_a_damping_law_no_ratio_is_stated(effect, simulate, tmp_path):
 
 
 def test_without_a_linear_stiffness_no_ratio_is_stated(simulate, tmp_path):
-    text = simulate(*UNDRIVEN, "simulator.stiffness=0", "simulator.sine_restoring={}")
+    text = simulate(*UNDRIVEN, "simulator.stiffness=0", "simulator.cubic_stiffness.coefficient=1")
     assert "no damping ratio can be stated: there is no linear stiffness" in text
     assert "nan" not in text
     assert np.isnan(ratio_of(tmp_path)).all()
+
+
+def test_the_small_swings_of_a_pendulum_have_a_ratio(simulate):
+    text = simulate(*UNDRIVEN, "simulator.stiffness=0", *PENDULUM)
+    assert "no linear stiffness" not in text
+    assert "damping ratio 1.000 … 1.000 % of critical" in text
 
 
 def test_above_critical_damping_there_is_no_decrement(simulate):
@@ -124,7 +131,7 @@ def test_nothing_is_learnt_from_runs_without_a_ratio(simulate):
 
 
 def test_nothing_is_learnt_from_runs_without_a_stiffness(simulate):
-    text = simulate(*UNDRIVEN, "simulator.stiffness=0", "simulator.sine_restoring={}", task="train", code=1)
+    text = simulate(*UNDRIVEN, "simulator.stiffness=0", "simulator.cubic_stiffness.coefficient=1", task="train", code=1)
     assert "simulator.stiffness = 0: must be positive" in text
 
 

@@ -1,4 +1,4 @@
-"""A fitted model on records that it never met: parameters frozen, only the start of each is found."""
+"""A fitted model on records that it never met: parameters frozen, only what each record has of its own is found."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -6,78 +6,75 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
+from gear_damping.identification.output_error.angles import scanned
 from gear_damping.identification.output_error.least_squares import fit, own_basis, without_own
-from gear_damping.identification.output_error.pieces import in_pieces, joined, part
-from gear_damping.identification.output_error.problem import (
-    OFFSET,
-    FitRecord,
-    FreeParameter,
-    OutputErrorProblem,
-    Prediction,
-    growth,
-)
+from gear_damping.identification.output_error.problem import OutputErrorProblem, Prediction, growth
+from gear_damping.identification.output_error.records import FitRecord, FreeParameter
+from gear_damping.identification.output_error.segments import WHOLE, Segments, covered, in_segments, joined
 from gear_damping.physics.model import Model
 from gear_damping.simulation.solver_settings import Solver
 
-START_PERIODS = 1.25  # natural periods at the start of a record that its initial state is found from,
-LARGEST_START = 0.25  # but at most this share of the shortest record
+FIRST_PERIODS = 1.25  # characteristic times at the start of a record that its initial state is first sought in
+FIRST_ITERATIONS, LAST_ITERATIONS = 20, 12
 
 
 @dataclass(frozen=True)
 class HeldOut:
-    """Predictions of records that were held out.
+    """Predictions of records that were held out, with the initial state of each fitted over all of it.
 
     Args:
-        predictions: Each (time,).
-        beside_start: Residuals without what another initial state would have changed, each (time,): the start is
-            found from few samples, and its error tells nothing of the model.
+        predictions: The channels of each one after another, (channels * time,).
+        residuals: The same of what is left, and without what another initial state would have changed.
         growth: How much an error of the initial state grew at most, in the record where it grew most.
+        own: What single records have of their own (offsets, angles), by name.
     """
 
     predictions: list[Tensor]
-    beside_start: list[Tensor]
+    residuals: list[Tensor]
     growth: float
+    own: dict[str, float]
 
 
 def predict_holdout(
     model: Model,
     given: Mapping[str, float],
-    offset: float,
     records: Sequence[FitRecord],
-    natural_frequency_hz: float,
+    characteristic_s: float,
     solver: Solver | None = None,
-    piece: int = 0,
+    segments: Segments = WHOLE,
+    own: Sequence[FreeParameter] = (),
 ) -> HeldOut:
-    """Predict records of one sampling rate.
+    """Predict records.
 
     Args:
         model: The simulator.
         given: Every parameter, by flat name.
-        offset: Constant that is added to the response.
-        records: The records; beyond their first 1.25 natural periods only their inputs are used.
-        natural_frequency_hz: Of the slowest mode; sets those periods.
+        records: The records.
+        characteristic_s: Time scale of the motion in s: sets the first stretch that the initial state is sought in.
         solver: Settings of the solver.
-        piece: Samples after which the state is found anew; 0 for once in each record.
+        segments: How they are cut; each segment has an initial state.
+        own: Parameters that every record has of its own.
     """
-    pieces = in_pieces(records, piece)
-    wanted = START_PERIODS / natural_frequency_hz * records[0].sampling_rate
-    samples = max(6, round(min(wanted, LARGEST_START * min(len(record.response) for record in pieces))))
-    beginnings = [part(record, slice(0, samples)) for record in pieces]
-    frozen = [FreeParameter(OFFSET, offset, scale=0.0)]
-    none = torch.zeros(1, 1, dtype=torch.float64)
-    short = OutputErrorProblem(model, given, frozen, beginnings, solver)
-    start = fit(short, none)
-    whole = OutputErrorProblem(model, given, frozen, pieces, solver)
-    states = whole.states_of(short, start.states)
-    found = whole.linearise(none, states.unsqueeze(0))
-    weights = whole.weights.clamp(min=1e-300)
-    predicted = whole.response - found.residual[0] / weights
-    beside = _beside_start(found, whole.n_shared) / weights
-    return HeldOut(joined(predicted, records, piece), joined(beside, records, piece), growth(found, whole.n_shared))
+    pieces = in_segments(records, segments)
+    problem = OutputErrorProblem(model, given, list(own), pieces, solver)
+    starts = torch.zeros(1, problem.n_shared, dtype=torch.float64)
+    rounds = [FIRST_PERIODS * characteristic_s, None]
+    for name, angle in scanned(problem, starts[0]).items():
+        place = next(i for i, parameter in enumerate(problem.free) if parameter.name == name)
+        starts[0, place] = problem.free[place].coordinate(angle)
+    found = fit(problem, starts, rounds, (FIRST_ITERATIONS, LAST_ITERATIONS))
+    prediction, weights = found.prediction, problem.weights.clamp(min=1e-300)
+    left = prediction.residual[0] / weights
+    beside = _beside_own(prediction, problem.n_shared) / weights
+    counted = (problem.weights > 0).double()
+    kept, channels = covered(records, segments), len(problem.channels)
+    whole = [joined(series * counted, kept, segments, channels) for series in (problem.response - left, beside)]
+    values = {name: float(value) for name, value in problem.parameters(found.shared).items()}
+    return HeldOut(*whole, growth(prediction, problem.n_shared), values)
 
 
-def _beside_start(found: Prediction, n_shared: int) -> Tensor:
-    """Weighted residuals (records, time) of one start beside what the initial states could change."""
+def _beside_own(found: Prediction, n_shared: int) -> Tensor:
+    """Weighted residuals (records, samples) of one start beside what the initial states could change."""
     residual, sensitivity = found.residual[0], found.sensitivity[0]
     if not bool(sensitivity.isfinite().all() & residual.isfinite().all()):
         return residual

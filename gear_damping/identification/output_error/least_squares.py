@@ -120,7 +120,7 @@ def _like(value: Tensor, other: Tensor) -> Tensor:
 def fit(
     problem: OutputErrorProblem,
     shared: Tensor,
-    horizons: Sequence[int] | None = None,
+    horizons: Sequence[float | None] | None = None,
     iterations: int | Sequence[int] = 40,
     states: Tensor | None = None,
     report: Callable[[int, int], None] | None = None,
@@ -131,8 +131,8 @@ def fit(
 
     Args:
         problem: What is fitted to what.
-        shared: Coordinates of the starts, (starts, n_shared).
-        horizons: Samples of each round, growing; a short first round keeps away from local minima.
+        shared: Coordinates of the starts, (starts, n); those that are left out at the end begin at 0.
+        horizons: Seconds of each round, growing, None for all; a short first round keeps away from local minima.
         iterations: At most so many in each round, or in each of the rounds.
         states: Initial states of the starts, (starts, records, local); from the records where absent.
         report: Told (done, total) rounds.
@@ -141,37 +141,42 @@ def fit(
     """
     if states is None:
         states = problem.first_states().expand(shared.shape[0], -1, -1).clone()
-    points = Points(problem.within(shared), states)
-    rounds = list(horizons or [problem.response.shape[1]])
+    points = Points(problem.within(problem.completed(shared)), states)
+    rounds = list(horizons or [None])
     most = [iterations] * len(rounds) if isinstance(iterations, int) else iterations
-    for number, samples in enumerate(rounds):
-        points, prediction, cost, converged = _round(problem, points, samples, most[number], enough)
+    for number, horizon in enumerate(rounds):
+        points, prediction, cost, converged = _round(problem, points, horizon, most[number], enough)
         if report:
             report(number + 1, len(rounds))
         if number < len(rounds) - 1:
             points = points.pick(cost.argsort()[: max(1, round(kept * len(cost)))])
     best = int(cost.argmin())
-    chosen = Prediction(prediction.residual[best : best + 1], prediction.sensitivity[best : best + 1])
+    chosen = replace(
+        prediction, residual=prediction.residual[best : best + 1], sensitivity=prediction.sensitivity[best : best + 1]
+    )
     return Fitted(points.shared[best], points.states[best], chosen, float(cost[best]), bool(converged[best]))
 
 
 def _round(
-    problem: OutputErrorProblem, points: Points, samples: int, iterations: int, enough: float
+    problem: OutputErrorProblem, points: Points, horizon: float | None, iterations: int, enough: float
 ) -> tuple[Points, Prediction, Tensor, Tensor]:
-    now = problem.linearise(points.shared, points.states, samples)
+    now = problem.linearise(points.shared, points.states, horizon)
     cost = _cost(problem, points, now)
     damping = torch.full_like(cost, FIRST_DAMPING)
     converged = torch.zeros_like(cost, dtype=torch.bool)
     for _ in range(iterations):
         trial = _step(problem, points, now, damping)
-        new = problem.linearise(trial.shared, trial.states, samples)
+        new = problem.linearise(trial.shared, trial.states, horizon)
         new_cost = _cost(problem, trial, new)
         better = new_cost < cost
         gain = torch.where(better, (cost - new_cost) / cost.clamp(min=1e-300), torch.zeros_like(cost))
         small = (gain < SMALLEST_GAIN) | (cost - new_cost < enough)
         converged = (better & small) | (damping >= LARGEST_DAMPING) | (converged & ~better)
         points = Points(_select(better, trial.shared, points.shared), _select(better, trial.states, points.states))
-        now = Prediction(_select(better, new.residual, now.residual), _select(better, new.sensitivity, now.sensitivity))
+        residual, sensitivity = (
+            _select(better, a, b) for a, b in ((new.residual, now.residual), (new.sensitivity, now.sensitivity))
+        )
+        now = replace(now, residual=residual, sensitivity=sensitivity)
         cost = torch.where(better, new_cost, cost)
         damping = torch.where(better, damping / 5, damping * 6).clamp(SMALLEST_DAMPING, LARGEST_DAMPING)
         if bool(converged.all()):

@@ -15,18 +15,19 @@ from gear_damping.identification.output_error.problem import OutputErrorProblem
 QUANTILE = 1.959964
 
 
-def covariance(problem: OutputErrorProblem, fitted: Fitted, correlated_samples: int) -> Tensor:
+def covariance(problem: OutputErrorProblem, fitted: Fitted, correlated_s: float) -> Tensor:
     """Covariance of the coordinates of the shared parameters, (n_shared, n_shared).
 
     Args:
         problem: What was fitted.
         fitted: The fit.
-        correlated_samples: Samples over which residuals may be correlated, some natural periods.
+        correlated_s: Seconds over which residuals may be correlated, some natural periods.
     """
     residual = fitted.prediction.residual[0]
     beside, inverse = _information(problem, fitted)
     scores = beside * residual.unsqueeze(-1)
-    meat = sum(_long_run(one, correlated_samples) for one in scores)
+    lags = [round(correlated_s * record.sampling_rate) for record in problem.records]
+    meat = sum(_long_run(one, lag) for one, lag in zip(scores, lags, strict=True))
     parameters = problem.n_shared + len(problem.records) * len(problem.local)
     samples = float((problem.weights > 0).sum())
     sandwich = inverse @ meat @ inverse * samples / max(samples - parameters, 1.0)
@@ -60,7 +61,7 @@ def _long_run(scores: Tensor, lags: int) -> Tensor:
 
 
 def interval(function: Callable[[Tensor], Tensor], shared: Tensor, spread: Tensor) -> tuple[float, tuple[float, float]]:
-    """Value and 95 % interval of a quantity that hangs on the shared coordinates (delta method)."""
+    """Value and 95 % interval of a quantity that depends on the shared coordinates (delta method)."""
     with torch.enable_grad():
         point = shared.clone().requires_grad_()
         value = function(point)

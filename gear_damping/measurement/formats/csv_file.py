@@ -1,155 +1,187 @@
-"""Text tables: comma, semicolon, tab or blanks, decimal point or comma, with or without a header."""
+"""Text tables: comma, semicolon, tab or blanks, decimal point or comma, with or without a header, also in gzip."""
 
 import csv
+import gzip
 import io
 import re
+import warnings
+from collections.abc import Iterator
+from functools import cached_property
+from itertools import islice
 from pathlib import Path
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import Any
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.formats.table import Table, refuse_size
+from gear_damping.measurement.formats.cells import SHOWN, Cells, CellTable, decimal_commas
+from gear_damping.measurement.formats.header import Header, find_header, is_number
+from gear_damping.measurement.formats.table import Table, is_real, refuse_size, unreadable
 
-_HEADER_UNIT = re.compile(r"[(\[]([^()\[\]]+)[)\]]\s*$")
-MAX_TEXT_BYTES = 128 * 1024**2  # as cells in memory a text takes about ten times its size
-_SHOWN = 3  # faults of one kind that are listed one by one
-
-
-class CsvTable(Table):
-    """A text table whose columns become numbers when they are asked for."""
-
-    def __init__(
-        self, path: Path, names: tuple[str, ...], rows: list[list[str]], lines: list[int], delimiter: str
-    ) -> None:
-        super().__init__(path, names)
-        self._rows, self._lines, self._delimiter = rows, lines, delimiter
-        self._read: dict[int, NDArray[np.float64]] = {}
-
-    def unit(self, index: int) -> str | None:
-        """The unit in brackets at the end of the header, as in `Acc DE (m/s^2)`."""
-        found = _HEADER_UNIT.search(self.names[index])
-        return found[1].strip() if found else None
-
-    def values(self, index: int) -> NDArray[np.float64]:
-        """(n,) float64: a column; raises InputError naming the row of each cell that is no number."""
-        if index not in self._read:
-            cells = self._decimal_points([row[index] for row in self._rows])
-            try:
-                self._read[index] = np.array(cells, dtype=np.float64)
-            except ValueError:
-                raise InputError(self._bad_cells(index, cells)) from None
-        return self._read[index]
-
-    def _decimal_points(self, cells: list[str]) -> list[str]:
-        """Cells with decimal points; where a column has points and commas the commas stay, and fail."""
-        commas = self._delimiter != "," and any("," in cell for cell in cells)
-        if not commas or any("." in cell for cell in cells):
-            return cells
-        note = f"{self.path.name}: read with decimal commas"
-        self.notes = self.notes if note in self.notes else (*self.notes, note)
-        return [cell.replace(",", ".") for cell in cells]
-
-    def _bad_cells(self, index: int, cells: list[str]) -> list[Problem]:
-        bad = [k for k, cell in enumerate(cells) if not _is_number(cell)]
-        title = f"column {index}" + (f" '{self.names[index]}'" if self.names[index] else "")
-        problems = []
-        for k in bad[:_SHOWN]:
-            rule = "an empty cell" if not cells[k].strip() else "not a number"
-            key = f"{self.path.name}, row {k} (line {self._lines[k]}), {title}"
-            remedy = "correct the cell, or leave its row out"
-            problems.append(Problem(key, rule, cells[k], remedy, str(self.path)))
-        if len(bad) > _SHOWN:
-            rule = f"{len(bad) - _SHOWN} more cells are no numbers"
-            problems.append(Problem(f"{self.path.name}, {title}", rule, None, "export the file again"))
-        return problems
+_HEAD = 100  # rows among which the header is looked for
+_NAN = ("nan", "NaN", "NAN", "Nan", "-nan", "+nan")
+_COMMENT = re.compile(rb"^[ \t]*#", re.MULTILINE)
 
 
 def read_csv(path: Path, max_bytes: int) -> Table:
-    """The columns of a text table.
+    """The columns of a text table; of a file in gzip after it is unpacked.
 
     Raises:
         InputError: not text, too large, no rows of numbers, or rows of different length.
     """
-    refuse_size(path, path.stat().st_size, min(max_bytes, MAX_TEXT_BYTES))
-    text = _decode(path)
-    delimiter = _delimiter(text)
-    rows, lines, comment = _split(text, delimiter)
-    if not rows:
-        raise InputError(Problem("file", "no rows", str(path), "export it again"))
-    header, rows, lines = _header(rows, lines, comment, delimiter)
-    if not rows:
-        raise InputError(Problem("file", "a header and no rows of numbers", str(path), "export it again"))
-    names = header or [""] * len(rows[0])
-    _refuse_ragged(path, rows, lines, names)
-    return CsvTable(path, tuple(names), rows, lines, delimiter)
+    text = _Text(path, _bytes(path, max_bytes))
+    header, first_line = _header(text)
+    decimal = "," if _decimal_comma(text, first_line) else "."
+    frame = _frame(text, header, first_line, decimal)
+    width = frame.shape[1] - 1
+    if any(not is_real(frame[k].dtype) for k in range(width)) or not (frame[width] == "").all():
+        _refuse_ragged(text, header.names or ("",) * width, first_line)
+        if all(frame[k].dtype == frame[width].dtype for k in range(width)):
+            frame = frame[~(frame == "").all(axis=1)]  # rows of delimiters alone
+    lines = _Lines(path, max_bytes, first_line)
+    columns = [Cells(header.name(k), header.unit(k), frame[k].to_numpy(), lines) for k in range(width)]
+    table = CellTable(path, columns, decimal_commas=text.delimiter != ",")
+    if header.skipped:
+        table.notes += (f"{path.name}: {header.skipped} line(s) before the header are left out",)
+    if decimal == ",":
+        table.notes += (decimal_commas(path),)
+    return table
 
 
-def _decode(path: Path) -> str:
-    raw = path.read_bytes()
-    if b"\0" in raw[:4096] and not raw.startswith((b"\xff\xfe", b"\xfe\xff")):
+class _Text:
+    """The content of a file as UTF-8, and the sign between its cells."""
+
+    def __init__(self, path: Path, raw: bytes) -> None:
+        self.path = path
+        self.utf8 = _utf8(path, raw)
+        ending = self.utf8[-(2**16) :].decode("utf-8", "replace").splitlines()
+        last = next((line for line in reversed(ending) if line.strip(" \t;,\r")), "")
+        # Headers hold all kinds of signs, numbers only one.
+        self.delimiter = next((sign for sign in (";", "\t", ",") if sign in last), " ")
+        self.width = max((k + 1 for k, cell in enumerate(next(self._cells([last]), [])) if cell.strip()), default=0)
+
+    def open(self) -> io.TextIOWrapper:
+        """A handle at the begin of the text."""
+        return io.TextIOWrapper(io.BytesIO(self.utf8), "utf-8", newline="")
+
+    def _cells(self, lines: Any) -> Iterator[list[str]]:
+        return csv.reader(lines, delimiter=self.delimiter, skipinitialspace=True)
+
+    def rows(self) -> Iterator[tuple[int, list[str]]]:
+        """Every row that is not blank, comments too, with its line number."""
+        reader = self._cells(self.open())
+        try:
+            for row in reader:
+                if any(cell.strip() for cell in row):
+                    yield reader.line_num, [cell for cell in row if cell] if self.delimiter == " " else row
+        except csv.Error as error:
+            rule = f"line {reader.line_num} is no row of a table ({error})"
+            raise InputError(Problem("file", rule, str(self.path), "export it again")) from None
+
+
+class _Lines:
+    """The line of the file that a row of values stands in; looked up only where a fault is to be named."""
+
+    def __init__(self, path: Path, max_bytes: int, first_line: int) -> None:
+        self._path, self._max_bytes, self._first = path, max_bytes, first_line
+
+    @cached_property
+    def _numbers(self) -> list[int]:
+        text = _Text(self._path, _bytes(self._path, self._max_bytes))
+        return [line for line, row in _values(text, self._first)]
+
+    def __call__(self, row: int) -> int:
+        return self._numbers[row]
+
+
+def _bytes(path: Path, max_bytes: int) -> bytes:
+    if path.suffix.lower() != ".gz":
+        return path.read_bytes()
+    with unreadable(path, "not a readable gzip file", "pack it again, or unpack it"), gzip.open(path) as file:
+        raw = file.read(max_bytes + 1)
+        refuse_size(path, len(raw), max_bytes)
+    return raw
+
+
+def _utf8(path: Path, raw: bytes) -> bytes:
+    """The text in UTF-8; older programs write µ, ° and ² in Latin-1."""
+    wide = raw.startswith((b"\xff\xfe", b"\xfe\xff"))
+    if b"\0" in raw[:4096] and not wide:
         raise InputError(Problem("file", "not a text file", str(path), "export it as CSV"))
-    encoding = "utf-16" if raw.startswith((b"\xff\xfe", b"\xfe\xff")) else "utf-8-sig"
     try:
-        return raw.decode(encoding)
+        return raw.decode("utf-16").encode() if wide else raw.removeprefix(b"\xef\xbb\xbf").decode().encode()
     except UnicodeDecodeError:
-        return raw.decode("latin-1")  # where older programs write µ, ° and ²
+        return raw.decode("latin-1").encode()
 
 
-def _delimiter(text: str) -> str:
-    """The delimiter of the last full line: headers hold all kinds of signs, numbers only one."""
-    last = next((line for line in reversed(text.splitlines()) if line.strip(" \t;,\r")), "")
-    return next((sign for sign in (";", "\t", ",") if sign in last), " ")
-
-
-def _split(text: str, delimiter: str) -> tuple[list[list[str]], list[int], str]:
-    """Rows of cells with their line numbers, and the last comment line before them."""
-    reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, skipinitialspace=True)
-    rows, lines, comment = [], [], ""
-    for row in reader:
-        if not any(cell.strip() for cell in row):
-            continue
+def _header(text: _Text) -> tuple[Header, int]:
+    """The header, from a row of texts or the last comment before the values, and the line of the first values."""
+    lines, rows, comment = [], [], []
+    for line, row in islice(text.rows(), _HEAD):
         if row[0].startswith("#"):
-            comment = comment if rows else delimiter.join(row)
+            comment = comment if rows else row
             continue
-        rows.append([cell for cell in row if cell] if delimiter == " " else row)
-        lines.append(reader.line_num)
-    return rows, lines, comment
+        lines.append(line)
+        rows.append(row)
+    if not rows:
+        raise InputError(Problem("file", "no rows", str(text.path), "export it again"))
+    header = find_header(rows, text.width)
+    if header.first == len(rows):
+        raise InputError(Problem("file", "a header and no rows of numbers", str(text.path), "export it again"))
+    if not header.names:
+        names = [name.strip() for name in text.delimiter.join(comment).lstrip("# ").split(text.delimiter)]
+        width = len(rows[header.first])
+        names = names if len(names) == width else [""] * width
+        header = Header(tuple(names), (), header.first, header.skipped)
+    return header, lines[header.first]
 
 
-def _header(
-    rows: list[list[str]], lines: list[int], comment: str, delimiter: str
-) -> tuple[list[str] | None, list[list[str]], list[int]]:
-    if not any(_is_number(cell.replace(",", ".")) for cell in rows[0]):
-        return [cell.strip() for cell in rows[0]], rows[1:], lines[1:]
-    names = [name.strip() for name in comment.lstrip("# ").split(delimiter)]
-    return (names if len(names) == len(rows[0]) else None), rows, lines
+def _decimal_comma(text: _Text, first_line: int) -> bool:
+    """Whether numbers among the first values have a comma; columns that have points are read by themselves."""
+    first = (cell for _, row in islice(_values(text, first_line), _HEAD) for cell in row)
+    return text.delimiter != "," and any("," in cell and is_number(cell.replace(",", ".")) for cell in first)
 
 
-def _refuse_ragged(path: Path, rows: list[list[str]], lines: list[int], names: list[str]) -> None:
+def _frame(text: _Text, header: Header, first_line: int, decimal: str) -> Any:
+    """The values by pandas, with one column more than the header has: it takes what is too much in a row."""
+    import pandas as pd  # here, since it takes long to import and most of the program does not need it
+
+    width = len(header.names)
+    handle = text.open()
+    for _ in range(first_line - 1):
+        handle.readline()
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", pd.errors.ParserWarning)  # rows too long, which are named below
+            return pd.read_csv(
+                handle, sep=r"\s+" if text.delimiter == " " else text.delimiter, header=None,
+                names=range(width + 1), index_col=False, skipinitialspace=True, keep_default_na=False,
+                na_values=list(_NAN), low_memory=False, decimal=decimal,
+                comment="#" if _COMMENT.search(text.utf8) else None,
+            )  # fmt: skip
+    except (pd.errors.ParserError, pd.errors.EmptyDataError) as error:
+        _refuse_ragged(text, header.names, first_line)
+        rule = f"not a readable table ({' '.join(str(error).split())})"
+        raise InputError(Problem("file", rule, str(text.path), "export it again")) from None
+
+
+def _values(text: _Text, first_line: int) -> Iterator[tuple[int, list[str]]]:
+    return ((line, row) for line, row in text.rows() if line >= first_line and not row[0].startswith("#"))
+
+
+def _refuse_ragged(text: _Text, names: tuple[str, ...], first_line: int) -> None:
     """Refuse rows of another length than the header's; unnamed columns at its end may be missing."""
     width = len(names)
     least = max((k + 1 for k, name in enumerate(names) if name), default=width)
-    problems = []
-    for k, row in enumerate(rows):
-        if len(row) > width and not any(row[width:]):
-            del row[width:]
-        if least <= len(row) <= width:
-            row += [""] * (width - len(row))
+    problems, found = [], 0
+    for k, (line, row) in enumerate(_values(text, first_line)):
+        if least <= len(row) <= width or (len(row) > width and not any(row[width:])):
             continue
-        key = f"{path.name}, row {k} (line {lines[k]})"
-        rule = f"{len(row)} cells where the first line has {width}"
-        problems.append(Problem(key, rule, remedy="complete the row, or leave it out", source=str(path)))
-    if len(problems) > _SHOWN:
-        rule = f"{len(problems) - _SHOWN} more rows have another number of cells"
-        problems = [*problems[:_SHOWN], Problem(path.name, rule, remedy="export the file again")]
+        found += 1
+        if found <= SHOWN:
+            key = f"{text.path.name}, row {k} (line {line})"
+            rule = f"{len(row)} cells where the first line has {width}"
+            problems.append(Problem(key, rule, None, "complete the row, or leave it out", str(text.path)))
+    if found > SHOWN:
+        rule = f"{found - SHOWN} more rows have another number of cells"
+        problems.append(Problem(text.path.name, rule, None, "export the file again"))
     if problems:
         raise InputError(problems)
-
-
-def _is_number(cell: str) -> bool:
-    try:
-        float(cell)
-    except ValueError:
-        return False
-    return True

@@ -1,36 +1,134 @@
-"""MATLAB files up to version 7 (`save -v7`, the default)."""
+"""MATLAB files: up to version 7 by scipy, version 7.3 by pymatreader.
 
+Fields of structures are `run.y`, elements of cells and of arrays of structures `c[0]`, `run.y[0]`.
+"""
+
+import warnings
+import zlib
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
-from scipy.io import loadmat, whosmat
+from numpy.typing import NDArray
+from scipy.io import loadmat
+from scipy.io.matlab import MatlabFunction, MatlabOpaque, matfile_version
 
-from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.formats.table import ArrayTable, Table, refuse_size, split_arrays
+from gear_damping.measurement.formats.table import (
+    ArrayTable,
+    Table,
+    extra_library,
+    held_arrays,
+    refuse_size,
+    unreadable,
+)
 
 _HDF5_MAGIC = b"\x89HDF"
+_COMPRESSED = 15  # the type of an element that is deflated
+_OBJECT = "MATLAB object; in MATLAB save its arrays, as t = ts.Time; y = ts.Data"
 
 
 def read_mat(path: Path, max_bytes: int) -> Table:
-    """The numeric variables of a MAT file as columns; structures and cells are left out.
+    """The real arrays of a MAT file as columns, those in structures and cells too.
 
     Raises:
-        InputError: a version 7.3 file, an unreadable or a too large one.
+        InputError: an unreadable or too large file, no real numbers, or pymatreader is missing for version 7.3.
     """
+    with unreadable(path, "not a readable MAT file", "save it in MATLAB with `save -v7`"):
+        content = _read_hdf5(path, max_bytes) if _is_hdf5(path) else _read_older(path, max_bytes)
+        found = dict(_flat(content, ""))
+    arrays = {name: value for name, value in found.items() if isinstance(value, np.ndarray)}
+    held, left_out = held_arrays(arrays)
+    left_out += [f"{name} ({value})" for name, value in found.items() if name not in arrays]
+    return ArrayTable(path, held, left_out)
+
+
+def _is_hdf5(path: Path) -> bool:
     with path.open("rb") as file:
         head = file.read(128)
         file.seek(512)
-        hdf5 = head.startswith((b"MATLAB 7.3", _HDF5_MAGIC)) or file.read(4) == _HDF5_MAGIC
-    if hdf5:
-        rule = "a MAT 7.3 (HDF5) file needs the extra [formats] (h5py), which is not installed"
-        raise InputError(Problem("file", rule, str(path), "save it in MATLAB with `save -v7`"))
-    try:
-        refuse_size(path, sum(8 * int(np.prod(shape)) for _, shape, _ in whosmat(path)), max_bytes)
-        content = loadmat(path)
-    except InputError:
-        raise
-    except Exception as error:  # scipy raises whatever a damaged file leads it to
-        remedy = "save it in MATLAB with `save -v7`"
-        raise InputError(Problem("file", f"not a readable MAT file ({error})", str(path), remedy)) from None
-    arrays = {name: array for name, array in content.items() if not name.startswith("__")}
-    return ArrayTable(path, split_arrays({n: a for n, a in arrays.items() if isinstance(a, np.ndarray)}))
+        return head.startswith((b"MATLAB 7.3", _HDF5_MAGIC)) or file.read(4) == _HDF5_MAGIC
+
+
+def _read_older(path: Path, max_bytes: int) -> dict[str, Any]:
+    refuse_size(path, _unpacked_size(path, max_bytes), max_bytes)
+    content = loadmat(path, squeeze_me=True)
+    return {name: value for name, value in content.items() if not name.startswith("__")}
+
+
+def _unpacked_size(path: Path, limit: int) -> int:
+    """The bytes of the unpacked elements of a version 5 to 7 file, counted until they pass `limit`."""
+    if matfile_version(path)[0] != 1:
+        return path.stat().st_size
+    total = 0
+    with path.open("rb") as file:
+        order = "little" if file.read(128)[126:128] == b"IM" else "big"
+        while len(tag := file.read(8)) == 8 and total <= limit:
+            kind, size = int.from_bytes(tag[:4], order), int.from_bytes(tag[4:], order)
+            packed = file.read(size)
+            if kind != _COMPRESSED:
+                total += size
+                continue
+            unpack = zlib.decompressobj()
+            while packed and total <= limit:
+                total += len(unpack.decompress(packed, 2**20))
+                packed = unpack.unconsumed_tail
+    return total
+
+
+def _read_hdf5(path: Path, max_bytes: int) -> dict[str, Any]:
+    h5py, pymatreader = extra_library("h5py", path), extra_library("pymatreader", path)
+    sizes, objects = [], []
+
+    def visit(name: str, item: Any) -> None:
+        if isinstance(item, h5py.Dataset):
+            sizes.append(item.size * item.dtype.itemsize if item.size else 0)
+        if "MATLAB_object_decode" in item.attrs:
+            objects.append(name)
+
+    with h5py.File(path, "r") as file:
+        file.visititems(visit)
+        names = [name for name in file if not name.startswith("#")]
+    refuse_size(path, sum(sizes), max_bytes)
+    plain = [name for name in names if name not in objects]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # of classes, which are left out here and said
+        content = pymatreader.read_mat(path, variable_names=plain) if plain else {}
+    for place in objects:
+        *parents, last = place.split("/")
+        inner = content
+        for parent in parents:
+            inner = inner.get(parent) if isinstance(inner, dict) else None
+        if isinstance(inner, dict):
+            inner[last] = _OBJECT
+    return {name: content[name] for name in names}
+
+
+def _flat(value: Any, name: str) -> Iterator[tuple[str, NDArray | str]]:
+    """Every array in nested structures and cells under its name; a text says what something else is."""
+    if isinstance(value, dict):
+        for key, inner in value.items():
+            yield from _flat(inner, f"{name}.{key}" if name else key)
+    elif isinstance(value, MatlabOpaque | MatlabFunction) or (isinstance(value, str) and value == _OBJECT):
+        yield name, _OBJECT
+    elif isinstance(value, np.ndarray) and value.dtype.names:
+        for field in value.dtype.names:
+            yield from _flat(value[field], f"{name}.{field}")
+    elif isinstance(value, list) or (isinstance(value, np.ndarray) and value.dtype == object):
+        yield from _flat_cells(value, name)
+    elif isinstance(value, np.ndarray | int | float | complex | np.number | np.bool_):
+        yield name, np.asarray(value)
+    else:
+        yield name, "text" if isinstance(value, str | np.str_) else type(value).__name__
+
+
+def _flat_cells(cells: list | NDArray, name: str) -> Iterator[tuple[str, NDArray | str]]:
+    """The elements of a cell array in MATLAB's linear order; one that holds one number each is a vector."""
+    elements = cells if isinstance(cells, list) else list(cells.flatten(order="F"))
+    if len(elements) == 1 and isinstance(cells, np.ndarray):
+        yield from _flat(elements[0], name)
+    elif elements and all(isinstance(one, int | float | np.number) for one in elements):
+        yield name, np.asarray(elements)
+    else:
+        for k, one in enumerate(elements):
+            yield from _flat(one, f"{name}[{k}]")

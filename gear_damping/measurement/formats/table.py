@@ -1,26 +1,46 @@
-"""What every reader returns: named columns, read when they are asked for."""
+"""What every reader returns: the real numeric arrays of a file as columns, read when they are asked for."""
 
+import re
 from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem, nearest
 
+_SHOWN = 20  # arrays that a message lists
+_INDEXED = re.compile(r"^(.*)\[[\d, ]+\]$")
+
 
 class Table(ABC):
-    """The columns of one file.
+    """The columns of one file; they may differ in length.
 
     Args:
         path: The file.
-        names: Column names in the order of the file; "" for one without a name.
+        shapes: The arrays in the order of the file, each with its name ("" for none) and its shape. A vector is a
+            column under its name; a matrix gives the columns `name[0]`, `name[1]`, ... along its shorter side.
+        left_out: What the file holds besides real numbers, for messages.
     """
 
-    def __init__(self, path: Path, names: tuple[str, ...]) -> None:
-        self.path = path
-        self.names = names
-        self.sampling_rate: float | None = None  # Hz, where the format itself holds it
+    def __init__(
+        self, path: Path, shapes: Sequence[tuple[str, tuple[int, ...]]], left_out: Sequence[str] = ()
+    ) -> None:
+        self.path, self.shapes, self.left_out = path, tuple(shapes), tuple(left_out)
+        columns = [
+            (_column_name(name, rest), array, rest, max(shape))
+            for array, (name, shape) in enumerate(self.shapes)
+            for rest in np.ndindex(*_beside_time(shape))
+        ]
+        self.names = tuple(column[0] for column in columns)
+        self.lengths = tuple(column[3] for column in columns)
+        self._place = [(column[1], column[2]) for column in columns]
+        self.sampling_rate: float | None = None  # Hz, where the format itself holds one for the whole file
         self.full_scale: float | None = None  # the value of full scale, where samples are fractions of it
         self.notes: tuple[str, ...] = ()
 
@@ -32,61 +52,178 @@ class Table(ABC):
         """The unit that the file itself gives for a column, or None."""
         return None
 
+    def clock(self, index: int) -> tuple[float, float] | None:
+        """The time of a column's first sample in s and its rate in Hz, where the file gives them."""
+        return None if self.sampling_rate is None else (0.0, self.sampling_rate)
+
     def index(self, column: str | int, key: str) -> int:
         """The 0-based index of `column`, a name or an index.
 
         Raises:
-            InputError: there is no such column, or several bear the name.
+            InputError: there is no such column, it is a matrix, or several bear the name.
         """
         if isinstance(column, int):
             if 0 <= column < len(self.names):
                 return column
-            rule = f"{self.path.name} has {len(self.names)} columns"
-            raise InputError(Problem(key, rule, column, f"count from 0: {self.listing()}", str(self.path)))
-        found = [index for index, name in enumerate(self.names) if name == column]
+            rule, remedy = f"{self.path.name} has {len(self.names)} columns", f"count from 0: {self.listing(True)}"
+            raise InputError(Problem(key, rule, column, remedy, str(self.path)))
+        found = self._named(column) or self._named(column.strip().strip("/"))
         if len(found) == 1:
             return found[0]
         if found:
             rule, remedy = f"{len(found)} columns bear this name", f"give the 0-based index: one of {found}"
             raise InputError(Problem(key, rule, column, remedy, str(self.path)))
-        named = [name for name in self.names if name]
-        remedy = nearest(column, named) if named else f"give a 0-based index: {self.listing()}"
-        raise InputError(Problem(key, "no such column", column, remedy, str(self.path)))
+        raise InputError(self._absent(column, key))
 
-    def listing(self) -> str:
-        """The columns in one line, for messages."""
-        shown = [f"{index} '{name}'" if name else str(index) for index, name in enumerate(self.names[:20])]
-        return ", ".join(shown) + (", ..." if len(self.names) > 20 else "")
+    def _named(self, column: str) -> list[int]:
+        return [index for index, name in enumerate(self.names) if name and name == column]
+
+    def _absent(self, column: str, key: str) -> Problem:
+        named = [name for name in self.names if name]
+        if not named:
+            return Problem(
+                key, "no such column", column, f"give a 0-based index: {self.listing(True)}", str(self.path)
+            )
+        indexed = _INDEXED.match(column)
+        shapes = dict(self.shapes)
+        base = (indexed[1] if indexed else column).strip().strip("/")
+        if base in shapes and len(_beside_time(shapes[base])) > 0:
+            choice = [name for name in named if name.startswith(f"{base}[")]
+            rule = f"'{base}' is {_shape(shapes[base])}, and one column of it is needed"
+            return Problem(key, rule, column, f"write one of {choice[0]} to {choice[-1]}", str(self.path))
+        remedy = nearest(column, named).rstrip("?") + f"? {self.path.name} holds {self.listing()}"
+        if not remedy.startswith("did you mean"):
+            remedy = f"{self.path.name} holds {self.listing()}"
+        return Problem(key, "no such column", column, remedy, str(self.path))
+
+    def listing(self, numbered: bool = False) -> str:
+        """What the file holds with shapes, in one line for messages; `numbered` puts the index before each."""
+        shown, first = [], 0
+        for name, shape in self.shapes[:_SHOWN]:
+            label = f"{first} '{name}'" if numbered and name else name or str(first)
+            shown.append(f"{label} ({_shape(shape)})")
+            first += int(np.prod(_beside_time(shape)))
+        if len(self.shapes) > _SHOWN:
+            shown.append(f"... ({len(self.shapes)} in all)")
+        unread = f"; no real numbers: {', '.join(self.left_out[:_SHOWN])}" if self.left_out else ""
+        return ", ".join(shown) + unread
+
+
+def _shape(shape: tuple[int, ...]) -> str:
+    return " x ".join(str(size) for size in shape)
+
+
+def _beside_time(shape: tuple[int, ...]) -> tuple[int, ...]:
+    """The sides of an array besides its longest one, which is time."""
+    time = int(np.argmax(shape))
+    return shape[:time] + shape[time + 1 :]
+
+
+def _column_name(name: str, rest: tuple[int, ...]) -> str:
+    return f"{name}[{','.join(str(k) for k in rest)}]" if name and rest else name
+
+
+@dataclass(frozen=True, eq=False)
+class Held:
+    """An array that a file holds.
+
+    Args:
+        name: Its name or path in the file; "" for none.
+        shape: Its shape without sides of one element.
+        read: Gives the array itself, of any shape with those elements.
+        unit: Its unit, where the file says it.
+        clock: The time of its first sample in s and its rate in Hz, where the file says them.
+    """
+
+    name: str
+    shape: tuple[int, ...]
+    read: Callable[[], NDArray]
+    unit: str | None = None
+    clock: tuple[float, float] | None = None
 
 
 class ArrayTable(Table):
-    """Columns that are in memory already."""
+    """Columns of arrays, each of which is read once, when it is first asked for.
 
-    def __init__(self, path: Path, columns: dict[str, NDArray] | list[NDArray]) -> None:
-        named = columns if isinstance(columns, dict) else {str(i): c for i, c in enumerate(columns)}
-        super().__init__(path, tuple(named) if isinstance(columns, dict) else ("",) * len(named))
-        self._columns = list(named.values())
+    Raises:
+        InputError: the file holds no real numbers.
+    """
+
+    def __init__(self, path: Path, held: Sequence[Held], left_out: Sequence[str] = ()) -> None:
+        super().__init__(path, [(one.name, one.shape) for one in held], left_out)
+        if not held:
+            rule = "holds no array of real numbers" + (f", only {', '.join(left_out[:_SHOWN])}" if left_out else "")
+            raise InputError(Problem("file", rule, str(path), "save the channels as numeric vectors or matrices"))
+        self._held, self._arrays = list(held), {}
+        clocks = {one.clock for one in held}
+        if len(clocks) == 1 and None not in clocks:
+            self.sampling_rate = held[0].clock[1]
 
     def values(self, index: int) -> NDArray[np.float64]:
-        """(n,) float64: the column at a 0-based index."""
-        return np.asarray(self._columns[index], dtype=np.float64)
+        """(n,) float64: the column at a 0-based index; raises InputError where the file is damaged there."""
+        array, rest = self._place[index]
+        one = self._held[array]
+        if array not in self._arrays:
+            with unreadable(self.path, f"'{one.name or array}' cannot be read", "export the file again"):
+                self._arrays[array] = np.reshape(one.read(), one.shape)
+        whole = self._arrays[array]
+        return np.asarray(np.moveaxis(whole, int(np.argmax(one.shape)), 0)[(slice(None), *rest)], dtype=np.float64)
+
+    def unit(self, index: int) -> str | None:
+        """The unit that the file gives for the column's array, or None."""
+        return self._held[self._place[index][0]].unit
+
+    def clock(self, index: int) -> tuple[float, float] | None:
+        """The time of the column's first sample in s and its rate in Hz, where the file gives them."""
+        return self._held[self._place[index][0]].clock or super().clock(index)
 
 
-def split_arrays(arrays: dict[str, NDArray]) -> dict[str, NDArray]:
-    """Real numeric arrays as columns: vectors under their name, matrices as `name[0]`, `name[1]`, ...
+def squeezed(shape: Sequence[int]) -> tuple[int, ...]:
+    """A shape without sides of one element; (1,) where nothing else is left."""
+    return tuple(int(size) for size in shape if size != 1) or (1,)
 
-    The longer side of a matrix is taken as time; what is no real numbers is left out.
-    """
-    columns: dict[str, NDArray] = {}
+
+def is_real(dtype: np.dtype) -> bool:
+    """Whether values of this kind are real numbers."""
+    return dtype.kind in "fiub"
+
+
+def held_arrays(arrays: Mapping[str, NDArray]) -> tuple[list[Held], list[str]]:
+    """Arrays in memory as columns, and what of them is left out because it is empty or no real numbers."""
+    held, left_out = [], []
     for name, array in arrays.items():
-        if array.dtype.kind not in "fiub" or array.ndim > 2 or array.size == 0:
-            continue
-        if array.ndim < 2 or 1 in array.shape:
-            columns[name] = array.reshape(-1)
-            continue
-        matrix = array if array.shape[0] >= array.shape[1] else array.T
-        columns.update({f"{name}[{k}]": matrix[:, k] for k in range(matrix.shape[1])})
-    return columns
+        if is_real(array.dtype) and array.size:
+            held.append(Held(name, squeezed(array.shape), lambda array=array: array))
+        else:
+            left_out.append(f"{name} ({'empty' if not array.size else kind_of(array.dtype)})")
+    return held, left_out
+
+
+def kind_of(dtype: np.dtype) -> str:
+    """What values of this kind are, for messages."""
+    return {"c": "complex", "U": "text", "S": "text", "O": "objects"}.get(dtype.kind, str(dtype))
+
+
+@contextmanager
+def unreadable(path: Path, rule: str, remedy: str) -> Iterator[None]:
+    """Turn whatever a library raises over a damaged file into an InputError with the reason in brackets."""
+    try:
+        yield
+    except InputError:
+        raise
+    except Exception as error:  # libraries raise whatever a damaged file leads them to
+        reason = " ".join(str(error).split())[:200] or type(error).__name__
+        raise InputError(Problem("file", f"{rule} ({reason})", str(path), remedy)) from None
+
+
+def extra_library(name: str, path: Path) -> ModuleType:
+    """A library of the extra [formats]; raises InputError that names it where its import fails."""
+    try:
+        return import_module(name)
+    except ImportError as error:
+        rule = f"reading this file needs the library '{name}', which cannot be imported ({error})"
+        remedy = "pip install 'gear-damping[formats]', or export the channels as CSV, MAT v7, NPZ or WAV"
+        raise InputError(Problem("file", rule, str(path), remedy)) from None
 
 
 def refuse_size(path: Path, size: int, limit: int) -> None:

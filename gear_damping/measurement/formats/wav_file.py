@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.io import wavfile
 
-from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.formats.table import ArrayTable, Table
+from gear_damping.measurement.formats.table import ArrayTable, Held, Table, unreadable
 
 
 def read_wav(path: Path, max_bytes: int) -> Table:
@@ -17,15 +16,12 @@ def read_wav(path: Path, max_bytes: int) -> Table:
     Raises:
         InputError: not a readable WAV file.
     """
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", wavfile.WavFileWarning)  # chunks of metadata that scipy skips
-            rate, samples = wavfile.read(path)
-    except Exception as error:  # scipy raises whatever a damaged file leads it to
-        remedy = "export uncompressed PCM or float"
-        raise InputError(Problem("file", f"not a readable WAV file ({error})", str(path), remedy)) from None
+    with unreadable(path, "not a readable WAV file", "export uncompressed PCM or float"), warnings.catch_warnings():
+        warnings.simplefilter("ignore", wavfile.WavFileWarning)  # chunks of metadata that scipy skips
+        rate, samples = wavfile.read(path)
     scaled, note = _fractions(samples)
-    table = ArrayTable(path, list(np.atleast_2d(scaled.T)))
+    channels = np.atleast_2d(scaled.T)
+    table = ArrayTable(path, [Held("", one.shape, lambda one=one: one) for one in channels if one.size])
     table.sampling_rate = float(rate)
     table.full_scale = 1.0 if samples.dtype.kind in "iu" else None
     table.notes = (note,)

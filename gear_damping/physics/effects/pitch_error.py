@@ -7,13 +7,20 @@ import torch
 from torch import Tensor
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.physics.cause import Cause, Recipe
+from gear_damping.physics.cause import SHAFTS, Cause, Recipe, Rig
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.shaft_order import harmonics
 from gear_damping.physics.terms import TransmissionErrorSource, Values
 
 TYPICAL = (2, -1, 3, -4, 1, 5, -3, 0, 2, -2, 4, -5, 1, 3, -1, -3, 2, 0, -4, 2)  # um
+
+
+def _by_shaft(rig: Rig) -> tuple[Recipe, ...]:
+    """One error a tooth, on either shaft."""
+    return tuple(
+        Recipe({"values": 3e-6}, in_si=True, options={"shaft": shaft}, length=rig.teeth(shaft)) for shaft in SHAFTS
+    )
 
 
 class PitchError(TransmissionErrorSource):
@@ -29,11 +36,11 @@ class PitchError(TransmissionErrorSource):
         Parameter("values", "m", tuple(1e-6 * v for v in TYPICAL), "e_j, one value a tooth", -1e-3, 1e-3, vector=True),
         Parameter("phase", "rad", 0.0, "phi"),
     )
-    options: ClassVar = (Option("shaft", ("pinion", "gear"), "pinion", "which of the two gears"),)
+    options: ClassVar = (Option("shaft", SHAFTS, "pinion", "which of the two gears"),)
     systems: ClassVar = ("gear_pair",)
     cause: ClassVar = Cause(
         "errors of the pitch, tooth by tooth",
-        (Recipe({"values": 3e-6}, in_si=True),),
+        _by_shaft,
     )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:

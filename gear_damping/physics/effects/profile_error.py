@@ -5,12 +5,20 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
-from gear_damping.physics.cause import Cause, Recipe
+from gear_damping.physics.cause import Cause, Recipe, Rig
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.shaft_order import harmonics
 from gear_damping.physics.shapes import same_length
 from gear_damping.physics.terms import TransmissionErrorSource, Values
+
+MOST_HARMONICS = 4  # beyond these a tooth's profile has little
+
+
+def _visible_harmonics(rig: Rig) -> tuple[Recipe, ...]:
+    """As many harmonics as the records show."""
+    length = min(max(rig.mesh_harmonics, 1), MOST_HARMONICS)
+    return (Recipe({"amplitudes": None}, {"amplitudes": "phases"}, length=length),)
 
 
 class ProfileError(TransmissionErrorSource):
@@ -26,7 +34,7 @@ class ProfileError(TransmissionErrorSource):
     systems: ClassVar = ("gear_pair",)
     cause: ClassVar = Cause(
         "errors of the tooth profile",
-        (Recipe({"amplitudes": None}, {"amplitudes": "phases"}, length=4),),
+        _visible_harmonics,
     )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:

@@ -3,12 +3,11 @@
 from math import pi
 from typing import ClassVar
 
-import torch
 from torch import Tensor
 
 from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.parameter import Option, Parameter
-from gear_damping.physics.record_filter import filtered
+from gear_damping.physics.record_filter import butterworth_modes, butterworth_response, filtered
 from gear_damping.physics.terms import Recording, Sensor, Values
 
 
@@ -33,13 +32,14 @@ class SensorLowpass(Sensor):
 
     def measure(self, signal: Tensor, values: Values, recording: Recording) -> Tensor:
         """The filtered record."""
+        response, cutoff = butterworth_response(self.chosen["order"]), values["cutoff"].unsqueeze(1)
+        return filtered(signal, recording.sampling_rate, lambda frequency: response(frequency / cutoff))
 
-        def response(frequency: Tensor) -> Tensor:
-            ratio = frequency / values["cutoff"].unsqueeze(1)
-            total = torch.ones_like(ratio) + 0j
-            for k in range(self.chosen["order"]):
-                angle = torch.tensor(pi * (2 * k + 1 + self.chosen["order"]) / (2 * self.chosen["order"]))
-                total = total / (1j * ratio - torch.exp(1j * angle.to(ratio)))
-            return total
+    @property
+    def start_modes(self) -> int:
+        """One state a pole."""
+        return self.chosen["order"]
 
-        return filtered(signal, recording.sampling_rate, response)
+    def left_of_start(self, values: Values, time: Tensor) -> Tensor:
+        """Decaying oscillations at the poles."""
+        return butterworth_modes(self.chosen["order"], 2 * pi * values["cutoff"].unsqueeze(1) * time)

@@ -5,14 +5,37 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
-from gear_damping.physics.cause import Cause
+from gear_damping.physics.cause import Cause, Recipe, Rig
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
-from gear_damping.physics.terms import ElasticForce, Values
+from gear_damping.physics.terms import ElasticForce, SystemChange, Values
+
+SIZES = (1.0, 1.3, 2.0)  # of the linear stiffness that swings as fast: the wider the swing, the more
+FIRST_LENGTH = 3.0  # amplitudes, where the response is no angle
 
 
-class SineRestoring(ElasticForce):
-    """Gravity on a pendulum whose displacement is an angle; the oscillator's own stiffness may be 0."""
+def _instead_of_a_spring(rig: Rig) -> tuple[Recipe, ...]:
+    """It takes the place of the linear spring; its length is known where the response is an angle."""
+    known = {"length": rig.radian} if rig.radian else {}
+    free = {} if rig.radian else {"length": FIRST_LENGTH}
+    return tuple(
+        Recipe(
+            {"stiffness": size},
+            fixed=known,
+            scanned=free,
+            presence=True,
+            in_si=rig.radian is not None,
+            replaces={"stiffness": "stiffness"},
+        )
+        for size in SIZES
+    )
+
+
+class SineRestoring(ElasticForce, SystemChange):
+    """Gravity on a pendulum whose displacement is an angle; the oscillator's own stiffness may be 0.
+
+    The natural frequency is that of small oscillations.
+    """
 
     name = "sine_restoring"
     equation = "N + k l sin(x / l), l = 1 for an angle in rad"
@@ -24,12 +47,18 @@ class SineRestoring(ElasticForce):
     systems: ClassVar = ("oscillator",)
     cause: ClassVar = Cause(
         "the restoring force of a pendulum",
+        _instead_of_a_spring,
     )
+
+    def change(self, values: Values, derived: dict[str, Tensor]) -> dict[str, Tensor]:
+        """Stiffness and natural frequency of small oscillations."""
+        stiffness = derived["mean_stiffness"] + values["stiffness"]
+        frequency = torch.sqrt(stiffness / derived["equivalent_mass"])
+        return derived | {"mean_stiffness": stiffness, "natural_frequency": frequency}
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
         """The parameters, and the rate of small oscillations."""
-        stiffness = base["mean_stiffness"] + values["stiffness"]
-        return dict(values) | {"fastest_rate": torch.sqrt(stiffness / base["equivalent_mass"])}
+        return dict(values) | {"fastest_rate": torch.sqrt(base["mean_stiffness"] / base["equivalent_mass"])}
 
     def elastic_force(self, now: Moment, p: Values) -> Tensor:
         """The force at this instant."""

@@ -6,12 +6,30 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
-from gear_damping.physics.cause import Cause, Recipe
+from gear_damping.physics.cause import SHAFTS, Cause, Recipe, Rig
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.terms import StiffnessFactor, Switch, Values
 
 IN_MESH = "tooth_crack.in_mesh"
+EDGE, EDGES = 0.32, (0.064, 1.9)  # where it begins and its bounds, in angles from tooth to tooth
+
+
+def _every_tooth(rig: Rig) -> tuple[Recipe, ...]:
+    """One variant a tooth, on either shaft."""
+    return tuple(_one_tooth(i, shaft, rig.teeth(shaft)) for shaft in SHAFTS for i in range(rig.teeth(shaft)))
+
+
+def _one_tooth(number: int, shaft: str, teeth: int) -> Recipe:
+    pitch = 2 * pi / teeth
+    return Recipe(
+        {"depth": None},
+        scanned={"phase": number * pitch, "extent": 0.8, "edge": EDGE * pitch},
+        within={"tooth_crack.edge": (EDGES[0] * pitch, EDGES[1] * pitch), "tooth_crack.extent": (0.2, 1.2)},
+        in_si=True,
+        sharpest=("edge",),
+        options={"shaft": shaft},
+    )
 
 
 class ToothCrack(StiffnessFactor, Switch):
@@ -27,21 +45,13 @@ class ToothCrack(StiffnessFactor, Switch):
         Parameter("edge", "rad", 0.02, "shaft angle over which a smooth edge goes from 12 to 88 %", 1e-6, 1),
     )
     options: ClassVar = (
-        Option("shaft", ("pinion", "gear"), "pinion", "whose tooth"),
+        Option("shaft", SHAFTS, "pinion", "whose tooth"),
         Option("edges", ("smooth", "switched"), "smooth", "a tanh at either edge, or a jump"),
     )
     systems: ClassVar = ("gear_pair",)
     cause: ClassVar = Cause(
         "a tooth that is softer than the others",
-        tuple(
-            Recipe(
-                {"depth": None},
-                scanned={"phase": 2 * pi * i / 20, "extent": 0.8, "edge": 0.1},
-                within={"tooth_crack.edge": (0.02, 0.6), "tooth_crack.extent": (0.2, 1.2)},
-                in_si=True,
-            )
-            for i in range(20)
-        ),
+        _every_tooth,
     )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:

@@ -5,10 +5,36 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
-from gear_damping.physics.cause import Cause, Recipe
+from gear_damping.physics.cause import Cause, Recipe, Rig
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.terms import Load, LoadFactor, Values
+
+LOW_ORDERS = 6  # of the pinion's shaft, of a motor's torque
+GEAR_ORDERS = 3  # of the gear's shaft
+
+
+def ripple_orders(rig: Rig) -> tuple[float, ...]:
+    """Orders of the pinion's shaft: low ones of either shaft, those beside the mesh, and where lines stand out."""
+    teeth = rig.n_teeth_pinion
+    low = [float(order) for order in range(1, LOW_ORDERS + 1)]
+    gear = [order * teeth / rig.n_teeth_gear for order in range(1, GEAR_ORDERS + 1)]
+    return tuple(dict.fromkeys([*low, *gear, teeth - 1.0, teeth + 1.0, *rig.lines]))
+
+
+def _every_order(rig: Rig) -> tuple[Recipe, ...]:
+    """Both forms at every order."""
+    return tuple(
+        Recipe(
+            {strength: None},
+            {strength: "phase"},
+            fixed={"order": order, other: 0.0},
+            options={"proportional": strength == "share"},
+            in_si=True,
+        )
+        for strength, other in (("amplitude", "share"), ("share", "amplitude"))
+        for order in ripple_orders(rig)
+    )
 
 
 class TorqueRipple(Load, LoadFactor):
@@ -27,17 +53,7 @@ class TorqueRipple(Load, LoadFactor):
     systems: ClassVar = ("gear_pair",)
     cause: ClassVar = Cause(
         "a ripple of the torque that the torque channel does not show",
-        tuple(
-            Recipe(
-                {strength: None},
-                {strength: "phase"},
-                fixed={"order": order, other: 0.0},
-                options={"proportional": strength == "share"},
-                in_si=True,
-            )
-            for strength, other in (("amplitude", "share"), ("share", "amplitude"))
-            for order in (1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
-        ),
+        _every_order,
         separated_by="torque_channel",
     )
 

@@ -1,13 +1,13 @@
-"""Unbalance of the pinion."""
+"""Unbalance of the pinion or the gear."""
 
 from typing import ClassVar
 
 import torch
 from torch import Tensor
 
-from gear_damping.physics.cause import Cause, Recipe
+from gear_damping.physics.cause import SHAFTS, Cause, Recipe
 from gear_damping.physics.moment import Moment
-from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.terms import BearingForce, Values
 
 
@@ -15,17 +15,18 @@ class Unbalance(BearingForce):
     """The centre of mass runs beside the shaft: a force on the bearing that grows with the speed squared."""
 
     name = "unbalance"
-    equation = "m_b y'' + … = N + F_d + U omega_1^2 cos(theta_1 + phi)"
+    equation = "m_b y'' + … = N + F_d + U omega^2 cos(theta + phi), angle and speed of the shaft"
     reference = "ISO 21940-11:2016, balance quality of rotors"
     parameters: ClassVar = (
         Parameter("unbalance", "kg*m", 2e-5, "U; quality G6.3 allows 1.3e-5 per kg at 4600 rpm", 0, 1),
         Parameter("phase", "rad", 0.0, "phi"),
     )
+    options: ClassVar = (Option("shaft", SHAFTS, "pinion", "which of the two gears; the bearing is that gear's"),)
     systems: ClassVar = ("gear_pair",)
     requires: ClassVar = ("bearing_flexibility",)
     cause: ClassVar = Cause(
         "an unbalance",
-        (Recipe({"unbalance": None}, {"unbalance": "phase"}),),
+        tuple(Recipe({"unbalance": None}, {"unbalance": "phase"}, options={"shaft": shaft}) for shaft in SHAFTS),
     )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
@@ -35,5 +36,6 @@ class Unbalance(BearingForce):
 
     def bearing_force(self, now: Moment, p: Values) -> Tensor:
         """The part along the line of action of the turning force."""
-        part = p["in_phase"] * now.pinion.cos + p["quadrature"] * now.pinion.sin
-        return part * now.pinion.speed * now.pinion.speed
+        turn = getattr(now, self.chosen["shaft"])
+        part = p["in_phase"] * turn.cos + p["quadrature"] * turn.sin
+        return part * turn.speed * turn.speed

@@ -25,6 +25,10 @@ class ViscousDamping(DampingLaw):
         "a damping force proportional to the rate",
     )
 
+    def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
+        """The coefficient, and the rate at which it alone brings a velocity to rest."""
+        return dict(values) | {"fastest_rate": values["damping_coefficient"] / base["equivalent_mass"]}
+
     def damping_force(self, now: Moment, p: Values) -> Tensor:
         """C times the rate."""
         return p["damping_coefficient"] * now.delta_rate

@@ -33,6 +33,8 @@ class GearPair(System):
         Parameter("inertia_gear", "kg*m^2", 4.5e-3, "moment of inertia of the gear", 1e-9, 1e5, "paper"),
         Parameter("equivalent_mass", "kg", 0.0, "replaces the inertias where positive", 0, 1e5),
         Parameter("pinion_torque", "N*m", 150.0, "mean torque on the pinion", -1e6, 1e6, "paper"),
+        Parameter("torque_gain", "1", 1.0, "true pinion torque over the stated one", -1e3, 1e3),
+        Parameter("torque_offset", "N*m", 0.0, "true pinion torque beside that", -1e6, 1e6),
         Parameter("gear_torque", "N*m", 0.0, "torque on the gear, where it is `held`", -1e6, 1e6),
         Parameter("pinion_speed", "rad/s", 4600 * pi / 30, "mean speed of the pinion", -1e4, 1e4),
         Parameter("pinion_angle", "rad", 0.0, "pinion angle at the start"),
@@ -62,14 +64,15 @@ class GearPair(System):
         v = values
         radius_1, radius_2 = self._base_radii(v)
         inertia_1, inertia_2 = v["inertia_pinion"], v["inertia_gear"]
-        mass = inertia_1 * inertia_2 / (inertia_1 * radius_2**2 + inertia_2 * radius_1**2)
-        mass = torch.where(v["equivalent_mass"] > 0, v["equivalent_mass"], mass)
+        drawn = inertia_1 * inertia_2 / (inertia_1 * radius_2**2 + inertia_2 * radius_1**2)
+        mass = torch.where(v["equivalent_mass"] > 0, v["equivalent_mass"], drawn)
         if self.chosen["as_printed"]:
             mass = torch.full_like(mass, PRINTED_MASS)
         if self.chosen["gear_torque_mode"] == "balanced":
             per_pinion, per_gear = 1 / radius_1, torch.zeros_like(radius_1)
         else:
-            per_pinion, per_gear = mass * radius_1 / inertia_1, mass * radius_2 / inertia_2
+            # a stated mass scales both inertias, which leaves the load as it is
+            per_pinion, per_gear = drawn * radius_1 / inertia_1, drawn * radius_2 / inertia_2
         return {
             "base_radius_pinion": radius_1,
             "base_radius_gear": radius_2,
@@ -78,7 +81,7 @@ class GearPair(System):
             "natural_frequency": torch.sqrt(mean_stiffness / mass),
             "load_per_pinion_torque": per_pinion,
             "load_per_gear_torque": per_gear,
-            "mean_load": per_pinion * v["pinion_torque"] + per_gear * v["gear_torque"],
+            "mean_load": per_pinion * _true_torque(v["pinion_torque"], v) + per_gear * v["gear_torque"],
         }
 
     def _base_radii(self, v: Values) -> tuple[Tensor, Tensor]:
@@ -96,7 +99,7 @@ class GearPair(System):
 
     def load(self, now: Moment, p: Values) -> Tensor:
         """F = m_e (r_b1 T1 / I1 + r_b2 T2 / I2), which is T1 / r_b1 when the torques balance."""
-        pinion = now.inputs.get("pinion_torque", p["pinion_torque"])
+        pinion = _true_torque(now.inputs.get("pinion_torque", p["pinion_torque"]), p)
         gear = now.inputs.get("gear_torque", p["gear_torque"])
         return p["load_per_pinion_torque"] * pinion + p["load_per_gear_torque"] * gear
 
@@ -112,3 +115,8 @@ class GearPair(System):
             "gear": Rotation(ratio * angle + p["gear_phase"], ratio * speed),
             "mesh": Rotation(p["n_teeth_pinion"] * angle + p["mesh_phase"], p["n_teeth_pinion"] * speed),
         }
+
+
+def _true_torque(read: Tensor, values: Values) -> Tensor:
+    """The torque on the pinion from the one that was read."""
+    return values["torque_gain"] * read + values["torque_offset"]

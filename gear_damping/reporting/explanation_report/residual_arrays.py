@@ -6,12 +6,11 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 from scipy.stats import binned_statistic_2d
-from torch import Tensor
 
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Outcome, natural_frequency_hz
 from gear_damping.explanation.trying import Search
-from gear_damping.explanation.unexplained import Shaft, residual_force, shaft_of
+from gear_damping.explanation.unexplained import Shaft, first_channel, residual_force, shaft_of
 from gear_damping.reporting.explanation_report.report_input import ForceMap, ForceSurface, ResidualSpectrum
 from gear_damping.signals.spectra import amplitude_spectrum, order_spectrum
 
@@ -33,9 +32,10 @@ def spectrum(found: Search, evidence: Evidence, place: int, noise: float) -> Res
         place: Which held-out record.
         noise: Its noise in the declared unit.
     """
-    record, factor = evidence.holdout[place], evidence.channel.declared_factor
-    series = [found.nominal.holdout[place], record.response - record.response.mean()]
-    series += [found.outcome.holdout[place]] if found.accepted else []
+    record, factor = evidence.held[place], evidence.channel.declared_factor
+    samples = len(record.response)
+    series = [found.nominal.holdout[place][:samples], record.response - record.response.mean()]
+    series += [found.outcome.holdout[place][:samples]] if found.accepted else []
     stacked = torch.stack(series) / factor
     shaft = shaft_of(record, evidence)
     common = {"record": record.name}
@@ -63,7 +63,7 @@ def _mean_amplitude(samples: int) -> float:
 
 def force_map(outcome: Outcome, evidence: Evidence) -> ForceMap | None:
     """Mean residual force by pinion tooth and mesh phase; None without shafts."""
-    records = (*evidence.fit, *evidence.holdout)
+    records = (*evidence.fitted, *evidence.held)
     shafts = [shaft_of(record, evidence) for record in records]
     if not all(shafts):
         return None
@@ -77,11 +77,12 @@ def force_map(outcome: Outcome, evidence: Evidence) -> ForceMap | None:
 
 def force_surface(outcome: Outcome, evidence: Evidence) -> ForceSurface:
     """Mean residual force over displacement and velocity of the simulated motion."""
-    records = (*evidence.fit, *evidence.holdout)
-    residuals = (*outcome.fit_residuals, *outcome.holdout)
-    motion = [(record.response - residual).numpy() for record, residual in zip(records, residuals, strict=True)]
+    records = (*evidence.fitted, *evidence.held)
+    residuals = first_channel((*outcome.fit_residuals, *outcome.holdout), records)
+    motion = [record.response.numpy() - residual for record, residual in zip(records, residuals, strict=True)]
     place = np.concatenate([_inner(x) for x in motion])
-    rate = np.concatenate([_inner(np.gradient(x)) for x in motion]) * evidence.sampling_rate
+    pairs = zip(motion, records, strict=True)
+    rate = np.concatenate([_inner(np.gradient(x)) * record.sampling_rate for x, record in pairs])
     edges = tuple(np.linspace(v.min(), v.max(), n + 1) for v, n in zip((rate, place), STATE_BINS[::-1], strict=True))
     mean, visits = _binned(rate, place, np.concatenate(_forces(outcome, evidence)), edges)
     v, x = ((e[1:] + e[:-1]) / 2 for e in edges)
@@ -93,8 +94,10 @@ def force_surface(outcome: Outcome, evidence: Evidence) -> ForceSurface:
 
 
 def _forces(outcome: Outcome, evidence: Evidence) -> Sequence[Array]:
-    residuals: Sequence[Tensor] = (*outcome.fit_residuals, *outcome.holdout)
-    return [_inner(residual_force(outcome, r.detach(), evidence.sampling_rate).numpy()) for r in residuals]
+    records = (*evidence.fitted, *evidence.held)
+    residuals = first_channel((*outcome.fit_residuals, *outcome.holdout), records)
+    pairs = zip(residuals, records, strict=True)
+    return [_inner(residual_force(outcome, torch.as_tensor(r), record.sampling_rate).numpy()) for r, record in pairs]
 
 
 def _inner(values: Array) -> Array:

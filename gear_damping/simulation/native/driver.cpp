@@ -208,11 +208,20 @@ static inline void flush(double* out, long length, long lanes, long lane, long f
     }
 }
 
+// The rate of the velocity at the end of an interval, natural units: row 0 of P is the interval.
+__attribute__((noinline)) static vd acceleration_of(const vd* y, const Block& b) {
+  vd out[N_STATE];
+  rates_at(vd{} + 1.0, y, b, b.L, out);
+  return out[1] / b.P[0];
+}
+
 // fixed (N_FIXED, lanes); series (intervals, N_SERIES, lanes); state (N_STATE, lanes) and branch
 // (N_SWITCH, lanes) are read and left at the last interval; out (N_STATE, lanes, length) gets `count` outputs.
+// acceleration (lanes, length), where not null, gets the rate of the velocity at the same outputs.
 // Lanes `from` to `to` are whole groups of VECTORS vectors, but for the last ones of all.
 extern "C" void walk(long lanes, long from, long to, long first, long count, long substeps, long length,
-                     const double* fixed, const double* series, double* state, double* branch, double* out) {
+                     const double* fixed, const double* series, double* state, double* branch, double* out,
+                     double* acceleration) {
   const double part = 1.0 / double(substeps);
   for (long group = from; group < to; group += WIDTH * VECTORS) {
     Block b[VECTORS];
@@ -236,6 +245,11 @@ extern "C" void walk(long lanes, long from, long to, long first, long count, lon
         for (int i = 0; i < N_STATE; ++i) kept[m][place][i] = y[m][i];
         if (place == TILE - 1 || n == count - 1)
           flush(out, length, lanes, group + m * WIDTH, n - place, place + 1, kept[m]);
+        if (acceleration) {
+          const long lane = group + m * WIDTH;
+          const vd now = acceleration_of(y[m], b[m]);
+          for (int l = 0; l < WIDTH && lane + l < lanes; ++l) acceleration[(lane + l) * length + n] = now[l];
+        }
       }
     }
     for (int m = 0; m < VECTORS; ++m) {

@@ -29,17 +29,27 @@ class NativeStepper(Stepper):
         lanes, total, length = fixed.shape[1], out.shape[0], out.stride(2)
         if out.stride() != (1, lanes * length, length):
             raise ValueError("out must be a view of (n_state, batch, time) in memory: permute it")
+        rates = self._acceleration_rows(length)
         shares = self._shares(lanes)
         with ThreadPoolExecutor(len(shares)) as pool:
             for first in range(0, total, BLOCK):
                 count = min(BLOCK, total - first)
-                tensors = (fixed, series, state, locked, out[first : first + count])
+                now = None if rates is None else rates[:, first + 1 :]  # the first column is the start
+                tensors = (fixed, series, state, locked, out[first : first + count], now)
                 numbers = (first, count, substeps, length)
                 list(pool.map(partial(self._walk, lanes, numbers, tensors), shares))
                 report(first + count)
 
-    def _walk(self, lanes: int, numbers: tuple[int, ...], tensors: tuple[Tensor, ...], share: tuple[int, int]) -> None:
-        pointers = (ctypes.c_void_p(tensor.data_ptr()) for tensor in tensors)
+    def _acceleration_rows(self, length: int) -> Tensor | None:
+        """Where the kernel writes the acceleration, in rows as long as those of the states; None: it is not asked."""
+        if self.acceleration is not None and self.acceleration.stride() != (length, 1):
+            raise ValueError("acceleration must lie in memory as one of the states does, (batch, time)")
+        return self.acceleration
+
+    def _walk(
+        self, lanes: int, numbers: tuple[int, ...], tensors: tuple[Tensor | None, ...], share: tuple[int, int]
+    ) -> None:
+        pointers = (ctypes.c_void_p(None if tensor is None else tensor.data_ptr()) for tensor in tensors)
         self.kernel_library.walk(*(ctypes.c_long(n) for n in (lanes, *share, *numbers)), *pointers)
 
     def _shares(self, lanes: int) -> list[tuple[int, int]]:

@@ -2,36 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from . import pair
 from .catalogue import FOREIGN
-from .draft import Draft, draft, true_mean_stiffness
+from .draft import Draft, Wanted, draft, true_mean_stiffness
+from .instruments import HiddenRecord, records_of, stated
 from .integrate import Trajectory
 from .invariants import invariants
 from .knobs import Knobs, stack
-from .plans import Condition
-from .sensor import others, transmission_error
-from .sizing import LADDER, RATE, Sized, lanes_of, path_of, run, size
+from .pair import Rig
+from .setup import Setup
+from .sizing import LADDER, Sized, clean, corrected, lanes_of, path_of, run, size
 from .stiffness import Arrays
 
 SIZING_SPAN = 2500  # samples of each record that the size is judged by
 LANES = 2000  # that are integrated together
 SUBSTEPS = 4
-ANGLE_NOISE = 5e-6  # rad
-
-
-@dataclass(frozen=True, eq=False)
-class HiddenRecord:
-    """One record: channels (n,) in SI by their canonical names, and the condition that was set."""
-
-    name: str
-    condition: Condition
-    time: np.ndarray
-    channels: dict[str, np.ndarray]
+CORRECTIONS = 2  # of the size, where rig or sensors were asked for; such a case is drawn alone
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +44,11 @@ class HiddenCase:
     params: tuple[dict, ...] = field(repr=False)
 
     @property
+    def setup(self) -> Setup:
+        """Its sensors and units."""
+        return self.origin.setup
+
+    @property
     def first(self) -> tuple[HiddenRecord, ...]:
         """The records of the measurement before anything was added."""
         return tuple(record for record in self.records if not record.condition.added)
@@ -61,10 +56,16 @@ class HiddenCase:
 
 def draw_case(
     stratum: str, seed: int, *, duration: float = 0.05, snr_db: float | None = None,
-    target_excess: float | None = None,
+    target_excess: float | None = None, rig: str | Rig | None = None, sensors: str | Setup | None = None,
+    chosen: Mapping[str, float | str] | None = None,
 ) -> HiddenCase:
-    """One case; see draw_cases, which draws many at a fraction of the cost of each."""
-    return draw_cases([(stratum, seed)], duration=duration, snr_db=snr_db, target_excess=target_excess)[0]
+    """One case; see draw_cases, which draws many at a fraction of the cost of each.
+
+    rig: the usual one where None, `drawn`, or its teeth, `17/43`. sensors: the usual ones where None, `drawn`, or a
+    plan by name (setup.PLANS). chosen: parameters of the first effect, where chance should not choose them.
+    """  # fmt: skip
+    asked = Wanted(stratum, seed, duration, snr_db, target_excess, rig, sensors, chosen or {})
+    return _drawn([draft(asked)])[0]
 
 
 def draw_cases(
@@ -76,27 +77,40 @@ def draw_cases(
     duration: of each record / s. snr_db: AC part of the channel over its noise; drawn from 20 to 40 where None.
     target_excess: the excess D / % that each effect is sized for; drawn where None.
     """
-    drafts = [draft(stratum, seed, duration, snr_db, target_excess) for stratum, seed in wanted]
+    return _drawn([draft(Wanted(stratum, seed, duration, snr_db, target_excess)) for stratum, seed in wanted])
+
+
+def _drawn(drafts: list[Draft]) -> list[HiddenCase]:
+    """The cases of drafts that share their rate and length."""
     cases, group, lanes = [], [], 0
     for index, one in enumerate(drafts):
         group.append(one)
         lanes += len(one.records) * (1 + LADDER * len(one.effects))
         if lanes > LANES or index == len(drafts) - 1:
-            cases += _together(group, round(duration * RATE))
+            cases += _together(group)
             group, lanes = [], 0
     return cases
 
 
-def _together(drafts: list[Draft], n: int) -> list[HiddenCase]:
-    sized = size(drafts, min(n, SIZING_SPAN))
-    knobs = stack([lane for one, s in zip(drafts, sized, strict=True) for lane in truth_lanes(one, s.params)])
-    path = run(knobs, drafts, [1] * len(drafts), n, SUBSTEPS)
+def _together(drafts: list[Draft]) -> list[HiddenCase]:
+    sized = size(drafts, min(drafts[0].n, SIZING_SPAN))
+    knobs, path = _run(drafts, sized)
+    for _ in range(CORRECTIONS if not drafts[0].usual else 0):
+        seen = clean(drafts[0], knobs, path)[: sized[0].basis.response.shape[0]]
+        if not corrected(drafts[0], sized[0], sized[0].basis.excess(seen - sized[0].basis.response)["excess_percent"]):
+            break
+        knobs, path = _run(drafts, sized)
     cases, first = [], 0
     for one, s in zip(drafts, sized, strict=True):
         own = slice(first, first + len(one.records))
         cases.append(_case(one, s, lanes_of(knobs, own), path_of(path, own)))
         first = own.stop
     return cases
+
+
+def _run(drafts: list[Draft], sized: list[Sized]) -> tuple[Arrays, Trajectory]:
+    knobs = stack([lane for one, s in zip(drafts, sized, strict=True) for lane in truth_lanes(one, s.params)])
+    return knobs, run(knobs, drafts, [1] * len(drafts), drafts[0].n, SUBSTEPS)
 
 
 def truth_lanes(one: Draft, params: Sequence[dict]) -> list[Knobs]:
@@ -111,37 +125,26 @@ def truth_lanes(one: Draft, params: Sequence[dict]) -> list[Knobs]:
 
 
 def _case(one: Draft, sized: Sized, knobs: Arrays, path: Trajectory) -> HiddenCase:
-    clean = transmission_error(knobs, path)
-    sigma = float(np.sqrt(np.mean(np.var(clean, axis=0)))) * 10.0 ** (-one.snr_db / 20.0)
-    records = _records(one.conditions, knobs, path, sigma, one.noise, 1)
-    truth = _truth(one, sized, path, clean, sigma)
+    seen = clean(one, knobs, path)
+    sigma = float(np.sqrt(np.mean(np.var(seen, axis=0)))) * 10.0 ** (-one.snr_db / 20.0)
+    records = records_of(one, knobs, path, sigma)
+    truth = _truth(one, sized, path, seen, sigma)
     mode = "held" if one.shape["held"] else "balanced"
     params = tuple(sized.params)
-    return HiddenCase(one.stratum, one.seed, one.plan, one.nominal, mode, records, one.fault, truth, one, params)
+    nominal = stated(one.nominal, one.setup)
+    return HiddenCase(one.stratum, one.seed, one.plan, nominal, mode, records, one.fault, truth, one, params)
 
 
-def _records(conditions, knobs: Arrays, path: Trajectory, sigma: float, noise, number: int):
-    shape = path.x[path.time > -1e-12].shape
-    channels = {"transmission_error": transmission_error(knobs, path, sigma * noise.normal(size=shape))}
-    channels |= others(knobs, path)
-    channels["pinion_angle"] = channels["pinion_angle"] + ANGLE_NOISE * noise.normal(size=shape)
-    return tuple(
-        HiddenRecord(f"run_{number + i}", condition, np.arange(shape[0]) / RATE,
-                     {name: values[:, i].copy() for name, values in channels.items()})
-        for i, condition in enumerate(conditions)
-    )
-
-
-def _truth(one: Draft, sized: Sized, path: Trajectory, clean: np.ndarray, sigma: float) -> dict[str, object]:
+def _truth(one: Draft, sized: Sized, path: Trajectory, seen: np.ndarray, sigma: float) -> dict[str, object]:
     basis = sized.basis
-    difference = clean[: basis.response.shape[0]] - basis.response
+    difference = seen[: basis.response.shape[0]] - basis.response
     misread = sum(p for e, p in zip(one.effects, sized.promised, strict=True) if e.as_modelled)
     stiffness = true_mean_stiffness(one.shape)
     rms_rate = float(np.sqrt(np.mean(np.var(path.v, axis=0))))
     return {
         "stratum": one.stratum, "seed": one.seed, "plan": one.plan, "fault": one.fault, "snr_db": one.snr_db,
         "noise_std": sigma, "mean_stiffness": stiffness,
-        "damping_ratio_percent": 50.0 * one.shape["viscous"] / float(np.sqrt(stiffness * pair.MASS)),
+        "damping_ratio_percent": 50.0 * one.shape["viscous"] / float(np.sqrt(stiffness * one.rig.mass)),
         "in_catalogue": not any(effect.name in FOREIGN for effect in one.effects),
         **basis.excess(difference), "excess_percent_by_misreading": misread,
         "first_records": basis.excess(difference, with_added=False),
@@ -152,5 +155,7 @@ def _truth(one: Draft, sized: Sized, path: Trajectory, clean: np.ndarray, sigma:
             for effect, params, target, promised in zip(
                 one.effects, sized.params, one.targets, sized.promised, strict=True)
         ],
+        "pair": one.rig.name, "natural_frequency": one.rig.natural_frequency, "rate": one.rig.rate,
+        "sensors": one.setup.name, "colour": one.setup.colour,
         "rig": one.shape, "records": [{"name": f"run_{i + 1}", **vars(c)} for i, c in enumerate(one.conditions)],
     }

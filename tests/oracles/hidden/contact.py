@@ -11,7 +11,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from . import pair
 from .knobs import any_on
 from .stiffness import Arrays, mean_stiffness
 
@@ -171,10 +170,10 @@ class Motion:
         if self.torsion is not None:
             twist, speed = y[self.torsion], y[self.torsion + 1]
             shaft = p["torsion_stiffness"] * twist + p["torsion_damping"] * speed
-            arm, inertia = pair.RADIUS[0], pair.INERTIA[0]
+            arm, inertia = p["radius_1"], p["inertia_1"]
             relative = (now.torque - shaft) / p["motor"] - (shaft - arm * mesh) / inertia
             out[self.torsion], out[self.torsion + 1] = speed, p["torsion"] * relative
-            out[1] += p["torsion"] * pair.MASS * arm / inertia * (shaft - now.torque) / p["mass"]
+            out[1] += p["torsion"] * p["joint_mass"] * arm / inertia * (shaft - now.torque) / p["mass"]
         if self.rows > self.yielding:
             z, limit = y[self.yielding :], p["yield"] * YIELD_SPREAD
             held = rate - np.abs(rate) * z / limit

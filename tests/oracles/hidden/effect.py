@@ -9,6 +9,7 @@ from types import MappingProxyType
 import numpy as np
 
 from .knobs import Knobs
+from .pair import Rig
 
 Params = dict[str, float | list[float] | str]
 Draw = Callable[[np.random.Generator, float], Params]  # (generator, duration / s)
@@ -22,6 +23,7 @@ class Effect:
     sizes: parameters that carry the size s, each in proportion to s to this power; s = 1 is the largest, `least`
     the smallest. shrink: replaces that rule. as_modelled: knobs of a model misled by the effect, where the motion
     itself does not change. plan: the plan of records that can show it. given: what the nominal model already has.
+    on_rig: what is drawn besides where the rig is not the usual one.
     """
 
     name: str
@@ -33,6 +35,7 @@ class Effect:
     least: float = 1.0 / 512.0
     plan: str = "full"
     given: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
+    on_rig: Callable[[np.random.Generator, Rig], Params] | None = None
 
     @property
     def has_size(self) -> bool:

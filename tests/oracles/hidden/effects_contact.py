@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from . import pair
 from .effect import Effect, Params, between, signed
 from .knobs import Knobs
 
@@ -15,7 +14,7 @@ KNOWN_GAP = 8e-5  # m, of the cases whose backlash the user states
 def reference_velocity(record: Knobs) -> float:
     """V = omega_n F0 / k0 / (m/s) of a record."""
     k = record["one_pair"] + (record["two_pairs"] - record["one_pair"]) * (record["contact_ratio"] - 1.0)
-    return abs(record["torque"]) / pair.RADIUS[0] / float(np.sqrt(k * record["mass"]))
+    return abs(record["torque"]) / record["radius_1"] / float(np.sqrt(k * record["mass"]))
 
 
 def _power_law(rng, duration) -> Params:
@@ -24,7 +23,7 @@ def _power_law(rng, duration) -> Params:
 
 
 def _turn_power_law(p: Params, record: Knobs) -> Knobs:
-    rounding = 0.1 * TYPICAL_RATE if p["exponent"] < 1.0 else 1e-4
+    rounding = (0.1 * TYPICAL_RATE if p["exponent"] < 1.0 else 1e-4) * record["rate_scale"]
     return {"power": p["coefficient"], "power_n": p["exponent"], "power_rounding": rounding}
 
 
@@ -102,7 +101,7 @@ CONTACT = (
     ),
     Effect(
         "load_dependent_contact", lambda rng, T: {"growth": 0.3, "reference_load": 5321.0},
-        lambda p, record: {"contact_growth": p["growth"] / p["reference_load"] / pair.RADIUS[0]}, {"growth": 1},
+        lambda p, record: {"contact_growth": p["growth"] / p["reference_load"] / record["radius_1"]}, {"growth": 1},
     ),
     Effect(
         "inertia_error", lambda rng, T: {"share": signed(rng, 0.3)},

@@ -8,6 +8,8 @@ from . import pair
 from .effect import Effect, Params, phase
 from .knobs import N_PROFILE, Knobs
 
+SHAFTS = ("pinion", "gear")
+
 
 def _runout(shaft: str) -> Effect:
     return Effect(
@@ -37,8 +39,11 @@ def _turn_profile(p: Params, record: Knobs) -> Knobs:
 
 
 def _pitch(rng, duration) -> Params:
+    return _pitch_of(pair.TEETH[0], rng)
+
+
+def _pitch_of(count: int, rng) -> Params:
     """One deviation a tooth; mean and first order are no pitch error and are taken out."""
-    count = pair.TEETH[0]
     lines = np.fft.rfft(rng.normal(size=count))
     lines[:2] = 0.0
     values = np.fft.irfft(lines, count)
@@ -47,7 +52,19 @@ def _pitch(rng, duration) -> Params:
     return {"values": [float(v) for v in values], "phase": 0.0, "handover": handover}
 
 
-CRACK_AREA = 2.0 * np.pi / pair.TEETH[0] * 0.5  # rad of pinion angle and contact ratio under the raised cosine
+def _pitch_on(rng, rig: pair.Rig) -> Params:
+    shaft = int(rng.integers(2))
+    return {"shaft": SHAFTS[shaft]} | _pitch_of(rig.teeth[shaft], rng)
+
+
+def _turn_pitch(p: Params, record: Knobs) -> Knobs:
+    found = {"pitch": np.asarray(p["values"]), "pitch_phase": p["phase"], "handover": p["handover"]}
+    return found | {"pitch_on_gear": float(p.get("shaft") == "gear")}
+
+
+def crack_area(teeth: float) -> float:
+    """Shaft angle / rad under the raised cosine, per contact ratio."""
+    return 2.0 * np.pi / teeth * 0.5
 
 
 GEOMETRY = (
@@ -57,12 +74,12 @@ GEOMETRY = (
     _modulation("gear"),
     Effect("profile_error", _profile, _turn_profile, {"amplitudes": 1}),
     Effect(
-        "pitch_error", _pitch,
-        lambda p, record: {"pitch": np.asarray(p["values"]), "pitch_phase": p["phase"], "handover": p["handover"]},
-        {"values": 1},
+        "pitch_error", _pitch, _turn_pitch, {"values": 1}, on_rig=_pitch_on,
     ),
     Effect(
         "tooth_crack", lambda rng, T: {"depth": 0.6, "phase": phase(rng)},
-        lambda p, record: {"crack": p["depth"], "crack_phase": p["phase"]}, {"depth": 1},
+        lambda p, record: {"crack": p["depth"], "crack_phase": p["phase"],
+                           "crack_on_gear": float(p.get("shaft") == "gear")},
+        {"depth": 1}, on_rig=lambda rng, rig: {"shaft": SHAFTS[int(rng.integers(2))]},
     ),
 )  # fmt: skip

@@ -8,7 +8,7 @@ from . import pair
 from .effect import Effect, Params, between, phase, signed
 from .knobs import Knobs
 
-GEARS = pair.INERTIA[0] + pair.INERTIA[1] * (pair.RADIUS[0] / pair.RADIUS[1]) ** 2  # kg m^2 at the pinion's shaft
+HIGH_ORDERS = (12.0, 36.0)  # per turn of the pinion, drawn on other rigs where three meshes reach so far
 
 
 def _ripple(rng, duration) -> Params:
@@ -16,6 +16,12 @@ def _ripple(rng, duration) -> Params:
     if rng.random() < 0.3:
         return {"form": "proportional", "share": 0.3, "order": order, "phase": angle}
     return {"form": "torque", "amplitude": 40.0, "order": order, "phase": angle}
+
+
+def _ripple_order(rng, rig: pair.Rig) -> Params:
+    """Any order up to three meshes, but for the meshes themselves."""
+    high = [order for order in HIGH_ORDERS if order <= 3 * rig.teeth[0] and order % rig.teeth[0]]
+    return {"order": float(rng.choice([1.0, 2.0, 3.0, 4.0, 6.0, *high, *high]))}
 
 
 def _turn_ripple(p: Params, record: Knobs) -> Knobs:
@@ -52,13 +58,14 @@ def _turn_bearing(p: Params, record: Knobs) -> Knobs:
 
 def _torsion(rng, duration) -> Params:
     motor = between(rng, 2e-3, 2e-2)
-    inertia = 1.0 / (1.0 / motor + 1.0 / GEARS)
+    inertia = 1.0 / (1.0 / motor + 1.0 / pair.USUAL.gears)
     stiffness = (2.0 * math.pi * 2000.0) ** 2 * inertia
     return {"stiffness": stiffness, "motor_inertia": motor, "damping_ratio": float(rng.uniform(0.01, 0.04))}
 
 
 def _turn_torsion(p: Params, record: Knobs) -> Knobs:
-    inertia = 1.0 / (1.0 / p["motor_inertia"] + 1.0 / GEARS)
+    gears = record["inertia_1"] + record["inertia_2"] * (record["radius_1"] / record["radius_2"]) ** 2
+    inertia = 1.0 / (1.0 / p["motor_inertia"] + 1.0 / gears)
     damping = 2.0 * p["damping_ratio"] * math.sqrt(p["stiffness"] * inertia)
     return {"torsion": 1.0, "torsion_stiffness": p["stiffness"], "torsion_damping": damping,
             "motor": p["motor_inertia"]}  # fmt: skip
@@ -69,7 +76,7 @@ def _quieter(p: Params, size: float) -> Params:
 
 
 LOAD = (
-    Effect("torque_ripple", _ripple, _turn_ripple, {"amplitude": 1, "share": 1}),
+    Effect("torque_ripple", _ripple, _turn_ripple, {"amplitude": 1, "share": 1}, on_rig=_ripple_order),
     Effect("torque_variation", _torque_variation, _turn_variation, {"sine_amplitude": 1, "ramp_change": 1}),
     Effect(
         "windage_drag", lambda rng, T: {"coefficient": 1.5e-4}, lambda p, record: {"windage": p["coefficient"]},
@@ -77,7 +84,7 @@ LOAD = (
     ),
     Effect(
         "load_noise", lambda rng, T: {"snr_db": 6.0},
-        lambda p, record: {"load_noise": abs(record["torque"]) / pair.RADIUS[0] * 10.0 ** (-p["snr_db"] / 20.0)},
+        lambda p, record: {"load_noise": abs(record["torque"]) / record["radius_1"] * 10.0 ** (-p["snr_db"] / 20.0)},
         shrink=_quieter,
     ),
     Effect("bearing_flexibility", _bearing, _turn_bearing, {"stiffness": -1}, least=1.0 / 256.0),

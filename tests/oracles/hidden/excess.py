@@ -18,8 +18,8 @@ HARMONICS = 8
 BLOCK = 256  # samples whose steps are computed together
 
 
-def sensitivities(knobs: Arrays, path: Trajectory) -> np.ndarray:
-    """(n, record, parameter) from t = 0 on, in m per relative change, by the variational equation.
+def sensitivities(knobs: Arrays, path: Trajectory, order: int = 0) -> np.ndarray:
+    """(n, record, parameter) from t = 0 on, of x or a derivative per relative change, by the variational equation.
 
     Parameters: mean stiffness, cosine and sine coefficients 1 ... HARMONICS, mesh phase, damping.
     """
@@ -29,11 +29,20 @@ def sensitivities(knobs: Arrays, path: Trajectory) -> np.ndarray:
     for first in range(0, path.time.size - 1, BLOCK):
         count = min(BLOCK, path.time.size - 1 - first)
         forced = _forcing(knobs, path, first, count, h)
-        for free, driven in zip(*_steps(knobs, *forced, h), strict=True):
-            kept.append(y)
+        for i, (free, driven) in enumerate(zip(*_steps(knobs, *forced, h), strict=True)):
+            kept.append(y if order < 2 else _acceleration(y, i, forced, knobs["mass"]))
             y = np.einsum("ijr,jrs->irs", free, y) + driven if kept[1:] else driven
-    kept[0] = np.zeros_like(y)
-    return np.stack([*kept, y])[begin:, 0]
+    kept.append(y if order < 2 else kept[-1])  # no step begins at the last sample
+    kept[0] = np.zeros_like(kept[-1])
+    return np.stack(kept)[begin:, order % 2]
+
+
+def _acceleration(y: np.ndarray | float, step_index: int, forced, mass: np.ndarray) -> np.ndarray | float:
+    """The acceleration at the start of a step in place of x and x'."""
+    if np.ndim(y) == 0:
+        return y
+    k, c, forces = (part[step_index, 0] for part in forced)
+    return ((forces - k[:, None] * y[0] - c[:, None] * y[1]) / mass[:, None])[None]
 
 
 def _forcing(knobs: Arrays, path: Trajectory, first: int, count: int, h: float):

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import pair
 from .knobs import any_on
 from .stiffness import Arrays, carrying, of_shares, smooth_step
 from .tooth_friction import friction_factor
@@ -32,8 +31,8 @@ def turning(knobs: Arrays, t: np.ndarray, wobble: bool = True) -> Turning:
     if wobble and any_on(knobs, "wobble"):
         turn = angle + knobs["wobble_phase"]
         angle, speed = angle + knobs["wobble"] * np.cos(turn), speed * (1.0 - knobs["wobble"] * np.sin(turn))
-    gear = angle * pair.TEETH[0] / pair.TEETH[1] + knobs["gear_phase"]
-    return Turning(angle, gear, pair.TEETH[0] * angle + knobs["mesh_phase"], speed)
+    gear = angle * knobs["teeth_1"] / knobs["teeth_2"] + knobs["gear_phase"]
+    return Turning(angle, gear, knobs["teeth_1"] * angle + knobs["mesh_phase"], speed)
 
 
 def stiffness(knobs: Arrays, t: np.ndarray, at: Turning) -> tuple[np.ndarray, np.ndarray | float]:
@@ -44,22 +43,23 @@ def stiffness(knobs: Arrays, t: np.ndarray, at: Turning) -> tuple[np.ndarray, np
         if any_on(knobs, f"{shaft}_modulation"):
             k = k * (1.0 + knobs[f"{shaft}_modulation"] * np.cos(angle + knobs[f"{shaft}_modulation_phase"]))
     if any_on(knobs, "crack"):
-        k = k * (1.0 - knobs["crack"] * crack_window(knobs, at.pinion))
+        k = k * (1.0 - knobs["crack"] * crack_window(knobs, at))
     if any_on(knobs, "warming", "warmed"):
         k = k * (1.0 + knobs["warmed"] + knobs["warming"] * t)
     return k, friction_factor(knobs, at, places, shares) if any_on(knobs, "friction") else 1.0
 
 
-def crack_window(knobs: Arrays, pinion: np.ndarray) -> np.ndarray:
-    """A raised cosine over the contact of one tooth, which begins at pinion angle -phase."""
-    since = np.mod(pinion + knobs["crack_phase"], TURN) * pair.TEETH[0] / TURN / knobs["contact_ratio"]
+def crack_window(knobs: Arrays, at: Turning) -> np.ndarray:
+    """A raised cosine over the contact of one tooth, which begins at its shaft's angle -phase."""
+    angle, teeth = _of_shaft(knobs, at, "crack_on_gear")
+    since = np.mod(angle + knobs["crack_phase"], TURN) * teeth / TURN / knobs["contact_ratio"]
     return np.where(since < 1.0, 0.5 - 0.5 * np.cos(TURN * np.minimum(since, 1.0)), 0.0)
 
 
 def error(knobs: Arrays, at: Turning) -> tuple[np.ndarray, np.ndarray]:
     """e / m and e' / (m/s)."""
     e, by_pinion = np.zeros_like(at.pinion), np.zeros_like(at.pinion)
-    ratio = pair.TEETH[0] / pair.TEETH[1]
+    ratio = knobs["teeth_1"] / knobs["teeth_2"]
     for name, angle, rate in (("pinion", at.pinion, 1.0), ("gear", at.gear, ratio)):
         if any_on(knobs, f"{name}_runout"):
             size, turn = knobs[f"{name}_runout"], angle + knobs[f"{name}_runout_phase"]
@@ -67,22 +67,32 @@ def error(knobs: Arrays, at: Turning) -> tuple[np.ndarray, np.ndarray]:
     for h, (size, phase) in enumerate(zip(knobs["profile"], knobs["profile_phase"], strict=True), 1):
         if np.any(size):
             turn = h * at.mesh + phase
-            e, by_pinion = e + size * np.cos(turn), by_pinion - size * h * pair.TEETH[0] * np.sin(turn)
+            e, by_pinion = e + size * np.cos(turn), by_pinion - size * h * knobs["teeth_1"] * np.sin(turn)
     if any_on(knobs, "pitch"):
-        value, slope = pitch_steps(knobs, at.pinion)
+        value, slope = pitch_steps(knobs, at)
         e, by_pinion = e + value, by_pinion + slope
     return e, by_pinion * at.speed
 
 
-def pitch_steps(knobs: Arrays, pinion: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Pitch error / m and its slope / (m/rad): each tooth's value, handed over half way to the next tooth."""
-    count = pair.TEETH[0]
-    turn = np.mod(pinion + knobs["pitch_phase"], TURN) * count / TURN
+def _of_shaft(knobs: Arrays, at: Turning, on_gear: str) -> tuple[np.ndarray, np.ndarray]:
+    """Angle and teeth of the shaft that a fault sits on."""
+    gear = knobs[on_gear] > 0.0
+    return np.where(gear, at.gear, at.pinion), np.where(gear, knobs["teeth_2"], knobs["teeth_1"])
+
+
+def pitch_steps(knobs: Arrays, at: Turning) -> tuple[np.ndarray, np.ndarray]:
+    """Pitch error / m and its slope / (m per rad of the pinion): each tooth's value, handed over half way to the next.
+
+    The pinion turns through one pitch while the gear does: the slope is the same on either shaft.
+    """
+    angle, teeth = _of_shaft(knobs, at, "pitch_on_gear")
+    count = teeth.astype(int)
+    turn = np.mod(angle + knobs["pitch_phase"], TURN) * teeth / TURN
     tooth = np.floor(turn).astype(int) % count
-    lane = np.broadcast_to(np.arange(pinion.shape[-1]), tooth.shape)
+    lane = np.broadcast_to(np.arange(angle.shape[-1]), tooth.shape)
     here, following = knobs["pitch"][tooth, lane], knobs["pitch"][(tooth + 1) % count, lane]
     share = np.clip((turn - np.floor(turn) - 0.5) / knobs["handover"] + 0.5, 0.0, 1.0)
-    slope = 140.0 * (share * (1.0 - share)) ** 3 / knobs["handover"] * count / TURN
+    slope = 140.0 * (share * (1.0 - share)) ** 3 / knobs["handover"] * knobs["teeth_1"] / TURN
     return here + (following - here) * smooth_step(share), (following - here) * slope
 
 
@@ -90,7 +100,7 @@ def measured_torques(knobs: Arrays, t: np.ndarray) -> tuple[np.ndarray, np.ndarr
     """Pinion torque and resisting gear torque / N m as torque sensors see them."""
     flutter = knobs["flutter"] * np.cos(knobs["flutter_rate"] * t + knobs["flutter_phase"])
     pinion = knobs["torque"] * (1.0 + flutter) + knobs["swing"] * np.cos(knobs["swing_rate"] * t + knobs["swing_phase"])
-    ratio = pair.RADIUS[1] / pair.RADIUS[0]
+    ratio = knobs["radius_2"] / knobs["radius_1"]
     return pinion, ratio * np.where(knobs["held"] > 0.0, knobs["torque"], pinion)
 
 
@@ -101,9 +111,10 @@ def load(knobs: Arrays, t: np.ndarray, at: Turning) -> tuple[np.ndarray, np.ndar
     """
     pinion, gear = measured_torques(knobs, t)
     unseen = _unseen_torque(knobs, t, at)
-    driven = gear + np.where(knobs["held"] > 0.0, 0.0, unseen * pair.RADIUS[1] / pair.RADIUS[0])
+    driven = gear + np.where(knobs["held"] > 0.0, 0.0, unseen * knobs["radius_2"] / knobs["radius_1"])
     torque = pinion + unseen
-    force = pair.MASS * (pair.RADIUS[0] * torque / pair.INERTIA[0] + pair.RADIUS[1] * driven / pair.INERTIA[1])
+    arms = (knobs[f"radius_{i}"] * each / knobs[f"inertia_{i}"] for i, each in ((1, torque), (2, driven)))
+    force = knobs["joint_mass"] * sum(arms)
     if any_on(knobs, "ripple_share"):
         share = knobs["ripple_share"] * np.cos(knobs["ripple_order"] * at.pinion + knobs["ripple_phase"])
         force, torque = force * (1.0 + share), torque * (1.0 + share)

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from . import pair
 from .contact import YIELD_SPREAD, damping_laws
 from .effect import Effect, Params
-from .effects_geometry import CRACK_AREA
+from .effects_geometry import crack_area
 from .knobs import Knobs, stack
 from .stiffness import Arrays, mean_stiffness
 
@@ -21,11 +20,12 @@ def invariants(effect: Effect, params: Params, record: Knobs, rms_rate: float) -
     rms_rate: of the deflection in the case's records / (m/s), where the force of a damper is stated.
     """
     if effect.name == "tooth_crack":
-        return {"stiffness_loss_area": params["depth"] * CRACK_AREA * record["contact_ratio"]}
+        area = crack_area(record["teeth_2" if params.get("shaft") == "gear" else "teeth_1"])
+        return {"stiffness_loss_area": params["depth"] * area * record["contact_ratio"]}
     if effect.name not in (*DAMPERS, "hysteretic_damping"):
         return {}
     knobs = stack([{**record, **effect.turn(params, record), "viscous": 0.0}])
-    static = float(knobs["torque"][0] / pair.RADIUS[0] / mean_stiffness(knobs)[0])
+    static = float(knobs["torque"][0] / knobs["radius_1"][0] / mean_stiffness(knobs)[0])
     rate = float(np.sqrt(mean_stiffness(knobs) / knobs["mass"])[0])
     found: dict[str, object] = {"amplitudes": list(AMPLITUDES), "static_deflection": static, "angular_rate": rate}
     if effect.name == "hysteretic_damping":

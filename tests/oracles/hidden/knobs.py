@@ -19,6 +19,8 @@ NEUTRAL: Knobs = {
     # where the shafts are: angle + speed t + wander; what the motion follows wobbles when an angle is misread
     "angle": 0.0, "speed": pair.rpm(4600.0), "wander": 0.0, "wander_rate": 1.0, "wander_phase": 0.0,
     "wobble": 0.0, "wobble_phase": 0.0, "mesh_phase": 0.0, "gear_phase": 0.0,
+    # the rig: teeth, base circles / m, inertias / (kg m^2), and what follows from them
+    **pair.USUAL.knobs(),
     # linear mesh: pair stiffness one_pair, two pairs two_pairs; edge, crown and lean shape it
     "mass": pair.MASS, "one_pair": 2e8, "two_pairs": 4e8, "contact_ratio": 1.6, "edge": 0.1, "crown": 0.0,
     "lean": 0.0, "viscous": 0.0, "contact_growth": 0.0, "warming": 0.0, "warmed": 0.0,
@@ -34,9 +36,10 @@ NEUTRAL: Knobs = {
     # geometry
     "pinion_runout": 0.0, "pinion_runout_phase": 0.0, "gear_runout": 0.0, "gear_runout_phase": 0.0,
     "profile": np.zeros(N_PROFILE), "profile_phase": np.zeros(N_PROFILE),
-    "pitch": np.zeros(pair.TEETH[0]), "pitch_phase": 0.0, "handover": 0.6,
+    "pitch": np.zeros(pair.MOST_TEETH), "pitch_phase": 0.0, "pitch_on_gear": 0.0, "handover": 0.6,
     "pinion_modulation": 0.0, "pinion_modulation_phase": 0.0,
-    "gear_modulation": 0.0, "gear_modulation_phase": 0.0, "crack": 0.0, "crack_phase": 0.0,
+    "gear_modulation": 0.0, "gear_modulation_phase": 0.0,
+    "crack": 0.0, "crack_phase": 0.0, "crack_on_gear": 0.0,
     # laws of the contact
     "gap": math.inf, "power": 0.0, "power_n": 1.0, "power_rounding": 1e-6, "dry": 0.0, "dry_width": 1.0,
     "dry_forward": 0.0, "dry_backward": 0.0, "viscous_forward": 0.0, "viscous_backward": 0.0,
@@ -60,9 +63,15 @@ def stack(lanes: Sequence[Mapping[str, float | np.ndarray]]) -> dict[str, np.nda
     if unknown:
         raise KeyError(f"no such knobs: {sorted(unknown)}")
     return {
-        name: np.stack([np.asarray(lane.get(name, value), dtype=float) for lane in lanes], axis=-1)
+        name: np.stack([_entries(lane.get(name, value), value) for lane in lanes], axis=-1)
         for name, value in NEUTRAL.items()
     }
+
+
+def _entries(given: float | np.ndarray, neutral: float | np.ndarray) -> np.ndarray:
+    """A knob with as many entries as there is room for; the rest are not used."""
+    given = np.asarray(given, dtype=float)
+    return given if given.shape == np.shape(neutral) else np.pad(given, (0, np.size(neutral) - given.size))
 
 
 def any_on(knobs: Mapping[str, np.ndarray], *names: str) -> bool:

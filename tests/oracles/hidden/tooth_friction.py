@@ -6,10 +6,7 @@ import math
 
 import numpy as np
 
-from . import pair
-
 TURN_WIDTH = 0.01  # mesh periods over which the direction of sliding turns at the pitch point
-PITCH_POINT = pair.pitch_point()  # 0.857 mesh periods behind the meeting point
 
 
 def friction_factor(knobs: dict[str, np.ndarray], at, places: list[np.ndarray], shares: list[np.ndarray]):
@@ -20,14 +17,15 @@ def friction_factor(knobs: dict[str, np.ndarray], at, places: list[np.ndarray], 
     """
     total, arms = sum(shares), 0.0
     for w, share in zip(places, shares, strict=True):
-        beyond = w - PITCH_POINT
+        beyond = w - knobs["pitch_point"]
         direction = -2.0 / math.pi * np.arctan(beyond / TURN_WIDTH)
-        arms = arms + share * direction * lever_arm(beyond * pair.BASE_PITCH)
+        arms = arms + share * direction * lever_arm(beyond * knobs["base_pitch"], knobs)
     return 1.0 - knobs["friction"] * np.sign(at.speed) * arms / total
 
 
-def lever_arm(beyond: np.ndarray) -> np.ndarray:
+def lever_arm(beyond: np.ndarray, knobs: dict[str, np.ndarray | float]) -> np.ndarray:
     """L at a contact this far beyond the pitch point along the line of action / m; tan(a) at the pitch point."""
-    slope = math.tan(pair.PRESSURE_ANGLE)
-    rho = pair.RADIUS[0] * slope + beyond, pair.RADIUS[1] * slope - beyond
-    return pair.MASS * sum(r * arm / i for r, arm, i in zip(pair.RADIUS, rho, pair.INERTIA, strict=True))
+    slope = knobs["pressure_slope"]
+    rho = knobs["radius_1"] * slope + beyond, knobs["radius_2"] * slope - beyond
+    shafts = ((knobs[f"radius_{i}"], arm, knobs[f"inertia_{i}"]) for i, arm in enumerate(rho, 1))
+    return knobs["joint_mass"] * sum(r * arm / i for r, arm, i in shafts)

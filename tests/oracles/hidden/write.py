@@ -10,10 +10,10 @@ import yaml
 
 from .case import HiddenCase, HiddenRecord
 from .faults import Sheet, spoilt
+from .setup import FACTORS, SPEED_UNCERTAINTY, Setup
 
-UNITS = {"transmission_error": ("um", 1e6), "pinion_torque": ("N*m", 1.0), "gear_torque": ("N*m", 1.0),
-         "pinion_angle": ("rad", 1.0)}  # fmt: skip
-COLUMNS = {"transmission_error": "dte", "pinion_torque": "T1", "gear_torque": "T2", "pinion_angle": "theta1"}
+COLUMNS = {"transmission_error": "dte", "pinion_torque": "T1", "gear_torque": "T2", "pinion_angle": "theta1",
+           "pinion_speed": "n1", "gear_speed": "n2", "acceleration": "acc"}  # fmt: skip
 
 
 def write_case(case: HiddenCase, folder: str | Path, records: Sequence[HiddenRecord] | None = None) -> Path:
@@ -38,18 +38,48 @@ def write_case(case: HiddenCase, folder: str | Path, records: Sequence[HiddenRec
 
 
 def _sheet(case: HiddenCase, record: HiddenRecord, alone: bool) -> Sheet:
-    shown = [name for name in record.channels if name != "gear_torque" or case.gear_torque == "held"]
-    columns = {"t": record.time} | {COLUMNS[name]: record.channels[name] * UNITS[name][1] for name in shown}
-    if case.seed % 2:
-        columns["theta1"] = np.mod(columns["theta1"], 2.0 * np.pi)
+    unit = case.setup.units
+    known = [name for name in record.channels if name in COLUMNS]
+    shown = [name for name in known if name != "gear_torque" or case.gear_torque == "held"]
+    columns = {"t": record.time} | {COLUMNS[name]: record.channels[name] * FACTORS[unit[name]] for name in shown}
+    if case.seed % 2 and "theta1" in columns:
+        columns["theta1"] = np.mod(columns["theta1"], 2.0 * np.pi * FACTORS[unit["pinion_angle"]])
     channels: dict[str, object] = {"time": {"column": "t", "unit": "s"}}
-    channels |= {name: {"column": COLUMNS[name], "unit": UNITS[name][0]} for name in shown}
-    if case.gear_torque == "balanced":
+    channels |= {name: {"column": COLUMNS[name], "unit": unit[name]} for name in shown}
+    if case.gear_torque == "balanced" and "pinion_torque" in channels:
         channels["gear_torque"] = "balanced"
     declared: dict[str, object] = {"file": f"{record.name}.csv"}
     if not alone:
         declared["role"] = record.condition.role
-    return Sheet(columns, declared | {"channels": channels})
+    sheet = Sheet(columns, declared | {"channels": channels})
+    _declare(case.setup, record, sheet)
+    return sheet
+
+
+def _declare(setup: Setup, record: HiddenRecord, sheet: Sheet) -> None:
+    """What is said of the sensors beside column and unit."""
+    said, channels = sheet.declared, sheet.declared["channels"]
+    response = channels.get(setup.response, {})
+    if setup.corner is not None:
+        response |= {"coupling": "AC", "highpass": {"value": setup.corner, "unit": "Hz"}}
+    elif setup.datum == "arbitrary":
+        response["datum"] = "arbitrary"
+    if setup.response == "acceleration":
+        radius = {"value": round(setup.radius * 1e3, 6), "unit": "mm"}
+        response |= {"mounting": "tangential", "radius": radius, "shaft": setup.shaft}
+    if setup.counts is not None:
+        for shaft in ("pinion", "gear"):
+            sheet.columns[f"count_{shaft}"] = record.channels[f"{shaft}_counts"]
+        said["encoders"] = {shaft: {"column": f"count_{shaft}", "counts_per_revolution": count}
+                            for shaft, count in zip(("pinion", "gear"), setup.counts, strict=True)}  # fmt: skip
+    conditions = {name: {"value": value * FACTORS[setup.units[name]], "unit": setup.units[name]}
+                  for name, value in record.stated.items()}  # fmt: skip
+    if setup.speed == "uncertain":
+        conditions["pinion_speed"]["uncertainty"] = SPEED_UNCERTAINTY
+    if "pinion_torque" in conditions:
+        conditions["gear_torque"] = "balanced"
+    if conditions:
+        said["conditions"] = conditions
 
 
 def _write_csv(path: Path, sheet: Sheet) -> None:

@@ -6,8 +6,9 @@ import pytest
 import torch
 
 from gear_damping.identification.output_error.least_squares import normal_equations, own_basis, without_own
-from gear_damping.identification.output_error.pieces import in_pieces, joined
-from gear_damping.identification.output_error.problem import FitRecord, Prediction, growth
+from gear_damping.identification.output_error.problem import Prediction, growth
+from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.identification.output_error.segments import WHOLE, Segments, covered, in_segments, joined
 
 STARTS, RECORDS, SAMPLES, SHARED, OWN = 2, 3, 20, 4, 2
 
@@ -47,26 +48,40 @@ def test_what_records_have_of_their_own_is_projected_out(prediction):
     torch.testing.assert_close(left, signal - (columns @ best)[:, 0], rtol=1e-9, atol=1e-12)
 
 
-def test_pieces_hold_every_sample_once_and_the_shaft_turns_on():
+def test_segments_hold_every_sample_once_and_say_when_they_begin():
     records = [
         FitRecord(name, samples, 100.0, {"pinion_torque": -samples}, {"pinion_speed": 3.0})
         for name, samples in (("a", torch.arange(103.0)), ("b", torch.arange(50.0)))
     ]
-    pieces = in_pieces(records, 25)
+    segments = Segments(0.25)
+    pieces = in_segments(records, segments)
     assert [len(piece.response) for piece in pieces] == [26, 26, 25, 26, 25, 25]
     assert all(torch.equal(piece.inputs["pinion_torque"], -piece.response) for piece in pieces)
-    # the record counts its own samples, so that a piece's first sample says how many went before
-    angles = [piece.conditions.get("pinion_angle", 0.0) for piece in pieces]
-    assert angles == pytest.approx([3.0 * float(piece.response[0]) / 100.0 for piece in pieces])
+    # the record counts its own samples, so that a segment's first sample says how many went before
+    assert [piece.begins for piece in pieces] == pytest.approx([float(piece.response[0]) / 100.0 for piece in pieces])
     padded = torch.nn.utils.rnn.pad_sequence([piece.response for piece in pieces], batch_first=True)
-    for found, record in zip(joined(padded, records, 25), records, strict=True):
+    for found, record in zip(joined(padded, records, segments), records, strict=True):
         assert torch.equal(found, record.response)
+
+
+def test_stated_segments_are_exact_and_a_shorter_end_is_left_out():
+    record, segments = FitRecord("a", torch.arange(103.0), 100.0), Segments(0.25, exact=True)
+    pieces = in_segments([record], segments)
+    assert [len(piece.response) for piece in pieces] == [25, 25, 25, 25]
+    assert torch.equal(covered([record], segments)[0].response, record.response[:100])
+
+
+def test_segments_of_several_channels_are_put_together_by_channel():
+    record = FitRecord("a", torch.arange(60.0), 100.0)
+    pieces = [torch.cat([record.response[a:b], -record.response[a:b]]) for a, b in Segments(0.3).ends(record)]
+    (found,) = joined(pieces, [record], Segments(0.3), channels=2)
+    assert torch.equal(found, torch.cat([record.response, -record.response]))
 
 
 def test_records_stay_whole_without_a_length():
     record = FitRecord("a", torch.arange(10.0), 100.0)
-    assert len(in_pieces([record], 0)) == 1
-    assert torch.equal(joined([record.response], [record], 0)[0], record.response)
+    assert in_segments([record], WHOLE) == [record]
+    assert torch.equal(joined([record.response], [record], WHOLE)[0], record.response)
 
 
 @pytest.mark.parametrize(("rate", "expected"), [(-3.0, 1.0), (2.0, math.exp(2.0 * 7 / 8))])

@@ -1,0 +1,179 @@
+"""From measured records to what a fit sees: which channels respond, how sensors show the motion, what drives it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+from scipy.interpolate import CubicSpline
+from torch import Tensor
+
+from gear_damping.errors import InputError, Problem
+from gear_damping.identification.output_error.records import Filter, FitRecord, FreeParameter, Observed
+from gear_damping.measurement.record import Channel, Measurement, Quantity, Record
+
+RESPONSES = {
+    "gear_pair": ("transmission_error", "acceleration", "gear_speed", "pinion_speed"),
+    "oscillator": ("displacement", "velocity", "acceleration"),
+}
+INPUTS = {
+    "gear_pair": ("pinion_torque", "gear_torque", "pinion_angle"),
+    "oscillator": ("force", "base_acceleration"),
+}
+MEANS = ("pinion_torque", "gear_torque")
+FREE_ANGLES = ("mesh_phase",)  # what every record without an index has of its own; shaft effects add their phases
+
+
+@dataclass(frozen=True)
+class Known:
+    """What a file states of the rig.
+
+    Args:
+        values: By the file's names, in SI or the rig's own units.
+        uncertainty: Relative standard deviation of those that are not known exactly.
+    """
+
+    values: dict[str, float]
+    uncertainty: dict[str, float]
+
+
+def known_of(measurement: Measurement) -> Known:
+    """What the measurement states of its rig."""
+    stated = measurement.parameters
+    return Known(
+        {name: quantity.value for name, quantity in stated.items()},
+        {name: quantity.uncertainty for name, quantity in stated.items() if quantity.uncertainty},
+    )
+
+
+def response_names(record: Record, system: str) -> tuple[str, ...]:
+    """The channels of a record that are fitted, the one that tells most first.
+
+    The speed of the pinion is one only where no transmission error is declared, and an accelerometer on a casing
+    never: its path from the shafts is unknown.
+    """
+    names = [name for name in RESPONSES[system] if name in record.channels]
+    if "transmission_error" in names:
+        names = [name for name in names if name != "pinion_speed"]
+    return tuple(name for name in names if record.channels[name].mounting != "casing")
+
+
+def fit_record(record: Record, system: str, spring: bool = True) -> FitRecord:
+    """A record as the fits see it.
+
+    Args:
+        record: As it was loaded.
+        system: Of the rig.
+        spring: Whether the rig has a restoring force: without one the zero of a displacement is the initial position.
+
+    Raises:
+        InputError: the record has no response that can be fitted.
+    """
+    names = response_names(record, system)
+    if not names:
+        rule, remedy = f"no response of a {system}", f"declare one of {', '.join(RESPONSES[system])}"
+        raise InputError(Problem(f"{record.name}.channels", rule, remedy=remedy, source=str(record.file)))
+    channels = [(_observed(record, record.channels[name], spring), record.channels[name].values) for name in names]
+    inputs = {name: _input(record, record.channels[name]) for name in INPUTS[system] if name in record.channels}
+    if "pinion_speed" in record.channels and "pinion_angle" not in inputs:
+        inputs["pinion_angle"] = _integrated(_input(record, record.channels["pinion_speed"]), record.sampling_rate)
+    known = {name: quantity.value for name, quantity in record.conditions.items() if name not in inputs}
+    first, *others = [(observed, torch.as_tensor(values, dtype=torch.float64)) for observed, values in channels]
+    return FitRecord(
+        record.name,
+        first[1],
+        record.sampling_rate,
+        inputs,
+        known | _means(inputs, record.sampling_rate),
+        observed=first[0],
+        others=tuple(others),
+        own=tuple(_own(record, inputs)) if system == "gear_pair" else tuple(_uncertain(record)),
+        stamps=None if record.uniform else _positions(record),
+    )
+
+
+def _observed(record: Record, channel: Channel, spring: bool) -> Observed:
+    lowpass = (Filter(channel.lowpass, channel.lowpass_order),) if channel.lowpass else ()
+    highpass = (Filter(channel.highpass, channel.highpass_order, high=True),) if channel.highpass else ()
+    return Observed(
+        channel.name,
+        offset=channel.datum == "arbitrary" and (spring or channel.name != "displacement"),
+        filters=(*lowpass, *highpass) if _within_band(lowpass, record) else highpass,
+        delay=channel.delay,
+        shaft=channel.shaft,
+        radius=channel.radius,
+        absolute=channel.frame == "absolute" and "base_acceleration" in record.channels,
+        gain_uncertainty=channel.uncertainty,
+    )
+
+
+def _within_band(lowpass: tuple[Filter, ...], record: Record) -> bool:
+    """A corner beyond the band of the record filters nothing that is in it."""
+    return bool(lowpass) and lowpass[0].corner < record.sampling_rate
+
+
+def _input(record: Record, channel: Channel) -> Tensor:
+    """An input at evenly spaced instants, moved by what its sensor is late."""
+    values = channel.values
+    if not record.uniform or channel.delay:
+        grid = record.time if record.uniform else _grid(record)
+        at = np.clip(grid + channel.delay, record.time[0], record.time[-1])
+        values = CubicSpline(record.time, values)(at)
+    return torch.as_tensor(values, dtype=torch.float64)
+
+
+def _grid(record: Record) -> np.ndarray:
+    return record.time[0] + np.arange(len(record.time)) / record.sampling_rate
+
+
+def _positions(record: Record) -> Tensor:
+    return torch.as_tensor((record.time - record.time[0]) * record.sampling_rate, dtype=torch.float64)
+
+
+def _integrated(speed: Tensor, rate: float) -> Tensor:
+    """Angle from speed, from 0 at the start."""
+    return torch.cat([speed.new_zeros(1), ((speed[1:] + speed[:-1]) / (2 * rate)).cumsum(0)])
+
+
+def _means(inputs: dict[str, Tensor], sampling_rate: float) -> dict[str, float]:
+    """Mean load and speed of a record: what depends on the operating condition follows them."""
+    found = {name: float(inputs[name].mean()) for name in MEANS if name in inputs}
+    if "pinion_angle" in inputs:
+        angle = inputs["pinion_angle"]
+        found["pinion_speed"] = float(angle[-1] - angle[0]) / (len(angle) - 1) * sampling_rate
+    return found
+
+
+def _own(record: Record, inputs: dict[str, Tensor]) -> list[FreeParameter]:
+    """What a gear pair's record has of its own: its angles where no index tells them, and uncertain conditions."""
+    found = [] if has_index(record) else [FreeParameter(name, 0.0) for name in FREE_ANGLES]
+    return found + [p for p in _uncertain(record) if p.name not in inputs]
+
+
+def has_index(record: Record) -> bool:
+    """Whether the angle of a gear pair's record counts from a mark that other records share."""
+    angle = record.channels.get("pinion_angle")
+    return angle is not None and angle.datum == "absolute"
+
+
+def _uncertain(record: Record) -> list[FreeParameter]:
+    """Conditions that are known with an uncertainty only."""
+    uncertain = ((name, quantity) for name, quantity in record.conditions.items() if quantity.uncertainty)
+    return [_expected(name, quantity) for name, quantity in uncertain]
+
+
+def _expected(name: str, quantity: Quantity) -> FreeParameter:
+    deviation = abs(quantity.value) * quantity.uncertainty
+    return FreeParameter(name, quantity.value, deviation, deviation=deviation, expected=quantity.value)
+
+
+def require_alike(records: Sequence[FitRecord], source: str) -> None:
+    """Refuse records of which some have an input and some do not.
+
+    Raises:
+        InputError: they are not alike.
+    """
+    inputs = {tuple(sorted(name for name in record.inputs if name in INPUTS["oscillator"])) for record in records}
+    if len(inputs) > 1:
+        rule, remedy = "some records have a force and some do not", "explain free decays and forced records apart"
+        raise InputError(Problem("records", rule, remedy=remedy, source=source))

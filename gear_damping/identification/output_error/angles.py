@@ -1,0 +1,63 @@
+"""Where the angles of single records begin: tried all around, record by record."""
+
+from collections.abc import Mapping, Sequence
+from math import pi
+
+import torch
+from torch import Tensor
+
+from gear_damping.identification.output_error.least_squares import own_basis, without_own
+from gear_damping.identification.output_error.problem import OutputErrorProblem
+from gear_damping.identification.output_error.records import SEPARATOR
+
+STARTS = 18  # angles that are tried, 20 degrees apart
+
+
+def angle_bases(problem: OutputErrorProblem) -> list[str]:
+    """Names of the angles that single records have of their own."""
+    bases = (p.name.partition(SEPARATOR) for p in problem.free[problem.n_common :])
+    return list(dict.fromkeys(base for base, _, _ in bases if base.endswith("phase")))
+
+
+def scanned(
+    problem: OutputErrorProblem, shared: Tensor, horizon: float | None = None, bases: Sequence[str] | None = None
+) -> Mapping[str, float]:
+    """The best of several angles of every record, by name; everything else stays.
+
+    Args:
+        problem: With angles that are the records' own.
+        shared: Coordinates of everything else, (n_shared,).
+        horizon: Seconds of each record that are looked at; all where absent.
+        bases: Which angles; all of them where absent, one after another.
+    """
+    found: dict[str, float] = {}
+    for base in angle_bases(problem) if bases is None else bases:
+        places = [i for i, p in enumerate(problem.free) if p.name.startswith(base + SEPARATOR)]
+        angles = torch.linspace(0, 2 * pi, STARTS + 1, dtype=torch.float64)[:-1]
+        starts = shared.repeat(STARTS, 1)
+        for place in places:
+            starts[:, place] = torch.tensor([problem.free[place].coordinate(float(a)) for a in angles])
+        cost = _costs(problem, starts, places, horizon)
+        for place in places:
+            record = problem.free[place].name.partition(SEPARATOR)[2]
+            own = [i for i, one in enumerate(problem.records) if one.record == record]
+            best = int(cost[:, own].sum(1).argmin())
+            shared = shared.clone()
+            shared[place] = starts[best, place]
+            found[problem.free[place].name] = float(angles[best])
+    return found
+
+
+def _costs(problem: OutputErrorProblem, starts: Tensor, tried: Sequence[int], horizon: float | None) -> Tensor:
+    """Sum of squares by start and record, (starts, records), beside what the record's own start and zero can do."""
+    states = problem.first_states().unsqueeze(0)
+    own = [i for i in range(problem.n_common, problem.n_shared) if i not in set(tried)]
+    rows = []
+    for start in starts:  # one at a time: the sensitivities of all would be large
+        prediction = problem.linearise(start.unsqueeze(0), states, horizon)
+        residual, sensitivity = prediction.residual[0], prediction.sensitivity[0]
+        columns = torch.cat([sensitivity[..., own], sensitivity[..., problem.n_shared :]], -1)
+        good = bool(columns.isfinite().all() & residual.isfinite().all())
+        left = without_own(residual.unsqueeze(-1), own_basis(columns, 0)).squeeze(-1) if good else residual
+        rows.append(left.square().sum(-1).nan_to_num(torch.inf))
+    return torch.stack(rows)

@@ -1,0 +1,75 @@
+"""First guesses of a fit: how a record's motion begins, and where the zero of its channels lies."""
+
+from collections.abc import Mapping, Sequence
+
+import torch
+from torch import Tensor
+
+from gear_damping.identification.output_error.records import FitRecord, Observed
+from gear_damping.physics.model import Model
+
+TAIL = 0.25  # of a free decay: where it has come nearest to its rest
+
+
+def static_deflection(model: Model, given: Mapping[str, object], records: Sequence[FitRecord]) -> Tensor:
+    """Mean deflection of each record under its mean load, (records,); 0 for an oscillator."""
+    values = model.values(len(records), **given)
+    for name in {name for record in records for name in record.conditions} & values.keys():
+        known = torch.tensor([r.conditions.get(name, torch.nan) for r in records], dtype=torch.float64)
+        values[name] = torch.where(known.isnan(), values[name], known)
+    derived = model.prepare(values).derived
+    found = derived["mean_load"] / derived["mean_stiffness"]
+    return torch.where(found.isfinite(), found, torch.zeros_like(found))
+
+
+def first_offset(segments: Sequence[FitRecord], channel: Observed, static: float) -> tuple[float, float]:
+    """A first guess of a channel's zero, and what counts as a step of order one."""
+    values = torch.cat([_samples(record, channel.name) for record in segments])
+    spread = float(values.std().clamp(min=1e-300))
+    if channel.derivatives:
+        return float(values.mean()), spread
+    decays = channel.name == "displacement" and not segments[0].inputs
+    rest = values[-max(2, round(TAIL * len(values))) :] if decays else values
+    return float(rest.mean()) - static, spread
+
+
+def first_motion(
+    record: FitRecord, offset: float, static: float, model: Model, given: Mapping[str, object]
+) -> tuple[Tensor, Tensor]:
+    """Displacement and velocity at the start of a record, (2,), and the scale of either.
+
+    From a rate or an acceleration by integration: the mean of a displacement that was not recorded is not known.
+    """
+    shown = record.response.to(torch.float64) - offset
+    step = 1 / record.sampling_rate
+    factor = _participation(record.observed, model, given)
+    for _ in range(record.observed.derivatives):
+        shown = _integrated(shown - shown.mean(), step)
+    place = shown / factor + (static if record.observed.derivatives else 0.0)
+    rate = place.diff() / step
+    scale = torch.stack([place.std().clamp(min=1e-300), rate.std().clamp(min=1e-300)])
+    return torch.stack([place[0], rate[0]]), scale
+
+
+def _integrated(values: Tensor, step: float) -> Tensor:
+    """Running integral without its straight line."""
+    total = torch.cat([values.new_zeros(1), ((values[1:] + values[:-1]) / 2 * step).cumsum(0)])
+    time = torch.linspace(-1, 1, len(total), dtype=total.dtype)
+    return total - total.mean() - time * (time @ total) / (time @ time)
+
+
+def _participation(channel: Observed, model: Model, given: Mapping[str, object]) -> float:
+    """What a channel shows of the motion, as a factor on it: of a shaft, its share of the relative motion."""
+    if model.system.name != "gear_pair" or not channel.derivatives:
+        return 1.0
+    values = model.values(1, **given)
+    derived = model.prepare(values).derived
+    shaft = channel.shaft or channel.name.partition("_")[0]
+    sign = 1.0 if shaft == "pinion" else -1.0
+    share = derived[f"base_radius_{shaft}"] * derived["equivalent_mass"] / values[f"inertia_{shaft}"]
+    return sign * float(share[0]) * (channel.radius or 1.0)
+
+
+def _samples(record: FitRecord, name: str) -> Tensor:
+    listed = ((record.observed, record.response), *record.others)
+    return next(values for channel, values in listed if channel.name == name)

@@ -1,0 +1,99 @@
+"""Records in segments, each with an initial state of its own (multiple shooting).
+
+Where flanks part, a small error of the initial state grows until nothing of a long record can be predicted from
+its start; a segment of a few natural periods can. A fit over segments has fewer local minima, too.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import torch
+from torch import Tensor
+
+from gear_damping.identification.output_error.records import FitRecord
+
+FEWEST_SAMPLES = 24  # of a segment: its initial state takes a few of them
+
+
+@dataclass(frozen=True)
+class Segments:
+    """How records are cut.
+
+    Args:
+        seconds: Length of a segment; 0 leaves records whole.
+        exact: Whether it is exactly that, a shorter end being left out; else the nearest that leaves nothing out.
+    """
+
+    seconds: float = 0.0
+    exact: bool = False
+
+    def __bool__(self) -> bool:
+        return self.seconds > 0
+
+    def ends(self, record: FitRecord) -> list[tuple[int, int]]:
+        """First sample of each segment of a record, and the one behind its last."""
+        total = len(record.response)
+        wanted = max(FEWEST_SAMPLES, round(self.seconds * record.sampling_rate))
+        if not self or wanted >= total:
+            return [(0, total)]
+        if self.exact:
+            return [(first, first + wanted) for first in range(0, total - wanted + 1, wanted)]
+        count = max(1, total // wanted)
+        return list(pairwise(round(i * total / count) for i in range(count + 1)))
+
+
+WHOLE = Segments()
+
+
+def part(record: FitRecord, piece: slice, suffix: str = "") -> FitRecord:
+    """The samples of a slice of a record, as a record of its own or, without a suffix, a segment of it."""
+    first = piece.start or 0
+    stamps, begins = record.stamps, record.begins + first / record.sampling_rate
+    if stamps is not None:
+        stamps = stamps[piece] - stamps[first]
+        begins = record.begins + float(record.stamps[first]) / record.sampling_rate
+    cut = replace(
+        record,
+        response=record.response[piece],
+        inputs={name: series[piece] for name, series in record.inputs.items()},
+        others=tuple((channel, values[piece]) for channel, values in record.others),
+        stamps=stamps,
+        begins=begins,
+    )
+    return replace(cut, name=record.name + suffix) if suffix else replace(cut, group=record.record)
+
+
+def in_segments(records: Sequence[FitRecord], segments: Segments) -> list[FitRecord]:
+    """Every record cut into segments."""
+    return [part(record, slice(*ends)) if segments else record for record in records for ends in segments.ends(record)]
+
+
+def covered(records: Sequence[FitRecord], segments: Segments) -> list[FitRecord]:
+    """The records without the ends that segments leave out."""
+    return [_shortened(record, segments.ends(record)[-1][1]) if segments.exact else record for record in records]
+
+
+def _shortened(record: FitRecord, samples: int) -> FitRecord:
+    return replace(part(record, slice(0, samples)), group=record.group)
+
+
+def joined(
+    series: Sequence[Tensor], records: Sequence[FitRecord], segments: Segments, channels: int = 1
+) -> list[Tensor]:
+    """What stands in the order of the segments put together again by record.
+
+    Args:
+        series: By segment, its channels one after another at one length, (channels * time,).
+        records: The whole records.
+        segments: How they were cut.
+        channels: Channels of each.
+
+    Returns:
+        By record, its channels one after another, (channels * samples,).
+    """
+    left, whole = iter(series), []
+    for record in records:
+        parts = [next(left).unflatten(-1, (channels, -1))[:, : b - a] for a, b in segments.ends(record)]
+        whole.append(torch.cat(parts, -1).flatten())
+    return whole

@@ -1,0 +1,274 @@
+"""The channels of measurement.yaml: which keys each takes, what acts on them, and why the others are refused."""
+
+from types import MappingProxyType as Frozen
+from typing import Annotated, ClassVar
+
+from pydantic import model_validator
+
+from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.fields import Column, Corner, Cutoff, Measured, Number, OneOf, Text, refuse
+from gear_damping.measurement.record import Quantity
+from gear_damping.measurement.structure import Declared, key
+
+Reasons = Frozen[str, tuple[str, str]]
+
+
+class Stamps(Declared):
+    """The column of the time stamps."""
+
+    title: ClassVar[str] = "a time column"
+    column: Annotated[str | int, Column()] = key(
+        "Column of the time stamps.", "time base", missing="name the column of the time stamps"
+    )
+    unit: Annotated[str, Text()] = key("Unit of the stamps; absent, that of the column's header.", "time base")
+
+
+class Timed(Declared):
+    """Time stamps or a rate."""
+
+    time: Stamps = key("Time stamps. Small jitter is put on a grid; uneven stamps are kept.", "time base")
+    sampling_rate: Annotated[Quantity, Measured("Hz")] = key("Constant rate, instead of `time`.", "time base")
+
+    @model_validator(mode="after")
+    def _one_time_base(self) -> "Timed":
+        if self.given("time") and self.given("sampling_rate"):
+            rule = "time and sampling_rate are both given"
+            refuse(rule, self.sampling_rate.value, "keep the one that is right", "sampling_rate")
+        return self
+
+
+class AnyChannel(Timed):
+    """What every channel takes: its column, its unit, its own time base, its sign and its scale."""
+
+    si: ClassVar[str | None] = None  # the unit that values are converted to; None: the rig's own
+    derivative: ClassVar[int | None] = None  # of an oscillator's displacement; None for an input
+    is_input: ClassVar[bool] = False
+    column: Annotated[str | int, Column()] = key(
+        "Header text without its quotes, or 0-based index.", "values",
+        missing="name the column by its header text or its 0-based index",
+    )  # fmt: skip
+    unit: Annotated[str, Text()] = key("Unit of the values; absent, that of the column's header.", "values")
+    polarity: Annotated[int, OneOf((1, -1))] = key("Sign that the values are multiplied by.", "values", 1)
+    gain: Annotated[float, Number(nonzero=True)] = key(
+        "The file's value over the quantity: values are divided by it.", "values", 1.0
+    )
+
+
+class Delayed(AnyChannel):
+    """A channel that may be late."""
+
+    delay: Annotated[Quantity, Measured("s", "any")] = key(
+        "How late the channel is behind the others.", "response: the prediction is delayed; input: the series is moved"
+    )
+
+
+class Ranged(AnyChannel):
+    """A channel with a full scale."""
+
+    range: Annotated[Quantity, Measured(None)] = key(
+        "Full scale of the sensor, ±; of a WAV file, what ±1 stands for.", "check: samples at it are clipped"
+    )
+
+
+class Scaled(AnyChannel):
+    """A channel whose gain may be uncertain."""
+
+    uncertainty: Annotated[float, Number(least=0.0)] = key(
+        "Relative standard uncertainty of the gain; 0 means known.", "prior on the gain", 0.0
+    )
+
+
+class Response(Delayed, Ranged, Scaled):
+    """What a simulation is compared with."""
+
+    usual_datum: ClassVar[str] = "absolute"
+    lowpass: Annotated[Corner, Cutoff()] = key("Low-pass of the sensor or its amplifier.", "filters the prediction")
+    noise: Annotated[Quantity, Measured(None)] = key(
+        "Standard deviation of the sensor's noise; absent, it is estimated.", "weight of the channel"
+    )
+    highpass: Annotated[Corner, Cutoff(usual=1)] = key(
+        "High-pass of the sensor or its amplifier.", "filters the prediction"
+    )
+
+    coupling: Annotated[str, OneOf(("DC", "AC"))] = key(
+        "`AC`: the channel has lost its mean, so that its datum is arbitrary.", "offset of each record", "DC"
+    )
+    datum: Annotated[str, OneOf(("absolute", "arbitrary"))] = key(
+        "`arbitrary`: the zero means nothing, and every record has an offset of its own. Absent, arbitrary for an "
+        "oscillator's displacement, a speed and whatever is AC-coupled, absolute otherwise.", "offset of each record",
+    )  # fmt: skip
+
+    @model_validator(mode="after")
+    def _filters(self) -> "Response":
+        problems = []
+        if self.lowpass and self.highpass and self.lowpass.frequency <= self.highpass.frequency:
+            rule = "must lie above highpass"
+            problems.append(Problem("lowpass", rule, self.lowpass.frequency, "exchange the two"))
+        if self.coupling == "AC" and self.datum == "absolute":
+            rule = "an AC-coupled channel has lost its mean, so that its zero cannot be absolute"
+            problems.append(Problem("datum", rule, self.datum, "leave out datum: absolute, or coupling: AC"))
+        if problems:
+            raise InputError(problems)
+        return self
+
+
+def _input_reasons(offset: str) -> Reasons:
+    driven = "an input is what drives the simulation, taken as it was recorded"
+    return Frozen(
+        {
+            "lowpass": (f"{driven}, and what a filter took away cannot be given back", "declare the filter's delay"),
+            "highpass": (f"{driven}, and what a filter took away cannot be given back", offset),
+            "coupling": (f"{driven}, with its mean", offset),
+            "datum": (f"{driven}, with its mean", offset),
+            "noise": (f"{driven}; its noise is not weighed", "declare the uncertainty of its gain"),
+        }
+    )
+
+
+class Input(Delayed, Ranged, Scaled):
+    """A torque, a force or the motion of the base: what drives the simulation."""
+
+    is_input: ClassVar[bool] = True
+
+
+class Torque(Input):
+    """A torque in N*m."""
+
+    title: ClassVar[str] = "a torque"
+    si: ClassVar[str | None] = "N*m"
+    refused: ClassVar[Reasons] = _input_reasons("declare parameters.torque_offset with its uncertainty")
+
+
+class Force(Input):
+    """A force in any unit."""
+
+    title: ClassVar[str] = "a force"
+    refused: ClassVar[Reasons] = _input_reasons("leave it out: a constant force is allowed for beside any input")
+
+
+class BaseAcceleration(Input):
+    """The acceleration of the base."""
+
+    title: ClassVar[str] = "the acceleration of the base"
+    refused: ClassVar[Reasons] = _input_reasons("leave it out: a constant force is allowed for beside any input")
+
+
+_ANGLE = "an angle says where the shaft stands"
+_COUNTED = "a turn is a turn: the scale of an angle is known"
+
+
+class Angle(Delayed):
+    """The angle of the pinion."""
+
+    title: ClassVar[str] = "the pinion angle"
+    si: ClassVar[str | None] = "rad"
+    refused: ClassVar[Reasons] = Frozen(
+        {
+            **_input_reasons("leave it out"),
+            "range": (f"{_ANGLE}; it wraps and has no full scale", "leave it out"),
+            "uncertainty": (_COUNTED, "leave it out"),
+            "noise": (f"{_ANGLE}; an error of the encoder is allowed for by itself", "leave it out"),
+            "coupling": (f"{_ANGLE}, and has no mean", "leave it out"),
+            "datum": (f"{_ANGLE}, counted from anywhere", "write mesh_index: true where its zero is that of the mesh"),
+        }
+    )
+
+
+class Speed(Response):
+    """The speed of a shaft."""
+
+    title: ClassVar[str] = "a speed"
+    si: ClassVar[str | None] = "rad/s"
+    usual_datum: ClassVar[str] = "arbitrary"
+
+    @model_validator(mode="after")
+    def _fluctuates(self) -> "Speed":
+        if self.datum == "absolute":
+            rule = "what is compared of a speed is its fluctuation, whose zero is always arbitrary"
+            refuse(rule, self.datum, "leave it out", "datum")
+        return self
+
+
+class TransmissionError(Response):
+    """x = r_b1 theta_1 - r_b2 theta_2 along the line of action."""
+
+    title: ClassVar[str] = "a transmission error"
+    si: ClassVar[str | None] = "m"
+
+
+CASING = "the path from the mesh to a casing is unknown, its gain, delay and zero too"
+OF_A_SHAFT = (
+    "shaft", "radius", "lowpass", "highpass", "coupling", "delay", "noise", "uncertainty", "datum", "polarity",
+)  # fmt: skip
+
+
+class GearAcceleration(Response):
+    """An accelerometer on a shaft, at a radius, or on the casing."""
+
+    title: ClassVar[str] = "the acceleration of a gear pair"
+    si: ClassVar[str | None] = "m/s^2"
+    mounting: Annotated[str, OneOf(("tangential", "casing"))] = key(
+        "`tangential`: on a shaft, turning with it; `casing`: behind an unknown path.",
+        "response where tangential; findings in angle and order where on a casing", "casing",
+    )  # fmt: skip
+    shaft: Annotated[str, OneOf(("pinion", "gear"))] = key("The shaft it turns with.", "response")
+    radius: Annotated[Quantity, Measured("m")] = key("Radius of the sensor.", "response")
+
+    @model_validator(mode="after")
+    def _mounted(self) -> "GearAcceleration":
+        problems = []
+        if self.mounting == "casing":
+            rule, remedy = f"has no meaning on a casing: {CASING}", "leave it out, or write mounting: tangential"
+            problems = [Problem(name, rule, None, remedy) for name in OF_A_SHAFT if self.given(name)]
+        else:
+            if not self.given("shaft"):
+                problems.append(Problem("shaft", "is missing", None, "say on which it sits, shaft: pinion (or gear)"))
+            if not self.given("radius"):
+                remedy = "give the radius of the sensor, radius: {value: 30, unit: mm}"
+                problems.append(Problem("radius", "is missing", None, remedy))
+        if problems:
+            raise InputError(problems)
+        return self
+
+
+class Motion(Response):
+    """A motion of an oscillator."""
+
+    usual_frame: ClassVar[str] = "relative"
+    frame: Annotated[str, OneOf(("absolute", "relative"))] = key(
+        "Beside a measured `base_acceleration`: against the ground, or relative to the base. Absent, relative for "
+        "displacement and velocity, absolute for acceleration.", "response",
+    )  # fmt: skip
+
+    @model_validator(mode="after")
+    def _measurable(self) -> "Motion":
+        if self.frame == "absolute" and self.usual_frame == "relative":
+            rule = (
+                "an absolute motion needs that of the base, which its acceleration does not give: "
+                "integrated, it drifts away"
+            )
+            refuse(rule, self.frame, "measure relative to the base, or the absolute acceleration", "frame")
+        return self
+
+
+class Displacement(Motion):
+    """The displacement of an oscillator, in any unit."""
+
+    title: ClassVar[str] = "a displacement"
+    derivative: ClassVar[int | None] = 0
+    usual_datum: ClassVar[str] = "arbitrary"
+
+
+class Velocity(Motion):
+    """Its velocity."""
+
+    title: ClassVar[str] = "a velocity"
+    derivative: ClassVar[int | None] = 1
+
+
+class Acceleration(Motion):
+    """Its acceleration."""
+
+    title: ClassVar[str] = "an acceleration"
+    derivative: ClassVar[int | None] = 2
+    usual_frame: ClassVar[str] = "absolute"

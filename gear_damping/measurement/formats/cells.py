@@ -1,0 +1,85 @@
+"""Tables of cells, as texts and spreadsheets hold them: a cell that is no number is named with its row."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.formats.header import is_number
+from gear_damping.measurement.formats.table import Table, is_real
+
+SHOWN = 3  # faults of one kind that are listed one by one
+
+
+def decimal_commas(path: Path) -> str:
+    """What is noted where decimal commas were read."""
+    return f"{path.name}: read with decimal commas"
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """A column: (n,) numbers, or (n,) texts where not every cell is a number.
+
+    Args:
+        name: Its name in the header, "" for none.
+        unit: The unit that the header gives.
+        values: The cells.
+        line: The line of the file that a row stands in.
+    """
+
+    name: str
+    unit: str | None
+    values: NDArray
+    line: Callable[[int], int]
+
+
+class CellTable(Table):
+    """Columns of cells that become numbers when they are asked for; `decimal_commas` may be in their texts."""
+
+    def __init__(self, path: Path, columns: Sequence[Cells], decimal_commas: bool) -> None:
+        super().__init__(path, [(one.name, (len(one.values),)) for one in columns])
+        self._columns, self._commas = list(columns), decimal_commas
+        self._read: dict[int, NDArray[np.float64]] = {}
+
+    def unit(self, index: int) -> str | None:
+        """The unit in the header of a column, or None."""
+        return self._columns[index].unit
+
+    def values(self, index: int) -> NDArray[np.float64]:
+        """(n,) float64: a column; raises InputError naming the row of each cell that is no number."""
+        if index not in self._read:
+            values = self._columns[index].values
+            self._read[index] = values.astype(np.float64) if is_real(values.dtype) else self._numbers(index)
+        return self._read[index]
+
+    def _numbers(self, index: int) -> NDArray[np.float64]:
+        cells = self._decimal_points([str(cell) for cell in self._columns[index].values])
+        try:
+            return np.array(cells, dtype=np.float64)
+        except ValueError:
+            raise InputError(self._bad_cells(index, cells)) from None
+
+    def _decimal_points(self, cells: list[str]) -> list[str]:
+        """Cells with decimal points; where a column has points and commas the commas stay, and fail."""
+        if not self._commas or not any("," in cell for cell in cells) or any("." in cell for cell in cells):
+            return cells
+        note = decimal_commas(self.path)
+        self.notes = self.notes if note in self.notes else (*self.notes, note)
+        return [cell.replace(",", ".") for cell in cells]
+
+    def _bad_cells(self, index: int, cells: list[str]) -> list[Problem]:
+        bad = [k for k, cell in enumerate(cells) if not is_number(cell)]
+        title = f"column {index}" + (f" '{self.names[index]}'" if self.names[index] else "")
+        problems = []
+        for k in bad[:SHOWN]:
+            rule = "an empty cell" if not cells[k].strip() else "not a number"
+            key = f"{self.path.name}, row {k} (line {self._columns[index].line(k)}), {title}"
+            remedy = "correct the cell, or leave its row out"
+            problems.append(Problem(key, rule, cells[k], remedy, str(self.path)))
+        if len(bad) > SHOWN:
+            rule = f"{len(bad) - SHOWN} more cells are no numbers"
+            problems.append(Problem(f"{self.path.name}, {title}", rule, None, "export the file again"))
+        return problems

@@ -1,0 +1,80 @@
+"""HDF5 files: every dataset of real numbers under its path, fields of compound datasets as `path.field`."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_damping.measurement.formats.table import (
+    ArrayTable,
+    Held,
+    Table,
+    extra_library,
+    is_real,
+    kind_of,
+    refuse_size,
+    squeezed,
+    unreadable,
+)
+
+_UNIT_ATTRIBUTES = ("unit", "units", "Unit", "Units", "unit_string")
+
+
+def read_hdf5(path: Path, max_bytes: int) -> Table:
+    """The datasets of an HDF5 file as columns.
+
+    Raises:
+        InputError: not an HDF5 file, too large when unpacked, no real numbers, or h5py is missing.
+    """
+    h5py = extra_library("h5py", path)
+    held, left_out = [], []
+    with unreadable(path, "not a readable HDF5 file", "export it again"), h5py.File(path, "r") as file:
+        datasets = _datasets(h5py, file)
+        refuse_size(path, sum(one.size * one.dtype.itemsize for one in datasets if one.size), max_bytes)
+        for dataset in datasets:
+            found = [field for field in _fields(dataset) if is_real(field[2])]
+            if not found or not dataset.size:
+                kind = "text" if h5py.check_string_dtype(dataset.dtype) else kind_of(dataset.dtype)
+                left_out.append(f"{dataset.name.strip('/')} ({kind if dataset.size else 'empty'})")
+                continue
+            held += [_held(h5py, path, dataset, field) for field in found]
+    return ArrayTable(path, held, left_out)
+
+
+def _datasets(h5py: Any, file: Any) -> list[Any]:
+    """The datasets in the order of their paths; links to other files are not followed."""
+    found = []
+    file.visititems(lambda _, item: found.append(item) if isinstance(item, h5py.Dataset) else None)
+    return found
+
+
+def _fields(dataset: Any) -> Iterator[tuple[str, str | None, np.dtype, tuple[int, ...]]]:
+    """Name, field, kind and shape of what a dataset holds: itself, or the fields of a compound one."""
+    name, dtype = dataset.name.strip("/"), dataset.dtype
+    if dtype.names is None:
+        yield name, None, dtype, dataset.shape
+        return
+    for field in dtype.names:
+        yield f"{name}.{field}", field, dtype[field].base, (*dataset.shape, *dtype[field].shape)
+
+
+def _held(h5py: Any, path: Path, dataset: Any, field: tuple[str, str | None, np.dtype, tuple[int, ...]]) -> Held:
+    name, part, _, shape = field
+    place = dataset.name
+
+    def read() -> NDArray:
+        with h5py.File(path, "r") as file:
+            return file[place][()] if part is None else file[place][part]
+
+    return Held(name, squeezed(shape), read, _unit(dataset) if part is None else None)
+
+
+def _unit(dataset: Any) -> str | None:
+    for name in _UNIT_ATTRIBUTES:
+        value = dataset.attrs.get(name)
+        value = value.decode("utf-8", "replace") if isinstance(value, bytes) else value
+        if isinstance(value, str) and value.strip():
+            return value.strip()
+    return None

@@ -1,0 +1,110 @@
+"""Where the header of a table of cells lies: titles before it, units below it or in its brackets."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from gear_damping.errors import InputError
+from gear_damping.units import parse_unit
+
+_BRACKETS = re.compile(r"[(\[]([^()\[\]]+)[)\]]\s*$")
+_INDEX = re.compile(r"\w\[\d+\]\s*$")  # `data[3]` is a name, no unit
+_NO_UNIT = ("", "-")
+
+
+@dataclass(frozen=True)
+class Header:
+    """The names and units of the columns, and the index of the first row of values.
+
+    Args:
+        names: One per column, () where the table has no header.
+        units: The row of units below the names, () where there is none.
+        first: The index of the first row of values among the rows that were looked at.
+        skipped: The rows before the header.
+    """
+
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    first: int
+    skipped: int = 0
+
+    def name(self, k: int) -> str:
+        """The name of column `k`, or ""."""
+        return self.names[k] if k < len(self.names) else ""
+
+    def unit(self, k: int) -> str | None:
+        """The unit below the name of column `k`, or in brackets at its end, as in `Acc DE (m/s^2)`."""
+        if k < len(self.units):
+            return self.units[k].strip("[]() ") or None
+        return bracket_unit(self.name(k))
+
+
+def find_header(rows: Sequence[Sequence[str]], width: int) -> Header:
+    """The header of a table.
+
+    Args:
+        rows: The first rows of cells.
+        width: The number of filled cells that a row of values has.
+
+    Returns:
+        The first row of texts as wide as the values, of those before the first row of values; else the last one.
+        Without a row of texts the values begin at the first row.
+    """
+    end = next((k for k, row in enumerate(rows) if _is_values(row, width)), len(rows))
+    texts = [k for k in range(end) if not _has_number(rows[k])]
+    if not texts:
+        return Header((), (), 0)
+    exact = [k for k in texts if _filled(rows[k]) == width]
+    wide = [k for k in texts if _filled(rows[k]) > width]
+    start = (exact or wide or [texts[-1]])[0]
+    names, first = tuple(cell.strip() for cell in rows[start]), start + 1
+    units: tuple[str, ...] = ()
+    if first < len(rows) and _is_units(rows[first]):
+        units, first = tuple(cell.strip() for cell in rows[first]), first + 1
+    return Header(names, units, first, start)
+
+
+def bracket_unit(name: str) -> str | None:
+    """What stands in brackets at the end of a name."""
+    found = None if _INDEX.search(name) else _BRACKETS.search(name)
+    return found[1].strip() if found else None
+
+
+def is_number(cell: str) -> bool:
+    """Whether a cell is a number with a decimal point."""
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return True
+
+
+def _has_number(row: Sequence[str]) -> bool:
+    return any(is_number(cell.replace(",", ".")) for cell in row)
+
+
+def _is_values(row: Sequence[str], width: int) -> bool:
+    """Whether a row holds numbers alone, or is as wide as the values and at least half of it are numbers."""
+    filled = [cell.replace(",", ".") for cell in row if cell.strip()]
+    numbers = sum(is_number(cell) for cell in filled)
+    return numbers > 0 and (numbers == len(filled) or (_filled(row) >= width and 2 * numbers >= len(filled)))
+
+
+def _filled(row: Sequence[str]) -> int:
+    """The cells of a row up to its last one that is not empty."""
+    return max((k + 1 for k, cell in enumerate(row) if cell.strip()), default=0)
+
+
+def _is_units(row: Sequence[str]) -> bool:
+    """Whether a row of texts holds units and nothing else, at least one of them."""
+    cells = [cell.strip("[]() ") for cell in row]
+    named = [cell for cell in cells if cell not in _NO_UNIT]
+    return bool(named) and not _has_number(row) and all(_is_unit(cell) for cell in named)
+
+
+def _is_unit(cell: str) -> bool:
+    try:
+        parse_unit(cell)
+    except InputError:
+        return False
+    return True

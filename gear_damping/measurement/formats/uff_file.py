@@ -1,0 +1,89 @@
+"""UFF files, sets 58 and 58b: column 0 is the abscissa, and the sets follow in the order of the file."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.formats.table import ArrayTable, Held, Table, extra_library, unreadable
+
+_TIME = 17  # the specific data type of an abscissa in seconds
+_FREQUENCY = 18
+_TAIL = 1024  # bytes in which the mark of the last set's end stands
+_WRITTEN = 5e-6  # the increment stands in the file with six digits
+
+
+def read_uff(path: Path, max_bytes: int) -> Table:
+    """The functions of a UFF file as columns; those of an even abscissa in time bring their rate.
+
+    Raises:
+        InputError: no set 58 or 58b that can be read, or pyuff is missing.
+    """
+    pyuff = extra_library("pyuff", path)
+    remedy = "export the channels as UFF 58 or 58b"
+    _refuse_cut_off(path, remedy)
+    with unreadable(path, "not a readable UFF file", remedy):
+        file = pyuff.UFF(str(path))
+        found = [k for k, kind in enumerate(file.get_set_types()) if kind == 58]
+        sets = [file.read_sets(k) for k in found]
+    if not sets:
+        raise InputError(Problem("file", "holds no set 58 or 58b that can be read", str(path), remedy))
+    for k, one in enumerate(sets):
+        if np.size(one["data"]) != one["num_pts"]:
+            rule = f"set {k} holds {np.size(one['data'])} of the {one['num_pts']} values that it announces"
+            raise InputError(Problem("file", rule, str(path), remedy))
+    real = [one for one in sets if np.isrealobj(one["data"]) and np.size(one["data"])]
+    left_out = [f"{_name(one)} (complex or empty)" for one in sets if not any(one is kept for kept in real)]
+    if not real:
+        return ArrayTable(path, [], left_out)
+    held = [_abscissa(real[0])]
+    held += [_held(_name(one), one["data"], _unit(one["ordinate_axis_units_lab"]), _clock(one)) for one in real]
+    return ArrayTable(path, held, left_out)
+
+
+def _refuse_cut_off(path: Path, remedy: str) -> None:
+    """The library leaves out a last set whose end is missing."""
+    with path.open("rb") as file:
+        file.seek(max(0, path.stat().st_size - _TAIL))
+        if b"    -1" not in file.read():
+            rule = "holds no set 58 or 58b that can be read to its end"
+            raise InputError(Problem("file", rule, str(path), remedy))
+
+
+def _held(name: str, values: Any, unit: str | None, clock: tuple[float, float] | None) -> Held:
+    return Held(name, (len(values),), lambda: values, unit, clock)
+
+
+def _abscissa(one: dict[str, Any]) -> Held:
+    """The abscissa of the first set, at its rounded rate where it is even in time."""
+    kind, clock = one["abscissa_spec_data_type"], _clock(one)
+    values = np.asarray(one["x"]) if clock is None else clock[0] + np.arange(len(one["data"])) / clock[1]
+    unit = _unit(one["abscissa_axis_units_lab"]) or {_TIME: "s", _FREQUENCY: "Hz"}.get(kind)
+    return _held("abscissa", values, unit, clock)
+
+
+def _clock(one: dict[str, Any]) -> tuple[float, float] | None:
+    """Start in s and rate in Hz of an even abscissa in time."""
+    step = one["abscissa_inc"]
+    in_time = one["abscissa_spec_data_type"] == _TIME and _unit(one["abscissa_axis_units_lab"]) in (None, "s", "sec")
+    if not in_time or not one["abscissa_spacing"] or not step > 0:
+        return None
+    return float(one["abscissa_min"]), rounded_rate(1 / step)
+
+
+def rounded_rate(rate: float) -> float:
+    """The rate with the fewest digits that its increment of six digits allows, as 10240 for 10239.995."""
+    shorter = (float(f"{rate:.{digits}g}") for digits in range(1, 8))
+    return next((short for short in shorter if abs(short / rate - 1) <= _WRITTEN), rate)
+
+
+def _unit(label: str) -> str | None:
+    label = label.strip()
+    return None if label in ("", "NONE") else label
+
+
+def _name(one: dict[str, Any]) -> str:
+    """The first line of the set's description, or "" where there is none."""
+    name = one["id1"].strip()
+    return "" if name == "NONE" else name

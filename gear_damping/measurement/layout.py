@@ -1,0 +1,241 @@
+"""The layout of measurement.yaml: encoders, channels, records and the file itself, for each system."""
+
+from types import MappingProxyType as Frozen
+from typing import Annotated, ClassVar
+
+from pydantic import model_validator
+
+from gear_damping.errors import InputError, Problem
+from gear_damping.measurement import channels as c
+from gear_damping.measurement.fields import Column, Flag, Measured, Number, OneOf, Rows, Text, refuse
+from gear_damping.measurement.record import ROLES, Quantity
+from gear_damping.measurement.rig import (
+    GEAR_TORQUE_MODES,
+    GearConditions,
+    GearParameters,
+    OscillatorConditions,
+    OscillatorParameters,
+)
+from gear_damping.measurement.structure import Declared, Item, Listed, Word, key
+from gear_damping.units import parse_unit, to_si
+
+SYSTEMS = ("gear_pair", "oscillator")
+_NO_FILE = "name the file of the record, relative to this YAML"
+
+
+class Pulses(Declared):
+    """Where the angle of a shaft comes from."""
+
+    column: Annotated[str | int, Column()] = key("Column with one value a sample.", "angle")
+    timestamps: Annotated[str | int, Column()] = key("Column of the times of the pulses, instead.", "angle")
+    direction: Annotated[int, OneOf((1, -1))] = key("-1 where it turns backwards.", "angle", 1)
+
+    @model_validator(mode="after")
+    def _one_source(self) -> "Pulses":
+        if self.given("column") == self.given("timestamps"):
+            remedy = "give either column (per sample) or timestamps (times of the pulses)"
+            raise InputError(Problem("column", "is missing", None, remedy))
+        if self.given("timestamps") and self.unit:
+            to_si(1.0, self.unit, "s", "unit")
+        return self
+
+
+class Encoder(Pulses):
+    """An encoder that counts."""
+
+    title: ClassVar[str] = "an encoder"
+    unit: Annotated[str, Text()] = key("Unit of `timestamps`; s where absent.", "angle")
+    counts_per_revolution: Annotated[float, Number(least=1)] = key(
+        "Counts in one turn of its shaft.", "angle", missing="give the number in one turn of its shaft"
+    )
+    index: Annotated[str | int, Column()] = key(
+        "Column of the index pulse (of its times, beside `timestamps`).",
+        "zero of the angle; check: its pulses are a turn apart",
+    )
+
+    @model_validator(mode="after")
+    def _counts(self) -> "Encoder":
+        if self.given("column") and self.unit:
+            refuse("counts have no unit", self.unit, "leave it out; an angle with a unit is a channel", "unit")
+        return self
+
+
+class Tacho(Pulses):
+    """A pulse train."""
+
+    title: ClassVar[str] = "a tacho"
+    refused: ClassVar[c.Reasons] = Frozen({"index": ("the zero of its angle is its first pulse", "leave it out")})
+    unit: Annotated[str, Text()] = key("Unit of the column; V where absent, s of `timestamps`.", "threshold; angle")
+    pulses_per_revolution: Annotated[float, Number(least=1)] = key(
+        "Pulses in one turn of its shaft.", "angle", missing="give the number in one turn of its shaft"
+    )
+    threshold: Annotated[Quantity, Measured(None, "any")] = key(
+        "Level that a pulse rises through; half way where absent.", "angle"
+    )
+
+    @model_validator(mode="after")
+    def _pulses(self) -> "Tacho":
+        if self.given("timestamps") and self.threshold:
+            refuse("times of pulses need no threshold", self.threshold.value, "leave it out", "threshold")
+        if self.given("column"):
+            unit = self.unit or "V"
+            parse_unit(unit, "unit")
+            if self.threshold:
+                to_si(self.threshold.value, self.threshold.unit, unit, "threshold")
+        return self
+
+
+class Encoders(Declared):
+    """The encoders and the tacho."""
+
+    title: ClassVar[str] = "a gear_pair"
+    pinion: Encoder = key("Encoder of the pinion.", "pinion_angle; with the gear's, the transmission error")
+    gear: Encoder = key("Encoder of the gear.", "transmission error, without its mean")
+    tacho: Tacho = key("Tacho of the pinion.", "pinion_angle")
+
+    @model_validator(mode="after")
+    def _one_pinion(self) -> "Encoders":
+        if self.given("tacho") and self.given("pinion"):
+            rule = "the pinion's encoder gives the angle of the same shaft"
+            refuse(rule, None, "keep one of the two", "tacho")
+        return self
+
+
+class GearChannels(c.Timed):
+    """The channels of a gear pair."""
+
+    title: ClassVar[str] = "a gear_pair"
+    transmission_error: c.TransmissionError = key("r_b1 theta_1 - r_b2 theta_2, closing positive.", "response")
+    pinion_torque: c.Torque = key("Driving torque.", "load")
+    gear_torque: Annotated[c.Torque, Word(*GEAR_TORQUE_MODES)] = key(
+        "Load, positive where it resists; or `balanced` (it follows the pinion's torque) or `held`.", "load"
+    )
+    pinion_angle: c.Angle = key("Angle of the pinion; may wrap.", "angle of the shafts")
+    pinion_speed: c.Speed = key(
+        "Speed of the pinion.", "angle of the shafts; response where no transmission error is declared"
+    )
+    gear_speed: c.Speed = key("Speed of the gear.", "response")
+    acceleration: c.GearAcceleration = key("An accelerometer.", "response, or findings of a casing")
+
+
+class OscillatorChannels(c.Timed):
+    """The channels of an oscillator."""
+
+    title: ClassVar[str] = "an oscillator"
+    displacement: c.Displacement = key("Displacement, in any unit.", "response")
+    velocity: c.Velocity = key("Velocity.", "response")
+    acceleration: c.Acceleration = key("Acceleration.", "response")
+    force: c.Force = key("What drives it, in any unit; absent in a free decay.", "input")
+    base_acceleration: c.BaseAcceleration = key("Acceleration of the base that it stands on.", "input")
+
+
+class Window(Declared):
+    """A stretch of time."""
+
+    title: ClassVar[str] = "a window"
+    start: Annotated[float, Number()] = key("First time.", "rows", missing="give the first time", alias="from")
+    stop: Annotated[float, Number()] = key("Last time.", "rows", missing="give the last time", alias="to")
+    unit: Annotated[str, Text()] = key("Unit of both.", "rows", missing="give a unit, for example s")
+
+    @model_validator(mode="after")
+    def _ordered(self) -> "Window":
+        to_si(1.0, self.unit, "s", "unit")
+        if self.start >= self.stop:
+            refuse("must lie before 'to'", self.start, "exchange the two", "from")
+        return self
+
+    @property
+    def seconds(self) -> tuple[float, float]:
+        """From and to in s."""
+        one = to_si(1.0, self.unit, "s")
+        return self.start * one, self.stop * one
+
+
+class AnyRecord(Declared):
+    """What the records of every system have."""
+
+    name: Annotated[str, Text()] = key("Name of the record; that of its file where absent.", "report")
+    file: Annotated[str, Text()] = key(
+        "The file, relative to this YAML; `${GEAR_DAMPING_DATA}` is filled in.", "values", missing=_NO_FILE
+    )
+    role: Annotated[str, OneOf(ROLES)] = key(
+        "Fitted, held out, or a sound casing to compare with; absent, the program holds out itself.", "fit and score"
+    )
+    slice: Annotated[tuple[int, int], Rows()] = key("Rows a to b-1, counted from 0.", "rows")
+    window: Window = key("The rows between two times, instead of `slice`.", "rows")
+    resample: Annotated[Quantity, Measured("Hz")] = key("Rate to come down to, behind an anti-alias filter.", "values")
+    sampling_rate: Annotated[Quantity, Measured("Hz")] = key("Constant rate, here or under channels.", "time base")
+
+    @model_validator(mode="after")
+    def _once(self) -> "AnyRecord":
+        problems = []
+        if self.given("slice") and self.given("window"):
+            rule = "slice and window are both given"
+            problems.append(Problem("window", rule, None, "keep the one that is right"))
+        if self.given("sampling_rate") and self.channels and (self.channels.time or self.channels.sampling_rate):
+            rule, remedy = "the time base is given under channels too", "keep the one that is right"
+            problems.append(Problem("sampling_rate", rule, self.sampling_rate.value, remedy))
+        if problems:
+            raise InputError(problems)
+        return self
+
+
+class GearRecord(AnyRecord):
+    """A record of a gear pair."""
+
+    title: ClassVar[str] = "a gear_pair"
+    channels: GearChannels = key("The measured signals, and their time base.", "values")
+    encoders: Encoders = key("Encoders and tacho.", "values")
+    conditions: GearConditions = key("What was constant. A channel of the same name is used before it.", "values")
+    mesh_index: Annotated[bool, Flag()] = key("The zero of the pinion angle is that of the mesh.", "mesh phase", False)
+
+
+class OscillatorRecord(AnyRecord):
+    """A record of an oscillator."""
+
+    title: ClassVar[str] = "an oscillator"
+    refused: ClassVar[c.Reasons] = Frozen(
+        {
+            "encoders": ("only a gear_pair has encoders", "declare the response under channels"),
+            "mesh_index": ("only a gear_pair meshes", "leave it out"),
+        }
+    )
+    channels: OscillatorChannels = key("The measured signals, and their time base.", "values")
+    conditions: OscillatorConditions = key("What was constant. A channel is used before it.", "values")
+
+
+class AnyFile(Declared):
+    """What the files of every system have."""
+
+    system: Annotated[str, OneOf(SYSTEMS)] = key(
+        "What was measured.", "model", missing=f"choose one of {', '.join(SYSTEMS)}"
+    )
+    segments: Annotated[Quantity, Measured("s")] = key(
+        "Exact length of the segments that records are fitted and scored in; a shorter end is left out.",
+        "fit and score",
+    )
+
+
+_BEGIN = "begin each record with '- file: ...'"
+_RECORDS = Listed("record", _BEGIN)
+_MEANING, _ACTS = "The records, each with its file.", "values"
+_NOMINAL = "Nominal values of the rig that differ from the defaults."
+
+
+class GearFile(AnyFile):
+    """A measurement of a gear pair."""
+
+    title: ClassVar[str] = "a gear_pair"
+    parameters: GearParameters = key(_NOMINAL, "fit")
+    records: Annotated[list[Annotated[GearRecord, Item()]], _RECORDS] = key(_MEANING, _ACTS, missing=_BEGIN)
+
+
+class OscillatorFile(AnyFile):
+    """A measurement of an oscillator."""
+
+    title: ClassVar[str] = "an oscillator"
+    parameters: OscillatorParameters = key(_NOMINAL, "fit")
+    records: Annotated[list[Annotated[OscillatorRecord, Item()]], _RECORDS] = key(_MEANING, _ACTS, missing=_BEGIN)
+
+
+FILES: Frozen[str, type[AnyFile]] = Frozen({"gear_pair": GearFile, "oscillator": OscillatorFile})

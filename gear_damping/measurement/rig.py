@@ -1,0 +1,122 @@
+"""What measurement.yaml says of a rig: the parameters and conditions of each system."""
+
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar
+
+from pydantic import model_validator
+
+from gear_damping.measurement.fields import Measured, OneOf, refuse
+from gear_damping.measurement.record import Quantity
+from gear_damping.measurement.structure import Declared, key
+
+GEAR_TORQUE_MODES = ("balanced", "held")
+_KNOWN = "known, or a prior with its uncertainty"
+_START = "start of the fit, or a prior with its uncertainty"
+
+
+@dataclass(frozen=True)
+class Load(Measured):
+    """A quantity, or a word that says what it does."""
+
+    def read(self, value: Any, name: str) -> Quantity | str:
+        """The word or the quantity in SI."""
+        return OneOf(GEAR_TORQUE_MODES).read(value, name) if isinstance(value, str) else super().read(value, name)
+
+    def says(self) -> str:
+        """The unit and the words."""
+        return f"{super().says()}; or {OneOf(GEAR_TORQUE_MODES).says()}"
+
+
+class GearParameters(Declared):
+    """Nominal values of a gear pair."""
+
+    title: ClassVar[str] = "a gear_pair"
+    n_teeth_pinion: Annotated[Quantity, Measured("1", whole=True)] = key("Teeth of the pinion.", "known")
+    n_teeth_gear: Annotated[Quantity, Measured("1", whole=True)] = key("Teeth of the gear.", "known")
+    module: Annotated[Quantity, Measured("m", uncertain=True)] = key("Module of the teeth.", _KNOWN)
+    pressure_angle: Annotated[Quantity, Measured("rad", uncertain=True)] = key("Pressure angle.", _KNOWN)
+    inertia_pinion: Annotated[Quantity, Measured("kg*m^2", uncertain=True)] = key("Inertia of the pinion.", _KNOWN)
+    inertia_gear: Annotated[Quantity, Measured("kg*m^2", uncertain=True)] = key("Inertia of the gear.", _KNOWN)
+    mesh_stiffness_max: Annotated[Quantity, Measured("N/m", uncertain=True)] = key(
+        "Mesh stiffness with the larger number of tooth pairs in contact.", _START
+    )
+    mesh_stiffness_min: Annotated[Quantity, Measured("N/m", uncertain=True)] = key(
+        "Mesh stiffness with the smaller number.", _START
+    )
+    contact_ratio: Annotated[Quantity, Measured("1", uncertain=True)] = key("Contact ratio.", _START)
+    damping_ratio: Annotated[Quantity, Measured("1", "not negative", uncertain=True)] = key(
+        "Viscous damping ratio of the mesh.", _START
+    )
+    equivalent_mass: Annotated[Quantity, Measured("kg", uncertain=True)] = key(
+        "Mass along the line of action, instead of the two inertias.", _KNOWN
+    )
+    backlash_gap: Annotated[Quantity, Measured("m", "not negative", uncertain=True)] = key(
+        "Whole clearance between the flanks; 0 means none.", _START
+    )
+    torque_gain: Annotated[Quantity, Measured("1", "not zero", uncertain=True)] = key(
+        "True torque = torque_gain * read + torque_offset.", _KNOWN
+    )
+    torque_offset: Annotated[Quantity, Measured("N*m", "any", uncertain=True)] = key("See torque_gain.", _KNOWN)
+
+    @model_validator(mode="after")
+    def _one_mass(self) -> "GearParameters":
+        inertias = [name for name in ("inertia_pinion", "inertia_gear") if self.given(name)]
+        if self.given("equivalent_mass") and inertias:
+            rule = f"{' and '.join(inertias)} give the mass along the line of action too"
+            refuse(rule, self.equivalent_mass.value, "keep the two inertias or equivalent_mass", "equivalent_mass")
+        if self.mesh_stiffness_max and self.mesh_stiffness_min:
+            most, least = self.mesh_stiffness_max.value, self.mesh_stiffness_min.value
+            if least > most:
+                refuse("must not lie above mesh_stiffness_max", least, "exchange the two", "mesh_stiffness_min")
+        return self
+
+
+class OscillatorParameters(Declared):
+    """Nominal values of a mass-normalised oscillator."""
+
+    title: ClassVar[str] = "an oscillator"
+    stiffness: Annotated[Quantity, Measured("1/s^2", "not negative", uncertain=True)] = key(
+        "Stiffness over mass; 0 means that there is no spring.", _START
+    )
+    damping_coefficient: Annotated[Quantity, Measured("1/s", "not negative", uncertain=True)] = key(
+        "Viscous damping over mass.", _START
+    )
+    damping_ratio: Annotated[Quantity, Measured("1", "not negative", uncertain=True)] = key(
+        "Viscous damping over the critical one, instead of damping_coefficient.", _START
+    )
+    force_gain: Annotated[Quantity, Measured("own", "not zero", uncertain=True)] = key(
+        "Acceleration per unit of the force as it was read.", _START
+    )
+
+    @model_validator(mode="after")
+    def _one_damping(self) -> "OscillatorParameters":
+        if not self.given("damping_ratio"):
+            return self
+        if self.given("damping_coefficient"):
+            rule = "damping_coefficient gives the damping too"
+            refuse(rule, self.damping_ratio.value, "keep the one that is right", "damping_ratio")
+        if self.stiffness and self.stiffness.value == 0:
+            rule = "without a spring no damping is critical"
+            refuse(rule, self.damping_ratio.value, "give damping_coefficient instead", "damping_ratio")
+        return self
+
+
+class GearConditions(Declared):
+    """What was constant in a record of a gear pair."""
+
+    title: ClassVar[str] = "a gear_pair"
+    pinion_speed: Annotated[Quantity, Measured("rad/s", "any", uncertain=True)] = key(
+        "Speed of the pinion.", "angle of the shafts; checked against a measured angle; a prior with its uncertainty"
+    )
+    pinion_torque: Annotated[Quantity, Measured("N*m", "any", uncertain=True)] = key("Driving torque.", "load")
+    gear_torque: Annotated[Quantity | str, Load("N*m", "any", uncertain=True)] = key(
+        "Load, positive where it resists; or `balanced` (it follows the pinion's torque) or `held` (it does not).",
+        "load",
+    )
+
+
+class OscillatorConditions(Declared):
+    """What was constant in a record of an oscillator."""
+
+    title: ClassVar[str] = "an oscillator"
+    force: Annotated[Quantity, Measured(None, "any", uncertain=True)] = key("Constant force.", "load")

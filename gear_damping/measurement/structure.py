@@ -1,0 +1,215 @@
+"""Mappings of measurement.yaml as pydantic models: every key is declared once, and every problem said at once.
+
+A key has its meaning, what acts on it, and the kind of its value (`fields`). A model also says why a key that has a
+meaning elsewhere is refused in it. `read_declared` turns pydantic's errors into problems with path, rule and remedy.
+"""
+
+from collections.abc import Mapping
+from typing import Any, ClassVar, get_args
+
+from pydantic import BaseModel, ConfigDict, Field, GetCoreSchemaHandler, ValidationError
+from pydantic.fields import FieldInfo
+from pydantic_core import CoreSchema, core_schema
+
+from gear_damping.errors import InputError, Problem, nearest
+from gear_damping.measurement.fields import OneOf, Problems, Value, refuse
+
+Path = tuple[str | int, ...]
+_LOST = object()  # stands for an item of a list that was wrong
+_DEEPEST = 12  # a YAML may hold itself
+
+
+class Declared(BaseModel):
+    """A mapping of the YAML.
+
+    `refused` holds key -> (reason, remedy) for keys that have a meaning elsewhere but not here; `title` says what
+    the mapping describes.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=False, arbitrary_types_allowed=True)
+    refused: ClassVar[Mapping[str, tuple[str, str]]] = {}
+    title: ClassVar[str] = ""
+
+    def given(self, name: str) -> bool:
+        """Whether the key stands in the file."""
+        return name in self.model_fields_set
+
+
+def key(meaning: str, acts: str, default: Any = None, missing: str = "", alias: str | None = None) -> Any:
+    """A key of a mapping.
+
+    Args:
+        meaning: What the value is.
+        acts: What the program does with it.
+        default: What holds where the key is absent.
+        missing: The remedy where a key that must be there is not; it may be absent where this is empty.
+        alias: The key's name where Python could not use it.
+    """
+    extra = {"acts": acts, "missing": missing}
+    value = ... if missing else default
+    return Field(value, description=meaning, json_schema_extra=extra, alias=alias)
+
+
+class Word:
+    """Marks a mapping that may be one of a few words instead; they stand in `words`."""
+
+    def __init__(self, *words: str) -> None:
+        self.words = OneOf(words)
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        def check(value: Any, inner: Any) -> Any:
+            return self.words.read(value, "") if isinstance(value, str) else inner(value)
+
+        return core_schema.no_info_wrap_validator_function(check, handler(source))
+
+
+class Item:
+    """Marks a mapping of a list, which is None where it was wrong."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        def check(value: Any, inner: Any) -> Any:
+            return None if value is _LOST else inner(value)
+
+        return core_schema.no_info_wrap_validator_function(check, handler(source))
+
+
+class Listed:
+    """Marks a list of at least one mapping; `what` and `example` say of what."""
+
+    def __init__(self, what: str, example: str) -> None:
+        self.what, self.example = what, example
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        def check(value: Any) -> Any:
+            if not isinstance(value, list) or not value:
+                refuse(f"must be a list of at least one {self.what}", value, self.example)
+            return value
+
+        return core_schema.no_info_before_validator_function(check, handler(source))
+
+
+def names(model: type[Declared]) -> dict[str, FieldInfo]:
+    """The keys of a mapping as they are written, with their declarations."""
+    return {info.alias or name: info for name, info in model.model_fields.items()}
+
+
+def inner_model(info: FieldInfo) -> type[Declared] | None:
+    """The model of a mapping (or of a list of mappings) under a key; None for a plain value."""
+    kinds = [info.annotation]
+    for kind in kinds:
+        if isinstance(kind, type) and issubclass(kind, Declared):
+            return kind
+        kinds += get_args(kind)
+    return None
+
+
+def kind_of(info: FieldInfo) -> Value | None:
+    """The kind of value under a key; None for a mapping."""
+    return next((found for found in info.metadata if isinstance(found, Value)), None)
+
+
+def read_declared(model: type[Declared], content: object, problems: Problems, source: str) -> Declared | None:
+    """What the content declares, without the parts that are wrong.
+
+    Wrong parts are noted and taken out, and what is left is read again until it holds. A mapping that lost a key is
+    not compared in itself any more: a rule among its keys could blame what is right.
+
+    Args:
+        model: The model of the whole file.
+        content: What the YAML holds.
+        problems: Takes everything that is wrong.
+        source: The YAML file.
+
+    Returns:
+        The model, or None where nothing of the content can be used.
+    """
+    content, lost = _own_copy(content), set()
+    while True:
+        try:
+            return model.model_validate(content)
+        except ValidationError as error:
+            found = [pair for one in error.errors() for pair in _problems(model, one)]
+        cuts = {place for place, _, _ in found}
+        for place, problem, among in found:
+            if place not in lost and not (among is not None and _touched(among, lost)):
+                problems.append(_placed(problem, place, source))
+        left = [_cut(content, place, lost) for place in sorted(cuts, key=len, reverse=True)]
+        if not all(left):
+            return None
+
+
+def _own_copy(content: object, depth: int = 0) -> object:
+    """A copy in which no part is shared, as anchors of YAML do, and every key is a text."""
+    if depth < _DEEPEST and isinstance(content, dict):
+        return {str(name): _own_copy(value, depth + 1) for name, value in content.items()}
+    if depth < _DEEPEST and isinstance(content, list):
+        return [_own_copy(value, depth + 1) for value in content]
+    return content
+
+
+def _touched(place: Path, lost: set[Path]) -> bool:
+    """Whether a key of the mapping at `place`, or a part of its value, was taken out."""
+    return any(cut[: len(place)] == place and 0 < len(cut) - len(place) <= 2 for cut in lost)
+
+
+def _placed(problem: Problem, place: Path, source: str) -> Problem:
+    text = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in place).lstrip(".")
+    return Problem(text or "the file", problem.rule, problem.value, problem.remedy, source)
+
+
+def _cut(content: object, place: Path, lost: set[Path]) -> bool:
+    """Take a part out, or what holds it where it is not there itself; False where that is everything."""
+    lost.add(place)
+    if not place:
+        return False
+    holder = content
+    for part in place[:-1]:
+        try:
+            holder = holder[part]
+        except (KeyError, IndexError, TypeError):
+            return True  # went with what held it
+    if isinstance(holder, dict) and place[-1] in holder:
+        del holder[place[-1]]
+        return True
+    if isinstance(holder, list) and isinstance(place[-1], int) and holder[place[-1]] is not _LOST:
+        holder[place[-1]] = _LOST
+        return True
+    return _cut(content, place[:-1], lost)
+
+
+def _problems(model: type[Declared], error: Mapping[str, Any]) -> list[tuple[Path, Problem, Path | None]]:
+    """An error of pydantic's as problems: place, problem, and the mapping whose keys it compares, if it does."""
+    place, kind, value = error["loc"], error["type"], error["input"]
+    raised = error.get("ctx", {}).get("error")
+    if isinstance(raised, InputError):
+        among = place if _model_at(model, place) and isinstance(value, Mapping) else None
+        return [(place + _parts(problem.key), problem, among) for problem in raised.problems]
+    if kind == "missing":
+        info = names(_model_at(model, place[:-1]))[place[-1]]
+        return [(place, Problem("", "is missing", None, info.json_schema_extra["missing"]), None)]
+    if kind == "extra_forbidden":
+        return [(place, _unknown(_model_at(model, place[:-1]), place[-1], value), None)]
+    if kind == "model_type":
+        rule = f"must be a mapping with keys among {', '.join(names(_model_at(model, place)))}"
+        return [(place, Problem("", rule, value, "write `key: value` lines"), None)]
+    return [(place, Problem("", error["msg"], value), None)]
+
+
+def _unknown(model: type[Declared], name: object, value: object) -> Problem:
+    if name in model.refused:
+        reason, remedy = model.refused[name]
+        return Problem("", f"has no meaning for {model.title}: {reason}", value, remedy)
+    return Problem("", "unknown key", None, nearest(str(name), tuple(names(model))))
+
+
+def _parts(key: str) -> Path:
+    return tuple(key.split(".")) if key else ()
+
+
+def _model_at(model: type[Declared], place: Path) -> type[Declared] | None:
+    """The model of the mapping at a place; None where a plain value stands."""
+    for part in place:
+        if model is None:
+            return None
+        model = model if isinstance(part, int) else inner_model(names(model)[part])
+    return model

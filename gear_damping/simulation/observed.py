@@ -1,0 +1,106 @@
+"""What sensors on the shafts of a gear pair see of a run: speeds and angular accelerations."""
+
+import torch
+from torch import Tensor
+
+from gear_damping.physics.model import Prepared
+from gear_damping.physics.moment import Moment
+from gear_damping.physics.terms import LoadPath
+from gear_damping.simulation.runs import ACCELERATION, Runs
+from gear_damping.simulation.simulate import input_units, natural_units
+
+PINION_SPEED, GEAR_SPEED = "pinion_speed", "gear_speed"
+PINION_ACCELERATION, GEAR_ACCELERATION = "pinion_acceleration", "gear_acceleration"
+
+
+def shaft_motion(runs: Runs) -> dict[str, Tensor]:
+    """Fluctuation of the speed (rad/s) and angular acceleration (rad/s^2) of both shafts, each (batch, time).
+
+    From I1 theta1'' = T1 - r_b1 N and I2 theta2'' = -T2 + r_b2 N follows with x = r_b1 theta1 - r_b2 theta2
+
+        theta1'' = a / r_b1 + r_b1 m_e x'' / I1,   theta2'' = a / r_b2 - r_b2 m_e x'' / I2,
+        a = (T1 / r_b1 - T2 / r_b2) / (I1 / r_b1^2 + I2 / r_b2^2),
+
+    where a is the acceleration of both pitch circles as one body: 0 where the torques balance. Speeds are those
+    about the mean speed of the shafts: the integral of a about its mean, and the share of x'.
+    Errors of geometry move x, so that nothing changes here. Behind the torsion of a shaft T1 is the shaft's torque.
+    Load effects (drag, ripple, drawn loads) enter through x'' alone, as they do where the gear's torque balances
+    them; sliding friction is counted as if its arms were the base radii.
+
+    Returns:
+        `pinion_speed` and `gear_speed`; where the run has the acceleration (`simulate(..., acceleration=True)`) also
+        `pinion_acceleration` and `gear_acceleration`.
+
+    Raises:
+        ValueError: the model is not a gear pair.
+    """
+    if runs.model.system.name != "gear_pair":
+        raise ValueError(f"shaft_motion needs a gear_pair, this is a {runs.model.system.name}: it has no shafts")
+    radii = [runs.derived[f"base_radius_{shaft}"].unsqueeze(1) for shaft in ("pinion", "gear")]
+    shares = [sign * share for sign, share in zip((1, -1), _participation(runs), strict=True)]
+    common = _common_acceleration(runs)
+    drift = _integral(common, runs.sampling_rate)
+    drift = drift - drift.mean(-1, keepdim=True)
+    found = {}
+    for name, radius, share in zip((PINION_SPEED, GEAR_SPEED), radii, shares, strict=True):
+        found[name] = drift / radius + share * runs.states["velocity"]
+    if ACCELERATION in runs.states:
+        for name, radius, share in zip((PINION_ACCELERATION, GEAR_ACCELERATION), radii, shares, strict=True):
+            found[name] = common / radius + share * runs.states[ACCELERATION]
+    return found
+
+
+def _compliances(runs: Runs) -> tuple[Tensor, Tensor]:
+    """r_b^2 / I of pinion and gear as they are on the drawing, 1/kg, (batch, 1)."""
+    shafts = ("pinion", "gear")
+    pinion, gear = (runs.derived[f"base_radius_{s}"] ** 2 / runs.values[f"inertia_{s}"] for s in shafts)
+    return pinion.unsqueeze(1), gear.unsqueeze(1)
+
+
+def _participation(runs: Runs) -> tuple[Tensor, Tensor]:
+    """r_b m_e / I of pinion and gear, 1/m, (batch, 1); an error of both inertias does not change it."""
+    pinion, gear = _compliances(runs)
+    radii = (runs.derived[f"base_radius_{shaft}"].unsqueeze(1) for shaft in ("pinion", "gear"))
+    return tuple(part / (pinion + gear) / radius for part, radius in zip((pinion, gear), radii, strict=True))
+
+
+def _common_acceleration(runs: Runs) -> Tensor:
+    """The acceleration of both pitch circles as one body, m/s^2, (batch, time)."""
+    zero = torch.zeros_like(runs.states["velocity"])
+    pinion_radius, gear_radius = (runs.derived[f"base_radius_{s}"].unsqueeze(1) for s in ("pinion", "gear"))
+    unbalanced = zero + _through_shaft(runs) / pinion_radius
+    if runs.model.system.chosen["gear_torque_mode"] == "held":
+        torques = (runs.inputs.get(f"{s}_torque", runs.values[f"{s}_torque"].unsqueeze(1)) for s in ("pinion", "gear"))
+        drive, brake = torques
+        unbalanced = unbalanced + drive / pinion_radius - brake / gear_radius
+    pinion, gear = _compliances(runs)
+    scale = runs.derived["equivalent_mass"].unsqueeze(1) * (pinion + gear)  # of both inertias against the drawing
+    return unbalanced / (scale * (1 / pinion + 1 / gear))
+
+
+def _through_shaft(runs: Runs) -> Tensor:
+    """What a shaft's torque on the pinion has beyond the torque that drives it, N m, (batch, time) or one 0."""
+    paths = [effect for effect in runs.model.effects if isinstance(effect, LoadPath)]
+    zero = torch.zeros((), dtype=torch.float64)
+    if not paths:
+        return zero
+    prepared = runs.model.prepare(runs.values)
+    now = _moment(runs, prepared)
+    now.drive_load = runs.model.system.load(now, prepared.base) + torch.zeros_like(now.displacement)
+    beyond = sum((path.transmitted_load(now, prepared.terms[path.name]) - now.drive_load for path in paths), zero)
+    return (beyond * prepared.scales.force).T / _participation(runs)[0]
+
+
+def _moment(runs: Runs, prepared: Prepared) -> Moment:
+    """Every instant of every run in natural units, (time, batch)."""
+    units = natural_units(runs.model, prepared)
+    x, v, *extra = (runs.states[name].T / unit for name, unit in units.items())
+    given = {n: runs.inputs[n].T / unit for n, unit in input_units(runs.model, runs.inputs, prepared).items()}
+    names = list(units)[2:]
+    return Moment(runs.time, x, v, extra=dict(zip(names, extra, strict=True)), inputs=given)
+
+
+def _integral(rate: Tensor, sampling_rate: float) -> Tensor:
+    """Cumulative integral by trapezoids from 0, (batch, time)."""
+    steps = (rate[:, 1:] + rate[:, :-1]) / (2 * sampling_rate)
+    return torch.nn.functional.pad(steps.cumsum(-1), (1, 0))

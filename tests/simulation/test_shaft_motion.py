@@ -1,0 +1,126 @@
+"""Speeds and accelerations of the shafts against a pair of wheels integrated by scipy without the reduction."""
+
+import numpy as np
+import pytest
+import torch
+from scipy.integrate import solve_ivp
+
+from gear_damping.physics.catalogue import effect_class
+from gear_damping.physics.model import Model
+from gear_damping.physics.systems.gear_pair import GearPair
+from gear_damping.physics.systems.oscillator import Oscillator
+from gear_damping.simulation.observed import shaft_motion
+from gear_damping.simulation.simulate import simulate
+from gear_damping.simulation.solver_settings import Solver
+
+I1, I2 = 2.6e-4, 4.5e-3  # kg m^2
+R1, R2 = 3e-3 / 2 * np.cos(np.pi / 9) * np.array([20, 40])  # m
+K, C = 3e8, 400.0
+SAMPLES, SAMPLING, SPEED = 300, 4e4, 4600 * np.pi / 30
+TIMES = np.arange(SAMPLES) / SAMPLING
+RADIUS_ERROR, PHASE = 2e-5, 0.6  # of the pinion's eccentricity
+
+
+def drive(t):
+    return 150 + 20 * np.sin(2 * np.pi * 900 * t)
+
+
+def wheels(drive_torque, brake_torque, inertias=(I1, I2), start=2.5e-5):
+    """theta1, theta1', theta2, theta2' and the accelerations of two wheels on one mesh, (6, time)."""
+
+    def slope(t, s):
+        turned = SPEED * t + PHASE
+        delta = R1 * s[0] - R2 * s[2] - RADIUS_ERROR * np.cos(turned)
+        rate = R1 * s[1] - R2 * s[3] + RADIUS_ERROR * SPEED * np.sin(turned)
+        force = K * delta + C * rate
+        first = (drive_torque(t) - R1 * force) / inertias[0]
+        return [s[1], first, s[3], (R2 * force - brake_torque(t)) / inertias[1]]
+
+    found = solve_ivp(slope, (0, TIMES[-1]), [start / R1, 0, 0, 0], "DOP853", TIMES, rtol=1e-12, atol=1e-17).y
+    return found, np.array([slope(t, s) for t, s in zip(TIMES, found.T, strict=True)]).T
+
+
+def pair(mode, effects=("viscous_damping", "pinion_eccentricity"), torque=None, **given):
+    effects = [effect_class(name)() for name in ("fourier_mesh_stiffness", *effects)]
+    model = Model(GearPair(gear_torque_mode=mode), effects)
+    known = {
+        "fourier_mesh_stiffness.maximum": K,
+        "fourier_mesh_stiffness.minimum": K,
+        "viscous_damping.damping_coefficient": C,
+        "pinion_eccentricity.amplitude": RADIUS_ERROR,
+        "pinion_eccentricity.phase": PHASE,
+        "initial_displacement": 2.5e-5,
+    }
+    known = {name: value for name, value in (known | given).items() if name in model.parameters()}
+    inputs = {} if torque is None else {"pinion_torque": torch.as_tensor(torque).unsqueeze(0)}
+    run = {"sampling_rate": SAMPLING, "n_samples": SAMPLES, "inputs": inputs, "acceleration": True}
+    return simulate(model, model.values(2, **known), solver=Solver(accuracy=1e-8), **run)
+
+
+def agree(runs, states, slopes, speed_tolerance=1e-5):
+    found = {name: series[1].numpy() for name, series in shaft_motion(runs).items()}
+    inside = slice(20, -20)  # a sampled torque is known less well at its ends
+    for name, row in (("pinion_acceleration", 1), ("gear_acceleration", 3)):
+        assert np.abs(found[name] - slopes[row])[inside].max() < 1e-5 * np.abs(slopes[row]).max()
+    for name, row in (("pinion_speed", 1), ("gear_speed", 3)):
+        missed = found[name] - states[row]
+        assert np.std(missed[inside]) < speed_tolerance * np.std(states[row])
+
+
+def test_torques_that_balance():
+    """Both shafts keep their mean speed, also while the torque changes."""
+    states, slopes = wheels(drive, lambda t: drive(t) * R2 / R1)
+    agree(pair("balanced", torque=drive(TIMES)), states, slopes)
+
+
+def test_a_gear_whose_torque_is_held():
+    """The pair as one body follows the torque that nothing holds."""
+    states, slopes = wheels(drive, lambda t: 250.0)
+    runs = pair("held", torque=drive(TIMES), gear_torque=250.0)
+    agree(runs, states, slopes, speed_tolerance=2e-4)
+    speed = shaft_motion(runs)["gear_speed"][1].numpy()
+    assert np.abs(speed - (states[3] - states[3].mean())).max() < 0.02 * np.std(states[3])
+
+
+@pytest.mark.parametrize("given", [{"inertia_error.share": 0.3}, {"equivalent_mass": 1.3 / (R1**2 / I1 + R2**2 / I2)}])
+def test_inertias_that_are_both_larger(given):
+    states, slopes = wheels(lambda t: 150.0, lambda t: 250.0, (1.3 * I1, 1.3 * I2))
+    effects = ["viscous_damping", "pinion_eccentricity", *(["inertia_error"] if "inertia_error.share" in given else [])]
+    agree(pair("held", effects, gear_torque=250.0, **given), states, slopes)
+
+
+def test_behind_a_shaft_that_twists():
+    """Three inertias: a motor, its shaft, and the pair; the shaft turns the pair as a whole."""
+    stiffness, motor = 2000.0, 0.01
+    radii, inertias = np.array([R1, R2]), np.array([I1, I2])
+    runs = pair(
+        "balanced",
+        ["shaft_torsion"],
+        **{"shaft_torsion.stiffness": stiffness, "shaft_torsion.motor_inertia": motor},
+        **{"shaft_torsion.damping_ratio": 0.0, "initial_displacement": 3e-5},
+    )
+
+    def slope(t, s):
+        force, shaft = K * (radii[0] * s[2] - radii[1] * s[4]), stiffness * (s[0] - s[2])
+        accelerations = (150 - shaft) / motor, (shaft - R1 * force) / inertias[0], (R2 * force - 300) / inertias[1]
+        return [s[1], accelerations[0], s[3], accelerations[1], s[5], accelerations[2]]
+
+    start = [150 / stiffness + 3e-5 / R1, 0, 3e-5 / R1, 0, 0, 0]
+    states = solve_ivp(slope, (0, TIMES[-1]), start, "DOP853", TIMES, rtol=1e-12, atol=1e-17).y
+    slopes = np.array([slope(t, s) for t, s in zip(TIMES, states.T, strict=True)]).T
+    agree(runs, states[2:], slopes[2:], speed_tolerance=1e-3)
+
+
+def test_speeds_need_no_acceleration(bench_model):
+    model, values = bench_model
+    run = {"sampling_rate": 40e3, "n_samples": 40}
+    without, asked = (shaft_motion(simulate(model, values(2), acceleration=a, **run)) for a in (False, True))
+    assert without.keys() == {"pinion_speed", "gear_speed"}
+    assert torch.equal(without["gear_speed"], asked["gear_speed"])
+
+
+def test_an_oscillator_has_no_shafts():
+    model = Model(Oscillator(), [])
+    runs = simulate(model, model.values(1), sampling_rate=10, n_samples=3)
+    with pytest.raises(ValueError, match="gear_pair"):
+        shaft_motion(runs)
