@@ -1,6 +1,7 @@
 """A casing from its file to its findings, on rigs of an independent truth."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,9 +9,11 @@ import yaml
 from casing import draw_case, write_case
 
 from gear_damping.errors import InputError
+from gear_damping.explanation.casing.heard import is_casing
 from gear_damping.explanation.content import KEYS
 from gear_damping.explanation.explain import explain
 from gear_damping.measurement.load import load_measurement
+from gear_damping.measurement.record import Channel
 
 ONCE = ("once per turn of the pinion", "once per turn of the gear")
 
@@ -81,6 +84,33 @@ def test_a_missing_tacho_is_one_message(tmp_path):
     assert len(error.value.problems) == 1
     assert error.value.problems[0].key == "run_1.encoders"
     assert "run_1.npz" in error.value.problems[0].source
+
+
+def test_a_late_sensor_hears_a_burst_at_an_earlier_tooth(tmp_path):
+    case = draw_case(2016, "pinion", (20, 43), seconds=1.0)
+    path = write_case(case, tmp_path / "rig")
+    late = 3 * 2 * np.pi / case.speed / 20  # s: three mesh periods
+
+    def delayed(content):
+        content["records"][0]["channels"]["acceleration"]["delay"] = {"value": late, "unit": "s"}
+
+    tooth = [
+        explain(measurement).content["casing"]["findings"][0]["tooth"]
+        for measurement in (load_measurement(path), changed_yaml(path, delayed))
+    ]
+    assert (tooth[0] - tooth[1]) % 20 == pytest.approx(3, abs=0.3)
+
+
+def test_beside_a_transmission_error_a_casing_is_not_what_is_explained(tmp_path):
+    measurement = load_measurement(write_case(draw_case(2017, "healthy", seconds=1.0), tmp_path / "rig"))
+    assert is_casing(measurement)
+    record = measurement.records[0]
+    error = Channel("transmission_error", 1e-6 * record.channels["acceleration"].values, "m")
+    both = replace(record, channels={**record.channels, "transmission_error": error})
+    assert not is_casing(replace(measurement, records=(both,)))
+    speed = Channel("pinion_speed", np.gradient(record.channels["pinion_angle"].values), "rad/s")
+    beside = replace(record, channels={**record.channels, "pinion_speed": speed})
+    assert is_casing(replace(measurement, records=(beside,)))
 
 
 def test_too_few_turns_say_how_long_to_record(tmp_path):

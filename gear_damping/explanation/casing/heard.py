@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from scipy.signal import savgol_filter
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.identification.observation import response_names
 from gear_damping.measurement.record import Measurement, Record
 
 TURN = 2 * np.pi
@@ -88,11 +89,13 @@ def heard_of(measurement: Measurement) -> list[Heard]:
 
 def _is_casing(record: Record) -> bool:
     channel = record.channels.get("acceleration")
-    return channel is not None and channel.mounting != "tangential"
+    return channel is not None and channel.mounting == "casing"
 
 
 def _has_response(record: Record) -> bool:
-    return "transmission_error" in record.channels or ("acceleration" in record.channels and not _is_casing(record))
+    """Whether a simulation can be compared with the record; a speed beside a casing is what it is heard at."""
+    names = set(response_names(record, "gear_pair"))
+    return bool(names - {"pinion_speed"} if _is_casing(record) else names)
 
 
 def _heard(record: Record, teeth: tuple[int, int], problems: list[Problem]) -> Heard | None:
@@ -104,6 +107,8 @@ def _heard(record: Record, teeth: tuple[int, int], problems: list[Problem]) -> H
         problems.append(Problem(f"{record.name}.encoders", rule, None, remedy, source))
         return None
     turn = _smoothed(np.asarray(angle.values) / TURN)
+    late = channel.delay - angle.delay  # s
+    turn = turn - np.gradient(turn) * late * record.sampling_rate
     values = channel.values - channel.values.mean()
     heard = Heard(record.name, record.role, values, channel.unit, record.sampling_rate, turn, teeth)
     problem = _unfit(heard)
