@@ -86,19 +86,18 @@ def test_a_missing_tacho_is_one_message(tmp_path):
     assert "run_1.npz" in error.value.problems[0].source
 
 
-def test_a_late_sensor_hears_a_burst_at_an_earlier_tooth(tmp_path):
+def test_an_angle_that_is_late_is_put_right(tmp_path):
     case = draw_case(2016, "pinion", (20, 43), seconds=1.0)
-    path = write_case(case, tmp_path / "rig")
+    measurement = load_measurement(write_case(case, tmp_path / "rig"))
+    record = measurement.records[0]
     late = 3 * 2 * np.pi / case.speed / 20  # s: three mesh periods
-
-    def delayed(content):
-        content["records"][0]["channels"]["acceleration"]["delay"] = {"value": late, "unit": "s"}
-
+    angle = replace(record.channels["pinion_angle"], delay=late)
+    delayed = replace(record, channels={**record.channels, "pinion_angle": angle})
     tooth = [
-        explain(measurement).content["casing"]["findings"][0]["tooth"]
-        for measurement in (load_measurement(path), changed_yaml(path, delayed))
+        explain(one).content["casing"]["findings"][0]["tooth"]
+        for one in (measurement, replace(measurement, records=(delayed,)))
     ]
-    assert (tooth[0] - tooth[1]) % 20 == pytest.approx(3, abs=0.3)
+    assert (tooth[1] - tooth[0]) % 20 == pytest.approx(3, abs=0.3)
 
 
 def test_beside_a_transmission_error_a_casing_is_not_what_is_explained(tmp_path):

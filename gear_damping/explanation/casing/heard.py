@@ -107,8 +107,7 @@ def _heard(record: Record, teeth: tuple[int, int], problems: list[Problem]) -> H
         problems.append(Problem(f"{record.name}.encoders", rule, None, remedy, source))
         return None
     turn = _smoothed(np.asarray(angle.values) / TURN)
-    late = channel.delay - angle.delay  # s
-    turn = turn - np.gradient(turn) * late * record.sampling_rate
+    turn = turn + np.gradient(turn) * angle.delay * record.sampling_rate
     values = channel.values - channel.values.mean()
     heard = Heard(record.name, record.role, values, channel.unit, record.sampling_rate, turn, teeth)
     problem = _unfit(heard)
