@@ -21,6 +21,7 @@ SCHEMA_VERSION = 1
 KEYS = (
     "schema_version", "system", "verdict", "sentences", "causes", "misfit", "residual", "parameters", "gain", "noise",
     "candidates", "not_observable", "next_experiment", "unexplained", "records", "calibration", "findings",
+    "casing",
 )  # fmt: skip
 
 
@@ -38,6 +39,20 @@ def of_faults(measurement: Measurement, faults: Sequence[Finding]) -> dict[str, 
         "not_observable": [],
         "records": {record.name: {"role": record.role} for record in measurement.records},
         "findings": _findings([*faults, *(f for f in measurement.findings if f not in faults)]),
+    }
+
+
+def of_casing(measurement: Measurement, found: dict[str, Any]) -> dict[str, Any]:
+    """The content where a casing was heard: `found` holds the verdict, its sentences and the findings."""
+    return dict.fromkeys(KEYS) | {
+        "schema_version": SCHEMA_VERSION,
+        "system": measurement.system,
+        "causes": [],
+        "candidates": [],
+        "not_observable": [],
+        "records": {record.name: {"role": record.role} for record in measurement.records},
+        "findings": _findings(measurement.findings),
+        **found,
     }
 
 
@@ -89,6 +104,7 @@ def of_search(measurement: Measurement, evidence: Evidence, noise: NoiseLevel, j
             "steps": _steps(judged, evidence),
         },
         "findings": _findings(measurement.findings),
+        "casing": None,
     }
 
 
