@@ -38,7 +38,8 @@ def rig_of(base: Hypothesis, evidence: Evidence, residuals: Residuals | None = N
     inputs = tuple(dict.fromkeys(name for record in evidence.fit for name in record.inputs))
     common = {"system": base.system.name, "inputs": inputs, "values": values}
     if base.system.name != "gear_pair":
-        return Rig(radian=_radian(length_unit(evidence.channel)), **common)
+        radian = _radian(length_unit(evidence.channel)) if evidence.channel else None
+        return Rig(radian=radian, **common)
     values["contact_ratio"] = float(prepared.base["contact_ratio"][0])
     pinion, gear = round(values["n_teeth_pinion"]), round(values["n_teeth_gear"])
     lines = strongest_orders(residuals or (), pinion, gear, values["pinion_speed"])
@@ -134,9 +135,14 @@ def _harmonics(record: FitRecord, teeth: int, speed: float) -> int:
 
 
 def _radian(unit: str) -> float | None:
-    """One radian in a unit; None where the unit is not one of an angle."""
+    """One radian in the unit of the displacement behind a response; None where that is no angle.
+
+    Args:
+        unit: Of the response: an angle, its rate or its acceleration.
+    """
     try:
         found = parse_unit(unit)
     except InputError:
         return None
-    return 1 / found.factor if found.dimension == Dimension(angle=1) else None
+    rates = [Dimension(angle=1, time=-derivatives) for derivatives in range(3)]
+    return 1 / found.factor if found.dimension in rates else None

@@ -222,14 +222,17 @@ def test_without_the_pendulum_the_spring_is_back():
     assert set(back.free) == set(base.free)
 
 
-@pytest.mark.parametrize(("unit", "radian"), [("rad", 1.0), ("deg", degrees(1.0)), ("mrad", 1000.0)])
+@pytest.mark.parametrize(
+    ("unit", "radian"),
+    [("rad", 1.0), ("deg", degrees(1.0)), ("mrad", 1000.0), ("rad/s", 1.0), ("deg/s^2", degrees(1.0))],
+)
 def test_the_length_of_a_pendulum_is_a_radian_where_the_response_is_an_angle(unit, radian):
     for candidate in of("sine_restoring", *oscillator(unit)):
         assert candidate.hypothesis.given["sine_restoring.length"] == pytest.approx(radian)
         assert "sine_restoring.length" not in {p.name for p in candidate.hypothesis.free}
 
 
-@pytest.mark.parametrize("unit", ["mm", "V", "m"])
+@pytest.mark.parametrize("unit", ["mm", "V", "m", "m/s^2"])
 def test_the_length_is_free_where_the_response_is_no_angle(unit):
     for candidate in of("sine_restoring", *oscillator(unit)):
         assert candidate.hypothesis.given["sine_restoring.length"] == pytest.approx(1.5), "three amplitudes"
