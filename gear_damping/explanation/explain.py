@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from gear_damping.explanation import content
-from gear_damping.explanation.calibrate import calibrated, recalibrated
+from gear_damping.explanation.calibrate import angles_counted, calibrated, recalibrated
 from gear_damping.explanation.calibration_error import calibration_error
 from gear_damping.explanation.casing.content import CasingStudy, explain_casing
 from gear_damping.explanation.casing.heard import is_casing
@@ -88,6 +88,7 @@ def explain(
     solver = replace(solver, accuracy=max(solver.accuracy, FIT_ACCURACY), most_substeps=MOST_SUBSTEPS)
     step(1, STEPS)
     evidence = replace(evidence, segments=first_segments(evidence))
+    evidence = angles_counted(evidence, solver)
     nominal = calibrated(evidence, solver)
     noise = replace(noise, scatter=calibration_error(nominal, evidence, solver))
     _tell(nominal, evidence, noise, say)
