@@ -2,11 +2,11 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from math import ceil, cos, log, pi, sin, sqrt
+from math import ceil, cos, inf, log, pi, sin, sqrt
 
 import torch
 
-from gear_damping.explanation.evidence import Evidence
+from gear_damping.explanation.evidence import Evidence, with_own_angles
 from gear_damping.explanation.hypothesis import Hypothesis, Outcome, fit_hypothesis, natural_frequency_hz
 from gear_damping.identification.oscillator import DAMPING, GAIN, expected_about, fit_oscillator, linear_model
 from gear_damping.identification.output_error.angles import STARTS, angle_bases, scanned
@@ -39,6 +39,8 @@ EXPECTED_SHAPE = 0.1  # of the mean stiffness over the harmonic: what real teeth
 SHORT_PERIODS = 40.0  # natural periods of the first round
 FIRST_RATIO = 0.01
 SCANS = 2  # of the records' angles, before and after a first fit
+INDEX_ERROR = 0.1  # rad of the mesh: how well a file that states an index knows where the mesh begins
+ALIKE = pi / 6  # rad between phases that are one: more than the step at which they are tried, far less than chance
 LEAST_DAMPING = 1e-5  # of the first guess, N s/m
 
 
@@ -70,7 +72,7 @@ def _from_here(parameter: FreeParameter, value: float) -> FreeParameter:
 def recalibrated(nominal: Outcome, evidence: Evidence, solver: Solver | None = None) -> Outcome:
     """The nominal model fitted to the evidence in segments, from where it was and from little damping."""
     hypothesis = nominal.hypothesis
-    starts = torch.zeros(2, len(hypothesis.free), dtype=torch.float64)
+    starts = torch.zeros(2, len(hypothesis.common), dtype=torch.float64)
     places = [i for i, parameter in enumerate(hypothesis.free) if parameter.name == DAMPING]
     starts[1, places] = log(LESS_DAMPING)
     return fit_hypothesis(hypothesis, evidence, starts, iterations=SHAPE_ITERATIONS, solver=solver)
@@ -104,7 +106,7 @@ def _rough_gear_pair(evidence: Evidence, solver: Solver | None) -> Outcome:
     horizons = [short, None] if short < evidence.duration else [None]
     options = {"horizons": horizons, "iterations": 12, "solver": solver}
     if evidence.has_index:
-        starts = torch.zeros(STARTS, len(first.free), dtype=torch.float64)
+        starts = torch.zeros(STARTS, len(first.common), dtype=torch.float64)
         places = [i for i, p in enumerate(first.free) if p.name == "mesh_phase"]
         starts[:, places] = torch.linspace(0, 2 * pi, STARTS + 1, dtype=torch.float64)[:-1, None]
         return fit_hypothesis(first, evidence, starts if places else None, kept=0.12, **options)
@@ -115,6 +117,25 @@ def _rough_gear_pair(evidence: Evidence, solver: Solver | None) -> Outcome:
         again = fit_hypothesis(hypothesis, evidence, own=angles, **options)
         found = again if found is None or again.fitted.cost < found.fitted.cost else found
     return found
+
+
+def angles_counted(evidence: Evidence, solver: Solver | None = None) -> Evidence:
+    """The evidence with a phase of its own in every record where their angles do not count from one mark.
+
+    An angle that was measured may begin anew in every record, as behind an encoder without an index: then the phases
+    that fit the records best do not agree.
+    """
+    if evidence.system != "gear_pair" or (evidence.has_index and evidence.mesh_index):
+        return evidence
+    apart = with_own_angles(evidence)
+    if not evidence.has_index:
+        return apart
+    first = _first_gear_pair(apart)
+    found = _angles(first, apart, SHORT_PERIODS / natural_frequency_hz(first.model, first.given), solver)
+    phases = torch.tensor(list(found.values()), dtype=torch.float64)
+    middle = torch.atan2(phases.sin().sum(), phases.cos().sum())
+    off = torch.remainder(phases - middle + pi, 2 * pi) - pi
+    return evidence if float(off.abs().max()) <= ALIKE else apart
 
 
 def _angles(hypothesis: Hypothesis, evidence: Evidence, horizon: float, solver: Solver | None) -> Mapping[str, float]:
@@ -149,8 +170,8 @@ def _first_gear_pair(evidence: Evidence) -> Hypothesis:
     if damping > 0:
         lower = LEAST_DAMPING * damping
         free = [FreeParameter(DAMPING, damping, logarithmic=True, lower=lower), *free]
-    if evidence.has_index and any("mesh_phase" not in record.conditions for record in evidence.fit):
-        free = [FreeParameter("mesh_phase", 0.0), *free]
+    if evidence.has_index:
+        free = [FreeParameter("mesh_phase", 0.0, deviation=INDEX_ERROR if evidence.mesh_index else inf), *free]
     free = [expected_about(parameter, uncertain.pop(parameter.name, None)) for parameter in free]
     free += [_uncertain(name, stated[name], relative) for name, relative in uncertain.items() if name in stated]
     return Hypothesis(system, tuple(effects), start | {DAMPING: damping}, tuple(free))

@@ -1,7 +1,7 @@
 """Step 5a: what could be missing. Every effect of the catalogue as something that can be switched on gradually."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import inf, log
 
 from gear_damping.explanation.evidence import Evidence
@@ -34,6 +34,8 @@ class Candidate:
         later: Free parameters that join in the full fit only.
         presence: Whether it is tried as a whole.
         replaced: Free parameters that it took the place of.
+        sharpest: Names of parameters that may rest at their lower bound without having run into it.
+        own_phases: Name of the phase by place of its strength, where every record has one of its own.
     """
 
     name: str
@@ -46,6 +48,8 @@ class Candidate:
     later: tuple[FreeParameter, ...]
     presence: bool
     replaced: tuple[FreeParameter, ...] = ()
+    sharpest: tuple[str, ...] = ()
+    own_phases: Mapping[int, str] = field(default_factory=dict)
 
     @property
     def options(self) -> tuple[tuple[str, object], ...]:
@@ -63,14 +67,22 @@ def candidates_for(base: Hypothesis, evidence: Evidence, residuals: Residuals | 
     """
     there = {effect.name for effect in base.effects}
     refused = there | COVERED_BY_NUISANCE[base.system.name]
-    rig, sizes = rig_of(base, evidence, residuals), _Sizes(base, evidence.duration)
+    rig, sizes = rig_of(base, evidence, residuals), _Sizes(base, evidence)
     return [
         _candidate(base, kind, recipe, sizes)
         for name, kind in evidence.library.items()
         if kind.cause and base.system.name in kind.systems and name not in refused and set(kind.requires) <= there
         for recipe in kind.cause.recipes_for(rig)
-        if all(_value(base, parameter) > 0 for parameter in recipe.replaces)
+        if all(_value(base, parameter) > 0 for parameter in recipe.replaces) and name not in untried(evidence)
     ]
+
+
+def untried(evidence: Evidence) -> dict[str, str]:
+    """Effects that these records cannot be asked for, with the reason."""
+    if evidence.has_index or evidence.system != "gear_pair":
+        return {}
+    reason = "no index says which tooth is in mesh at the start of each record"
+    return {name: reason for name, kind in evidence.library.items() if kind.cause and kind.cause.turns_with == "tooth"}
 
 
 def restored(hypothesis: Hypothesis, cause: str) -> Hypothesis:
@@ -94,8 +106,9 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Si
     given: Given = {}
     for parameter in kind.parameters:
         given[f"{kind.name}.{parameter.name}"] = sizes.default(kind, parameter, recipe)
-    free, strengths, phases = [], [], {}
-    first = len(base.free)
+    free, strengths, phases, own_phases = [], [], {}, {}
+    own = not sizes.has_index and kind.cause.turns_with == "shaft"
+    first = len(base.common)
     for name, size in recipe.strengths.items():
         for parameter in _elements(kind, name, sizes.size(kind, name, size, recipe), given, recipe):
             place = first + len(free)
@@ -104,6 +117,9 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Si
             if name in recipe.phases:
                 index = parameter.name.partition("[")[2]
                 phase = f"{kind.name}.{recipe.phases[name]}" + (f"[{index}" if index else "")
+                if own:
+                    own_phases[place] = phase
+                    continue
                 free.append(FreeParameter(phase, 0.0))
                 phases[place] = place + 1
     later = [
@@ -112,17 +128,19 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Si
     if recipe.presence:
         free, later = [*free, *later], []
     begun = {}
+    templates = [FreeParameter(phase, 0.0, per_record=True) for phase in own_phases.values()]
     for name, start in recipe.beside.items():
         if start is not None:
             given[name] = start / UNSEEN
             begun[first + len(free)] = log(UNSEEN)
         if name in given or name in base.given:
             free.append(_freed(base.model.parameters()[name], name, base.given | given, recipe.within))
-    moved = {i: log(recipe.stood_in[p.name]) for i, p in enumerate(base.free) if p.name in recipe.stood_in}
+    moved = {i: log(recipe.stood_in[p.name]) for i, p in enumerate(base.common) if p.name in recipe.stood_in}
+    extended = base.with_effect([effect], given, [*free, *templates], kind.name)
     return Candidate(
         kind.name,
         _label(kind, recipe),
-        replace(base.with_effect([effect], given, free, kind.name), replaced=base.replaced | {kind.name: replaced}),
+        replace(extended, replaced=base.replaced | {kind.name: replaced}),
         tuple(strengths),
         phases,
         begun,
@@ -130,6 +148,8 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Si
         tuple(later),
         recipe.presence,
         replaced,
+        tuple(f"{kind.name}.{name}" for name in recipe.sharpest),
+        own_phases,
     )
 
 
@@ -157,8 +177,8 @@ def _label(kind: type[Effect], recipe: Recipe) -> str:
 class _Sizes:
     """Sizes of an effect's parameters for this rig."""
 
-    def __init__(self, base: Hypothesis, duration: float) -> None:
-        self.base, self.duration = base, duration
+    def __init__(self, base: Hypothesis, evidence: Evidence) -> None:
+        self.base, self.duration, self.has_index = base, evidence.duration, evidence.has_index
         self.scales = base.model.prepare(base.model.values(1, **base.given)).scales
 
     def natural(self, kind: type[Effect], parameter: Parameter, value: float, exponent: float = 1.0) -> float:

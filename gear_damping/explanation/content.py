@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from gear_damping.explanation import gain
+from gear_damping.explanation.candidates import untried
 from gear_damping.explanation.data_faults import sentences
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Outcome
@@ -18,8 +19,9 @@ from gear_damping.measurement.record import Finding, Measurement
 
 SCHEMA_VERSION = 1
 KEYS = (
-    "schema_version", "system", "verdict", "sentences", "causes", "misfit", "residual", "gain", "noise",
+    "schema_version", "system", "verdict", "sentences", "causes", "misfit", "residual", "parameters", "gain", "noise",
     "candidates", "not_observable", "next_experiment", "unexplained", "records", "calibration", "findings",
+    "casing",
 )  # fmt: skip
 
 
@@ -37,6 +39,20 @@ def of_faults(measurement: Measurement, faults: Sequence[Finding]) -> dict[str, 
         "not_observable": [],
         "records": {record.name: {"role": record.role} for record in measurement.records},
         "findings": _findings([*faults, *(f for f in measurement.findings if f not in faults)]),
+    }
+
+
+def of_casing(measurement: Measurement, found: dict[str, Any]) -> dict[str, Any]:
+    """The content where a casing was heard: `found` holds the verdict, its sentences and the findings."""
+    return dict.fromkeys(KEYS) | {
+        "schema_version": SCHEMA_VERSION,
+        "system": measurement.system,
+        "causes": [],
+        "candidates": [],
+        "not_observable": [],
+        "records": {record.name: {"role": record.role} for record in measurement.records},
+        "findings": _findings(measurement.findings),
+        **found,
     }
 
 
@@ -65,7 +81,9 @@ def of_search(measurement: Measurement, evidence: Evidence, noise: NoiseLevel, j
         "residual": {
             "fit": _residual(first.fit_residuals, last.fit_residuals, unit, factor),
             "holdout": _residual(first.holdout, last.holdout, unit, factor),
+            "segment_s": evidence.segments.seconds or None,
         },
+        "parameters": gain.final_parameters(last, gain.spread_of(last, evidence), evidence),
         "gain": _gain(judged, evidence, noise),
         "noise": {
             "channel": evidence.channel.name,
@@ -75,7 +93,7 @@ def of_search(measurement: Measurement, evidence: Evidence, noise: NoiseLevel, j
             "method": noise.method,
             "estimates_agree": noise.agree,
         },
-        "candidates": _candidates(judged),
+        "candidates": _candidates(judged, evidence),
         "not_observable": _not_observable(found.first_scores, names, evidence),
         "next_experiment": next_experiment(names, evidence),
         "unexplained": None if judged.verdict.word == CONSISTENT else leftover(last, evidence),
@@ -86,6 +104,7 @@ def of_search(measurement: Measurement, evidence: Evidence, noise: NoiseLevel, j
             "steps": _steps(judged, evidence),
         },
         "findings": _findings(measurement.findings),
+        "casing": None,
     }
 
 
@@ -127,7 +146,8 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
         for cause in found.accepted
     ]
     if not listed and judged.verdict.word != CONSISTENT:
-        for refit in [r for r in found.rejected if r.gain > 0 and r.is_seen_in_fit][:1]:
+        helping = (r for r in found.rejected if r.gain > 0 and r.is_seen_in_fit)
+        for refit in [r for r in helping if _share(r.outcome, found.nominal) > 0][:1]:
             spread = gain.spread_of(refit.outcome, evidence)
             own = gain.parameters_of(refit.outcome, spread, refit.name, evidence)
             alike = confusable_beforehand(found.first_scores, refit.name)[: LARGEST_SET - 1]
@@ -154,21 +174,23 @@ def _gain(judged: Judged, evidence: Evidence, noise: NoiseLevel) -> dict[str, An
     floor = sum(len(r.stacked) * noise.by_record[r.name] ** 2 for r in evidence.held)
     damping = {
         key: gain.damping_ratio(outcome, gain.spread_of(outcome, evidence))
-        | {"velocity_unit": rig_unit("m/s", evidence)}
         for key, outcome in (("before", first), ("after", last))
     }
+    whole = all(damping.values())
+    if whole:
+        damping = {key: found | {"velocity_unit": rig_unit("m/s", evidence)} for key, found in damping.items()}
+        damping["bias_of_the_nominal"] = damping["before"]["value"] - damping["after"]["value"]
     return {
         "nrmse": {
             "before": gain.nrmse(first.holdout, evidence.held),
             "after": gain.nrmse(last.holdout, evidence.held),
             "floor": (floor / max(spread, 1e-300)) ** 0.5,
         },
-        "damping_ratio_percent": damping
-        | {"bias_of_the_nominal": damping["before"]["value"] - damping["after"]["value"]},
+        "damping_ratio_percent": damping if whole else None,
     }
 
 
-def _candidates(judged: Judged) -> list[dict[str, Any]]:
+def _candidates(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
     """Every effect that was tried: what it promised on fitted records, and what a full fit took of held-out ones."""
     found = judged.found
     best_last = reversed(found.first_fits)  # of several forms of an effect the best one counts
@@ -184,10 +206,16 @@ def _candidates(judged: Judged) -> list[dict[str, Any]]:
             return statuses(judged.verdict.word)
         return "confusable" if name in alike else "rejected"
 
+    untold = [
+        {"name": name, "promised": None, "share": None, "status": "rejected", "at_bound": False, "failed": reason}
+        for name, reason in untried(evidence).items()
+    ]
+    bounded = {refit.name for refit in found.first_fits if refit.is_at_bound}
     return [
         {"name": name, "promised": score.gain, "share": accepted.get(name, taken.get(name)), "status": status(name)}
+        | {"at_bound": name in bounded, "failed": found.failed.get(name) or score.failed or None}
         for name, score in best.items()
-    ]
+    ] + untold
 
 
 def _not_observable(scores: Sequence[Score], named: Sequence[str], evidence: Evidence) -> list[dict[str, Any]]:
@@ -202,7 +230,7 @@ def _not_observable(scores: Sequence[Score], named: Sequence[str], evidence: Evi
         if name in named:
             continue
         place = score.candidate.strengths[0]
-        flat = score.candidate.hypothesis.free[place].name
+        flat = score.candidate.hypothesis.common[place].name
         unit = rig_unit(score.candidate.hypothesis.model.parameters()[flat.partition("[")[0]].unit, evidence)
         listed.append({"name": name, "parameter": flat, "smallest": score.smallest, "unit": unit})
     return listed

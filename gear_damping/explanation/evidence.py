@@ -1,16 +1,16 @@
 """Step 1: what was measured, as the fits see it: records to fit, records held out, what is known of the rig."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import floor, log10, pi
 
 import torch
 from torch import Tensor
 
 from gear_damping.identification.observation import (
+    MESH_PHASE,
     Known,
     fit_record,
-    has_index,
     known_of,
     require_alike,
     response_names,
@@ -42,6 +42,7 @@ class Evidence:
         segments: How records are cut, because they cannot be predicted from their start for longer.
         stated_segments: How the file says that they are cut; `WHOLE` where it does not.
         has_index: Whether the angle of all records counts from one mark.
+        mesh_index: Whether the file says that it counts from the zero of the mesh.
     """
 
     system: str
@@ -56,6 +57,7 @@ class Evidence:
     segments: Segments = WHOLE
     stated_segments: Segments = WHOLE
     has_index: bool = True
+    mesh_index: bool = False
 
     @property
     def parameters(self) -> Mapping[str, float]:
@@ -119,8 +121,18 @@ def evidence_of(measurement: Measurement) -> Evidence:
         one_record=one and len(used) == 1,
         gear_torque_mode="held" if any("gear_torque" in r.inputs for r in fit) else next(iter(modes), "balanced"),
         stated_segments=Segments(measurement.segment_s, exact=True) if measurement.segment_s else WHOLE,
-        has_index=all(has_index(record) for record in used),
+        has_index=all("pinion_angle" in record.inputs for record, _ in records) or system != "gear_pair",
+        mesh_index=all(record.mesh_index for record in used),
     )
+
+
+def with_own_angles(evidence: Evidence) -> Evidence:
+    """The same where every record has a mesh phase of its own."""
+    fit, holdout = (
+        tuple(replace(record, own=(MESH_PHASE, *record.own)) for record in records)
+        for records in (evidence.fit, evidence.holdout)
+    )
+    return replace(evidence, fit=fit, holdout=holdout, has_index=False)
 
 
 def _roles(records: Sequence[tuple[FitRecord, str | None]]) -> tuple[list[FitRecord], list[FitRecord]]:

@@ -5,8 +5,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from gear_damping.explanation import content
-from gear_damping.explanation.calibrate import calibrated, recalibrated
+from gear_damping.explanation.calibrate import angles_counted, calibrated, recalibrated
 from gear_damping.explanation.calibration_error import calibration_error
+from gear_damping.explanation.casing.content import CasingStudy, explain_casing
+from gear_damping.explanation.casing.heard import is_casing
 from gear_damping.explanation.data_faults import data_faults, mesh_order_faults
 from gear_damping.explanation.evidence import Evidence, evidence_of
 from gear_damping.explanation.extend import search
@@ -38,12 +40,14 @@ class Explanation:
         evidence: The records; None where the data were refused.
         noise: Their noise.
         found: The search, with the calibrated nominal model and the extended one.
+        casing: The studies of casing records, where the gear pair was heard through nothing else.
     """
 
     content: dict[str, Any]
     evidence: Evidence | None = None
     noise: NoiseLevel | None = None
     found: Search | None = None
+    casing: CasingStudy | None = None
 
 
 def explain(
@@ -69,6 +73,9 @@ def explain(
     faults = data_faults(measurement)
     if faults:
         return Explanation(content.of_faults(measurement, faults))
+    if is_casing(measurement):
+        found, studies = explain_casing(measurement, say)
+        return Explanation(content.of_casing(measurement, found), casing=studies)
     evidence = evidence_of(measurement)
     faults = mesh_order_faults(evidence)
     if faults:
@@ -81,6 +88,7 @@ def explain(
     solver = replace(solver, accuracy=max(solver.accuracy, FIT_ACCURACY), most_substeps=MOST_SUBSTEPS)
     step(1, STEPS)
     evidence = replace(evidence, segments=first_segments(evidence))
+    evidence = angles_counted(evidence, solver)
     nominal = calibrated(evidence, solver)
     noise = replace(noise, scatter=calibration_error(nominal, evidence, solver))
     _tell(nominal, evidence, noise, say)

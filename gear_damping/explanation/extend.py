@@ -38,7 +38,7 @@ def search(
         begun: Full fits to other evidence that are carried on.
     """
     bench = Bench(evidence, noise, say, solver)
-    found = Search(nominal, nominal, first_scores=bench.ranked(nominal))
+    found = Search(nominal, nominal, first_scores=bench.ranked(nominal), failed=bench.failed)
     ranked, first, anew = found.first_scores, bench.excess(nominal), 0
     while len(found.accepted) < MOST_CAUSES:
         current = bench.excess(found.outcome)

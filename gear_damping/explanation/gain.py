@@ -10,8 +10,8 @@ from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Outcome, time_scale
 from gear_damping.explanation.rig_units import rig_unit
 from gear_damping.explanation.significance import ac_energy
-from gear_damping.identification.output_error.problem import is_of_model, set_value
-from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.identification.output_error.problem import OFFSET, is_of_model, set_value
+from gear_damping.identification.output_error.records import SEPARATOR, FitRecord
 from gear_damping.identification.output_error.uncertainty import QUANTILE, covariance
 from gear_damping.physics.terms import DampingLaw
 from gear_damping.simulation.runs import reference_velocity
@@ -72,16 +72,37 @@ def parameters_of(outcome: Outcome, spread: Tensor, cause: str, evidence: Eviden
         ends[0] = known.lower if silent or at_bound[place] < 0 else ends[0]
         ends[1] = known.upper if silent or at_bound[place] > 0 else ends[1]
         unit = rig_unit(known.unit, evidence)
-        found[own] = Interval(value, (ends[0], ends[1]), unit).plain()
+        found[own] = Interval(value, (ends[0], ends[1]), unit).plain() | {"at_bound": bool(at_bound[place])}
     return found
 
 
-def damping_ratio(outcome: Outcome, spread: Tensor) -> dict[str, object]:
-    """The equivalent damping ratio of every damping law together, in % of critical, at its reference velocity."""
+def final_parameters(outcome: Outcome, spread: Tensor, evidence: Evidence) -> dict[str, dict[str, object]]:
+    """Every fitted parameter of a model with its 95 % interval, nuisances and those of single records included."""
+    declared, found = outcome.hypothesis.model.parameters(), {}
+    for place, parameter in enumerate(outcome.problem.free):
+        z, half = outcome.fitted.shared[place], QUANTILE * float(spread[place, place].clamp(min=0).sqrt())
+        ends = sorted(float(parameter.value(z + shift)) for shift in (-half, half))
+        flat = parameter.name.partition(SEPARATOR)[0].partition("[")[0]
+        kind, _, channel = flat.partition(".")
+        if kind == OFFSET:
+            unit = evidence.channel.unit if channel == evidence.channel.name else "own"
+        else:
+            unit = rig_unit(declared[flat].unit, evidence) if flat in declared else "1"
+        found[parameter.name] = Interval(float(parameter.value(z)), (ends[0], ends[1]), unit).plain()
+    return found
+
+
+def damping_ratio(outcome: Outcome, spread: Tensor) -> dict[str, object] | None:
+    """The equivalent damping ratio of every damping law together, in % of critical, at its reference velocity.
+
+    None where there is no linear stiffness, so that nothing is critical.
+    """
     problem, shared = outcome.problem, outcome.fitted.shared
     points = shared.repeat(len(shared) + 1, 1)
     points[1:] += STEP * torch.eye(len(shared), dtype=torch.float64)
     ratios, velocity = _ratios(outcome, problem.parameters(points), len(points))
+    if not bool(ratios.isfinite().all()):
+        return None
     slope = (ratios[1:] - ratios[0]) / STEP
     half = QUANTILE * float((slope @ spread @ slope).clamp(min=0).sqrt())
     value = float(ratios[0])

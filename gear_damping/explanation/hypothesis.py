@@ -48,6 +48,11 @@ class Hypothesis:
     replaced: Mapping[str, tuple[FreeParameter, ...]] = field(default_factory=dict)
 
     @property
+    def common(self) -> tuple[FreeParameter, ...]:
+        """Free parameters that all records share, in the order of the fit's coordinates."""
+        return tuple(parameter for parameter in self.free if not parameter.per_record)
+
+    @property
     def model(self) -> Model:
         """The simulator."""
         return Model(self.system, self.effects)
@@ -168,9 +173,8 @@ def _begin(
     own: Mapping[str, float],
 ) -> tuple[Tensor | None, Tensor]:
     """Initial states (None: from the records) and coordinates, those of single records among them."""
-    common = sum(not parameter.per_record for parameter in hypothesis.free)
     if starts is None:
-        starts = torch.zeros(1, common, dtype=torch.float64)
+        starts = torch.zeros(1, len(hypothesis.common), dtype=torch.float64)
     begun = None if after is None else begun_from(problem, after, len(starts))
     shared = problem.completed(starts)
     if after is not None:

@@ -1,7 +1,7 @@
 """Step 5b: what each candidate could explain, by its sensitivity with the nuisance projected out (score test)."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import torch
 from torch import Tensor
@@ -10,7 +10,7 @@ from gear_damping.explanation.candidates import Candidate
 from gear_damping.explanation.hypothesis import Outcome, begun_from
 from gear_damping.identification.output_error.least_squares import own_basis, without_own
 from gear_damping.identification.output_error.problem import OutputErrorProblem
-from gear_damping.identification.output_error.records import DIFFERENCE
+from gear_damping.identification.output_error.records import DIFFERENCE, SEPARATOR
 from gear_damping.simulation.solver_settings import Solver
 
 PROBE = 0.05  # share of a strength's size that its slope is taken over
@@ -31,6 +31,8 @@ class Score:
         smallest: Size of its first strength that would just be visible, in the strength's own unit.
         columns: Orthonormal basis of what it can do beside the nuisance, (samples, n).
         variants: Of an effect that is tried as a whole, its other sizes.
+        failed: Why it could not be scored; empty where it could.
+        own: Where phases of single records begin, by name.
     """
 
     candidate: Candidate
@@ -40,6 +42,8 @@ class Score:
     smallest: float
     columns: Tensor
     variants: tuple[Candidate, ...] = ()
+    failed: str = ""
+    own: Mapping[str, float] = field(default_factory=dict)
 
 
 class Projector:
@@ -117,8 +121,7 @@ def scores(
     base = Base(outcome, project, residual, beside, _predicted(outcome), noise, solver)
     found = []
     for number, candidate in enumerate(candidates):
-        score = _score(candidate, base)
-        found += [score] if score is not None else []
+        found.append(_score(candidate, base))
         if report:
             report(number + 1, len(candidates))
     return sorted(found, key=lambda score: -score.gain)
@@ -128,17 +131,20 @@ def _predicted(outcome: Outcome) -> Tensor:
     return (outcome.problem.response * outcome.problem.weights - outcome.fitted.prediction.residual[0]).reshape(-1)
 
 
-def _score(candidate: Candidate, base: Base) -> Score | None:
+def _score(candidate: Candidate, base: Base) -> Score:
     hypothesis, residual = candidate.hypothesis, base.residual
-    records, n_free = base.outcome.problem.records, len(hypothesis.free)
+    records, n_free = base.outcome.problem.records, len(hypothesis.common)
     problem = OutputErrorProblem(hypothesis.model, hypothesis.given, hypothesis.free, records, base.solver)
     points, steps = _probes(candidate, n_free)
     points = problem.completed(points) + problem.own_of(base.outcome.problem, base.outcome.fitted.shared)
+    _turn_own_phases(points, candidate, problem)
     states = begun_from(problem, base.outcome, len(points))
     found = (problem.predict(points, states) * problem.weights).reshape(len(points), -1)
     if not bool(found.isfinite().all()):
-        return None
+        return replace(_unseen(candidate, n_free, len(residual)), failed="its prediction diverged")
     columns = (found - base.predicted) / steps.unsqueeze(1)
+    if candidate.own_phases:
+        columns = _by_record(columns, problem)
     columns = torch.nn.functional.pad(columns, (0, len(base.project.expected))).T
     beside = base.project(columns)
     # What the nuisance takes but for rounding is nothing of its own.
@@ -152,8 +158,44 @@ def _score(candidate: Candidate, base: Base) -> Score | None:
     kept = basis[:, spread > 1e-6 * spread[0]]
     smallest = VISIBLE * base.noise / float(beside[:, 0].norm().clamp(min=1e-300)) * _unit(candidate)
     gain = _gain(candidate, problem, states[:1], beside, base)
-    start = _start(candidate, coefficients, n_free)
-    return Score(candidate, gain, start, explained / explained.norm().clamp(min=1e-300), smallest, kept)
+    direction = explained / explained.norm().clamp(min=1e-300)
+    if candidate.own_phases:
+        start, own = _start_by_record(candidate, coefficients, problem, n_free)
+        return Score(candidate, gain, start, direction, smallest, kept, own=own)
+    return Score(candidate, gain, _start(candidate, coefficients, n_free), direction, smallest, kept)
+
+
+def _turn_own_phases(points: Tensor, candidate: Candidate, problem: OutputErrorProblem) -> None:
+    """Every second point of a strength whose phases are the records' own: turned by a quarter."""
+    for number, phase in enumerate(candidate.own_phases.values()):
+        for place, parameter in enumerate(problem.free):
+            if parameter.name.startswith(phase + SEPARATOR):
+                points[2 * number, place] = parameter.coordinate(0.0)
+                points[2 * number + 1, place] = parameter.coordinate(torch.pi / 2)
+
+
+def _record_names(problem: OutputErrorProblem) -> list[str]:
+    return list(dict.fromkeys(record.record for record in problem.records))
+
+
+def _by_record(columns: Tensor, problem: OutputErrorProblem) -> Tensor:
+    """Columns (n, samples) split into those of single records, (n * records, samples)."""
+    shaped = columns.unflatten(1, (len(problem.records), -1))
+    reach = torch.tensor([[float(r.record == name) for r in problem.records] for name in _record_names(problem)])
+    return (shaped.unsqueeze(1) * reach[None, :, :, None]).flatten(2).flatten(0, 1)
+
+
+def _start_by_record(
+    candidate: Candidate, coefficients: Tensor, problem: OutputErrorProblem, n_free: int
+) -> tuple[Tensor, dict[str, float]]:
+    """Coordinates of the linearised optimum, and the phase of every record."""
+    names, own = _record_names(problem), {}
+    start = torch.zeros(n_free, dtype=torch.float64)
+    parts = coefficients.unflatten(0, (len(candidate.own_phases), 2, len(names)))
+    for (place, phase), (cosine, sine) in zip(candidate.own_phases.items(), parts, strict=True):
+        start[place] = torch.hypot(cosine, sine).square().mean().sqrt()
+        own |= {f"{phase}{SEPARATOR}{n}": float(torch.atan2(s, c)) for n, c, s in zip(names, cosine, sine, strict=True)}
+    return start, own
 
 
 def _coefficients(columns: Tensor, signal: Tensor) -> Tensor:
@@ -169,7 +211,7 @@ def _gain(candidate: Candidate, problem: OutputErrorProblem, states: Tensor, bes
     project, residual = base.project, base.beside
     free = residual.square().sum()
     if candidate.presence:
-        own = [i for i, p in enumerate(candidate.hypothesis.free) if p.name.startswith(candidate.name + ".")]
+        own = [i for i, p in enumerate(candidate.hypothesis.common) if p.name.startswith(candidate.name + ".")]
         places = [*own, *range(problem.n_shared + 2, problem.n_shared + len(problem.local))]
         slopes = _slopes(problem, places, states, problem.own_of(base.outcome.problem, base.outcome.fitted.shared))
         project = project.beside_own(slopes[..., len(own) :])
@@ -198,7 +240,7 @@ def _unseen(candidate: Candidate, n_free: int, samples: int) -> Score:
 
 def _unit(candidate: Candidate) -> float:
     """One coordinate of the first strength in its own unit."""
-    parameter = candidate.hypothesis.free[candidate.strengths[0]]
+    parameter = candidate.hypothesis.common[candidate.strengths[0]]
     return abs(parameter.start) if candidate.presence else parameter.scale
 
 
@@ -212,9 +254,10 @@ def _probes(candidate: Candidate, n_free: int) -> tuple[Tensor, Tensor]:
         row[place] = PROBE
         rows.append(row)
         steps.append(PROBE)
-        if place in candidate.phases:
+        if place in candidate.phases or place in candidate.own_phases:
             turned = row.clone()
-            turned[candidate.phases[place]] = torch.pi / 2
+            if place in candidate.phases:
+                turned[candidate.phases[place]] = torch.pi / 2
             rows.append(turned)
             steps.append(PROBE)
     return torch.stack(rows), torch.tensor(steps, dtype=torch.float64)

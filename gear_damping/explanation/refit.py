@@ -59,8 +59,9 @@ class Refit:
     def is_at_bound(self) -> bool:
         """Whether a parameter of the effect itself has run into a bound of what is tried."""
         own = [p for p in self.outcome.problem.free if p.name.startswith(self.name + ".")]
-        values = self.outcome.values
-        return any(isclose(values[p.name], end, rel_tol=AT_BOUND) for p in own for end in (p.lower, p.upper) if end)
+        values, sharpest = self.outcome.values, self.score.candidate.sharpest
+        ends = [(p, p.upper) for p in own] + [(p, p.lower) for p in own if p.name not in sharpest]
+        return any(isclose(values[p.name], end, rel_tol=AT_BOUND) for p, end in ends if end)
 
     @property
     def name(self) -> str:
@@ -120,6 +121,8 @@ def refitted(
     candidate = score.candidate
     hypothesis = candidate.hypothesis
     options = {"solver": solver, "enough": ENOUGH}
+    if score.own:
+        options["own"] = score.own
     found = fit_hypothesis(
         hypothesis,
         evidence,
@@ -135,7 +138,7 @@ def refitted(
         freed = replace(
             freed, free=tuple(replace(p, start=float(found.hypothesis.given.get(p.name, p.start))) for p in freed.free)
         )
-        found = fit_hypothesis(freed, evidence, None, found, **options)
+        found = fit_hypothesis(freed, evidence, None, found, **(options | {"own": None}))
     if not torch.isfinite(torch.tensor(found.holdout_cost)):
         return None
     return _compared(score, found, against or outcome, evidence)

@@ -1,7 +1,7 @@
 """What candidates may depend on: the rig of the records, and the orders at which something is left of them."""
 
 from collections.abc import Sequence
-from math import floor, pi
+from math import ceil, floor, pi
 
 import torch
 from torch import Tensor
@@ -9,6 +9,7 @@ from torch import Tensor
 from gear_damping.errors import InputError
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Hypothesis
+from gear_damping.explanation.rig_units import length_unit
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.physics.cause import Rig
 from gear_damping.units import Dimension, parse_unit
@@ -18,6 +19,7 @@ MESHES = 3  # orders are looked at up to so many mesh orders
 LINES = 8  # that are kept
 POINTS = 10  # samples a tooth that are enough to see them
 LEAST_TURNS = 1.0  # of the pinion in a record: less does not tell one order from the next
+MOST_TURNS = 20.0  # of a record that are looked at
 GEAR_ORDERS = 3  # of the gear's shaft
 
 
@@ -36,7 +38,8 @@ def rig_of(base: Hypothesis, evidence: Evidence, residuals: Residuals | None = N
     inputs = tuple(dict.fromkeys(name for record in evidence.fit for name in record.inputs))
     common = {"system": base.system.name, "inputs": inputs, "values": values}
     if base.system.name != "gear_pair":
-        return Rig(radian=_radian(evidence.channel.unit), **common)
+        radian = _radian(length_unit(evidence.channel)) if evidence.channel else None
+        return Rig(radian=radian, **common)
     values["contact_ratio"] = float(prepared.base["contact_ratio"][0])
     pinion, gear = round(values["n_teeth_pinion"]), round(values["n_teeth_gear"])
     lines = strongest_orders(residuals or (), pinion, gear, values["pinion_speed"])
@@ -83,6 +86,8 @@ def _by_angle(record: FitRecord, left: Tensor, teeth: int, speed: float) -> tupl
     turns = float((angle[-1] - angle[0]).abs()) / (2 * pi)
     if turns < LEAST_TURNS:
         return None
+    kept = ceil(len(left) * min(1.0, MOST_TURNS / turns))
+    angle, left, turns = angle[:kept], left[:kept], min(turns, MOST_TURNS)
     block = max(1, floor(len(left) / turns / (POINTS * teeth)))
     count = len(left) // block * block
     return tuple(series[:count].reshape(-1, block).mean(1) for series in (angle, left))
@@ -130,9 +135,14 @@ def _harmonics(record: FitRecord, teeth: int, speed: float) -> int:
 
 
 def _radian(unit: str) -> float | None:
-    """One radian in a unit; None where the unit is not one of an angle."""
+    """One radian in the unit of the displacement behind a response; None where that is no angle.
+
+    Args:
+        unit: Of the response: an angle, its rate or its acceleration.
+    """
     try:
         found = parse_unit(unit)
     except InputError:
         return None
-    return 1 / found.factor if found.dimension == Dimension(angle=1) else None
+    rates = [Dimension(angle=1, time=-derivatives) for derivatives in range(3)]
+    return 1 / found.factor if found.dimension in rates else None

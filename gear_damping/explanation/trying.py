@@ -55,6 +55,7 @@ class Search:
         first_scores: Every candidate's score beside the nominal model.
         rejected: Full fits of the last round that were not accepted.
         first_fits: Full fits of the first round, the best first.
+        failed: Why an effect could not be fitted in full, by its name.
     """
 
     nominal: Outcome
@@ -63,6 +64,7 @@ class Search:
     first_scores: list[Score] = field(default_factory=list)
     rejected: list[Refit] = field(default_factory=list)
     first_fits: list[Refit] = field(default_factory=list)
+    failed: dict[str, str] = field(default_factory=dict)
 
     @property
     def growth(self) -> float:
@@ -80,12 +82,14 @@ class Bench:
         noise: The same in full.
         say: Told what is found on the way.
         solver: Settings of the solver.
+        failed: Why an effect could not be fitted in full, by its name.
     """
 
     evidence: Evidence
     noise: NoiseLevel
     say: Say
     solver: Solver | None
+    failed: dict[str, str] = field(default_factory=dict)
 
     def excess(self, outcome: Outcome) -> Excess:
         """What a model leaves of the held-out records."""
@@ -114,6 +118,8 @@ class Bench:
         for score in chosen(ranked, promise):
             most = max((outcome.fitted.cost - fit.outcome.fitted.cost for fit in fits), default=0.0)
             fit = self.full_fit(score, outcome, against, LEAST_TAKEN * most) if score.gain > 0 else None
+            if fit is None and score.gain > 0:
+                self.failed[score.candidate.name] = "its full fit ran away on held-out records"
             fits += [] if fit is None else [fit]
         return sorted(fits, key=lambda fit: fit.outcome.holdout_cost)
 

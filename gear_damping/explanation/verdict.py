@@ -63,6 +63,9 @@ def verdict(
         return Verdict(UNEXPLAINED, (text, *unsettled))
     confused = [cause for cause in found.accepted if cause.confusable]
     said = _named(found.accepted)
+    classes = [cause for cause in found.accepted if cause.effect.cause.one_class]
+    if rest and classes:
+        return Verdict(AMBIGUOUS, (f"{missing}.", *_one_class(classes), *_not_told_apart(confused), _left(taken)))
     if rest and not confused:
         return Verdict(EXPLAINED, (f"{missing}: {said}.", _left(taken), *_same_record(found.accepted), *unsettled))
     if rest:
@@ -87,6 +90,16 @@ def _named(accepted: Sequence[Accepted]) -> str:
 def _not_told_apart(confused: Sequence[Accepted]) -> tuple[str, ...]:
     sets = (" or ".join(f"`{name}`" for name in (c.name, *c.confusable[: LARGEST_SET - 1])) for c in confused)
     return (f"These data do not tell apart: {'; '.join(sets)}.",) if confused else ()
+
+
+def _one_class(causes: Sequence[Accepted]) -> tuple[str, ...]:
+    """Names that are one answer in this channel."""
+    return tuple(
+        f"{cause.effect.cause.sentence[0].upper()}{cause.effect.cause.sentence[1:]} (`{cause.name}`), "
+        f"{', '.join(cause.effect.cause.one_class[:-1])} and {cause.effect.cause.one_class[-1]} look the same in this "
+        "channel: a calibrated torque and a calibrated sensor would tell which it is."
+        for cause in causes
+    )
 
 
 def _same_record(accepted: Sequence[Accepted]) -> tuple[str, ...]:

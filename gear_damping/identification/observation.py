@@ -21,7 +21,7 @@ INPUTS = {
     "oscillator": ("force", "base_acceleration"),
 }
 MEANS = ("pinion_torque", "gear_torque")
-FREE_ANGLES = ("mesh_phase",)  # what every record without an index has of its own; shaft effects add their phases
+MESH_PHASE = FreeParameter("mesh_phase", 0.0)  # of a record without an index: its own; shaft effects add their phases
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ def fit_record(record: Record, system: str, spring: bool = True) -> FitRecord:
         known | _means(inputs, record.sampling_rate),
         observed=first[0],
         others=tuple(others),
-        own=tuple(_own(record, inputs)) if system == "gear_pair" else tuple(_uncertain(record)),
+        own=tuple(parameter for parameter in _uncertain(record) if parameter.name not in inputs),
         stamps=None if record.uniform else _positions(record),
     )
 
@@ -142,18 +142,6 @@ def _means(inputs: dict[str, Tensor], sampling_rate: float) -> dict[str, float]:
         angle = inputs["pinion_angle"]
         found["pinion_speed"] = float(angle[-1] - angle[0]) / (len(angle) - 1) * sampling_rate
     return found
-
-
-def _own(record: Record, inputs: dict[str, Tensor]) -> list[FreeParameter]:
-    """What a gear pair's record has of its own: its angles where no index tells them, and uncertain conditions."""
-    found = [] if has_index(record) else [FreeParameter(name, 0.0) for name in FREE_ANGLES]
-    return found + [p for p in _uncertain(record) if p.name not in inputs]
-
-
-def has_index(record: Record) -> bool:
-    """Whether the angle of a gear pair's record counts from a mark that other records share."""
-    angle = record.channels.get("pinion_angle")
-    return angle is not None and angle.datum == "absolute"
 
 
 def _uncertain(record: Record) -> list[FreeParameter]:

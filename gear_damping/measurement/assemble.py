@@ -14,6 +14,7 @@ from gear_damping.measurement.own_units import Conversion, UnitSystem
 from gear_damping.measurement.plan import Plan
 from gear_damping.measurement.raw import RawChannel, RawRecord
 from gear_damping.measurement.record import Channel, Finding, Quantity, Record
+from gear_damping.measurement.shaft_check import tooth_ratio
 from gear_damping.units import parse_unit
 
 _GEOMETRY = ("n_teeth_pinion", "n_teeth_gear", "module", "pressure_angle")
@@ -34,7 +35,7 @@ class Assembler:
             with self.problems.collecting():
                 channels[channel.plan.name] = self._channel(channel, raw, notes, findings)
         with self.problems.collecting():
-            self._from_encoders(raw, channels, notes)
+            self._from_encoders(raw, channels, notes, findings)
         self._give_mean(raw, channels, notes)
         conditions = self._conditions(raw, channels, notes)
         if raw.complete and len(self.problems) == before:
@@ -47,7 +48,7 @@ class Assembler:
             plan.gear_torque_mode, plan.mesh_index, base.uniform, (*raw.table.notes, *notes),
         )  # fmt: skip
         named = tuple(replace(finding, record=name) for finding in findings)
-        return replace(record, findings=(*named, *check_record(record)))
+        return replace(record, findings=(*named, *check_record(replace(record, findings=named))))
 
     def _channel(self, raw: RawChannel, record: RawRecord, notes: list[str], findings: list[Finding]) -> Channel:
         plan = raw.plan
@@ -75,7 +76,9 @@ class Assembler:
     def _limit(self, name: str, quantity: Quantity, key: str) -> Conversion:
         return self.units.conversion(name, quantity.unit, key, self.source)
 
-    def _from_encoders(self, raw: RawRecord, channels: dict[str, Channel], notes: list[str]) -> None:
+    def _from_encoders(
+        self, raw: RawRecord, channels: dict[str, Channel], notes: list[str], findings: list[Finding]
+    ) -> None:
         """The pinion angle, and the transmission error where both shafts are measured."""
         shaft = raw.angles.get("pinion", raw.angles.get("tacho"))
         if shaft is not None and "pinion_angle" in channels:
@@ -85,20 +88,21 @@ class Assembler:
             channels["pinion_angle"] = Channel("pinion_angle", raw.base.resample(shaft), "rad", datum=datum)
         if not {"pinion", "gear"} <= {*raw.angles} or "transmission_error" in channels:
             return
-        channels["transmission_error"] = self._error(raw.angles, raw, f"{raw.plan.key}.encoders")
+        key = f"{raw.plan.key}.encoders"
+        channels["transmission_error"] = self._error(raw.angles, raw, key, findings)
         notes.append("transmission_error: r_b1 theta_1 - r_b2 theta_2 from the encoders, without its mean")
 
-    def _error(self, angles: dict[str, NDArray], raw: RawRecord, key: str) -> Channel:
+    def _error(self, angles: dict[str, NDArray], raw: RawRecord, key: str, findings: list[Finding]) -> Channel:
         missing = [name for name in _GEOMETRY if name not in self.plan.parameters]
         if missing:
             rule = "the transmission error from encoders needs the base radii"
             remedy = f"give {', '.join(missing)} under parameters"
             raise InputError(Problem(key, rule, None, remedy, self.source))
         teeth_1, teeth_2, module, pressure = (self.plan.parameters[name].value for name in _GEOMETRY)
-        values = transmission_error(
-            angles["pinion"], angles["gear"],
-            base_radius(teeth_1, module, pressure), base_radius(teeth_2, module, pressure),
-        )  # fmt: skip
+        radii = base_radius(teeth_1, module, pressure), base_radius(teeth_2, module, pressure)
+        values = transmission_error(angles["pinion"], angles["gear"], *radii)
+        found = tooth_ratio(angles["pinion"], angles["gear"], (teeth_1, teeth_2), radii[0])
+        findings += [replace(found, channel="transmission_error")] if found else []
         return Channel("transmission_error", raw.base.resample(values), "m", datum="arbitrary")
 
     def _give_mean(self, raw: RawRecord, channels: dict[str, Channel], notes: list[str]) -> None:

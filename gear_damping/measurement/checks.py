@@ -6,16 +6,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.clipping import clipped_at
 from gear_damping.measurement.record import Channel, Finding, Record
+from gear_damping.measurement.shaft_check import LARGEST_TRANSMISSION_ERROR, check_shafts
+from gear_damping.measurement.stamp_check import stamps_against_values
 from gear_damping.measurement.vocabulary import INPUTS
 
-LARGEST_TRANSMISSION_ERROR = 1e-3  # m; a gear pair deflects by micrometres
-SPEED_TOLERANCE = 0.02
 SAMPLES_PER_PERIOD = 100  # of the fastest content; more only slow the work
 _CONTENT = 0.999  # share of the energy that counts as content
-_CLIPPED_SAMPLES, _CLIPPED_SHARE, _CLIPPED_RATIO = 5, 1e-3, 6
+_DRIFT = 0.1  # of the way that a straight line goes; what may lie about it
 _BEND, _BENT_SHARE, _FEWEST_BENDS = 1e-4, 0.6, 10  # of the largest bend; of the samples; in a record
-_ANGLE_CHANNELS = ("pinion_angle",)
+_SPEEDS = ("velocity", "pinion_speed", "gear_speed")
+_APPLIED = (*INPUTS, "pinion_angle", "pinion_speed")  # what drives the system
 
 
 def refuse_not_finite(values: NDArray[np.float64], key: str, source: str, first: int = 0) -> None:
@@ -29,13 +31,13 @@ def refuse_not_finite(values: NDArray[np.float64], key: str, source: str, first:
 
 
 def check_record(record: Record) -> tuple[Finding, ...]:
-    """Everything suspicious in the values of a record, beside what its time stamps showed."""
+    """Everything suspicious in the values of a record, beside the findings that it has already."""
     found = []
     for channel in record.channels.values():
         found += [_constant(channel) or _clipped(channel) or _straight_lines(channel)]
-    if "transmission_error" in record.channels:
-        found.append(_magnitude(record.channels["transmission_error"]))
-    found += [_turning(record), _speed(record), _oversampled(record)]
+    if not any(finding.severity == "data_problem" and finding.channel == "time" for finding in record.findings):
+        found.append(stamps_against_values(record))
+    found += [_magnitude(record), *check_shafts(record), _oversampled(record)]
     return tuple(replace(finding, record=record.name) for finding in found if finding)
 
 
@@ -68,29 +70,21 @@ def _straight_lines(channel: Channel) -> Finding | None:
 
 
 def _clipped(channel: Channel) -> Finding | None:
-    """Many samples exactly at an extreme with few at the level beside it, or at the declared range."""
+    """A response that was cut at an extreme, or a channel at its declared range.
+
+    What drives the system stands at its limit where the drive does: that is what was applied.
+    """
     values = channel.values
-    for name, at in (("minimum", values == values.min()), ("maximum", values == values.max())):
-        if _stands_at_extreme(values, at, channel.name in INPUTS):
-            return _clipping(channel, at, f"exactly at the {name}")
+    cut = None if channel.name in _APPLIED else clipped_at(values)
+    if channel.name in _SPEEDS and cut and values[cut[1]][0] == 0:
+        cut = None  # a shaft or a drive that stands still
+    if cut:
+        return _clipping(channel, cut[1], f"exactly at the {cut[0]}")
     if channel.range is not None:
         at = np.abs(values) >= 0.999 * channel.range
         if at.sum() > 1:
             return _clipping(channel, at, f"at the sensor's range of {channel.range:.4g} {channel.unit}")
     return None
-
-
-def _stands_at_extreme(values: NDArray, at: NDArray, driven: bool) -> bool:
-    """A ramp that is held at its end stands there once; a clipped input returns to the limit."""
-    count = int(at.sum())
-    if count < max(_CLIPPED_SAMPLES, _CLIPPED_SHARE * values.size) or count == values.size:
-        return False
-    extreme = values[at][0]
-    beside = np.min(np.abs(values[~at] - extreme))
-    neighbours = int(np.sum(np.abs(np.abs(values - extreme) - beside) <= 1e-9 * beside))
-    stays = at[1:] & at[:-1]
-    visits = int(np.sum(stays[1:] & ~stays[:-1])) + int(stays[0])
-    return count > _CLIPPED_RATIO * neighbours and visits >= (2 if driven else 1)
 
 
 def _clipping(channel: Channel, at: NDArray, where: str) -> Finding:
@@ -101,47 +95,30 @@ def _clipping(channel: Channel, at: NDArray, where: str) -> Finding:
     return Finding("clipped", message, channel=channel.name, sample=int(np.argmax(at)))
 
 
-def _magnitude(channel: Channel) -> Finding | None:
+def _magnitude(record: Record) -> Finding | None:
+    """A transmission error that no gear pair has: by its unit, or because it runs away."""
+    channel = record.channels.get("transmission_error")
+    if channel is None or any(finding.kind == "tooth_ratio" for finding in record.findings):
+        return None
     values = channel.values - (np.median(channel.values) if channel.datum == "arbitrary" else 0.0)
     where = int(np.argmax(np.abs(values)))
     largest = abs(float(values[where]))
     if largest <= LARGEST_TRANSMISSION_ERROR:
         return None
+    place = np.linspace(-1, 1, values.size)
+    slope = float(np.polyfit(place, values, 1)[0])
+    rest = values - slope * place
+    if np.max(np.abs(rest - np.median(rest))) <= min(LARGEST_TRANSMISSION_ERROR, _DRIFT * 2 * abs(slope)):
+        message = (
+            f"the transmission error runs away by {2 * abs(slope):.3g} m over the record; "
+            "check the tooth counts and the counts per revolution that it was made with"
+        )
+        return Finding("drifting_error", message, channel=channel.name)
     message = (
         f"the transmission error reaches {largest:.3g} m, and gear pairs stay below 1 mm; "
         f"check its unit '{channel.declared_unit}' (mm or um read as m?)"
     )
     return Finding("implausible_magnitude", message, channel=channel.name, sample=where)
-
-
-def _turning(record: Record) -> Finding | None:
-    """A shaft angle advances one way, apart from its encoder's noise."""
-    angle = record.channels.get("pinion_angle")
-    if angle is None or np.ptp(angle.values) == 0:
-        return None
-    coarse = np.diff(angle.values[:: max(1, angle.values.size // 50)])
-    share = max(np.mean(coarse > 0), np.mean(coarse < 0))
-    if share >= 0.9:
-        return None
-    message = "pinion_angle does not advance like that of a turning shaft; was another column taken for it?"
-    return Finding("angle_not_turning", message, channel="pinion_angle")
-
-
-def _speed(record: Record) -> Finding | None:
-    """The stated or measured speed against the rate of the angle."""
-    angle, condition = record.channels.get("pinion_angle"), record.conditions.get("pinion_speed")
-    measured = record.channels.get("pinion_speed")
-    stated = condition.value if condition else float(np.mean(measured.values)) if measured else None
-    if angle is None or not stated:
-        return None
-    rate = float(np.polyfit(record.time - record.time[0], angle.values, 1)[0])
-    if abs(rate / stated - 1) <= SPEED_TOLERANCE:
-        return None
-    message = (
-        f"the pinion angle turns at {rate * 30 / np.pi:.5g} rpm and the stated speed is "
-        f"{stated * 30 / np.pi:.5g} rpm; check unit, direction and counts per revolution"
-    )
-    return Finding("speed_mismatch", message, channel="pinion_angle")
 
 
 def _oversampled(record: Record) -> Finding | None:
@@ -150,7 +127,7 @@ def _oversampled(record: Record) -> Finding | None:
         return None
     fastest = 0.0
     for channel in record.channels.values():
-        if channel.name not in (*INPUTS, *_ANGLE_CHANNELS, "pinion_speed"):
+        if channel.name not in _APPLIED:
             fastest = max(fastest, _fastest_content(channel.values, record.sampling_rate))
     if fastest == 0.0 or record.sampling_rate <= SAMPLES_PER_PERIOD * fastest:
         return None

@@ -24,8 +24,8 @@ def inconsistencies(file: layout.AnyFile, wrong: Collection[int]) -> list[Proble
     for k, record in records:
         rules = _GEAR if gear else _OSCILLATOR
         problems += [problem for rule in rules for problem in rule(_Seen(file, record, f"records[{k}]"))]
-    if not wrong:
-        problems += [*_of_all(file, records)] if gear else [*_inputs_of_all(records), *_gain_of_nothing(file, records)]
+    if not wrong and not problems:
+        problems += [*_compared(records), *_inputs_of_all(records), *_gain_of_nothing(file, records)]
     return problems
 
 
@@ -169,7 +169,7 @@ _OSCILLATOR: tuple[Callable[[_Seen], Found], ...] = (
 )  # fmt: skip
 
 
-def _of_all(file: layout.AnyFile, records: list) -> Found:
+def _compared(records: list) -> Found:
     if records and all(record.role == "reference" for _, record in records):
         rule = "every record is a reference, and none is there to be compared with them"
         yield Problem("records", rule, None, "leave out the role of the others")
@@ -193,6 +193,7 @@ def _inputs_of_all(records: list) -> Found:
 
 def _gain_of_nothing(file: layout.AnyFile, records: list) -> Found:
     driven = any("force" in {*_given(record.channels), *_given(record.conditions)} for _, record in records)
-    if records and not driven and file.parameters is not None and file.parameters.force_gain is not None:
+    gain = getattr(file.parameters, "force_gain", None)
+    if records and not driven and gain is not None:
         rule, remedy = "has no meaning where no record has a force", "declare the force, or leave it out"
-        yield Problem("parameters.force_gain", rule, file.parameters.force_gain.value, remedy)
+        yield Problem("parameters.force_gain", rule, gain.value, remedy)

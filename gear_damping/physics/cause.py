@@ -55,6 +55,8 @@ class Recipe:
             where they have no size yet.
         stood_in: Parameters, by flat name, that bend far off where the effect is missing, with the factor by which
             they are moved for further starts of the full fit.
+        sharpest: Parameters, by own name, whose lower bound is where finer steps would cost more and show no more: one
+            that comes to rest there has run into nothing.
         fixed: Parameters that stay.
         neutral: Value of the strengths without the effect.
         presence: The effect has no neutral value (a stiffness that was rigid): it is tried as a whole, at the
@@ -73,6 +75,7 @@ class Recipe:
     timed: Mapping[str, float] = field(default_factory=dict)
     beside: Mapping[str, float | None] = field(default_factory=dict)
     stood_in: Mapping[str, float] = field(default_factory=dict)
+    sharpest: tuple[str, ...] = ()
     fixed: Mapping[str, float] = field(default_factory=dict)
     neutral: float = 0.0
     presence: bool = False
@@ -96,6 +99,11 @@ class Cause:
         separated_by: The experiment that separates it from what it resembles.
         looks_like: Effects that no record of this channel can tell from it and that are never tried by themselves.
         simpler: An effect that it contains, with fewer parameters.
+        turns_with: Whether its phases turn with a shaft (`shaft`) and not with the mesh, or even tell single teeth
+            apart (`tooth`): where no index says how the shaft stands, every record has phases of its own, and teeth
+            have no number.
+        one_class: What else no record of this channel parts from it, as words for a sentence: then several names are
+            one answer.
     """
 
     sentence: str
@@ -103,6 +111,8 @@ class Cause:
     separated_by: Experiment = "torque"
     looks_like: tuple[str, ...] = ()
     simpler: str | None = None
+    turns_with: Literal["", "shaft", "tooth"] = ""
+    one_class: tuple[str, ...] = ()
 
     def recipes_for(self, rig: Rig) -> tuple[Recipe, ...]:
         """Its variants on this rig."""

@@ -4,22 +4,24 @@ import importlib.util
 import inspect
 import traceback
 from collections.abc import Iterator, Sequence
+from functools import cache
 from pathlib import Path
 from types import ModuleType
 from typing import get_args
+
+import torch
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.physics import terms
 from gear_damping.physics.cause import Cause, Experiment, Recipe, Rig
 from gear_damping.physics.parameter import Option, Parameter
+from gear_damping.physics.systems.base import System
+from gear_damping.physics.systems.gear_pair import GearPair
+from gear_damping.physics.systems.oscillator import Oscillator
 from gear_damping.physics.terms import Effect, ExtraStates, MeshStiffness
 from gear_damping.units import parse_unit
 
 KEY = "simulator.plugins"
-SOME_RIGS = {  # on which recipes are looked at that depend on the rig
-    "gear_pair": (Rig("gear_pair", 20, 40, mesh_harmonics=4), Rig("gear_pair", 17, 43)),
-    "oscillator": (Rig("oscillator", radian=1.0), Rig("oscillator", inputs=("force",))),
-}
 REMEDY = "correct the file"
 _SLOTS = tuple(c for c in vars(terms).values() if inspect.isclass(c) and issubclass(c, Effect) and c is not Effect)
 _TEXTS = {
@@ -139,7 +141,7 @@ def cause_faults(kind: type[Effect]) -> Iterator[str]:
     if kind.cause.separated_by not in get_args(Experiment):
         yield f"is separated by {kind.cause.separated_by!r}: choose from {get_args(Experiment)}"
     recipes: list[Recipe] = []
-    for rig in (rig for name, rigs in SOME_RIGS.items() if name in kind.systems for rig in rigs):
+    for rig in (rig for name in kind.systems for rig in some_rigs(name)):
         try:
             found = kind.cause.recipes_for(rig)
         except Exception as error:  # the user's own code can fail in any way
@@ -152,10 +154,27 @@ def cause_faults(kind: type[Effect]) -> Iterator[str]:
     yield from dict.fromkeys(fault for recipe in recipes for fault in _recipe_faults(kind, recipe))
 
 
+@cache
+def some_rigs(system: str) -> tuple[Rig, ...]:
+    """Rigs of a system on which recipes are looked at that depend on the rig."""
+    if system == "oscillator":
+        values = _values(Oscillator(), None)
+        return Rig(system, radian=1.0, values=values), Rig(system, inputs=("force",), values=values)
+    values = _values(GearPair(), torch.tensor([3e8])) | {"contact_ratio": 1.6}
+    others = {"mesh_harmonics": 4, "values": values}
+    return Rig(system, 20, 40, **others), Rig(system, 17, 43, inputs=("pinion_angle",), lines=(12.0,), **others)
+
+
+def _values(system: System, mean_stiffness: torch.Tensor | None) -> dict[str, float]:
+    """Defaults of a system with what follows from them."""
+    own = {parameter.name: torch.tensor([parameter.default]) for parameter in system.parameters}
+    return {name: float(value) for name, value in (own | system.derived(own, mean_stiffness)).items()}
+
+
 def _recipe_faults(kind: type[Effect], recipe: Recipe) -> Iterator[str]:
     declared = {parameter.name for parameter in kind.parameters}
     named = {*recipe.strengths, *recipe.phases, *recipe.phases.values()}
-    named |= {*recipe.scanned, *recipe.timed, *recipe.fixed, *recipe.replaces.values()}
+    named |= {*recipe.scanned, *recipe.timed, *recipe.fixed, *recipe.sharpest, *recipe.replaces.values()}
     for name in sorted(named - declared):
         yield f"has a recipe with {name!r}, which is none of its parameters"
 

@@ -165,7 +165,7 @@ class LoadPath(Effect):
 
 
 class BearingForce(Effect):
-    """A force on the pinion in its bearing, along the line of action."""
+    """A force on a gear in its bearing, along the line of action."""
 
     @abstractmethod
     def bearing_force(self, now: Moment, p: Values) -> Tensor:

@@ -54,6 +54,7 @@ def _lines() -> Iterator[str]:
     yield from _refusals()
     yield from _keys("Time", c.Stamps)
     yield from _keys("`window`", layout.Window)
+    yield from _keys("Encoders", layout.Encoders)
     yield from _keys("Encoder (`encoders.pinion`, `encoders.gear`)", layout.Encoder)
     yield from _keys("Tacho (`encoders.tacho`)", layout.Tacho)
     yield from _keys("Conditions of a gear pair", rig.GearConditions)

@@ -165,5 +165,7 @@ def reference_velocity(derived: dict[str, Tensor]) -> Tensor:
     """
     frequency = derived["natural_frequency"]
     if "amplitude" in derived:
-        return derived["amplitude"] * torch.where(frequency > 0, frequency, 1 / derived["characteristic_time"])
+        stated = derived["characteristic_time"]
+        rate = 1 / torch.where(stated > 0, stated, torch.ones_like(stated))
+        return derived["amplitude"] * torch.where(frequency > 0, frequency, rate)
     return frequency * (derived["mean_load"] / derived["mean_stiffness"]).abs()

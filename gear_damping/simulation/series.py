@@ -64,6 +64,18 @@ class Series:
         return found
 
 
+def continued(values: Tensor, length: int) -> Tensor:
+    """A series (time,) followed by its point reflection about its end, `length` samples in all.
+
+    That is how the interpolation takes it beyond its end: where series of one batch differ in length, the shorter
+    ones are interpolated as they would be alone. Zeros after the end would ring back into them.
+    """
+    while len(values) < length:
+        mirrored = 2 * values[-1] - values[:-1].flip(0) if len(values) > 1 else values
+        values = torch.cat([values, mirrored])
+    return values[:length]
+
+
 def _polynomial(coefficients: Sequence[Tensor], u: Tensor) -> Tensor:
     """Value at u; powers of u ascending."""
     value = coefficients[-1]

@@ -137,7 +137,8 @@ def _panels(found: Inspection, listed: Sequence[Guess]) -> Iterator[Panel]:
         time = np.arange(found.length, dtype=float)
         if found.base is not None:
             time = (time - found.rows[0]) / found.rate + found.base.time[0]
-            time[found.rows[0] : found.rows[1]] = found.base.time
+            if found.base.time.size == found.rows[1] - found.rows[0]:
+                time[found.rows[0] : found.rows[1]] = found.base.time
         yield _panel(str(column.reference), units.get(id(column), ""), time, column.values, column.spectrum)
 
 

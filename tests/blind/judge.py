@@ -101,8 +101,49 @@ def _fault(case: Case, answer: dict) -> dict[str, bool | None]:
     return {"damaged file blamed on physics": bool(established(answer)) or answer["verdict"] not in UNDISTURBED}
 
 
+def _any_lab(kind: str):
+    """A judge of nulls, singles and wrong inertias whose claims begin with what varies."""
+
+    def judge(case: Case, answer: dict) -> dict[str, bool | None]:
+        if case.get("sensors") == "inertia_wrong":
+            return {f"{kind}: a wrong inertia called ambiguous": _inertia_found(answer)}
+        if not names(case):
+            return {f"{kind}: null consistent": answer["verdict"] == "consistent",
+                    f"{kind}: damping of a null in its interval": damping_held(case, answer)}  # fmt: skip
+        own = _single(case, answer)
+        claims = {"named or in the set": "effect named or in the set", "a wrong name": "wrong name established"}
+        return {f"{kind}: {short}": own[claim] for short, claim in claims.items()}
+
+    return judge
+
+
+def _inertia_found(answer: dict) -> bool:
+    """One class of gain, inertia and torque, and no verdict that picks one of them."""
+    return answer["verdict"] == "ambiguous" and {"sensor_gain", "inertia_error"} <= {*offered(answer)}
+
+
+def damping_held(case: Case, answer: dict) -> bool | None:
+    """Whether the 95 % interval of the damping ratio holds the truth; None where none is stated."""
+    interval = (answer.get("damping_ratio_percent") or {}).get("interval95")
+    return None if interval is None else interval[0] <= case["truth"]["damping_ratio_percent"] <= interval[1]
+
+
+def channel_of(case: Case) -> str:
+    """The channel that shows the motion, or the plan of sensors, of a case."""
+    truth = case["truth"]
+    if truth.get("system") == "oscillator":
+        return f"oscillator, {truth['channel']}"
+    return f"gear pair, {truth.get('sensors') or 'full'}"
+
+
+def _channels(case: Case, answer: dict) -> dict[str, bool | None]:
+    kind = "usual channel" if channel_of(case) in USUAL_CHANNELS else "another channel"
+    return _any_lab(kind)(case, answer)
+
+
+USUAL_CHANNELS = ("gear pair, full", "oscillator, displacement")
 JUDGES = {
     "null": _null, "single": _single, "faint": _faint, "below": _below, "pairs": _pairs, "outside": _outside,
     "removed": _removed, "one_record": _one_record, "tacho_error": _tacho, "unidentifiable": _unidentifiable,
-    "data_fault": _fault,
+    "data_fault": _fault, "rigs": _any_lab("other rig"), "oscillators": _any_lab("oscillator"), "channels": _channels,
 }  # fmt: skip

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import statistics
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from scipy.stats import beta
 
 from .accuracy import errors, misfits
-from .judge import Case, judged
+from .judge import Case, channel_of, damping_held, judged, names
 
 # claim -> (target, whether the rate should be at least or at most that)
 TARGETS = {
@@ -29,6 +29,19 @@ TARGETS = {
     "tacho error, a wrong name": (0.05, "at most"),
     "unidentifiable, explained by another": (0.05, "at most"),
     "damaged file blamed on physics": (0.0, "at most"),
+    "other rig: null consistent": (0.95, "at least"),
+    "other rig: damping of a null in its interval": (0.90, "at least"),
+    "other rig: named or in the set": (0.95, "at least"),
+    "other rig: a wrong name": (0.05, "at most"),
+    "other rig: a wrong inertia called ambiguous": (0.95, "at least"),
+    "oscillator: null consistent": (0.95, "at least"),
+    "oscillator: damping of a null in its interval": (0.90, "at least"),
+    "oscillator: named or in the set": (0.95, "at least"),
+    "oscillator: a wrong name": (0.05, "at most"),
+    "usual channel: named or in the set": (0.95, "at least"),
+    "usual channel: a wrong name": (0.05, "at most"),
+    "another channel: named or in the set": (0.90, "at least"),
+    "another channel: a wrong name": (0.05, "at most"),
     "did not crash": (1.0, "at least"),
 }
 
@@ -60,6 +73,8 @@ def rates(cases: Sequence[Case]) -> dict[str, Any]:
         },
         "seconds": {"median": statistics.median(c["seconds"] for c in cases) if cases else None},
         "effects": _by_effect(verdicts),
+        "rigs": _by(lambda case: case["truth"].get("pair") or "20/40", verdicts, ("rigs",)),
+        "channels": _by(channel_of, verdicts, ("rigs", "channels", "oscillators")),
     }
 
 
@@ -92,3 +107,27 @@ def _by_effect(verdicts: Sequence[tuple[Case, dict]]) -> dict[str, dict[str, int
             for short, claim in claims.items():
                 row[short] += bool(value[claim])
     return dict(sorted(found.items()))
+
+
+def _by(
+    key: Callable[[Case], str], verdicts: Sequence[tuple[Case, dict]], strata: Sequence[str]
+) -> dict[str, dict[str, int]]:
+    """Of each rig or channel: nulls, how many of them consistent and with their damping; effects, named, wrong."""
+    found: dict[str, dict[str, int]] = {}
+    for case, value in verdicts:
+        if case["stratum"] not in strata or case.get("sensors") == "inertia_wrong":
+            continue
+        row = found.setdefault(key(case), dict.fromkeys(ROW, 0))
+        claims = {claim.split(": ")[-1]: said for claim, said in value.items()}
+        if names(case):
+            row["effects"] += 1
+            row["named"] += bool(claims["named or in the set"])
+            row["wrong"] += bool(claims["a wrong name"])
+        else:
+            row["nulls"] += 1
+            row["consistent"] += bool(claims["null consistent"])
+            row["damping held"] += bool(damping_held(case, case["answer"]))
+    return dict(sorted(found.items()))
+
+
+ROW = ("nulls", "consistent", "damping held", "effects", "named", "wrong")

@@ -10,16 +10,18 @@ from .strata import COUNTS, MEANING
 
 HEAD = """# Blind cases
 
-An independent generator (`tests/oracles/hidden`) hides effects in measurements of a gear pair: it imports nothing of
-the package, integrates by another method, and its crack, friction, pitch, stiffness edges and hysteresis have other
-forms than those of the catalogue. Each case is a folder as a user would hand it over. Nothing but that folder reaches
-`task=explain`; its answer is judged afterwards. This page is written by `make blind`.
+An independent generator (`tests/oracles/hidden`) hides effects in measurements of gear pairs and oscillators: it
+imports nothing of the package, integrates by another method, and its crack, friction, pitch, stiffness edges and
+hysteresis have other forms than those of the catalogue. Rig, sensors, units, zero, noise, rate and length vary. Each
+case is a folder as a user would hand it over. Nothing but that folder reaches `task=explain`; its answer is judged
+afterwards. This page is written by `make blind`.
 """
 
 
 def table(found: dict[str, Any], cases: Sequence[Case], command: str) -> str:
     """The markdown page of these rates."""
-    parts = [HEAD, _basis(found, command), _rates(found), _figures(found), _effects(found), _strata(cases)]
+    parts = [HEAD, _basis(found, command), _rates(found), _figures(found), _effects(found)]
+    parts += [_varied(found, "rigs", "rig (teeth)"), _varied(found, "channels", "channel or sensors"), _strata(cases)]
     return "\n".join(parts)
 
 
@@ -71,6 +73,17 @@ def _effects(found: dict[str, Any]) -> str:
     rows += [f"| `{name}` | {r['n']} | {r['first']} | {r['in the set']} | {r['wrong']} |"
              for name, r in found["effects"].items()]  # fmt: skip
     return "\n".join(["## By effect (stratum `single`)", "", *rows, ""])
+
+
+def _varied(found: dict[str, Any], key: str, head: str) -> str:
+    """What became of each rig, or of each channel."""
+    if not found.get(key):
+        return ""
+    rows = [f"| {head} | nulls | consistent | damping in its interval | effects | named or in the set | wrong name |"]
+    rows += ["|---|---|---|---|---|---|---|"]
+    rows += [f"| {name} | " + " | ".join(str(count) for count in row.values()) + " |"
+             for name, row in found[key].items()]  # fmt: skip
+    return "\n".join([f"## By {head}", "", *rows, ""])
 
 
 def _strata(cases: Sequence[Case]) -> str:

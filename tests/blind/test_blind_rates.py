@@ -16,7 +16,18 @@ from tests.blind.accuracy import errors
 from tests.blind.judge import judged
 from tests.blind.rates import clopper_pearson, rates
 from tests.blind.run import CASES, ask, done_cases, write
-from tests.blind.strata import COMMON, COUNTS, NAMEABLE, Question, question, questions, same_class
+from tests.blind.strata import (
+    CHANNEL_GEARS,
+    CHANNEL_OSCILLATORS,
+    CHANNEL_ROWS,
+    COMMON,
+    COUNTS,
+    NAMEABLE,
+    Question,
+    question,
+    questions,
+    same_class,
+)
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -123,6 +134,56 @@ def test_every_effect_comes_up_and_order_is_balanced():
     assert len(listed) == sum(COUNTS.values()) == len({q.key for q in listed})
     first = {q.stratum for q in listed[: len(listed) // 4]}
     assert first == set(COUNTS)
+
+
+def test_other_rigs_and_channels_come_up_with_every_effect():
+    rigs = [question("rigs", seed) for seed in range(1000, 1000 + 3 * len(COMMON))]
+    assert {q.drawn for q in rigs} == {*COMMON, "null"}
+    assert {(q.rig, q.sensors) for q in rigs} == {("drawn", "drawn"), ("drawn", "inertia_wrong")}
+    oscillators = [question("oscillators", seed) for seed in range(1000, 1016)]
+    assert {q.drawn for q in oscillators} == {*CHANNEL_OSCILLATORS, "null"}
+    channels = [question("channels", seed) for seed in range(1000, 1000 + len(CHANNEL_ROWS))]
+    assert len({(q.drawn, q.sensors, q.channel, q.system) for q in channels}) == len(CHANNEL_ROWS)
+    for name in CHANNEL_GEARS:
+        seen = {q.draw for q in channels if q.drawn == name and q.system == "gear_pair"}
+        assert len(seen) <= 2  # one draw of the case for all of its channels, but where the range begins within
+
+
+def other(hidden=(), verdict="consistent", causes=(), seed=0, sensors="ac", interval=(0.9, 1.1)):
+    made = case("rigs", hidden, verdict, causes, seed, sensors=sensors, rig="drawn")
+    made["truth"] |= {"pair": "17/43", "sensors": sensors, "damping_ratio_percent": 1.0}
+    made["answer"]["damping_ratio_percent"] = {"interval95": list(interval)}
+    return made
+
+
+def test_another_rig_counts_verdict_and_damping_of_a_null():
+    good, wrong = judged(other()), judged(other(verdict="unexplained", interval=(1.2, 1.3)))
+    for claim in ("other rig: null consistent", "other rig: damping of a null in its interval"):
+        assert (good[claim], wrong[claim]) == (True, False)
+    assert judged(other() | {"answer": {"verdict": "refused", "causes": []}})["other rig: null consistent"] is False
+
+
+def test_a_wrong_inertia_has_to_be_ambiguous_with_its_class():
+    claim = "other rig: a wrong inertia called ambiguous"
+    named = [cause("sensor_gain", alike=["inertia_error"])]
+    assert judged(other(verdict="ambiguous", causes=named, sensors="inertia_wrong"))[claim]
+    assert not judged(other(verdict="explained", causes=named, sensors="inertia_wrong"))[claim]
+    assert not judged(other(verdict="ambiguous", causes=[cause("sensor_gain")], sensors="inertia_wrong"))[claim]
+
+
+def test_rigs_and_channels_have_rows_of_their_own(tmp_path):
+    cases = [other(), other(["tooth_crack"], "explained", [cause("tooth_crack")], seed=1)]
+    seen = case("channels", ["cubic_stiffness"], causes=[cause("backlash")], seed=2)
+    seen["truth"] |= {"system": "oscillator", "channel": "velocity"}
+    found = rates([*cases, seen])
+    assert found["rigs"] == {"17/43": {"nulls": 1, "consistent": 1, "damping held": 1, "effects": 1, "named": 1,
+                                       "wrong": 0}}  # fmt: skip
+    assert found["channels"]["oscillator, velocity"]["wrong"] == 1
+    assert found["rates"]["another channel: a wrong name"]["count"] == 1
+    write([*cases, seen], tmp_path, tmp_path / "blind.md", "make blind")
+    page = (tmp_path / "blind.md").read_text()
+    assert "| 17/43 | 1 | 1 | 1 | 1 | 1 | 0 |" in page
+    assert "| oscillator, velocity | 0 | 0 | 0 | 1 | 0 | 1 |" in page
 
 
 def test_an_unknown_stratum_is_refused():

@@ -11,7 +11,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from hidden import HiddenCase, draw_case, write_case
+from hidden import HiddenCase, OscillatorCase, draw_case, draw_oscillator, write_case
 
 from gear_damping.errors import InputError
 from gear_damping.explanation.explain import explain
@@ -30,15 +30,26 @@ KEPT = (
 def answer(question: Question, duration: float = DURATION) -> dict[str, Any]:
     """What was hidden and what was said about it; an error of the program is an answer too."""
     begun = time.perf_counter()
-    kept = {"target_excess": question.target_excess, "snr_db": question.snr_db}
-    case = draw_case(question.drawn, question.seed, duration=duration, **kept)
+    case = drawn(question, duration)
     found = asdict(question) | {"truth": _truth(case), "answer": explained(case, question.removed)}
     if question.added:
         found["answer_with_more"] = explained(case, question.removed, everything=True)
     return found | {"seconds": round(time.perf_counter() - begun, 2)}
 
 
-def explained(case: HiddenCase, removed: str | None = None, everything: bool = False) -> dict[str, Any]:
+def drawn(question: Question, duration: float = DURATION) -> HiddenCase | OscillatorCase:
+    """The hidden case of a question."""
+    size = {"target_excess": question.target_excess, "snr_db": question.snr_db}
+    seed = question.seed if question.draw is None else question.draw
+    if question.system == "oscillator":
+        return draw_oscillator(question.drawn, seed, channel=question.channel, **size)
+    asked = {"rig": question.rig, "sensors": question.sensors}
+    return draw_case(question.drawn, seed, duration=duration, **size, **asked)
+
+
+def explained(
+    case: HiddenCase | OscillatorCase, removed: str | None = None, everything: bool = False
+) -> dict[str, Any]:
     """The explanation of a case; without an effect of the catalogue where one is `removed`."""
     with tempfile.TemporaryDirectory() as folder:
         path = write_case(case, Path(folder) / "measured", case.records if everything else case.first)
@@ -53,12 +64,14 @@ def explained(case: HiddenCase, removed: str | None = None, everything: bool = F
                 place = "".join(traceback.format_tb(error.__traceback__)[-2:])
                 return {"verdict": "crashed", "causes": [], "sentences": [f"{type(error).__name__}: {error}", place]}
     kept = {name: content[name] for name in KEPT}
+    damping = (content.get("gain") or {}).get("damping_ratio_percent") or {}
+    kept["damping_ratio_percent"] = damping.get("after")
     return kept | {"converged": (content["calibration"] or {}).get("converged")}
 
 
-def _truth(case: HiddenCase) -> dict[str, Any]:
+def _truth(case: HiddenCase | OscillatorCase) -> dict[str, Any]:
     truth = {name: value for name, value in case.truth.items() if name not in ("rig", "records")}
-    return truth | {"gear_torque": case.gear_torque}
+    return truth if isinstance(case, OscillatorCase) else truth | {"gear_torque": case.gear_torque}
 
 
 def quiet_worker() -> None:

@@ -145,8 +145,48 @@ def test_what_has_a_shaft_is_tried_on_both():
     names = {c.name for c in found}
     for effect in ("eccentricity", "stiffness_modulation"):
         assert {f"pinion_{effect}", f"gear_{effect}"} <= names
-    for effect in ("tooth_crack", "pitch_error"):
+    for effect in ("tooth_crack", "pitch_error", "shaft_torsion"):
         assert {dict(c.options)["shaft"] for c in found if c.name == effect} == {"pinion", "gear"}
+
+
+def test_sizes_follow_the_rig():
+    """What is tried of a shaft, a bearing or a gap is a share of this rig's own stiffness, inertia and teeth."""
+
+    def sizes(scale):
+        base, evidence = gear_pair((25, 50))
+        larger = {"inertia_pinion": 2.6e-4 * scale**5, "inertia_gear": 4.5e-3 * scale**5, "module": 3e-3 * scale}
+        found = candidates_for(replace(base, given=base.given | larger), evidence)
+        wanted = ("shaft_torsion.stiffness", "shaft_torsion.motor_inertia", "bearing_flexibility.mass", "backlash.gap")
+        return [[c.hypothesis.given[name] for c in found if name in c.hypothesis.given] for name in wanted]
+
+    for usual, larger, power in zip(sizes(1.0), sizes(2.0), (2, 5, 3, 1), strict=True):
+        assert larger == pytest.approx([value * 2.0**power for value in usual])
+
+
+def test_a_gap_is_none_of_an_oscillators():
+    assert not of("backlash", *oscillator())
+
+
+def test_the_width_of_a_friction_may_rest_at_its_lower_bound():
+    for base, evidence in (oscillator(), gear_pair((20, 40))):
+        for name in ("coulomb_friction", "asymmetric_friction"):
+            for candidate in of(name, base, evidence):
+                (width,) = [p for p in candidate.later if p.name in candidate.sharpest]
+                assert width.name == f"{name}.width"
+                assert width.lower == (0.002 if base.system.name == "oscillator" else 0.02)
+                assert width.start == 0.05
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
+def test_sizes_of_an_oscillators_candidates_follow_its_unit(scale):
+    base, evidence = oscillator("V")
+    in_unit = replace(base, given=base.given | {"amplitude": 0.5 * scale})
+    for candidate in candidates_for(in_unit, evidence):
+        declared = candidate.hypothesis.model.parameters()
+        for parameter in candidate.hypothesis.free:
+            if declared[parameter.name.partition("[")[0]].unit != "1":
+                reach = parameter.start if parameter.logarithmic else parameter.start + 1e3 * parameter.scale
+                assert parameter.lower < reach < parameter.upper, f"{parameter.name} of {candidate.label}"
 
 
 def test_a_pendulum_takes_the_place_of_the_spring():
@@ -182,14 +222,17 @@ def test_without_the_pendulum_the_spring_is_back():
     assert set(back.free) == set(base.free)
 
 
-@pytest.mark.parametrize(("unit", "radian"), [("rad", 1.0), ("deg", degrees(1.0)), ("mrad", 1000.0)])
+@pytest.mark.parametrize(
+    ("unit", "radian"),
+    [("rad", 1.0), ("deg", degrees(1.0)), ("mrad", 1000.0), ("rad/s", 1.0), ("deg/s^2", degrees(1.0))],
+)
 def test_the_length_of_a_pendulum_is_a_radian_where_the_response_is_an_angle(unit, radian):
     for candidate in of("sine_restoring", *oscillator(unit)):
         assert candidate.hypothesis.given["sine_restoring.length"] == pytest.approx(radian)
         assert "sine_restoring.length" not in {p.name for p in candidate.hypothesis.free}
 
 
-@pytest.mark.parametrize("unit", ["mm", "V", "m"])
+@pytest.mark.parametrize("unit", ["mm", "V", "m", "m/s^2"])
 def test_the_length_is_free_where_the_response_is_no_angle(unit):
     for candidate in of("sine_restoring", *oscillator(unit)):
         assert candidate.hypothesis.given["sine_restoring.length"] == pytest.approx(1.5), "three amplitudes"

@@ -24,12 +24,11 @@ def test_dropped_samples_are_counted_where_they_are(bench):
     assert record.sampling_rate == pytest.approx(20000)
 
 
-def test_uneven_stamps_are_left_at_their_stamps_and_said(bench):
+def test_stamps_that_the_values_contradict_are_a_problem(bench):
     bench.columns["t"] = bench.columns["t"] + 0.1 / 20000 * np.sin(np.arange(400))
     bench.columns["theta1"] = 188.5 * bench.columns["t"]
+    assert bench.kinds() == ["uneven_stamps"]
     record = bench.load().records[0]
-    (finding,) = record.findings
-    assert (finding.kind, finding.severity) == ("uneven_stamps", "data_problem")
     assert not record.uniform
     np.testing.assert_array_equal(record.time, bench.columns["t"])
 
@@ -41,7 +40,7 @@ def test_a_rate_that_changes_within_the_record_is_found(bench):
     assert bench.load().findings[0].sample == 250
 
 
-def test_steps_within_one_percent_are_one_rate_and_beyond_are_not(bench):
+def test_stamps_within_a_hundredth_of_a_step_of_a_grid_are_put_there_and_others_kept(bench):
     step = np.full(399, 1 / 20000)
     step[7] *= 1.009
     bench.columns["t"] = np.r_[0, np.cumsum(step)]
@@ -49,7 +48,9 @@ def test_steps_within_one_percent_are_one_rate_and_beyond_are_not(bench):
     step[7] = 1.011 / 20000
     bench.columns["t"] = np.r_[0, np.cumsum(step)]
     bench.write_csv()
-    assert bench.kinds() == ["uneven_stamps"]
+    record = bench.load().records[0]
+    assert not record.uniform
+    assert [(finding.kind, finding.severity) for finding in record.findings] == [("uneven_stamps", "note")]
 
 
 def test_records_of_different_rate_are_noted(bench):
@@ -97,8 +98,10 @@ def test_a_torque_that_steps_or_ramps_and_holds_is_not_clipped(bench):
         assert bench.kinds() == []
 
 
-def test_a_torque_that_returns_to_its_limit_is_clipped(bench):
+def test_a_torque_that_returns_to_its_limit_is_what_was_applied(bench):
     bench.columns["T1"] = np.minimum(150 + 20 * np.sin(np.arange(400) / 11), 165)
+    assert bench.load().findings == ()
+    bench.channels["pinion_torque"]["range"] = {"value": 165, "unit": "N*m"}
     assert bench.kinds() == ["clipped"]
 
 

@@ -6,7 +6,7 @@ import pytest
 from effect_bench import EFFECTS
 
 from gear_damping.physics.catalogue import SYSTEMS
-from gear_damping.physics.effect_files import SOME_RIGS, cause_faults
+from gear_damping.physics.effect_files import cause_faults, some_rigs
 from gear_damping.units import parse_unit
 
 CATALOGUE = """
@@ -71,7 +71,7 @@ def test_as_a_cause_it_names_its_own_parameters_and_known_effects(name):
     assert list(cause_faults(EFFECTS[name])) == []
     assert set(cause.looks_like) <= set(EFFECTS)
     assert cause.simpler is None or cause.simpler in EFFECTS
-    rigs = [rig for system in EFFECTS[name].systems for rig in SOME_RIGS[system]]
+    rigs = [rig for system in EFFECTS[name].systems for rig in some_rigs(system)]
     for recipe in (recipe for rig in rigs for recipe in cause.recipes_for(rig)):
         EFFECTS[name](**recipe.options)
         assert all("." in flat for flat in recipe.within)
@@ -81,6 +81,6 @@ def test_as_a_cause_it_names_its_own_parameters_and_known_effects(name):
 def test_a_cause_with_a_shaft_is_tried_on_both(name):
     if "shaft" not in {option.name for option in EFFECTS[name].options}:
         return
-    for rig in SOME_RIGS["gear_pair"]:
+    for rig in some_rigs("gear_pair"):
         tried = {recipe.options.get("shaft") for recipe in EFFECTS[name].cause.recipes_for(rig)}
         assert tried == {"pinion", "gear"}

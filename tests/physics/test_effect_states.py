@@ -114,6 +114,41 @@ def test_shaft_torsion_follows_the_torques_on_the_three_bodies(mode):
     np.testing.assert_allclose(turn, (torque_1 - shaft) / motor - pinion, rtol=1e-8)
 
 
+@pytest.mark.parametrize("mode", ["balanced", "held"])
+def test_torsion_of_the_gears_shaft_is_three_inertias_in_a_row(mode):
+    given = CONSTANT | {"shaft_torsion.damping_ratio": 0.0, "shaft_torsion.motor_inertia": 7e-3, "gear_torque": 300.0}
+    bench = Bench("shaft_torsion", {"shaft": "gear"}, given, system_options={"gear_torque_mode": mode}, batch=1)
+    k, ks, r1, r2 = 3e8, 2000.0, *CASE.base_radii
+    i1, i2, i3 = CASE.inertia_pinion, CASE.inertia_gear, 7e-3
+    stiffness = np.array([[k * r1 * r1, -k * r1 * r2, 0], [-k * r1 * r2, ks + k * r2 * r2, -ks], [0, -ks, ks]])
+    squares = np.sort(np.linalg.eigvals(np.diag([1 / i1, 1 / i2, 1 / i3]) @ stiffness).real)
+    np.testing.assert_allclose(frequencies(jacobian(bench)), np.sqrt(squares[1:]), rtol=1e-8)
+    assert (bench.p["fastest_rate"] / bench.unit("s")).item() >= np.sqrt(squares[-1])
+
+
+@pytest.mark.parametrize("mode", ["balanced", "held"])
+def test_torsion_of_the_gears_shaft_follows_the_torques_on_the_three_bodies(mode):
+    given = {"gear_torque": 280.0, "shaft_torsion.damping_ratio": 0.05}
+    options = {"gear_torque_mode": mode}
+    bench = Bench("shaft_torsion", {"shaft": "gear"}, given, system_options=options)
+    source = np.random.default_rng(3)
+    twist, rate = 0.14 + 0.04 * source.standard_normal(bench.batch), 5 * source.standard_normal(bench.batch)
+    now = bench.moment(bench.times(), (*bench.random(), torch.as_tensor(twist), torch.as_tensor(rate)))
+    rates = bench.equation.rates(now, bench.prepared.base, bench.prepared.terms)
+    force = (now.mesh_force * bench.unit("N")).numpy()
+    r1, r2 = CASE.base_radii
+    i1, i2, brake = CASE.inertia_pinion, CASE.inertia_gear, 0.01
+    damping = 2 * 0.05 * math.sqrt(2000.0 / (1 / brake + 1 / (i2 + i1 * (r2 / r1) ** 2)))
+    torque = 150.0 * r2 / r1 if mode == "balanced" else 280.0
+    shaft = 2000.0 * twist + damping * rate
+    pinion, gear = (150.0 - r1 * force) / i1, (r2 * force - shaft) / i2
+    acceleration = (rates[1] * bench.unit("m/s^2")).numpy()
+    np.testing.assert_allclose(acceleration, r1 * pinion - r2 * gear, rtol=1e-8, atol=1e-6 * np.abs(pinion).max() * r1)
+    turn = (rates[3] * bench.unit("rad/s^2")).numpy()
+    np.testing.assert_allclose(turn, gear - (shaft - torque) / brake, rtol=1e-8)
+    assert bench.rest_of_state()[0].numpy() == pytest.approx(torque / 2000.0)
+
+
 def test_the_shaft_starts_twisted_by_the_mean_torque():
     bench = Bench("shaft_torsion", batch=1)
     assert bench.rest_of_state()[0].item() == pytest.approx(150.0 / 2000.0, rel=1e-12)

@@ -75,3 +75,13 @@ def test_friction_and_hysteresis_beside_it_have_its_scales():
     assert prepared.scales.velocity.item() == pytest.approx(0.5 * STIFFNESS**0.5)
     share = torch.tensor([0.02], dtype=torch.float64)
     torch.testing.assert_close(prepared.terms["hysteretic_damping"]["stiffness"], share)
+
+
+def test_a_stated_unit_of_time_stays():
+    model, values = pendulum(amplitude=0.5, characteristic_time=1.0)
+    prepared = model.prepare(values)
+    assert prepared.scales.time.item() == 1.0
+    assert prepared.derived["natural_frequency"].item() == pytest.approx(STIFFNESS**0.5)
+    runs = swung(1e-3, characteristic_time=1.0)
+    assert period(runs.response) == pytest.approx(2 * np.pi / STIFFNESS**0.5, rel=1e-4)
+    assert runs.reference_velocity.item() == pytest.approx(1e-3 * STIFFNESS**0.5)

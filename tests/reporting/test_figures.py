@@ -59,6 +59,13 @@ SHOWN = {
     ),
     "force_map": lambda s: figures.residual_force_map_figure(np.linspace(0.02, 0.98, 30), FORCE + s[:20]),
     "force_surface": lambda s: figures.residual_force_surface_figure(np.arange(20.0), np.arange(30.0), FORCE + s[:20]),
+    "casing_orders": lambda s: figures.casing_orders_figure(
+        ORDERS, SPECTRUM + 0 * s[: len(ORDERS)], SPECTRUM / 3, unit="m/s²", gear_order=0.5, mesh_order=TEETH
+    ),
+    "casing_turns": lambda s: figures.casing_turns_figure(
+        {shaft: figures.Turn(TIME / TIME[-1], s, (0.9, 1.05), TIME / TIME[-1], SIGNAL) for shaft in ("pinion", "gear")},
+        unit="m/s²",
+    ),
 }  # fmt: skip
 OTHERS = {
     "sweep": lambda: figures.sweep_figure(ROWS, "simulator.load_noise.snr_db"),
@@ -72,6 +79,8 @@ OTHERS = {
     ),
     "no_candidates": lambda: figures.candidates_figure([]),
     "misfit": lambda: figures.misfit_figure({"run_1": {"before": 40.0, "after": 1.1}, "run_2": {"before": 9.0}}),
+    "kurtosis": lambda: figures.casing_kurtosis_figure([3.1, 4.0, 2.9], 3.3, [3.0, 3.0]),
+    "no_kurtosis": lambda: figures.casing_kurtosis_figure([np.nan, np.nan], 3.3),
     "no_misfit": lambda: figures.misfit_figure({}),
 }
 

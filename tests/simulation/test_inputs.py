@@ -10,7 +10,7 @@ from gear_damping.physics.equation import HELD_LOAD
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.oscillator import Oscillator
 from gear_damping.simulation.inspect import forces_of
-from gear_damping.simulation.series import ANGLE, ANGLE_RATE, Series
+from gear_damping.simulation.series import ANGLE, ANGLE_RATE, Series, continued
 from gear_damping.simulation.simulate import simulate
 
 
@@ -75,6 +75,22 @@ def test_the_rate_of_an_angle_does_not_jump_at_samples():
     packed = series.pack({ANGLE: angle.unsqueeze(0)}, {}, 299, 1)
     jump = between(series, packed, inside, 1.0)[1] - between(series, packed, inside + 1, 0.0)[1]
     assert jump.abs().max() < 1e-4 * (true_rate - true_rate.mean()).abs().max()
+
+
+@pytest.mark.parametrize("length", [70, 400])
+def test_a_shorter_series_is_continued_as_it_is_interpolated_alone(length):
+    index = torch.arange(60, dtype=torch.float64)
+    given = {ANGLE: uneven_angle(index, 3.0)[0], "pinion_torque": 150 + 30 * torch.cos(index / 5)}
+    series = Series(tuple(given))
+    alone = series.pack({name: value.unsqueeze(0) for name, value in given.items()}, {}, 59, 1)
+    longer = {name: continued(value, length).unsqueeze(0) for name, value in given.items()}
+    together = series.pack(longer, {}, length - 1, 1)[:59]
+    one = torch.ones(59, dtype=torch.float64)
+    for u in (0.0, 0.3, 1.0):
+        expected, found = (series.at(p[..., 0].T, u * one, one) for p in (alone, together))
+        for name, value in expected.items():
+            torch.testing.assert_close(found[name], value, rtol=1e-5, atol=0)
+    assert len(continued(torch.ones(1), 3)) == 3
 
 
 def test_an_even_rotation_is_exact():

@@ -5,11 +5,23 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
-from gear_damping.physics.cause import Cause, Recipe
+from gear_damping.physics.cause import Cause, Recipe, Rig
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
-from gear_damping.physics.shapes import sign_change_rate
+from gear_damping.physics.shapes import WIDTHS, sign_change_rate
 from gear_damping.physics.terms import DampingForce, Values
+
+DRY = {"force_forward": 0.005, "force_backward": 0.005}
+VISCOUS = {"damping_forward": 0.01, "damping_backward": 0.01}
+
+
+def _switched_on(rig: Rig) -> tuple[Recipe, ...]:
+    """Dry friction alone, and with a viscous part that differs too."""
+    within = {"asymmetric_friction.width": WIDTHS[rig.system]}
+    return tuple(
+        Recipe(strengths, scanned={"width": 0.05}, within=within, sharpest=("width",))
+        for strengths in (DRY, DRY | VISCOUS)
+    )
 
 
 class AsymmetricFriction(DampingForce):
@@ -19,8 +31,8 @@ class AsymmetricFriction(DampingForce):
     equation = "F_d = t F_c(t) + c(t) delta', t = tanh(delta' / (w V)), F_c and c from backward (t = -1) to forward (1)"
     reference = "Armstrong-Hélouvry, Dupont & Canudas de Wit (1994), Automatica 30(7)"
     parameters: ClassVar = (
-        Parameter("force_forward", "N", 20.0, "dry friction where the deflection grows", 0, 1e6),
-        Parameter("force_backward", "N", 10.0, "dry friction where it falls", 0, 1e6),
+        Parameter("force_forward", "N", 20.0, "dry friction where the deflection grows", 0, 1e18),
+        Parameter("force_backward", "N", 10.0, "dry friction where it falls", 0, 1e18),
         Parameter("damping_forward", "N*s/m", 0.0, "viscous coefficient where the deflection grows", 0, 1e12),
         Parameter("damping_backward", "N*s/m", 0.0, "viscous coefficient where it falls", 0, 1e12),
         Parameter("width", "1", 0.05, "w, width of the sign change relative to the unit of velocity V", 1e-6, 10),
@@ -28,18 +40,7 @@ class AsymmetricFriction(DampingForce):
     dissipative = True
     cause: ClassVar = Cause(
         "a friction force that differs between the two directions of motion",
-        (
-            Recipe(
-                {"force_forward": 0.005, "force_backward": 0.005},
-                scanned={"width": 0.05},
-                within={"asymmetric_friction.width": (0.02, 0.5)},
-            ),
-            Recipe(
-                {"force_forward": 0.005, "force_backward": 0.005, "damping_forward": 0.01, "damping_backward": 0.01},
-                scanned={"width": 0.05},
-                within={"asymmetric_friction.width": (0.02, 0.5)},
-            ),
-        ),
+        _switched_on,
         separated_by="reversal",
         simpler="coulomb_friction",
     )

@@ -5,12 +5,21 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
-from gear_damping.physics.cause import Cause, Recipe
+from gear_damping.physics.cause import Cause, Recipe, Rig
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.terms import Contact, Values
 
 DRIVE, COAST = "backlash.drive", "backlash.coast"
+
+GAPS = (0.01, 0.02, 0.04, 0.08)  # in modules
+
+
+def _gaps_of_teeth(rig: Rig) -> tuple[Recipe, ...]:
+    """What is lost in impacts passes for damping as long as the flanks cannot part; an oscillator has no flanks."""
+    sizes = [share * rig.values["module"] for share in GAPS] if rig.system == "gear_pair" else []
+    stood_in = {"viscous_damping.damping_coefficient": 0.02}
+    return tuple(Recipe({"gap": size}, presence=True, in_si=True, stood_in=stood_in) for size in sizes)
 
 
 class Backlash(Contact):
@@ -26,11 +35,7 @@ class Backlash(Contact):
     )
     cause: ClassVar = Cause(
         "the gap between the flanks",
-        tuple(
-            # What is lost in impacts passes for damping as long as the flanks cannot part.
-            Recipe({"gap": gap}, presence=True, in_si=True, stood_in={"viscous_damping.damping_coefficient": 0.02})
-            for gap in (3e-5, 6e-5, 1.2e-4, 2.4e-4)
-        ),
+        _gaps_of_teeth,
         separated_by="reversal",
     )
 

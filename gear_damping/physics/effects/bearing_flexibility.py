@@ -14,7 +14,7 @@ PLACE, RATE = "bearing_flexibility.displacement", "bearing_flexibility.velocity"
 
 
 class BearingFlexibility(ExtraStates, TransmissionErrorSource):
-    """The pinion gives way along the line of action: one more degree of freedom y."""
+    """The pinion gives way along the line of action: one more degree of freedom y. The gear's bearing does the same."""
 
     name = "bearing_flexibility"
     equation = "delta = x - e - y, m_b y'' + c_b y' + k_b y = N + F_d, c_b = 2 zeta_b sqrt(k_b m_b)"
@@ -29,9 +29,9 @@ class BearingFlexibility(ExtraStates, TransmissionErrorSource):
     cause: ClassVar = Cause(
         "the flexibility of a bearing",
         tuple(
-            Recipe({"stiffness": k}, presence=True, scanned={"mass": m, "damping_ratio": 0.02}, in_si=True)
-            for k in (5e8, 2e9, 1e10, 4e10)
-            for m in (1.5, 4.0)
+            Recipe({"stiffness": k}, presence=True, scanned={"mass": m, "damping_ratio": 0.02})
+            for k in (1.5, 6.0, 30.0, 120.0)  # of the mean mesh stiffness
+            for m in (5.5, 15.0)  # of the equivalent mass
         ),
         separated_by="bearing",
     )

@@ -5,11 +5,16 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
-from gear_damping.physics.cause import Cause, Recipe
+from gear_damping.physics.cause import Cause, Recipe, Rig
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
-from gear_damping.physics.shapes import sign_change_rate
+from gear_damping.physics.shapes import WIDTHS, sign_change_rate
 from gear_damping.physics.terms import DampingForce, Values
+
+
+def _switched_on(rig: Rig) -> tuple[Recipe, ...]:
+    within = {"coulomb_friction.width": WIDTHS[rig.system]}
+    return (Recipe({"force": 0.005}, scanned={"width": 0.05}, within=within, sharpest=("width",)),)
 
 
 class CoulombFriction(DampingForce):
@@ -19,13 +24,13 @@ class CoulombFriction(DampingForce):
     equation = "F_d = F_c tanh(delta' / (w V)), V = omega_n F0 / k0 (oscillator: amplitude / characteristic_time)"
     reference = "Threlfall (1978), Mech. Mach. Theory 13(4)"
     parameters: ClassVar = (
-        Parameter("force", "N", 20.0, "F_c", 0, 1e6),
+        Parameter("force", "N", 20.0, "F_c", 0, 1e18),
         Parameter("width", "1", 0.05, "w, width of the sign change relative to the unit of velocity V", 1e-6, 10),
     )
     dissipative = True
     cause: ClassVar = Cause(
         "a dry friction force",
-        (Recipe({"force": 0.005}, scanned={"width": 0.05}, within={"coulomb_friction.width": (0.02, 0.5)}),),
+        _switched_on,
         separated_by="ring_down",
     )
 

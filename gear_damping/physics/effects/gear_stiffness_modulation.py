@@ -15,4 +15,5 @@ class GearStiffnessModulation(StiffnessModulation):
     cause: ClassVar = Cause(
         "a mesh stiffness that varies over a turn of the gear",
         (Recipe({"amplitude": None}, {"amplitude": "phase"}),),
+        turns_with="shaft",
     )

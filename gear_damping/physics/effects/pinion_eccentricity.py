@@ -17,4 +17,5 @@ class PinionEccentricity(Eccentricity):
         (Recipe({"amplitude": None}, {"amplitude": "phase"}),),
         separated_by="torque_channel",
         looks_like=("encoder_error",),
+        turns_with="shaft",
     )

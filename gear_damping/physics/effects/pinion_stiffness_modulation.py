@@ -15,4 +15,5 @@ class PinionStiffnessModulation(StiffnessModulation):
     cause: ClassVar = Cause(
         "a mesh stiffness that varies over a turn of the pinion",
         (Recipe({"amplitude": None}, {"amplitude": "phase"}),),
+        turns_with="shaft",
     )

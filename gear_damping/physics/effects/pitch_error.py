@@ -41,6 +41,7 @@ class PitchError(TransmissionErrorSource):
     cause: ClassVar = Cause(
         "errors of the pitch, tooth by tooth",
         _by_shaft,
+        turns_with="tooth",
     )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:

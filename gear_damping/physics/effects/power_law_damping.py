@@ -21,7 +21,7 @@ class PowerLawDamping(DampingLaw):
     equation = "F_d = alpha sign(delta') |delta'|^n"
     reference = "Yousfi et al. (2026); the printed form alpha |v|^(n+1) drives the motion where v < 0"
     parameters: ClassVar = (
-        Parameter("coefficient", "N", 131.797425, "alpha in N (s/m)^n; the default is 0.35 % at n = 2", 0, 1e12),
+        Parameter("coefficient", "N", 131.797425, "alpha in N (s/m)^n; the default is 0.35 % at n = 2", 0, 1e24),
         Parameter("exponent", "1", 2.0, "n", 0.2, 5, "assumed"),
     )
     options: ClassVar = (Option("as_printed", (False, True), False, "alpha |delta'|^(n+1), which does not dissipate"),)

@@ -21,6 +21,7 @@ class SensorGain(Sensor):
         "a wrong gain of the sensor",
         (Recipe({"gain": None}, neutral=1.0),),
         looks_like=("inertia_error",),
+        one_class=("a moment of inertia other than the stated one (`inertia_error`)", "a torque gain (`torque_gain`)"),
     )
 
     def measure(self, signal: Tensor, values: Values, recording: Recording) -> Tensor:

@@ -20,7 +20,7 @@ class SensorSaturation(Sensor):
     position = 80
     cause: ClassVar = Cause(
         "a sensor that saturates",
-        (Recipe({"limit": None}, presence=True),),
+        tuple(Recipe({"limit": size}, presence=True) for size in (1.8, 1.3, 2.5)),
     )
 
     def measure(self, signal: Tensor, values: Values, recording: Recording) -> Tensor:

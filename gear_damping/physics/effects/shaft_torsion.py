@@ -1,23 +1,51 @@
-"""Torsion of the shaft or coupling between motor and pinion."""
+"""Torsion of the shaft or coupling between a gear and the machine on its shaft."""
 
 from typing import ClassVar
 
 import torch
 from torch import Tensor
 
-from gear_damping.physics.cause import Cause, Recipe
+from gear_damping.physics.cause import SHAFTS, Cause, Recipe, Rig
 from gear_damping.physics.moment import Moment
-from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.terms import ExtraStates, LoadPath, Values
 
 TWIST, RATE = "shaft_torsion.twist", "shaft_torsion.twist_rate"
+SOFTNESS = (0.012, 0.04, 0.12, 0.4)  # of the mesh as the shaft feels it
+INERTIAS = (2.9, 10.8)  # of both gears as the shaft feels them
+
+
+def _on_either_shaft(rig: Rig) -> tuple[Recipe, ...]:
+    return tuple(
+        Recipe(
+            {"stiffness": k * _mesh_stiffness(rig, shaft)},
+            presence=True,
+            scanned={"motor_inertia": j * _inertia(rig, shaft), "damping_ratio": 0.02},
+            in_si=True,
+            options={"shaft": shaft},
+        )
+        for shaft in SHAFTS
+        for k in SOFTNESS
+        for j in INERTIAS
+    )
+
+
+def _mesh_stiffness(rig: Rig, shaft: str) -> float:
+    return rig.values["mean_stiffness"] * rig.values[f"base_radius_{shaft}"] ** 2
+
+
+def _inertia(rig: Rig, shaft: str) -> float:
+    other = SHAFTS[1 - SHAFTS.index(shaft)]
+    ratio = rig.values[f"base_radius_{shaft}"] / rig.values[f"base_radius_{other}"]
+    return rig.values[f"inertia_{shaft}"] + rig.values[f"inertia_{other}"] * ratio**2
 
 
 class ShaftTorsion(ExtraStates, LoadPath):
-    """The torque acts on a motor, and reaches the pinion through a shaft.
+    """The torque acts on a motor, and reaches the pinion through a shaft; or a brake holds the gear through one.
 
     With the twist q of the shaft, T_s = k_s q + c_s q' in place of T1 at the pinion. The load
-    F = m_e (r_b1 T1 / I1 + r_b2 T2 / I2) changes by m_e r_b1 / I1 (T_s - T1), whatever holds the gear.
+    F = m_e (r_b1 T1 / I1 + r_b2 T2 / I2) changes by m_e r_b1 / I1 (T_s - T1), whatever holds the gear. On the
+    gear's shaft the same with 2 in place of 1; a balanced gear torque is T2 = r_b2 T1 / r_b1.
     """
 
     name = "shaft_torsion"
@@ -25,48 +53,50 @@ class ShaftTorsion(ExtraStates, LoadPath):
     reference = "Özgüven (1991), J. Sound Vib. 145(2)"
     parameters: ClassVar = (
         Parameter("stiffness", "N*m/rad", 2000.0, "k_s", 1e-3, 1e12),
-        Parameter("motor_inertia", "kg*m^2", 0.01, "J, moment of inertia of the motor", 1e-9, 1e6),
-        Parameter("damping_ratio", "1", 0.02, "zeta_s, of the motor against the gears with a rigid mesh", 0, 10),
+        Parameter("motor_inertia", "kg*m^2", 0.01, "J, moment of inertia of the motor, or of the brake", 1e-9, 1e6),
+        Parameter("damping_ratio", "1", 0.02, "zeta_s, of the machine against the gears with a rigid mesh", 0, 10),
     )
     systems: ClassVar = ("gear_pair",)
+    options: ClassVar = (Option("shaft", SHAFTS, "pinion", "whose: a motor on the pinion's, a brake on the gear's"),)
     states: ClassVar = {"twist": "rad", "twist_rate": "rad/s"}
     cause: ClassVar = Cause(
         "the torsion of a shaft or coupling",
-        tuple(
-            Recipe({"stiffness": k}, presence=True, scanned={"motor_inertia": j, "damping_ratio": 0.02}, in_si=True)
-            for k in (3e3, 1e4, 3e4, 1e5)
-            for j in (4e-3, 1.5e-2)
-        ),
+        _on_either_shaft,
         separated_by="bearing",
     )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
         """The shaft between the inertias, which are scaled where an equivalent mass was given."""
-        stiffness, motor, radius = values["stiffness"], values["motor_inertia"], base["base_radius_pinion"]
-        pinion_part = radius**2 / base["inertia_pinion"]
-        gear_part = base["base_radius_gear"] ** 2 / base["inertia_gear"]
-        share = pinion_part / (pinion_part + gear_part)
-        pinion = base["equivalent_mass"] * radius**2 / share
-        gears = pinion + pinion * pinion_part / gear_part  # the gear as the pinion's shaft feels it
+        own, other = self.chosen["shaft"], SHAFTS[1 - SHAFTS.index(self.chosen["shaft"])]
+        stiffness, motor, radius = values["stiffness"], values["motor_inertia"], base[f"base_radius_{own}"]
+        own_part = radius**2 / base[f"inertia_{own}"]
+        other_part = base[f"base_radius_{other}"] ** 2 / base[f"inertia_{other}"]
+        share = own_part / (own_part + other_part)
+        wheel = base["equivalent_mass"] * radius**2 / share
+        gears = wheel + wheel * own_part / other_part  # the other gear as this shaft feels it
         damping = 2 * values["damping_ratio"] * torch.sqrt(stiffness / (1 / motor + 1 / gears))
         mesh_rate = base["mean_stiffness"] / base["equivalent_mass"]
         return {
             "stiffness": stiffness,
             "damping": damping,
             "motor": motor,
-            "pinion": pinion,
+            "wheel": wheel,
             "radius": radius,
             "load_per_torque": share / radius,
             "per_pinion_torque": base["load_per_pinion_torque"],
             "per_gear_torque": base["load_per_gear_torque"],
             "gear_torque": base["gear_torque"],
+            "balanced": (base["load_per_gear_torque"] == 0).to(radius),
             "slowest_rate": torch.sqrt(stiffness * (1 / motor + 1 / gears)),
-            "fastest_rate": torch.sqrt(mesh_rate + stiffness * (1 / motor + 1 / pinion)),
+            "fastest_rate": torch.sqrt(mesh_rate + stiffness * (1 / motor + 1 / wheel)),
         }
 
     def initial(self, p: Values, base: Values) -> dict[str, Tensor]:
         """Twisted by the mean torque."""
-        twist = base["pinion_torque"] / p["stiffness"]
+        torque = base["pinion_torque"]
+        if self.chosen["shaft"] == "gear":
+            torque = self._gear_torque(base["mean_load"], base["gear_torque"], p)
+        twist = torque / p["stiffness"]
         return {"twist": twist, "twist_rate": torch.zeros_like(twist)}
 
     def transmitted_load(self, now: Moment, p: Values) -> Tensor:
@@ -75,13 +105,20 @@ class ShaftTorsion(ExtraStates, LoadPath):
         return now.drive_load + p["load_per_torque"] * (shaft - motor)
 
     def state_rates(self, now: Moment, p: Values) -> dict[str, Tensor]:
-        """The twist between motor and pinion."""
+        """The twist between the machine and its gear."""
         motor, shaft = self._torques(now, p)
-        acceleration = (motor - shaft) / p["motor"] - (shaft - p["radius"] * now.mesh_force) / p["pinion"]
+        acceleration = (motor - shaft) / p["motor"] - (shaft - p["radius"] * now.mesh_force) / p["wheel"]
         return {"twist": now.extra[RATE], "twist_rate": acceleration}
 
     def _torques(self, now: Moment, p: Values) -> tuple[Tensor, Tensor]:
-        """Torque on the motor, from the load of the torques, and torque of the shaft."""
+        """Torque on the machine, from the load of the torques, and torque of the shaft."""
         gear = now.inputs.get("gear_torque", p["gear_torque"])
-        motor = (now.drive_load - p["per_gear_torque"] * gear) / p["per_pinion_torque"]
+        if self.chosen["shaft"] == "gear":
+            motor = self._gear_torque(now.drive_load, gear, p)
+        else:
+            motor = (now.drive_load - p["per_gear_torque"] * gear) / p["per_pinion_torque"]
         return motor, p["stiffness"] * now.extra[TWIST] + p["damping"] * now.extra[RATE]
+
+    def _gear_torque(self, load: Tensor, held: Tensor, p: Values) -> Tensor:
+        """The torque of the brake: what balances the load, or what is held."""
+        return p["balanced"] * p["radius"] * load + (1 - p["balanced"]) * held

@@ -27,6 +27,7 @@ def _one_tooth(number: int, shaft: str, teeth: int) -> Recipe:
         scanned={"phase": number * pitch, "extent": 0.8, "edge": EDGE * pitch},
         within={"tooth_crack.edge": (EDGES[0] * pitch, EDGES[1] * pitch), "tooth_crack.extent": (0.2, 1.2)},
         in_si=True,
+        sharpest=("edge",),
         options={"shaft": shaft},
     )
 
@@ -51,6 +52,7 @@ class ToothCrack(StiffnessFactor, Switch):
     cause: ClassVar = Cause(
         "a tooth that is softer than the others",
         _every_tooth,
+        turns_with="tooth",
     )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:

@@ -55,6 +55,7 @@ class TorqueRipple(Load, LoadFactor):
         "a ripple of the torque that the torque channel does not show",
         _every_order,
         separated_by="torque_channel",
+        turns_with="shaft",
     )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:

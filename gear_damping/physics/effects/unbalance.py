@@ -27,6 +27,7 @@ class Unbalance(BearingForce):
     cause: ClassVar = Cause(
         "an unbalance",
         tuple(Recipe({"unbalance": None}, {"unbalance": "phase"}, options={"shaft": shaft}) for shaft in SHAFTS),
+        turns_with="shaft",
     )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:

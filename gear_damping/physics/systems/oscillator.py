@@ -44,23 +44,23 @@ class Oscillator(System):
     }
 
     def derived(self, values: Values, mean_stiffness: Tensor | None) -> dict[str, Tensor]:
-        """Unit mass, natural frequency, reference amplitude and the unit of time."""
-        stiffness, stated = values["stiffness"], values["characteristic_time"]
+        """Unit mass, natural frequency, reference amplitude and the characteristic time as stated, 0 for none."""
+        stiffness = values["stiffness"]
         one = torch.ones_like(stiffness)
-        frequency = torch.sqrt(stiffness)
-        own = 1 / torch.where(frequency > 0, frequency, one)
         return {
             "equivalent_mass": one,
             "mean_stiffness": stiffness,
-            "natural_frequency": frequency,
+            "natural_frequency": torch.sqrt(stiffness),
             "mean_load": 0 * one,
             "amplitude": values["amplitude"],
-            "characteristic_time": torch.where(stated > 0, stated, own),
+            "characteristic_time": values["characteristic_time"],
         }
 
     def scales(self, derived: Values) -> Scales:
         """Unit mass, reference amplitude and characteristic time; the unit of velocity is their quotient."""
-        return Scales(derived["equivalent_mass"], derived["amplitude"], derived["characteristic_time"])
+        frequency, stated = derived["natural_frequency"], derived["characteristic_time"]
+        own = 1 / torch.where(frequency > 0, frequency, torch.ones_like(frequency))
+        return Scales(derived["equivalent_mass"], derived["amplitude"], torch.where(stated > 0, stated, own))
 
     def stiffness(self, p: Values) -> Tensor:
         """The constant stiffness per mass."""

@@ -36,7 +36,7 @@ ACTS_ON = {
     LoadFactor: "the load, as a factor",
     LoadPath: "the path from the torques to the mesh",
     HeldLoad: "the load, drawn at random",
-    BearingForce: "the bearing of the pinion",
+    BearingForce: "the bearing",
     ExtraStates: "states of its own",
     SystemChange: "the derived quantities of the system",
     ContactChange: "the zone of double contact",

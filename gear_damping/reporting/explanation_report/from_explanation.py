@@ -38,6 +38,7 @@ def report_input(explanation: Explanation, provenance: Mapping[str, str] | None 
     """
     content, found, evidence = explanation.content, explanation.found, explanation.evidence
     common = {"title": _title(content), "explanation": content, "provenance": provenance or {}}
+    common["casing"] = explanation.casing
     if found is None or evidence is None:
         return ReportInput(**common)
     channel = evidence.channel

@@ -7,7 +7,7 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
-from gear_damping.reporting.explanation_report import evidence, rows, sentences, vocabulary
+from gear_damping.reporting.explanation_report import casing, evidence, rows, sentences, vocabulary
 from gear_damping.reporting.explanation_report.report_input import ReportInput
 
 PACKAGE = "gear_damping.reporting.explanation_report"
@@ -52,6 +52,7 @@ def _content(report: ReportInput) -> dict[str, Any]:
         "misfit": evidence.misfit(report),
         "spectrum": evidence.spectrum(report),
         "candidates": evidence.candidates(report),
+        "casing": casing.shown(report),
         "residual_forces": list(evidence.residual_forces(report)),
     }
 

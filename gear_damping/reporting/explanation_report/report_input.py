@@ -18,6 +18,7 @@
     next_experiment {what, separates: [names], predicted_separation}
     unexplained     {shares: {family: share}, orders: {family: share}, contact_phase: [values], kurtosis, bursts}
     calibration     {converged, steps: [sentences]}
+    casing          {families, findings, what_changed, records}: of an accelerometer on a casing
     findings        list of {record, channel, message}: what was found in the data
 
 Units are as in `gear_damping.units`; what is not a number (NaN) counts as not known.
@@ -28,6 +29,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from numpy.typing import ArrayLike
+
+from gear_damping.explanation.casing.content import CasingStudy
 
 VERDICTS = ("consistent", "explained", "ambiguous", "partly_explained", "unexplained", "data_problem")
 
@@ -120,6 +123,7 @@ class ReportInput:
         equations: Effect of the simulation -> its term of the equation of motion as text.
         descriptions: Effect -> sentence about it, for effects that are not in the catalogue.
         provenance: What made the report: command, versions, inputs.
+        casing: What was heard through a casing, instead of all the figures above.
     """
 
     title: str
@@ -135,6 +139,7 @@ class ReportInput:
     equations: Mapping[str, str] = field(default_factory=dict)
     descriptions: Mapping[str, str] = field(default_factory=dict)
     provenance: Mapping[str, str] = field(default_factory=dict)
+    casing: CasingStudy | None = None
 
     def __post_init__(self) -> None:
         verdict = self.explanation.get("verdict")

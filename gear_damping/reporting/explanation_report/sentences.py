@@ -15,13 +15,18 @@ HEADLINES = {
     "unexplained": "Unexplained: the simulation misses something that no effect that was tried explains.",
     "data_problem": "Data problem: the data have a fault that must be cured before a cause can be named.",
 }
+CASING_HEADLINES = {
+    "consistent": "Consistent: the casing shows nothing that a sound gear pair does not show.",
+    "unexplained": "Unexplained: the casing shows something that a sound gear pair does not show.",
+}
 ONLY_NOISE = 1.5  # noise variances that may be left for saying so
 ALL_THE_SAME = "An effect smaller than those listed under “What could not have been seen” may be there all the same."
 
 
 def verdict_sentences(explanation: Mapping[str, Any]) -> list[str]:
     """The verdict and what was found, the most important first."""
-    told = [HEADLINES[explanation["verdict"]], *(explanation.get("sentences") or ())]
+    headlines = CASING_HEADLINES if explanation.get("casing") else HEADLINES
+    told = [headlines[explanation["verdict"]], *(explanation.get("sentences") or ())]
     told += [rest_sentence(explanation.get("misfit"))] if explanation["verdict"] == "explained" else []
     told += [ALL_THE_SAME] if explanation["verdict"] == "consistent" and explanation.get("not_observable") else []
     told += [misfit_sentence(explanation.get("misfit")), damping_sentence(explanation.get("gain"))]

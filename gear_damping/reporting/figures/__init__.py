@@ -3,6 +3,12 @@
 from matplotlib.figure import Figure
 
 from gear_damping.reporting.figures.candidates import candidates_figure
+from gear_damping.reporting.figures.casing import (
+    Turn,
+    casing_kurtosis_figure,
+    casing_orders_figure,
+    casing_turns_figure,
+)
 from gear_damping.reporting.figures.identification import identification_figure
 from gear_damping.reporting.figures.misfit import misfit_figure
 from gear_damping.reporting.figures.overlay import overlay_figure
@@ -20,7 +26,11 @@ from gear_damping.reporting.style import save
 
 __all__ = [
     "Figure",
+    "Turn",
     "candidates_figure",
+    "casing_kurtosis_figure",
+    "casing_orders_figure",
+    "casing_turns_figure",
     "identification_figure",
     "mesh_stiffness_figure",
     "misfit_figure",

@@ -18,6 +18,8 @@ SHOWN_MESH_HARMONICS = 6.4
 MOST_LEGEND_COLUMNS = 6
 LOW_ORDERS = 4.4  # pinion orders of the panel for the shafts
 LOOKS = {
+    "reference": {"color": PALE, "linewidth": 0.8, "zorder": 2},
+    "record": {"color": BLUE, "linewidth": 0.8, "zorder": 3},
     "measured": {"color": PALE, "linewidth": 0.8, "zorder": 2},
     "before": {"color": RED, "linewidth": 0.9, "zorder": 3},
     "after": {"color": BLUE, "linewidth": 0.9, "zorder": 4},

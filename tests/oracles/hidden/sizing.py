@@ -134,7 +134,7 @@ def _chosen(one: Draft, basis: Basis, differences: np.ndarray) -> Sized:
 
 def corrected(one: Draft, sized: Sized, reached: float) -> bool:
     """Change the size of a single effect whose excess the trials, far apart, were wrong about; whether it was."""
-    if len(one.effects) != 1 or sized.sizes[0] is None:
+    if len(one.effects) != 1 or sized.sizes[0] is None or one.effects[0].as_modelled:
         return False
     ratio = sized.promised[0] / max(reached, 1e-9)
     size = min(max(sized.sizes[0] * float(np.clip(ratio, 0.05, 20.0)) ** 0.5, one.effects[0].least), 1.0)

@@ -206,7 +206,7 @@ def _desk(draft: _Draft, sized: _Sized, snr_db: float, rng: np.random.Generator)
         scales, str(rng.choice(FORCE_UNITS)), log_uniform(rng, 0.1, 50.0), sigma,
         colour=float(rng.choice([0.0, 0.0, 0.3, 0.6])),
         datum=float(rng.uniform(-4.0, 4.0)) if draft.arbitrary else 0.0,
-        dense=float(rng.uniform(10.0, 18.0)), mixed=bool(rng.random() < 0.5), jitter=bool(rng.random() < 0.3),
+        dense=float(rng.uniform(10.0, 18.0)), mixed=bool(rng.random() < 0.5), jitter=bool(rng.random() < 0.4),
     )  # fmt: skip
 
 

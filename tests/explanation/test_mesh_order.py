@@ -1,0 +1,70 @@
+"""A wrong tooth count is told from what else stands out beside a weak mesh."""
+
+import numpy as np
+import pytest
+import torch
+
+from gear_damping.explanation.data_faults import mesh_order_faults
+from gear_damping.explanation.evidence import Evidence
+from gear_damping.identification.output_error.problem import FitRecord
+from gear_damping.measurement.record import Channel
+
+RATE, N = 20000.0, 3000
+
+
+def _record(orders: dict[float, float], speed: float, lines: dict[float, float], seed: int) -> FitRecord:
+    """Waves by shaft order and by frequency in Hz, with a little noise."""
+    time = np.arange(N) / RATE
+    angle = 0.3 + speed * time
+    values = 0.02 * np.random.default_rng(seed).standard_normal(N)
+    values += sum(size * np.cos(order * angle + order) for order, size in orders.items())
+    values += sum(size * np.cos(2 * np.pi * f * time) for f, size in lines.items())
+    series = {"response": torch.as_tensor(1e-6 * values), "angle": torch.as_tensor(angle)}
+    return FitRecord(f"run_{seed}", series["response"], RATE, {"pinion_angle": series["angle"]}, {})
+
+
+def _found(teeth: int | None, orders: dict[float, float], lines=None, speeds=(150.0, 190.0)) -> list[str]:
+    records = tuple(_record(orders, speed, lines or {}, k) for k, speed in enumerate(speeds))
+    parameters = {} if teeth is None else {"n_teeth_pinion": float(teeth)}
+    channel = Channel("transmission_error", np.zeros(2), "m")
+    evidence = Evidence("gear_pair", records[:1], records[1:], parameters, channel, one_record=False)
+    return [finding.message for finding in mesh_order_faults(evidence)]
+
+
+MESH = {25: 1.0, 50: 0.4, 75: 0.1}
+
+
+@pytest.mark.parametrize("declared", [17, 23, 24, 27])
+def test_a_wrong_tooth_count_is_found_and_the_right_one_named(declared):
+    (message,) = _found(declared, MESH)
+    assert f"mesh order {declared} is absent, while order 25 stands out" in message
+
+
+def test_where_no_count_is_declared_the_rig_of_the_project_is_meant():
+    assert _found(None, {20: 1.0, 40: 0.3}) == []
+    assert len(_found(None, MESH)) == 1
+
+
+@pytest.mark.parametrize(
+    "orders",
+    [
+        MESH,
+        MESH | {17: 9.0},  # a load that ripples at order 17
+        MESH | {26: 4.0, 24: 4.0},  # sidebands above the mesh
+        {25: 0.2} | {1 / 2: 3.0, 1: 5.0, 2: 4.0, 26.5: 1.0},  # eccentric shafts
+        {17.3: 1.0},  # nothing that belongs to the shaft
+    ],
+)
+def test_orders_beside_the_mesh_raise_no_alarm(orders):
+    assert _found(25, orders) == []
+
+
+def test_a_line_of_the_structure_is_no_mesh():
+    speed = 150.0
+    at_order_19 = 19 * speed / (2 * np.pi)
+    assert _found(25, {}, {at_order_19: 3.0}, speeds=(speed, speed)) == []
+    assert _found(25, {}, {at_order_19: 3.0}) == []
+
+
+def test_one_speed_is_enough_where_the_comb_has_harmonics():
+    assert len(_found(23, MESH, speeds=(150.0, 150.0))) == 1

@@ -1,0 +1,290 @@
+"""No false alarm at the door: what looks like a fault and is none, each beside the fault that it looks like."""
+
+import numpy as np
+import pytest
+
+RATE = 1000.0
+TURN = 2 * np.pi
+
+
+@pytest.fixture
+def rng():
+    return np.random.default_rng(7)
+
+
+def _signal(time: np.ndarray) -> np.ndarray:
+    return 2 * np.sin(TURN * 31 * time) + 0.7 * np.cos(TURN * 87.3 * time + 1)
+
+
+def _oscillator(bench, time: np.ndarray, values: np.ndarray, force: np.ndarray | None = None):
+    """An oscillator's record; its displacement is in rad."""
+    bench.columns = {"t": time, "x": values} | ({} if force is None else {"u": force})
+    channels = {"time": {"column": "t", "unit": "s"}, "displacement": {"column": "x", "unit": "rad"}}
+    if force is not None:
+        channels["force"] = {"column": "u", "unit": "V"}
+    bench.content = {"system": "oscillator", "records": [{"file": "run_1.csv", "channels": channels}]}
+    bench.write_csv()
+    return bench.load_as_it_is().records[0]
+
+
+def _problems(record) -> list[str]:
+    return [finding.kind for finding in record.findings if finding.severity == "data_problem"]
+
+
+def _stamped(bench, stamps: np.ndarray, taken: np.ndarray | None = None, noise: np.ndarray | float = 0.0):
+    """A record with stamps, its samples taken at them or at other times."""
+    return _oscillator(bench, stamps, _signal(stamps if taken is None else taken) + noise)
+
+
+# --- stamps
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.02])
+@pytest.mark.parametrize("kind", ["each by itself", "step by step", "late"])
+def test_jitter_of_seven_percent_is_a_note_and_keeps_the_stamps(bench, rng, kind, noise):
+    even, n = np.arange(2000) / RATE, 2000
+    if kind == "each by itself":
+        stamps = even + 0.07 * rng.standard_normal(n) / RATE
+    elif kind == "step by step":
+        stamps = np.cumsum(1 + 0.07 * rng.standard_normal(n)) / RATE
+    else:
+        stamps = even + np.minimum(0.07 * rng.exponential(size=n), 0.45) / RATE
+    record = _stamped(bench, stamps, noise=noise * rng.standard_normal(n))
+    assert _problems(record) == []
+    notes = [finding for finding in record.findings if finding.kind == "uneven_stamps"]
+    assert [note.severity for note in notes] == ["note"]
+    assert not record.uniform
+    np.testing.assert_array_equal(record.time, stamps)
+    assert record.sampling_rate == pytest.approx((n - 1) / (stamps[-1] - stamps[0]), rel=1e-12)
+
+
+@pytest.mark.parametrize("jitter", [0.1, 0.2])
+def test_stamps_that_were_written_late_to_even_samples_are_a_problem(bench, rng, jitter):
+    even = np.arange(2000) / RATE
+    stamps = even + jitter * rng.uniform(-1, 1, 2000) / RATE
+    noise = 0.01 * rng.standard_normal(2000)
+    record = _stamped(bench, stamps, taken=even, noise=noise)
+    assert _problems(record) == ["uneven_stamps"]
+    assert "give sampling_rate" in " ".join(finding.message for finding in record.findings)
+    assert _problems(_stamped(bench, stamps, noise=noise)) == []
+
+
+def test_noise_that_hides_the_jitter_gives_no_verdict_on_the_stamps(bench, rng):
+    even = np.arange(2000) / RATE
+    stamps = even + 0.02 * rng.uniform(-1, 1, 2000) / RATE
+    assert _problems(_stamped(bench, stamps, taken=even, noise=rng.standard_normal(2000))) == []
+
+
+def test_one_late_stamp_is_no_problem_and_many_are(bench, rng):
+    even = np.arange(2000) / RATE
+    stamps = even + 0.05 * rng.uniform(-1, 1, 2000) / RATE
+    stamps[700] += 0.7 / RATE
+    assert _problems(_stamped(bench, stamps)) == []
+    stamps = even + 0.4 * rng.uniform(-1, 1, 2000) / RATE
+    assert _problems(_stamped(bench, stamps)) == ["uneven_stamps"]
+
+
+def test_lost_samples_are_counted_under_jitter_too(bench, rng):
+    stamps = (np.arange(2000) + 0.05 * rng.standard_normal(2000)) / RATE
+    record = _stamped(bench, np.delete(stamps, [*range(500, 503), 1200]))
+    (problem,) = [finding for finding in record.findings if finding.severity == "data_problem"]
+    assert (problem.kind, problem.sample) == ("dropped_samples", 500)
+    assert "about 4 sample(s) were dropped in 2 gap(s)" in problem.message
+    assert record.sampling_rate == pytest.approx(RATE, rel=0.01)
+
+
+@pytest.mark.parametrize("jitter", [0.0, 0.02])
+@pytest.mark.parametrize(("change", "said"), [(0.05, "changes its rate"), (1.0, "changes its rate")])
+def test_a_clock_that_changes_its_rate_is_a_problem(bench, rng, change, said, jitter):
+    index = np.arange(2000)
+    late = np.where(index > 700, (index - 700) * change, 0.0)
+    record = _stamped(bench, (index + late + jitter * rng.standard_normal(2000)) / RATE)
+    (problem,) = [finding for finding in record.findings if finding.severity == "data_problem"]
+    assert problem.kind == "uneven_stamps"
+    assert said in problem.message
+    assert problem.sample == pytest.approx(701, abs=2)
+
+
+def test_a_clock_that_jumps_by_part_of_a_step_is_a_problem(bench):
+    stamps = np.arange(2000) / RATE
+    stamps[900:] += 2.4 / RATE
+    record = _stamped(bench, stamps)
+    (problem,) = [finding for finding in record.findings if finding.severity == "data_problem"]
+    assert (problem.kind, problem.sample) == ("uneven_stamps", 900)
+    assert "jumps" in problem.message
+
+
+@pytest.mark.parametrize(("rate", "places", "start"), [(333.0, 3, 0.0), (600.0, 3, 12.0), (90.0, 2, 1.7e9)])
+def test_stamps_of_few_digits_are_an_even_grid(bench, rate, places, start):
+    taken = np.arange(1500) / rate
+    stamps = np.round(start + taken, places)
+    record = _stamped(bench, stamps, taken=taken)
+    assert record.uniform
+    assert _problems(record) == []
+    assert record.sampling_rate == pytest.approx(rate, rel=1e-6)
+    assert np.ptp(record.time - start - taken) < 1e-3 / rate + 1e-6
+    assert any("rounded" in note for note in record.notes)
+
+
+def test_stamps_that_are_moved_to_a_grid_are_moved_without_harm(bench, rng):
+    even = np.arange(2000) / RATE
+    stamps = even + 0.004 * rng.uniform(-1, 1, 2000) / RATE
+    record = _stamped(bench, stamps)
+    assert record.uniform
+    inner = slice(10, -10)
+    error = (record.channels["displacement"].values - _signal(record.time))[inner]
+    assert np.sqrt(np.mean(error**2)) < 1e-4 * np.std(_signal(even))
+
+
+# --- flat tops
+
+
+def _friction_pendulum(rate: float, friction: float) -> np.ndarray:
+    """A pendulum with dry friction, which stands at its turning points until the pull is enough; 6 s."""
+    step, angle, speed = 1 / rate, 1.2, 0.0
+    angles = np.empty(int(6 * rate))
+    for k in range(angles.size):
+        angles[k] = angle
+        pull = 12 * np.sin(0.9 * TURN * k * step) - 19.6 * np.sin(angle) - 0.1 * speed
+        if speed == 0 and abs(pull) <= friction:
+            continue
+        new = speed + step * (pull - friction * np.sign(speed if speed else pull))
+        speed = 0.0 if speed * new < 0 else new
+        angle += step * speed
+    return angles
+
+
+@pytest.mark.parametrize("friction", [0.0, 2.0, 5.0])
+@pytest.mark.parametrize("step", [3e-4, 2.9142e-3, 2e-2])
+def test_an_encoder_that_dwells_at_turning_points_is_not_clipped(bench, friction, step):
+    angle = step * np.round(_friction_pendulum(500, friction) / step)
+    assert _problems(_oscillator(bench, np.arange(angle.size) / 500, angle)) == []
+    index = np.arange(0, angle.size - 1, 0.6)  # put on another grid by a straight line
+    between = np.interp(index, np.arange(angle.size), angle)
+    assert _problems(_oscillator(bench, np.arange(index.size) / 833.0, between)) == []
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.01])
+@pytest.mark.parametrize("step", [0.0, 2.9142e-3, 2e-2])
+@pytest.mark.parametrize("side", [1, -1])
+def test_an_encoder_that_is_cut_off_is_clipped(bench, rng, step, noise, side):
+    angle = side * (_friction_pendulum(500, 0.5) + noise * rng.standard_normal(3000))
+    cut = np.minimum(angle, np.quantile(angle, 0.9))
+    cut = side * (step * np.round(cut / step) if step else cut)
+    assert _problems(_oscillator(bench, np.arange(3000) / 500, cut)) == ["clipped"]
+
+
+def test_a_velocity_that_stands_still_is_not_clipped(bench):
+    time = np.arange(3000) / 500
+    speed = np.maximum(0.0, np.sin(3 * time))  # moved one way, braked to rest each time
+    bench.columns = {"t": time, "v": 0.01 * np.round(speed / 0.01)}
+    channels = {"time": {"column": "t", "unit": "s"}, "velocity": {"column": "v", "unit": "m/s"}}
+    bench.content = {"system": "oscillator", "records": [{"file": "run_1.csv", "channels": channels}]}
+    assert bench.kinds() == []
+
+
+def test_a_drive_at_its_limit_is_what_was_applied(bench):
+    time = np.arange(3000) / 500
+    force = np.clip(15 * np.sin(4 * time), -10, 10)
+    assert _problems(_oscillator(bench, time, np.sin(3.1 * time), force)) == []
+    bench.channels["force"]["range"] = {"value": 10, "unit": "V"}
+    assert bench.kinds() == ["clipped"]
+
+
+# --- what else looks like a fault
+
+
+@pytest.mark.parametrize("step", [1e-3, 2e-2])
+def test_a_coarse_encoder_at_a_high_rate_was_not_interpolated(bench, step):
+    time = np.arange(4000) / 2000
+    assert _problems(_oscillator(bench, time, step * np.round(np.exp(-time) * np.cos(9 * time) / step))) == []
+
+
+# --- shafts
+
+MODULE, PRESSURE = 3e-3, np.radians(20)
+
+
+def _two_encoders(bench, pinion: np.ndarray, gear: np.ndarray, teeth=(15, 30), rate=20000.0):
+    """A gear pair of which two encoders of 4096 and 5000 counts are read, 15/30 teeth declared."""
+    time = np.arange(pinion.size) / rate
+    counts = {"p": np.round(pinion * 4096 / TURN), "g": np.round(gear * 5000 / TURN)}
+    bench.columns = {"t": time, **counts}
+    bench.content["parameters"] = {
+        "n_teeth_pinion": teeth[0], "n_teeth_gear": teeth[1],
+        "module": {"value": 3, "unit": "mm"}, "pressure_angle": {"value": 20, "unit": "deg"},
+    }  # fmt: skip
+    bench.content["records"] = [
+        {
+            "file": "run_1.csv",
+            "channels": {"time": {"column": "t", "unit": "s"}},
+            "conditions": {"pinion_torque": {"value": 150, "unit": "N*m"}},
+            "encoders": {
+                "pinion": {"column": "p", "counts_per_revolution": 4096},
+                "gear": {"column": "g", "counts_per_revolution": 5000},
+            },
+        }
+    ]
+    bench.write_csv()
+    return bench.load_as_it_is().records[0]
+
+
+@pytest.fixture
+def turned():
+    return 188.5 * np.arange(20000) / 20000.0
+
+
+def test_the_ratio_that_two_encoders_see_is_compared_with_the_teeth_first(bench, turned):
+    record = _two_encoders(bench, turned, turned * 16 / 31)
+    (problem,) = [finding for finding in record.findings if finding.severity == "data_problem"]
+    assert problem.kind == "tooth_ratio"
+    for words in ("1.9375", "30/15 = 2", "31/16", "n_teeth_gear"):
+        assert words in problem.message
+    assert "read as m" not in problem.message
+
+
+def test_two_encoders_on_the_declared_teeth_raise_nothing(bench, turned):
+    wobble = 2e-5 * np.sin(TURN * 450 * np.arange(turned.size) / 20000)
+    assert _problems(_two_encoders(bench, turned, turned / 2 + wobble)) == []
+    assert _problems(_two_encoders(bench, turned[:200], turned[:200] / 2)) == []  # a third of a turn
+
+
+def test_an_encoder_that_counts_backwards_and_exchanged_ones_are_said_so(bench, turned):
+    assert "direction: -1" in _two_encoders(bench, turned, -turned / 2).findings[0].message
+    assert "exchanged" in _two_encoders(bench, turned / 2, turned).findings[0].message
+
+
+def test_an_error_that_runs_away_is_not_called_a_wrong_unit(bench):
+    bench.columns["dte"] = bench.columns["dte"] + np.linspace(0, 3000, 400)
+    assert bench.kinds() == ["drifting_error"]
+
+
+def _shaft(bench, angle: np.ndarray, **conditions) -> list[str]:
+    bench.columns["theta1"] = angle
+    bench.record["conditions"] = conditions
+    bench.write_csv()
+    return [kind for kind in bench.kinds() if kind in ("angle_not_turning", "speed_mismatch")]
+
+
+def test_a_shaft_may_stop_or_turn_back_but_not_tremble(bench):
+    part = np.arange(400) / 400
+    assert _shaft(bench, 40 * np.minimum(part, 0.5)) == []  # runs out and stands
+    assert _shaft(bench, 40 * np.sin(3 * part)) == []  # turned back once
+    assert _shaft(bench, 3.0 + 0.3 * np.sin(3 * part)) == ["angle_not_turning"]  # a torque, less than a turn
+    assert _shaft(bench, 40 * np.sin(70 * part)) == ["angle_not_turning"]
+
+
+def test_a_speed_known_to_five_percent_may_be_four_off(bench):
+    angle = 1.04 * 188.495559 * np.arange(400) / 20000
+    speed = {"value": 1800, "unit": "rpm"}
+    assert _shaft(bench, angle, pinion_speed=speed) == ["speed_mismatch"]
+    assert _shaft(bench, angle, pinion_speed=speed | {"uncertainty": 0.05}) == []
+
+
+def test_a_measured_speed_that_runs_up_agrees_with_its_angle(bench):
+    part = np.arange(400) / 400
+    bench.columns["omega"] = 200 * part**3
+    bench.channels["pinion_speed"] = {"column": "omega", "unit": "rad/s"}
+    assert _shaft(bench, 200 * part**4 / 4 * 0.02) == []
+    bench.columns["omega"] = 230 * part**3
+    assert _shaft(bench, 200 * part**4 / 4 * 0.02) == ["speed_mismatch"]
