@@ -11,9 +11,9 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.splines import cubic_spline
 from gear_damping.measurement.timebase import TimeBase, moved_to, refuse_uncovered
 
 PASS, STOP = 0.4, 0.5  # of the new rate
@@ -95,7 +95,7 @@ class SlowerTime(TimeBase):
         if own.uniform:
             return lowpassed_at(self.time, values, float(own.time[0]), own.sampling_rate, self.sampling_rate)
         grid = np.arange(own.time[0], own.time[-1] + 0.5 / own.sampling_rate, 1 / own.sampling_rate)
-        even = CubicSpline(own.time, values)(np.minimum(grid, own.time[-1]))
+        even = cubic_spline(own.time, values)(np.minimum(grid, own.time[-1]))
         return lowpassed_at(self.time, even, float(grid[0]), own.sampling_rate, self.sampling_rate)
 
 
@@ -132,7 +132,7 @@ def lowpassed_at(
     fine = filtering.applied(padded)
     fine_rate = recorded * filtering.up
     grid = np.arange(fine.size) / fine_rate
-    swings = CubicSpline(grid, fine)(np.clip(time - start, 0.0, grid[-1]))
+    swings = cubic_spline(grid, fine)(np.clip(time - start, 0.0, grid[-1]))
     return swings + np.interp(time - start, np.arange(n) / recorded, line)
 
 

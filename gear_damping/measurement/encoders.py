@@ -2,9 +2,9 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.splines import monotone_spline
 
 TURN = 2 * np.pi
 
@@ -55,7 +55,7 @@ def angle_from_pulses(
 
 def _extended(pulses: NDArray, angle: NDArray, time: NDArray) -> NDArray[np.float64]:
     """Interpolated between the pulses and straight on beyond the first and last."""
-    inner = PchipInterpolator(pulses, angle)(np.clip(time, pulses[0], pulses[-1]))
+    inner = monotone_spline(pulses, angle)(np.clip(time, pulses[0], pulses[-1]))
     slope_first = (angle[1] - angle[0]) / (pulses[1] - pulses[0])
     slope_last = (angle[-1] - angle[-2]) / (pulses[-1] - pulses[-2])
     beyond = np.minimum(time - pulses[0], 0) * slope_first + np.maximum(time - pulses[-1], 0) * slope_last

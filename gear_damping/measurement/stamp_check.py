@@ -8,7 +8,6 @@ weighted with the inverse of its power, so that the quiet ones, where s' e shows
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import median_filter, uniform_filter1d
 
 from gear_damping.measurement.record import Finding, Record
 
@@ -45,6 +44,8 @@ def share_at_stamps(values: NDArray[np.float64], stamps: NDArray[np.float64]) ->
         values: (n,) samples.
         stamps: (n,) their stamps in s.
     """
+    from scipy.ndimage import median_filter, uniform_filter1d  # here, since few records need what takes long to import
+
     place = stamps / np.median(np.diff(stamps)) - np.arange(stamps.size)
     place -= uniform_filter1d(place, _LOCAL, mode="nearest")
     index = np.arange(values.size)
@@ -66,6 +67,8 @@ def share_at_stamps(values: NDArray[np.float64], stamps: NDArray[np.float64]) ->
 
 def _quiet(values: NDArray) -> NDArray:
     """Values about their straight line without most of their noise, which would hide the slope (Wiener's filter)."""
+    from scipy.ndimage import median_filter
+
     spectrum = np.fft.rfft(values)
     power = np.abs(spectrum) ** 2
     noise = float(np.quantile(median_filter(power, _NEIGHBOURS, mode="nearest"), _FLOOR)) / np.log(2)

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.record import Finding
+from gear_damping.measurement.splines import cubic_spline
 from gear_damping.measurement.stamps import REMEDY, irregularity, jitter_note, written_in
 
 RATE_TOLERANCE = 0.01  # relative; rates within are one
@@ -30,7 +30,7 @@ class TimeBase:
 
     def resample(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """Values at `stamps` moved to `time` by a cubic spline; untouched where nothing was moved."""
-        return values if self.stamps is None else CubicSpline(self.stamps, values)(self.time)
+        return values if self.stamps is None else cubic_spline(self.stamps, values)(self.time)
 
 
 def steady_time(rate: float, first: int, n: int, start: float = 0.0) -> TimeBase:
@@ -95,7 +95,7 @@ def moved_to(
         InputError: the record lasts longer than the channel.
     """
     refuse_uncovered(time, own, key, source)
-    return CubicSpline(own.time, own.resample(values))(time)
+    return cubic_spline(own.time, own.resample(values))(time)
 
 
 def refuse_uncovered(time: NDArray[np.float64], own: TimeBase, key: str, source: str) -> None:

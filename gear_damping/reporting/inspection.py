@@ -8,13 +8,14 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 from numpy.typing import NDArray
 
 from gear_damping.reporting.style import BLUE, PALE, RED, new_figure, say_empty, styled
 
-MOST_PANELS = 16
+MOST_PANELS = 12
 _ROW, _MARGINS, _WIDTH = 1.7, (0.55, 0.35), 10.0  # inches; below and above the rows
-_DRAWN = 2000  # pairs of lowest and highest value that a long channel is drawn by
+_DRAWN = 1000  # pairs of lowest and highest value that a long channel is drawn by
 _BELOW_FLOOR = 1e-4  # of the floor; what lies lower is no more shown
 
 
@@ -58,6 +59,8 @@ def inspection_figure(panels: Sequence[Panel], in_seconds: bool = True) -> Figur
         for (left, right), panel in zip(rows, shown, strict=False):
             left.plot(*drawn(panel.time, panel.values), color=BLUE, linewidth=0.8)
             left.set_title(panel.name)
+            left.yaxis.set_major_locator(MaxNLocator(4))
+            left.xaxis.set_major_locator(MaxNLocator(8))
             left.set_ylabel(panel.unit or "?")
             _draw_spectrum(right, panel)
         rows[-1][0].set_xlabel("time / s" if in_seconds else "sample")
@@ -74,10 +77,14 @@ def _draw_spectrum(axes: object, panel: Panel) -> None:
         say_empty(axes, "no spectrum")
         return
     amplitude = np.sqrt(np.maximum(panel.density, _BELOW_FLOOR * panel.floor))[1:]
-    axes.semilogy(panel.frequency[1:], amplitude, color=BLUE, linewidth=0.8)
+    axes.semilogy(*drawn(panel.frequency[1:], amplitude), color=BLUE, linewidth=0.8)
     if panel.floor > 0:
         axes.axhline(panel.floor**0.5, color=RED, linestyle="--", linewidth=0.8)
     axes.set_ylabel(f"{panel.unit or '?'}/√Hz")
+    axes.yaxis.set_major_locator(LogLocator(numticks=5))
+    axes.yaxis.set_minor_locator(NullLocator())
+    axes.yaxis.set_major_formatter("{x:.0e}")  # powers set as formulas take as long as the rest of the figure
+    axes.xaxis.set_major_locator(MaxNLocator(5))
 
 
 def drawn(time: NDArray[np.float64], values: NDArray[np.float64]) -> tuple[NDArray, NDArray]:

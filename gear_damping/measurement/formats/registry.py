@@ -1,29 +1,33 @@
 """From the suffix of a file to its reader."""
 
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 from types import MappingProxyType
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.formats.csv_file import read_csv
-from gear_damping.measurement.formats.hdf5_file import read_hdf5
-from gear_damping.measurement.formats.mat_file import read_mat
-from gear_damping.measurement.formats.npz_file import read_npz
 from gear_damping.measurement.formats.table import Table, refuse_size
-from gear_damping.measurement.formats.tdms_file import read_tdms
-from gear_damping.measurement.formats.uff_file import read_uff
-from gear_damping.measurement.formats.wav_file import read_wav
-from gear_damping.measurement.formats.xlsx_file import read_xlsx
 
 MAX_BYTES = 512 * 1024**2
 Reader = Callable[[Path, int], Table]
 
+
+def _reader(name: str) -> Reader:
+    """The reader `read_<name>` of the file `<name>_file`, imported when it is first needed: its library takes long."""
+
+    def read(path: Path, max_bytes: int) -> Table:
+        module = import_module(f"gear_damping.measurement.formats.{name}_file")
+        return getattr(module, f"read_{name}")(path, max_bytes)
+
+    return read
+
+
 READERS: MappingProxyType[str, Reader] = MappingProxyType(
     {
-        **dict.fromkeys((".csv", ".txt", ".tsv", ".dat", ".asc", ".gz"), read_csv),
-        **dict.fromkeys((".h5", ".hdf5", ".hdf"), read_hdf5),
-        **dict.fromkeys((".uff", ".unv", ".uff58"), read_uff),
-        ".mat": read_mat, ".npz": read_npz, ".tdms": read_tdms, ".wav": read_wav, ".xlsx": read_xlsx,
+        **dict.fromkeys((".csv", ".txt", ".tsv", ".dat", ".asc", ".gz"), _reader("csv")),
+        **dict.fromkeys((".h5", ".hdf5", ".hdf"), _reader("hdf5")),
+        **dict.fromkeys((".uff", ".unv", ".uff58"), _reader("uff")),
+        **{f".{name}": _reader(name) for name in ("mat", "npz", "tdms", "wav", "xlsx")},
     }
 )  # fmt: skip
 
