@@ -1,5 +1,7 @@
 """The figure of task=inspect: every channel over time, and beside it its spectrum with the floor of the noise.
 
+Records with the same channel share its panel.
+
 It lies outside of `figures`, whose other members need torch: an inspection is to be quick.
 """
 
@@ -7,11 +9,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 from numpy.typing import NDArray
 
-from gear_damping.reporting.style import BLUE, PALE, RED, new_figure, say_empty, styled
+from gear_damping.reporting.style import CYCLE, INK, PALE, colour_of, legend_above, new_figure, say_empty, styled
 
 MOST_PANELS = 12
 _ROW, _MARGINS, _WIDTH = 1.7, (0.55, 0.35), 10.0  # inches; below and above the rows
@@ -20,12 +23,11 @@ _BELOW_FLOOR = 1e-4  # of the floor; what lies lower is no more shown
 
 
 @dataclass(frozen=True, eq=False)
-class Panel:
-    """A channel to draw.
+class Curve:
+    """A channel of one record.
 
     Args:
-        name: Its title.
-        unit: Of the values, "" where it is not known.
+        label: What it is called beside others of its panel.
         time: (n,) in s, or sample numbers.
         values: (n,); gaps where they are not finite.
         frequency: (m,) in Hz, or cycles a sample; None where there is no spectrum.
@@ -33,13 +35,21 @@ class Panel:
         floor: The density of the noise.
     """
 
-    name: str
-    unit: str
+    label: str
     time: NDArray[np.float64]
     values: NDArray[np.float64]
     frequency: NDArray[np.float64] | None = None
     density: NDArray[np.float64] | None = None
     floor: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Panel:
+    """A channel to draw: its title, the unit of its values ("" where it is not known), and a curve for each record."""
+
+    name: str
+    unit: str
+    curves: tuple[Curve, ...]
 
 
 def inspection_figure(panels: Sequence[Panel], in_seconds: bool = True) -> Figure:
@@ -57,11 +67,7 @@ def inspection_figure(panels: Sequence[Panel], in_seconds: bool = True) -> Figur
         figure.subplots_adjust(left=0.09, right=0.98, bottom=bottom, top=top, hspace=0.55, wspace=0.3)
         rows = figure.subplots(max(1, len(shown)), 2, squeeze=False, width_ratios=(3, 2))
         for (left, right), panel in zip(rows, shown, strict=False):
-            left.plot(*drawn(panel.time, panel.values), color=BLUE, linewidth=0.8)
-            left.set_title(panel.name)
-            left.yaxis.set_major_locator(MaxNLocator(4))
-            left.xaxis.set_major_locator(MaxNLocator(8))
-            left.set_ylabel(panel.unit or "?")
+            _draw_time(left, panel)
             _draw_spectrum(right, panel)
         rows[-1][0].set_xlabel("time / s" if in_seconds else "sample")
         rows[-1][1].set_xlabel("frequency / Hz" if in_seconds else "cycles a sample")
@@ -72,14 +78,32 @@ def inspection_figure(panels: Sequence[Panel], in_seconds: bool = True) -> Figur
     return figure
 
 
-def _draw_spectrum(axes: object, panel: Panel) -> None:
-    if panel.frequency is None or not np.any(panel.density > 0):
+def _draw_time(axes: Axes, panel: Panel) -> None:
+    for number, curve in enumerate(panel.curves):
+        axes.plot(*drawn(curve.time, curve.values), color=colour_of("", number), linewidth=0.8, label=curve.label)
+    count = len(panel.curves)
+    if 1 < count <= len(CYCLE):
+        legend_above(axes, columns=count)
+    else:
+        axes.set_title(panel.name if count == 1 else f"{panel.name} of {count} records in their order")
+    axes.yaxis.set_major_locator(MaxNLocator(4))
+    axes.xaxis.set_major_locator(MaxNLocator(8))
+    axes.set_ylabel(f"{panel.name}\n{panel.unit or '?'}" if count > 1 else panel.unit or "?")
+
+
+def _draw_spectrum(axes: Axes, panel: Panel) -> None:
+    curves = [curve for curve in panel.curves if curve.frequency is not None and np.any(curve.density > 0)]
+    if not curves:
         say_empty(axes, "no spectrum")
         return
-    amplitude = np.sqrt(np.maximum(panel.density, _BELOW_FLOOR * panel.floor))[1:]
-    axes.semilogy(*drawn(panel.frequency[1:], amplitude), color=BLUE, linewidth=0.8)
-    if panel.floor > 0:
-        axes.axhline(panel.floor**0.5, color=RED, linestyle="--", linewidth=0.8)
+    for number, curve in enumerate(panel.curves):
+        if curve.frequency is None or not np.any(curve.density > 0):
+            continue
+        amplitude = np.sqrt(np.maximum(curve.density, _BELOW_FLOOR * curve.floor))[1:]
+        axes.semilogy(*drawn(curve.frequency[1:], amplitude), color=colour_of("", number), linewidth=0.8)
+    floors = [curve.floor**0.5 for curve in curves if curve.floor > 0]
+    if floors:
+        axes.axhline(float(np.median(floors)), color=INK, linestyle="--", linewidth=0.8)
     axes.set_ylabel(f"{panel.unit or '?'}/√Hz")
     axes.yaxis.set_major_locator(LogLocator(numticks=5))
     axes.yaxis.set_minor_locator(NullLocator())

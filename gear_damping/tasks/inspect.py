@@ -21,7 +21,7 @@ from gear_damping.measurement.record import Channel, Measurement, Record
 from gear_damping.measurement.resolution import step_of
 from gear_damping.measurement.spectral_floor import Spectrum, spectrum_of
 from gear_damping.measurement.starting_yaml import starting_yaml
-from gear_damping.reporting.inspection import Panel, inspection_figure
+from gear_damping.reporting.inspection import Curve, Panel, inspection_figure
 from gear_damping.reporting.style import save
 from gear_damping.tasks.run_folder import RunFolder
 
@@ -139,29 +139,31 @@ def _panels(found: Inspection, listed: Sequence[Guess]) -> Iterator[Panel]:
             time = (time - found.rows[0]) / found.rate + found.base.time[0]
             if found.base.time.size == found.rows[1] - found.rows[0]:
                 time[found.rows[0] : found.rows[1]] = found.base.time
-        yield _panel(str(column.reference), units.get(id(column), ""), time, column.values, column.spectrum)
+        name = str(column.reference)
+        yield Panel(name, units.get(id(column), ""), (_curve(name, time, column.values, column.spectrum),))
 
 
-def _panel(name: str, unit: str, time: np.ndarray, values: np.ndarray, spectrum: Spectrum | None) -> Panel:
+def _curve(label: str, time: np.ndarray, values: np.ndarray, spectrum: Spectrum | None) -> Curve:
     if spectrum is None:
-        return Panel(name, unit, time, values)
-    return Panel(name, unit, time, values, spectrum.frequency, spectrum.density, spectrum.floor)
+        return Curve(label, time, values)
+    return Curve(label, time, values, spectrum.frequency, spectrum.density, spectrum.floor)
 
 
 def _declared(measurement: Measurement, folder: RunFolder) -> dict[str, Any]:
     for path in dict.fromkeys([measurement.source, *(record.file for record in measurement.records)]):
         folder.add_input(path)
-    lines, panels = list(_measurement_lines(measurement)), []
+    lines = list(_measurement_lines(measurement))
+    curves: dict[tuple[str, str], list[Curve]] = {}
     for record in measurement.records:
         lines += _record_lines(record)
         for channel in record.channels.values():
             spectrum = _spectrum(record, channel)
             values = channel.values / channel.declared_factor
             lines.append(f"    {channel.name}: {_channel(channel, values, spectrum, record.sampling_rate)}")
-            panels.append(
-                _panel(f"{record.name}: {channel.name}", channel.declared_unit, record.time, values, spectrum)
-            )
+            drawn = curves.setdefault((channel.name, channel.declared_unit), [])
+            drawn.append(_curve(record.name, record.time, values, spectrum))
         lines += [f"    {said}" for said in _findings(record)]
+    panels = [Panel(*named, tuple(drawn)) for named, drawn in curves.items()]
     save(inspection_figure(panels), folder.path / FIGURE_NAME)
     _say(folder, lines)
     return {
