@@ -85,6 +85,7 @@ class OutputErrorProblem:
         self.logarithmic = torch.tensor([parameter.logarithmic for parameter in self.free], dtype=torch.bool)
         self.bounds = torch.tensor([p.range for p in self.free], dtype=torch.float64).reshape(-1, 2).unbind(1)
         self.extra = tuple(effect_state_units(model))
+        self._padded_inputs: dict[tuple[tuple[int, ...], int], dict[str, Tensor]] = {}
         self.scales = self._scales()
 
     @property
@@ -322,11 +323,19 @@ class OutputErrorProblem:
             chosen,
             sampling_rate=records[0].sampling_rate,
             n_samples=samples,
-            inputs={n: _padded([r.inputs[n] for r in records], samples) for n in records[0].inputs},
+            inputs=self._inputs(tuple(rows), samples),
             solver=self.solver,
             departures=departures,
             acceleration=any(channel.derivatives == 2 for channel in records[0].channels),
         )
+
+    def _inputs(self, rows: tuple[int, ...], samples: int) -> dict[str, Tensor]:
+        """Input series of some records at one length, made once."""
+        if (rows, samples) not in self._padded_inputs:
+            records = [self.records[i] for i in rows]
+            found = {n: _padded([r.inputs[n] for r in records], samples) for n in records[0].inputs}
+            self._padded_inputs[rows, samples] = found
+        return self._padded_inputs[rows, samples]
 
     def _observe(
         self, found: Tensor, runs: Runs, values: Mapping[str, Tensor], states: Tensor, rows: list[int]
