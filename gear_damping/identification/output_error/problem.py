@@ -20,6 +20,7 @@ from gear_damping.identification.output_error.records import (
 from gear_damping.physics.model import Model
 from gear_damping.physics.terms import Sensor
 from gear_damping.simulation.runs import Runs, effect_state_units
+from gear_damping.simulation.series import continued
 from gear_damping.simulation.simulate import natural_units, simulate
 from gear_damping.simulation.solver_settings import Solver
 
@@ -333,7 +334,8 @@ class OutputErrorProblem:
         """Input series of some records at one length, made once."""
         if (rows, samples) not in self._padded_inputs:
             records = [self.records[i] for i in rows]
-            found = {n: _padded([r.inputs[n] for r in records], samples) for n in records[0].inputs}
+            names = records[0].inputs
+            found = {n: torch.stack([continued(r.inputs[n], samples) for r in records]) for n in names}
             self._padded_inputs[rows, samples] = found
         return self._padded_inputs[rows, samples]
 
@@ -478,9 +480,3 @@ def _between(shown: Tensor, places: Sequence[tuple[Tensor, Tensor] | None]) -> T
             inside = place[0].clamp(max=samples - 1)[:samples]
             found[:, i, : len(inside)] = (shown[:, i][:, inside] * place[1][:samples]).sum(-1)
     return found
-
-
-def _padded(series: Sequence[Tensor], samples: int) -> Tensor:
-    """Rows of so many samples, the shorter ones continued by zeros."""
-    rows = torch.nn.utils.rnn.pad_sequence([s.to(torch.float64) for s in series], batch_first=True)
-    return torch.nn.functional.pad(rows, (0, max(0, samples - rows.shape[1])))[:, :samples]
