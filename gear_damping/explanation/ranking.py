@@ -10,11 +10,12 @@ from gear_damping.explanation.candidates import Candidate
 from gear_damping.explanation.hypothesis import Outcome, begun_from
 from gear_damping.identification.output_error.least_squares import own_basis, without_own
 from gear_damping.identification.output_error.problem import OutputErrorProblem
-from gear_damping.identification.output_error.records import DIFFERENCE, SEPARATOR
+from gear_damping.identification.output_error.records import DIFFERENCE, SEPARATOR, FreeParameter
 from gear_damping.simulation.solver_settings import Solver
 
 PROBE = 0.05  # share of a strength's size that its slope is taken over
 NEGLIGIBLE = 1e-3  # of the residual, for what an effect tried as a whole would change
+MOST_SAMPLES = 4_000_000  # that are predicted at once
 CONTAINED = 0.99  # cosine with what another can do, from which it contains this one
 VISIBLE = 5.0  # standard deviations at which an effect counts as visible
 
@@ -119,45 +120,83 @@ def scores(
     residual = torch.cat([outcome.fitted.prediction.residual[0].reshape(-1), project.expected])
     beside = project(residual.unsqueeze(1))[:, 0]
     base = Base(outcome, project, residual, beside, _predicted(outcome), noise, solver)
-    found = []
-    for number, candidate in enumerate(candidates):
-        found.append(_score(candidate, base))
+    found: list[Score] = []
+    for group in _alike(candidates, len(residual)):
+        found += _score_together(group, base)
         if report:
-            report(number + 1, len(candidates))
+            report(len(found), len(candidates))
     return sorted(found, key=lambda score: -score.gain)
+
+
+def _alike(candidates: Sequence[Candidate], samples: int) -> list[list[Candidate]]:
+    """Candidates that one simulation serves: of one form and switched on alike, with other values (of a phase)."""
+    groups: dict[object, list[Candidate]] = {}
+    for candidate in candidates:
+        lists = tuple((k, v) for k, v in candidate.hypothesis.given.items() if isinstance(v, tuple))
+        own = tuple(candidate.own_phases.items())
+        alike = (candidate.name, candidate.options, candidate.hypothesis.free, candidate.strengths, lists, own)
+        groups.setdefault(id(candidate) if candidate.presence else alike, []).append(candidate)
+    found = []
+    for group in groups.values():
+        most = max(1, MOST_SAMPLES // (samples * len(_probes(group[0], len(group[0].hypothesis.common))[0])))
+        found += [group[i : i + most] for i in range(0, len(group), most)]
+    return found
+
+
+def _varied(group: Sequence[Candidate]) -> list[FreeParameter]:
+    """Values in which candidates of a group differ, beginning at those of the first."""
+    first = group[0].hypothesis.given
+    names = [name for name, value in first.items() if any(c.hypothesis.given[name] != value for c in group)]
+    return [FreeParameter(name, float(first[name])) for name in names]
 
 
 def _predicted(outcome: Outcome) -> Tensor:
     return (outcome.problem.response * outcome.problem.weights - outcome.fitted.prediction.residual[0]).reshape(-1)
 
 
-def _score(candidate: Candidate, base: Base) -> Score:
-    hypothesis, residual = candidate.hypothesis, base.residual
-    records, n_free = base.outcome.problem.records, len(hypothesis.common)
-    problem = OutputErrorProblem(hypothesis.model, hypothesis.given, hypothesis.free, records, base.solver)
-    points, steps = _probes(candidate, n_free)
+def _score_together(group: Sequence[Candidate], base: Base) -> list[Score]:
+    """Scores of candidates that one simulation serves."""
+    hypothesis, varied = group[0].hypothesis, _varied(group)
+    records, free = base.outcome.problem.records, (*hypothesis.free, *varied)
+    problem = OutputErrorProblem(hypothesis.model, hypothesis.given, free, records, base.solver)
+    probes = [_probes(candidate, len(hypothesis.common)) for candidate in group]
+    points = torch.cat([_placed_at(rows, one, varied) for (rows, _), one in zip(probes, group, strict=True)])
     points = problem.completed(points) + problem.own_of(base.outcome.problem, base.outcome.fitted.shared)
-    _turn_own_phases(points, candidate, problem)
+    counts = [len(rows) for rows, _ in probes]
+    for candidate, rows in zip(group, points.split(counts), strict=True):
+        _turn_own_phases(rows, candidate, problem)
     states = begun_from(problem, base.outcome, len(points))
     found = (problem.predict(points, states) * problem.weights).reshape(len(points), -1)
-    if not bool(found.isfinite().all()):
-        return replace(_unseen(candidate, n_free, len(residual)), failed="its prediction diverged")
-    columns = (found - base.predicted) / steps.unsqueeze(1)
-    if candidate.own_phases:
-        columns = _by_record(columns, problem)
-    columns = torch.nn.functional.pad(columns, (0, len(base.project.expected))).T
+    columns = (found - base.predicted) / torch.cat([steps for _, steps in probes]).unsqueeze(1)
+    parts = [_by_record(c, problem) if group[0].own_phases else c for c in columns.split(counts)]
+    columns = torch.nn.functional.pad(torch.cat(parts), (0, len(base.project.expected))).T
     beside = base.project(columns)
     # What the nuisance takes but for rounding is nothing of its own.
     own = beside.norm(dim=0) > 1e-6 * columns.norm(dim=0).clamp(min=1e-300)
-    beside = torch.where(own, beside, torch.zeros_like(beside))
-    if not bool(own.any()):
+    beside = torch.where(own | ~columns.isfinite().all(0), beside, torch.zeros_like(beside))
+    split = beside.split([len(part) for part in parts], 1)
+    return [_score(one, part, problem, states[:1], base) for one, part in zip(group, split, strict=True)]
+
+
+def _placed_at(rows: Tensor, candidate: Candidate, varied: Sequence[FreeParameter]) -> Tensor:
+    """Coordinates of a candidate with those of the values that vary in its group behind them."""
+    values = [p.coordinate(float(candidate.hypothesis.given[p.name])) for p in varied]
+    return torch.cat([rows, rows.new_tensor(values).expand(len(rows), -1)], 1)
+
+
+def _score(candidate: Candidate, beside: Tensor, problem: OutputErrorProblem, states: Tensor, base: Base) -> Score:
+    """The score of a candidate from what it would change beside the nuisance, (samples + n, columns)."""
+    residual, n_free = base.residual, len(candidate.hypothesis.common)
+    if not bool(beside.isfinite().all()):
+        return replace(_unseen(candidate, n_free, len(residual)), failed="its prediction diverged")
+    if not bool(beside.any()):
         return _unseen(candidate, n_free, len(residual))
     coefficients = _coefficients(beside, residual)
     explained = beside @ coefficients
     basis, spread, _ = torch.linalg.svd(beside, full_matrices=False)
     kept = basis[:, spread > 1e-6 * spread[0]]
     smallest = VISIBLE * base.noise / float(beside[:, 0].norm().clamp(min=1e-300)) * _unit(candidate)
-    gain = _gain(candidate, problem, states[:1], beside, base)
+    gain = _gain(candidate, problem, states, beside, base)
     direction = explained / explained.norm().clamp(min=1e-300)
     if candidate.own_phases:
         start, own = _start_by_record(candidate, coefficients, problem, n_free)

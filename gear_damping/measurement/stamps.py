@@ -20,6 +20,7 @@ _HALF = 0.5  # of a step; a stamp that far from where it is due counts as anothe
 _WHOLE = 0.05  # of a gap; how near a whole number of steps it must be, beside what the jitter allows
 _RUN = 0.8  # share of gaps behind a gap from which they are a lower rate, not losses
 _MANY = 0.1  # share of the steps; so many are no jumps but another rate
+_LOOSE = 0.2  # of a step; all that jitter may add to that
 _SIDE = 8  # samples at either side of a gap that say whether the shift lasts
 _LATE_SHARE = 1e-3  # of the stamps that may come late
 _RATE = 0.01  # relative change of rate that is no longer the same rate
@@ -116,7 +117,7 @@ def _scatter(steps: NDArray) -> float:
 def _are_whole(gaps: NDArray, scatter: float) -> bool:
     """Whether gaps, in steps, are two steps or more and whole ones, up to the jitter."""
     whole = np.round(gaps)
-    return bool(np.all((whole >= 2) & (np.abs(gaps - whole) <= _WHOLE * whole + _SIGMAS * scatter)))
+    return bool(np.all((whole >= 2) & (np.abs(gaps - whole) <= _WHOLE * whole + min(_SIGMAS * scatter, _LOOSE))))
 
 
 def _change_of_rate(steps: NDArray) -> int | None:

@@ -112,6 +112,8 @@ class Runs:
         return self._through(self._sensors(self.model.system.response, skip), signal, generator)
 
     def _through(self, sensors: list[Sensor], signal: Tensor, generator: torch.Generator) -> Tensor:
+        if not sensors:
+            return signal
         about = Recording(
             self.sampling_rate,
             generator,

@@ -16,6 +16,7 @@ from gear_damping.physics.equation import HELD_LOAD
 from gear_damping.signals.envelope import upsample
 
 ANGLE, ANGLE_RATE = "pinion_angle", "pinion_angle_rate"
+_KEPT = "_gear_damping_coefficients"  # attribute of a series
 POINTS = 4  # sub-intervals of an output interval at which the sinc interpolation is taken
 MARGIN = 32  # samples of odd reflection beyond each end, which the sinc interpolation needs
 _TO_COEFFICIENTS = torch.tensor(np.linalg.inv(np.vander(np.linspace(0, 1, POINTS + 1), increasing=True)))
@@ -42,14 +43,17 @@ class Series:
             intervals: Output intervals.
             batch: Members, a multiple of the rows.
         """
-        parts = []
-        for name in self.names:
-            found = _coefficients(name, inputs[name].to(torch.float64))
-            whole = found.repeat(1, 1, batch // found.shape[-1])
-            parts.append(whole / units[name] if name in units else whole)
-        if not parts:
-            return torch.zeros(intervals, 0, batch, dtype=torch.float64)
-        return torch.cat(parts).permute(1, 0, 2).contiguous()
+        packed = torch.empty(intervals, sum(self.heights), batch, dtype=torch.float64)
+        row = 0
+        for name, height in zip(self.names, self.heights, strict=True):
+            found = _kept_coefficients(name, inputs[name].to(torch.float64)).permute(1, 0, 2).unsqueeze(2)
+            rows = packed[:, row : row + height].unflatten(2, (-1, found.shape[-1]))
+            if name in units:
+                torch.div(found, units[name].reshape(-1, found.shape[-1]), out=rows)
+            else:
+                rows.copy_(found)
+            row += height
+        return packed
 
     def at(self, rows: Tensor, u: Tensor, interval: Tensor) -> dict[str, Tensor]:
         """Every input at position `u` (0…1) of the interval whose rows these are."""
@@ -86,6 +90,16 @@ def _polynomial(coefficients: Sequence[Tensor], u: Tensor) -> Tensor:
 
 def _height(name: str) -> int:
     return 1 if name == HELD_LOAD else POINTS + 1
+
+
+def _kept_coefficients(name: str, values: Tensor) -> Tensor:
+    """The coefficients, kept with the series: a fit hands the same one over a hundred times."""
+    kept = getattr(values, _KEPT, None)
+    if kept is None or values.requires_grad:
+        kept = _coefficients(name, values)
+        if not values.requires_grad:
+            setattr(values, _KEPT, kept)
+    return kept
 
 
 def _coefficients(name: str, values: Tensor) -> Tensor:

@@ -19,6 +19,7 @@ SEEN = {
     "as it is": lambda values: values,
     "offset": lambda values: values + 0.12345678,
     "mean taken off": lambda values: values - values.mean(),
+    "added to and taken off": lambda values: (values + np.linspace(0, 1, values.size)) - np.linspace(0, 1, values.size),
     "in degrees": np.degrees,
     "in micrometres": lambda values: 1e-6 * values,
     "single precision": lambda values: values.astype(np.float32).astype(float),
@@ -33,7 +34,7 @@ SEEN = {
 def test_the_step_is_found_through_rounding_offset_and_unit(n, step, seen):
     values = SEEN[seen](step * np.round(_wave(n) / step))
     unit = SEEN[seen](np.array([1.0, 0.0])) if seen.startswith("in ") else np.array([1.0, 0.0])
-    assert step_of(values) == pytest.approx(step * (unit[0] - unit[1]), rel=1e-4)
+    assert step_of(values) == pytest.approx(step * (unit[0] - unit[1]), rel=1e-5)
 
 
 def test_few_decimals_are_a_step():

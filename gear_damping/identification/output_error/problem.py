@@ -20,6 +20,7 @@ from gear_damping.identification.output_error.records import (
 from gear_damping.physics.model import Model
 from gear_damping.physics.terms import Sensor
 from gear_damping.simulation.runs import Runs, effect_state_units
+from gear_damping.simulation.series import continued
 from gear_damping.simulation.simulate import natural_units, simulate
 from gear_damping.simulation.solver_settings import Solver
 
@@ -85,6 +86,7 @@ class OutputErrorProblem:
         self.logarithmic = torch.tensor([parameter.logarithmic for parameter in self.free], dtype=torch.bool)
         self.bounds = torch.tensor([p.range for p in self.free], dtype=torch.float64).reshape(-1, 2).unbind(1)
         self.extra = tuple(effect_state_units(model))
+        self._padded_inputs: dict[tuple[tuple[int, ...], int], dict[str, Tensor]] = {}
         self.scales = self._scales()
 
     @property
@@ -322,11 +324,20 @@ class OutputErrorProblem:
             chosen,
             sampling_rate=records[0].sampling_rate,
             n_samples=samples,
-            inputs={n: _padded([r.inputs[n] for r in records], samples) for n in records[0].inputs},
+            inputs=self._inputs(tuple(rows), samples),
             solver=self.solver,
             departures=departures,
             acceleration=any(channel.derivatives == 2 for channel in records[0].channels),
         )
+
+    def _inputs(self, rows: tuple[int, ...], samples: int) -> dict[str, Tensor]:
+        """Input series of some records at one length, made once."""
+        if (rows, samples) not in self._padded_inputs:
+            records = [self.records[i] for i in rows]
+            names = records[0].inputs
+            found = {n: torch.stack([continued(r.inputs[n], samples) for r in records]) for n in names}
+            self._padded_inputs[rows, samples] = found
+        return self._padded_inputs[rows, samples]
 
     def _observe(
         self, found: Tensor, runs: Runs, values: Mapping[str, Tensor], states: Tensor, rows: list[int]
@@ -469,9 +480,3 @@ def _between(shown: Tensor, places: Sequence[tuple[Tensor, Tensor] | None]) -> T
             inside = place[0].clamp(max=samples - 1)[:samples]
             found[:, i, : len(inside)] = (shown[:, i][:, inside] * place[1][:samples]).sum(-1)
     return found
-
-
-def _padded(series: Sequence[Tensor], samples: int) -> Tensor:
-    """Rows of so many samples, the shorter ones continued by zeros."""
-    rows = torch.nn.utils.rnn.pad_sequence([s.to(torch.float64) for s in series], batch_first=True)
-    return torch.nn.functional.pad(rows, (0, max(0, samples - rows.shape[1])))[:, :samples]

@@ -1,0 +1,49 @@
+"""Candidates that differ in values alone are simulated together and score as they would alone."""
+
+import numpy as np
+import pytest
+import torch
+
+from gear_damping.explanation import ranking
+from gear_damping.explanation.candidates import candidates_for
+from gear_damping.explanation.evidence import Evidence
+from gear_damping.explanation.hypothesis import Hypothesis, fit_hypothesis
+from gear_damping.identification.observation import Known
+from gear_damping.identification.output_error.records import FitRecord, FreeParameter, Observed
+from gear_damping.measurement.record import Channel
+from gear_damping.physics.effects.fourier_mesh_stiffness import FourierMeshStiffness
+from gear_damping.physics.effects.viscous_damping import ViscousDamping
+from gear_damping.physics.systems.gear_pair import GearPair
+
+DAMPING = "viscous_damping.damping_coefficient"
+
+
+@pytest.fixture(scope="module")
+def nominal():
+    time = torch.arange(600, dtype=torch.float64) / 40_000
+    angle = 500 * time
+    source = torch.Generator().manual_seed(0)
+    response = 1.6e-5 + 1e-6 * torch.cos(3 * angle) + 1e-7 * torch.randn(600, generator=source, dtype=torch.float64)
+    record = FitRecord("r", response, 4e4, {"pinion_angle": angle}, observed=Observed("transmission_error"))
+    channel = Channel("transmission_error", np.zeros(1), "m")
+    evidence = Evidence("gear_pair", (record,), (record,), Known({}, {}), channel, False, noise=1e-7)
+    free = (FreeParameter(DAMPING, 100.0, logarithmic=True),)
+    base = Hypothesis(GearPair(), (FourierMeshStiffness(), ViscousDamping()), {}, free)
+    return fit_hypothesis(base, evidence, iterations=2), evidence
+
+
+def test_together_they_score_as_alone(nominal, monkeypatch):
+    outcome, evidence = nominal
+    tried = candidates_for(outcome.hypothesis, evidence)
+    tried = [c for c in tried if c.name == "torque_ripple" or (c.name == "tooth_crack" and c.label.endswith("pinion"))]
+    together = ranking.scores(outcome, tried, 1e-7)
+    groups = ranking._alike(tried, len(evidence.fit[0].response))
+    assert [len(group) for group in groups] == [20, 10, 10], "every tooth; every order as a torque and as a share"
+    monkeypatch.setattr(ranking, "MOST_SAMPLES", 1)
+    assert all(len(group) == 1 for group in ranking._alike(tried, 600))
+    alone = {id(score.candidate): score for score in ranking.scores(outcome, tried, 1e-7)}
+    assert len(together) == len(alone) == len(tried)
+    for score in together:
+        other = alone[id(score.candidate)]
+        assert score.gain == pytest.approx(other.gain, abs=1e-9)
+        torch.testing.assert_close(score.start, other.start, rtol=1e-6, atol=1e-9)

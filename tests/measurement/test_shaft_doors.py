@@ -1,0 +1,96 @@
+"""No false alarm at shafts: the ratio of two encoders, an angle that stops, a speed that runs up."""
+
+import numpy as np
+import pytest
+
+TURN = 2 * np.pi
+
+
+def _problems(record) -> list[str]:
+    return [finding.kind for finding in record.findings if finding.severity == "data_problem"]
+
+
+def _two_encoders(bench, pinion: np.ndarray, gear: np.ndarray, teeth=(15, 30), rate=20000.0):
+    """A gear pair of which two encoders of 4096 and 5000 counts are read, 15/30 teeth declared."""
+    time = np.arange(pinion.size) / rate
+    counts = {"p": np.round(pinion * 4096 / TURN), "g": np.round(gear * 5000 / TURN)}
+    bench.columns = {"t": time, **counts}
+    bench.content["parameters"] = {
+        "n_teeth_pinion": teeth[0], "n_teeth_gear": teeth[1],
+        "module": {"value": 3, "unit": "mm"}, "pressure_angle": {"value": 20, "unit": "deg"},
+    }  # fmt: skip
+    bench.content["records"] = [
+        {
+            "file": "run_1.csv",
+            "channels": {"time": {"column": "t", "unit": "s"}},
+            "conditions": {"pinion_torque": {"value": 150, "unit": "N*m"}},
+            "encoders": {
+                "pinion": {"column": "p", "counts_per_revolution": 4096},
+                "gear": {"column": "g", "counts_per_revolution": 5000},
+            },
+        }
+    ]
+    bench.write_csv()
+    return bench.load_as_it_is().records[0]
+
+
+@pytest.fixture
+def turned():
+    return 188.5 * np.arange(20000) / 20000.0
+
+
+def test_the_ratio_that_two_encoders_see_is_compared_with_the_teeth_first(bench, turned):
+    record = _two_encoders(bench, turned, turned * 16 / 31)
+    (problem,) = [finding for finding in record.findings if finding.severity == "data_problem"]
+    assert problem.kind == "tooth_ratio"
+    for words in ("1.9375", "30/15 = 2", "31/16", "n_teeth_gear"):
+        assert words in problem.message
+    assert "read as m" not in problem.message
+
+
+def test_two_encoders_on_the_declared_teeth_raise_nothing(bench, turned):
+    wobble = 2e-5 * np.sin(TURN * 450 * np.arange(turned.size) / 20000)
+    assert _problems(_two_encoders(bench, turned, turned / 2 + wobble)) == []
+    assert _problems(_two_encoders(bench, turned[:200], turned[:200] / 2)) == []  # a third of a turn
+
+
+def test_an_encoder_that_counts_backwards_and_exchanged_ones_are_said_so(bench, turned):
+    assert "direction: -1" in _two_encoders(bench, turned, -turned / 2).findings[0].message
+    assert "exchanged" in _two_encoders(bench, turned / 2, turned).findings[0].message
+
+
+def test_an_error_that_runs_away_is_not_called_a_wrong_unit(bench):
+    bench.columns["dte"] = bench.columns["dte"] + np.linspace(0, 3000, 400)
+    assert bench.kinds() == ["drifting_error"]
+
+
+def _shaft(bench, angle: np.ndarray, **conditions) -> list[str]:
+    bench.columns["theta1"] = angle
+    bench.record["conditions"] = conditions
+    bench.write_csv()
+    return [kind for kind in bench.kinds() if kind in ("angle_not_turning", "speed_mismatch")]
+
+
+def test_a_shaft_may_stop_or_turn_back_but_not_tremble(bench):
+    part = np.arange(400) / 400
+    assert _shaft(bench, 40 * np.minimum(part, 0.5)) == []  # runs out and stands
+    assert _shaft(bench, 9 * np.interp(5 * part % 1, [0.4, 1], [0, 1]) + 9 * np.floor(5 * part)) == []  # stops often
+    assert _shaft(bench, 40 * np.sin(3 * part)) == []  # turned back once
+    assert _shaft(bench, 3.0 + 0.3 * np.sin(3 * part)) == ["angle_not_turning"]  # a torque, less than a turn
+    assert _shaft(bench, 40 * np.sin(70 * part)) == ["angle_not_turning"]
+
+
+def test_a_speed_known_to_five_percent_may_be_four_off(bench):
+    angle = 1.04 * 188.495559 * np.arange(400) / 20000
+    speed = {"value": 1800, "unit": "rpm"}
+    assert _shaft(bench, angle, pinion_speed=speed) == ["speed_mismatch"]
+    assert _shaft(bench, angle, pinion_speed=speed | {"uncertainty": 0.05}) == []
+
+
+def test_a_measured_speed_that_runs_up_agrees_with_its_angle(bench):
+    part = np.arange(400) / 400
+    bench.columns["omega"] = 200 * part**3
+    bench.channels["pinion_speed"] = {"column": "omega", "unit": "rad/s"}
+    assert _shaft(bench, 200 * part**4 / 4 * 0.02) == []
+    bench.columns["omega"] = 230 * part**3
+    assert _shaft(bench, 200 * part**4 / 4 * 0.02) == ["speed_mismatch"]
