@@ -18,6 +18,8 @@ from gear_damping.explanation.noise import NoiseLevel, noise_of, weighted
 from gear_damping.explanation.significance import ac_energy, excess
 from gear_damping.explanation.trying import Search
 from gear_damping.explanation.verdict import Judged, verdict
+from gear_damping.identification.decimation import decimated
+from gear_damping.identification.oscillator import linear_model
 from gear_damping.identification.output_error.segments import Segments
 from gear_damping.identification.time_scale import characteristic_time
 from gear_damping.measurement.record import Measurement
@@ -80,6 +82,7 @@ def explain(
     faults = mesh_order_faults(evidence)
     if faults:
         return Explanation(content.of_faults(measurement, faults))
+    evidence = at_useful_rate(evidence)
     fit, holdout, noise = noise_of(evidence.fit, evidence.holdout, measurement)
     say(f"noise {noise.value / evidence.channel.declared_factor:.3g} {evidence.channel.declared_unit} ({noise.method})")
     evidence = replace(evidence, fit=weighted(fit, noise), holdout=weighted(holdout, noise), noise=noise.value)
@@ -112,6 +115,16 @@ def explain(
     judged = Judged(found, before, after, verdict(found, before, after, found.outcome.fitted.converged, one))
     step(4, STEPS)
     return Explanation(content.of_search(measurement, evidence, noise, judged), evidence, noise, found)
+
+
+def at_useful_rate(evidence: Evidence) -> Evidence:
+    """An oscillator's records at a rate that shows all of its motion, and no more."""
+    if evidence.system != "oscillator":
+        return evidence
+    scale = linear_model(evidence.fit, evidence.known)[2]
+    return replace(
+        evidence, fit=tuple(decimated(evidence.fit, scale)), holdout=tuple(decimated(evidence.holdout, scale))
+    )
 
 
 def first_segments(evidence: Evidence) -> Segments:

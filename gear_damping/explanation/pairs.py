@@ -37,6 +37,8 @@ def best_pair(found: Search, current: Excess, bench: Bench) -> Pair | None:
     best = min(pairs, key=lambda pair: pair.second.outcome.holdout_cost, default=None)
     if best is None:
         return None
+    alike = [pair for pair in pairs if bench.is_as_good(pair.second.outcome, best.second.outcome)]
+    best = min([best, *alike], key=lambda pair: len(pair.second.outcome.hypothesis.free))
     takes = (current.percent - bench.excess(best.second.outcome).percent) / current.percent
     return best if best.second.t > ACCEPTED_AT and takes >= LEAST_SHARE else None
 
