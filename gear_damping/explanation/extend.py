@@ -6,7 +6,7 @@ from gear_damping.explanation.calibrate import restarted
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import MOST_GROWTH, Outcome
 from gear_damping.explanation.noise import NoiseLevel
-from gear_damping.explanation.pairs import Pair, best_pair
+from gear_damping.explanation.pairs import Pair, best_pair, pair_instead
 from gear_damping.explanation.refit import Refit, again
 from gear_damping.explanation.revise import beside_the_others, exchanged, pruned, simplified
 from gear_damping.explanation.significance import Excess, is_settled
@@ -62,6 +62,9 @@ def search(
             continue
         _accept(found, best, rivals, current, first, bench)
         exchanged(found, first, bench)
+        pair = pair_instead(found, bench) if len(found.accepted) == 2 else None
+        if pair is not None:
+            _accept_pair(found, pair, first, first, bench)
         if not is_settled(bench.excess(found.outcome), first):
             ranked = bench.ranked(found.outcome)
     found.accepted = [simplified(cause, found, bench) for cause in found.accepted]
@@ -101,7 +104,8 @@ def _accept(found: Search, best: Refit, rivals: tuple[str, ...], current: Excess
 def _accept_pair(found: Search, pair: Pair, current: Excess, first: Excess, bench: Bench) -> None:
     """Two causes that only together are accepted; each has half of what they take, until one is taken out."""
     if pair.replaces:
-        bench.say(f"{pair.first.name} takes the place of {found.accepted[0].name}, with {pair.second.name} beside it")
+        former = " and ".join(cause.name for cause in found.accepted)
+        bench.say(f"{pair.first.name} and {pair.second.name} take the place of {former}")
         found.accepted, current = [], first
     found.outcome = bench.at_rest(pair.second.outcome)
     share = (current.percent - bench.excess(found.outcome).percent) / max(first.percent, 1e-300) / 2
@@ -136,4 +140,4 @@ def _best(fits: Sequence[Refit], current: Excess, bench: Bench) -> Refit | None:
     if best is None:
         return None
     takes = (current.percent - bench.excess(best.outcome).percent) / current.percent
-    return best if best.t > ACCEPTED_AT and takes >= LEAST_SHARE else None
+    return best if best.t > ACCEPTED_AT and takes >= LEAST_SHARE and bench.is_determined(best) else None

@@ -8,7 +8,8 @@ from gear_damping.explanation.significance import Excess
 from gear_damping.explanation.trying import ACCEPTED_AT, Bench, Search
 
 BASES = 3  # effects from which a second one is sought
-SECONDS = 2  # that are fitted in full beside each
+SECONDS = 4  # that are fitted in full beside each
+HALF = 0.5  # of what the first cause took by itself, for a rival to be a base
 LEAST_SHARE = 0.25  # of the remaining excess that a pair must take
 
 
@@ -29,11 +30,35 @@ class Pair:
 
 def best_pair(found: Search, current: Excess, bench: Bench) -> Pair | None:
     """The pair that held-out records like best beside what was accepted, or in its place; None without one."""
-    beside = [fit for fit in found.rejected if fit.is_seen_in_fit]
-    instead = [fit for fit in found.first_fits if fit.is_seen_in_fit] if len(found.accepted) == 1 else []
-    names = {cause.name for cause in found.accepted}
-    pairs = [Pair(fit, second, False) for fit in _bases(beside, names) for second in _seconds(fit, found, bench)]
-    pairs += [Pair(fit, second, True) for fit in _bases(instead, names) for second in _seconds(fit, found, bench)]
+    beside = _bases([fit for fit in found.rejected if fit.is_seen_in_fit], found)
+    pairs = [Pair(fit, second, False) for fit in beside for second in _seconds(fit, found, bench)]
+    pairs += _instead(found, bench) if len(found.accepted) == 1 else []
+    return _accepted(pairs, current, bench)
+
+
+def pair_instead(found: Search, bench: Bench) -> Pair | None:
+    """The pair that held-out records like better than the two causes that were accepted; None without one.
+
+    A first cause that only resembles what is there leads the second astray, and both stand in for two others.
+    """
+    return _accepted(_instead(found, bench), bench.excess(found.outcome), bench)
+
+
+def _instead(found: Search, bench: Bench) -> list[Pair]:
+    """Pairs whose first effect took at least half of what the first cause did when both were tried by themselves."""
+    shares = {fit.name: _taken(fit, found) for fit in found.first_fits if fit.is_seen_in_fit}
+    least = HALF * shares.get(found.accepted[0].name, 1.0)
+    rivals = [fit for fit in found.first_fits if fit.is_seen_in_fit and shares[fit.name] >= least]
+    return [Pair(fit, second, True) for fit in _bases(rivals, found) for second in _seconds(fit, found, bench)]
+
+
+def _taken(fit: Refit, found: Search) -> float:
+    return 1 - fit.outcome.holdout_cost / max(found.nominal.holdout_cost, 1e-300)
+
+
+def _accepted(pairs: Sequence[Pair], current: Excess, bench: Bench) -> Pair | None:
+    """The best pair, or of those that do as well the smallest, where held-out records accept it."""
+    pairs = [pair for pair in pairs if bench.is_determined(pair.second)]
     best = min(pairs, key=lambda pair: pair.second.outcome.holdout_cost, default=None)
     if best is None:
         return None
@@ -43,9 +68,10 @@ def best_pair(found: Search, current: Excess, bench: Bench) -> Pair | None:
     return best if best.second.t > ACCEPTED_AT and takes >= LEAST_SHARE else None
 
 
-def _bases(fits: Sequence[Refit], names: set[str]) -> list[Refit]:
+def _bases(fits: Sequence[Refit], found: Search) -> list[Refit]:
     """The fits that take most of the fitted records, one an effect."""
     best: dict[str, Refit] = {}
+    names = {cause.name for cause in found.accepted}
     for fit in sorted(fits, key=lambda fit: -fit.fit_gain):
         if fit.name not in names:
             best.setdefault(fit.name, fit)
@@ -62,7 +88,8 @@ def _seconds(base: Refit, found: Search, bench: Bench) -> list[Refit]:
             continue
         names.append(name)
         fit = bench.full_fit(score, base.outcome, found.outcome)
-        fits += [fit] if fit is not None and fit.fit_gain > base.fit_gain else []
+        if fit is not None and fit.outcome.fitted.cost < base.outcome.fitted.cost:
+            fits.append(bench.converged(fit, found.outcome))
         if len(names) == SECONDS:
             break
     return fits

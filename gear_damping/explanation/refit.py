@@ -141,16 +141,17 @@ def refitted(
         found = fit_hypothesis(freed, evidence, None, found, **(options | {"own": None}))
     if not torch.isfinite(torch.tensor(found.holdout_cost)):
         return None
-    return _compared(score, found, against or outcome, evidence)
+    return compared(score, found, against or outcome, evidence)
 
 
 def again(refit: Refit, against: Outcome, evidence: Evidence, solver: Solver | None = None) -> Refit:
     """A full fit carried on with other evidence, as with the same records in pieces, and held against another model."""
     found = fit_hypothesis(refit.outcome.hypothesis, evidence, solver=solver, enough=ENOUGH)
-    return _compared(refit.score, found, against, evidence)
+    return compared(refit.score, found, against, evidence)
 
 
-def _compared(score: Score, found: Outcome, against: Outcome, evidence: Evidence) -> Refit:
+def compared(score: Score, found: Outcome, against: Outcome, evidence: Evidence) -> Refit:
+    """A fit held against another model on held-out records."""
     gain, t = paired_gain(against.holdout, found.holdout, block_samples(against, evidence))
     return Refit(score, found, gain, t, (against.fitted.cost - found.fitted.cost) / max(evidence.noise, 1e-300) ** 2)
 

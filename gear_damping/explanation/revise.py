@@ -69,5 +69,11 @@ def beside_the_others(cause: Accepted, found: Search, bench: Bench) -> Accepted:
     for score in bench.ranked(without, rivals):
         best.setdefault(score.candidate.name, score)
     fits = [bench.full_fit(score, without) for score in best.values() if score.gain > 0]
-    kept = [fit.name for fit in fits if fit is not None and bench.is_as_good(fit.outcome, found.outcome)]
-    return replace(cause, confusable=tuple(kept))
+    kept = [fit for fit in fits if fit is not None and bench.is_as_good(fit.outcome, found.outcome)]
+    inside = [fit for fit in kept if not fit.is_at_bound]
+    if cause.refit.is_at_bound and inside:  # it stands in for another at the end of what it can be
+        best = min(inside, key=lambda fit: (len(fit.outcome.hypothesis.free), fit.outcome.holdout_cost))
+        bench.say(f"{best.name} does as well as {cause.name}, which has run into a bound")
+        found.outcome = best.outcome
+        return Accepted(best.name, best, cause.share, tuple(fit.name for fit in inside if fit is not best))
+    return replace(cause, confusable=tuple(fit.name for fit in kept))

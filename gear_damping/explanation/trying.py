@@ -5,12 +5,14 @@ from dataclasses import dataclass, field, replace
 
 from gear_damping.explanation.candidates import candidates_for, restored
 from gear_damping.explanation.evidence import Evidence
+from gear_damping.explanation.gain import spread_of
 from gear_damping.explanation.hypothesis import Hypothesis, Outcome, fit_hypothesis
 from gear_damping.explanation.noise import NoiseLevel
 from gear_damping.explanation.ranking import Score, contains, scores
-from gear_damping.explanation.refit import Refit, block_samples, chosen, refitted
+from gear_damping.explanation.refit import Refit, block_samples, chosen, compared, refitted
 from gear_damping.explanation.significance import CLOSE, Excess, excess, paired_gain
 from gear_damping.identification.output_error.records import FreeParameter
+from gear_damping.identification.output_error.uncertainty import QUANTILE
 from gear_damping.physics.terms import Effect
 from gear_damping.simulation.solver_settings import Solver
 
@@ -18,6 +20,9 @@ ACCEPTED_AT = 3.0  # t of the held-out gain that a cause needs
 RIVAL = 2.0  # t below which two explanations are not told apart
 LEAST_TAKEN = 0.25  # of what another takes of the fitted records, for a fit to be carried to its end
 LAST_ITERATIONS = 60  # of a cause that is accepted before its fit has come to rest
+SMALL_REST = 3.0  # noise variances: what may be left without a name where noise is all that tests know of
+DETERMINED = 0.5  # of a parameter: the half of its 95 % interval, for it to be known
+NEARLY = 0.9  # of what one takes that has run into a bound, for another to take its place
 SAME = 1e-3  # of the noise variance: a mean difference below it is none
 Say = Callable[[str], None]
 
@@ -134,6 +139,12 @@ class Bench:
         hypothesis, solver = outcome.hypothesis, self.solver
         return fit_hypothesis(hypothesis, self.evidence, None, outcome, iterations=LAST_ITERATIONS, solver=solver)
 
+    def converged(self, fit: Refit, against: Outcome) -> Refit:
+        """A full fit carried on where it had not converged, and held against a model."""
+        if fit.outcome.fitted.converged:
+            return fit
+        return compared(fit.score, self.at_rest(fit.outcome), against, self.evidence)
+
     def is_as_good(self, outcome: Outcome, best: Outcome) -> bool:
         """Whether a model is not worse than another by the paired test."""
         gain, t = self.paired_gain(outcome, best)
@@ -157,12 +168,31 @@ class Bench:
         first = self._within_bounds(_least(kept), fits)
         return first, tuple(dict.fromkeys(f.name for f in kept if f.name != first.name))
 
+    def is_determined(self, fit: Refit) -> bool:
+        """Whether the records tell the size of an effect, where its fit leaves more than noise.
+
+        Where much is left that is not random, a test over blocks takes a law that can bend to it for one that is
+        there; its parameters then hardly matter to the fit.
+        """
+        if self.excess(fit.outcome).misfit <= SMALL_REST:
+            return True
+        spread = spread_of(fit.outcome, self.evidence)
+        problem, shared = fit.outcome.problem, fit.outcome.fitted.shared
+        for place, parameter in enumerate(problem.free):
+            if parameter.name.startswith(fit.name + "."):
+                half = QUANTILE * float(spread[place, place].clamp(min=0).sqrt())
+                size = 1.0 if parameter.logarithmic else abs(float(parameter.value(shared[place])) / parameter.scale)
+                if half <= DETERMINED * size and not problem.at_bound(shared)[place]:
+                    return True
+        return False
+
     def _within_bounds(self, first: Refit, fits: Sequence[Refit]) -> Refit:
         """The explanation, or where it has run into a bound and so stands in for another, the one that settles too."""
         if not first.is_at_bound:
             return first
         others = [fit for fit in fits if fit.is_seen_in_fit and not fit.is_at_bound]
-        return _least([fit for fit in others if self.excess(fit.outcome).misfit <= CLOSE] or [first])
+        near = [fit for fit in others if fit.gain >= NEARLY * first.gain]
+        return _least([fit for fit in others if self.excess(fit.outcome).misfit <= CLOSE] or near or [first])
 
 
 def _least(fits: Sequence[Refit]) -> Refit:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from gear_damping.explanation.next_experiment import LARGEST_SET
 from gear_damping.explanation.significance import Excess, is_all
-from gear_damping.explanation.trying import Accepted, Search
+from gear_damping.explanation.trying import SMALL_REST, Accepted, Search
 from gear_damping.physics.catalogue import builtin_effects
 
 CONSISTENT, EXPLAINED, AMBIGUOUS = "consistent", "explained", "ambiguous"
@@ -13,7 +13,6 @@ PARTLY, UNEXPLAINED, DATA_PROBLEM = "partly_explained", "unexplained", "data_pro
 VERDICTS = (CONSISTENT, EXPLAINED, AMBIGUOUS, PARTLY, UNEXPLAINED, DATA_PROBLEM)
 MOST = 0.9  # of the excess that causes must take to be established although a rest is left,
 HALF = 0.5  # or half of it by one cause (several that leave much stand in for something else), where the rest is
-SMALL_REST = 3.0  # no more than this many noise variances
 
 
 @dataclass(frozen=True)
