@@ -116,6 +116,8 @@ def scores(
     report: Callable[[int, int], None] | None = None,
 ) -> list[Score]:
     """Every candidate's score, the most promising first."""
+    if not bool(outcome.fitted.prediction.sensitivity.isfinite().all()):
+        return []  # beside a model that runs away nothing can be told
     project = _projector(outcome)
     residual = torch.cat([outcome.fitted.prediction.residual[0].reshape(-1), project.expected])
     beside = project(residual.unsqueeze(1))[:, 0]

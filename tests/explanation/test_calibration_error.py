@@ -10,7 +10,8 @@ from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Hypothesis, fit_hypothesis
 from gear_damping.explanation.noise import NoiseLevel, Scatter
 from gear_damping.explanation.significance import excess
-from gear_damping.identification.output_error.problem import FitRecord, FreeParameter
+from gear_damping.identification.observation import Known
+from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.physics.effects.viscous_damping import ViscousDamping
 from gear_damping.physics.systems.oscillator import Oscillator
 
@@ -35,7 +36,7 @@ def calibrated(seed):
         return FitRecord(name, clean + NOISE * torch.randn(samples, generator=generator, dtype=torch.float64), RATE)
 
     fit, held = (record("fit", 200),), (record("held", 1200),)
-    evidence = Evidence("oscillator", fit, held, {}, None, one_record=False, noise=NOISE)
+    evidence = Evidence("oscillator", fit, held, Known({}, {}), None, one_record=False, noise=NOISE)
     free = (
         FreeParameter("stiffness", 1.01 * STIFFNESS, logarithmic=True),
         FreeParameter(COEFFICIENT, 1.2 * DAMPING, logarithmic=True),

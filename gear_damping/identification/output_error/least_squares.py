@@ -10,6 +10,7 @@ from gear_damping.identification.output_error.problem import OutputErrorProblem,
 
 FIRST_DAMPING, LARGEST_DAMPING, SMALLEST_DAMPING = 1e-2, 1e10, 1e-12
 SMALLEST_GAIN = 1e-7  # relative fall of the cost below which a start has converged
+CALM_STEPS = 3  # accepted steps in a row that gain little: one alone may be short
 INDEPENDENT = 1e-9  # of the largest: a direction that counts
 LONGEST_STEP = 2.0  # of any coordinate in one iteration; far out, that many times the way from the start
 
@@ -164,6 +165,7 @@ def _round(
     cost = _cost(problem, points, now)
     damping = torch.full_like(cost, FIRST_DAMPING)
     converged = torch.zeros_like(cost, dtype=torch.bool)
+    calm = torch.zeros_like(cost, dtype=torch.long)
     for _ in range(iterations):
         trial = _step(problem, points, now, damping)
         new = problem.linearise(trial.shared, trial.states, horizon)
@@ -171,7 +173,8 @@ def _round(
         better = new_cost < cost
         gain = torch.where(better, (cost - new_cost) / cost.clamp(min=1e-300), torch.zeros_like(cost))
         small = (gain < SMALLEST_GAIN) | (cost - new_cost < enough)
-        converged = (better & small) | (damping >= LARGEST_DAMPING) | (converged & ~better)
+        calm = torch.where(better, torch.where(small, calm + 1, 0), calm)
+        converged = (calm >= CALM_STEPS) | (damping >= LARGEST_DAMPING)
         points = Points(_select(better, trial.shared, points.shared), _select(better, trial.states, points.states))
         residual, sensitivity = (
             _select(better, a, b) for a, b in ((new.residual, now.residual), (new.sensitivity, now.sensitivity))
