@@ -15,6 +15,7 @@ from gear_damping.simulation.solver_settings import Solver
 
 LEAST_SHARE = 0.25  # of the remaining excess that a cause must take
 MOST_CAUSES = 4
+TWO = 2  # causes, from which on the size of a further one has to be known
 MOST_ANEW = 3  # times that a search begins anew from a better calibration
 BENT = 4.0  # noise variances left by a nominal model whose free shape is no good place to begin
 
@@ -86,7 +87,9 @@ def _next(
     if _is_unpredictable(found, bench):
         return None, ()
     best = _best(fits, current, bench)
-    return (None, ()) if best is None else bench.simplest(best, fits)
+    if best is None or (len(found.accepted) >= TWO and not bench.is_determined(best)):
+        return None, ()
+    return bench.simplest(best, fits)
 
 
 def _is_unpredictable(found: Search, bench: Bench) -> bool:
@@ -140,4 +143,4 @@ def _best(fits: Sequence[Refit], current: Excess, bench: Bench) -> Refit | None:
     if best is None:
         return None
     takes = (current.percent - bench.excess(best.outcome).percent) / current.percent
-    return best if best.t > ACCEPTED_AT and takes >= LEAST_SHARE and bench.is_determined(best) else None
+    return best if best.t > ACCEPTED_AT and takes >= LEAST_SHARE else None

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from gear_damping.explanation.ranking import Score
 from gear_damping.explanation.refit import Refit
 from gear_damping.explanation.significance import Excess
 from gear_damping.explanation.trying import ACCEPTED_AT, Bench, Search
@@ -58,7 +59,6 @@ def _taken(fit: Refit, found: Search) -> float:
 
 def _accepted(pairs: Sequence[Pair], current: Excess, bench: Bench) -> Pair | None:
     """The best pair, or of those that do as well the smallest, where held-out records accept it."""
-    pairs = [pair for pair in pairs if bench.is_determined(pair.second)]
     best = min(pairs, key=lambda pair: pair.second.outcome.holdout_cost, default=None)
     if best is None:
         return None
@@ -80,16 +80,13 @@ def _bases(fits: Sequence[Refit], found: Search) -> list[Refit]:
 
 def _seconds(base: Refit, found: Search, bench: Bench) -> list[Refit]:
     """Full fits of the most promising effects beside a base, held against what was accepted so far."""
-    names: list[str] = []
-    fits = []
+    best: dict[str, Score] = {}
     for score in bench.ranked(base.outcome):
-        name = score.candidate.name
-        if name in names or score.gain <= 0:
-            continue
-        names.append(name)
-        fit = bench.full_fit(score, base.outcome, found.outcome)
-        if fit is not None and fit.outcome.fitted.cost < base.outcome.fitted.cost:
-            fits.append(bench.converged(fit, found.outcome))
-        if len(names) == SECONDS:
-            break
-    return fits
+        if score.gain > 0:
+            best.setdefault(score.candidate.name, score)
+    names = list(best)[:SECONDS]
+    simpler = (bench.evidence.library[name].cause.simpler for name in names)
+    names += [name for name in simpler if name in best and name not in names]
+    fits = (bench.full_fit(best[name], base.outcome, found.outcome) for name in names)
+    kept = [fit for fit in fits if fit is not None and fit.outcome.fitted.cost < base.outcome.fitted.cost]
+    return [bench.converged(fit, found.outcome) for fit in kept]

@@ -171,8 +171,8 @@ class Bench:
     def is_determined(self, fit: Refit) -> bool:
         """Whether the records tell the size of an effect, where its fit leaves more than noise.
 
-        Where much is left that is not random, a test over blocks takes a law that can bend to it for one that is
-        there; its parameters then hardly matter to the fit.
+        Where much is left that is not random, a test over blocks takes a further law that can bend to it for one that
+        is there; its parameters then hardly matter to the fit.
         """
         if self.excess(fit.outcome).misfit <= SMALL_REST:
             return True
