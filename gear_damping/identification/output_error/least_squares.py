@@ -10,7 +10,7 @@ from gear_damping.identification.output_error.problem import OutputErrorProblem,
 
 FIRST_DAMPING, LARGEST_DAMPING, SMALLEST_DAMPING = 1e-2, 1e10, 1e-12
 SMALLEST_GAIN = 1e-7  # relative fall of the cost below which a start has converged
-CALM_STEPS = 3  # accepted steps in a row that gain little: one alone may be short
+CALM_STEPS = 3  # steps in a row that change the cost by little: one alone may be short
 INDEPENDENT = 1e-9  # of the largest: a direction that counts
 LONGEST_STEP = 2.0  # of any coordinate in one iteration; far out, that many times the way from the start
 
@@ -171,9 +171,8 @@ def _round(
         new = problem.linearise(trial.shared, trial.states, horizon)
         new_cost = _cost(problem, trial, new)
         better = new_cost < cost
-        gain = torch.where(better, (cost - new_cost) / cost.clamp(min=1e-300), torch.zeros_like(cost))
-        small = (gain < SMALLEST_GAIN) | (cost - new_cost < enough)
-        calm = torch.where(better, torch.where(small, calm + 1, 0), calm)
+        flat = (cost - new_cost).abs() <= torch.maximum(SMALLEST_GAIN * cost, torch.full_like(cost, enough))
+        calm = torch.where(flat, calm + 1, torch.where(better, 0, calm))
         converged = (calm >= CALM_STEPS) | (damping >= LARGEST_DAMPING)
         points = Points(_select(better, trial.shared, points.shared), _select(better, trial.states, points.states))
         residual, sensitivity = (
