@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import pi
+from math import isfinite, pi
 
 import numpy as np
 import torch
@@ -100,6 +100,8 @@ def fit_oscillator(
     pieces = in_segments(fit_records, segments)
     problem = OutputErrorProblem(linear_effects(fit_records), given, free, pieces, solver)
     fitted = fit(problem, _starts(problem, spring), _horizons(problem, scale), report=report)
+    if any(isfinite(parameter.deviation) for parameter in problem.free):
+        fitted = _with_expectations(problem, fitted)
     values = {name: float(value) for name, value in problem.parameters(fitted.shared).items()}
     found = _estimates(problem, fitted, scale)
     given = problem.given | {p.name: values[p.name] for p in free}
@@ -123,6 +125,13 @@ def fit_oscillator(
         own=own,
         segments=segments,
     )
+
+
+def _with_expectations(problem: OutputErrorProblem, fitted: Fitted) -> Fitted:
+    """The fit carried on with what is expected of parameters, weighed by the noise that the first one left."""
+    samples = max(float((problem.weights > 0).sum()), 1.0)
+    problem.noise = float(fitted.prediction.residual.square().sum() / samples) ** 0.5
+    return fit(problem, fitted.shared.unsqueeze(0), states=fitted.states.unsqueeze(0))
 
 
 def linear_effects(records: Sequence[FitRecord]) -> Model:

@@ -12,7 +12,7 @@ from gear_damping.measurement.load import load_measurement
 SAYS = {  # words that the message must hold: what is wrong, or what cures it
     "nan_run": "dte", "dropped_samples": "sample", "repeated_stamps": "time", "mm_for_m": "unit",
     "rpm_for_rad_s": "speed", "swapped_channels": "", "wrong_tooth_count": "teeth", "clipped_sensor": "clip",
-    "uneven_stamps": "time", "oversampled": "", "empty_file": "empty", "mixed_rates": "rate",
+    "uneven_stamps": "time", "oversampled": "", "empty_file": "empty",
 }  # fmt: skip
 
 
@@ -22,7 +22,10 @@ def sound():
     return replace(case, records=tuple(case.records[i] for i in (0, 3, 4, 6)))
 
 
-@pytest.mark.parametrize("fault", FAULTS)
+DAMAGE = [fault for fault in FAULTS if fault != "mixed_rates"]  # records may differ in rate
+
+
+@pytest.mark.parametrize("fault", DAMAGE)
 def test_a_damaged_measurement_is_no_physics(fault, sound, tmp_path):
     path = write_case(replace(sound, fault=fault), tmp_path / "measured")
     before = {file: file.read_bytes() for file in path.parent.rglob("*") if file.is_file()}

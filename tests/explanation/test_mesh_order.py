@@ -6,7 +6,8 @@ import torch
 
 from gear_damping.explanation.data_faults import mesh_order_faults
 from gear_damping.explanation.evidence import Evidence
-from gear_damping.identification.output_error.problem import FitRecord
+from gear_damping.identification.observation import Known
+from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.measurement.record import Channel
 
 RATE, N = 20000.0, 3000
@@ -27,7 +28,7 @@ def _found(teeth: int | None, orders: dict[float, float], lines=None, speeds=(15
     records = tuple(_record(orders, speed, lines or {}, k) for k, speed in enumerate(speeds))
     parameters = {} if teeth is None else {"n_teeth_pinion": float(teeth)}
     channel = Channel("transmission_error", np.zeros(2), "m")
-    evidence = Evidence("gear_pair", records[:1], records[1:], parameters, channel, one_record=False)
+    evidence = Evidence("gear_pair", records[:1], records[1:], Known(parameters, {}), channel, one_record=False)
     return [finding.message for finding in mesh_order_faults(evidence)]
 
 
