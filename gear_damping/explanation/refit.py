@@ -97,7 +97,8 @@ def chosen(scores: Sequence[Score], least: float = 0.0) -> list[Score]:
     first = [score for score in ranked[:FULL_FITS] if score.gain >= least * ranked[0].gain]
     promising = [score for score in ranked[FULL_FITS:] if score.gain > LEAST_PROMISE * ranked[0].gain]
     alike = [score for score in promising if collinearity(ranked[0], score) > NEARLY_COLLINEAR]
-    worth = {score.candidate.name: score.gain for score in (first + alike)[:MOST_FITS]}
+    instead = [score for score in ranked if score.candidate.replaced]  # adds nothing that could overfit: always tried
+    worth = {score.candidate.name: score.gain for score in [*(first + alike)[:MOST_FITS], *instead]}
     return [s for s in every if s.gain >= OTHER_FORM * worth.get(s.candidate.name, inf)]
 
 
