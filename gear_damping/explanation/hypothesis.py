@@ -162,7 +162,9 @@ def fit_hypothesis(
     given = placed(hypothesis.given, values)
     free = tuple(_settled(p, values.get(p.name, p.start)) for p in hypothesis.free)
     gains = {name: value for name, value in values.items() if name.startswith(f"{GAIN}.")}
-    return _outcome(replace(hypothesis, free=free, given=given, gains=gains), problem, fitted, values, evidence, solver)
+    settled = replace(hypothesis, free=free, given=given, gains=gains)
+    held = None if after is None else after.own
+    return _outcome(settled, Fit(problem, fitted, values), evidence, solver, held)
 
 
 def _begin(
@@ -185,24 +187,28 @@ def _begin(
     return begun, shared
 
 
+@dataclass(frozen=True)
+class Fit:
+    """A problem with its solution and the fitted values by name."""
+
+    problem: OutputErrorProblem
+    fitted: Fitted
+    values: dict[str, float]
+
+
 def _outcome(
-    settled: Hypothesis,
-    problem: OutputErrorProblem,
-    fitted: Fitted,
-    values: dict[str, float],
-    evidence: Evidence,
-    solver: Solver | None,
+    settled: Hypothesis, found: Fit, evidence: Evidence, solver: Solver | None, begun: Mapping[str, float] | None
 ) -> Outcome:
-    """The fit with its residuals, and the prediction of held-out records."""
+    """The fit with its residuals, and the prediction of held-out records, their angles begun where they were."""
+    problem, fitted = found.problem, found.fitted
     scale = slowest_time(settled, evidence)
     own = [parameter for parameter in settled.free if parameter.per_record]
-    held = predict_holdout(
-        settled.model, {**settled.given, **settled.gains}, evidence.holdout, scale, solver, evidence.segments, own
-    )
+    given, segments = {**settled.given, **settled.gains}, evidence.segments
+    held = predict_holdout(settled.model, given, evidence.holdout, scale, solver, segments, own, begun)
     residual = joined(fitted.prediction.residual[0], evidence.fitted, evidence.segments, len(problem.channels))
     fit_residuals = [found / record.weight for found, record in zip(residual, evidence.fit, strict=True)]
     grown = max(held.growth, growth(fitted.prediction, problem.n_shared))
-    return Outcome(settled, problem, fitted, values, held.residuals, fit_residuals, grown, held.own)
+    return Outcome(settled, problem, fitted, found.values, held.residuals, fit_residuals, grown, held.own)
 
 
 def _fit_in_segments(hypothesis: Hypothesis, evidence: Evidence, starts: Tensor | None, **options: Any) -> Outcome:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
-from gear_damping.identification.output_error.angles import scanned
+from gear_damping.identification.output_error.angles import angle_bases, scanned
 from gear_damping.identification.output_error.least_squares import fit, own_basis, without_own
 from gear_damping.identification.output_error.problem import OutputErrorProblem, Prediction, growth
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
@@ -43,6 +43,7 @@ def predict_holdout(
     solver: Solver | None = None,
     segments: Segments = WHOLE,
     own: Sequence[FreeParameter] = (),
+    begun: Mapping[str, float] | None = None,
 ) -> HeldOut:
     """Predict records.
 
@@ -54,12 +55,17 @@ def predict_holdout(
         solver: Settings of the solver.
         segments: How they are cut; each segment has an initial state.
         own: Parameters that every record has of its own.
+        begun: Where those of single records begin, by name; angles that are not among them are tried all around.
     """
     pieces = in_segments(records, segments)
     problem = OutputErrorProblem(model, given, list(own), pieces, solver)
     starts = torch.zeros(1, problem.n_shared, dtype=torch.float64)
     rounds = [FIRST_PERIODS * characteristic_s, None]
-    for name, angle in scanned(problem, starts[0]).items():
+    known = dict(begun or {})
+    for place, parameter in enumerate(problem.free):
+        starts[0, place] = parameter.coordinate(known[parameter.name]) if parameter.name in known else 0.0
+    unknown = [base for base in angle_bases(problem) if not any(name.startswith(base) for name in known)]
+    for name, angle in scanned(problem, starts[0], bases=unknown).items():
         place = next(i for i, parameter in enumerate(problem.free) if parameter.name == name)
         starts[0, place] = problem.free[place].coordinate(angle)
     found = fit(problem, starts, rounds, (FIRST_ITERATIONS, LAST_ITERATIONS))
