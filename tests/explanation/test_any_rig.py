@@ -60,9 +60,8 @@ MORE = [("17/51", "ac"), ("25/50", "torque_gain"), ("37/44", "acceleration"), ("
         ("25/43", "speed_uncertain"), ("37/49", "torque_condition"), ("20/52", "full")]  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("rig", "sensors"), [*QUICK, *(pytest.param(*row, marks=pytest.mark.slow) for row in MORE)]
-)
+@pytest.mark.slow  # a rig of its own has kernels of its own: a minute and a half of compiling
+@pytest.mark.parametrize(("rig", "sensors"), [*QUICK, *MORE])
 def test_nothing_is_found_in_a_null_and_its_damping_is_right(rig, sensors):
     assert_null(gears("null", 4, rig, sensors))
 
@@ -70,8 +69,8 @@ def test_nothing_is_found_in_a_null_and_its_damping_is_right(rig, sensors):
 @pytest.mark.parametrize(
     ("effect", "seed", "rig", "sensors", "duration"),
     [
-        ("gear_stiffness_modulation", 1, "17/47", "mean_free", 0.02),
-        ("cubic_stiffness", 1, "25/44", "pinion_speed", 0.02),
+        pytest.param("gear_stiffness_modulation", 1, "17/47", "mean_free", 0.02, marks=pytest.mark.slow),
+        pytest.param("cubic_stiffness", 1, "25/44", "pinion_speed", 0.02, marks=pytest.mark.slow),
         pytest.param("cubic_stiffness", 2, "37/51", "acceleration", 0.02, marks=pytest.mark.slow),
         pytest.param("tooth_crack", 2, "25/45", "full", 0.04, marks=pytest.mark.slow),  # on the pinion
         pytest.param("tooth_crack", 1, "17/43", "encoders", 0.04, marks=pytest.mark.slow),  # on the gear
