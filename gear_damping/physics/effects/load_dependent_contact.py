@@ -29,7 +29,6 @@ class LoadDependentContact(ContactChange):
         (
             Recipe(  # what it changes are the edges, which the free shape of the stiffness hid so far
                 {"growth": None},
-                fixed={"reference_load": 1.0},
                 beside={
                     "mesh_phase": None,
                     "fourier_mesh_stiffness.contact_ratio": None,
