@@ -122,6 +122,7 @@ def test_records_that_their_start_does_not_determine_are_scored_in_pieces(explai
     assert found["misfit"]["before"] < 3.0
 
 
+@pytest.mark.slow  # its kernels take minutes to compile on a machine without any
 def test_without_the_true_effect_no_other_explains(explained):
     found = explained("gear_stiffness_modulation", 1, removed="gear_stiffness_modulation")
     assert found["verdict"] in ("unexplained", "partly_explained")
@@ -129,6 +130,7 @@ def test_without_the_true_effect_no_other_explains(explained):
     assert found["unexplained"]["orders"]
 
 
+@pytest.mark.slow  # its kernels take minutes to compile on a machine without any
 def test_one_record_says_what_it_cannot_show_and_the_experiment_shows_it(explained):
     alone = explained("cubic_stiffness", 1, records=ONE_RECORD)
     unseen = {entry["name"] for entry in alone["not_observable"]}
