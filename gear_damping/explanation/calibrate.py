@@ -8,7 +8,14 @@ import torch
 
 from gear_damping.explanation.evidence import Evidence, with_own_angles
 from gear_damping.explanation.hypothesis import Hypothesis, Outcome, fit_hypothesis, natural_frequency_hz
-from gear_damping.identification.oscillator import DAMPING, GAIN, expected_about, fit_oscillator, linear_model
+from gear_damping.identification.oscillator import (
+    DAMPING,
+    GAIN,
+    expected_about,
+    fit_oscillator,
+    linear_model,
+    linear_oscillator,
+)
 from gear_damping.identification.output_error.angles import STARTS, angle_bases, scanned
 from gear_damping.identification.output_error.problem import OutputErrorProblem
 from gear_damping.identification.output_error.records import FreeParameter
@@ -16,11 +23,9 @@ from gear_damping.identification.output_error.segments import in_segments
 from gear_damping.physics.effects.backlash import Backlash
 from gear_damping.physics.effects.fourier_mesh_stiffness import FourierMeshStiffness
 from gear_damping.physics.effects.mesh_stiffness_shape import MeshStiffnessShape
-from gear_damping.physics.effects.offset_force import OffsetForce
 from gear_damping.physics.effects.viscous_damping import ViscousDamping
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.gear_pair import GearPair
-from gear_damping.physics.systems.oscillator import Oscillator
 from gear_damping.simulation.solver_settings import Solver
 
 MESH, SHAPE = "fourier_mesh_stiffness", "mesh_stiffness_shape"
@@ -53,9 +58,9 @@ def _oscillator(evidence: Evidence, solver: Solver | None) -> Outcome:
     """Stiffness, damping, gain; offsets of force and response as nuisances."""
     found = fit_oscillator(evidence.fit, known=evidence.known, segments=evidence.segments)
     free, given, _ = linear_model(evidence.fit, evidence.known)
-    effects = [ViscousDamping(), *([OffsetForce()] if evidence.fit[0].inputs else [])]
     free = [_from_here(parameter, found.given[parameter.name]) for parameter in free]
-    nominal = Hypothesis(Oscillator(), tuple(effects), given, tuple(free))
+    model = linear_oscillator(evidence.fit)
+    nominal = Hypothesis(model.system, tuple(model.effects), given, tuple(free))
     return fit_hypothesis(nominal, evidence, solver=solver)
 
 

@@ -4,9 +4,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import floor, log10, pi
 
-import torch
-from torch import Tensor
-
 from gear_damping.identification.observation import (
     MESH_PHASE,
     Known,
@@ -161,8 +158,3 @@ def _cut(records: Sequence[FitRecord]) -> tuple[list[FitRecord], list[FitRecord]
         fit.append(part(record, slice(None, at), " (first part)"))
         holdout.append(part(record, slice(at, None), " (last part)"))
     return fit, holdout
-
-
-def stacked(series: Sequence[Tensor]) -> Tensor:
-    """All samples of several records one after another."""
-    return torch.cat(list(series))

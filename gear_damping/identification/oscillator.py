@@ -98,7 +98,7 @@ def fit_oscillator(
     if segments is None:
         segments = WHOLE if spring else Segments(SEGMENT_TIMES * scale)
     pieces = in_segments(fit_records, segments)
-    problem = OutputErrorProblem(linear_effects(fit_records), given, free, pieces, solver)
+    problem = OutputErrorProblem(linear_oscillator(fit_records), given, free, pieces, solver)
     fitted = fit(problem, _starts(problem, spring), _horizons(problem, scale), report=report)
     if any(isfinite(parameter.deviation) for parameter in problem.free):
         fitted = _with_expectations(problem, fitted)
@@ -134,7 +134,7 @@ def _with_expectations(problem: OutputErrorProblem, fitted: Fitted) -> Fitted:
     return fit(problem, fitted.shared.unsqueeze(0), states=fitted.states.unsqueeze(0))
 
 
-def linear_effects(records: Sequence[FitRecord]) -> Model:
+def linear_oscillator(records: Sequence[FitRecord]) -> Model:
     """The linear oscillator of these records; one that is driven has a constant force beside its input."""
     return Model(Oscillator(), [ViscousDamping(), *([OffsetForce()] if records[0].inputs else [])])
 
