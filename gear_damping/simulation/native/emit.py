@@ -5,6 +5,11 @@ from collections.abc import Sequence
 from gear_damping.simulation.native.expressions import TEMPLATES, Expression, Program, Value
 
 
+# A stage's function is called, not repeated at each of its twenty places: that compiles four times faster and runs
+# as fast within 5 % (benchmarks/ times it).
+CALLED = "__attribute__((noinline)) static"
+
+
 class Written:
     """A program as C++: the values of a run (`setup`) and functions of a stage."""
 
@@ -17,7 +22,7 @@ class Written:
         lines = [f"  const {_type(v)} {_name(v)} = {self._text(v)};" for v in self._needed(results, stage=True)]
         lines += [f"  out[{i}] = vd{{}} + {self._read(result)};" for i, result in enumerate(results)]
         arguments = "vd u, const vd* y, const vd* P, const vd* S, double index, const vd* L, const vd* Q, vd* out"
-        return "\n".join([f"static inline void {name}({arguments}) {{", *lines, "}"])
+        return "\n".join([f"{CALLED} void {name}({arguments}) {{", *lines, "}"])
 
     def setup(self) -> str:
         """The function that fills `Q`; call it after every `function` was written."""

@@ -1,7 +1,8 @@
 """Reads a tensor program into scalar expressions.
 
-The program is traced by PyTorch (`make_fx`) for a batch of `LANES` members whose axis is the last one;
-every tensor becomes an array of expressions with that axis cut to length one.
+The program is run once for a batch of `LANES` members whose axis is the last one, and watched operation by operation;
+every tensor becomes an array of expressions with that axis cut to length one. (`make_fx` of PyTorch would give the
+same operations, but it imports its compiler for that, which takes longer than everything else together.)
 """
 
 from collections.abc import Callable, Sequence
@@ -9,7 +10,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import torch
 from torch import Tensor
-from torch.fx.experimental.proxy_tensor import make_fx
+from torch.utils._python_dispatch import TorchDispatchMode
+from torch.utils._pytree import tree_map_only
 
 from gear_damping.simulation.native.expressions import Expression, Program, Value
 
@@ -41,39 +43,67 @@ def trace(function: Callable, examples: Sequence[Tensor], inputs: Sequence[Array
     Raises:
         UntraceableError: the function uses an operation without native form.
     """
-    with torch.no_grad():
-        graph = make_fx(function)(*examples)
-    values: dict = {}
-    waiting = iter(inputs)
-    for node in graph.graph.nodes:
-        if node.op == "placeholder":
-            values[node] = next(waiting)
-        elif node.op == "get_attr":
-            values[node] = _constant(getattr(graph, node.target))
-        elif node.op == "call_function" and node.users:  # what nothing follows from is left out
-            arguments = torch.fx.node.map_arg(node.args, lambda n: values[n])
-            options = torch.fx.node.map_arg(dict(node.kwargs), lambda n: values[n])
-            values[node] = _apply(program, node, arguments, options)
-        elif node.op == "output":
-            found = node.args[0] if isinstance(node.args[0], (list, tuple)) else [node.args[0]]
-            return [values[n] for n in found]
-    raise UntraceableError("a program without output")
+    watched = _Watched(program, examples, inputs)
+    with torch.no_grad(), watched:
+        found = function(*examples)
+    return [watched.expressions(tensor) for tensor in (found if isinstance(found, (list, tuple)) else [found])]
+
+
+class _Watched(TorchDispatchMode):
+    """Applies to expressions what PyTorch does to tensors."""
+
+    @classmethod
+    def _should_skip_dynamo(cls) -> bool:
+        return False  # nothing here is ever compiled; True would import PyTorch's compiler at the first operation
+
+    def __init__(self, program: Program, examples: Sequence[Tensor], inputs: Sequence[Arrays]) -> None:
+        super().__init__()
+        self.program = program
+        self.values: dict[int, Arrays | UntraceableError] = {}
+        self.alive: list[Tensor] = []  # an id stands for one tensor while that lives
+        for tensor, array in zip(examples, inputs, strict=True):
+            self._note(tensor, array)
+
+    def __torch_dispatch__(self, operation: Callable, types: object, args: tuple = (), kwargs: dict | None = None):  # noqa: ANN204
+        result = operation(*args, **(kwargs or {}))
+        try:
+            arguments, options = tree_map_only(Tensor, self.expressions, (args, kwargs or {}))
+            made = _apply(self.program, operation, result, arguments, options)
+        except UntraceableError as problem:  # what nothing follows from may have no native form
+            made = problem
+        if isinstance(result, Tensor):
+            self._note(result, made)
+        else:
+            for i, part in enumerate(result):
+                self._note(part, made if isinstance(made, UntraceableError) else made[i])
+        return result
+
+    def expressions(self, tensor: Tensor) -> Arrays:
+        """What stands for a tensor; a tensor that no operation made is a constant."""
+        found = self.values.get(id(tensor))
+        if isinstance(found, UntraceableError):
+            raise found
+        return _constant(tensor) if found is None else found
+
+    def _note(self, tensor: Tensor, array: Arrays | UntraceableError) -> None:
+        self.alive.append(tensor)
+        self.values[id(tensor)] = array
 
 
 def _constant(tensor: Tensor) -> Arrays:
     return tensor.detach().to(torch.float64).numpy().astype(object)
 
 
-def _apply(program: Program, node: torch.fx.Node, a: tuple, k: dict) -> Arrays | list[Arrays]:
-    name = getattr(node.target, "__name__", str(node.target)).split(".")[0]
+def _apply(program: Program, operation: Callable, made: Tensor, a: tuple, k: dict) -> Arrays | list[Arrays]:
+    name = operation.__name__.split(".")[0]
     if name in SAME:
-        return _converted(program, a[0], node)
+        return _converted(program, a[0], made)
     if name in BINARY and not k.get("alpha"):
         return _each(program, BINARY[name], *a)
     if name in UNARY:
         return _each(program, name, a[0])
     if name in _SPECIAL:
-        return _SPECIAL[name](program, node, a, k)
+        return _SPECIAL[name](program, made, a, k)
     raise UntraceableError(f"the operation '{name}' has no native form")
 
 
@@ -90,9 +120,9 @@ def _number(value: object) -> Expression:
     return value if isinstance(value, Value) else float(value)
 
 
-def _converted(program: Program, array: Arrays, node: torch.fx.Node) -> Arrays:
+def _converted(program: Program, array: Arrays, made: Tensor) -> Arrays:
     """A mask that becomes a number; anything else stays."""
-    wants_number = node.meta["val"].dtype.is_floating_point
+    wants_number = made.dtype.is_floating_point
     flat = [v for v in np.ravel(array) if isinstance(v, Value)]
     if wants_number and any(v.kind == "mask" for v in flat):
         return _each(program, "number", array)
@@ -100,31 +130,31 @@ def _converted(program: Program, array: Arrays, node: torch.fx.Node) -> Arrays:
 
 
 def _filled(number: float) -> Callable:
-    def make(program: Program, node: torch.fx.Node, a: tuple, k: dict) -> Arrays:
-        return np.full(_shape(node), number, dtype=object)
+    def make(program: Program, made: Tensor, a: tuple, k: dict) -> Arrays:
+        return np.full(_shape(made), number, dtype=object)
 
     return make
 
 
-def _shape(node: torch.fx.Node) -> tuple[int, ...]:
-    shape = tuple(node.meta["val"].shape)
+def _shape(made: Tensor) -> tuple[int, ...]:
+    shape = tuple(made.shape)
     return (*shape[:-1], 1) if shape and shape[-1] == LANES else shape
 
 
-def _sum(program: Program, node: torch.fx.Node, a: tuple, k: dict) -> Arrays:
+def _sum(program: Program, made: Tensor, a: tuple, k: dict) -> Arrays:
     axes = a[1] if len(a) > 1 and a[1] is not None else list(range(a[0].ndim))
-    return _reduced(program, "add", a[0], axes, node)
+    return _reduced(program, "add", a[0], axes, made)
 
 
 def _extreme(name: str) -> Callable:
-    def reduce(program: Program, node: torch.fx.Node, a: tuple, k: dict) -> Arrays:
+    def reduce(program: Program, made: Tensor, a: tuple, k: dict) -> Arrays:
         axes = a[1] if isinstance(a[1], (list, tuple)) else [a[1]]
-        return _reduced(program, name, a[0], axes, node)
+        return _reduced(program, name, a[0], axes, made)
 
     return reduce
 
 
-def _reduced(program: Program, name: str, array: Arrays, axes: Sequence[int], node: torch.fx.Node) -> Arrays:
+def _reduced(program: Program, name: str, array: Arrays, axes: Sequence[int], made: Tensor) -> Arrays:
     for axis in axes:
         if axis % array.ndim == array.ndim - 1:
             raise UntraceableError("a sum over the members")
@@ -133,10 +163,10 @@ def _reduced(program: Program, name: str, array: Arrays, axes: Sequence[int], no
         array = parts[0]
         for part in parts[1:]:
             array = _each(program, name, array, part)
-    return np.reshape(array, _shape(node))
+    return np.reshape(array, _shape(made))
 
 
-def _clamp(program: Program, node: torch.fx.Node, a: tuple, k: dict) -> Arrays:
+def _clamp(program: Program, made: Tensor, a: tuple, k: dict) -> Arrays:
     low = a[1] if len(a) > 1 else k.get("min")
     high = a[2] if len(a) > 2 else k.get("max")
     result = a[0]
@@ -163,7 +193,6 @@ _SPECIAL: dict[str, Callable] = {
     "select": lambda p, n, a, k: np.take(a[0], a[2], axis=a[1]),
     "slice": lambda p, n, a, k: _slice(*a),
     "unbind": lambda p, n, a, k: [np.take(a[0], i, axis=_axis(a)) for i in range(a[0].shape[_axis(a)])],
-    "getitem": lambda p, n, a, k: a[0][a[1]],
     "stack": lambda p, n, a, k: np.stack(a[0], axis=a[1] if len(a) > 1 else 0),
     "cat": lambda p, n, a, k: np.concatenate(a[0], axis=a[1] if len(a) > 1 else 0),
     "unsqueeze": lambda p, n, a, k: np.expand_dims(a[0], a[1]),

@@ -1,16 +1,12 @@
 // A vector of lanes and the functions of it; glibc's vector library where it is there, else lane by lane.
-#include <cmath>
+// Nothing is included: reading the headers of intrinsics takes longer than compiling a kernel.
 
 typedef double vd __attribute__((vector_size(8 * WIDTH)));
 typedef long long vm __attribute__((vector_size(8 * WIDTH)));
 
-#ifdef __AVX512DQ__
-#include <immintrin.h>
-#endif
-
 static inline bool any(vm m) {
 #if defined(__AVX512DQ__) && WIDTH == 8
-  return _mm512_movepi64_mask((__m512i)m) != 0;
+  return __builtin_ia32_cvtq2mask512(m) != 0;
 #else
   long long found = 0;
   for (int l = 0; l < WIDTH; ++l) found |= m[l];
@@ -25,7 +21,7 @@ static inline vd v_sign(vd a) { return a > 0.0 ? vd{} + 1.0 : (a < 0.0 ? vd{} - 
 #define LANE_BY_LANE(name, function) \
   static inline vd name(vd a) { vd r; for (int l = 0; l < WIDTH; ++l) r[l] = function(a[l]); return r; }
 LANE_BY_LANE(v_sqrt, __builtin_sqrt)
-LANE_BY_LANE(v_floor, std::floor)
+LANE_BY_LANE(v_floor, __builtin_floor)
 
 #if defined(HAVE_LIBMVEC) && defined(__AVX512F__) && WIDTH == 8
 #define VECTOR(name, function) extern "C" vd _ZGVeN8v_##function(vd); static inline vd name(vd a) { return _ZGVeN8v_##function(a); }
@@ -36,15 +32,15 @@ static inline vd library_pow(vd a, vd b) { return _ZGVeN8vv_pow(a, b); }
 extern "C" vd _ZGVdN4vv_pow(vd, vd);
 static inline vd library_pow(vd a, vd b) { return _ZGVdN4vv_pow(a, b); }
 #else
-#define VECTOR(name, function) LANE_BY_LANE(name, std::function)
-static inline vd library_pow(vd a, vd b) { vd r; for (int l = 0; l < WIDTH; ++l) r[l] = std::pow(a[l], b[l]); return r; }
+#define VECTOR(name, function) LANE_BY_LANE(name, __builtin_##function)
+static inline vd library_pow(vd a, vd b) { vd r; for (int l = 0; l < WIDTH; ++l) r[l] = __builtin_pow(a[l], b[l]); return r; }
 #endif
 VECTOR(library_cos, cos)
 VECTOR(library_sin, sin)
 VECTOR(v_exp, exp)
 VECTOR(v_log, log)
-LANE_BY_LANE(v_tanh, std::tanh)
-LANE_BY_LANE(v_atan, std::atan)
+LANE_BY_LANE(v_tanh, __builtin_tanh)
+LANE_BY_LANE(v_atan, __builtin_atan)
 
 // Power, cosine and sine without a call, so that the compiler keeps everything in registers and the processor
 // works on several vectors at once. Lanes outside their range take the library's value, the others never do: what
