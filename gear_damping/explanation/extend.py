@@ -13,7 +13,7 @@ from gear_damping.explanation.ranking import Score
 from gear_damping.explanation.refit import Refit, again
 from gear_damping.explanation.revise import beside_the_others, exchanged, pruned, simplified
 from gear_damping.explanation.significance import Excess, is_settled
-from gear_damping.explanation.trying import ACCEPTED_AT, Accepted, Bench, Say, Search
+from gear_damping.explanation.trying import ACCEPTED_AT, SMALL_REST, Accepted, Bench, Say, Search
 from gear_damping.explanation.visible import Assessment
 from gear_damping.simulation.solver_settings import Solver
 
@@ -50,7 +50,7 @@ def search(
     while len(found.accepted) < MOST_CAUSES:
         bench, ranked, first = state.bench, state.ranked, state.first
         current = bench.excess(found.outcome)
-        if found.left is not None and not found.left.visible:
+        if found.left is not None and not found.left.visible and current.misfit <= SMALL_REST:
             break
         if is_settled(current, first):
             best, rivals = faint_cause(found, ranked, found.left, bench) if found.left else (None, ())

@@ -51,11 +51,11 @@ def verdict(
         converged: Whether the calibration converged.
         is_one: Whether every cause has one size over all records; None where too few records tell of one.
     """
-    if not found.accepted and not (before.significant and is_visible(found.seen)):
+    if not found.accepted and not (before.significant and (is_visible(found.seen) or before.misfit > SMALL_REST)):
         text = f"No evidence of an effect that takes more than {before.threshold:.2g} % of the signal's variance."
         return Verdict(CONSISTENT, (text,))
     taken = _taken(found, before, after)
-    rest = is_all(after, before) or not is_visible(found.left)
+    rest = is_all(after, before) or (not is_visible(found.left) and after.misfit <= SMALL_REST)
     missing = f"The simulation misses {before.percent:.3g} % of the signal's variance"
     unsettled = () if converged else ("The calibration did not converge: take the figures with care.",)
     if not found.accepted:

@@ -70,6 +70,11 @@ class Visible:
     effective_blocks: float
     by_name: dict[str, float]
 
+    @property
+    def largest(self) -> str | None:
+        """The effect with the maximum."""
+        return max(self.by_name, key=self.by_name.get, default=None)
+
     def __bool__(self) -> bool:
         return self.p < LEVEL
 
