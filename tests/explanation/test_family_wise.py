@@ -75,9 +75,10 @@ def test_a_pulse_in_few_blocks_is_held_against_the_pooled_variance():
     rng = np.random.default_rng(26)
     pulse = np.zeros((SAMPLES, 1))
     pulse[300:312, 0] = 12**-0.5
-    found = [found_in(rng, [Effect("e", torch.as_tensor(pulse))], rng.normal(size=SAMPLES)).statistic for _ in range(300)]
+    effect = [Effect("e", torch.as_tensor(pulse))]
+    found = [found_in(rng, effect, rng.normal(size=SAMPLES)).statistic for _ in range(300)]
     assert stats.kstest(found, "norm").pvalue > 0.01  # signs of two blocks could give no p below a quarter
-    assert found_in(rng, [Effect("e", torch.as_tensor(pulse))], 6 * pulse[:, 0] + rng.normal(size=SAMPLES))
+    assert found_in(rng, effect, 6 * pulse[:, 0] + rng.normal(size=SAMPLES))
 
 
 def test_what_the_nuisance_took_widens_a_score():
