@@ -24,7 +24,7 @@ WHITE = 1.1  # sum of squared autocorrelations: with less of it noise is called 
 KEYS = (
     "schema_version", "system", "verdict", "sentences", "causes", "misfit", "visible", "random", "residual",
     "parameters", "gain", "noise",
-    "candidates", "not_observable", "next_experiment", "unexplained", "records", "calibration", "findings",
+    "candidates", "not_tried", "not_observable", "next_experiment", "unexplained", "records", "calibration", "findings",
     "casing",
 )  # fmt: skip
 
@@ -100,6 +100,7 @@ def of_search(measurement: Measurement, evidence: Evidence, noise: NoiseLevel, j
             "estimates_agree": noise.agree,
         },
         "candidates": _candidates(judged, evidence),
+        "not_tried": list(judged.not_tried),
         "not_observable": _not_observable(found.first_scores, names, evidence),
         "next_experiment": next_experiment(names, evidence),
         "unexplained": None if judged.verdict.word == CONSISTENT else leftover(last, evidence),
