@@ -8,6 +8,7 @@ from gear_damping.explanation import gain
 from gear_damping.explanation.candidates import untried
 from gear_damping.explanation.data_faults import sentences
 from gear_damping.explanation.evidence import Evidence
+from gear_damping.explanation.homogeneity import by_record
 from gear_damping.explanation.hypothesis import Outcome
 from gear_damping.explanation.next_experiment import LARGEST_SET, confusable_beforehand, next_experiment
 from gear_damping.explanation.noise import NoiseLevel
@@ -185,6 +186,7 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
             "excess_explained": cause.share,
             "confusable_with": [*cause.confusable, *cause.effect.cause.looks_like][: LARGEST_SET - 1],
             "status": statuses(judged.verdict.word),
+            **by_record(last, cause.name, evidence),
         }
         for cause in found.accepted
     ]
@@ -197,7 +199,7 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
             share = _share(refit.outcome, found.nominal)
             listed.append(
                 {"name": refit.name, "parameters": own, "excess_explained": share, "confusable_with": alike}
-                | {"status": "suggested"}
+                | {"status": "suggested", **by_record(refit.outcome, refit.name, evidence)}
             )
     return sorted(listed, key=lambda cause: -cause["excess_explained"])
 
