@@ -57,7 +57,8 @@ def pruned(found: Search, bench: Bench) -> None:
         if bench.paired_gain(without, found.outcome)[1] < ACCEPTED_AT:
             bench.say(f"{accepted.name} is not needed beside the others")
             found.outcome = without
-            found.accepted = [other for other in found.accepted if other is not accepted]
+            left = [other for other in found.accepted if other is not accepted]
+            found.accepted = [replace(left[0], share=left[0].share + accepted.share), *left[1:]]
 
 
 def beside_the_others(cause: Accepted, found: Search, bench: Bench) -> Accepted:
