@@ -4,7 +4,6 @@ from collections.abc import Sequence
 
 from gear_damping.simulation.native.expressions import TEMPLATES, Expression, Program, Value
 
-
 # A stage's function is called, not repeated at each of its twenty places: that compiles four times faster and runs
 # as fast within 5 % (benchmarks/ times it).
 CALLED = "__attribute__((noinline)) static"

@@ -64,7 +64,7 @@ class _Watched(TorchDispatchMode):
         for tensor, array in zip(examples, inputs, strict=True):
             self._note(tensor, array)
 
-    def __torch_dispatch__(self, operation: Callable, types: object, args: tuple = (), kwargs: dict | None = None):  # noqa: ANN204
+    def __torch_dispatch__(self, operation: Callable, types: object, args: tuple = (), kwargs: dict | None = None):
         result = operation(*args, **(kwargs or {}))
         try:
             arguments, options = tree_map_only(Tensor, self.expressions, (args, kwargs or {}))
