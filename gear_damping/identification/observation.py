@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import hypot
 
 import numpy as np
 import torch
@@ -20,6 +21,7 @@ INPUTS = {
     "gear_pair": ("pinion_torque", "gear_torque", "pinion_angle"),
     "oscillator": ("force", "base_acceleration"),
 }
+GAINS = {"pinion_torque": "torque_gain", "force": "force_gain"}  # of what an input was read as
 MEANS = ("pinion_torque", "gear_torque")
 MESH_PHASE = FreeParameter("mesh_phase", 0.0)  # of a record without an index: its own; shaft effects add their phases
 
@@ -38,12 +40,16 @@ class Known:
 
 
 def known_of(measurement: Measurement) -> Known:
-    """What the measurement states of its rig."""
+    """What the measurement states of its rig; the uncertainty of an input's gain is one of what it drives."""
     stated = measurement.parameters
-    return Known(
-        {name: quantity.value for name, quantity in stated.items()},
-        {name: quantity.uncertainty for name, quantity in stated.items() if quantity.uncertainty},
-    )
+    values = {name: quantity.value for name, quantity in stated.items()}
+    uncertainty = {name: quantity.uncertainty for name, quantity in stated.items() if quantity.uncertainty}
+    for name, gain in GAINS.items():
+        relative = max((r.channels[name].uncertainty for r in measurement.records if name in r.channels), default=0.0)
+        if relative:
+            values.setdefault(gain, 1.0)
+            uncertainty[gain] = hypot(relative, uncertainty.get(gain, 0.0))
+    return Known(values, uncertainty)
 
 
 def response_names(record: Record, system: str) -> tuple[str, ...]:
@@ -77,6 +83,8 @@ def fit_record(record: Record, system: str, spring: bool = True) -> FitRecord:
     inputs = {name: _input(record, record.channels[name]) for name in INPUTS[system] if name in record.channels}
     if "pinion_speed" in record.channels and "pinion_angle" not in inputs:
         inputs["pinion_angle"] = _integrated(_input(record, record.channels["pinion_speed"]), record.sampling_rate)
+    if system == "oscillator" and "force" in record.conditions:
+        inputs["force"] = torch.full((len(record.time),), record.conditions["force"].value, dtype=torch.float64)
     known = {name: quantity.value for name, quantity in record.conditions.items() if name not in inputs}
     first, *others = [(observed, torch.as_tensor(values, dtype=torch.float64)) for observed, values in channels]
     return FitRecord(

@@ -1,5 +1,6 @@
 """Mesh stiffness as a truncated Fourier series of the rectangular wave."""
 
+from functools import cache
 from math import pi
 from typing import ClassVar
 
@@ -83,6 +84,7 @@ class FourierMeshStiffness(MeshStiffness):
         return torch.sinc(order / (self.chosen["n_harmonics"] + 1)).unsqueeze(1)
 
 
+@cache
 def _chebyshev_to_powers(degree: int) -> np.ndarray:
     """Column h holds the power coefficients of cos(h x) as a polynomial in cos(x)."""
     columns = [np.polynomial.chebyshev.cheb2poly(np.eye(degree + 1)[h]) for h in range(degree + 1)]
