@@ -7,6 +7,7 @@ Unknown units are refused: a guess would be worse.
 
 import re
 from dataclasses import dataclass
+from functools import cache
 from math import pi
 
 from gear_damping.errors import InputError, Problem, nearest
@@ -65,6 +66,7 @@ _SPELLINGS |= {"N.m": "N*m", "N m": "N*m"}
 _FACTOR = re.compile(r"^(?P<atom>[A-Za-z%]+|1)(\^(?P<power>-?\d+(\.\d+)?))?$")
 
 
+@cache
 def parse_unit(text: str, key: str = "unit", source: str = "") -> Unit:
     """The unit that `text` names, for example `um`, `N*m`, `m/s^2` or `kg*m^2`.
 

@@ -1,6 +1,7 @@
 """What explanation.json holds, as plain values."""
 
 from collections.abc import Sequence
+from math import log10
 from typing import Any
 
 from gear_damping.explanation import gain
@@ -15,11 +16,14 @@ from gear_damping.explanation.rig_units import rig_unit
 from gear_damping.explanation.significance import ac_energy
 from gear_damping.explanation.unexplained import leftover
 from gear_damping.explanation.verdict import CONSISTENT, DATA_PROBLEM, Judged, statuses
+from gear_damping.explanation.visible import Assessment
 from gear_damping.measurement.record import Finding, Measurement
 
 SCHEMA_VERSION = 1
+WHITE = 1.1  # sum of squared autocorrelations: with less of it noise is called white
 KEYS = (
-    "schema_version", "system", "verdict", "sentences", "causes", "misfit", "residual", "parameters", "gain", "noise",
+    "schema_version", "system", "verdict", "sentences", "causes", "misfit", "visible", "random", "residual",
+    "parameters", "gain", "noise",
     "candidates", "not_observable", "next_experiment", "unexplained", "records", "calibration", "findings",
     "casing",
 )  # fmt: skip
@@ -78,6 +82,8 @@ def of_search(measurement: Measurement, evidence: Evidence, noise: NoiseLevel, j
                 name: {"before": before.per_record[name], "after": after.per_record[name]} for name in before.per_record
             },
         },
+        "visible": _visible(found.seen, found.left),
+        "random": _random(found.left, evidence),
         "residual": {
             "fit": _residual(first.fit_residuals, last.fit_residuals, unit, factor),
             "holdout": _residual(first.holdout, last.holdout, unit, factor),
@@ -105,6 +111,42 @@ def of_search(measurement: Measurement, evidence: Evidence, noise: NoiseLevel, j
         },
         "findings": _findings(measurement.findings),
         "casing": None,
+    }
+
+
+def _visible(seen: Assessment | None, left: Assessment | None) -> dict[str, Any] | None:
+    """What the test of everything at once says of the nominal model, and of the one at the end."""
+    if seen is None or left is None:
+        return None
+    laws = seen.random.laws
+    return {
+        "p": {"before": seen.visible.p, "after": left.visible.p},
+        "statistic": {"before": seen.visible.statistic, "after": left.visible.statistic},
+        "limit": seen.visible.limit,
+        "largest": {"before": seen.visible.largest, "after": left.visible.largest},
+        "not_random": {"before": seen.taken, "after": left.taken},
+        "draws": seen.visible.draws,
+        "effective_blocks": seen.visible.effective_blocks,
+        "whitening": [{"order": law.order, "coefficients": law.coefficients.tolist()} for law in laws],
+        "by_name": seen.visible.by_name,
+    }
+
+
+def _random(left: Assessment | None, evidence: Evidence) -> dict[str, Any] | None:
+    """The random part of the residuals, of the fitted records' AC variance, and what it looks like."""
+    if left is None:
+        return None
+    records = evidence.fitted
+    own = [r.response - r.response.mean() for r in records]
+    spread = sum(float(r.square().sum()) for r in own) / sum(len(r) for r in own)
+    share = left.random.variance / max(spread, 1e-300)
+    order = max((law.order for law in left.random.laws), default=0)
+    looks = "white noise" if left.random.correlation < WHITE else f"coloured noise (autoregression of order {order})"
+    return {
+        "percent": 100 * share,
+        "looks_like": looks,
+        "snr_db": -10 * log10(max(share, 1e-300)),
+        "correlation": left.random.correlation,
     }
 
 

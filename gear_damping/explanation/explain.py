@@ -112,6 +112,7 @@ def explain(
         _tell(nominal, evidence, noise, say)
         found = search(nominal, evidence, noise, say, solver, found.first_fits[:1])
     step(3, STEPS)
+    noise = found.noise or noise
     before = excess(found.nominal.holdout, evidence.held, noise)
     after = excess(found.outcome.holdout, evidence.held, noise)
     one = _is_one(found, evidence)

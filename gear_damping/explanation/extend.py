@@ -1,16 +1,20 @@
 """Step 7: add what the held-out records bear out, one cause after another, then drop what is not needed."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from gear_damping.explanation.calibrate import restarted
 from gear_damping.explanation.evidence import Evidence
+from gear_damping.explanation.faint import faint_cause
 from gear_damping.explanation.hypothesis import MOST_GROWTH, Outcome
 from gear_damping.explanation.noise import NoiseLevel
 from gear_damping.explanation.pairs import Pair, best_pair, pair_instead
+from gear_damping.explanation.ranking import Score
 from gear_damping.explanation.refit import Refit, again
 from gear_damping.explanation.revise import beside_the_others, exchanged, pruned, simplified
 from gear_damping.explanation.significance import Excess, is_settled
-from gear_damping.explanation.trying import ACCEPTED_AT, Accepted, Bench, Say, Search
+from gear_damping.explanation.trying import ACCEPTED_AT, SMALL_REST, Accepted, Bench, Say, Search
+from gear_damping.explanation.visible import Assessment
 from gear_damping.simulation.solver_settings import Solver
 
 LEAST_SHARE = 0.25  # of the remaining excess that a cause must take
@@ -38,41 +42,77 @@ def search(
         solver: Settings of the solver.
         begun: Full fits to other evidence that are carried on.
     """
-    bench = Bench(evidence, noise, say, solver)
+    bench = Bench(evidence, noise, say, solver, noise)
     found = Search(nominal, nominal, first_scores=bench.ranked(nominal), failed=bench.failed)
-    ranked, first, anew = found.first_scores, bench.excess(nominal), 0
+    state = _State(bench, found.first_scores, bench.excess(nominal))
+    found.seen = _look(found, state)
+    anew = 0
     while len(found.accepted) < MOST_CAUSES:
+        bench, ranked, first = state.bench, state.ranked, state.first
         current = bench.excess(found.outcome)
-        if is_settled(current, first):
+        if found.left is not None and not found.left.visible and current.misfit <= SMALL_REST:
             break
+        if is_settled(current, first):
+            best, rivals = faint_cause(found, ranked, found.left, bench) if found.left else (None, ())
+            if best is None:
+                break
+            _accept(found, best, rivals, current, first, bench)
+            _look_again(found, state)
+            continue
         best, rivals = _next(found, ranked, current, bench, begun)
         if best is None:
             pair = None if _is_unpredictable(found, bench) else best_pair(found, current, bench)
             if pair is None or len(found.accepted) + 2 - pair.replaces > MOST_CAUSES:
                 break
             _accept_pair(found, pair, current, first, bench)
-            ranked = bench.ranked(found.outcome)
+            _look_again(found, state)
             continue
         settled = bench.without(best.outcome, best.name) if anew < MOST_ANEW else None
         if settled is not None and bench.is_as_good(settled, best.outcome):
             # The effect only led the fit out of a local minimum: it has no part in the gain.
             say(f"what {best.name} seemed to take is taken without it: the fit had not come to rest")
-            found.outcome, ranked, anew = settled, bench.ranked(settled), anew + 1
+            found.outcome, anew = settled, anew + 1
+            _look_again(found, state)
             if not found.accepted:
-                found.nominal, found.first_scores, first = settled, ranked, bench.excess(settled)
+                found.nominal, found.first_scores, found.seen = settled, state.ranked, found.left
+                state.first = state.bench.excess(settled)
             continue
         _accept(found, best, rivals, current, first, bench)
         exchanged(found, first, bench)
         pair = pair_instead(found, bench) if len(found.accepted) == 2 else None
         if pair is not None:
             _accept_pair(found, pair, first, first, bench)
-        if not is_settled(bench.excess(found.outcome), first):
-            ranked = bench.ranked(found.outcome)
+        _look_again(found, state)
+    bench = state.bench
     found.accepted = [simplified(cause, found, bench) for cause in found.accepted]
     if len(found.accepted) > 1:
         pruned(found, bench)
         found.accepted = [beside_the_others(cause, found, bench) for cause in found.accepted]
+    found.noise = bench.noise
     return found
+
+
+@dataclass
+class _State:
+    """Where a search stands: the noise as it is known, scores beside the present model, what the nominal one left."""
+
+    bench: Bench
+    ranked: Sequence[Score]
+    first: Excess
+
+
+def _look_again(found: Search, state: _State) -> None:
+    """Scores beside the present model, and what they say."""
+    state.ranked = state.bench.ranked(found.outcome)
+    _look(found, state)
+
+
+def _look(found: Search, state: _State) -> Assessment | None:
+    """What is random beside the present model and what is not; the noise follows."""
+    found.left = state.bench.assessed(found.outcome, state.ranked)
+    state.bench = state.bench.knowing(found.left)
+    state.first = state.bench.excess(found.nominal)
+    return found.left
 
 
 def _next(

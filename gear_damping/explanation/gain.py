@@ -66,7 +66,8 @@ def parameters_of(outcome: Outcome, spread: Tensor, cause: str, evidence: Eviden
             continue
         z, half = outcome.fitted.shared[place], QUANTILE * float(spread[place, place].clamp(min=0).sqrt())
         ends = sorted(float(parameter.value(z + shift)) for shift in (-half, half))
-        value, known = float(parameter.value(z)), declared[parameter.name.partition("[")[0]]
+        flat = parameter.name.partition(SEPARATOR)[0].partition("[")[0]
+        value, known = float(parameter.value(z)), declared[flat]
         moved = float(outcome.fitted.prediction.sensitivity[..., place].norm())
         silent = moved < SILENT * evidence.noise
         ends[0] = known.lower if silent or at_bound[place] < 0 else ends[0]

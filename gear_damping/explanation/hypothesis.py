@@ -204,7 +204,7 @@ def _outcome(
     scale = slowest_time(settled, evidence)
     own = [parameter for parameter in settled.free if parameter.per_record]
     given, segments = {**settled.given, **settled.gains}, evidence.segments
-    held = predict_holdout(settled.model, given, evidence.holdout, scale, solver, segments, own, begun)
+    held = predict_holdout(settled.model, given, evidence.holdout, scale, solver, segments, own, begun, evidence.noise)
     residual = joined(fitted.prediction.residual[0], evidence.fitted, evidence.segments, len(problem.channels))
     fit_residuals = [found / record.weight for found, record in zip(residual, evidence.fit, strict=True)]
     grown = max(held.growth, growth(fitted.prediction, problem.n_shared))

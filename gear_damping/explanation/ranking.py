@@ -30,7 +30,8 @@ class Score:
         start: Coordinates of its free parameters at that optimum.
         direction: Unit vector of what it would explain, nuisance projected out.
         smallest: Size of its first strength that would just be visible, in the strength's own unit.
-        columns: Orthonormal basis of what it can do beside the nuisance, (samples, n).
+        columns: Orthonormal basis of what it can do beside the nuisance, (samples, n); of an effect that is tried as
+            a whole, what it would add, with its sign.
         variants: Of an effect that is tried as a whole, its other sizes.
         failed: Why it could not be scored; empty where it could.
         own: Where phases of single records begin, by name.
@@ -75,6 +76,13 @@ class Projector:
         rows = signal[:samples].reshape(*self.own.shape[:2], -1)
         beside = torch.cat([without_own(rows, self.own).flatten(0, 1), signal[samples:]])
         return beside - self.basis @ (self.basis.T @ beside)
+
+    @property
+    def nuisance(self) -> Tensor:
+        """Orthonormal columns of everything that is taken out, (samples + n, m)."""
+        rows = torch.block_diag(*self.own)
+        rows = rows[:, rows.norm(dim=0) > 0]
+        return torch.cat([torch.nn.functional.pad(rows, (0, 0, 0, len(self.slope))), self.basis], 1)
 
     def beside_own(self, columns: Tensor) -> "Projector":
         """With columns (records, time, l) more that every record has of its own."""
@@ -197,6 +205,8 @@ def _score(candidate: Candidate, beside: Tensor, problem: OutputErrorProblem, st
     explained = beside @ coefficients
     basis, spread, _ = torch.linalg.svd(beside, full_matrices=False)
     kept = basis[:, spread > 1e-6 * spread[0]]
+    if candidate.presence:  # there is no less than nothing of it: the sign counts
+        kept = beside[:, :1] / beside[:, :1].norm()
     smallest = VISIBLE * base.noise / float(beside[:, 0].norm().clamp(min=1e-300)) * _unit(candidate)
     gain = _gain(candidate, problem, states, beside, base)
     direction = explained / explained.norm().clamp(min=1e-300)

@@ -11,6 +11,7 @@ from gear_damping.explanation.noise import NoiseLevel
 from gear_damping.explanation.ranking import Score, contains, scores
 from gear_damping.explanation.refit import Refit, block_samples, chosen, compared, refitted
 from gear_damping.explanation.significance import CLOSE, Excess, excess, paired_gain
+from gear_damping.explanation.visible import Assessment, assessed
 from gear_damping.identification.output_error.records import FreeParameter
 from gear_damping.identification.output_error.uncertainty import QUANTILE
 from gear_damping.physics.terms import Effect
@@ -61,6 +62,9 @@ class Search:
         rejected: Full fits of the last round that were not accepted.
         first_fits: Full fits of the first round, the best first.
         failed: Why an effect could not be fitted in full, by its name.
+        seen: What the residuals of the nominal model hold; None where that was not found out.
+        left: What those of the model at the end hold.
+        noise: The noise as it is known at the end.
     """
 
     nominal: Outcome
@@ -70,6 +74,9 @@ class Search:
     rejected: list[Refit] = field(default_factory=list)
     first_fits: list[Refit] = field(default_factory=list)
     failed: dict[str, str] = field(default_factory=dict)
+    seen: Assessment | None = None
+    left: Assessment | None = None
+    noise: NoiseLevel | None = None
 
     @property
     def growth(self) -> float:
@@ -87,6 +94,7 @@ class Bench:
         noise: The same in full.
         say: Told what is found on the way.
         solver: Settings of the solver.
+        floor: The noise as it was known before any residual was looked at.
         failed: Why an effect could not be fitted in full, by its name.
     """
 
@@ -94,11 +102,20 @@ class Bench:
     noise: NoiseLevel
     say: Say
     solver: Solver | None
+    floor: NoiseLevel
     failed: dict[str, str] = field(default_factory=dict)
 
     def excess(self, outcome: Outcome) -> Excess:
         """What a model leaves of the held-out records."""
         return excess(outcome.holdout, self.evidence.held, self.noise)
+
+    def assessed(self, outcome: Outcome, ranked: Sequence[Score], families: bool = True) -> Assessment | None:
+        """What the residuals of a model hold that is not random, and what is; beside families without a name or not."""
+        return assessed(outcome, ranked, self.evidence, families)
+
+    def knowing(self, seen: Assessment | None) -> "Bench":
+        """The same with the noise that an assessment found."""
+        return self if seen is None else replace(self, noise=seen.random.joined(self.floor))
 
     def ranked(self, outcome: Outcome, names: Collection[str] | None = None) -> list[Score]:
         """Every candidate beside a model, or those of some effects, the most promising first."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from gear_damping.explanation.next_experiment import LARGEST_SET
 from gear_damping.explanation.significance import Excess, is_all
 from gear_damping.explanation.trying import SMALL_REST, Accepted, Search
+from gear_damping.explanation.visible import Assessment
 from gear_damping.physics.catalogue import builtin_effects
 
 CONSISTENT, EXPLAINED, AMBIGUOUS = "consistent", "explained", "ambiguous"
@@ -50,11 +51,11 @@ def verdict(
         converged: Whether the calibration converged.
         is_one: Whether every cause has one size over all records; None where too few records tell of one.
     """
-    if not before.significant:
+    if not found.accepted and not (before.significant and (is_visible(found.seen) or before.misfit > SMALL_REST)):
         text = f"No evidence of an effect that takes more than {before.threshold:.2g} % of the signal's variance."
         return Verdict(CONSISTENT, (text,))
-    taken = (before.percent - after.percent) / before.percent
-    rest = is_all(after, before)
+    taken = _taken(found, before, after)
+    rest = is_all(after, before) or (not is_visible(found.left) and after.misfit <= SMALL_REST)
     missing = f"The simulation misses {before.percent:.3g} % of the signal's variance"
     unsettled = () if converged else ("The calibration did not converge: take the figures with care.",)
     if not found.accepted:
@@ -75,6 +76,18 @@ def verdict(
         return Verdict(PARTLY, (text, _left(taken), *_not_told_apart(confused), *unsettled))
     text = f"{missing}. {said[0].upper()}{said[1:]} would take part of it, but too much is left to name a cause."
     return Verdict(UNEXPLAINED, (text, *unsettled))
+
+
+def is_visible(seen: Assessment | None) -> bool:
+    """Whether residuals hold something that is not random; where nobody looked, they may."""
+    return seen is None or bool(seen.visible)
+
+
+def _taken(found: Search, before: Excess, after: Excess) -> float:
+    """Share of what was missing that causes take: of held-out power, or of what is not random where that is small."""
+    if before.significant or found.seen is None or found.left is None or not found.seen.taken:
+        return (before.percent - after.percent) / before.percent
+    return 1 - min(found.left.taken / found.seen.taken, 1.0)
 
 
 def statuses(word: str) -> str:

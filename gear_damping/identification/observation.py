@@ -7,6 +7,7 @@ from math import hypot
 import numpy as np
 import torch
 from scipy.interpolate import CubicSpline
+from scipy.stats import f as f_distribution
 from torch import Tensor
 
 from gear_damping.errors import InputError, Problem
@@ -23,6 +24,8 @@ INPUTS = {
 }
 GAINS = {"pinion_torque": "torque_gain", "force": "force_gain"}  # of what an input was read as
 MEANS = ("pinion_torque", "gear_torque")
+SPEED_BLOCKS = 12  # of a record, over which a measured speed is averaged
+DRIFTS_AT = 0.01  # level of the test that it does not
 MESH_PHASE = FreeParameter("mesh_phase", 0.0)  # of a record without an index: its own; shaft effects add their phases
 
 
@@ -81,11 +84,21 @@ def fit_record(record: Record, system: str, spring: bool = True) -> FitRecord:
         raise InputError(Problem(f"{record.name}.channels", rule, remedy=remedy, source=str(record.file)))
     channels = [(_observed(record, record.channels[name], spring), record.channels[name].values) for name in names]
     inputs = {name: _input(record, record.channels[name]) for name in INPUTS[system] if name in record.channels}
+    uncertain = _uncertain(record)
+    known = {name: quantity.value for name, quantity in record.conditions.items()}
     if "pinion_speed" in record.channels and "pinion_angle" not in inputs:
-        inputs["pinion_angle"] = _integrated(_input(record, record.channels["pinion_speed"]), record.sampling_rate)
+        speed = _input(record, record.channels["pinion_speed"])
+        steady = steady_speed(speed)
+        if steady is None:
+            inputs["pinion_angle"] = _integrated(speed, record.sampling_rate)
+        else:  # noise that is integrated wanders off: a mean with its error does not
+            mean, error = steady
+            known["pinion_speed"] = mean
+            own = FreeParameter("pinion_speed", mean, error, deviation=error, expected=mean)
+            uncertain = [own, *(p for p in uncertain if p.name != "pinion_speed")]
     if system == "oscillator" and "force" in record.conditions:
         inputs["force"] = torch.full((len(record.time),), record.conditions["force"].value, dtype=torch.float64)
-    known = {name: quantity.value for name, quantity in record.conditions.items() if name not in inputs}
+    known = {name: value for name, value in known.items() if name not in inputs}
     first, *others = [(observed, torch.as_tensor(values, dtype=torch.float64)) for observed, values in channels]
     return FitRecord(
         record.name,
@@ -95,7 +108,7 @@ def fit_record(record: Record, system: str, spring: bool = True) -> FitRecord:
         known | _means(inputs, record.sampling_rate),
         observed=first[0],
         others=tuple(others),
-        own=tuple(parameter for parameter in _uncertain(record) if parameter.name not in inputs),
+        own=tuple(parameter for parameter in uncertain if parameter.name not in inputs),
         stamps=None if record.uniform else _positions(record),
     )
 
@@ -141,6 +154,23 @@ def _positions(record: Record) -> Tensor:
 def _integrated(speed: Tensor, rate: float) -> Tensor:
     """Angle from speed, from 0 at the start."""
     return torch.cat([speed.new_zeros(1), ((speed[1:] + speed[:-1]) / (2 * rate)).cumsum(0)])
+
+
+def steady_speed(speed: Tensor) -> tuple[float, float] | None:
+    """Mean and standard error of a measured speed (time,) in rad/s; None where it drifts.
+
+    Means over blocks of the record scatter about one value where the speed is steady; where a parabola through them
+    takes more than chance leaves to it, the speed drifts (F test).
+    """
+    means = torch.stack([block.mean() for block in speed.tensor_split(SPEED_BLOCKS)])
+    place = torch.linspace(-1, 1, SPEED_BLOCKS, dtype=speed.dtype)
+    waves = torch.stack([place**0, place, place**2], 1)
+    left = means - waves @ torch.linalg.lstsq(waves, means.unsqueeze(1)).solution[:, 0]
+    total, rest = float((means - means.mean()).square().sum()), float(left.square().sum())
+    free, taken = SPEED_BLOCKS - 3, 2
+    if rest <= 0 or f_distribution.sf((total - rest) / taken / (rest / free), taken, free) < DRIFTS_AT:
+        return None if total > 0 else (float(means.mean()), 0.0)
+    return float(means.mean()), (total / (SPEED_BLOCKS - 1) / SPEED_BLOCKS) ** 0.5
 
 
 def _means(inputs: dict[str, Tensor], sampling_rate: float) -> dict[str, float]:

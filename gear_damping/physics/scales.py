@@ -6,7 +6,10 @@ of order one, whatever its size: solver settings then mean the same for every me
 """
 
 from dataclasses import dataclass
+from functools import reduce
+from operator import mul
 
+import torch
 from torch import Tensor
 
 from gear_damping.units import Dimension
@@ -22,7 +25,9 @@ class Scales:
 
     def unit_of(self, dimension: Dimension) -> Tensor:
         """The natural unit of a quantity of this dimension, in SI; shape (batch,)."""
-        return self.mass**dimension.mass * self.length**dimension.length * self.time**dimension.time
+        bases = ((self.mass, dimension.mass), (self.length, dimension.length), (self.time, dimension.time))
+        powers = [base if power == 1 else base**power for base, power in bases if power]
+        return reduce(mul, powers) if powers else torch.ones_like(self.mass)
 
     @property
     def velocity(self) -> Tensor:

@@ -51,11 +51,13 @@ def integrate(
     names = ["displacement", "velocity", *kernel.equation.extra_names]
     work, done = sum(n * len(lanes) for n, lanes in groups), 0
     for n, lanes in groups:
-        stepper = choice.stepper(kernel, fixed[:, lanes].contiguous(), packed[:, :, lanes].contiguous())
+        whole = len(groups) == 1
+        some = (fixed, packed) if whole else (fixed[:, lanes].contiguous(), packed[:, :, lanes].contiguous())
+        stepper = choice.stepper(kernel, *some)
         stepper.acceleration = start.new_empty(len(lanes), n_samples) if acceleration else None
         share = _share(progress, done, n * len(lanes), work)
-        found = solve(stepper, start[:, lanes], n_samples, n, share)
-        if len(groups) == 1:
+        found = solve(stepper, start if whole else start[:, lanes], n_samples, n, share)
+        if whole:
             return names, found, stepper.acceleration
         states[:, lanes] = found
         if acceleration:

@@ -2,6 +2,7 @@
 
 import ctypes
 import logging
+import multiprocessing
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from gear_damping.simulation.kernel import Kernel, Members
 from gear_damping.simulation.layout import Layout
 from gear_damping.simulation.native import build
 from gear_damping.simulation.native.expressions import Program
+from gear_damping.simulation.native.stepper import in_parallel
 from gear_damping.simulation.native.structure import structure_of
 from gear_damping.simulation.native.trace import LANES, UntraceableError, trace
 from gear_damping.simulation.series import Series
@@ -166,3 +168,16 @@ def test_what_decides_a_kernel_is_in_its_key(bench_model):
         keys.add(structure_of(Kernel(kind, Layout(prepared), Series(()), members, fixed[:2])))
     assert len(keys) == 2
     assert None not in keys
+
+
+def test_a_forked_process_does_not_wait_for_the_threads_of_its_parent():
+    def walk():
+        in_parallel(lambda share: None, [(0, 1), (1, 2)])
+
+    walk()
+    child = multiprocessing.get_context("fork").Process(target=walk, daemon=True)
+    child.start()
+    child.join(20)
+    code = child.exitcode
+    child.kill()
+    assert code == 0

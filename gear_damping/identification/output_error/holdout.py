@@ -44,6 +44,7 @@ def predict_holdout(
     segments: Segments = WHOLE,
     own: Sequence[FreeParameter] = (),
     begun: Mapping[str, float] | None = None,
+    noise: float = 0.0,
 ) -> HeldOut:
     """Predict records.
 
@@ -56,9 +57,10 @@ def predict_holdout(
         segments: How they are cut; each segment has an initial state.
         own: Parameters that every record has of its own.
         begun: Where those of single records begin, by name; angles that are not among them are tried all around.
+        noise: Standard deviation of the records' noise, against which what is expected of their own parameters counts.
     """
     pieces = in_segments(records, segments)
-    problem = OutputErrorProblem(model, given, list(own), pieces, solver)
+    problem = OutputErrorProblem(model, given, list(own), pieces, solver, noise)
     starts = torch.zeros(1, problem.n_shared, dtype=torch.float64)
     rounds = [FIRST_PERIODS * characteristic_s, None]
     known = dict(begun or {})

@@ -50,8 +50,7 @@ class FourierMeshStiffness(MeshStiffness):
         series = series * torch.sinc(order.unsqueeze(1) * values["edge"])
         coefficients = torch.cat([self.mean(values).unsqueeze(0), series])
         if self._is_short:
-            to_powers = torch.as_tensor(_chebyshev_to_powers(self.chosen["n_harmonics"]))
-            coefficients = to_powers.to(coefficients) @ coefficients
+            coefficients = _chebyshev_to_powers(self.chosen["n_harmonics"]).to(coefficients) @ coefficients
         highest = self.chosen["n_harmonics"] * base["n_teeth_pinion"] * base["pinion_speed"].abs()
         return {
             "coefficients": coefficients,
@@ -85,7 +84,8 @@ class FourierMeshStiffness(MeshStiffness):
 
 
 @cache
-def _chebyshev_to_powers(degree: int) -> np.ndarray:
+def _chebyshev_to_powers(degree: int) -> Tensor:
     """Column h holds the power coefficients of cos(h x) as a polynomial in cos(x)."""
     columns = [np.polynomial.chebyshev.cheb2poly(np.eye(degree + 1)[h]) for h in range(degree + 1)]
-    return np.stack([np.pad(column, (0, degree + 1 - len(column))) for column in columns], axis=1)
+    padded = [np.pad(column, (0, degree + 1 - len(column))) for column in columns]
+    return torch.as_tensor(np.stack(padded, axis=1))

@@ -1,9 +1,10 @@
 """The native counterpart of `Stepper`: the same walk, many intervals at a time, on every core."""
 
 import ctypes
+import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from functools import partial
+from functools import cache, partial
 from itertools import pairwise
 
 import torch
@@ -31,14 +32,13 @@ class NativeStepper(Stepper):
             raise ValueError("out must be a view of (n_state, batch, time) in memory: permute it")
         rates = self._acceleration_rows(length)
         shares = self._shares(lanes)
-        with ThreadPoolExecutor(len(shares)) as pool:
-            for first in range(0, total, BLOCK):
-                count = min(BLOCK, total - first)
-                now = None if rates is None else rates[:, first + 1 :]  # the first column is the start
-                tensors = (fixed, series, state, locked, out[first : first + count], now)
-                numbers = (first, count, substeps, length)
-                list(pool.map(partial(self._walk, lanes, numbers, tensors), shares))
-                report(first + count)
+        for first in range(0, total, BLOCK):
+            count = min(BLOCK, total - first)
+            now = None if rates is None else rates[:, first + 1 :]  # the first column is the start
+            tensors = (fixed, series, state, locked, out[first : first + count], now)
+            numbers = (first, count, substeps, length)
+            in_parallel(partial(self._walk, lanes, numbers, tensors), shares)
+            report(first + count)
 
     def _acceleration_rows(self, length: int) -> Tensor | None:
         """Where the kernel writes the acceleration, in rows as long as those of the states; None: it is not asked."""
@@ -58,3 +58,17 @@ class NativeStepper(Stepper):
         threads = max(1, min(torch.get_num_threads(), blocks))
         edges = [min(lanes, self.group * round(blocks * i / threads)) for i in range(threads + 1)]
         return [(a, b) for a, b in pairwise(edges) if b > a]
+
+
+def in_parallel(work: Callable[[tuple[int, int]], None], shares: list[tuple[int, int]]) -> None:
+    """Do the first share here and the others on threads of their own."""
+    others = [_threads(os.getpid(), len(shares) - 1).submit(work, share) for share in shares[1:]]
+    work(shares[0])
+    for other in others:
+        other.result()
+
+
+@cache
+def _threads(process: int, count: int) -> ThreadPoolExecutor:
+    """Threads that are kept from call to call; a forked process does not have its parent's."""
+    return ThreadPoolExecutor(count, thread_name_prefix=f"kernel-{process}")

@@ -1,0 +1,154 @@
+"""The statistics of an explanation against slow computations of their own, on small made-up arrays."""
+
+import numpy as np
+import pytest
+import torch
+from scipy import signal, stats
+
+from gear_damping.explanation.statistics.family_wise import Effect, Lines, block_numbers, cube_root, family_wise
+from gear_damping.explanation.statistics.whitening import autoregression
+
+SAMPLES, BLOCK = 1200, 6
+
+
+def orthonormal(rng, samples, count):
+    return torch.as_tensor(np.linalg.qr(rng.normal(size=(samples, count)))[0])
+
+
+def found_in(rng, effects, residual, **more):
+    blocks = block_numbers([SAMPLES], [BLOCK])
+    return family_wise(torch.as_tensor(residual), effects, blocks, 1.0, **more)
+
+
+def ar(rng, coefficients, samples):
+    return signal.lfilter([1.0], [1.0, *(-a for a in coefficients)], rng.normal(size=samples + 500))[500:]
+
+
+def test_nothing_is_visible_in_noise_as_often_as_the_level_says():
+    rng = np.random.default_rng(20)
+    effects = [Effect(f"e{i}", orthonormal(rng, SAMPLES, 1 + i % 4)) for i in range(30)]
+    p = np.array([found_in(rng, effects, rng.normal(size=SAMPLES), draws=400).p for _ in range(200)])
+    assert stats.kstest(p, "uniform").pvalue > 0.01
+    assert (p < 0.05).sum() <= stats.binom.ppf(0.999, 200, 0.05)
+
+
+def test_noise_whose_variance_changes_is_no_effect():
+    rng = np.random.default_rng(21)
+    effects = [Effect(f"e{i}", orthonormal(rng, SAMPLES, 2)) for i in range(20)]
+    swell = 1 + 2 * np.sin(np.arange(SAMPLES) / 150) ** 2
+    p = np.array([found_in(rng, effects, swell * rng.normal(size=SAMPLES), draws=400).p for _ in range(100)])
+    assert (p < 0.05).sum() <= stats.binom.ppf(0.999, 100, 0.05)
+
+
+@pytest.mark.parametrize("count", [1, 4])
+def test_an_effect_of_six_deviations_is_visible_and_bears_its_name(count):
+    rng = np.random.default_rng(22)
+    effects = [Effect(f"e{i}", orthonormal(rng, SAMPLES, count)) for i in range(20)]
+    hidden = 6.0 * effects[7].columns[:, 0].numpy()
+    found = found_in(rng, effects, hidden + rng.normal(size=SAMPLES))
+    assert found
+    assert found.largest == "e7"
+    assert found.shows("e7")
+
+
+def test_the_maximum_is_that_of_a_loop_over_signs():
+    rng = np.random.default_rng(23)
+    columns, residual = orthonormal(rng, SAMPLES, 3), rng.normal(size=SAMPLES)
+    found = found_in(rng, [Effect("e", columns)], residual)
+    sums = (columns.numpy() * residual[:, None]).reshape(SAMPLES // BLOCK, BLOCK, 3).sum(1)
+    signs = np.random.default_rng(24).choice([-1.0, 1.0], size=(4000, len(sums)))
+    drawn = ((signs @ sums) ** 2).sum(1)
+    p = (drawn >= (sums.sum(0) ** 2).sum()).mean()
+    assert found.p == pytest.approx(p, abs=4 * (p * (1 - p) * (1 / 2000 + 1 / 4000)) ** 0.5 + 1e-3)
+
+
+def test_a_whole_effect_counts_with_its_sign_only():
+    rng = np.random.default_rng(25)
+    column = orthonormal(rng, SAMPLES, 1)
+    there = 6.0 * column[:, 0].numpy() + rng.normal(size=SAMPLES)
+    assert found_in(rng, [Effect("e", column, one_sided=True)], there)
+    assert not found_in(rng, [Effect("e", column, one_sided=True)], -there)
+    assert found_in(rng, [Effect("e", column)], -there)
+
+
+def test_a_pulse_in_few_blocks_is_held_against_the_pooled_variance():
+    rng = np.random.default_rng(26)
+    pulse = np.zeros((SAMPLES, 1))
+    pulse[300:312, 0] = 12**-0.5
+    effect = [Effect("e", torch.as_tensor(pulse))]
+    found = [found_in(rng, effect, rng.normal(size=SAMPLES)).statistic for _ in range(300)]
+    assert stats.kstest(found, "norm").pvalue > 0.01  # signs of two blocks could give no p below a quarter
+    assert found_in(rng, effect, 6 * pulse[:, 0] + rng.normal(size=SAMPLES))
+
+
+def test_what_the_nuisance_took_widens_a_score():
+    """With a nuisance in every block signs that are flipped overstate what is left of a score."""
+    rng = np.random.default_rng(27)
+    samples, block = 240, 24
+    p = []
+    for _ in range(300):
+        nuisance = np.linalg.qr(rng.normal(size=(samples, 40)))[0]
+        column = rng.normal(size=samples)
+        column -= nuisance @ (nuisance.T @ column)
+        effect = Effect("e", torch.as_tensor(column[:, None] / np.linalg.norm(column)))
+        residual = rng.normal(size=samples)
+        residual -= nuisance @ (nuisance.T @ residual)
+        blocks = block_numbers([samples], [block // 2])
+        found = family_wise(torch.as_tensor(residual), [effect], blocks, 1.0, torch.as_tensor(nuisance), draws=400)
+        p.append(found.p)
+    assert abs((np.array(p) < 0.1).mean() - 0.1) < 3.5 * (0.09 / 300) ** 0.5
+
+
+def test_the_strongest_of_many_lines_is_chance_until_it_is_not():
+    rng = np.random.default_rng(28)
+    quiet = torch.as_tensor(rng.chisquare(6, size=200))
+    assert not found_in(rng, [], rng.normal(size=SAMPLES), lines=[Lines("line", quiet, 6.0)])
+    loud = quiet.clone()
+    loud[17] = 60.0  # p of 5e-11 for one, of 1e-8 for 200
+    assert found_in(rng, [], rng.normal(size=SAMPLES), lines=[Lines("line", loud, 6.0)]).largest == "line"
+
+
+def test_the_cube_root_is_normal():
+    values = torch.as_tensor(stats.chi2(5).ppf([0.01, 0.1, 0.5, 0.9, 0.99, 0.9999]))
+    expected = stats.norm.ppf([0.01, 0.1, 0.5, 0.9, 0.99, 0.9999])
+    tails = 0.08  # what the approximation leaves there
+    np.testing.assert_allclose(cube_root(values, 5.0, 5.0), expected, atol=tails)
+
+
+def test_blocks_stay_within_rows_and_a_short_end_joins_the_block_before():
+    numbers = block_numbers([10, 7], [4, 4])
+    assert numbers.tolist() == [0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 3, 3, 3, 3, 4, 4, 4]
+    assert block_numbers([9], [4]).tolist() == [0, 0, 0, 0, 1, 1, 1, 1, 1]
+
+
+@pytest.mark.parametrize("coefficients", [(), (0.9,), (1.6, -0.8)])
+def test_an_autoregression_is_found_from_short_rows(coefficients):
+    rng = np.random.default_rng(30)
+    rows = [torch.as_tensor(ar(rng, coefficients, 800)) for _ in range(3)]
+    found = autoregression(rows)
+    assert found.order >= len(coefficients)
+    padded = np.pad(coefficients, (0, found.order - len(coefficients)))
+    np.testing.assert_allclose(found.coefficients, padded, atol=0.12)
+    long = ar(rng, coefficients, 400_000)
+    assert found.variance == pytest.approx(long.var(), rel=0.2)
+    shares = np.correlate(long[:100_000], long[:100_000], "full")[99_999:] / (100_000 * long.var())
+    assert found.correlation == pytest.approx(2 * (shares[:200] ** 2).sum() - 1, rel=0.15)
+
+
+def test_whitened_rows_are_white_and_of_the_variance_of_the_innovations():
+    rng = np.random.default_rng(31)
+    row = torch.as_tensor(ar(rng, (1.6, -0.8), 4000))
+    law = autoregression([row])
+    white = law.whitened(row)
+    assert white[: law.order].abs().max() == 0
+    assert float(white[law.order :].var()) == pytest.approx(1.0, rel=0.1)
+    lagged = np.corrcoef(white[law.order : -1], white[law.order + 1 :])[0, 1]
+    assert abs(lagged) < 0.05
+
+
+def test_degrees_that_a_regression_took_are_given_back():
+    rng = np.random.default_rng(32)
+    values, taken = rng.normal(size=600), np.linalg.qr(rng.normal(size=(600, 120)))[0]
+    left = torch.as_tensor(values - taken @ (taken.T @ values))
+    assert autoregression([left], 120).variance == pytest.approx(1.0, rel=0.15)
+    assert autoregression([left]).variance < 0.9
