@@ -3,12 +3,17 @@
 import sys
 from collections.abc import Sequence
 
-from gear_damping.tasks.command import main
+from gear_damping.tasks.wrong_declaration import WRONG_INPUT, answered
 
 
 def entry(arguments: Sequence[str] | None = None) -> None:
     """Run the command line and end with its exit code."""
-    sys.exit(main(sys.argv[1:] if arguments is None else arguments))
+    words = sys.argv[1:] if arguments is None else arguments
+    if answered(words):
+        sys.exit(WRONG_INPUT)
+    from gear_damping.tasks.command import main
+
+    sys.exit(main(words))
 
 
 if __name__ == "__main__":

@@ -7,13 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from gear_damping.config import schema
-from gear_damping.config.locate import conf_folder
+from gear_damping.config.measured import INSPECT, MEASURED, measurement_file
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
 
-MEASURED = ("identify", "explain", "inspect")  # tasks that read a measurement
-INSPECT = "inspect"
-YAML_SUFFIXES = (".yaml", ".yml")
 _NAME = re.compile(r"^[\w][\w.-]*$")
 Found = Iterator[tuple[str, str, Any, str]]  # key, rule, value, remedy
 
@@ -78,10 +75,3 @@ def wrong_measurement(config: Mapping[str, Any]) -> Found:
 def no_file(path: Path) -> str:
     """Why there is no file at a path."""
     return "is a folder, no file" if path.is_dir() else "no such file"
-
-
-def measurement_file(text: str) -> Path:
-    """The measurement file; one that comes with the package is found from any folder."""
-    path = Path(text)
-    packaged = conf_folder().parent / path
-    return packaged if not path.exists() and text.startswith("conf/") and packaged.exists() else path

@@ -7,7 +7,7 @@ from typing import Any
 
 from gear_damping.config import schema
 from gear_damping.config.combinations import Whole, combination_problems
-from gear_damping.config.light import measurement_file
+from gear_damping.config.measured import measurement_file
 from gear_damping.config.simulator import SimulatorSettings, read_simulator
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem

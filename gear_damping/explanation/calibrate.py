@@ -1,11 +1,13 @@
 """Step 3: the nominal simulation at its best, so that wrong parameters do not masquerade as physics."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from math import ceil, cos, inf, log, pi, sin, sqrt
 
 import torch
 
+from gear_damping.errors import InputError, Problem
 from gear_damping.explanation.evidence import Evidence, with_own_angles
 from gear_damping.explanation.hypothesis import Hypothesis, Outcome, fit_hypothesis, natural_frequency_hz
 from gear_damping.identification.oscillator import (
@@ -50,8 +52,24 @@ LEAST_DAMPING = 1e-5  # of the first guess, N s/m
 
 
 def calibrated(evidence: Evidence, solver: Solver | None = None) -> Outcome:
-    """The nominal model fitted to the evidence."""
-    return _gear_pair(evidence, solver) if evidence.system == "gear_pair" else _oscillator(evidence, solver)
+    """The nominal model fitted to the evidence.
+
+    Raises:
+        InputError: with what is stated of the rig it cannot be simulated.
+    """
+    with _simulable():
+        return _gear_pair(evidence, solver) if evidence.system == "gear_pair" else _oscillator(evidence, solver)
+
+
+@contextmanager
+def _simulable() -> Iterator[None]:
+    """What is stated of a rig may be far from any that moves as was recorded."""
+    try:
+        yield
+    except torch.linalg.LinAlgError as error:
+        rule = "with what is stated of the rig and its load, the nominal simulation does not stay finite"
+        remedy = "check the values and units of parameters, torques and speeds"
+        raise InputError(Problem("parameters", rule, remedy=remedy)) from error
 
 
 def _oscillator(evidence: Evidence, solver: Solver | None) -> Outcome:
@@ -136,7 +154,8 @@ def angles_counted(evidence: Evidence, solver: Solver | None = None) -> Evidence
     if not evidence.has_index:
         return apart
     first = _first_gear_pair(apart)
-    found = _angles(first, apart, SHORT_PERIODS / natural_frequency_hz(first.model, first.given), solver)
+    with _simulable():
+        found = _angles(first, apart, SHORT_PERIODS / natural_frequency_hz(first.model, first.given), solver)
     phases = torch.tensor(list(found.values()), dtype=torch.float64)
     middle = torch.atan2(phases.sin().sum(), phases.cos().sum())
     off = torch.remainder(phases - middle + pi, 2 * pi) - pi
@@ -148,6 +167,14 @@ def _angles(hypothesis: Hypothesis, evidence: Evidence, horizon: float, solver: 
     pieces = in_segments(evidence.fit, evidence.segments)
     problem = OutputErrorProblem(hypothesis.model, hypothesis.given, hypothesis.free, pieces, solver, evidence.noise)
     return scanned(problem, torch.zeros(problem.n_shared, dtype=torch.float64), horizon, angle_bases(problem))
+
+
+def stated_frequency(evidence: Evidence) -> float:
+    """The natural frequency in Hz that follows from what the file states of the rig."""
+    if evidence.system != "gear_pair":
+        return sqrt(evidence.parameters["stiffness"]) / (2 * pi)
+    first = _first_gear_pair(evidence)
+    return natural_frequency_hz(first.model, first.given)
 
 
 def _first_gear_pair(evidence: Evidence) -> Hypothesis:

@@ -116,7 +116,7 @@ def evidence_of(measurement: Measurement) -> Evidence:
         known=known,
         channel=used[0].channels[response_names(used[0], system)[0]],
         one_record=one and len(used) == 1,
-        gear_torque_mode="held" if any("gear_torque" in r.inputs for r in fit) else next(iter(modes), "balanced"),
+        gear_torque_mode="held" if any("gear_torque" in r.conditions for r in fit) else next(iter(modes), "balanced"),
         stated_segments=Segments(measurement.segment_s, exact=True) if measurement.segment_s else WHOLE,
         has_index=all("pinion_angle" in record.inputs for record, _ in records) or system != "gear_pair",
         mesh_index=all(record.mesh_index for record in used),

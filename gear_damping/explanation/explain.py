@@ -18,6 +18,7 @@ from gear_damping.explanation.homogeneity import homogeneity
 from gear_damping.explanation.hypothesis import MOST_GROWTH, SEGMENT_TIMES, Outcome, segments_of
 from gear_damping.explanation.noise import NoiseLevel, noise_of, weighted
 from gear_damping.explanation.significance import ac_energy, excess
+from gear_damping.explanation.too_short import too_short, with_length
 from gear_damping.explanation.trying import Search
 from gear_damping.explanation.verdict import Judged, verdict
 from gear_damping.identification.decimation import decimated
@@ -87,6 +88,8 @@ def explain(
     if faults:
         return Explanation(content.of_faults(measurement, faults))
     evidence = at_useful_rate(evidence)
+    if short := too_short(evidence):
+        say(short)
     fit, holdout, noise = noise_of(evidence.fit, evidence.holdout, measurement)
     say(f"noise {noise.value / evidence.channel.declared_factor:.3g} {evidence.channel.declared_unit} ({noise.method})")
     evidence = replace(evidence, fit=weighted(fit, noise), holdout=weighted(holdout, noise), noise=noise.value)
@@ -117,7 +120,7 @@ def explain(
     before = excess(found.nominal.holdout, evidence.held, noise)
     after = excess(found.outcome.holdout, evidence.held, noise)
     one = _is_one(found, evidence)
-    said = verdict(found, before, after, found.outcome.fitted.converged, one)
+    said = with_length(verdict(found, before, after, found.outcome.fitted.converged, one), short)
     judged = Judged(found, before, after, said.with_not_tried(budget), tuple(budget.not_tried))
     step(4, STEPS)
     return Explanation(content.of_search(measurement, evidence, noise, judged), evidence, noise, found)

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import hypot
 
 import numpy as np
 import torch
@@ -21,6 +22,7 @@ INPUTS = {
     "gear_pair": ("pinion_torque", "gear_torque", "pinion_angle"),
     "oscillator": ("force", "base_acceleration"),
 }
+GAINS = {"pinion_torque": "torque_gain", "force": "force_gain"}  # of what an input was read as
 MEANS = ("pinion_torque", "gear_torque")
 SPEED_BLOCKS = 12  # of a record, over which a measured speed is averaged
 DRIFTS_AT = 0.01  # level of the test that it does not
@@ -41,12 +43,16 @@ class Known:
 
 
 def known_of(measurement: Measurement) -> Known:
-    """What the measurement states of its rig."""
+    """What the measurement states of its rig; the uncertainty of an input's gain is one of what it drives."""
     stated = measurement.parameters
-    return Known(
-        {name: quantity.value for name, quantity in stated.items()},
-        {name: quantity.uncertainty for name, quantity in stated.items() if quantity.uncertainty},
-    )
+    values = {name: quantity.value for name, quantity in stated.items()}
+    uncertainty = {name: quantity.uncertainty for name, quantity in stated.items() if quantity.uncertainty}
+    for name, gain in GAINS.items():
+        relative = max((r.channels[name].uncertainty for r in measurement.records if name in r.channels), default=0.0)
+        if relative:
+            values.setdefault(gain, 1.0)
+            uncertainty[gain] = hypot(relative, uncertainty.get(gain, 0.0))
+    return Known(values, uncertainty)
 
 
 def response_names(record: Record, system: str) -> tuple[str, ...]:
@@ -90,6 +96,8 @@ def fit_record(record: Record, system: str, spring: bool = True) -> FitRecord:
             known["pinion_speed"] = mean
             own = FreeParameter("pinion_speed", mean, error, deviation=error, expected=mean)
             uncertain = [own, *(p for p in uncertain if p.name != "pinion_speed")]
+    if system == "oscillator" and "force" in record.conditions:
+        inputs["force"] = torch.full((len(record.time),), record.conditions["force"].value, dtype=torch.float64)
     known = {name: value for name, value in known.items() if name not in inputs}
     first, *others = [(observed, torch.as_tensor(values, dtype=torch.float64)) for observed, values in channels]
     return FitRecord(

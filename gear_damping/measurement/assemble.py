@@ -37,7 +37,7 @@ class Assembler:
         with self.problems.collecting():
             self._from_encoders(raw, channels, notes, findings)
         self._give_mean(raw, channels, notes)
-        conditions = self._conditions(raw, channels, notes)
+        conditions = self._conditions(raw, channels, findings)
         if raw.complete and len(self.problems) == before:
             self._torque_settled(raw, channels, conditions)
         if not raw.complete or len(self.problems) > before:
@@ -81,9 +81,7 @@ class Assembler:
     ) -> None:
         """The pinion angle, and the transmission error where both shafts are measured."""
         shaft = raw.angles.get("pinion", raw.angles.get("tacho"))
-        if shaft is not None and "pinion_angle" in channels:
-            notes.append("pinion_angle: the channel is used, not the one under encoders")
-        elif shaft is not None:
+        if shaft is not None and "pinion_angle" not in channels:
             datum = "absolute" if raw.plan.mesh_index else "arbitrary"
             channels["pinion_angle"] = Channel("pinion_angle", raw.base.resample(shaft), "rad", datum=datum)
         if not {"pinion", "gear"} <= {*raw.angles} or "transmission_error" in channels:
@@ -113,12 +111,16 @@ class Assembler:
             channels["pinion_speed"] = replace(speed, values=values)
             notes.append("pinion_speed: its mean is the one under conditions")
 
-    def _conditions(self, raw: RawRecord, channels: dict[str, Channel], notes: list[str]) -> dict[str, Quantity]:
-        """A channel beats a condition of the same name."""
+    def _conditions(
+        self, raw: RawRecord, channels: dict[str, Channel], findings: list[Finding]
+    ) -> dict[str, Quantity]:
+        """A channel beats a condition of the same name, which is said."""
         kept = {}
         for name, quantity in raw.plan.conditions.items():
             if name in channels and not _mean_lost(channels[name]):
-                notes.append(f"{name}: the channel is used, not the value under conditions")
+                stated = f"{quantity.value:.6g} {quantity.unit}"
+                message = f"the channel {name} is used, not the {stated} under conditions"
+                findings.append(Finding("not_used", message, channel=name, severity="note"))
                 continue
             kept[name] = quantity
             if self.plan.system == "oscillator":

@@ -139,6 +139,23 @@ class Torque(Input):
     refused: ClassVar[Reasons] = _input_reasons("declare parameters.torque_offset with its uncertainty")
 
 
+class GearTorque(Delayed, Ranged):
+    """The torque on the gear in N*m."""
+
+    title: ClassVar[str] = "the gear's torque"
+    si: ClassVar[str | None] = "N*m"
+    is_input: ClassVar[bool] = True
+    refused: ClassVar[Reasons] = Frozen(
+        {
+            **_input_reasons("leave it out"),
+            "uncertainty": (
+                "an uncertain gain is fitted of the pinion's torque meter alone, because only one of the two shows",
+                "declare it for pinion_torque",
+            ),
+        }
+    )
+
+
 class Force(Input):
     """A force in any unit."""
 
@@ -146,11 +163,20 @@ class Force(Input):
     refused: ClassVar[Reasons] = _input_reasons("leave it out: a constant force is allowed for beside any input")
 
 
-class BaseAcceleration(Input):
+class BaseAcceleration(Delayed, Ranged):
     """The acceleration of the base."""
 
     title: ClassVar[str] = "the acceleration of the base"
-    refused: ClassVar[Reasons] = _input_reasons("leave it out: a constant force is allowed for beside any input")
+    is_input: ClassVar[bool] = True
+    refused: ClassVar[Reasons] = Frozen(
+        {
+            **_input_reasons("leave it out: a constant force is allowed for beside any input"),
+            "uncertainty": (
+                "only the ratio of the gains of base and response shows",
+                "declare the uncertainty of the response's gain",
+            ),
+        }
+    )
 
 
 _ANGLE = "an angle says where the shaft stands"
@@ -186,6 +212,19 @@ class Speed(Response):
         if self.datum == "absolute":
             rule = "what is compared of a speed is its fluctuation, whose zero is always arbitrary"
             refuse(rule, self.datum, "leave it out", "datum")
+        return self
+
+
+class GearSpeed(Speed):
+    """The speed of the gear."""
+
+    title: ClassVar[str] = "the speed of the gear"
+
+    @model_validator(mode="after")
+    def _uncoupled(self) -> "GearSpeed":
+        if self.coupling == "AC":
+            rule = "what is compared of this speed is its fluctuation, whatever its coupling"
+            refuse(rule, self.coupling, "leave it out; the corner of an AC coupling is a highpass", "coupling")
         return self
 
 

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.clipping import clipped_at
+from gear_damping.measurement.not_compared import not_compared
 from gear_damping.measurement.record import Channel, Finding, Record
 from gear_damping.measurement.shaft_check import LARGEST_TRANSMISSION_ERROR, check_shafts
 from gear_damping.measurement.stamp_check import stamps_against_values
@@ -37,7 +38,7 @@ def check_record(record: Record) -> tuple[Finding, ...]:
         found += [_constant(channel) or _clipped(channel) or _straight_lines(channel)]
     if not any(finding.severity == "data_problem" and finding.channel == "time" for finding in record.findings):
         found.append(stamps_against_values(record))
-    found += [_magnitude(record), *check_shafts(record), _oversampled(record)]
+    found += [_magnitude(record), *check_shafts(record), *not_compared(record), _oversampled(record)]
     return tuple(replace(finding, record=record.name) for finding in found if finding)
 
 

@@ -4,6 +4,7 @@ from collections.abc import Callable, Collection, Iterator
 
 from gear_damping.errors import Problem
 from gear_damping.measurement import layout
+from gear_damping.measurement.all_records import given, inconsistencies_of_all
 from gear_damping.measurement.structure import names
 
 _OSCILLATOR_RESPONSES = ("displacement", "velocity", "acceleration")
@@ -25,7 +26,7 @@ def inconsistencies(file: layout.AnyFile, wrong: Collection[int]) -> list[Proble
         rules = _GEAR if gear else _OSCILLATOR
         problems += [problem for rule in rules for problem in rule(_Seen(file, record, f"records[{k}]"))]
     if not wrong and not problems:
-        problems += [*_compared(records), *_inputs_of_all(records), *_gain_of_nothing(file, records)]
+        problems += inconsistencies_of_all(file, records)
     return problems
 
 
@@ -34,9 +35,9 @@ class _Seen:
 
     def __init__(self, file: layout.AnyFile, record: layout.AnyRecord, key: str) -> None:
         self.file, self.record, self.key = file, record, key
-        self.channels = _given(record.channels)
-        self.conditions = _given(record.conditions)
-        self.encoders = _given(getattr(record, "encoders", None))
+        self.channels = given(record.channels)
+        self.conditions = given(record.conditions)
+        self.encoders = given(getattr(record, "encoders", None))
 
     @property
     def both_encoders(self) -> bool:
@@ -63,10 +64,6 @@ class _Seen:
     def problem(self, at: str, rule: str, remedy: str) -> Problem:
         """A problem of the record's `at`."""
         return Problem(f"{self.key}.{at}", rule, None, remedy)
-
-
-def _given(model: object) -> dict[str, object]:
-    return {} if model is None else {name: getattr(model, name) for name in names(type(model)) if model.given(name)}
 
 
 def _something_measured(seen: _Seen) -> Found:
@@ -135,6 +132,23 @@ def _speed_has_its_mean(seen: _Seen) -> Found:
         yield seen.problem(f"channels.pinion_speed.{at}", rule, "give the mean as conditions.pinion_speed")
 
 
+def _angle_twice(seen: _Seen) -> Found:
+    """An encoder or tacho of the pinion that would give nothing but the angle that a channel gives."""
+    for name in ("pinion", "tacho"):
+        if name in seen.encoders and "pinion_angle" in seen.channels and not (name == "pinion" and seen.both_encoders):
+            rule = "has no meaning beside channels.pinion_angle, which it would give"
+            yield seen.problem(f"encoders.{name}", rule, "keep one of the two")
+
+
+def _speed_of_known_gain(seen: _Seen) -> Found:
+    """A speed that is no response gives the angle, whose scale is not fitted."""
+    speed = seen.channels.get("pinion_speed")
+    if speed is not None and seen.error and speed.given("uncertainty"):
+        rule = "has no meaning beside a transmission error: the pinion's speed gives the angle, as it was read"
+        remedy = "leave it out; a speed that is known to so much is conditions.pinion_speed with its uncertainty"
+        yield seen.problem("channels.pinion_speed.uncertainty", rule, remedy)
+
+
 def _encoder_beside_a_channel(seen: _Seen) -> Found:
     if "gear" in seen.encoders and "transmission_error" in seen.channels:
         rule = "has no meaning beside channels.transmission_error, which it would give"
@@ -162,38 +176,8 @@ def _frame_without_base(seen: _Seen) -> Found:
 
 _GEAR: tuple[Callable[[_Seen], Found], ...] = (
     _something_measured, _gear_response, _gear_angle, _gear_load, _shaft_needs_inertia, _speed_as_an_angle,
-    _speed_has_its_mean, _encoder_beside_a_channel, _reference,
+    _speed_has_its_mean, _encoder_beside_a_channel, _angle_twice, _speed_of_known_gain, _reference,
 )  # fmt: skip
 _OSCILLATOR: tuple[Callable[[_Seen], Found], ...] = (
     _something_measured, _oscillator_response, _frame_without_base, _reference,
 )  # fmt: skip
-
-
-def _compared(records: list) -> Found:
-    if records and all(record.role == "reference" for _, record in records):
-        rule = "every record is a reference, and none is there to be compared with them"
-        yield Problem("records", rule, None, "leave out the role of the others")
-
-
-def _inputs_of_all(records: list) -> Found:
-    """An input that some records have and others lack was there and not measured, or is zero and not said."""
-    for name in ("force", "base_acceleration"):
-        have = [name in _given(record.channels) or name in _given(record.conditions) for _, record in records]
-        if not any(have):
-            continue
-        first = records[have.index(True)][0]
-        for (k, _), has in zip(records, have, strict=True):
-            if not has:
-                rule = f"the record lacks the {name} that records[{first}] has"
-                remedy = f"declare its {name}, or leave the record out"
-                if name == "force":
-                    remedy = "declare its force; where there was none, conditions: {force: {value: 0, unit: …}}"
-                yield Problem(f"records[{k}].channels", rule, None, remedy)
-
-
-def _gain_of_nothing(file: layout.AnyFile, records: list) -> Found:
-    driven = any("force" in {*_given(record.channels), *_given(record.conditions)} for _, record in records)
-    gain = getattr(file.parameters, "force_gain", None)
-    if records and not driven and gain is not None:
-        rule, remedy = "has no meaning where no record has a force", "declare the force, or leave it out"
-        yield Problem("parameters.force_gain", rule, gain.value, remedy)

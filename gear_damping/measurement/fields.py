@@ -185,12 +185,14 @@ class Measured(Value):
         sign: `positive`, `not negative`, `not zero` or `any`.
         uncertain: Whether a relative `uncertainty` has a meaning.
         whole: Whether it is a count.
+        within: Smallest and largest value that makes sense, in `unit`; beyond them a unit is wrong.
     """
 
     unit: str | None
     sign: str = "positive"
     uncertain: bool = False
     whole: bool = False
+    within: tuple[float, float] | None = None
 
     def keys(self) -> tuple[str, ...]:
         """The keys of the mapping."""
@@ -200,6 +202,7 @@ class Measured(Value):
         """The unit and the range."""
         units = {"1": "a number or `{value}`", "own": "in the rig's own unit", None: "in a unit of the channel's kind"}
         bounds = [self.sign] if self.sign != "any" else []
+        bounds += [self._range] if self.within else []
         return ", ".join([units.get(self.unit, f"in `{self.unit}`"), *bounds, *(["whole"] if self.whole else [])])
 
     def read(self, value: Any, name: str) -> Any:
@@ -263,8 +266,6 @@ class Measured(Value):
             refuse("must not be negative", number)
         if self.sign == "not zero" and number == 0:
             refuse("must not be 0", number)
-        if self.whole and number != round(number):
-            refuse("must be a whole number", number)
         if found.uncertainty and number == 0:
             rule = "an uncertainty is relative, and there is nothing to relate it to where the value is 0"
             refuse(rule, found.uncertainty, "state a value, or leave the uncertainty out", "uncertainty")
@@ -272,7 +273,20 @@ class Measured(Value):
             if found.unit != "own" or self.unit is None:
                 parse_unit(found.unit, "unit")
             return found
-        return Quantity(to_si(number, found.unit, self.unit, ""), self.unit, found.uncertainty)
+        return self._in_range(Quantity(to_si(number, found.unit, self.unit, ""), self.unit, found.uncertainty), found)
+
+    def _in_range(self, quantity: Quantity, found: Quantity) -> Quantity:
+        """The quantity in SI, refused where it is no count or nothing that a rig has."""
+        if self.whole and quantity.value != round(quantity.value):
+            refuse("must be a whole number", f"{found.value:g} {found.unit}")
+        if self.within and not self.within[0] <= quantity.value <= self.within[1]:
+            refuse(f"lies outside {self._range}", f"{found.value:g} {found.unit}", "check the value and its unit")
+        return quantity
+
+    @property
+    def _range(self) -> str:
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        return f"{self.within[0]:g} to {self.within[1]:g}{unit}"
 
 
 @dataclass(frozen=True)

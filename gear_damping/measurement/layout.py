@@ -107,14 +107,14 @@ class GearChannels(c.Timed):
     title: ClassVar[str] = "a gear_pair"
     transmission_error: c.TransmissionError = key("r_b1 theta_1 - r_b2 theta_2, closing positive.", "response")
     pinion_torque: c.Torque = key("Driving torque.", "load")
-    gear_torque: Annotated[c.Torque, Word(*GEAR_TORQUE_MODES)] = key(
+    gear_torque: Annotated[c.GearTorque, Word(*GEAR_TORQUE_MODES)] = key(
         "Load, positive where it resists; or `balanced` (it follows the pinion's torque) or `held`.", "load"
     )
     pinion_angle: c.Angle = key("Angle of the pinion; may wrap.", "angle of the shafts")
     pinion_speed: c.Speed = key(
         "Speed of the pinion.", "angle of the shafts; response where no transmission error is declared"
     )
-    gear_speed: c.Speed = key("Speed of the gear.", "response")
+    gear_speed: c.GearSpeed = key("Speed of the gear.", "response")
     acceleration: c.GearAcceleration = key("An accelerometer.", "response, or findings of a casing")
 
 

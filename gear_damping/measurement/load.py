@@ -6,10 +6,11 @@ What reads and assembles data is imported where data is read, so that a YAML alo
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import replace
+from math import pi
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gear_damping.errors import Problem
+from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.declaration import declared_plan
 from gear_damping.measurement.fields import Problems
 from gear_damping.measurement.own_units import UnitSystem
@@ -80,7 +81,8 @@ def load_measurement(path: str | Path, max_bytes: int | None = None) -> Measurem
     records = [assembler.record(record, names[record.plan.key]) for record in raw]
     problems.raise_any()
     parameters = {**plan.parameters, **own}
-    return Measurement(plan.system, parameters, _compared(records), path.resolve(), plan.segment_s)
+    _refuse_unseen_spring(parameters.get("stiffness"), records, source)
+    return Measurement(plan.system, parameters, _compared(_free(records)), path.resolve(), plan.segment_s)
 
 
 def _units(plan: Plan) -> Iterable[tuple[str, str | None, str]]:
@@ -136,6 +138,24 @@ def _names(plans: tuple[RecordPlan, ...], problems: Problems, source: str) -> di
         alone = stems[stem] == 1 and stem not in given
         names[plan.key] = plan.name or (stem if alone else f"{stem}_{seen[stem]}")
     return names
+
+
+def _refuse_unseen_spring(stiffness: Quantity | None, records: list[Record], source: str) -> None:
+    """An oscillator's stated spring makes it swing at a frequency that its records can show."""
+    stated = (stiffness.value if stiffness else 0.0) ** 0.5 / (2 * pi)
+    highest = max(record.sampling_rate for record in records) / 2
+    if stated > highest:
+        rule = f"a natural frequency of {stated:.4g} Hz, and these records show nothing beyond {highest:.4g} Hz"
+        remedy = "check its unit: it is the stiffness over the mass, in 1/s^2"
+        raise InputError(Problem("parameters.stiffness", rule, stiffness.value, remedy, source))
+
+
+def _free(records: list[Record]) -> list[Record]:
+    """Free decays, where all that the file says of a force is that there was none."""
+    forces = [record.conditions.get("force") for record in records]
+    if any(force is None or force.value for force in forces):
+        return records
+    return [replace(r, conditions={n: q for n, q in r.conditions.items() if n != "force"}) for r in records]
 
 
 def _compared(records: list[Record]) -> tuple[Record, ...]:

@@ -31,32 +31,46 @@ class GearParameters(Declared):
     """Nominal values of a gear pair."""
 
     title: ClassVar[str] = "a gear_pair"
-    n_teeth_pinion: Annotated[Quantity, Measured("1", whole=True)] = key("Teeth of the pinion.", "known")
-    n_teeth_gear: Annotated[Quantity, Measured("1", whole=True)] = key("Teeth of the gear.", "known")
-    module: Annotated[Quantity, Measured("m", uncertain=True)] = key("Module of the teeth.", _KNOWN)
-    pressure_angle: Annotated[Quantity, Measured("rad", uncertain=True)] = key("Pressure angle.", _KNOWN)
-    inertia_pinion: Annotated[Quantity, Measured("kg*m^2", uncertain=True)] = key("Inertia of the pinion.", _KNOWN)
-    inertia_gear: Annotated[Quantity, Measured("kg*m^2", uncertain=True)] = key("Inertia of the gear.", _KNOWN)
-    mesh_stiffness_max: Annotated[Quantity, Measured("N/m", uncertain=True)] = key(
+    n_teeth_pinion: Annotated[Quantity, Measured("1", whole=True, within=(5, 500))] = key(
+        "Teeth of the pinion.", "known"
+    )
+    n_teeth_gear: Annotated[Quantity, Measured("1", whole=True, within=(5, 1000))] = key(
+        "Teeth of the gear.", "known"
+    )
+    module: Annotated[Quantity, Measured("m", uncertain=True, within=(1e-4, 0.1))] = key(
+        "Module of the teeth.", _KNOWN
+    )
+    pressure_angle: Annotated[Quantity, Measured("rad", uncertain=True, within=(0.1, 0.7))] = key(
+        "Pressure angle.", _KNOWN
+    )
+    inertia_pinion: Annotated[Quantity, Measured("kg*m^2", uncertain=True, within=(1e-9, 1e4))] = key(
+        "Inertia of the pinion.", _KNOWN
+    )
+    inertia_gear: Annotated[Quantity, Measured("kg*m^2", uncertain=True, within=(1e-9, 1e5))] = key(
+        "Inertia of the gear.", _KNOWN
+    )
+    mesh_stiffness_max: Annotated[Quantity, Measured("N/m", uncertain=True, within=(0, 1e14))] = key(
         "Mesh stiffness with the larger number of tooth pairs in contact.", _START
     )
-    mesh_stiffness_min: Annotated[Quantity, Measured("N/m", uncertain=True)] = key(
+    mesh_stiffness_min: Annotated[Quantity, Measured("N/m", uncertain=True, within=(0, 1e14))] = key(
         "Mesh stiffness with the smaller number.", _START
     )
-    contact_ratio: Annotated[Quantity, Measured("1", uncertain=True)] = key("Contact ratio.", _START)
+    contact_ratio: Annotated[Quantity, Measured("1", uncertain=True, within=(1, 2))] = key("Contact ratio.", _START)
     damping_ratio: Annotated[Quantity, Measured("1", "not negative", uncertain=True)] = key(
         "Viscous damping ratio of the mesh.", _START
     )
-    equivalent_mass: Annotated[Quantity, Measured("kg", uncertain=True)] = key(
+    equivalent_mass: Annotated[Quantity, Measured("kg", uncertain=True, within=(0, 1e5))] = key(
         "Mass along the line of action, instead of the two inertias.", _KNOWN
     )
-    backlash_gap: Annotated[Quantity, Measured("m", "not negative", uncertain=True)] = key(
+    backlash_gap: Annotated[Quantity, Measured("m", "not negative", uncertain=True, within=(0, 0.01))] = key(
         "Whole clearance between the flanks; 0 means none.", _START
     )
-    torque_gain: Annotated[Quantity, Measured("1", "not zero", uncertain=True)] = key(
+    torque_gain: Annotated[Quantity, Measured("1", "not zero", uncertain=True, within=(-1e3, 1e3))] = key(
         "True torque = torque_gain * read + torque_offset.", _KNOWN
     )
-    torque_offset: Annotated[Quantity, Measured("N*m", "any", uncertain=True)] = key("See torque_gain.", _KNOWN)
+    torque_offset: Annotated[Quantity, Measured("N*m", "any", uncertain=True, within=(-1e6, 1e6))] = key(
+        "See torque_gain.", _KNOWN
+    )
 
     @model_validator(mode="after")
     def _one_mass(self) -> "GearParameters":
@@ -119,4 +133,4 @@ class OscillatorConditions(Declared):
     """What was constant in a record of an oscillator."""
 
     title: ClassVar[str] = "an oscillator"
-    force: Annotated[Quantity, Measured(None, "any", uncertain=True)] = key("Constant force.", "load")
+    force: Annotated[Quantity, Measured(None, "any")] = key("Constant force, beside records with another.", "load")

@@ -15,7 +15,8 @@ from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
 from gear_damping.tasks import sweep
 from gear_damping.tasks.composed import choices_of, plain, problems_of
-from gear_damping.tasks.dispatch import INTERRUPTED_CODE, OK, WRONG_INPUT, run_job, say_problems
+from gear_damping.tasks.dispatch import INTERRUPTED_CODE, OK, run_job
+from gear_damping.tasks.wrong_declaration import WRONG_INPUT, say_problems, start_logging
 
 _codes: list[int] = []
 _CHOOSING = {"task", "experiment", "measurement", "measurement.path"}  # what decides which measurement is read
@@ -23,7 +24,7 @@ _CHOOSING = {"task", "experiment", "measurement", "measurement.path"}  # what de
 
 def main(arguments: Sequence[str]) -> int:
     """Run the command; returns its exit code."""
-    logging.basicConfig(level=logging.INFO, format="%(message)s", stream=sys.stderr)
+    start_logging()
     if {"--help", "-h"} & set(arguments):
         print(help_text())
         return OK

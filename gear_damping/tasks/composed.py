@@ -5,7 +5,6 @@ answered before, and task=inspect does without it.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,13 +16,15 @@ from omegaconf.errors import OmegaConfBaseException
 
 from gear_damping.config.command_line import parse
 from gear_damping.config.folders import unusable
-from gear_damping.config.light import INSPECT, MEASURED, YAML_SUFFIXES, light_problems, measurement_file
+from gear_damping.config.light import light_problems
 from gear_damping.config.locate import conf_folder, groups
+from gear_damping.config.measured import INSPECT, MEASURED, declares, measurement_file
 from gear_damping.config.schema import ELSEWHERE
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.load import check_declaration
 from gear_damping.tasks.own_effects import errors_in, plugins_of
+from gear_damping.tasks.wrong_declaration import PATH, placed
 
 
 def composed(overrides: Sequence[str]) -> tuple[dict[str, Any], Origin]:
@@ -75,14 +76,11 @@ def _problems_of_measurement(config: Mapping[str, Any], origin: Origin, declared
     problems = light_problems(config, origin)
     path = (config.get("measurement") or {}).get("path")
     file = measurement_file(path) if isinstance(path, str) else None
-    declares = file is not None and file.is_file() and (task != INSPECT or file.suffix.lower() in YAML_SUFFIXES)
     try:
-        if declared and declares:
+        if declared and file is not None and declares(file, task):
             check_declaration(file)
     except InputError as error:
-        key = "measurement.path"
-        found = [replace(p, source=origin.of(key)) if p.key == key and not p.source else p for p in error.problems]
-        return problems + found
+        return problems + placed(error, origin.of(PATH))
     return problems if task == INSPECT else []
 
 

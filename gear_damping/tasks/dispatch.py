@@ -10,17 +10,19 @@ from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Any
 
-from gear_damping.config.light import INSPECT, InspectSettings, read_inspect_settings
+from gear_damping.config.light import InspectSettings, read_inspect_settings
+from gear_damping.config.measured import INSPECT
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
 from gear_damping.tasks.own_effects import errors_in, plugins_of
 from gear_damping.tasks.run_folder import FAILED, FINISHED, INTERRUPTED, RunFolder
+from gear_damping.tasks.wrong_declaration import WRONG_INPUT, say_problems
 
 if TYPE_CHECKING:
     from gear_damping.config.settings import Settings
 
 log = logging.getLogger("gear_damping")
-OK, WRONG_INPUT, INTERRUPTED_CODE = 0, 1, 130
+OK, INTERRUPTED_CODE = 0, 130
 
 
 def run_job(config: Mapping[str, Any], origin: Origin, folder: Path) -> int:
@@ -105,12 +107,6 @@ def _not_written(error: OSError, folder: Path) -> Problem:
 def task_of(settings: "Settings | InspectSettings") -> Callable[[Any, RunFolder], dict[str, Any]]:
     """The function that does the task."""
     return import_module(f"gear_damping.tasks.{settings.task}").run
-
-
-def say_problems(error: InputError) -> None:
-    """Every problem, one a line."""
-    count = len(error.problems)
-    log.error("%s\n%s", "This cannot run:" if count == 1 else f"This cannot run, {count} problems:", error)
 
 
 def _interrupt(number: int, frame: FrameType | None) -> None:

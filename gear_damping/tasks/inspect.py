@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from gear_damping.config.light import YAML_SUFFIXES, InspectSettings
+from gear_damping.config.light import InspectSettings
+from gear_damping.config.measured import YAML_SUFFIXES
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.column_kinds import CONSTANT
 from gear_damping.measurement.formats.registry import read_table

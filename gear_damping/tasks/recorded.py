@@ -15,7 +15,8 @@ from gear_damping.simulation.inspect import forces_of
 from gear_damping.simulation.runs import Runs
 
 UNITS = {"transmission_error": "m", "pinion_torque": "N*m", "gear_torque": "N*m", "pinion_angle": "rad"}
-OWN_UNITS = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s^2", "force": "N"}
+OWN_UNITS = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s^2", "force": "N",
+             "base_acceleration": "m/s^2"}  # fmt: skip
 FROM_THE_MESH = {"mesh_stiffness_max": "maximum", "mesh_stiffness_min": "minimum", "contact_ratio": "contact_ratio"}
 Channels = dict[str, Tensor]
 

@@ -2,38 +2,38 @@
 
 import copy
 import json
-from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 from unittest.mock import patch
 
 import numpy as np
 import pytest
+from declared_keys import another, declared_keys, holder
 
 from gear_damping.errors import InputError
 from gear_damping.measurement import layout
-from gear_damping.measurement.fields import Column, Flag, Measured, Number, OneOf, Rows, Text, Value
+from gear_damping.measurement.fields import Value
 from gear_damping.measurement.load import check_declaration, load_measurement
-from gear_damping.measurement.structure import Declared, inner_model, kind_of, names
+from gear_damping.measurement.structure import inner_model, kind_of, names
 from gear_damping.measurement.vocabulary import CHANNEL_MODELS
 
 N = 128
 RATE = 1000.0
 COLUMNS = ("t", "a", "b", "c", "d", "e", "f", "p", "g", "z", "wave", "tide", "ts", "pulses", "marks")
-OTHER_UNIT = {"m": "mm", "N*m": "mN*m", "rad": "mrad", "rad/s": "mrad/s", "m/s^2": "mm/s^2", "s": "min", "Hz": "1/min",
-              "V": "mV", "kg*m^2": "kg*mm^2", "kg": "gram", "1": "%", "1/s^2": "1/ms^2", "1/s": "1/ms",
-              "m/s": "mm/s", "N": "mN", "m/s^2/N": "mm/s^2/N", "mm": "m", "mN*m": "N*m"}  # fmt: skip
 # What cannot be another value in a file that is right: said why, and what the answer must hold.
 REFUSED = {
     ("gear_pair", "system"): "unknown key",
     ("oscillator", "system"): "no meaning for an oscillator|unknown key|is missing|lacks",
     ("gear_pair", "records", "channels", "pinion_speed", "datum"): "always arbitrary",
     ("gear_pair", "records", "channels", "gear_speed", "datum"): "always arbitrary",
+    ("gear_pair", "records", "channels", "gear_speed", "coupling"): "whatever its coupling",
     ("oscillator", "records", "channels", "displacement", "frame"): "drifts away",
     ("oscillator", "records", "channels", "velocity", "frame"): "drifts away",
     ("gear_pair", "records", "channels", "acceleration", "mounting"): "no meaning on a casing",
     ("gear_pair", "records", "encoders", "pinion", "index"): "turns of",
     ("gear_pair", "records", "encoders", "gear", "index"): "turns of",
+    **{("gear_pair", "parameters", name, "unit"): "lies outside|must be a whole number"
+       for name in ("module", "pressure_angle", "n_teeth_pinion", "n_teeth_gear", "contact_ratio")},
 }
 # Where the next value of the kind would be refused beside the others.
 CHOSEN = {
@@ -74,6 +74,7 @@ def _channel(system: str, name: str, column: str, **more: object) -> dict:
         "coupling": "DC", "noise": {"value": 0.01, "unit": unit},
     }  # fmt: skip
     known = names(CHANNEL_MODELS[system][name])
+    full |= {"uncertainty": 0.0} if name == "force" else {}  # without a stated force_gain it has no meaning
     return {key: value for key, value in full.items() if key in known} | more
 
 
@@ -93,6 +94,9 @@ def _oscillator(channels: dict, **record: object) -> dict:
             "records": [base | record | {"channels": timed | channels}]}  # fmt: skip
 
 
+IN_RANGE = {"stiffness": 2.0, "module": 0.01, "pressure_angle": 0.3, "contact_ratio": 1.5, "backlash_gap": 1e-3}
+
+
 def _without(mapping: dict, *keys: str) -> dict:
     return {key: value for key, value in mapping.items() if key not in keys}
 
@@ -102,7 +106,7 @@ def _parameters(system: str, *left_out: str) -> dict:
     found = {}
     for name, info in model.items():
         kind, unit = kind_of(info), {"own": "m/s^2/N"}.get(kind_of(info).unit, kind_of(info).unit)
-        value = {"value": 20.0, "unit": unit} | ({"uncertainty": 0.05} if kind.uncertain else {})
+        value = {"value": IN_RANGE.get(name, 20.0), "unit": unit} | ({"uncertainty": 0.05} if kind.uncertain else {})
         found[name] = value
     found |= {"mesh_stiffness_min": {"value": 9.0, "unit": "N/m", "uncertainty": 0.05}} if system == "gear_pair" else {}
     return _without(found, *left_out)
@@ -167,7 +171,11 @@ def _bases() -> list[dict]:
     casing = {key: casing[key] for key in ("column", "unit", "gain", "range", "mounting")}
     reference["records"][0]["channels"]["acceleration"] = casing
     windowed = {"window": {"from": 0.01, "to": 0.1, "unit": "s"}, "resample": {"value": 400.0, "unit": "Hz"}}
-    force = {"force": {"value": 3.0, "unit": "N", "uncertainty": 0.1}}
+    force = _oscillator(motion("displacement", "a"), conditions={"force": {"value": 3.0, "unit": "N"}})
+    force["records"].append(force["records"][0] | {"name": "two", "conditions": {"force": {"value": 0, "unit": "N"}}})
+    two = _gear(error)
+    two["records"].append(two["records"][0] | {"name": "two"})
+    gained = motions | motion("force", "d", uncertainty=0.01)
     own = {"time": {"column": "ts", "unit": "s"}}, {"sampling_rate": {"value": 999.0, "unit": "Hz"}}
     sensor = _gear(error | tangential)
     for name in ("transmission_error", "acceleration"):
@@ -185,61 +193,17 @@ def _bases() -> list[dict]:
         plain, worded, rate_inside, rate_outside, reference, oscillator_rate, oscillator_outside,
         _gear(error, slice=[0, 100]), _oscillator(motions, slice=[0, 100]),
         _gear(error, **windowed), _oscillator(motions, **windowed),
-        _oscillator(motion("displacement", "a"), conditions=force),
+        force, two,
         _gear(error) | {"parameters": _parameters("gear_pair", "equivalent_mass")},
         _gear(error) | {"parameters": _parameters("gear_pair", "inertia_pinion", "inertia_gear")},
-        _oscillator(motions | motion("force", "d")) | {"parameters": _parameters("oscillator", "damping_ratio")},
-        _oscillator(motions | motion("force", "d")) | {"parameters": _parameters("oscillator", "damping_coefficient")},
+        _oscillator(gained) | {"parameters": _parameters("oscillator", "damping_ratio")},
+        _oscillator(gained) | {"parameters": _parameters("oscillator", "damping_coefficient")},
         turning(counts), turning(stamped), turning(with_index), turning({"tacho": tacho}), turning({"tacho": tacho_at}),
     ]  # fmt: skip
 
 
 def _dated(speeds: dict) -> dict:
     return {name: speed | {"datum": "arbitrary"} for name, speed in speeds.items()}
-
-
-def declared_keys() -> Iterator[tuple[tuple[str, ...], Value, str]]:
-    """Path of every key that the declarations hold, its kind, and the inner key of a quantity."""
-    for system, model in layout.FILES.items():
-        yield from _keys((system,), model)
-
-
-def _keys(path: tuple[str, ...], model: type[Declared]) -> Iterator[tuple[tuple[str, ...], Value, str]]:
-    for name, info in names(model).items():
-        inner, kind = inner_model(info), kind_of(info)
-        if inner is not None:
-            yield from _keys((*path, name), inner)
-            continue
-        for part in kind.keys() or ("",):
-            yield (*path, name, part) if part else (*path, name), kind, part
-
-
-def _holder(content: dict, path: tuple[str, ...]) -> dict | None:
-    """The mapping that holds the last key of a path in the first record; None where it is not there."""
-    for part in path[:-1]:
-        content = content.get(part) if isinstance(content, dict) else None
-        content = content[0] if isinstance(content, list) else content
-    return content if isinstance(content, dict) and path[-1] in content else None
-
-
-def _another(value: object, kind: Value, part: str) -> object:
-    """Another value of the same kind."""
-    if part == "unit" or (isinstance(kind, Text) and value in OTHER_UNIT):
-        return OTHER_UNIT[value]
-    if part == "order":
-        return 4
-    if isinstance(kind, OneOf):
-        return kind.choices[kind.choices.index(value) - 1]
-    if isinstance(kind, Column):
-        return "f" if value in "abcdegpz" else {"wave": "tide", "ts": "t", "t": "ts", "pulses": "marks"}[value]
-    if isinstance(kind, Rows):
-        return [value[0] + 1, value[1]]
-    if isinstance(kind, Flag):
-        return not value
-    if isinstance(kind, Text):
-        return {"data.npz": "other.npz"}.get(value, f"{value}x")
-    assert isinstance(kind, Number | Measured)
-    return round(1.1 * value) if isinstance(kind, Measured) and kind.whole else 0.95 * value
 
 
 def _told(content: dict, folder: Path, planned: bool = False) -> str:
@@ -282,7 +246,7 @@ KEYS = list(declared_keys())
 
 @pytest.mark.parametrize(("path", "kind", "part"), KEYS, ids=[".".join(path) for path, _, _ in KEYS])
 def test_another_value_of_a_key_changes_what_is_loaded_or_is_refused(path, kind, part, folder):
-    bases = [base for base in BASES if base["system"] == path[0] and _holder(base, path[1:])]
+    bases = [base for base in BASES if base["system"] == path[0] and holder(base, path[1:])]
     assert bases, f"no file of this test holds {'.'.join(path)}: write one that does"
     outcomes = [_outcome(base, path, _another_at(base, path, kind, part), folder) for base in bases[:1]]
     for base in bases[1:]:
@@ -295,13 +259,13 @@ def test_another_value_of_a_key_changes_what_is_loaded_or_is_refused(path, kind,
 
 
 def _another_at(base: dict, path: tuple[str, ...], kind: Value, part: str) -> object:
-    return CHOSEN.get(path[1:]) or _another(_holder(base, path[1:])[path[-1]], kind, part)
+    return CHOSEN.get(path[1:]) or another(holder(base, path[1:])[path[-1]], kind, part)
 
 
 def _outcome(base: dict, path: tuple[str, ...], value: object, folder: Path) -> bool | str:
     """Whether the value changes what is loaded, or why it is refused."""
     changed, planned = copy.deepcopy(base), path[1:] in PLANNED
-    _holder(changed, path[1:])[path[-1]] = value
+    holder(changed, path[1:])[path[-1]] = value
     try:
         return _told(changed, folder, planned) != _told(base, folder, planned)
     except InputError as error:

@@ -83,3 +83,40 @@ def test_a_sweep_over_measurements_is_not_refused_for_its_first(tmp_path):
     assert last.startswith("codes [1] ")
     assert "unknown key" in said
     assert (tmp_path / "out" / "1" / "measurement.yaml").exists()
+
+
+def entered(words):
+    """What a fresh process says of a command, its exit code, and whether it has imported Hydra."""
+    code = f"""
+import sys
+from gear_damping.__main__ import entry
+try:
+    entry({words!r})
+except SystemExit as stop:
+    print("code", stop.code, "hydra", "hydra" in sys.modules)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, check=True)
+    return done.stdout.splitlines()[-1], done.stderr
+
+
+def test_a_wrong_yaml_is_answered_before_hydra_is_imported(wrong):
+    path, (_, said, _) = wrong
+    last, early = entered(["task=explain", f"measurement.path={path}"])
+    assert last == "code 1 hydra False"
+    assert early == f"This cannot run, {said.split('This cannot run, ')[1]}"  # what the whole configuration says too
+
+
+@pytest.mark.parametrize(
+    ("word", "also"), [("sede=3", "sede"), ("--cfgg", "--cfgg"), ("hydra.run.dir={}/run", "hydra.run.dir")]
+)
+def test_what_else_is_wrong_beside_a_wrong_yaml_is_said_too(wrong, word, also):
+    last, said = entered(["task=explain", f"measurement.path={wrong[0]}", word.format(wrong[0])])
+    assert last == "code 1 hydra True"
+    assert also in said
+
+
+def test_a_file_that_is_no_yaml_names_the_command_line_as_its_source(tmp_path):
+    (tmp_path / "b.yaml").write_bytes(b"system: \xff\xfe\n")
+    last, said = entered(["task=explain", f"measurement.path={tmp_path / 'b.yaml'}"])
+    assert last == "code 1 hydra False"
+    assert f"(from command line: measurement.path={tmp_path / 'b.yaml'})" in said
