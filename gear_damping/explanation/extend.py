@@ -142,7 +142,7 @@ def _is_unpredictable(found: Search, bench: Bench) -> bool:
 
 def _accept(found: Search, best: Refit, rivals: tuple[str, ...], current: Excess, first: Excess, bench: Bench) -> None:
     found.outcome = bench.at_rest(best.outcome)
-    share = (current.percent - bench.excess(found.outcome).percent) / max(first.percent, 1e-300)
+    share = min((current.percent - bench.excess(found.outcome).percent) / max(first.percent, 1e-300), 1.0)
     found.accepted.append(Accepted(best.name, best, share, rivals))
     bench.say(f"{best.name} takes {100 * share:.1f} % of the excess on held-out records")
 

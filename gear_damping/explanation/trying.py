@@ -117,8 +117,13 @@ class Bench:
         return assessed(outcome, ranked, self.evidence, families)
 
     def knowing(self, seen: Assessment | None) -> "Bench":
-        """The same with the noise that an assessment found."""
-        return self if seen is None else replace(self, noise=seen.random.joined(self.floor))
+        """The same with the noise that an assessment found: the random part, where nothing else is left.
+
+        Beside something that is visible the random part takes in what no column follows, and is no noise yet.
+        """
+        if seen is None or seen.visible:
+            return replace(self, noise=self.floor)
+        return replace(self, noise=seen.random.joined(self.floor))
 
     def ranked(self, outcome: Outcome, names: Collection[str] | None = None) -> list[Score]:
         """Every candidate beside a model, or those of some effects, the most promising first."""
