@@ -9,7 +9,7 @@ from torch import Tensor
 from gear_damping.explanation.candidates import Candidate
 from gear_damping.explanation.hypothesis import Outcome, begun_from
 from gear_damping.identification.output_error.least_squares import own_basis, without_own
-from gear_damping.identification.output_error.problem import OutputErrorProblem
+from gear_damping.identification.output_error.problem import OutputErrorProblem, prepare_predictions
 from gear_damping.identification.output_error.records import DIFFERENCE, SEPARATOR, FreeParameter
 from gear_damping.simulation.solver_settings import Solver
 
@@ -133,7 +133,10 @@ def scores(
     beside = project(residual.unsqueeze(1))[:, 0]
     base = Base(outcome, project, residual, beside, _predicted(outcome), noise, solver)
     found: list[Score] = []
-    for group in _alike(candidates, len(residual)):
+    groups = _alike(candidates, len(residual))
+    hypotheses = [group[0].hypothesis for group in groups]
+    prepare_predictions([(h.model, h.given) for h in hypotheses], outcome.problem.records, solver)
+    for group in groups:
         found += _score_together(group, base)
         if report:
             report(len(found), len(candidates))

@@ -21,6 +21,7 @@ from gear_damping.simulation.native.expressions import Program
 from gear_damping.simulation.native.stepper import in_parallel
 from gear_damping.simulation.native.structure import structure_of
 from gear_damping.simulation.native.trace import LANES, UntraceableError, trace
+from gear_damping.simulation.prepare import Planned, prepare_kernels
 from gear_damping.simulation.series import Series
 from gear_damping.simulation.simulate import simulate
 from gear_damping.simulation.solver_settings import Solver
@@ -198,3 +199,26 @@ def test_models_with_nearly_as_many_harmonics_share_a_kernel(bench_model, monkey
     monkeypatch.setattr(build, "known", None)
     assert torch.equal(response(0.02, 0.01, 0.01, 0.0), first)
     assert not torch.equal(response(0.02, 0.01, 0.01, 0.01), first)
+
+
+@pytest.mark.usefixtures("compiler")
+def test_kernels_prepared_together_serve_their_simulations(bench_model, monkeypatch, tmp_path):
+    model, values = bench_model
+    others = [Model(model.system, [*model.effects, effect_class(name)()]) for name in ("cubic_stiffness", "load_noise")]
+    monkeypatch.setenv("GEAR_DAMPING_CACHE", str(tmp_path))
+    monkeypatch.setattr(compilation, "_libraries", {})
+    given = [other.values(2) | values(2) for other in others]
+    inputs = {"pinion_torque": torch.full((2, 5), 150.0, dtype=torch.float64)}
+    plans = [Planned(*both, tuple(inputs)) for both in zip(others, given, strict=True)]
+    prepare_kernels([*plans, plans[0]])
+    assert len(list(tmp_path.glob("kernels/*.so"))) == 2
+    monkeypatch.setattr(compilation, "_build", None)
+    for other, own in zip(others, given, strict=True):
+        simulate(other, own, sampling_rate=40e3, n_samples=5, inputs=inputs)
+
+
+def test_an_engine_without_kernels_prepares_none(bench_model, monkeypatch):
+    model, values = bench_model
+    monkeypatch.setattr(compilation, "_build", None)
+    monkeypatch.setattr(compilation, "_libraries", {})
+    prepare_kernels([Planned(model, values(2))], Solver(engine="eager"))

@@ -19,6 +19,7 @@ from gear_damping.identification.output_error.records import (
 )
 from gear_damping.physics.model import Model
 from gear_damping.physics.terms import Sensor
+from gear_damping.simulation.prepare import Planned, prepare_kernels
 from gear_damping.simulation.runs import Runs, effect_state_units
 from gear_damping.simulation.series import continued
 from gear_damping.simulation.simulate import natural_units, simulate
@@ -413,6 +414,21 @@ class OutputErrorProblem:
             if record:
                 reach[:, 0, place] = torch.tensor([float(one.record == record) for one in self.records])
         return reach
+
+
+def prepare_predictions(
+    models: Sequence[tuple[Model, Mapping[str, float]]], records: Sequence[FitRecord], solver: Solver | None = None
+) -> None:
+    """Compile what problems of these models need, on every core at once.
+
+    Args:
+        models: The simulators with their known parameters, as for `OutputErrorProblem`.
+        records: What they will be fitted to.
+        solver: Settings of the solver.
+    """
+    driven = {tuple(sorted(record.inputs)) for record in records}
+    known = [(model, {k: v for k, v in given.items() if _is_of_model(k)}) for model, given in models]
+    prepare_kernels([Planned(model, model.values(1, **g), names) for model, g in known for names in driven], solver)
 
 
 def growth(prediction: Prediction, n_shared: int) -> float:
