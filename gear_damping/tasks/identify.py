@@ -10,7 +10,7 @@ import torch
 from gear_damping.config.settings import Settings
 from gear_damping.errors import InputError, Problem
 from gear_damping.identification.lightning_module import load_estimator
-from gear_damping.identification.observation import fit_record, known_of, require_alike
+from gear_damping.identification.observation import fit_record, known_of, require_alike, require_fitted
 from gear_damping.identification.oscillator import Estimate, OscillatorFit, fit_oscillator
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import Segments
@@ -59,6 +59,7 @@ def _refuse_faults(measurement: Measurement) -> None:
 
 
 def _by_output_error(settings: Settings, measurement: Measurement, folder: RunFolder) -> dict[str, Any]:
+    require_fitted(measurement)
     known = known_of(measurement)
     spring = known.values.get("stiffness", 1.0) != 0
     roles = {
