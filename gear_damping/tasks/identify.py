@@ -18,6 +18,7 @@ from gear_damping.measurement.load import load_measurement
 from gear_damping.measurement.record import Channel, Measurement, Record
 from gear_damping.reporting import figures, tables
 from gear_damping.tasks import statements
+from gear_damping.tasks.identify_gears import by_nominal_model
 from gear_damping.tasks.lack_of_fit import lack_of_fit, sentence
 from gear_damping.tasks.progress import progress_bar
 from gear_damping.tasks.run_folder import RunFolder
@@ -33,9 +34,7 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     if settings.checkpoint is not None:
         return _by_network(settings, measurement, folder)
     if measurement.system != "oscillator":
-        rule = "a gear record is identified by a trained network or explained"
-        remedy = "give checkpoint=…/best.ckpt, or choose task=explain"
-        raise InputError(Problem("checkpoint", rule, remedy=remedy, source=str(measurement.source)))
+        return by_nominal_model(settings, measurement, folder)
     return _by_output_error(settings, measurement, folder)
 
 
