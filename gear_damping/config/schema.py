@@ -44,6 +44,7 @@ SCHEMA: dict[str, Any] = {
     "data_folder": Key("text"),
     "progress": Key("bool"),
     "ruled_out": Key("names", optional=True),
+    "explain": {"minutes": Key("float", 0, 1e6, exclusive=True)},
     "write_measurement": Key("bool"),
     "protocol": {
         "name": Key("text", choices=("by_run", "paper", "paper_many_runs")),

@@ -26,6 +26,7 @@ class Settings:
     data_folder: Path
     progress: bool
     ruled_out: tuple[str, ...]
+    explain_minutes: float
     write_measurement: bool
     simulator: SimulatorSettings
     protocol: dict[str, Any]
@@ -74,6 +75,7 @@ def read_settings(config: Mapping[str, Any], origin: Origin) -> Settings:
         data_folder=Path(config["data_folder"]),
         progress=config["progress"],
         ruled_out=tuple(config["ruled_out"] or ()),
+        explain_minutes=float(config["explain"]["minutes"]),
         write_measurement=config["write_measurement"],
         simulator=simulator,
         protocol=dict(config["protocol"]),

@@ -8,6 +8,7 @@ from gear_damping.explanation import gain
 from gear_damping.explanation.candidates import untried
 from gear_damping.explanation.data_faults import sentences
 from gear_damping.explanation.evidence import Evidence
+from gear_damping.explanation.homogeneity import by_record
 from gear_damping.explanation.hypothesis import Outcome
 from gear_damping.explanation.next_experiment import LARGEST_SET, confusable_beforehand, next_experiment
 from gear_damping.explanation.noise import NoiseLevel
@@ -24,7 +25,7 @@ WHITE = 1.1  # sum of squared autocorrelations: with less of it noise is called 
 KEYS = (
     "schema_version", "system", "verdict", "sentences", "causes", "misfit", "visible", "random", "residual",
     "parameters", "gain", "noise",
-    "candidates", "not_observable", "next_experiment", "unexplained", "records", "calibration", "findings",
+    "candidates", "not_tried", "not_observable", "next_experiment", "unexplained", "records", "calibration", "findings",
     "casing",
 )  # fmt: skip
 
@@ -100,6 +101,7 @@ def of_search(measurement: Measurement, evidence: Evidence, noise: NoiseLevel, j
             "estimates_agree": noise.agree,
         },
         "candidates": _candidates(judged, evidence),
+        "not_tried": list(judged.not_tried),
         "not_observable": _not_observable(found.first_scores, names, evidence),
         "next_experiment": next_experiment(names, evidence),
         "unexplained": None if judged.verdict.word == CONSISTENT else leftover(last, evidence),
@@ -184,6 +186,7 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
             "excess_explained": cause.share,
             "confusable_with": [*cause.confusable, *cause.effect.cause.looks_like][: LARGEST_SET - 1],
             "status": statuses(judged.verdict.word),
+            **by_record(last, cause.name, evidence),
         }
         for cause in found.accepted
     ]
@@ -196,7 +199,7 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
             share = _share(refit.outcome, found.nominal)
             listed.append(
                 {"name": refit.name, "parameters": own, "excess_explained": share, "confusable_with": alike}
-                | {"status": "suggested"}
+                | {"status": "suggested", **by_record(refit.outcome, refit.name, evidence)}
             )
     return sorted(listed, key=lambda cause: -cause["excess_explained"])
 

@@ -2,9 +2,11 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from math import inf
 from typing import Any
 
 from gear_damping.explanation import content
+from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.calibrate import angles_counted, calibrated, recalibrated
 from gear_damping.explanation.calibration_error import calibration_error
 from gear_damping.explanation.casing.content import CasingStudy, explain_casing
@@ -59,6 +61,7 @@ def explain(
     report: Callable[[int, int], None] | None = None,
     solver: Solver | None = None,
     library: Mapping[str, type[Effect]] | None = None,
+    minutes: float = inf,
 ) -> Explanation:
     """Explain a measurement.
 
@@ -68,11 +71,12 @@ def explain(
         report: Told (done, total) steps.
         solver: Settings of the solver.
         library: Effects that may be causes, by name; the whole catalogue where absent.
+        minutes: Time of the search; when it is over, the best verdict so far says what was not tried.
 
     Raises:
         InputError: a record lacks the channel that its system is explained from.
     """
-    step = report or (lambda done, total: None)
+    step, budget = report or (lambda done, total: None), Budget(minutes)
     faults = data_faults(measurement)
     if faults:
         return Explanation(content.of_faults(measurement, faults))
@@ -102,7 +106,7 @@ def explain(
     found = Search(nominal, nominal)
     is_lost = is_lost_by(nominal, evidence)
     if evidence.segments or (nominal.growth <= MOST_GROWTH and not is_lost):
-        found = search(nominal, evidence, noise, say, solver)
+        found = search(nominal, evidence, noise, say, solver, budget=budget)
     if not evidence.segments and (is_lost or found.growth > MOST_GROWTH):
         evidence = replace(evidence, segments=segments_of(nominal.hypothesis, evidence))
         why = "the nominal model loses a record" if is_lost else "an error of the initial state grows"
@@ -110,14 +114,14 @@ def explain(
         nominal = recalibrated(nominal, evidence, solver)
         noise = replace(noise, scatter=calibration_error(nominal, evidence, solver))
         _tell(nominal, evidence, noise, say)
-        found = search(nominal, evidence, noise, say, solver, found.first_fits[:1])
+        found = search(nominal, evidence, noise, say, solver, found.first_fits[:1], budget)
     step(3, STEPS)
     noise = found.noise or noise
     before = excess(found.nominal.holdout, evidence.held, noise)
     after = excess(found.outcome.holdout, evidence.held, noise)
     one = _is_one(found, evidence)
-    answer = with_length(verdict(found, before, after, found.outcome.fitted.converged, one), short)
-    judged = Judged(found, before, after, answer)
+    said = with_length(verdict(found, before, after, found.outcome.fitted.converged, one), short)
+    judged = Judged(found, before, after, said.with_not_tried(budget), tuple(budget.not_tried))
     step(4, STEPS)
     return Explanation(content.of_search(measurement, evidence, noise, judged), evidence, noise, found)
 

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.calibrate import restarted
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.faint import faint_cause
@@ -31,6 +32,7 @@ def search(
     say: Say,
     solver: Solver | None = None,
     begun: Sequence[Refit] = (),
+    budget: Budget | None = None,
 ) -> Search:
     """Extend the nominal model until nothing significant is missing or nothing more is borne out.
 
@@ -41,13 +43,14 @@ def search(
         say: Told what is found on the way.
         solver: Settings of the solver.
         begun: Full fits to other evidence that are carried on.
+        budget: The time that it may take.
     """
-    bench = Bench(evidence, noise, say, solver, noise)
+    bench = Bench(evidence, noise, say, solver, noise, budget=budget or Budget())
     found = Search(nominal, nominal, first_scores=bench.ranked(nominal), failed=bench.failed)
     state = _State(bench, found.first_scores, bench.excess(nominal))
     found.seen = _look(found, state)
     anew = 0
-    while len(found.accepted) < MOST_CAUSES:
+    while len(found.accepted) < MOST_CAUSES and not (found.accepted and state.bench.budget.refuses("further causes")):
         bench, ranked, first = state.bench, state.ranked, state.first
         current = bench.excess(found.outcome)
         if found.left is not None and not found.left.visible and current.misfit <= SMALL_REST:
@@ -165,6 +168,8 @@ def _first_fits(found: Search, current: Excess, bench: Bench, begun: Sequence[Re
     fits = [again(refit, found.nominal, bench.evidence, bench.solver) for refit in begun]
     for place in ("shaped", "unshaped") if current.misfit < BENT else ("unshaped", "shaped"):
         begin, ranked = found.nominal, found.first_scores
+        if place == "unshaped" and bench.budget.refuses("effects from before the shape of the stiffness was fitted"):
+            continue
         if place == "unshaped":
             begin = restarted(bench.evidence, bench.solver)
             if begin is None:

@@ -27,7 +27,8 @@ def faint_cause(
     for score in ranked:
         best.setdefault(score.candidate.name, score)
     names = sorted((n for n in best if seen.visible.shows(n)), key=lambda n: -seen.visible.by_name[n])[:FULL_FITS]
-    fits = [bench.full_fit(best[name], found.outcome) for name in names if best[name].gain > 0]
+    names = [name for name in names if best[name].gain > 0 and not bench.budget.refuses(name)]
+    fits = [bench.full_fit(best[name], found.outcome) for name in names]
     worth = [fit for fit in fits if fit is not None and _is_worth(fit, found.outcome, seen, bench)]
     found.rejected = [fit for fit in fits if fit is not None]
     if not found.first_fits:

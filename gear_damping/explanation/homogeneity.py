@@ -5,6 +5,7 @@ condition. Cochran (1954), Biometrics 10: the statistic Q, with a tolerance for 
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import torch
 from scipy.stats import chi2
@@ -12,8 +13,10 @@ from torch import Tensor
 
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Outcome, time_scale
+from gear_damping.explanation.statistics.random_effects import spread_between, statistic
 from gear_damping.identification.output_error.least_squares import own_basis, without_own
 
+Z95 = 1.959964  # standard errors of a 95 % interval
 TOLERANCE = 0.15  # of the strength: what a real cause may differ by between records
 LEVEL = 0.05  # of the test
 FEWEST = 3  # records or segments with a share of the information
@@ -63,11 +66,32 @@ def homogeneity(outcome: Outcome, cause: str, evidence: Evidence) -> Homogeneity
     block = max(4, round(BLOCK_TIMES * time_scale(outcome.hypothesis, evidence) * evidence.sampling_rate))
     errors = torch.stack([_error(columns[:, k], residual, block) for k in kept])
     estimates, errors = 1 + shift / strength, errors / abs(strength)
-    variance = errors.square() + TOLERANCE**2
-    mean = (estimates / variance).sum() / (1 / variance).sum()
-    statistic = float(((estimates - mean).square() / variance).sum())
-    p = float(chi2.sf(statistic, len(kept) - 1))
-    return Homogeneity(tuple(names[k] for k in kept), tuple(estimates.tolist()), tuple(errors.tolist()), p)
+    found = tuple(estimates.tolist()), tuple(errors.tolist())
+    p = float(chi2.sf(statistic(*found, TOLERANCE), len(kept) - 1))
+    return Homogeneity(tuple(names[k] for k in kept), *found, p)
+
+
+def by_record(outcome: Outcome, cause: str, evidence: Evidence) -> dict[str, Any]:
+    """The same as plain values: the first strength by record with 95 % intervals, and how much it differs."""
+    test = homogeneity(outcome, cause, evidence)
+    name = next(p.name for p in outcome.problem.free if p.name.startswith(cause + "."))
+    size = outcome.values[name]
+    rows = [
+        {"record": record, "value": size * one, "interval95": sorted(size * (one + s * Z95 * error) for s in (-1, 1))}
+        for record, one, error in zip(test.names, test.estimates, test.errors, strict=True)
+    ]
+    spread = spread_between(test.estimates, test.errors) if test.testable else None
+    return {
+        "per_record": rows,
+        "homogeneous": {
+            "parameter": name,
+            "tau_percent": spread and 100 * spread.value,
+            "interval95": spread and [100 * end for end in spread.interval95],
+            "p": test.p,
+            "tolerance": TOLERANCE,
+            "testable": test.testable,
+        },
+    }
 
 
 def _groups(outcome: Outcome) -> tuple[Tensor, list[str]]:

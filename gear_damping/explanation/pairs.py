@@ -8,6 +8,7 @@ from gear_damping.explanation.refit import Refit
 from gear_damping.explanation.significance import Excess
 from gear_damping.explanation.trying import ACCEPTED_AT, Bench, Search
 
+PAIRS = "pairs of effects"
 BASES = 3  # effects from which a second one is sought
 SECONDS = 4  # that are fitted in full beside each
 HALF = 0.5  # of what the first cause took by itself, for a rival to be a base
@@ -31,6 +32,8 @@ class Pair:
 
 def best_pair(found: Search, current: Excess, bench: Bench) -> Pair | None:
     """The pair that held-out records like best beside what was accepted, or in its place; None without one."""
+    if bench.budget.refuses(PAIRS):
+        return None
     beside = _bases([fit for fit in found.rejected if fit.is_seen_in_fit], found)
     pairs = [Pair(fit, second, False) for fit in beside for second in _seconds(fit, found, bench)]
     pairs += _instead(found, bench) if len(found.accepted) == 1 else []
@@ -42,6 +45,8 @@ def pair_instead(found: Search, bench: Bench) -> Pair | None:
 
     A first cause that only resembles what is there leads the second astray, and both stand in for two others.
     """
+    if bench.budget.refuses(PAIRS):
+        return None
     return _accepted(_instead(found, bench), bench.excess(found.outcome), bench)
 
 
@@ -87,6 +92,7 @@ def _seconds(base: Refit, found: Search, bench: Bench) -> list[Refit]:
     names = list(best)[:SECONDS]
     simpler = (bench.evidence.library[name].cause.simpler for name in names)
     names += [name for name in simpler if name in best and name not in names]
+    names = [name for name in names if not bench.budget.refuses(f"{base.name} with {name}")]
     fits = (bench.full_fit(best[name], base.outcome, found.outcome) for name in names)
     kept = [fit for fit in fits if fit is not None and fit.outcome.fitted.cost < base.outcome.fitted.cost]
     return [bench.converged(fit, found.outcome) for fit in kept]

@@ -86,6 +86,8 @@ class Projector:
 
     def beside_own(self, columns: Tensor) -> "Projector":
         """With columns (records, time, l) more that every record has of its own."""
+        if not columns.shape[-1]:
+            return self
         return Projector(torch.cat([self.sensitivity, columns], -1), self.expected, self.slope)
 
 

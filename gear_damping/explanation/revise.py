@@ -16,6 +16,8 @@ def exchanged(found: Search, first: Excess, bench: Bench) -> None:
     does no worse in its place is its rival.
     """
     for place, cause in enumerate(found.accepted[:-1]):
+        if bench.budget.refuses(f"other effects in the place of {cause.name}"):
+            return
         before = found.outcome
         without = bench.without(before, cause.name)
         fits = bench.full_fits(bench.ranked(without), without, before, PROMISE)
@@ -55,7 +57,8 @@ def pruned(found: Search, bench: Bench) -> None:
         if bench.paired_gain(without, found.outcome)[1] < ACCEPTED_AT:
             bench.say(f"{accepted.name} is not needed beside the others")
             found.outcome = without
-            found.accepted = [other for other in found.accepted if other is not accepted]
+            left = [other for other in found.accepted if other is not accepted]
+            found.accepted = [replace(left[0], share=left[0].share + accepted.share), *left[1:]]
 
 
 def beside_the_others(cause: Accepted, found: Search, bench: Bench) -> Accepted:
@@ -64,6 +67,8 @@ def beside_the_others(cause: Accepted, found: Search, bench: Bench) -> Accepted:
     rivals = [name for name in cause.confusable if name not in named]
     if not rivals:
         return replace(cause, confusable=())
+    if bench.budget.refuses(f"rivals of {cause.name} beside the others"):
+        return cause
     without = bench.without(found.outcome, cause.name)
     best: dict[str, Score] = {}
     for score in bench.ranked(without, rivals):

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field, replace
 
+from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.candidates import candidates_for, restored
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.gain import spread_of
@@ -96,6 +97,7 @@ class Bench:
         solver: Settings of the solver.
         floor: The noise as it was known before any residual was looked at.
         failed: Why an effect could not be fitted in full, by its name.
+        budget: The time that is left.
     """
 
     evidence: Evidence
@@ -104,6 +106,7 @@ class Bench:
     solver: Solver | None
     floor: NoiseLevel
     failed: dict[str, str] = field(default_factory=dict)
+    budget: Budget = field(default_factory=Budget)
 
     def excess(self, outcome: Outcome) -> Excess:
         """What a model leaves of the held-out records."""
@@ -138,6 +141,8 @@ class Bench:
             return []
         fits: list[Refit] = []
         for score in chosen(ranked, promise):
+            if self.budget.refuses(score.candidate.name):
+                continue
             most = max((outcome.fitted.cost - fit.outcome.fitted.cost for fit in fits), default=0.0)
             fit = self.full_fit(score, outcome, against, LEAST_TAKEN * most) if score.gain > 0 else None
             if fit is None and score.gain > 0:

@@ -1,8 +1,9 @@
 """Step 10: one word for what was found, and a sentence that says it."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.next_experiment import LARGEST_SET
 from gear_damping.explanation.significance import Excess, is_all
 from gear_damping.explanation.trying import SMALL_REST, Accepted, Search
@@ -28,15 +29,24 @@ class Verdict:
     word: str
     sentences: tuple[str, ...]
 
+    def with_not_tried(self, budget: Budget) -> "Verdict":
+        """The same with what there was no time for."""
+        if not budget.not_tried:
+            return self
+        missing = ', '.join(budget.not_tried)
+        said = f"The {budget.minutes:g} minutes of the search were over before these were tried: {missing}."
+        return replace(self, sentences=(*self.sentences, said))
+
 
 @dataclass(frozen=True)
 class Judged:
-    """A search with what it leaves and what it is called."""
+    """A search with what it leaves, what it is called, and what there was no time for."""
 
     found: Search
     before: Excess
     after: Excess
     verdict: Verdict
+    not_tried: tuple[str, ...] = ()
 
 
 def verdict(

@@ -1,5 +1,6 @@
 """What the effects that turn with a shaft have in common."""
 
+from collections.abc import Sequence
 from typing import ClassVar
 
 import torch
@@ -84,6 +85,16 @@ def wave_rate(turn: Rotation, p: Values) -> Tensor:
     return turn.speed * (p["quadrature"] * turn.cos - p["in_phase"] * turn.sin)
 
 
+def periodic(turn: Rotation, in_phase: Tensor, quadrature: Tensor) -> Tensor:
+    """A periodic function of an angle, by Clenshaw's recurrence; lists as for `harmonics`."""
+    return _periodic(turn, in_phase.unbind(0), quadrature.unbind(0))
+
+
+def _periodic(turn: Rotation, in_phase: Sequence[Tensor], quadrature: Sequence[Tensor]) -> Tensor:
+    even, odd = _recurrence(turn, in_phase), _recurrence(turn, quadrature)
+    return turn.cos * even[0] - even[1] + turn.sin * odd[0]
+
+
 def harmonics(turn: Rotation, in_phase: Tensor, quadrature: Tensor) -> tuple[Tensor, Tensor]:
     """A periodic function of an angle and its rate, by Clenshaw's recurrence.
 
@@ -92,16 +103,20 @@ def harmonics(turn: Rotation, in_phase: Tensor, quadrature: Tensor) -> tuple[Ten
         in_phase: Cosine parts by harmonic 1, 2, …, (n, batch).
         quadrature: Sine parts by harmonic.
     """
+    slopes = (
+        [sign * h * part for h, part in enumerate(parts.unbind(0), 1)]
+        for sign, parts in ((1, quadrature), (-1, in_phase))
+    )
+    return periodic(turn, in_phase, quadrature), _periodic(turn, *slopes) * turn.speed
+
+
+def _recurrence(turn: Rotation, parts: Sequence[Tensor]) -> tuple[Tensor, Tensor]:
+    """The last two values of b_h = a_h + 2 cos(angle) b_(h+1) - b_(h+2), for h = 1 and 2.
+
+    A step waits for one product of the step before it, not for a product and a difference.
+    """
     twice, zero = 2 * turn.cos, torch.zeros_like(turn.cos)
-    even, odd = [zero, zero], [zero, zero]  # of the function: cosine and sine series
-    slopes = [zero, zero], [zero, zero]  # of its derivative by the angle
-    for h in range(in_phase.shape[0], 0, -1):
-        a, b = in_phase[h - 1], quadrature[h - 1]
-        even, odd = [a + twice * even[0] - even[1], even[0]], [b + twice * odd[0] - odd[1], odd[0]]
-        slopes = (
-            [h * b + twice * slopes[0][0] - slopes[0][1], slopes[0][0]],
-            [-h * a + twice * slopes[1][0] - slopes[1][1], slopes[1][0]],
-        )
-    value = turn.cos * even[0] - even[1] + turn.sin * odd[0]
-    slope = turn.cos * slopes[0][0] - slopes[0][1] + turn.sin * slopes[1][0]
-    return value, slope * turn.speed
+    last, before = zero, zero
+    for part in reversed(parts):
+        last, before = (part - before) + twice * last, last
+    return last, before

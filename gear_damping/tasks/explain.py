@@ -25,7 +25,8 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     measurement = load_measurement(settings.measurement_path)
     _note_inputs(measurement, folder)
     with progress_bar("explaining", settings.progress) as progress:
-        found = explain(measurement, statements.say, progress, settings.simulator.solver, _library(settings))
+        limits = {"library": _library(settings), "minutes": settings.explain_minutes}
+        found = explain(measurement, statements.say, progress, settings.simulator.solver, **limits)
     folder.write_json("explanation.json", found.content)
     if found.found is not None:
         _write_extended(folder.path / EXTENDED, found, measurement)

@@ -181,3 +181,20 @@ def test_a_forked_process_does_not_wait_for_the_threads_of_its_parent():
     code = child.exitcode
     child.kill()
     assert code == 0
+
+
+@pytest.mark.usefixtures("compiler")
+def test_models_with_nearly_as_many_harmonics_share_a_kernel(bench_model, monkeypatch):
+    model, values = bench_model
+    shaped = Model(model.system, [*model.effects, effect_class("mesh_stiffness_shape")()])
+    run = {"sampling_rate": 40e3, "n_samples": 5, "solver": Solver(engine="native")}
+
+    def response(*sizes):
+        lists = {f"mesh_stiffness_shape.{part}": sizes for part in ("in_phase", "quadrature")}
+        return simulate(shaped, shaped.values(2, **lists) | values(2), **run).response
+
+    first = response(0.02, 0.01, 0.01)
+    monkeypatch.setattr(compilation, "kernel_source", None)
+    monkeypatch.setattr(build, "known", None)
+    assert torch.equal(response(0.02, 0.01, 0.01, 0.0), first)
+    assert not torch.equal(response(0.02, 0.01, 0.01, 0.01), first)

@@ -2,12 +2,12 @@
 
 from typing import ClassVar
 
-import torch
 from torch import Tensor
 
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
-from gear_damping.physics.shapes import same_length
+from gear_damping.physics.shaft_order import periodic
+from gear_damping.physics.shapes import padded, same_length
 from gear_damping.physics.terms import StiffnessFactor, Values
 
 
@@ -24,19 +24,10 @@ class MeshStiffnessShape(StiffnessFactor):
     systems: ClassVar = ("gear_pair",)
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
-        """The lists as they are, once they are of one length."""
+        """The lists, once they are of one length."""
         same_length(self.name, values, "in_phase", "quadrature")
-        return dict(values)
+        return padded(values)
 
     def factor(self, now: Moment, p: Values) -> Tensor:
         """The factor at this mesh angle."""
-        cosine, sine = now.mesh.cos, now.mesh.sin
-        turned_cosine, turned_sine = torch.ones_like(cosine), torch.zeros_like(cosine)
-        total = torch.ones_like(cosine)
-        for h in range(p["in_phase"].shape[0]):
-            turned_cosine, turned_sine = (
-                turned_cosine * cosine - turned_sine * sine,
-                turned_sine * cosine + turned_cosine * sine,
-            )
-            total = total + p["in_phase"][h] * turned_cosine + p["quadrature"][h] * turned_sine
-        return total
+        return 1 + periodic(now.mesh, p["in_phase"], p["quadrature"])

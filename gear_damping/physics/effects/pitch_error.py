@@ -11,6 +11,7 @@ from gear_damping.physics.cause import SHAFTS, Cause, Recipe, Rig
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.shaft_order import harmonics
+from gear_damping.physics.shapes import padded
 from gear_damping.physics.terms import TransmissionErrorSource, Values
 
 TYPICAL = (2, -1, 3, -4, 1, 5, -3, 0, 2, -2, 4, -5, 1, 3, -1, -3, 2, 0, -4, 2)  # um
@@ -57,7 +58,7 @@ class PitchError(TransmissionErrorSource):
         even, odd = (weight.unsqueeze(1) * wave @ teeth for wave in (torch.cos(angle), torch.sin(angle)))
         turned = order.unsqueeze(1) * values["phase"]
         cosine, sine = torch.cos(turned), torch.sin(turned)
-        return {"in_phase": even * cosine + odd * sine, "quadrature": odd * cosine - even * sine}
+        return padded({"in_phase": even * cosine + odd * sine, "quadrature": odd * cosine - even * sine})
 
     def error(self, now: Moment, p: Values) -> tuple[Tensor, Tensor]:
         """The error and its rate."""

@@ -9,7 +9,7 @@ from gear_damping.physics.cause import Cause, Recipe, Rig
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.shaft_order import harmonics
-from gear_damping.physics.shapes import same_length
+from gear_damping.physics.shapes import padded, same_length
 from gear_damping.physics.terms import TransmissionErrorSource, Values
 
 MOST_HARMONICS = 4  # beyond these a tooth's profile has little
@@ -41,7 +41,7 @@ class ProfileError(TransmissionErrorSource):
         """Cosine and sine parts by harmonic."""
         same_length(self.name, values, "amplitudes", "phases")
         amplitudes, phases = values["amplitudes"], values["phases"]
-        return {"in_phase": amplitudes * torch.cos(phases), "quadrature": -amplitudes * torch.sin(phases)}
+        return padded({"in_phase": amplitudes * torch.cos(phases), "quadrature": -amplitudes * torch.sin(phases)})
 
     def error(self, now: Moment, p: Values) -> tuple[Tensor, Tensor]:
         """The error and its rate."""
