@@ -289,7 +289,7 @@ def _answer(content: str, folder: Path) -> object:
         return whole(problem, points, horizon, min(iterations, ITERATIONS), enough)
 
     reading = patch("gear_damping.measurement.load.read_yaml", lambda _: json.loads(content))
-    nominal = patch("gear_damping.explanation.explain.search", lambda nominal, *_: Search(nominal, nominal))
+    nominal = patch("gear_damping.explanation.explain.search", lambda nominal, *_, **__: Search(nominal, nominal))
     with reading, nominal, patch.object(least_squares, "_round", short):
         try:
             return explain(load_measurement(folder / "measurement.yaml"), library={}).content
