@@ -48,6 +48,11 @@ FIRST_RATIO = 0.01
 SCANS = 2  # of the records' angles, before and after a first fit
 INDEX_ERROR = 0.1  # rad of the mesh: how well a file that states an index knows where the mesh begins
 ALIKE = pi / 6  # rad between phases that are one: more than the step at which they are tried, far less than chance
+NOT_FINITE = Problem(
+    "parameters",
+    "with what is stated of the rig and its load, the nominal simulation does not stay finite",
+    remedy="check the values and units of parameters, torques and speeds",
+)
 LEAST_DAMPING = 1e-5  # of the first guess, N s/m
 
 
@@ -58,7 +63,10 @@ def calibrated(evidence: Evidence, solver: Solver | None = None) -> Outcome:
         InputError: with what is stated of the rig it cannot be simulated.
     """
     with _simulable():
-        return _gear_pair(evidence, solver) if evidence.system == "gear_pair" else _oscillator(evidence, solver)
+        found = _gear_pair(evidence, solver) if evidence.system == "gear_pair" else _oscillator(evidence, solver)
+    if not bool(found.fitted.prediction.sensitivity.isfinite().all()):
+        raise InputError(NOT_FINITE)
+    return found
 
 
 @contextmanager
@@ -67,9 +75,7 @@ def _simulable() -> Iterator[None]:
     try:
         yield
     except torch.linalg.LinAlgError as error:
-        rule = "with what is stated of the rig and its load, the nominal simulation does not stay finite"
-        remedy = "check the values and units of parameters, torques and speeds"
-        raise InputError(Problem("parameters", rule, remedy=remedy)) from error
+        raise InputError(NOT_FINITE) from error
 
 
 def _oscillator(evidence: Evidence, solver: Solver | None) -> Outcome:

@@ -10,6 +10,7 @@ from gear_damping.identification.observation import (
     fit_record,
     known_of,
     require_alike,
+    require_fitted,
     response_names,
 )
 from gear_damping.identification.output_error.records import FitRecord
@@ -98,6 +99,7 @@ def evidence_of(measurement: Measurement) -> Evidence:
     Raises:
         InputError: a record lacks a response that can be fitted, or some have an input that others lack.
     """
+    require_fitted(measurement)
     system, known = measurement.system, known_of(measurement)
     spring = known.values.get("stiffness", 1.0) != 0
     used = [record for record in measurement.records if record.role != "reference"]

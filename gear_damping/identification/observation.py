@@ -193,6 +193,18 @@ def _expected(name: str, quantity: Quantity) -> FreeParameter:
     return FreeParameter(name, quantity.value, deviation, deviation=deviation, expected=quantity.value)
 
 
+def require_fitted(measurement: Measurement) -> None:
+    """Refuse a measurement of which every record is held out.
+
+    Raises:
+        InputError: none is there to be fitted.
+    """
+    if {record.role for record in measurement.records} <= {"holdout", "reference"}:
+        rule = "every record is held out, and none is there to be fitted"
+        remedy = "write role: fit in some of them, or leave out the role of all"
+        raise InputError(Problem("records", rule, remedy=remedy, source=str(measurement.source)))
+
+
 def require_alike(records: Sequence[FitRecord], source: str) -> None:
     """Refuse records of which some have an input and some do not.
 

@@ -193,6 +193,7 @@ def first_frequency(record: FitRecord) -> float:
     width = max(1, len(spectrum) // 400)
     smooth = np.convolve(spectrum, np.ones(width) / width, mode="same")
     drives = [record.inputs[name] for name in ("force", "base_acceleration") if name in record.inputs]
+    drives = [drive for drive in drives if float(drive.max()) > float(drive.min())]  # a constant one drives nothing
     if drives:
         force = drives[0].numpy()
         drive = np.convolve(np.abs(np.fft.rfft((force - force.mean()) * window)) ** 2, np.ones(width) / width, "same")

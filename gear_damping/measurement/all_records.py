@@ -25,9 +25,6 @@ def _compared(file: layout.AnyFile, records: Numbered) -> Found:
     if records and all(record.role == "reference" for _, record in records):
         rule = "every record is a reference, and none is there to be compared with them"
         yield Problem("records", rule, None, "leave out the role of the others")
-    elif records and all(record.role in ("holdout", "reference") for _, record in records):
-        rule = "every record is held out, and none is there to be fitted"
-        yield Problem("records", rule, None, "write role: fit in some of them, or leave out the role of all")
 
 
 def _inputs_of_all(file: layout.AnyFile, records: Numbered) -> Found:

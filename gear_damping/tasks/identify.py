@@ -10,7 +10,7 @@ import torch
 from gear_damping.config.settings import Settings
 from gear_damping.errors import InputError, Problem
 from gear_damping.identification.lightning_module import load_estimator
-from gear_damping.identification.observation import fit_record, known_of, require_alike
+from gear_damping.identification.observation import fit_record, known_of, require_alike, require_fitted
 from gear_damping.identification.oscillator import Estimate, OscillatorFit, fit_oscillator
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import Segments
@@ -18,6 +18,7 @@ from gear_damping.measurement.load import load_measurement
 from gear_damping.measurement.record import Channel, Measurement, Record
 from gear_damping.reporting import figures, tables
 from gear_damping.tasks import statements
+from gear_damping.tasks.identify_gears import by_nominal_model
 from gear_damping.tasks.lack_of_fit import lack_of_fit, sentence
 from gear_damping.tasks.progress import progress_bar
 from gear_damping.tasks.run_folder import RunFolder
@@ -33,9 +34,7 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     if settings.checkpoint is not None:
         return _by_network(settings, measurement, folder)
     if measurement.system != "oscillator":
-        rule = "a gear record is identified by a trained network or explained"
-        remedy = "give checkpoint=…/best.ckpt, or choose task=explain"
-        raise InputError(Problem("checkpoint", rule, remedy=remedy, source=str(measurement.source)))
+        return by_nominal_model(settings, measurement, folder)
     return _by_output_error(settings, measurement, folder)
 
 
@@ -59,6 +58,7 @@ def _refuse_faults(measurement: Measurement) -> None:
 
 
 def _by_output_error(settings: Settings, measurement: Measurement, folder: RunFolder) -> dict[str, Any]:
+    require_fitted(measurement)
     known = known_of(measurement)
     spring = known.values.get("stiffness", 1.0) != 0
     roles = {

@@ -53,7 +53,7 @@ BASE = "base_acceleration: {column: b, unit: m/s^2}"
     [
         _gear(ERROR),
         _gear(f"{TIME}, {SHAFT}"),
-        _gear(f"{TIME}, gear_speed: {{column: x, unit: rpm, coupling: AC}}"),
+        _gear(f"{TIME}, gear_speed: {{column: x, unit: rpm, highpass: {{value: 2, unit: Hz}}}}"),
         _gear(f"{TIME}, pinion_speed: {{column: x, unit: rpm}}", f"conditions: {{{LOAD}}}"),
         _gear(f"{TIME}, pinion_speed: {{column: x, unit: rpm, coupling: AC}}"),
         _gear(f"{TIME}, acceleration: {{column: x, unit: gn}}", "role: holdout, encoders: {tacho: {column: t, "

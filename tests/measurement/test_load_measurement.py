@@ -81,7 +81,9 @@ def test_a_channel_beats_the_condition_of_its_name(bench):
     record = bench.load().records[0]
     assert set(record.conditions) == {"pinion_speed"}
     assert record.conditions["pinion_speed"].value == pytest.approx(60 * pi, rel=1e-15)
-    assert any("pinion_torque" in note for note in record.notes)
+    said = [finding for finding in record.findings if finding.kind == "not_used"]
+    assert [(finding.channel, finding.severity) for finding in said] == [("pinion_torque", "note")]
+    assert "not the 99 N*m under conditions" in said[0].message
 
 
 def test_a_wrapped_angle_is_unwrapped_and_said(bench):

@@ -119,14 +119,14 @@ def test_a_tacho_gives_the_pinion_angle(bench, stamped):
     assert np.ptp(angle - expected) <= 2 * tolerance
 
 
-def test_a_measured_angle_beats_the_encoder_s(bench):
+def test_an_encoder_beside_a_measured_angle_is_refused(bench):
     time = np.arange(2000) / 20000
     record = _rig(bench, t=time, x=np.sin(3000 * time), p=1000 * time, angle=60 * pi * time)
     record["channels"]["transmission_error"] = {"column": "x", "unit": "um"}
     record["channels"]["pinion_angle"] = {"column": "angle", "unit": "rad"}
     record["encoders"] = {"pinion": {"column": "p", "counts_per_revolution": 7}}
-    loaded = bench.load_as_it_is().records[0]
-    np.testing.assert_array_equal(loaded.channels["pinion_angle"].values, 60 * pi * time)
+    with pytest.raises(InputError, match=r"encoders\.pinion: has no meaning beside channels\.pinion_angle"):
+        bench.load_as_it_is()
 
 
 @pytest.mark.parametrize(
