@@ -63,14 +63,17 @@ def _taken(fit: Refit, found: Search) -> float:
 
 
 def _accepted(pairs: Sequence[Pair], current: Excess, bench: Bench) -> Pair | None:
-    """The best pair, or of those that do as well the smallest, where held-out records accept it."""
-    best = min(pairs, key=lambda pair: pair.second.outcome.holdout_cost, default=None)
+    """The best pair that held-out records accept, or of those that do as well the smallest; None without one."""
+
+    def takes(pair: Pair) -> float:
+        return (current.percent - bench.excess(pair.second.outcome).percent) / current.percent
+
+    worth = [pair for pair in pairs if pair.second.t > ACCEPTED_AT and takes(pair) >= LEAST_SHARE]
+    best = min(worth, key=lambda pair: pair.second.outcome.holdout_cost, default=None)
     if best is None:
         return None
-    alike = [pair for pair in pairs if bench.is_as_good(pair.second.outcome, best.second.outcome)]
-    best = min([best, *alike], key=lambda pair: len(pair.second.outcome.hypothesis.free))
-    takes = (current.percent - bench.excess(best.second.outcome).percent) / current.percent
-    return best if best.second.t > ACCEPTED_AT and takes >= LEAST_SHARE else None
+    alike = [pair for pair in worth if bench.is_as_good(pair.second.outcome, best.second.outcome)]
+    return min([best, *alike], key=lambda pair: len(pair.second.outcome.hypothesis.free))
 
 
 def _bases(fits: Sequence[Refit], found: Search) -> list[Refit]:

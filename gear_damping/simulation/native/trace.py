@@ -73,7 +73,7 @@ class _Watched(TorchDispatchMode):
             made = problem
         if isinstance(result, Tensor):
             self._note(result, made)
-        else:
+        elif isinstance(result, (list, tuple)):  # a number or a truth is no tensor that anything follows from
             for i, part in enumerate(result):
                 self._note(part, made if isinstance(made, UntraceableError) else made[i])
         return result
