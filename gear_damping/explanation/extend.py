@@ -14,13 +14,12 @@ from gear_damping.explanation.ranking import Score
 from gear_damping.explanation.refit import Refit, again
 from gear_damping.explanation.revise import beside_the_others, exchanged, pruned, simplified
 from gear_damping.explanation.significance import Excess, is_settled
-from gear_damping.explanation.trying import ACCEPTED_AT, SMALL_REST, Accepted, Bench, Say, Search
+from gear_damping.explanation.trying import ACCEPTED_AT, SMALL_REST, TWO, Accepted, Bench, Say, Search
 from gear_damping.explanation.visible import Assessment
 from gear_damping.simulation.solver_settings import Solver
 
 LEAST_SHARE = 0.25  # of the remaining excess that a cause must take
 MOST_CAUSES = 4
-TWO = 2  # causes, from which on the size of a further one has to be known
 MOST_ANEW = 3  # times that a search begins anew from a better calibration
 BENT = 4.0  # noise variances left by a nominal model whose free shape is no good place to begin
 

@@ -12,7 +12,7 @@ from torch import Tensor
 from gear_damping.explanation.hypothesis import Outcome
 from gear_damping.explanation.ranking import Score
 from gear_damping.explanation.refit import FULL_FITS, Refit, block_samples
-from gear_damping.explanation.trying import Bench, Search
+from gear_damping.explanation.trying import TWO, Bench, Search
 from gear_damping.explanation.visible import Assessment
 
 CONFIRMED_AT = 2.0  # t of what an effect adds to held-out predictions, one-sided
@@ -33,6 +33,8 @@ def faint_cause(
     found.rejected = [fit for fit in fits if fit is not None]
     if not found.first_fits:
         found.first_fits = found.rejected
+    if len(found.accepted) >= TWO:
+        worth = [fit for fit in worth if bench.is_determined(fit)]
     if not worth:
         return None, ()
     first = max(worth, key=lambda fit: fit.fit_gain)
@@ -56,7 +58,9 @@ def confirmation(before: Outcome, after: Outcome, bench: Bench) -> float:
 
 
 def _is_worth(fit: Refit, before: Outcome, seen: Assessment, bench: Bench) -> bool:
-    """Whether held-out records confirm a cause that takes its part of what is not random."""
+    """Whether held-out records confirm a cause that takes its part of what is not random, and lose nothing by it."""
+    if fit.gain <= 0:
+        return False
     taken = 1 - fit.outcome.fitted.cost / max(before.fitted.cost, 1e-300)
     return taken >= LEAST_SHARE * seen.taken and confirmation(before, fit.outcome, bench) >= CONFIRMED_AT
 

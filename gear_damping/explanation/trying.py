@@ -18,6 +18,7 @@ from gear_damping.identification.output_error.uncertainty import QUANTILE
 from gear_damping.physics.terms import Effect
 from gear_damping.simulation.solver_settings import Solver
 
+TWO = 2  # causes, from which on the size of a further one has to be known
 ACCEPTED_AT = 3.0  # t of the held-out gain that a cause needs
 RIVAL = 2.0  # t below which two explanations are not told apart
 LEAST_TAKEN = 0.25  # of what another takes of the fitted records, for a fit to be carried to its end
