@@ -128,10 +128,22 @@ def _next(
     found.rejected = fits
     if _is_unpredictable(found, bench):
         return None, ()
+    fits = found.rejected = _rivals_at_rest(fits, found, current, bench)
     best = _best(fits, current, bench)
     if best is None or (len(found.accepted) >= TWO and not bench.is_determined(best)):
         return None, ()
     return bench.simplest(best, fits)
+
+
+def _rivals_at_rest(fits: Sequence[Refit], found: Search, current: Excess, bench: Bench) -> list[Refit]:
+    """The fits, the best ones carried to their ends: what has not converged is no rival yet, and no winner."""
+    best = _best(fits, current, bench)
+    if best is None:
+        return list(fits)
+    against = found.outcome if found.accepted else found.nominal
+    alike = [fit for fit in fits if fit is best or bench.is_as_good(fit.outcome, best.outcome)]
+    ends = [bench.converged(fit, against) if any(fit is one for one in alike) else fit for fit in fits]
+    return sorted(ends, key=lambda fit: fit.outcome.holdout_cost)
 
 
 def _is_unpredictable(found: Search, bench: Bench) -> bool:
