@@ -6,7 +6,8 @@ BIN := $(VENV)/bin
 PIP_OPTIONS ?=
 OMP_NUM_THREADS ?= 1
 export OMP_NUM_THREADS
-PYTEST := $(BIN)/python -m pytest
+# On every core, each test on whichever is free.
+PYTEST := $(BIN)/python -m pytest -n auto --dist worksteal
 ARGS ?=
 
 .DEFAULT_GOAL := help

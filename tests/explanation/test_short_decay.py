@@ -63,7 +63,8 @@ def test_one_with_a_clear_effect_is_named(kind, names, folder):
     first = content["causes"][0]
     assert first["status"] == "established", content["sentences"]
     assert first["name"] in names
-    assert content["misfit"]["after"] < 2.0 < content["misfit"]["before"]  # 80 samples tell little of the noise
+    held = content["residual"]["holdout"]
+    assert held["after"] ** 2 < 1.5 * NOISE**2 < held["before"] ** 2  # the noise that was drawn: 80 samples tell little
 
 
 def test_what_is_short_is_said_first_and_with_the_verdict(folder):
