@@ -48,42 +48,7 @@ def search(
     found = Search(nominal, nominal, first_scores=bench.ranked(nominal), failed=bench.failed)
     state = _State(bench, found.first_scores, bench.excess(nominal))
     found.seen = _look(found, state)
-    anew = 0
-    while len(found.accepted) < MOST_CAUSES and not (found.accepted and state.bench.budget.refuses("further causes")):
-        bench, ranked, first = state.bench, state.ranked, state.first
-        current = bench.excess(found.outcome)
-        if found.left is not None and not found.left.visible and current.misfit <= SMALL_REST:
-            break
-        if is_settled(current, first):
-            best, rivals = faint_cause(found, ranked, found.left, bench) if found.left else (None, ())
-            if best is None:
-                break
-            _accept(found, best, rivals, current, first, bench)
-            _look_again(found, state)
-            continue
-        best, rivals = _next(found, ranked, current, bench, begun)
-        if best is None:
-            pair = None if _is_unpredictable(found, bench) else best_pair(found, current, bench)
-            if pair is None or len(found.accepted) + 2 - pair.replaces > MOST_CAUSES:
-                break
-            _accept_pair(found, pair, current, first, bench)
-            _look_again(found, state)
-            continue
-        settled = bench.without(best.outcome, best.name) if anew < MOST_ANEW else None
-        if settled is not None and bench.is_as_good(settled, best.outcome):
-            # The effect only led the fit out of a local minimum: it has no part in the gain.
-            say(f"what {best.name} seemed to take is taken without it: the fit had not come to rest")
-            found.outcome, anew = settled, anew + 1
-            _look_again(found, state)
-            if not found.accepted:
-                found.nominal, found.first_scores, found.seen = settled, state.ranked, found.left
-                state.first = state.bench.excess(settled)
-            continue
-        _accept(found, best, rivals, current, first, bench)
-        exchanged(found, first, bench)
-        pair = pair_instead(found, bench) if len(found.accepted) == 2 else None
-        if pair is not None:
-            _accept_pair(found, pair, first, first, bench)
+    while len(found.accepted) < MOST_CAUSES and _goes_on(found, state, begun):
         _look_again(found, state)
     bench = state.bench
     found.accepted = [simplified(cause, found, bench) for cause in found.accepted]
@@ -96,17 +61,73 @@ def search(
 
 @dataclass
 class _State:
-    """Where a search stands: the noise as it is known, scores beside the present model, what the nominal one left."""
+    """Where a search stands: its bench, scores beside the present model, what the nominal one left, fresh starts."""
 
     bench: Bench
     ranked: Sequence[Score]
     first: Excess
+    anew: int = 0
+
+
+def _goes_on(found: Search, state: _State, begun: Sequence[Refit]) -> bool:
+    """One round: a further cause or two of them, or a better calibration; whether there was any."""
+    bench, current = state.bench, state.bench.excess(found.outcome)
+    if found.accepted and bench.budget.refuses("further causes"):
+        return False
+    if found.left is not None and not found.left.visible and current.misfit <= SMALL_REST:
+        return False
+    if is_settled(current, state.first):
+        return found.left is not None and _add_faint(found, found.left, current, state)
+    best, rivals = _next(found, state.ranked, current, bench, begun)
+    if best is None:
+        return _add_pair(found, current, state)
+    if _calibrate_anew(found, best, state):
+        return True
+    _accept(found, best, rivals, current, state.first, bench)
+    exchanged(found, state.first, bench)
+    pair = pair_instead(found, bench) if len(found.accepted) == TWO else None
+    if pair is not None:
+        _accept_pair(found, pair, state.first, state.first, bench)
+    return True
+
+
+def _add_faint(found: Search, seen: Assessment, current: Excess, state: _State) -> bool:
+    """A cause that only the score shows."""
+    best, rivals = faint_cause(found, state.ranked, seen, state.bench)
+    if best is not None:
+        _accept(found, best, rivals, current, state.first, state.bench)
+    return best is not None
+
+
+def _add_pair(found: Search, current: Excess, state: _State) -> bool:
+    """Two causes at once, where no single one is borne out."""
+    pair = None if _is_unpredictable(found, state.bench) else best_pair(found, current, state.bench)
+    if pair is None or len(found.accepted) + 2 - pair.replaces > MOST_CAUSES:
+        return False
+    _accept_pair(found, pair, current, state.first, state.bench)
+    return True
+
+
+def _calibrate_anew(found: Search, best: Refit, state: _State) -> bool:
+    """Whether what an effect seemed to take is taken without it: it only led the fit out of a local minimum."""
+    if state.anew >= MOST_ANEW:
+        return False
+    settled = state.bench.without(best.outcome, best.name)
+    if not state.bench.is_as_good(settled, best.outcome):
+        return False
+    state.bench.say(f"what {best.name} seemed to take is taken without it: the fit had not come to rest")
+    found.outcome, state.anew = settled, state.anew + 1
+    if not found.accepted:
+        found.nominal = settled
+    return True
 
 
 def _look_again(found: Search, state: _State) -> None:
     """Scores beside the present model, and what they say."""
     state.ranked = state.bench.ranked(found.outcome)
-    _look(found, state)
+    seen = _look(found, state)
+    if found.outcome is found.nominal:  # calibrated anew
+        found.first_scores, found.seen = list(state.ranked), seen
 
 
 def _look(found: Search, state: _State) -> Assessment | None:
