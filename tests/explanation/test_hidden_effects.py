@@ -25,10 +25,10 @@ def test_a_null_names_no_cause(explained, seed, snr_db):
     [
         ("gear_stiffness_modulation", "amplitude", 0.05, set()),
         ("pinion_eccentricity", "amplitude", 0.05, {"encoder_error"}),  # the same signal
-        ("cubic_stiffness", "coefficient", 0.08, set()),
-        ("windage_drag", "coefficient", 0.05, set()),
+        pytest.param("cubic_stiffness", "coefficient", 0.08, set(), marks=pytest.mark.slow),
+        pytest.param("windage_drag", "coefficient", 0.05, set(), marks=pytest.mark.slow),
         ("torque_variation", "ramp_change", 0.05, set()),
-        ("load_dependent_contact", "growth", 0.1, set()),
+        pytest.param("load_dependent_contact", "growth", 0.1, set(), marks=pytest.mark.slow),
     ],
 )
 def test_a_hidden_effect_is_named_first_with_its_size(explained, effect, parameter, tolerance, alike):
