@@ -26,6 +26,7 @@ LAST_ITERATIONS = 60  # of a cause that is accepted before its fit has come to r
 SMALL_REST = 3.0  # noise variances: what may be left without a name where noise is all that tests know of
 DETERMINED = 0.5  # of a parameter: the half of its 95 % interval, for it to be known
 NEARLY = 0.9  # of what one takes that has run into a bound, for another to take its place
+MOSTLY_RANDOM = 0.25  # of the residual: with less of it that is not random, the rest is the noise
 SAME = 1e-3  # of the noise variance: a mean difference below it is none
 Say = Callable[[str], None]
 
@@ -118,11 +119,11 @@ class Bench:
         return assessed(outcome, ranked, self.evidence, families)
 
     def knowing(self, seen: Assessment | None) -> "Bench":
-        """The same with the noise that an assessment found: the random part, where nothing else is left.
+        """The same with the noise that an assessment found: the random part, where little else is left.
 
-        Beside something that is visible the random part takes in what no column follows, and is no noise yet.
+        Beside something large the random part takes in what no column follows, and is no noise yet.
         """
-        if seen is None or seen.visible:
+        if seen is None or (seen.visible and seen.taken > MOSTLY_RANDOM):
             return replace(self, noise=self.floor)
         return replace(self, noise=seen.random.joined(self.floor))
 
