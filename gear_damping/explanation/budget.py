@@ -23,6 +23,13 @@ class Budget:
         """Whether the time is over."""
         return monotonic() - self._begun > 60 * self.minutes
 
+    @property
+    def sentence(self) -> str:
+        """What there was no time for; empty where there was for everything."""
+        missing = ", ".join(self.not_tried)
+        said = f"The {self.minutes:g} minutes of the search were over before these were tried: {missing}."
+        return said if missing else ""
+
     def refuses(self, what: str) -> bool:
         """Whether there is no time for it, which is then noted."""
         if self.spent and what not in self.not_tried:

@@ -18,7 +18,7 @@ from gear_damping.explanation.homogeneity import homogeneity
 from gear_damping.explanation.hypothesis import MOST_GROWTH, SEGMENT_TIMES, Outcome, segments_of
 from gear_damping.explanation.noise import NoiseLevel, noise_of, weighted
 from gear_damping.explanation.significance import ac_energy, excess
-from gear_damping.explanation.too_short import too_short, with_length
+from gear_damping.explanation.too_short import too_short
 from gear_damping.explanation.trying import Search
 from gear_damping.explanation.verdict import Judged, verdict
 from gear_damping.identification.decimation import decimated
@@ -120,8 +120,8 @@ def explain(
     before = excess(found.nominal.holdout, evidence.held, noise)
     after = excess(found.outcome.holdout, evidence.held, noise)
     one = _is_one(found, evidence)
-    said = with_length(verdict(found, before, after, found.outcome.fitted.converged, one), short)
-    judged = Judged(found, before, after, said.with_not_tried(budget), tuple(budget.not_tried))
+    said = verdict(found, before, after, found.outcome.fitted.converged, one).saying(short, budget.sentence)
+    judged = Judged(found, before, after, said, tuple(budget.not_tried))
     step(4, STEPS)
     return Explanation(content.of_search(measurement, evidence, noise, judged), evidence, noise, found)
 

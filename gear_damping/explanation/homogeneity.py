@@ -15,8 +15,8 @@ from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Outcome, time_scale
 from gear_damping.explanation.statistics.random_effects import spread_between, statistic
 from gear_damping.identification.output_error.least_squares import own_basis, without_own
+from gear_damping.identification.output_error.uncertainty import QUANTILE
 
-Z95 = 1.959964  # standard errors of a 95 % interval
 TOLERANCE = 0.15  # of the strength: what a real cause may differ by between records
 LEVEL = 0.05  # of the test
 FEWEST = 3  # records or segments with a share of the information
@@ -76,8 +76,9 @@ def by_record(outcome: Outcome, cause: str, evidence: Evidence) -> dict[str, Any
     test = homogeneity(outcome, cause, evidence)
     name = next(p.name for p in outcome.problem.free if p.name.startswith(cause + "."))
     size = outcome.values[name]
+    ends = (-QUANTILE, QUANTILE)
     rows = [
-        {"record": record, "value": size * one, "interval95": sorted(size * (one + s * Z95 * error) for s in (-1, 1))}
+        {"record": record, "value": size * one, "interval95": sorted(size * (one + end * error) for end in ends)}
         for record, one, error in zip(test.names, test.estimates, test.errors, strict=True)
     ]
     spread = spread_between(test.estimates, test.errors) if test.testable else None

@@ -1,13 +1,11 @@
 """What is too short to judge is said at the start, with the length that would do."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from math import ceil
 
 from gear_damping.explanation.calibrate import stated_frequency
 from gear_damping.explanation.evidence import SPLIT, Evidence
 from gear_damping.explanation.refit import FEWEST_BLOCKS
-from gear_damping.explanation.verdict import Verdict
 from gear_damping.identification.oscillator import first_frequency
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.time_scale import decorrelation_time
@@ -36,11 +34,6 @@ def too_short(evidence: Evidence) -> str:
         f"The held-out records hold {held:.3g} {name}; at least {needed:g} are needed to judge an effect: hold out "
         f"records of at least {needed * period:.3g} s."
     )
-
-
-def with_length(found: Verdict, short: str) -> Verdict:
-    """The verdict with the sentence about records that are too short, if there is one."""
-    return replace(found, sentences=(*found.sentences, short)) if short else found
 
 
 def _characteristic(evidence: Evidence) -> tuple[float, str]:

@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.next_experiment import LARGEST_SET
 from gear_damping.explanation.significance import Excess, is_all
 from gear_damping.explanation.trying import SMALL_REST, Accepted, Search
@@ -29,13 +28,9 @@ class Verdict:
     word: str
     sentences: tuple[str, ...]
 
-    def with_not_tried(self, budget: Budget) -> "Verdict":
-        """The same with what there was no time for."""
-        if not budget.not_tried:
-            return self
-        missing = ', '.join(budget.not_tried)
-        said = f"The {budget.minutes:g} minutes of the search were over before these were tried: {missing}."
-        return replace(self, sentences=(*self.sentences, said))
+    def saying(self, *more: str) -> "Verdict":
+        """The same with further sentences; empty ones are none."""
+        return replace(self, sentences=(*self.sentences, *filter(None, more)))
 
 
 @dataclass(frozen=True)

@@ -90,8 +90,8 @@ def assessed(
     expected = problem.expectation(outcome.fitted.shared)
     project = Projector(sensitivity, *expected)
     residual = _with_expected(prediction.residual[0].reshape(-1, 1), project)
-    unnamed = {UNNAMED + name: _padded(c, project) for name, c in unnamed_columns(outcome, evidence).items()}
-    unnamed = unnamed if families else {}
+    shapes = unnamed_columns(outcome, evidence) if families else {}
+    unnamed = {UNNAMED + name: _padded(columns, project) for name, columns in shapes.items()}
     columns = {score.candidate.name: score.columns for score in reversed(scores) if score.columns.shape[1]}
     every = [*columns.values(), *(_orthonormal(project(c)) for c in unnamed.values())]
     beside = project(residual)
@@ -127,7 +127,7 @@ def _tested(
     length = _block_length(seen[:count].reshape(rows.shape), outcome)
     blocks = block_numbers([problem.length] * len(rows), length)
     blocks = torch.cat([blocks, torch.full((len(seen) - count,), int(blocks.max()) + 1)])
-    lines = _lines(seen[:count].reshape(rows.shape), white.used.reshape(rows.shape), variance, outcome)
+    lines = _lines(seen[:count].reshape(rows.shape), white.used, variance, outcome)
     visible = family_wise(seen, effects, blocks, variance, nuisance, lines)
     total = float(seen.square().sum())
     share = (total - float(left.square().sum()) - taken * variance) / max(total, 1e-300)
@@ -139,21 +139,18 @@ class _Whitener:
 
     def __init__(self, random: Random, outcome: Outcome) -> None:
         self.random, self.problem = random, outcome.problem
-        self.used = self(torch.ones(outcome.problem.weights.numel(), 1, dtype=torch.float64), mask=True)[:, 0]
-
-    def __call__(self, signal: Tensor, mask: bool = False) -> Tensor:
-        """`signal` (samples, n) white where its random part is, at the noise of the evidence."""
         weights = self.problem.weights.reshape(-1, self.problem.length)
-        rows = signal.reshape(*weights.shape, -1)
+        self.used = _valid(weights, max((law.order for law in random.laws), default=0))
+
+    def __call__(self, signal: Tensor) -> Tensor:
+        """`signal` (samples, n) white where its random part is, at the noise of the evidence."""
+        rows = signal.reshape(*self.used.shape, -1)
         found = torch.zeros_like(rows)
         for number, law in enumerate(self.random.laws):
             places = (self.random.groups.reshape(-1) == number).nonzero().flatten()
             white = law.whitened(rows[places].transpose(1, 2)).transpose(1, 2)
-            scale = 1.0 if mask else self.problem.noise / max(law.innovation, 1e-300) ** 0.5
-            found[places] = white * scale
-        valid = _valid(weights, max((law.order for law in self.random.laws), default=0))
-        found = valid.unsqueeze(-1).expand_as(found).clone() if mask else found * valid.unsqueeze(-1)
-        return found.reshape(signal.shape)
+            found[places] = white * self.problem.noise / max(law.innovation, 1e-300) ** 0.5
+        return (found * self.used.unsqueeze(-1)).reshape(signal.shape)
 
     def padded(self, signal: Tensor) -> Tensor:
         """The same for a signal that has the residuals of what is expected behind its samples."""
@@ -189,11 +186,10 @@ def _random(left: Tensor, taken: float, outcome: Outcome) -> Random:
         kept = [rows[i][weights[i] > 0] for i in places if bool((weights[i] > 0).any())]
         share = sum(len(row) for row in kept) / max(total, 1.0)
         laws.append(autoregression(kept, share * (taken + problem.n_shared)))
-    first = [i for i, record in enumerate(problem.records)]
     by_record, correlation = {}, []
     scale = total / max(total - taken - problem.n_shared, 1.0)
-    for name in dict.fromkeys(problem.records[i].record for i in first):
-        own = [i for i in first if problem.records[i].record == name]
+    for name in dict.fromkeys(record.record for record in problem.records):
+        own = [i for i, record in enumerate(problem.records) if record.record == name]
         squares, samples = 0.0, 0
         for i in own:
             channel = problem.channels.index(problem.records[i].observed.name)
@@ -215,9 +211,8 @@ def _block_length(rows: Tensor, outcome: Outcome) -> list[int]:
     negative = (shares <= 0).nonzero().flatten()
     stop = int(negative[0]) if len(negative) else len(shares)
     correlated = 1 + 2 * float(shares[1:stop].sum())
-    found = []
+    frequency, found = natural_frequency_hz(outcome.hypothesis.model, outcome.flat_given()), []
     for record in problem.records:
-        frequency = natural_frequency_hz(outcome.hypothesis.model, outcome.flat_given())
         longest = LONGEST_BLOCK * record.sampling_rate / max(frequency, 1e-9)
         found += [max(1, round(min(CORRELATION_TIMES * correlated, longest)))] * len(problem.channels)
     return found

@@ -9,7 +9,6 @@ distribution with the pooled variance takes their place.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import sqrt
 
 import torch
 from torch import Tensor
@@ -127,7 +126,7 @@ def family_wise(
     for family in lines:
         found.append(float(cube_root(family.values, family.degrees, family.degrees).max()))
         uniform = torch.rand(draws, generator=generator, dtype=torch.float64)
-        drawn.append(_normal_quantile(uniform ** (1 / len(family.values))))
+        drawn.append(torch.special.ndtri((uniform ** (1 / len(family.values))).clamp(max=1 - 1e-15)))
         names.append(family.name)
     if not found:
         return Visible(1.0, 0.0, 0.0, draws, 0.0, {})
@@ -200,8 +199,3 @@ def _against_chi_squared(total: Tensor, variance: float, one_sided: bool) -> flo
         return float(total[0]) / max(variance, 1e-300) ** 0.5
     degrees = float(len(total))
     return float(cube_root(total.square().sum(), degrees * max(variance, 1e-300), degrees))
-
-
-def _normal_quantile(probability: Tensor) -> Tensor:
-    return sqrt(2) * torch.erfinv((2 * probability - 1).clamp(-1 + 1e-15, 1 - 1e-15))
-
