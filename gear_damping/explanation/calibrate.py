@@ -45,9 +45,11 @@ FEWEST_HARMONICS, MOST_HARMONICS = 6, 20  # within these
 EXPECTED_SHAPE = 0.1  # of the mean stiffness over the harmonic: what real teeth add to the ideal wave
 SHORT_PERIODS = 40.0  # natural periods of the first round
 FIRST_RATIO = 0.01
-SCANS = 2  # of the records' angles, before and after a first fit
+MOST_SCANS = 8  # of the records' angles, each followed by a fit
+SCANNED = 0.99  # of the cost before: less is no reason for another scan
 INDEX_ERROR = 0.1  # rad of the mesh: how well a file that states an index knows where the mesh begins
-ALIKE = pi / 6  # rad between phases that are one: more than the step at which they are tried, far less than chance
+APART = 1.5  # times the cost of a phase for every record: one phase of all leaves that much where there is none; angles
+# that begin anywhere agree that well once in a thousand times, for three records
 NOT_FINITE = Problem(
     "parameters",
     "with what is stated of the rig and its load, the nominal simulation does not stay finite",
@@ -140,32 +142,31 @@ def _rough_gear_pair(evidence: Evidence, solver: Solver | None) -> Outcome:
         starts[:, places] = torch.linspace(0, 2 * pi, STARTS + 1, dtype=torch.float64)[:-1, None]
         return fit_hypothesis(first, evidence, starts if places else None, kept=0.12, **options)
     found: Outcome | None = None
-    for _ in range(SCANS):
+    for _ in range(MOST_SCANS):  # a phase that is wrong makes stiffness and damping wrong, and they the next phase
         hypothesis = first if found is None else found.hypothesis
         angles = _angles(hypothesis, evidence, short, solver)
         again = fit_hypothesis(hypothesis, evidence, own=angles, **options)
+        is_better = found is None or again.fitted.cost < SCANNED * found.fitted.cost
         found = again if found is None or again.fitted.cost < found.fitted.cost else found
+        if not is_better:
+            break
     return found
 
 
 def angles_counted(evidence: Evidence, solver: Solver | None = None) -> Evidence:
     """The evidence with a phase of its own in every record where their angles do not count from one mark.
 
-    An angle that was measured may begin anew in every record, as behind an encoder without an index: then the phases
-    that fit the records best do not agree.
+    An angle that was measured may begin anew in every record, as behind an encoder without an index: then one phase
+    of the mesh does not fit them all.
     """
     if evidence.system != "gear_pair" or (evidence.has_index and evidence.mesh_index):
         return evidence
     apart = with_own_angles(evidence)
-    if not evidence.has_index:
-        return apart
-    first = _first_gear_pair(apart)
+    if not evidence.has_index or len(evidence.fit) == 1:
+        return evidence if evidence.has_index else apart
     with _simulable():
-        found = _angles(first, apart, SHORT_PERIODS / natural_frequency_hz(first.model, first.given), solver)
-    phases = torch.tensor(list(found.values()), dtype=torch.float64)
-    middle = torch.atan2(phases.sin().sum(), phases.cos().sum())
-    off = torch.remainder(phases - middle + pi, 2 * pi) - pi
-    return evidence if float(off.abs().max()) <= ALIKE else apart
+        one, many = (_rough_gear_pair(either, solver).fitted.cost for either in (evidence, apart))
+    return evidence if one <= APART * many else apart
 
 
 def _angles(hypothesis: Hypothesis, evidence: Evidence, horizon: float, solver: Solver | None) -> Mapping[str, float]:

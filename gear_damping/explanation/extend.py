@@ -53,7 +53,7 @@ def search(
     bench = state.bench
     found.accepted = [simplified(cause, found, bench) for cause in found.accepted]
     if len(found.accepted) > 1:
-        pruned(found, bench)
+        pruned(found, state.first, bench)
         found.accepted = [beside_the_others(cause, found, bench) for cause in found.accepted]
     found.noise = bench.noise
     return found

@@ -11,7 +11,7 @@ from gear_damping.explanation.hypothesis import Outcome, time_scale
 from gear_damping.explanation.rig_units import rig_unit
 from gear_damping.explanation.significance import ac_energy
 from gear_damping.identification.output_error.problem import OFFSET, is_of_model, set_value
-from gear_damping.identification.output_error.records import SEPARATOR, FitRecord
+from gear_damping.identification.output_error.records import SEPARATOR, FitRecord, FreeParameter
 from gear_damping.identification.output_error.uncertainty import QUANTILE, covariance
 from gear_damping.physics.terms import DampingLaw
 from gear_damping.simulation.runs import reference_velocity
@@ -64,16 +64,8 @@ def parameters_of(outcome: Outcome, spread: Tensor, cause: str, evidence: Eviden
         effect, _, own = parameter.name.partition(".")
         if effect != cause:
             continue
-        z, half = outcome.fitted.shared[place], QUANTILE * float(spread[place, place].clamp(min=0).sqrt())
-        ends = sorted(float(parameter.value(z + shift)) for shift in (-half, half))
-        flat = parameter.name.partition(SEPARATOR)[0].partition("[")[0]
-        value, known = float(parameter.value(z)), declared[flat]
-        moved = float(outcome.fitted.prediction.sensitivity[..., place].norm())
-        silent = moved < SILENT * evidence.noise
-        ends[0] = known.lower if silent or at_bound[place] < 0 else ends[0]
-        ends[1] = known.upper if silent or at_bound[place] > 0 else ends[1]
-        unit = rig_unit(known.unit, evidence)
-        found[own] = Interval(value, (ends[0], ends[1]), unit).plain() | {"at_bound": bool(at_bound[place])}
+        unit = rig_unit(declared[_declared_name(parameter)].unit, evidence)
+        found[own] = _interval(outcome, spread, place, evidence, unit).plain() | {"at_bound": bool(at_bound[place])}
     return found
 
 
@@ -81,22 +73,50 @@ def final_parameters(outcome: Outcome, spread: Tensor, evidence: Evidence) -> di
     """Every fitted parameter of a model with its 95 % interval, nuisances and those of single records included."""
     declared, found = outcome.hypothesis.model.parameters(), {}
     for place, parameter in enumerate(outcome.problem.free):
-        z, half = outcome.fitted.shared[place], QUANTILE * float(spread[place, place].clamp(min=0).sqrt())
-        ends = sorted(float(parameter.value(z + shift)) for shift in (-half, half))
-        flat = parameter.name.partition(SEPARATOR)[0].partition("[")[0]
+        flat = _declared_name(parameter)
         kind, _, channel = flat.partition(".")
         if kind == OFFSET:
             unit = evidence.channel.unit if channel == evidence.channel.name else "own"
         else:
             unit = rig_unit(declared[flat].unit, evidence) if flat in declared else "1"
-        found[parameter.name] = Interval(float(parameter.value(z)), (ends[0], ends[1]), unit).plain()
+        found[parameter.name] = _interval(outcome, spread, place, evidence, unit).plain()
     return found
+
+
+def _declared_name(parameter: FreeParameter) -> str:
+    """The name under which a parameter of single records or a place of a list is declared."""
+    return parameter.name.partition(SEPARATOR)[0].partition("[")[0]
+
+
+def _interval(outcome: Outcome, spread: Tensor, place: int, evidence: Evidence, unit: str) -> Interval:
+    """A fitted parameter with its 95 % interval.
+
+    Of one that the records say nothing of it is the whole range; of one that the fit has driven to its bound, it
+    takes in what lies beyond; one that is positive and not told from nothing goes down to zero: its logarithm has no
+    lower end, and the upper end of the logarithm would be far beyond what the records allow.
+    """
+    parameter, z = outcome.problem.free[place], outcome.fitted.shared[place]
+    value, half = float(parameter.value(z)), QUANTILE * float(spread[place, place].clamp(min=0).sqrt())
+    if parameter.logarithmic and half > 1:
+        ends = sorted((0.0, value * (1 + half)))
+    else:
+        ends = sorted(float(parameter.value(z + shift)) for shift in (-half, half))
+    known = outcome.hypothesis.model.parameters().get(_declared_name(parameter))
+    if known is not None:
+        moved = float(outcome.fitted.prediction.sensitivity[..., place].norm())
+        at_bound = int(outcome.problem.at_bound(outcome.fitted.shared)[place])
+        silent = moved < SILENT * evidence.noise and not parameter.logarithmic
+        lower = known.lower if silent or at_bound < 0 else ends[0]
+        upper = known.upper if silent or at_bound > 0 else ends[1]
+        ends = [min(max(lower, known.lower), value), max(min(upper, known.upper), value)]
+    return Interval(value, (ends[0], ends[1]), unit)
 
 
 def damping_ratio(outcome: Outcome, spread: Tensor) -> dict[str, object] | None:
     """The equivalent damping ratio of every damping law together, in % of critical, at its reference velocity.
 
-    None where there is no linear stiffness, so that nothing is critical.
+    None where there is no linear stiffness, so that nothing is critical. Laws of damping take energy: the interval
+    ends at zero.
     """
     problem, shared = outcome.problem, outcome.fitted.shared
     points = shared.repeat(len(shared) + 1, 1)
@@ -107,7 +127,8 @@ def damping_ratio(outcome: Outcome, spread: Tensor) -> dict[str, object] | None:
     slope = (ratios[1:] - ratios[0]) / STEP
     half = QUANTILE * float((slope @ spread @ slope).clamp(min=0).sqrt())
     value = float(ratios[0])
-    return Interval(value, (value - half, value + half), "%").plain() | {"reference_velocity": velocity}
+    ends = (max(value - half, min(value, 0.0)), value + half)
+    return Interval(value, ends, "%").plain() | {"reference_velocity": velocity}
 
 
 def _ratios(outcome: Outcome, free: Mapping[str, Tensor], batch: int) -> tuple[Tensor, float]:

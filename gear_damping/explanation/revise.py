@@ -2,8 +2,9 @@
 
 from dataclasses import replace
 
+from gear_damping.explanation.hypothesis import Outcome
 from gear_damping.explanation.ranking import Score
-from gear_damping.explanation.significance import Excess
+from gear_damping.explanation.significance import Excess, is_settled
 from gear_damping.explanation.trying import ACCEPTED_AT, Accepted, Bench, Search
 
 PROMISE = 0.6  # of the best one's, for an effect to be tried in the place of a cause
@@ -50,15 +51,23 @@ def simplified(cause: Accepted, found: Search, bench: Bench) -> Accepted:
     return Accepted(simpler, fit, cause.share, tuple(name for name in cause.confusable if name != simpler))
 
 
-def pruned(found: Search, bench: Bench) -> None:
-    """Drop a cause whose removal costs nothing that held-out records show."""
+def pruned(found: Search, first: Excess, bench: Bench) -> None:
+    """Drop a cause whose removal costs nothing that held-out records show, or leaves nothing that is visible."""
     for accepted in found.accepted[:-1]:
         without = bench.without(found.outcome, accepted.name)
-        if bench.paired_gain(without, found.outcome)[1] < ACCEPTED_AT:
+        if bench.paired_gain(without, found.outcome)[1] < ACCEPTED_AT or _is_enough(without, first, bench):
             bench.say(f"{accepted.name} is not needed beside the others")
             found.outcome = without
             left = [other for other in found.accepted if other is not accepted]
             found.accepted = [replace(left[0], share=left[0].share + accepted.share), *left[1:]]
+
+
+def _is_enough(outcome: Outcome, first: Excess, bench: Bench) -> bool:
+    """Whether a search that had come to this model would have ended there."""
+    if not is_settled(bench.excess(outcome), first):
+        return False
+    left = bench.assessed(outcome, bench.ranked(outcome))
+    return left is not None and not left.visible
 
 
 def beside_the_others(cause: Accepted, found: Search, bench: Bench) -> Accepted:

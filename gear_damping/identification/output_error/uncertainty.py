@@ -13,6 +13,9 @@ from gear_damping.identification.output_error.least_squares import Fitted, own_b
 from gear_damping.identification.output_error.problem import OutputErrorProblem
 
 QUANTILE = 1.959964
+ROUNDING = 1e-15  # of an eigenvalue beside the largest, of products in double precision
+LEAST_INFORMATION = 1e-30  # beside 1: products of two of them are still numbers
+WIDEST = 1e6  # times the variance of coloured residuals: more is no matter of colour
 
 
 def covariance(problem: OutputErrorProblem, fitted: Fitted, correlated_s: float) -> Tensor:
@@ -33,8 +36,10 @@ def covariance(problem: OutputErrorProblem, fitted: Fitted, correlated_s: float)
     sandwich = inverse @ meat @ inverse * samples / max(samples - parameters, 1.0)
     plain = inverse * residual.square().sum() / max(samples - parameters, 1.0)
     wide = torch.maximum(sandwich.diagonal(), plain.diagonal()) / sandwich.diagonal().clamp(min=1e-300)
-    scale = wide.clamp(min=1).sqrt()
-    return sandwich * scale.unsqueeze(0) * scale.unsqueeze(1)
+    scale = wide.clamp(1, WIDEST).sqrt()
+    scaled = sandwich * scale.unsqueeze(0) * scale.unsqueeze(1)
+    missing = plain.diagonal() - scaled.diagonal()  # of what no score speaks of at all
+    return scaled + torch.diag(missing.clamp(min=0))
 
 
 def noise_covariance(problem: OutputErrorProblem, fitted: Fitted) -> Tensor:
@@ -48,7 +53,18 @@ def _information(problem: OutputErrorProblem, fitted: Fitted) -> tuple[Tensor, T
     beside = without_own(sensitivity[..., : problem.n_shared], own_basis(sensitivity, problem.n_shared))
     jacobian = beside.flatten(0, 1)
     expected = problem.expectation(fitted.shared)[1].square()
-    return beside, torch.linalg.pinv(jacobian.T @ jacobian + torch.diag(expected), hermitian=True)
+    return beside, _inverse(jacobian.T @ jacobian + torch.diag(expected))
+
+
+def _inverse(information: Tensor) -> Tensor:
+    """The inverse of a symmetric information matrix, large and not nothing along what it says nothing of.
+
+    A pseudo-inverse gives such a direction a variance of zero: the figure that is known worst looks known best.
+    """
+    size = information.diagonal().sqrt().clamp(min=LEAST_INFORMATION)
+    values, vectors = torch.linalg.eigh(information / size.unsqueeze(0) / size.unsqueeze(1))
+    inverse = vectors / values.clamp(min=ROUNDING * len(values)) @ vectors.T
+    return inverse / size.unsqueeze(0) / size.unsqueeze(1)
 
 
 def _long_run(scores: Tensor, lags: int) -> Tensor:
