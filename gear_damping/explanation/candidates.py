@@ -36,6 +36,8 @@ class Candidate:
         replaced: Free parameters that it took the place of.
         sharpest: Names of parameters that may rest at their lower bound without having run into it.
         own_phases: Name of the phase by place of its strength, where every record has one of its own.
+        own_tooth: Name of the phase that says which tooth is in mesh at the start of a record, where nothing else does.
+        teeth: How many there are, where that is so.
     """
 
     name: str
@@ -50,6 +52,8 @@ class Candidate:
     replaced: tuple[FreeParameter, ...] = ()
     sharpest: tuple[str, ...] = ()
     own_phases: Mapping[int, str] = field(default_factory=dict)
+    own_tooth: str = ""
+    teeth: int = 0
 
     @property
     def options(self) -> tuple[tuple[str, object], ...]:
@@ -73,16 +77,8 @@ def candidates_for(base: Hypothesis, evidence: Evidence, residuals: Residuals | 
         for name, kind in evidence.library.items()
         if kind.cause and base.system.name in kind.systems and name not in refused and set(kind.requires) <= there
         for recipe in kind.cause.recipes_for(rig)
-        if all(_value(base, parameter) > 0 for parameter in recipe.replaces) and name not in untried(evidence)
+        if all(_value(base, parameter) > 0 for parameter in recipe.replaces)
     ]
-
-
-def untried(evidence: Evidence) -> dict[str, str]:
-    """Effects that these records cannot be asked for, with the reason."""
-    if evidence.has_index or evidence.system != "gear_pair":
-        return {}
-    reason = "no index says which tooth is in mesh at the start of each record"
-    return {name: reason for name, kind in evidence.library.items() if kind.cause and kind.cause.turns_with == "tooth"}
 
 
 def restored(hypothesis: Hypothesis, cause: str) -> Hypothesis:
@@ -108,6 +104,7 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Si
         given[f"{kind.name}.{parameter.name}"] = sizes.default(kind, parameter, recipe)
     free, strengths, phases, own_phases = [], [], {}, {}
     own = not sizes.has_index and kind.cause.turns_with == "shaft"
+    own_tooth = f"{kind.name}.phase" if not sizes.has_index and kind.cause.turns_with == "tooth" else ""
     first = len(base.common)
     for name, size in recipe.strengths.items():
         for parameter in _elements(kind, name, sizes.size(kind, name, size, recipe), given, recipe):
@@ -122,13 +119,15 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Si
                     continue
                 free.append(FreeParameter(phase, 0.0))
                 phases[place] = place + 1
-    later = [
-        _freed(declared, f"{kind.name}.{declared.name}", given, recipe.within) for declared in _declared(kind, recipe)
-    ]
+    joining = [(declared, f"{kind.name}.{declared.name}") for declared in _declared(kind, recipe)]
+    later = [_freed(declared, flat, given, recipe.within) for declared, flat in joining if flat != own_tooth]
     if recipe.presence:
         free, later = [*free, *later], []
     begun = {}
     templates = [FreeParameter(phase, 0.0, per_record=True) for phase in own_phases.values()]
+    teeth = sizes.teeth(effect.chosen["shaft"]) if own_tooth else 0
+    if own_tooth:
+        templates = [FreeParameter(own_tooth, 0.0, ANGLE_SCALE, per_record=True, places=teeth)]
     for name, start in recipe.beside.items():
         if start is not None:
             given[name] = start / UNSEEN
@@ -150,6 +149,8 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Si
         replaced,
         tuple(f"{kind.name}.{name}" for name in recipe.sharpest),
         own_phases,
+        own_tooth,
+        teeth,
     )
 
 
@@ -179,7 +180,12 @@ class _Sizes:
 
     def __init__(self, base: Hypothesis, evidence: Evidence) -> None:
         self.base, self.duration, self.has_index = base, evidence.duration, evidence.has_index
-        self.scales = base.model.prepare(base.model.values(1, **base.given)).scales
+        prepared = base.model.prepare(base.model.values(1, **base.given))
+        self.scales, self.base_values = prepared.scales, prepared.base
+
+    def teeth(self, shaft: str) -> int:
+        """Teeth of the gear on a shaft."""
+        return round(float(self.base_values[f"n_teeth_{shaft}"].reshape(-1)[0]))
 
     def natural(self, kind: type[Effect], parameter: Parameter, value: float, exponent: float = 1.0) -> float:
         """A value in natural units, in the rig's own; the unit of a power law hangs on its exponent."""

@@ -5,7 +5,6 @@ from math import log10
 from typing import Any
 
 from gear_damping.explanation import gain
-from gear_damping.explanation.candidates import untried
 from gear_damping.explanation.data_faults import sentences
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.homogeneity import by_record
@@ -251,16 +250,12 @@ def _candidates(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
             return statuses(judged.verdict.word)
         return "confusable" if name in alike else "rejected"
 
-    untold = [
-        {"name": name, "promised": None, "share": None, "status": "rejected", "at_bound": False, "failed": reason}
-        for name, reason in untried(evidence).items()
-    ]
     bounded = {refit.name for refit in found.first_fits if refit.is_at_bound}
     return [
         {"name": name, "promised": score.gain, "share": accepted.get(name, taken.get(name)), "status": status(name)}
         | {"at_bound": name in bounded, "failed": found.failed.get(name) or score.failed or None}
         for name, score in best.items()
-    ] + untold
+    ]
 
 
 def _not_observable(scores: Sequence[Score], named: Sequence[str], evidence: Evidence) -> list[dict[str, Any]]:

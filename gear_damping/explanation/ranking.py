@@ -8,6 +8,7 @@ from torch import Tensor
 
 from gear_damping.explanation.candidates import Candidate
 from gear_damping.explanation.hypothesis import Outcome, begun_from
+from gear_damping.explanation.own_teeth import Teeth, every_tooth, one_tooth
 from gear_damping.identification.output_error.least_squares import own_basis, without_own
 from gear_damping.identification.output_error.problem import OutputErrorProblem, prepare_predictions
 from gear_damping.identification.output_error.records import DIFFERENCE, SEPARATOR, FreeParameter
@@ -148,7 +149,7 @@ def _alike(candidates: Sequence[Candidate], samples: int) -> list[list[Candidate
     groups: dict[object, list[Candidate]] = {}
     for candidate in candidates:
         lists = tuple((k, v) for k, v in candidate.hypothesis.given.items() if isinstance(v, tuple))
-        own = tuple(candidate.own_phases.items())
+        own = (*candidate.own_phases.items(), candidate.own_tooth)
         alike = (candidate.name, candidate.options, candidate.hypothesis.free, candidate.strengths, lists, own)
         groups.setdefault(id(candidate) if candidate.presence else alike, []).append(candidate)
     found = []
@@ -183,7 +184,8 @@ def _score_together(group: Sequence[Candidate], base: Base) -> list[Score]:
     states = begun_from(problem, base.outcome, len(points))
     found = (problem.predict(points, states) * problem.weights).reshape(len(points), -1)
     columns = (found - base.predicted) / torch.cat([steps for _, steps in probes]).unsqueeze(1)
-    parts = [_by_record(c, problem) if group[0].own_phases else c for c in columns.split(counts)]
+    apart = bool(group[0].own_phases or group[0].own_tooth)
+    parts = [_by_record(c, problem) if apart else c for c in columns.split(counts)]
     columns = torch.nn.functional.pad(torch.cat(parts), (0, len(base.project.expected))).T
     beside = base.project(columns)
     # What the nuisance takes but for rounding is nothing of its own.
@@ -206,23 +208,52 @@ def _score(candidate: Candidate, beside: Tensor, problem: OutputErrorProblem, st
         return replace(_unseen(candidate, n_free, len(residual)), failed="its prediction diverged")
     if not bool(beside.any()):
         return _unseen(candidate, n_free, len(residual))
-    coefficients = _coefficients(beside, residual)
-    explained = beside @ coefficients
     basis, spread, _ = torch.linalg.svd(beside, full_matrices=False)
+    teeth = _teeth(candidate, beside, base.beside, problem)
+    beside = beside if teeth is None else teeth.columns
+    coefficients = _coefficients(beside, residual) if teeth is None else teeth.strengths
+    explained = beside @ coefficients
     kept = basis[:, spread > 1e-6 * spread[0]]
     if candidate.presence:  # there is no less than nothing of it: the sign counts
         kept = beside[:, :1] / beside[:, :1].norm()
     smallest = VISIBLE * base.noise / float(beside[:, 0].norm().clamp(min=1e-300)) * _unit(candidate)
     gain = _gain(candidate, problem, states, beside, base)
     direction = explained / explained.norm().clamp(min=1e-300)
+    if teeth is not None:
+        start, own = _start_of_teeth(candidate, teeth, problem, n_free)
+        return Score(candidate, gain, start, direction, smallest, kept, own=own)
     if candidate.own_phases:
         start, own = _start_by_record(candidate, coefficients, problem, n_free)
         return Score(candidate, gain, start, direction, smallest, kept, own=own)
     return Score(candidate, gain, _start(candidate, coefficients, n_free), direction, smallest, kept)
 
 
+def _teeth(candidate: Candidate, beside: Tensor, residual: Tensor, problem: OutputErrorProblem) -> Teeth | None:
+    """Which tooth is in mesh at the start of each record, for what tells teeth apart where nothing else does."""
+    if not candidate.own_tooth:
+        return None
+    search = one_tooth if len(candidate.strengths) == 1 else every_tooth
+    return search(beside, residual, len(_record_names(problem)))
+
+
+def _start_of_teeth(
+    candidate: Candidate, teeth: Teeth, problem: OutputErrorProblem, n_free: int
+) -> tuple[Tensor, dict[str, float]]:
+    """Coordinates of the linearised optimum, and the phase of every record."""
+    start = torch.zeros(n_free, dtype=torch.float64)
+    start[list(candidate.strengths)] = teeth.strengths
+    pitch, names = 2 * torch.pi / candidate.teeth, _record_names(problem)
+    found = zip(names, teeth.numbers, strict=True)
+    return start, {f"{candidate.own_tooth}{SEPARATOR}{name}": number * pitch for name, number in found}
+
+
 def _turn_own_phases(points: Tensor, candidate: Candidate, problem: OutputErrorProblem) -> None:
-    """Every second point of a strength whose phases are the records' own: turned by a quarter."""
+    """Every second point of a strength whose phases are the records' own: turned by a quarter; of one tooth: by one."""
+    if candidate.own_tooth and len(candidate.strengths) == 1:
+        for place, parameter in enumerate(problem.free):
+            if parameter.name.startswith(candidate.own_tooth + SEPARATOR):
+                turned = (parameter.coordinate(2 * torch.pi * k / candidate.teeth) for k in range(len(points)))
+                points[:, place] = torch.tensor(list(turned), dtype=torch.float64)
     for number, phase in enumerate(candidate.own_phases.values()):
         for place, parameter in enumerate(problem.free):
             if parameter.name.startswith(phase + SEPARATOR):
@@ -308,8 +339,9 @@ def _probes(candidate: Candidate, n_free: int) -> tuple[Tensor, Tensor]:
         if candidate.presence:
             return torch.zeros(1, n_free, dtype=torch.float64), torch.ones(1, dtype=torch.float64)
         row[place] = PROBE
-        rows.append(row)
-        steps.append(PROBE)
+        repeats = candidate.teeth if candidate.own_tooth and len(candidate.strengths) == 1 else 1
+        rows += [row] * repeats
+        steps += [PROBE] * repeats
         if place in candidate.phases or place in candidate.own_phases:
             turned = row.clone()
             if place in candidate.phases:

@@ -44,7 +44,8 @@ def rig_of(base: Hypothesis, evidence: Evidence, residuals: Residuals | None = N
     pinion, gear = round(values["n_teeth_pinion"]), round(values["n_teeth_gear"])
     lines = strongest_orders(residuals or (), pinion, gear, values["pinion_speed"])
     harmonics = max(_harmonics(record, pinion, values["pinion_speed"]) for record in evidence.fit)
-    return Rig(n_teeth_pinion=pinion, n_teeth_gear=gear, mesh_harmonics=harmonics, lines=lines, **common)
+    teeth = {"n_teeth_pinion": pinion, "n_teeth_gear": gear, "indexed": evidence.has_index}
+    return Rig(mesh_harmonics=harmonics, lines=lines, **teeth, **common)
 
 
 def strongest_orders(residuals: Residuals, pinion: int, gear: int, speed: float) -> tuple[float, ...]:

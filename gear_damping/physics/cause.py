@@ -23,6 +23,7 @@ class Rig:
         mesh_harmonics: Harmonics of the mesh that the sampling of at least one record shows.
         lines: Orders of the pinion shaft at which most is left unexplained, the strongest first.
         values: Parameters and derived quantities of the system by name, SI; of a mesh the `contact_ratio` too.
+        indexed: Whether the angle of all records counts from one mark, so that a tooth has one number.
     """
 
     system: str
@@ -33,6 +34,7 @@ class Rig:
     mesh_harmonics: int = 0
     lines: tuple[float, ...] = ()
     values: Mapping[str, float] = field(default_factory=dict)
+    indexed: bool = True
 
     def teeth(self, shaft: str) -> int:
         """Teeth of the gear on a shaft."""
@@ -100,8 +102,8 @@ class Cause:
         looks_like: Effects that no record of this channel can tell from it and that are never tried by themselves.
         simpler: An effect that it contains, with fewer parameters.
         turns_with: Whether its phases turn with a shaft (`shaft`) and not with the mesh, or even tell single teeth
-            apart (`tooth`): where no index says how the shaft stands, every record has phases of its own, and teeth
-            have no number.
+            apart (`tooth`): where no index says how the shaft stands, every record has phases of its own, and the
+            `phase` of what tells teeth apart is sought tooth by tooth in each of them.
         one_class: What else no record of this channel parts from it, as words for a sentence: then several names are
             one answer.
     """

@@ -1,16 +1,18 @@
 """Where the angles of single records begin: tried all around, record by record."""
 
 from collections.abc import Mapping, Sequence
-from math import pi
+from math import ceil, pi
 
 import torch
 from torch import Tensor
 
 from gear_damping.identification.output_error.least_squares import own_basis, without_own
-from gear_damping.identification.output_error.problem import OutputErrorProblem
+from gear_damping.identification.output_error.problem import OutputErrorProblem, is_of_model
 from gear_damping.identification.output_error.records import SEPARATOR
 
-STARTS = 18  # angles that are tried, 20 degrees apart
+MESH_PHASE = "mesh_phase"
+PER_HARMONIC, MOST_STARTS = 4.0, 120  # angles for each harmonic up to the natural frequency
+STARTS = 18  # angles that are tried where a parameter asks for no more, 20 degrees apart
 
 
 def angle_bases(problem: OutputErrorProblem) -> list[str]:
@@ -33,8 +35,9 @@ def scanned(
     found: dict[str, float] = {}
     for base in angle_bases(problem) if bases is None else bases:
         places = [i for i, p in enumerate(problem.free) if p.name.startswith(base + SEPARATOR)]
-        angles = torch.linspace(0, 2 * pi, STARTS + 1, dtype=torch.float64)[:-1]
-        starts = shared.repeat(STARTS, 1)
+        count = max([_starts(problem, base), *(problem.free[place].places for place in places)])
+        angles = torch.linspace(0, 2 * pi, count + 1, dtype=torch.float64)[:-1]
+        starts = shared.repeat(count, 1)
         for place in places:
             starts[:, place] = torch.tensor([problem.free[place].coordinate(float(a)) for a in angles])
         cost = _costs(problem, starts, places, horizon)
@@ -48,13 +51,26 @@ def scanned(
     return found
 
 
+def _starts(problem: OutputErrorProblem, base: str) -> int:
+    """Angles at which a base is tried: of a mesh so many that none of its harmonics up to the resonance is missed."""
+    values = problem.model.values(1, **{k: v for k, v in problem.given.items() if is_of_model(k)})
+    derived = problem.model.prepare(values).derived
+    if base != MESH_PHASE or "n_teeth_pinion" not in values:
+        return STARTS
+    default = float(values["pinion_speed"][0])
+    slowest = min(abs(record.conditions.get("pinion_speed", default)) for record in problem.records)
+    mesh = float(values["n_teeth_pinion"][0]) * slowest
+    harmonics = float(derived["natural_frequency"][0]) / max(mesh, 1e-9)
+    return min(max(STARTS, ceil(PER_HARMONIC * harmonics)), MOST_STARTS)
+
+
 def _costs(problem: OutputErrorProblem, starts: Tensor, tried: Sequence[int], horizon: float | None) -> Tensor:
     """Sum of squares by start and record, (starts, records), beside what the record's own start and zero can do."""
     states = problem.first_states().unsqueeze(0)
     own = [i for i in range(problem.n_common, problem.n_shared) if i not in set(tried)]
     rows = []
     for start in starts:  # one at a time: the sensitivities of all would be large
-        prediction = problem.linearise(start.unsqueeze(0), states, horizon)
+        prediction = problem.linearise(start.unsqueeze(0), states, horizon, own)
         residual, sensitivity = prediction.residual[0], prediction.sensitivity[0]
         columns = torch.cat([sensitivity[..., own], sensitivity[..., problem.n_shared :]], -1)
         good = bool(columns.isfinite().all() & residual.isfinite().all())

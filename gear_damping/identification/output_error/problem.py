@@ -1,6 +1,6 @@
 """What is fitted to what: free parameters, records, and predictions with their sensitivities in one batch."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf
@@ -375,13 +375,22 @@ class OutputErrorProblem:
                 total = total + modes[..., place, None] * shape
         return total
 
-    def linearise(self, shared: Tensor, states: Tensor, horizon: float | None = None) -> Prediction:
+    def linearise(
+        self, shared: Tensor, states: Tensor, horizon: float | None = None, only: Collection[int] | None = None
+    ) -> Prediction:
         """Residuals and sensitivities at several starts at once; every column is a member of one batch.
 
         What single records have of their own shares a member where it bears the same name: it moves but its record.
+
+        Args:
+            shared: Coordinates of the shared parameters, (starts, any number of the first).
+            states: Initial states, (starts, records, local).
+            horizon: Seconds of every record that are predicted; all where absent.
+            only: Shared coordinates whose sensitivities are worked out; those of the others are 0. All where absent.
         """
         shared, samples = self.completed(shared), self.samples_within(horizon)
         starts, moved = shared.shape[0], self._moved
+        moved = moved if only is None else [columns for columns in moved if not {*columns}.isdisjoint(only)]
         steps = torch.zeros(len(moved) + len(self.local) + 1, self.n_shared + len(self.local), dtype=torch.float64)
         for row, columns in enumerate([*moved, *([self.n_shared + i] for i in range(len(self.local)))]):
             steps[row + 1, columns] = DIFFERENCE
@@ -394,8 +403,9 @@ class OutputErrorProblem:
         slopes = (found[:, 1:] - found[:, :1]) / DIFFERENCE * weights
         columns = [slopes[:, row, :, :, None] * self._reach(moved[row]) for row in range(len(moved))]
         columns.append(slopes[:, len(moved) :].permute(0, 2, 3, 1))
-        places = torch.tensor([c for cs in moved for c in cs] + list(range(self.n_shared, steps.shape[1])))
-        sensitivity = torch.cat(columns, -1)[..., places.argsort()]
+        sensitivity = residual.new_zeros(*residual.shape, steps.shape[1])
+        places = [c for cs in moved for c in cs] + list(range(self.n_shared, steps.shape[1]))
+        sensitivity[..., places] = torch.cat(columns, -1)
         return Prediction(residual, sensitivity, len(self.channels))
 
     @cached_property

@@ -26,6 +26,7 @@ class FreeParameter:
             logarithmic one. It counts like one sample of the record's noise.
         expected: Mean of that expectation; a logarithmic one expects its start where absent, another one 0.
         per_record: Whether every record has a value of its own, as of an angle at its start.
+        places: Angles all around at which such an angle is tried where nothing is known of it; as usual where 0.
     """
 
     name: str
@@ -37,6 +38,7 @@ class FreeParameter:
     deviation: float = inf
     expected: float | None = None
     per_record: bool = False
+    places: int = 0
 
     def value(self, z: Tensor) -> Tensor:
         """The parameter from its fitted coordinate."""

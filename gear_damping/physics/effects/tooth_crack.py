@@ -16,8 +16,9 @@ EDGE, EDGES = 0.32, (0.064, 1.9)  # where it begins and its bounds, in angles fr
 
 
 def _every_tooth(rig: Rig) -> tuple[Recipe, ...]:
-    """One variant a tooth, on either shaft."""
-    return tuple(_one_tooth(i, shaft, rig.teeth(shaft)) for shaft in SHAFTS for i in range(rig.teeth(shaft)))
+    """One variant a tooth, on either shaft; one for all teeth where they have no numbers."""
+    counts = {shaft: rig.teeth(shaft) if rig.indexed else 1 for shaft in SHAFTS}
+    return tuple(_one_tooth(i, shaft, rig.teeth(shaft)) for shaft in SHAFTS for i in range(counts[shaft]))
 
 
 def _one_tooth(number: int, shaft: str, teeth: int) -> Recipe:
