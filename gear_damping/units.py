@@ -71,10 +71,11 @@ def parse_unit(text: str, key: str = "unit", source: str = "") -> Unit:
     """The unit that `text` names, for example `um`, `N*m`, `m/s^2` or `kg*m^2`.
 
     Raises:
-        InputError: the unit is unknown; `g` alone is refused because it means gram to some and
-            standard gravity to others.
+        InputError: the unit is unknown; `g` within a product is refused because it means gram to some and standard
+            gravity to others. By itself it is the unit of an accelerometer: nothing here is a mass.
     """
     plain = text.strip()
+    plain = "gn" if plain == "g" else plain
     for spelling, ours in _SPELLINGS.items():
         plain = plain.replace(spelling, ours)
     plain = plain.replace("(", "").replace(")", "") if "/" not in plain else plain

@@ -12,7 +12,7 @@ from gear_damping.explanation.hypothesis import Outcome
 from gear_damping.explanation.next_experiment import LARGEST_SET, confusable_beforehand, next_experiment
 from gear_damping.explanation.noise import NoiseLevel
 from gear_damping.explanation.ranking import Score
-from gear_damping.explanation.rig_units import rig_unit
+from gear_damping.explanation.rig_units import rig_unit, unit_of
 from gear_damping.explanation.significance import ac_energy
 from gear_damping.explanation.unexplained import leftover
 from gear_damping.explanation.verdict import CONSISTENT, DATA_PROBLEM, Judged, statuses
@@ -27,6 +27,8 @@ KEYS = (
     "candidates", "not_tried", "not_observable", "next_experiment", "unexplained", "records", "calibration", "findings",
     "casing",
 )  # fmt: skip
+
+RAN_AWAY = "its prediction of the held-out records ran away"
 
 
 def of_faults(measurement: Measurement, faults: Sequence[Finding]) -> dict[str, Any]:
@@ -251,9 +253,12 @@ def _candidates(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
         return "confusable" if name in alike else "rejected"
 
     bounded = {refit.name for refit in found.first_fits if refit.is_at_bound}
+    wild = {name: RAN_AWAY for name, share in taken.items() if share < -1 and name not in accepted}
+    shares = {name: share for name, share in taken.items() if name not in wild} | accepted
+    failed = wild | found.failed
     return [
-        {"name": name, "promised": score.gain, "share": accepted.get(name, taken.get(name)), "status": status(name)}
-        | {"at_bound": name in bounded, "failed": found.failed.get(name) or score.failed or None}
+        {"name": name, "promised": score.gain, "share": shares.get(name), "status": status(name)}
+        | {"at_bound": name in bounded, "failed": failed.get(name) or score.failed or None}
         for name, score in best.items()
     ]
 
@@ -271,7 +276,7 @@ def _not_observable(scores: Sequence[Score], named: Sequence[str], evidence: Evi
             continue
         place = score.candidate.strengths[0]
         flat = score.candidate.hypothesis.common[place].name
-        unit = rig_unit(score.candidate.hypothesis.model.parameters()[flat.partition("[")[0]].unit, evidence)
+        unit = unit_of(flat.partition("[")[0], score.candidate.hypothesis.model, evidence)
         listed.append({"name": name, "parameter": flat, "smallest": score.smallest, "unit": unit})
     return listed
 

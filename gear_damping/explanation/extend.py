@@ -12,7 +12,7 @@ from gear_damping.explanation.noise import NoiseLevel
 from gear_damping.explanation.pairs import Pair, best_pair, pair_instead
 from gear_damping.explanation.ranking import Score
 from gear_damping.explanation.refit import Refit, again
-from gear_damping.explanation.revise import beside_the_others, exchanged, pruned, simplified
+from gear_damping.explanation.revise import beside_the_others, exchanged, pruned, simplified, told
 from gear_damping.explanation.significance import Excess, is_settled
 from gear_damping.explanation.trying import ACCEPTED_AT, SMALL_REST, TWO, Accepted, Bench, Say, Search
 from gear_damping.explanation.visible import Assessment
@@ -52,6 +52,7 @@ def search(
         _look_again(found, state)
     bench = state.bench
     found.accepted = [simplified(cause, found, bench) for cause in found.accepted]
+    told(found, bench)
     if len(found.accepted) > 1:
         pruned(found, state.first, bench)
         found.accepted = [beside_the_others(cause, found, bench) for cause in found.accepted]

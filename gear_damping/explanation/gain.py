@@ -8,7 +8,7 @@ from torch import Tensor
 
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Outcome, time_scale
-from gear_damping.explanation.rig_units import rig_unit
+from gear_damping.explanation.rig_units import unit_of
 from gear_damping.explanation.significance import ac_energy
 from gear_damping.identification.output_error.problem import OFFSET, is_of_model, set_value
 from gear_damping.identification.output_error.records import SEPARATOR, FitRecord, FreeParameter
@@ -58,13 +58,12 @@ def parameters_of(outcome: Outcome, spread: Tensor, cause: str, evidence: Eviden
     that the fit has driven to its bound, it takes in what lies beyond.
     """
     found = {}
-    declared = outcome.hypothesis.model.parameters()
     at_bound = outcome.problem.at_bound(outcome.fitted.shared)
     for place, parameter in enumerate(outcome.problem.free):
         effect, _, own = parameter.name.partition(".")
         if effect != cause:
             continue
-        unit = rig_unit(declared[_declared_name(parameter)].unit, evidence)
+        unit = unit_of(_declared_name(parameter), outcome.hypothesis.model, evidence)
         found[own] = _interval(outcome, spread, place, evidence, unit).plain() | {"at_bound": bool(at_bound[place])}
     return found
 
@@ -78,7 +77,7 @@ def final_parameters(outcome: Outcome, spread: Tensor, evidence: Evidence) -> di
         if kind == OFFSET:
             unit = evidence.channel.unit if channel == evidence.channel.name else "own"
         else:
-            unit = rig_unit(declared[flat].unit, evidence) if flat in declared else "1"
+            unit = unit_of(flat, outcome.hypothesis.model, evidence) if flat in declared else "1"
         found[parameter.name] = _interval(outcome, spread, place, evidence, unit).plain()
     return found
 

@@ -15,6 +15,7 @@ from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Outcome, time_scale
 from gear_damping.explanation.statistics.random_effects import spread_between, statistic
 from gear_damping.identification.output_error.least_squares import own_basis, without_own
+from gear_damping.identification.output_error.records import SEPARATOR
 from gear_damping.identification.output_error.uncertainty import QUANTILE
 
 TOLERANCE = 0.15  # of the strength: what a real cause may differ by between records
@@ -75,11 +76,15 @@ def by_record(outcome: Outcome, cause: str, evidence: Evidence) -> dict[str, Any
     """The same as plain values: the first strength by record with 95 % intervals, and how much it differs."""
     test = homogeneity(outcome, cause, evidence)
     name = next(p.name for p in outcome.problem.free if p.name.startswith(cause + "."))
-    size = outcome.values[name]
-    ends = (-QUANTILE, QUANTILE)
+    size, ends = outcome.values[name], (-QUANTILE, QUANTILE)
+    known = outcome.hypothesis.model.parameters()[name.partition(SEPARATOR)[0].partition("[")[0]]
+
+    def within(value: float) -> float:
+        return min(max(value, known.lower), known.upper)
+
     rows = [
-        {"record": record, "value": size * one, "interval95": sorted(size * (one + end * error) for end in ends)}
-        for record, one, error in zip(test.names, test.estimates, test.errors, strict=True)
+        {"record": r, "value": within(size * one), "interval95": sorted(within(size * (one + e * error)) for e in ends)}
+        for r, one, error in zip(test.names, test.estimates, test.errors, strict=True)
     ]
     spread = spread_between(test.estimates, test.errors) if test.testable else None
     return {

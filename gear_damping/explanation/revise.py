@@ -53,13 +53,25 @@ def simplified(cause: Accepted, found: Search, bench: Bench) -> Accepted:
 
 def pruned(found: Search, first: Excess, bench: Bench) -> None:
     """Drop a cause whose removal costs nothing that held-out records show, or leaves nothing that is visible."""
-    for accepted in found.accepted[:-1]:
+    for accepted in list(found.accepted):
+        if len(found.accepted) == 1:
+            return
         without = bench.without(found.outcome, accepted.name)
         if bench.paired_gain(without, found.outcome)[1] < ACCEPTED_AT or _is_enough(without, first, bench):
             bench.say(f"{accepted.name} is not needed beside the others")
             found.outcome = without
             left = [other for other in found.accepted if other is not accepted]
             found.accepted = [replace(left[0], share=left[0].share + accepted.share), *left[1:]]
+
+
+def told(found: Search, bench: Bench) -> None:
+    """Drop causes whose size the records do not tell from none."""
+    for cause in list(found.accepted):
+        if not bench.is_told(found.outcome, cause):
+            bench.say(f"{cause.name} lowers the cost, but its size is not told from none")
+            found.outcome = bench.without(found.outcome, cause.name)
+            found.accepted = [other for other in found.accepted if other is not cause]
+            found.rejected = [cause.refit, *found.rejected]
 
 
 def _is_enough(outcome: Outcome, first: Excess, bench: Bench) -> bool:

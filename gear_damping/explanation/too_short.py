@@ -28,11 +28,12 @@ def too_short(evidence: Evidence) -> str:
         whole, share = _times(evidence.records, period), 1 - SPLIT
         return (
             f"This record holds {whole:.3g} {name}, of which the last {held:.2g} are held out; at least "
-            f"{ceil(needed / share)} are needed to judge an effect: record at least {needed / share * period:.3g} s."
+            f"{ceil(needed / share)} are needed to judge more than large effects: record at least "
+            f"{needed / share * period:.3g} s."
         )
     return (
-        f"The held-out records hold {held:.3g} {name}; at least {needed:g} are needed to judge an effect: hold out "
-        f"records of at least {needed * period:.3g} s."
+        f"The held-out records hold {held:.3g} {name}; at least {needed:g} are needed to judge more than large "
+        f"effects: hold out records of at least {needed * period:.3g} s."
     )
 
 

@@ -91,7 +91,7 @@ def is_visible(seen: Assessment | None) -> bool:
 def _taken(found: Search, before: Excess, after: Excess) -> float:
     """Share of what was missing that causes take: of held-out power, or of what is not random where that is small."""
     if before.significant or found.seen is None or found.left is None or not found.seen.taken:
-        return (before.percent - after.percent) / before.percent
+        return min((before.percent - after.percent) / before.percent, 1.0)  # what is left may by chance be below noise
     return 1 - min(found.left.taken / found.seen.taken, 1.0)
 
 

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+import torch
 from torch import Tensor
 
 from gear_damping.identification.output_error.records import FitRecord
@@ -45,10 +46,15 @@ def _by_means(record: FitRecord, factor: int) -> FitRecord:
     def means(series: Tensor) -> Tensor:
         return series[: len(series) // factor * factor].unflatten(0, (-1, factor)).mean(1)
 
+    def driving(name: str, series: Tensor) -> Tensor:
+        """Of what is held, the mean about each sample: half of what came before and half of what comes after it."""
+        return (torch.cat([series[:1], series[:-1]]) + series) / 2 if name in record.held else series
+
     return replace(
         record,
         response=means(record.response),
         sampling_rate=record.sampling_rate / factor,
-        inputs={name: means(series) for name, series in record.inputs.items()},
+        inputs={name: means(driving(name, series)) for name, series in record.inputs.items()},
+        held=(),
         others=tuple((channel, means(values)) for channel, values in record.others),
     )

@@ -110,6 +110,7 @@ def fit_record(record: Record, system: str, spring: bool = True) -> FitRecord:
         others=tuple(others),
         own=tuple(parameter for parameter in uncertain if parameter.name not in inputs),
         stamps=None if record.uniform else _positions(record),
+        held=tuple(name for name in inputs if name in record.channels and _is_held(record, record.channels[name])),
     )
 
 
@@ -138,9 +139,15 @@ def _input(record: Record, channel: Channel) -> Tensor:
     values = channel.values
     if not record.uniform or channel.delay:
         grid = record.time if record.uniform else _grid(record)
-        at = np.clip(grid + channel.delay, record.time[0], record.time[-1])
+        held = 0.5 / record.sampling_rate if channel.hold else 0.0  # on average, a value that stays is so much older
+        at = np.clip(grid + channel.delay - held, record.time[0], record.time[-1])
         values = CubicSpline(record.time, values)(at)
     return torch.as_tensor(values, dtype=torch.float64)
+
+
+def _is_held(record: Record, channel: Channel) -> bool:
+    """Whether an input stays at each value until the next; between uneven or shifted stamps that cannot be."""
+    return channel.hold and record.uniform and not channel.delay
 
 
 def _grid(record: Record) -> np.ndarray:

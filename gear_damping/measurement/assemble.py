@@ -15,8 +15,11 @@ from gear_damping.measurement.plan import Plan
 from gear_damping.measurement.raw import RawChannel, RawRecord
 from gear_damping.measurement.record import Channel, Finding, Quantity, Record
 from gear_damping.measurement.shaft_check import tooth_ratio
+from gear_damping.measurement.staircase import is_staircase
+from gear_damping.measurement.vocabulary import HOLDABLE
 from gear_damping.units import parse_unit
 
+LOST = 0.1  # of a channel's variance, from which it is said that resampling took it
 _GEOMETRY = ("n_teeth_pinion", "n_teeth_gear", "module", "pressure_angle")
 
 
@@ -66,12 +69,26 @@ class Assembler:
         if plan.name == "pinion_angle":
             values = _unwrapped(values, notes)
         if raw.own_time is None:
-            values = record.base.resample(values)
+            recorded, values = values, record.base.resample(values)
+            findings += _lost(recorded, values, plan.name) if record.plan.resample else []
         else:
             values = moved(record.base, raw.own_time, values, plan.key, str(record.table.path))
             rate = raw.own_time.sampling_rate
             notes.append(f"{plan.name}: interpolated from {rate:.6g} Hz to the record's time")
-        return Channel(plan.name, values, conversion.unit, raw.unit, conversion.factor, **limits, **plan.sensor)
+        sensor = plan.sensor | ({"hold": self._held(raw, record, values, notes)} if plan.name in HOLDABLE else {})
+        return Channel(plan.name, values, conversion.unit, raw.unit, conversion.factor, **limits, **sensor)
+
+    def _held(self, raw: RawChannel, record: RawRecord, values: NDArray, notes: list[str]) -> bool:
+        """Whether an input stays at each value: as stated, or as it looks."""
+        stated, moved_to = raw.plan.sensor.get("hold"), record.plan.resample or raw.own_time or not record.base.uniform
+        if stated and moved_to:
+            rule = "cannot be held where its samples are moved to other instants"
+            remedy = "leave out hold, and give half of its sampling interval as a delay of -T/2"
+            raise InputError(Problem(f"{raw.plan.key}.hold", rule, True, remedy, self.source))
+        if stated is not None or moved_to or not is_staircase(values):
+            return bool(stated)
+        notes.append(f"{raw.plan.name}: comes in steps, and stays at each value until the next (else hold: false)")
+        return True
 
     def _limit(self, name: str, quantity: Quantity, key: str) -> Conversion:
         return self.units.conversion(name, quantity.unit, key, self.source)
@@ -137,6 +154,18 @@ class Assembler:
             rule = "the pinion torque varies and nothing says what the gear torque does"
             remedy = "write gear_torque: balanced (or held) beside pinion_torque, or its channel"
             self.problems.append(Problem(f"{raw.plan.key}.channels", rule, None, remedy, self.source))
+
+
+def _lost(recorded: NDArray[np.float64], kept: NDArray[np.float64], name: str) -> list[Finding]:
+    """What a filter before a lower rate has taken of a channel, where that is much."""
+    share = 1 - float(np.var(kept)) / max(float(np.var(recorded)), 1e-300)
+    if share < LOST:
+        return []
+    message = (
+        f"resample takes {100 * share:.0f} % of the variance of {name} away, which lies above half of the new rate; "
+        "where that is the motion, give a higher rate"
+    )
+    return [Finding("resampled_away", message, channel=name, severity="note")]
 
 
 def _mean_lost(channel: Channel) -> bool:

@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar
 from pydantic import model_validator
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.fields import Column, Corner, Cutoff, Measured, Number, OneOf, Text, refuse
+from gear_damping.measurement.fields import Column, Corner, Cutoff, Flag, Measured, Number, OneOf, Text, refuse
 from gear_damping.measurement.record import Quantity
 from gear_damping.measurement.structure import Declared, key
 
@@ -95,7 +95,8 @@ class Response(Delayed, Ranged, Scaled):
     )
     datum: Annotated[str, OneOf(("absolute", "arbitrary"))] = key(
         "`arbitrary`: the zero means nothing, and every record has an offset of its own. Absent, arbitrary for an "
-        "oscillator's displacement, a speed and whatever is AC-coupled, absolute otherwise.", "offset of each record",
+        "oscillator's displacement, an acceleration, the speed of a shaft and whatever is AC-coupled, absolute "
+        "otherwise.", "offset of each record",
     )  # fmt: skip
 
     @model_validator(mode="after")
@@ -125,7 +126,17 @@ def _input_reasons(offset: str) -> Reasons:
     )
 
 
-class Input(Delayed, Ranged, Scaled):
+class Held(AnyChannel):
+    """An input that may stay at each value until the next sample."""
+
+    hold: Annotated[bool, Flag()] = key(
+        "Whether each value stays until the next sample, as a controller puts it out; absent, it does where the "
+        "series switches between two levels, or stands still and jumps. Otherwise the series is smooth between "
+        "samples.", "input between samples",
+    )  # fmt: skip
+
+
+class Input(Held, Delayed, Ranged, Scaled):
     """A torque, a force or the motion of the base: what drives the simulation."""
 
     is_input: ClassVar[bool] = True
@@ -139,7 +150,7 @@ class Torque(Input):
     refused: ClassVar[Reasons] = _input_reasons("declare parameters.torque_offset with its uncertainty")
 
 
-class GearTorque(Delayed, Ranged):
+class GearTorque(Held, Delayed, Ranged):
     """The torque on the gear in N*m."""
 
     title: ClassVar[str] = "the gear's torque"
@@ -245,6 +256,7 @@ class GearAcceleration(Response):
     """An accelerometer on a shaft, at a radius, or on the casing."""
 
     title: ClassVar[str] = "the acceleration of a gear pair"
+    usual_datum: ClassVar[str] = "arbitrary"
     si: ClassVar[str | None] = "m/s^2"
     mounting: Annotated[str, OneOf(("tangential", "casing"))] = key(
         "`tangential`: on a shaft, turning with it; `casing`: behind an unknown path.",
@@ -310,4 +322,5 @@ class Acceleration(Motion):
 
     title: ClassVar[str] = "an acceleration"
     derivative: ClassVar[int | None] = 2
+    usual_datum: ClassVar[str] = "arbitrary"  # the zero of an accelerometer wanders; what is held has no mean one
     usual_frame: ClassVar[str] = "absolute"

@@ -12,6 +12,7 @@ TIME, CONSTANT, EMPTY, UNREADABLE, TURNING, COUNTER, PULSES, SIGNAL = (
     "time stamps", "constant", "empty", "not readable", "turning angle", "counter", "pulses", "signal",
 )  # fmt: skip
 _ANGLE = re.compile(r"angle|winkel|theta|phi|phase|encoder|azimuth|rotation|revol|position", re.I)
+_MOTION = re.compile(r"accel|veloc|displac|force|torque", re.I)  # what bears such a name is no pulse train
 _LEVELS, _AT_LEVEL, _FEWEST_PULSES = 0.15, 0.95, 4  # of the range; of the samples; rises
 _FEWEST_JUMPS, _ONE_WAY, _COARSE = 2, 0.9, 50  # wraps; of the steps; steps that a direction is seen by
 _TURNS = {"rad": 2 * np.pi, "deg": 360.0, "rev": 1.0}
@@ -60,6 +61,8 @@ def _pulses(values: NDArray, name: str, unit: str | None) -> tuple[str, str] | N
     high = values > low + span / 2
     at = np.minimum(np.abs(values - low), np.abs(values - low - span)) < _LEVELS * span
     rises = int(np.sum(high[1:] & ~high[:-1]))
+    if _MOTION.search(name):
+        return None
     if rises < _FEWEST_PULSES or np.mean(at) < _AT_LEVEL:
         return None
     return PULSES, f"two levels, {low:.4g} and {low + span:.4g}, with {rises} rises"

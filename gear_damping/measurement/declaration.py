@@ -12,7 +12,7 @@ from gear_damping.measurement.vocabulary import CHANNEL_MODELS, PARAMETERS
 from gear_damping.units import parse_unit
 
 _SYSTEM = OneOf(layout.SYSTEMS)
-_SENSOR = ("coupling", "uncertainty", "polarity", "gain", "mounting", "shaft")  # kept as they are declared
+_SENSOR = ("coupling", "uncertainty", "polarity", "gain", "mounting", "shaft", "hold")  # kept as they are declared
 _ENCODERS = ("pinion", "gear", "tacho")
 
 

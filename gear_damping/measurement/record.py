@@ -73,6 +73,7 @@ class Channel:
         radius: Radius in m at which a tangential acceleration is measured.
         shaft: `pinion` or `gear`, on which a tangential accelerometer sits.
         frame: Of an oscillator on a base whose acceleration is measured: `absolute`, or `relative` to the base.
+        hold: Of an input, whether it stays at each sample's value until the next one.
     """
 
     name: str
@@ -96,6 +97,7 @@ class Channel:
     radius: float | None = None
     shaft: str | None = None
     frame: str | None = None
+    hold: bool = False
 
     def __post_init__(self) -> None:
         if np.ndim(self.values) != 1:

@@ -16,6 +16,7 @@ _SUFFIX = re.compile(r"[_ .\-/](s|sec|ms|us|µs|min|h)$", re.I)
 _EPOCHS = ((1e8, 1e10, "s"), (1e11, 1e13, "ms"), (1e14, 1e16, "us"))  # counted from 1970
 _FEWEST = 8  # stamps
 _ADVANCING = 0.9  # share of the steps of a named column that go forward
+_SHORT = re.compile(r"^t[a-z]?\d*(_\w+)?$", re.I)  # t1, tb_n: a time only where its steps are even
 _EVEN = 0.05  # of the median step; how far the steps of an unnamed column may differ
 
 
@@ -51,7 +52,7 @@ class _Column(Protocol):
 
 def find_stamps(columns: Sequence[_Column]) -> Stamps | None:
     """The column that advances and bears the unit or the name of time, else a first one that advances evenly."""
-    for by in (_by_unit, _by_name, _by_steps):
+    for by in (_by_unit, _by_name, _by_steps, _by_ramp):
         for index, column in enumerate(columns):
             says = by(index, column) if column.inside.size >= _FEWEST else ""
             if says:
@@ -73,10 +74,18 @@ def _by_name(index: int, column: _Column) -> str:
 def _by_steps(index: int, column: _Column) -> str:
     if index or column.unit is not None or (isinstance(column.reference, str) and column.reference.strip()):
         return ""
+    return "is the first column and advances evenly" if _is_even(column) else ""
+
+
+def _by_ramp(index: int, column: _Column) -> str:
+    named = column.unit is None and _SHORT.search(_bare(column.reference))
+    return "advances evenly, and its name begins with t" if named and _is_even(column) else ""
+
+
+def _is_even(column: _Column) -> bool:
     steps = np.diff(column.inside)
     median = float(np.median(steps))
-    even = median > 0 and bool(np.all(np.abs(steps / median - 1) < _EVEN))
-    return "is the first column and advances evenly" if even else ""
+    return median > 0 and bool(np.all(np.abs(steps / median - 1) < _EVEN))
 
 
 def _advances(column: _Column) -> bool:

@@ -11,6 +11,7 @@ from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.declaration import declared_plan
 from gear_damping.measurement.fields import Problems
 from gear_damping.measurement.record import Channel, Quantity, Record
+from gear_damping.measurement.staircase import is_staircase
 from gear_damping.measurement.structure import names
 from gear_damping.measurement.vocabulary import CHANNEL_MODELS, CHANNELS, SYSTEMS
 
@@ -132,6 +133,8 @@ def _channel(channel: Channel, keys: Sequence[str]) -> dict[str, object]:
             declared[name] = value
     if "datum" in keys and channel.mounting != "casing" and ("mounting" not in keys or channel.mounting):
         declared["datum"] = channel.datum
+    if "hold" in keys and channel.hold != is_staircase(channel.values):
+        declared["hold"] = channel.hold
     return declared
 
 

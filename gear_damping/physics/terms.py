@@ -246,6 +246,7 @@ class Recording:
         derived: Derived quantities of the system in SI, each (batch,).
         pinion_angle: True angle of the pinion shaft (batch, time) in rad; None without a shaft.
         gear_angle: True angle of the gear shaft.
+        begins: Time in s from the start of the record to the first sample, (batch,); 0 where absent.
     """
 
     sampling_rate: float
@@ -253,6 +254,7 @@ class Recording:
     derived: Values
     pinion_angle: Tensor | None = None
     gear_angle: Tensor | None = None
+    begins: Tensor | None = None
 
 
 class Sensor(Effect):

@@ -1,6 +1,6 @@
 """From prepared members to trajectories: packing, kernels, groups of equal sub-steps, `odeint`."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 
 import torch
 from torch import Tensor
@@ -33,6 +33,7 @@ def integrate(
     progress: Progress | None = None,
     departures: Mapping[str, Tensor] | None = None,
     acceleration: bool = False,
+    held: Collection[str] = (),
 ) -> tuple[list[str], Tensor, Tensor | None]:
     """Names of the states, their values (n_state, batch, time), and the acceleration (batch, time) where it is asked.
 
@@ -41,7 +42,7 @@ def integrate(
     """
     layout, series = Layout(prepared), Series(tuple(sorted(inputs)))
     fixed, start = layout.pack(prepared, interval), initial_states(model, prepared, departures)
-    packed = series.pack(inputs, units, n_samples - 1, interval.shape[0]).to(fixed.device)
+    packed = series.pack(inputs, units, n_samples - 1, interval.shape[0], held).to(fixed.device)
     example = Members(fixed, packed[0], fixed.new_zeros(()))
     kernel = kernel_of(model, layout, series, example, start)
     choice = choose(solver.engine, kernel, example, start)

@@ -107,11 +107,22 @@ class Runs:
         """Any channel behind the sensors that act on it, (batch, time)."""
         return self._through(self._sensors(channel, skip), self.channel(channel), generator)
 
-    def behind_sensors(self, signal: Tensor, generator: torch.Generator, skip: tuple[str, ...] = ()) -> Tensor:
-        """A response, whatever quantity it is, behind the sensors that act on the response, (batch, time)."""
-        return self._through(self._sensors(self.model.system.response, skip), signal, generator)
+    def behind_sensors(
+        self, signal: Tensor, generator: torch.Generator, skip: tuple[str, ...] = (), begins: Tensor | None = None
+    ) -> Tensor:
+        """A response, whatever quantity it is, behind the sensors that act on the response, (batch, time).
 
-    def _through(self, sensors: list[Sensor], signal: Tensor, generator: torch.Generator) -> Tensor:
+        Args:
+            signal: The response, (batch, time).
+            generator: Source of the sensors' noise.
+            skip: Names of sensors to leave out.
+            begins: Time in s from the start of the record to the first sample, (batch,).
+        """
+        return self._through(self._sensors(self.model.system.response, skip), signal, generator, begins)
+
+    def _through(
+        self, sensors: list[Sensor], signal: Tensor, generator: torch.Generator, begins: Tensor | None = None
+    ) -> Tensor:
         if not sensors:
             return signal
         about = Recording(
@@ -120,6 +131,7 @@ class Runs:
             self.derived,
             self.angles.get("pinion_angle"),
             self.angles.get("gear_angle"),
+            begins,
         )
         for sensor in sensors:
             own = {p.name: self.values[f"{sensor.name}.{p.name}"] for p in sensor.parameters}

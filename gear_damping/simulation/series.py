@@ -3,10 +3,11 @@
 A measured series is band-limited: it is interpolated by a windowed sinc to five points of each
 interval, and the quartic through them is what the solver sees, smooth inside every step. Of an angle,
 which grows, that is done with what is left of it beside the straight line from its first to its last
-sample; its rate is the derivative of the quartic. A drawn load is held over its interval.
+sample; its rate is the derivative of the quartic. A drawn load is held over its interval, and so is an input that a
+controller puts out in steps.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 import torch
@@ -33,7 +34,14 @@ class Series:
         self.names = names
         self.heights = [_height(name) for name in names]
 
-    def pack(self, inputs: Mapping[str, Tensor], units: Mapping[str, Tensor], intervals: int, batch: int) -> Tensor:
+    def pack(
+        self,
+        inputs: Mapping[str, Tensor],
+        units: Mapping[str, Tensor],
+        intervals: int,
+        batch: int,
+        held: Collection[str] = (),
+    ) -> Tensor:
         """Coefficients in natural units.
 
         Args:
@@ -42,11 +50,12 @@ class Series:
             units: Their natural units, (batch,); of a held load none.
             intervals: Output intervals.
             batch: Members, a multiple of the rows.
+            held: Names of those that stay at a sample's value until the next one.
         """
         packed = torch.empty(intervals, sum(self.heights), batch, dtype=torch.float64)
         row = 0
         for name, height in zip(self.names, self.heights, strict=True):
-            found = _kept_coefficients(name, inputs[name].to(torch.float64)).permute(1, 0, 2).unsqueeze(2)
+            found = _kept_coefficients(name, inputs[name].to(torch.float64), name in held).permute(1, 0, 2).unsqueeze(2)
             rows = packed[:, row : row + height].unflatten(2, (-1, found.shape[-1]))
             if name in units:
                 torch.div(found, units[name].reshape(-1, found.shape[-1]), out=rows)
@@ -92,20 +101,23 @@ def _height(name: str) -> int:
     return 1 if name == HELD_LOAD else POINTS + 1
 
 
-def _kept_coefficients(name: str, values: Tensor) -> Tensor:
+def _kept_coefficients(name: str, values: Tensor, held: bool) -> Tensor:
     """The coefficients, kept with the series: a fit hands the same one over a hundred times."""
     kept = getattr(values, _KEPT, None)
-    if kept is None or values.requires_grad:
-        kept = _coefficients(name, values)
+    if kept is None or values.requires_grad or kept[0] != held:
+        kept = held, _coefficients(name, values, held)
         if not values.requires_grad:
             setattr(values, _KEPT, kept)
-    return kept
+    return kept[1]
 
 
-def _coefficients(name: str, values: Tensor) -> Tensor:
+def _coefficients(name: str, values: Tensor, held: bool) -> Tensor:
     """Shape (height, intervals, batch), powers of u ascending."""
     if name == HELD_LOAD:
         return values.T.unsqueeze(0)
+    if held:
+        steps = values[:, :-1].T.unsqueeze(0)
+        return torch.cat([steps, steps.new_zeros(POINTS, *steps.shape[1:])])
     if name != ANGLE:
         return _quartics(values)
     first, last, intervals = values[:, :1], values[:, -1:], values.shape[1] - 1

@@ -1,6 +1,6 @@
 """Simulate a batch of runs of one model: the front door of this room."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 
 import torch
@@ -38,6 +38,7 @@ def simulate(
     progress: Progress | None = None,
     departures: Mapping[str, Tensor] | None = None,
     acceleration: bool = False,
+    held: Collection[str] = (),
 ) -> Runs:
     """Simulate every member of a batch, each with its own parameters, inputs and start.
 
@@ -57,12 +58,14 @@ def simulate(
         acceleration: Whether `Runs.states` shall have the `acceleration` too: the right-hand side of the equation of
             motion at the output instants. Where it jumps at an output (a tooth pair, a held load), it is the value
             before the jump, but for the first one.
+        held: Names of inputs that stay at a sample's value until the next one, as a controller puts them out.
 
     Raises:
         InputError: an input is unknown to the system or has the wrong shape.
     """
     if _is_alone(model, values):
         again = {"inputs": inputs, "solver": solver, "seed": seed, "progress": progress, "acceleration": acceleration}
+        again["held"] = held
         twins = {name: value.repeat_interleave(2, -1) for name, value in values.items()}
         moved = {name: value.repeat_interleave(2, -1) for name, value in (departures or {}).items()}
         both = simulate(model, twins, sampling_rate=sampling_rate, n_samples=n_samples, departures=moved, **again)
@@ -81,7 +84,7 @@ def simulate(
     scale = natural_units(model, prepared)
     moved = {name: value / scale[name] for name, value in (departures or {}).items()}
     names, states, rates = integrate(
-        model, prepared, series, units, interval, n_samples, solver, progress, moved, acceleration
+        model, prepared, series, units, interval, n_samples, solver, progress, moved, acceleration, held
     )
     low, high = states.aminmax(dim=-1)  # nan, too, shows in the extremes
     fine = (low.isfinite() & high.isfinite()).all(0) & (low[0] > -FAR) & (high[0] < FAR)

@@ -48,6 +48,7 @@ REFUSED = {
     ("gear_pair", "records", "channels", "acceleration", "mounting"): "no meaning on a casing",
     ("gear_pair", "records", "channels", "gear_speed", "coupling"): "whatever its coupling",
     ("oscillator", "records", "channels", "displacement", "coupling"): "has lost its mean",
+    ("oscillator", "records", "channels", "acceleration", "coupling"): "has lost its mean",
     ("gear_pair", "records", "encoders", "pinion", "index"): "turns of|holds no pulse",
     ("gear_pair", "records", "encoders", "gear", "index"): "turns of|holds no pulse",
     ("gear_pair", "records", "encoders", "tacho", "threshold", "unit"): "do not cover the record",
@@ -109,7 +110,7 @@ def channel(system: str, name: str, **more: object) -> dict:
     unit = SI[name]
     column = "acc" if system == "oscillator" and name == "acceleration" else COLUMN.get(name, "a")
     full = {
-        "column": column, "unit": unit, "polarity": 1, "gain": 1.05, "uncertainty": 0.01,
+        "column": column, "unit": unit, "polarity": 1, "gain": 1.05, "hold": False, "uncertainty": 0.01,
         "range": {"value": 1e7 if column == "acc" else FULL_SCALE.get(name, 1e4), "unit": unit},
         "delay": {"value": 1e-5, "unit": "s"}, "lowpass": {"value": 15e3, "unit": "Hz", "order": 2},
         "highpass": {"value": 20.0, "unit": "Hz", "order": 1}, "coupling": "DC",
@@ -220,7 +221,7 @@ def bases() -> list[dict]:
         gear(record(apart(only(one, "pinion_speed", "gear_speed"), arbitrary) | balanced, conditions=speed)),
         oscillator(record(only(two, "displacement") | inputs), **segments),
         *(oscillator(record(only(two, name) | plain(two, "force"))) for name in motions),
-        oscillator(record(only(two, "acceleration") | plain(two, "force"))),
+        oscillator(record(only(two, "acceleration", datum="absolute") | plain(two, "force"))),
         oscillator(record(only(two, "acceleration", frame="relative") | plain(two, "base_acceleration"))),
         oscillator(record(apart(motions, {"frame": "relative"}) | plain(two, "base_acceleration"))),
         oscillator(record(based)),

@@ -71,7 +71,7 @@ def test_what_is_short_is_said_first_and_with_the_verdict(folder):
     content, said = explained("linear", 6.0, folder)
     assert said[0].startswith("This record holds 6")
     assert "natural periods of 2 Hz" in said[0].replace("2.0", "2")
-    assert "at least 24 are needed to judge an effect: record at least 12 s" in said[0]
+    assert "at least 24 are needed to judge more than large effects: record at least 12 s" in said[0]
     assert content["sentences"][-1] == said[0]
 
 

@@ -6,9 +6,12 @@ import pytest
 import torch
 
 from gear_damping.identification.output_error.least_squares import normal_equations, own_basis, without_own
-from gear_damping.identification.output_error.problem import Prediction, growth
+from gear_damping.identification.output_error.problem import OutputErrorProblem, Prediction, growth
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import WHOLE, Segments, covered, in_segments, joined
+from gear_damping.physics.effects.sensor_drift import SensorDrift
+from gear_damping.physics.model import Model
+from gear_damping.physics.systems.oscillator import Oscillator
 
 STARTS, RECORDS, SAMPLES, SHARED, OWN = 2, 3, 20, 4, 2
 
@@ -91,3 +94,14 @@ def test_growth_is_that_of_the_record_that_grows_most(rate, expected):
     shared = torch.full_like(errors, 1e6)
     sensitivity = torch.stack([shared, errors], -1).unsqueeze(0)
     assert growth(Prediction(errors.unsqueeze(0), sensitivity), 1) == pytest.approx(expected, rel=1e-6)
+
+
+def test_a_drift_goes_on_from_segment_to_segment():
+    """The zero of a segment has wandered since its record began."""
+    time = torch.arange(400, dtype=torch.float64) / 100
+    whole = FitRecord("a", 0.3 * time, 100.0)
+    model = Model(Oscillator(), [SensorDrift()])
+    problem = OutputErrorProblem(model, {"sensor_drift.rate": 0.3}, (), in_segments([whole], Segments(1.0)))
+    none = torch.zeros(1, len(problem.records), len(problem.local), dtype=torch.float64)
+    shown = problem.predict(torch.zeros(1, problem.n_shared, dtype=torch.float64), none)
+    assert shown[0].flatten() == pytest.approx(whole.response, abs=1e-9)

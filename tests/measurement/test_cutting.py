@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import yaml
 
 from gear_damping.errors import InputError
 from gear_damping.measurement import load
@@ -170,3 +171,25 @@ def test_resampling_to_a_higher_rate_or_to_nothing_is_one_problem(bench, with_pl
     assert "records[0].resample = 30000.0: 30000 Hz lie above the recorded 20000 Hz" in bench.only_problem()
     with_plan(resample=100.0)
     assert "leaves 2 samples; a record needs at least 8" in bench.only_problem()
+
+
+def test_what_a_lower_rate_takes_away_is_said(with_plan_of_a_fork):
+    kept, lost = with_plan_of_a_fork
+    assert not kept
+    assert len(lost) == 1
+    assert "takes 100 % of the variance of displacement away" in lost[0].message
+
+
+@pytest.fixture
+def with_plan_of_a_fork(tmp_path):
+    """Findings about a motion of 30 Hz and one of 439 Hz, both wanted at 500 Hz."""
+    time, found = np.arange(20000) / 1e4, []
+    for frequency in (30.0, 439.0):
+        np.savetxt(tmp_path / "a.csv", np.sin(2 * np.pi * frequency * time), header="x", comments="")
+        channels = {"sampling_rate": {"value": 10, "unit": "kHz"}, "displacement": {"column": "x", "unit": "mm"}}
+        record = {"file": "a.csv", "resample": {"value": 500, "unit": "Hz"}, "channels": channels}
+        path = tmp_path / "measurement.yaml"
+        path.write_text(yaml.safe_dump({"system": "oscillator", "records": [record]}))
+        findings = load.load_measurement(path).records[0].findings
+        found.append([finding for finding in findings if finding.kind == "resampled_away"])
+    return found

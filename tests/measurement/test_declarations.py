@@ -192,7 +192,7 @@ def test_absent_keys_are_resolved(tmp_path):
     assert measurement.segment_s == pytest.approx(0.2)
     assert {name: (c.datum, c.frame) for name, c in found.items()} == {
         "displacement": ("arbitrary", "relative"), "velocity": ("absolute", "relative"),
-        "acceleration": ("absolute", "absolute"), "base_acceleration": ("absolute", None),
+        "acceleration": ("arbitrary", "absolute"), "base_acceleration": ("absolute", None),
     }  # fmt: skip
     assert found["base_acceleration"].unit == "mm/s^2"
     np.testing.assert_allclose(found["base_acceleration"].values, -500 * values[:, 2], rtol=1e-12)

@@ -68,7 +68,7 @@ def _channel(system: str, name: str, column: str, **more: object) -> dict:
     """A channel with every key that its model has, but for those that exclude others."""
     unit = SI[name]
     full = {
-        "column": column, "unit": unit, "polarity": 1, "gain": 2.0, "uncertainty": 0.01,
+        "column": column, "unit": unit, "polarity": 1, "gain": 2.0, "hold": False, "uncertainty": 0.01,
         "range": {"value": 900.0, "unit": unit}, "delay": {"value": 2e-4, "unit": "s"},
         "lowpass": {"value": 300.0, "unit": "Hz", "order": 2}, "highpass": {"value": 2.0, "unit": "Hz", "order": 1},
         "coupling": "DC", "noise": {"value": 0.01, "unit": unit},

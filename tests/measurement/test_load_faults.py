@@ -53,7 +53,7 @@ def test_an_unknown_key_names_the_nearest(bench, place, key, right):
     [
         ("furlong", "unknown unit 'furlong'"),
         ("N", "not one of the kind of 'm'"),
-        ("g", "write 'gram' or 'gn'"),
+        ("g*m", "write 'gram' or 'gn'"),
     ],
 )
 def test_a_wrong_unit_names_channel_and_unit(bench, unit, said):

@@ -27,7 +27,7 @@ def _of(system: str, response: Channel, **others: Channel) -> Record:
                   "held" if system == "gear_pair" else None, system == "gear_pair")  # fmt: skip
 
 
-@pytest.mark.parametrize("name", sorted({field.name for field in fields(Channel)} - {"name", "values", "unit"}))
+@pytest.mark.parametrize("name", sorted({field.name for field in fields(Channel)} - {"name", "values", "unit", "hold"}))
 def test_every_field_of_a_channel_is_written_and_read(name, tmp_path):
     values = np.random.default_rng(1).standard_normal(40)
     system = "oscillator" if name == "frame" else "gear_pair"
@@ -57,3 +57,14 @@ def test_what_could_not_be_read_back_is_not_written(tmp_path):
     with pytest.raises(InputError, match=r"acceleration\.shaft: is missing"):
         write_measurement(tmp_path / "new", "gear_pair", [_of("gear_pair", channel)])
     assert not (tmp_path / "new").exists()
+
+
+@pytest.mark.parametrize("hold", [False, True])
+def test_whether_an_input_is_held_is_written_and_read(hold, tmp_path):
+    """Stated both ways: what is read of the numbers alone would be the other."""
+    values = np.random.default_rng(1).standard_normal(40)
+    steps = values if hold else np.sign(values)
+    force = Channel("force", steps, "N", hold=hold)
+    record = _of("oscillator", Channel("displacement", values, "m"), force=force)
+    read = load_measurement(write_measurement(tmp_path, "oscillator", [record], None, 0.5)).records[0]
+    assert read.channels["force"].hold is hold

@@ -31,17 +31,18 @@ def _shaft_motion(runs: Runs, channel: Observed) -> Tensor:
     return channel.radius * shaft_motion(runs)[f"{channel.shaft}_acceleration"]
 
 
-def recorded(runs: Runs, channel: Observed, first: bool) -> Tensor:
+def recorded(runs: Runs, channel: Observed, first: bool, begins: Tensor | None = None) -> Tensor:
     """A channel as its sensor records it, but for its offset and the states of its filters, (batch, time).
 
     Args:
         runs: The simulated motion; `acceleration` among its states where the channel needs it.
         channel: What it shows.
         first: Whether it is the record's first channel, on which the sensor effects of the model act.
+        begins: Time in s from the start of the record to the first sample, (batch,).
     """
     signal = motion(runs, channel)
     if first:
-        signal = runs.behind_sensors(signal, torch.Generator().manual_seed(0), (SENSOR_NOISE,))
+        signal = runs.behind_sensors(signal, torch.Generator().manual_seed(0), (SENSOR_NOISE,), begins)
     for one in channel.filters:
         response = butterworth_response(one.order, one.high)
         signal = filtered(signal, runs.sampling_rate, lambda f, r=response, c=one.corner: r(f / c))

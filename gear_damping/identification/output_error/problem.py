@@ -138,7 +138,7 @@ class OutputErrorProblem:
         groups: dict[object, list[int]] = {}
         for i, record in enumerate(self.records):
             sensors = tuple(replace(channel, scale=1.0) for channel in record.channels)
-            key = (record.sampling_rate, tuple(sorted(record.inputs)), sensors)
+            key = (record.sampling_rate, tuple(sorted(record.inputs)), record.held, sensors)
             groups.setdefault(key, []).append(i)
         return list(groups.values())
 
@@ -329,6 +329,7 @@ class OutputErrorProblem:
             solver=self.solver,
             departures=departures,
             acceleration=any(channel.derivatives == 2 for channel in records[0].channels),
+            held=records[0].held,
         )
 
     def _inputs(self, rows: tuple[int, ...], samples: int) -> dict[str, Tensor]:
@@ -347,8 +348,9 @@ class OutputErrorProblem:
         points, n_rows, samples = states.shape[0], len(rows), len(runs.time)
         channels = self.records[rows[0]].channels
         modes = (states * self.scales[rows])[..., 2 + len(self.extra) :]
+        begins = torch.tensor([self.records[i].begins for i in rows], dtype=torch.float64).repeat(points)
         for number, channel in enumerate(channels):
-            shown = recorded(runs, channel, number == 0).reshape(points, n_rows, samples)
+            shown = recorded(runs, channel, number == 0, begins).reshape(points, n_rows, samples)
             shown = shown + self._left_of_start(runs, channel, modes, number == 0)
             shown = _between(shown, [self._places[i][number] for i in rows])
             gain = values.get(f"{GAIN}.{channel.name}")

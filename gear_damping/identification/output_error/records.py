@@ -131,6 +131,7 @@ class FitRecord:
         group: The record that a segment was cut from; its own name where absent.
         begins: Time in s from the beginning of that record.
         stamps: Instants of the samples in sampling intervals, (time,), where they are not evenly spaced.
+        held: Inputs that stay at a sample's value until the next one.
     """
 
     name: str
@@ -145,6 +146,7 @@ class FitRecord:
     group: str = ""
     begins: float = 0.0
     stamps: Tensor | None = None
+    held: tuple[str, ...] = ()
 
     @property
     def record(self) -> str:

@@ -59,7 +59,7 @@ class PitchError(TransmissionErrorSource):
     )
     options: ClassVar = (
         Option("shaft", SHAFTS, "pinion", "which of the two gears"),
-        Option("form", ("handover", "interpolated"), "handover", "as stated, or the trigonometric interpolation of e_j"),
+        Option("form", ("handover", "interpolated"), "handover", "as stated, or trigonometric interpolation"),
     )
     systems: ClassVar = ("gear_pair",)
     cause: ClassVar = Cause(

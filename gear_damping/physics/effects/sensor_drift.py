@@ -26,4 +26,6 @@ class SensorDrift(Sensor):
     def measure(self, signal: Tensor, values: Values, recording: Recording) -> Tensor:
         """The drifting record."""
         time = torch.arange(signal.shape[-1], dtype=signal.dtype, device=signal.device) / recording.sampling_rate
+        if recording.begins is not None:  # of a segment: the zero has wandered since the record began
+            time = time + recording.begins.unsqueeze(1)
         return signal + values["rate"].unsqueeze(1) * time

@@ -1,0 +1,21 @@
+"""Whether an input was put out in steps, as by a controller: it stays at each value until the next sample."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+LEVELS = 2  # a series that knows no more of them switches
+HELD = 0.5  # share of the samples that repeat the one before, from which values are held
+JUMP = 3.0  # least steps of the values in the median change: a coarse converter follows what it reads by single ones
+
+
+def is_staircase(values: NDArray[np.float64]) -> bool:
+    """Whether a series (time,) switches between two levels, or stands still and then jumps.
+
+    A constant one is none: nothing of it lies between samples.
+    """
+    levels = np.unique(values)
+    if len(levels) <= LEVELS:
+        return len(levels) == LEVELS
+    changes = np.abs(np.diff(values))
+    moved = changes[changes > 0]
+    return bool(np.mean(changes == 0) >= HELD and np.median(moved) >= JUMP * np.diff(levels).min())

@@ -1,0 +1,26 @@
+"""Inputs that come in steps are told from those that a sensor read."""
+
+import numpy as np
+import pytest
+
+from gear_damping.measurement.staircase import is_staircase
+
+RNG = np.random.default_rng(4)
+TIME = np.arange(2000) / 1e3
+SINE = np.sin(2 * np.pi * 7 * TIME)
+INPUTS = {
+    "a switch every sample": (RNG.choice([-1.0, 1.0], 2000), True),
+    "levels that are held": (np.repeat(RNG.normal(size=100), 20), True),
+    "a converter's levels, held": (np.repeat(RNG.integers(-500, 500, 100), 20) * 0.01, True),
+    "a sine": (SINE, False),
+    "a sine behind a coarse converter": (np.round(20 * SINE) / 20, False),
+    "noise behind a coarse converter": (np.round(RNG.normal(size=2000)), False),
+    "a constant": (np.ones(2000), False),
+    "a chirp that is held for three samples": (np.repeat(np.sin(2 * np.pi * 3 * TIME[::3] ** 2), 3)[:2000], True),
+}
+
+
+@pytest.mark.parametrize("name", INPUTS)
+def test_steps_are_told_from_what_was_read(name):
+    values, held = INPUTS[name]
+    assert is_staircase(values) is held
