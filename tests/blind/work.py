@@ -21,6 +21,7 @@ from gear_damping.physics.catalogue import builtin_effects
 from .strata import Question
 
 DURATION = 0.05  # s of each record
+MINUTES = 5.0  # of a search, as in conf/explain
 REFUSED = "refused"  # the data could not be read: one error that names file, channel and remedy
 KEPT = (
     "verdict", "causes", "misfit", "residual", "not_observable", "next_experiment", "noise", "sentences", "findings",
@@ -57,7 +58,7 @@ def explained(
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             try:
-                content = explain(load_measurement(path), library=library).content
+                content = explain(load_measurement(path), library=library, minutes=MINUTES).content
             except InputError as error:
                 return {"verdict": REFUSED, "causes": [], "sentences": [str(error).replace(folder, "")]}
             except Exception as error:  # the run goes on, the case counts as failed
