@@ -23,7 +23,7 @@ LARGEST_LAG = 50  # samples over which the correlation of the whitened residual 
 LINES_OVER = 4.0  # natural frequencies up to which lines are looked for
 RANDOM_PART = "raised to the random part of the residuals"
 UNNAMED = "unnamed: "  # before the names of families
-LINE_FAMILY = UNNAMED + "a line at no order"
+LINE_FAMILY = UNNAMED + "a line at some frequency"
 
 
 @dataclass(frozen=True)

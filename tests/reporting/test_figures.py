@@ -20,6 +20,10 @@ ORDERS = np.arange(0, 200, 0.1)
 FREQUENCIES = np.geomspace(100, 5000, 20)
 SPECTRUM = 1e-3 + 5 * np.exp(-(((ORDERS - 20) / 0.2) ** 2))
 FORCE = np.sin(np.linspace(0, 6, 30))[:, None] * np.cos(np.linspace(0, 6, 20))
+FOREST = [
+    {"record": "run_1", "value": 1.02, "interval95": [0.8, 1.2]},
+    {"record": "run_2", "value": 1.5, "interval95": [1.4, 1.6]},
+]
 ROWS = [
     {
         "simulator.load_noise.snr_db": snr,
@@ -78,6 +82,10 @@ OTHERS = {
         [{"name": "gear_eccentricity", "share": 0.9, "status": "established"}, {"name": "backlash", "share": None}]
     ),
     "no_candidates": lambda: figures.candidates_figure([]),
+    "visible": lambda: figures.visible_figure({"tooth_crack": 24.0, "unnamed: bursts": 3.0}, 4.2),
+    "nothing_tested": lambda: figures.visible_figure({}, 4.2),
+    "forest": lambda: figures.forest_figure(FOREST, {"value": 1.0, "interval95": [0.9, 1.1]}, quantity="depth"),
+    "no_forest": lambda: figures.forest_figure([], {"value": 1.0, "interval95": [0.9, 1.1]}, quantity="depth"),
     "misfit": lambda: figures.misfit_figure({"run_1": {"before": 40.0, "after": 1.1}, "run_2": {"before": 9.0}}),
     "kurtosis": lambda: figures.casing_kurtosis_figure([3.1, 4.0, 2.9], 3.3, [3.0, 3.0]),
     "no_kurtosis": lambda: figures.casing_kurtosis_figure([np.nan, np.nan], 3.3),
@@ -216,3 +224,16 @@ def test_the_look_stays_out_of_the_users_own_figures():
     drawn(new_figure())
     simulation(SIGNAL)
     assert dict(mpl.rcParams) == before
+
+
+def test_a_record_whose_interval_lies_apart_is_marked():
+    axes = figures.forest_figure(FOREST, {"value": 1.0, "interval95": [0.9, 1.1]}, quantity="depth").axes[0]
+    labels = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert [label.get_text() for label in axes.get_yticklabels()] == ["run_1", "run_2"]
+    assert labels == ["all records together, with 95 % interval", "one record, with 95 % interval", "apart from it"]
+
+
+def test_the_most_visible_stands_on_top_and_its_limit_is_drawn():
+    axes = figures.visible_figure({"a": 1.0, "unnamed: b": 9.0}, 4.2).axes[0]
+    assert [label.get_text() for label in axes.get_yticklabels()] == ["b", "a"]
+    assert [line.get_xdata()[0] for line in axes.lines] == [4.2]

@@ -62,6 +62,8 @@ def test_the_hidden_stiffness_is_named_with_its_size(explained):
 
 def test_the_report_needs_nothing_beside_itself(explained):
     page = (explained / "report.html").read_text()
+    for said in ("What is random, and what is not", "Too few records tell of it", "How visible each effect is"):
+        assert said in page
     assert "cubic_stiffness" in page
     assert "With it only noise is left." in page
     assert not re.findall(r"(?:src|href)=\"(?!data:|#)", page)

@@ -1,13 +1,15 @@
 """The figures of a report with their captions."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from matplotlib.figure import Figure
 
 from gear_damping.reporting import figures
 from gear_damping.reporting.explanation_report.data_uri import figure_uri
 from gear_damping.reporting.explanation_report.report_input import ReportInput, ResidualSpectrum
+from gear_damping.reporting.numbers import pretty_unit
 
 
 @dataclass(frozen=True)
@@ -77,6 +79,35 @@ def candidates(report: ReportInput) -> Shown | None:
         "What each effect explains of the excess on held-out records, after its full fit. Only those that promised "
     )
     return _shown(figure, caption + "most on the fitted records were fitted in full.")
+
+
+def visible(report: ReportInput) -> Shown | None:
+    """What stands out of the random part of what the nominal simulation leaves."""
+    found = report.explanation.get("visible") or {}
+    if not found.get("by_name"):
+        return None
+    figure = figures.visible_figure(found["by_name"], found["limit"])
+    caption = (
+        "How visible each effect is in what the nominal simulation leaves of the fitted records, beside its random "
+        "part. Of effects that are not there, one bar passes the dashed line in one of a hundred measurements."
+    )
+    return _shown(figure, caption)
+
+
+def forest(cause: Mapping[str, Any]) -> Shown | None:
+    """The size of a cause from every record by itself."""
+    rows, parameter = cause.get("per_record"), (cause.get("homogeneous") or {}).get("parameter") or ""
+    name = parameter.partition(".")[2]
+    joint = (cause.get("parameters") or {}).get(name)
+    if not rows or not joint:
+        return None
+    unit = joint.get("unit") or "1"
+    words = name.replace("_", " ") + (f" / {pretty_unit(unit)}" if unit != "1" else "")
+    figure = figures.forest_figure(rows, joint, quantity=words)
+    caption = (
+        f"The {name.replace('_', ' ')} from every record by itself. Where it is one thing that all records show, "
+    )
+    return _shown(figure, caption + "their intervals hold the same value.")
 
 
 def excess_share(share: float | None, misfit: dict) -> float | None:

@@ -52,6 +52,9 @@ def _content(report: ReportInput) -> dict[str, Any]:
         "misfit": evidence.misfit(report),
         "spectrum": evidence.spectrum(report),
         "candidates": evidence.candidates(report),
+        "visible": evidence.visible(report),
+        "random": sentences.random_sentences(explanation.get("random"), explanation.get("visible")),
+        "not_tried": sentences.not_tried_sentence(explanation.get("not_tried")),
         "casing": casing.shown(report),
         "residual_forces": list(evidence.residual_forces(report)),
     }
@@ -65,4 +68,6 @@ def _cause(cause: dict[str, Any], report: ReportInput) -> dict[str, Any]:
         "sentences": sentences.cause_sentences(cause, report.descriptions),
         "equation": vocabulary.equation(name),
         "parameters": rows.cause_parameters(cause),
+        "forest": evidence.forest(cause),
+        "one_size": sentences.one_size_sentence(cause.get("homogeneous")),
     }

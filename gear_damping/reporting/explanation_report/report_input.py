@@ -5,11 +5,15 @@
     verdict         consistent, explained, ambiguous, partly_explained, unexplained or data_problem (required)
     sentences       what was found, the most important first; `words` in backticks are names
     causes          list, strongest first: {name, parameters: {name: {value, unit, interval95}}, excess_explained
-                    (share of the held-out excess), confusable_with: [names], status: established or suggested}
+                    (share of the held-out excess), confusable_with: [names], status: established or suggested,
+                    per_record: [{record, value, interval95}], homogeneous: {parameter, p, tolerance, testable}}
     misfit          {before, after, floor, records: {held-out record: {before, after}}}: mean squared residual over
                     the noise variance
     records         {record: {role: fit or holdout, samples, rmse: {before, after, unit}}}
     residual        {fit: {before, after, unit}, holdout: {before, after, unit}}: RMSE in the channel's unit
+    visible         {p, largest: {before, after}, limit, by_name: {effect or `unnamed: ` family: statistic}}
+    random          {percent, looks_like, snr_db}: the random part of the fitted records
+    not_tried       list of what the time did not suffice for
     gain            {damping_ratio_percent: {before: {value, interval95, reference_velocity}, after: the same}}
     noise           {channel, value, unit, by_record: {record: value}, method, estimates_agree}
     candidates      list of {name, share, status}: share of the held-out squared residual that a full fit takes (None:

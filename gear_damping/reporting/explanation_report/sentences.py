@@ -1,6 +1,6 @@
 """The findings as sentences."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from math import isfinite
 from typing import Any
 
@@ -19,6 +19,8 @@ CASING_HEADLINES = {
     "consistent": "Consistent: the casing shows nothing that a sound gear pair does not show.",
     "unexplained": "Unexplained: the casing shows something that a sound gear pair does not show.",
 }
+HOMOGENEOUS_AT = 0.05
+VISIBLE_AT = 0.01
 ONLY_NOISE = 1.5  # noise variances that may be left for saying so
 ALL_THE_SAME = "An effect smaller than those listed under “What could not have been seen” may be there all the same."
 
@@ -44,6 +46,43 @@ def cause_sentences(cause: Mapping[str, Any], own: Mapping[str, str]) -> list[st
     if cause.get("status") == "suggested":
         told.append("It is a suggestion only: held-out records do not bear it out.")
     return [sentence for sentence in told if sentence]
+
+
+def one_size_sentence(homogeneous: Mapping[str, Any] | None) -> str:
+    """Whether a cause has one size over all records."""
+    if not homogeneous or not homogeneous.get("testable") or not _known(homogeneous.get("p")):
+        return "Too few records tell of it to see whether it has one size in all of them." if homogeneous else ""
+    p = number(homogeneous["p"], 2)
+    if homogeneous["p"] < HOMOGENEOUS_AT:
+        return f"Its size differs between records by more than chance and a tolerance would have it (p = {p})."
+    return f"Its size is the same in all records, within a tolerance of {percent(homogeneous['tolerance'])} (p = {p})."
+
+
+def random_sentences(random: Mapping[str, Any] | None, visible: Mapping[str, Any] | None) -> list[str]:
+    """What of the residuals is random, and whether anything else stands out."""
+    if not random or not visible:
+        return []
+    told = [
+        f"{number(random['percent'], 3)} % of the variance of the fitted records is random. It looks like "
+        f"{random['looks_like']}, {number(random['snr_db'], 3)} dB below the signal."
+    ]
+    p, largest = visible["p"], visible["largest"]
+    told.append(f"Beside the nominal simulation, {_stands_out(p['before'], largest['before'])}.")
+    if p["after"] != p["before"] or largest["after"] != largest["before"]:
+        told.append(f"Beside the extended one, {_stands_out(p['after'], largest['after'])}.")
+    return told
+
+
+def _stands_out(p: float, largest: str) -> str:
+    name = listed([largest.removeprefix("unnamed: ")])
+    if p < VISIBLE_AT:
+        return f"something stands out of it that chance does not give (p = {number(p, 2)}), {name} first"
+    return f"nothing stands out of it that chance would not give (p = {number(p, 2)}; {name} comes first)"
+
+
+def not_tried_sentence(not_tried: Sequence[str] | None) -> str:
+    """What the time did not suffice for."""
+    return f"The time was over before these were tried: {'; '.join(not_tried)}." if not_tried else ""
 
 
 def rest_sentence(misfit: Mapping[str, Any] | None) -> str:

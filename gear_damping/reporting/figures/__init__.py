@@ -9,6 +9,7 @@ from gear_damping.reporting.figures.casing import (
     casing_orders_figure,
     casing_turns_figure,
 )
+from gear_damping.reporting.figures.forest import forest_figure
 from gear_damping.reporting.figures.identification import identification_figure
 from gear_damping.reporting.figures.misfit import misfit_figure
 from gear_damping.reporting.figures.overlay import overlay_figure
@@ -22,6 +23,7 @@ from gear_damping.reporting.figures.spectra import order_spectrum_figure
 from gear_damping.reporting.figures.stiffness import mesh_stiffness_figure
 from gear_damping.reporting.figures.sweep import sweep_figure
 from gear_damping.reporting.figures.training import training_figure
+from gear_damping.reporting.figures.visible import visible_figure
 from gear_damping.reporting.style import save
 
 __all__ = [
@@ -31,6 +33,7 @@ __all__ = [
     "casing_kurtosis_figure",
     "casing_orders_figure",
     "casing_turns_figure",
+    "forest_figure",
     "identification_figure",
     "mesh_stiffness_figure",
     "misfit_figure",
@@ -47,4 +50,5 @@ __all__ = [
     "simulation_figure",
     "sweep_figure",
     "training_figure",
+    "visible_figure",
 ]
