@@ -173,3 +173,17 @@ def test_a_wav_record_brings_its_rate_and_is_scaled_by_the_range(bench):
     assert any("full scale is taken as 49.03" in note for note in loaded.notes)
     record["channels"]["sampling_rate"] = {"value": 44.1, "unit": "kHz"}
     assert "the file itself says 12800 Hz" in bench.only_problem(write=False)
+
+
+def test_settings_above_a_table_without_a_header_are_left_out(tmp_path):
+    path = tmp_path / "swing.lvm"
+    values = -90 + np.arange(50) / 8
+    path.write_text("trigger_deg, rate, seconds\n90, 1000, 5\n" + "\n".join(map(str, values)))
+    table = read_table(path)
+    assert _column(table, 0) == values.tolist()
+    assert "2 line(s) before the header are left out" in table.notes[0]
+
+
+def test_a_header_that_is_wider_than_its_table_is_no_such_setting(tmp_path):
+    with pytest.raises(InputError, match="2 cells where the first line has 3"):
+        _csv(tmp_path, "time,x,remark\n" + "\n".join(f"{k / 10},{k}" for k in range(50)))

@@ -17,6 +17,7 @@ from gear_damping.measurement.formats.header import Header, find_header, is_numb
 from gear_damping.measurement.formats.table import Table, is_real, refuse_size, unreadable
 
 _HEAD = 100  # rows among which the header is looked for
+_PREAMBLE, _BELOW = 20, 20  # rows that may be settings; rows of the table below them, at least
 _NAN = ("nan", "NaN", "NAN", "Nan", "-nan", "+nan")
 _COMMENT = re.compile(rb"^[ \t]*#", re.MULTILINE)
 
@@ -123,7 +124,7 @@ def _header(text: _Text) -> tuple[Header, int]:
         rows.append(row)
     if not rows:
         raise InputError(Problem("file", "no rows", str(text.path), "export it again"))
-    header = find_header(rows, text.width)
+    header = _below_preamble(rows, text.width) or find_header(rows, text.width)
     if header.first == len(rows):
         raise InputError(Problem("file", "a header and no rows of numbers", str(text.path), "export it again"))
     if not header.names:
@@ -132,6 +133,16 @@ def _header(text: _Text) -> tuple[Header, int]:
         names = names if len(names) == width else [""] * width
         header = Header(tuple(names), (), header.first, header.skipped)
     return header, lines[header.first]
+
+
+def _below_preamble(rows: list[list[str]], width: int) -> Header | None:
+    """No header, where lines of settings stand before a narrower table without one."""
+    wide = [k for k, row in enumerate(rows) if len(row) > width]
+    set_down = any(is_number(cell) for k in wide for cell in rows[k])  # a header alone has none
+    below = rows[wide[-1] + 1 :] if set_down and wide[-1] < _PREAMBLE else []
+    if len(below) < _BELOW or not all(len(row) == width and all(map(is_number, row)) for row in below):
+        return None
+    return Header(("",) * width, (), wide[-1] + 1, wide[-1] + 1)
 
 
 def _decimal_comma(text: _Text, first_line: int) -> bool:

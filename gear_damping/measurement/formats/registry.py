@@ -24,7 +24,7 @@ def _reader(name: str) -> Reader:
 
 READERS: MappingProxyType[str, Reader] = MappingProxyType(
     {
-        **dict.fromkeys((".csv", ".txt", ".tsv", ".dat", ".asc", ".gz"), _reader("csv")),
+        **dict.fromkeys((".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".gz"), _reader("csv")),
         **dict.fromkeys((".h5", ".hdf5", ".hdf"), _reader("hdf5")),
         **dict.fromkeys((".uff", ".unv", ".uff58"), _reader("uff")),
         **{f".{name}": _reader(name) for name in ("mat", "npz", "tdms", "wav", "xlsx")},
