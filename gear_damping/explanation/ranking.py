@@ -14,6 +14,7 @@ from gear_damping.identification.output_error.problem import OutputErrorProblem,
 from gear_damping.identification.output_error.records import DIFFERENCE, SEPARATOR, FreeParameter
 from gear_damping.simulation.solver_settings import Solver
 
+MESH_PHASE = "mesh_phase"
 PROBE = 0.05  # share of a strength's size that its slope is taken over
 NEGLIGIBLE = 1e-3  # of the residual, for what an effect tried as a whole would change
 MOST_SAMPLES = 4_000_000  # that are predicted at once
@@ -220,7 +221,8 @@ def _score(candidate: Candidate, beside: Tensor, problem: OutputErrorProblem, st
     gain = _gain(candidate, problem, states, beside, base)
     direction = explained / explained.norm().clamp(min=1e-300)
     if teeth is not None:
-        start, own = _start_of_teeth(candidate, teeth, problem, n_free)
+        at = problem.own_of(base.outcome.problem, base.outcome.fitted.shared)
+        start, own = _start_of_teeth(candidate, teeth, problem, n_free, _mesh_phases(problem, at))
         return Score(candidate, gain, start, direction, smallest, kept, own=own)
     if candidate.own_phases:
         start, own = _start_by_record(candidate, coefficients, problem, n_free)
@@ -237,23 +239,40 @@ def _teeth(candidate: Candidate, beside: Tensor, residual: Tensor, problem: Outp
 
 
 def _start_of_teeth(
-    candidate: Candidate, teeth: Teeth, problem: OutputErrorProblem, n_free: int
+    candidate: Candidate, teeth: Teeth, problem: OutputErrorProblem, n_free: int, meshes: Mapping[str, float]
 ) -> tuple[Tensor, dict[str, float]]:
     """Coordinates of the linearised optimum, and the phase of every record."""
     start = torch.zeros(n_free, dtype=torch.float64)
     start[list(candidate.strengths)] = teeth.strengths
-    pitch, names = 2 * torch.pi / candidate.teeth, _record_names(problem)
-    found = zip(names, teeth.numbers, strict=True)
-    return start, {f"{candidate.own_tooth}{SEPARATOR}{name}": number * pitch for name, number in found}
+    own = {}
+    for name, number in zip(_record_names(problem), teeth.numbers, strict=True):
+        own[f"{candidate.own_tooth}{SEPARATOR}{name}"] = _tooth_at(candidate, number, meshes.get(name, 0.0))
+    return start, own
+
+
+def _tooth_at(candidate: Candidate, number: int, mesh: float) -> float:
+    """The phase of a record at whose start a tooth of this number is in mesh, where the mesh has this phase."""
+    return float(candidate.hypothesis.given[candidate.own_tooth]) + (2 * torch.pi * number + mesh) / candidate.teeth
+
+
+def _mesh_phases(problem: OutputErrorProblem, point: Tensor) -> dict[str, float]:
+    """Phases of the mesh by record, (n_shared,), where records have their own."""
+    found = {}
+    for place, parameter in enumerate(problem.free):
+        base, _, record = parameter.name.partition(SEPARATOR)
+        if record and base == MESH_PHASE:
+            found[record] = float(parameter.value(point[place]))
+    return found
 
 
 def _turn_own_phases(points: Tensor, candidate: Candidate, problem: OutputErrorProblem) -> None:
     """Every second point of a strength whose phases are the records' own: turned by a quarter; of one tooth: by one."""
-    if candidate.own_tooth and len(candidate.strengths) == 1:
-        for place, parameter in enumerate(problem.free):
-            if parameter.name.startswith(candidate.own_tooth + SEPARATOR):
-                turned = (parameter.coordinate(2 * torch.pi * k / candidate.teeth) for k in range(len(points)))
-                points[:, place] = torch.tensor(list(turned), dtype=torch.float64)
+    single, meshes = len(candidate.strengths) == 1, _mesh_phases(problem, points[0])
+    for place, parameter in enumerate(problem.free if candidate.own_tooth else ()):
+        if parameter.name.startswith(candidate.own_tooth + SEPARATOR):
+            mesh = meshes.get(parameter.name.partition(SEPARATOR)[2], 0.0)
+            turned = (parameter.coordinate(_tooth_at(candidate, k * single, mesh)) for k in range(len(points)))
+            points[:, place] = torch.tensor(list(turned), dtype=torch.float64)
     for number, phase in enumerate(candidate.own_phases.values()):
         for place, parameter in enumerate(problem.free):
             if parameter.name.startswith(phase + SEPARATOR):

@@ -177,6 +177,6 @@ def _begun_at(score: Score) -> Tensor:
 
 def _apart(other: Candidate, candidate: Candidate) -> Tensor:
     """Coordinates of another size of the candidate, in the candidate's own."""
-    pairs = zip(other.hypothesis.free, candidate.hypothesis.free, strict=True)
+    pairs = zip(other.hypothesis.common, candidate.hypothesis.common, strict=True)
     ratios = [o.start / p.start if p.logarithmic else 1.0 for o, p in pairs]
     return torch.tensor(ratios, dtype=torch.float64).log()

@@ -5,6 +5,7 @@ from dataclasses import replace
 from gear_damping.explanation.hypothesis import Outcome
 from gear_damping.explanation.ranking import Score
 from gear_damping.explanation.significance import Excess, is_settled
+from gear_damping.explanation.told import is_told
 from gear_damping.explanation.trying import ACCEPTED_AT, Accepted, Bench, Search
 
 PROMISE = 0.6  # of the best one's, for an effect to be tried in the place of a cause
@@ -67,7 +68,7 @@ def pruned(found: Search, first: Excess, bench: Bench) -> None:
 def told(found: Search, bench: Bench) -> None:
     """Drop causes whose size the records do not tell from none."""
     for cause in list(found.accepted):
-        if not bench.is_told(found.outcome, cause):
+        if not is_told(found.outcome, cause.refit, bench.evidence):
             bench.say(f"{cause.name} lowers the cost, but its size is not told from none")
             found.outcome = bench.without(found.outcome, cause.name)
             found.accepted = [other for other in found.accepted if other is not cause]

@@ -1,7 +1,7 @@
 """What candidates may depend on: the rig of the records, and the orders at which something is left of them."""
 
 from collections.abc import Sequence
-from math import ceil, floor, pi
+from math import ceil, floor, log, pi, sqrt
 
 import torch
 from torch import Tensor
@@ -20,6 +20,12 @@ LINES = 8  # that are kept
 POINTS = 10  # samples a tooth that are enough to see them
 LEAST_TURNS = 1.0  # of the pinion in a record: less does not tell one order from the next
 MOST_TURNS = 20.0  # of a record that are looked at
+BAND = 1.02  # of a frequency, the width of a band in which energy is counted
+OWN = 1.2  # of a frequency: nearer, a mode is not told from its neighbour by a spectrum
+HARMONICS = 5  # of the natural frequency that are no modes
+MODES = 2  # frequencies that are kept
+HIGHEST = 0.45  # of the sampling rate
+FEWEST_CYCLES = 8.0  # in a record
 GEAR_ORDERS = 3  # of the gear's shaft
 
 
@@ -39,13 +45,49 @@ def rig_of(base: Hypothesis, evidence: Evidence, residuals: Residuals | None = N
     common = {"system": base.system.name, "inputs": inputs, "values": values}
     if base.system.name != "gear_pair":
         radian = _radian(length_unit(evidence.channel)) if evidence.channel else None
-        return Rig(radian=radian, **common)
+        natural = values["natural_frequency"] / (2 * pi)
+        return Rig(radian=radian, frequencies=strongest_frequencies(residuals or (), natural), **common)
     values["contact_ratio"] = float(prepared.base["contact_ratio"][0])
     pinion, gear = round(values["n_teeth_pinion"]), round(values["n_teeth_gear"])
     lines = strongest_orders(residuals or (), pinion, gear, values["pinion_speed"])
     harmonics = max(_harmonics(record, pinion, values["pinion_speed"]) for record in evidence.fit)
     teeth = {"n_teeth_pinion": pinion, "n_teeth_gear": gear, "indexed": evidence.has_index}
     return Rig(mesh_harmonics=harmonics, lines=lines, **teeth, **common)
+
+
+def strongest_frequencies(residuals: Residuals, natural: float) -> tuple[float, ...]:
+    """Frequencies in Hz at which most is left, but for the natural one and its harmonics; the strongest first.
+
+    Args:
+        residuals: Records with what is left of them, each (time,).
+        natural: Natural frequency in Hz; 0 without a spring, where no frequency stands for a mode.
+    """
+    if not residuals or natural <= 0:
+        return ()
+    highest = min(HIGHEST * record.sampling_rate for record, _ in residuals)
+    lowest = max(FEWEST_CYCLES * record.sampling_rate / len(record.response) for record, _ in residuals)
+    if lowest * BAND >= highest:
+        return ()
+    edges = lowest * BAND ** torch.arange(floor(log(highest / lowest) / log(BAND)) + 1, dtype=torch.float64)
+    middles = edges[:-1] * sqrt(BAND)
+    energy = torch.zeros(len(middles), dtype=torch.float64)
+    for record, left in residuals:
+        series = left[: len(record.response)] * record.weight
+        power = torch.fft.rfft(series * torch.hann_window(len(series), dtype=torch.float64)).abs().square()
+        frequency = torch.fft.rfftfreq(len(series), 1 / record.sampling_rate, dtype=torch.float64)
+        inside = (frequency >= edges[0]) & (frequency < edges[-1])
+        energy.index_add_(0, torch.bucketize(frequency[inside], edges, right=True) - 1, power[inside])
+    multiples = (middles / natural).round().clamp(min=1)
+    near = (middles / natural / multiples).log().abs() < torch.where(multiples > 1, log(BAND) * 2, log(OWN))
+    energy[near & (multiples <= HARMONICS)] = 0
+    found = []
+    for _ in range(MODES):
+        best = int(energy.argmax())
+        if float(energy[best]) <= 0:
+            break
+        found.append(float(middles[best]))
+        energy[(middles / middles[best]).log().abs() < log(OWN)] = 0
+    return tuple(found)
 
 
 def strongest_orders(residuals: Residuals, pinion: int, gear: int, speed: float) -> tuple[float, ...]:

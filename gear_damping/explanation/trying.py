@@ -3,10 +3,6 @@
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field, replace
 
-import torch
-from scipy.stats import chi2
-from torch import Tensor
-
 from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.candidates import candidates_for, restored
 from gear_damping.explanation.evidence import Evidence
@@ -28,7 +24,6 @@ RIVAL = 2.0  # t below which two explanations are not told apart
 LEAST_TAKEN = 0.25  # of what another takes of the fitted records, for a fit to be carried to its end
 LAST_ITERATIONS = 60  # of a cause that is accepted before its fit has come to rest
 SMALL_REST = 3.0  # noise variances: what may be left without a name where noise is all that tests know of
-TOLD_AT = 0.01  # chance at which strengths that are none would count as told
 DETERMINED = 0.5  # of a parameter: the half of its 95 % interval, for it to be known
 NEARLY = 0.9  # of what one takes that has run into a bound, for another to take its place
 MOSTLY_RANDOM = 0.25  # of the residual: with less of it that is not random, the rest is the noise
@@ -220,30 +215,6 @@ class Bench:
                     return True
         return False
 
-    def is_told(self, outcome: Outcome, cause: Accepted) -> bool:
-        """Whether the records tell the strengths of a cause from none, together and one at least by itself (Wald test).
-
-        A law that bends to what another leaves may lower the cost while its own size is anybody's guess. Its shape (an
-        exponent, a width) is taken as it was found: beside it a strength may be any and the law still be certain.
-        """
-        candidate = cause.refit.score.candidate
-        if candidate.presence:
-            return True
-        problem, shared = outcome.problem, outcome.fitted.shared
-        neutral = {candidate.hypothesis.common[i].name: candidate.hypothesis.common[i] for i in candidate.strengths}
-        places = [i for i, parameter in enumerate(problem.free) if parameter.name in neutral]
-        free = [problem.free[i] for i in places]
-        if not free:
-            return True
-        away = [float(p.value(shared[i])) - neutral[p.name].start for i, p in zip(places, free, strict=True)]
-        size = [1.0 if p.logarithmic else a / p.scale for a, p in zip(away, free, strict=True)]
-        shape = [i for i, p in enumerate(problem.free) if p.name.startswith(cause.name + ".") and i not in places]
-        spread = _given(spread_of(outcome, self.evidence), places, shape)
-        found = torch.tensor(size, dtype=torch.float64)
-        statistic = float(found @ torch.linalg.lstsq(spread, found.unsqueeze(1), driver="gelsd").solution[:, 0])
-        alone = (found.square() / spread.diagonal().clamp(min=1e-300)).max() > QUANTILE**2 or bool(candidate.own_tooth)
-        return bool(alone) and statistic > float(chi2.ppf(1 - TOLD_AT, len(places)))
-
     def _within_bounds(self, first: Refit, fits: Sequence[Refit]) -> Refit:
         """The explanation, or where it has run into a bound and so stands in for another, the one that settles too."""
         if not first.is_at_bound:
@@ -251,14 +222,6 @@ class Bench:
         others = [fit for fit in fits if fit.is_seen_in_fit and not fit.is_at_bound]
         near = [fit for fit in others if fit.gain >= NEARLY * first.gain]
         return _least([fit for fit in others if self.excess(fit.outcome).misfit <= CLOSE] or near or [first])
-
-
-def _given(spread: Tensor, kept: list[int], known: list[int]) -> Tensor:
-    """Covariance of some coordinates where others are known."""
-    own, between = spread[kept][:, kept], spread[kept][:, known]
-    if not known:
-        return own
-    return own - between @ torch.linalg.lstsq(spread[known][:, known], between.T, driver="gelsd").solution
 
 
 def _least(fits: Sequence[Refit]) -> Refit:

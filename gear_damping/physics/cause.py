@@ -22,6 +22,7 @@ class Rig:
         radian: One radian in the unit of the response; None where the response is no angle.
         mesh_harmonics: Harmonics of the mesh that the sampling of at least one record shows.
         lines: Orders of the pinion shaft at which most is left unexplained, the strongest first.
+        frequencies: Of an oscillator, in Hz, at which most is left unexplained away from its own, the strongest first.
         values: Parameters and derived quantities of the system by name, SI; of a mesh the `contact_ratio` too.
         indexed: Whether the angle of all records counts from one mark, so that a tooth has one number.
     """
@@ -33,6 +34,7 @@ class Rig:
     radian: float | None = None
     mesh_harmonics: int = 0
     lines: tuple[float, ...] = ()
+    frequencies: tuple[float, ...] = ()
     values: Mapping[str, float] = field(default_factory=dict)
     indexed: bool = True
 

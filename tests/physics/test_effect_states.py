@@ -9,6 +9,7 @@ from effect_bench import Bench
 from gear_case import GearCase
 
 CASE = GearCase()
+SECOND_MODE = {"stiffness": 9.0, "second_mode.mass_ratio": 0.2, "second_mode.frequency": 1.0}
 CONSTANT = {"fourier_mesh_stiffness.maximum": 3e8, "fourier_mesh_stiffness.minimum": 3e8}
 
 
@@ -204,3 +205,20 @@ def test_hysteresis_relaxes_while_the_teeth_are_apart():
     now = bench.moment(bench.times(), (torch.full_like(z, -3e-5), torch.full_like(z, 0.3), z))
     rate = bench.equation.rates(now, bench.prepared.base, bench.prepared.terms)[2] * bench.unit("m/s")
     assert rate.item() == pytest.approx(-1.5e-6 * CASE.natural_frequency, rel=1e-9)
+
+
+def test_a_second_mode_couples_as_a_mass_on_the_first_one():
+    given = SECOND_MODE | {"second_mode.damping_ratio": 0.0}
+    bench = Bench("second_mode", {}, given, batch=1)
+    spring = (2 * math.pi) ** 2
+    matrix = np.array([[9.0 + 0.2 * spring, -0.2 * spring], [-spring, spring]])
+    np.testing.assert_allclose(frequencies(jacobian(bench)), np.sort(np.sqrt(np.linalg.eigvals(matrix))), rtol=1e-9)
+    assert (bench.p["fastest_rate"] / bench.unit("s")).item() >= frequencies(jacobian(bench))[-1]
+
+
+def test_a_second_mode_damps_by_the_rate_between_the_masses():
+    matrix = jacobian(Bench("second_mode", {}, SECOND_MODE | {"second_mode.damping_ratio": 0.1}, batch=1))
+    damper = 2 * 0.1 * 2 * math.pi
+    assert matrix[3, 3] == pytest.approx(-damper, rel=1e-9)
+    assert matrix[1, 3] == pytest.approx(0.2 * damper, rel=1e-9)
+    assert matrix[3, 1] == pytest.approx(damper, rel=1e-9)

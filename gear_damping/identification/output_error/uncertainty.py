@@ -30,7 +30,7 @@ def covariance(problem: OutputErrorProblem, fitted: Fitted, correlated_s: float)
     beside, inverse = _information(problem, fitted)
     scores = beside * residual.unsqueeze(-1)
     lags = [round(correlated_s * record.sampling_rate) for record in problem.records]
-    meat = sum(_long_run(one, lag) for one, lag in zip(scores, lags, strict=True))
+    meat = sum(long_run(one, lag) for one, lag in zip(scores, lags, strict=True))
     parameters = problem.n_shared + len(problem.records) * len(problem.local)
     samples = float((problem.weights > 0).sum())
     sandwich = inverse @ meat @ inverse * samples / max(samples - parameters, 1.0)
@@ -67,7 +67,7 @@ def _inverse(information: Tensor) -> Tensor:
     return inverse / size.unsqueeze(0) / size.unsqueeze(1)
 
 
-def _long_run(scores: Tensor, lags: int) -> Tensor:
+def long_run(scores: Tensor, lags: int) -> Tensor:
     """Bartlett-weighted sum of the autocovariances of (time, p), (p, p)."""
     total = scores.T @ scores
     for lag in range(1, min(lags, len(scores) - 1) + 1):

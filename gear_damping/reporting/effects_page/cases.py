@@ -68,6 +68,7 @@ CASES: dict[str, Case] = {
     "mesh_stiffness_shape": Case({"in_phase": (0.02, -0.01), "quadrature": (0.01, 0.0)}),
     "offset_force": Case({"force": 100.0}),
     "quadratic_stiffness": Case({"coefficient": 0.1 * OSCILLATOR_STIFFNESS}),
+    "second_mode": Case({"frequency": 2.5 * OSCILLATOR_STIFFNESS**0.5 / (2 * pi)}),
     "sine_restoring": Case(
         {"stiffness": OSCILLATOR_STIFFNESS},
         given={"stiffness": 0.0},

@@ -1,0 +1,72 @@
+"""A second mode of the structure."""
+
+from math import pi
+from typing import ClassVar
+
+import torch
+from torch import Tensor
+
+from gear_damping.physics.cause import Cause, Recipe, Rig
+from gear_damping.physics.moment import Moment
+from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.terms import ExtraStates, Load, Values
+
+PLACE, RATE = "second_mode.displacement", "second_mode.velocity"
+RATIOS = (0.01, 0.1)  # of the masses
+LOW, HIGH = 1e-4, 10.0  # of the ratio that is fitted: beyond, one of the two masses is none
+
+
+def _at_the_lines(rig: Rig) -> tuple[Recipe, ...]:
+    """One variant for every frequency that stands out of what is left, and each of several masses."""
+    return tuple(
+        Recipe(
+            {"mass_ratio": ratio},
+            presence=True,
+            scanned={"frequency": frequency, "damping_ratio": 0.01},
+            within={"second_mode.mass_ratio": (LOW, HIGH)},
+            in_si=True,
+        )
+        for frequency in rig.frequencies
+        for ratio in RATIOS
+    )
+
+
+class SecondMode(ExtraStates, Load):
+    """Another mass on a spring, on the one that is measured: what a second mode of a structure looks like there.
+
+    The two together have two modes; any two that a sensor sees at the driven place can be written so.
+    """
+
+    name = "second_mode"
+    equation = "x'' ... + mu (w^2 (x - z) + 2 zeta w (x' - z')), z'' = w^2 (x - z) + 2 zeta w (x' - z') - a_b"
+    reference = "Den Hartog (1956), Mechanical Vibrations, ch. 3"
+    parameters: ClassVar = (
+        Parameter("mass_ratio", "1", 0.05, "mu, of the second mass over the first", 1e-9, 1e6),
+        Parameter("frequency", "Hz", 1.0, "w / 2 pi, of the second mass on its spring alone", 1e-9, 1e9),
+        Parameter("damping_ratio", "1", 0.01, "zeta, of the second mass on its spring alone", 0, 10),
+    )
+    systems: ClassVar = ("oscillator",)
+    states: ClassVar = {"displacement": "m", "velocity": "m/s"}
+    cause: ClassVar = Cause("a second mode of the structure", _at_the_lines, separated_by="amplitude")
+
+    def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
+        """Coefficients of spring and damper, and a bound on the fastest rate of both masses."""
+        rate = 2 * pi * values["frequency"]
+        fastest = torch.sqrt(base["mean_stiffness"] + (1 + values["mass_ratio"]) * rate.square())
+        found = {"mass_ratio": values["mass_ratio"], "stiffness": rate.square()}
+        return found | {"damping": 2 * values["damping_ratio"] * rate, "slowest_rate": rate, "fastest_rate": fastest}
+
+    def load_force(self, now: Moment, p: Values) -> Tensor:
+        """What the second mass pulls at the first."""
+        return p["mass_ratio"] * self._pull(now, p)
+
+    def state_rates(self, now: Moment, p: Values) -> dict[str, Tensor]:
+        """The second mass on its spring, on a base that may move."""
+        rate = -self._pull(now, p)
+        if "base_acceleration" in now.inputs:
+            rate = rate - now.inputs["base_acceleration"]
+        return {"displacement": now.extra[RATE], "velocity": rate}
+
+    def _pull(self, now: Moment, p: Values) -> Tensor:
+        apart, rate = now.extra[PLACE] - now.displacement, now.extra[RATE] - now.velocity
+        return p["stiffness"] * apart + p["damping"] * rate
