@@ -1,0 +1,52 @@
+"""Whether the size of a cause is told from none: of one that is there, of one that is not, of one that stands in."""
+
+from types import SimpleNamespace
+
+import pytest
+import torch
+
+from gear_damping.explanation.evidence import Evidence
+from gear_damping.explanation.hypothesis import Hypothesis, fit_hypothesis
+from gear_damping.explanation.told import is_told
+from gear_damping.identification.output_error.records import FitRecord, FreeParameter
+from gear_damping.physics.catalogue import effect_class
+from gear_damping.physics.model import Model
+from gear_damping.physics.systems.oscillator import Oscillator
+from gear_damping.simulation.simulate import simulate
+
+RATE, SAMPLES, NOISE = 50.0, 600, 0.01
+DAMPING = "viscous_damping.damping_coefficient"
+
+
+def fitted(cubic, extra):
+    """An oscillator with this much cubic stiffness, fitted with the extra parameters free."""
+    names = dict.fromkeys(["viscous_damping", "cubic_stiffness", *(name.partition(".")[0] for name in extra)])
+    effects = [effect_class(name)() for name in names]
+    model = Model(Oscillator(), effects)
+    truth = {"stiffness": 40.0, DAMPING: 0.3, "cubic_stiffness.coefficient": cubic, "initial_displacement": 1.0}
+    given = dict.fromkeys(extra, 0.0) | truth
+    clean = simulate(model, model.values(1, **given), sampling_rate=RATE, n_samples=SAMPLES).response[0]
+    response = clean + NOISE * torch.randn(SAMPLES, generator=torch.Generator().manual_seed(3)).double()
+    records = (FitRecord("a", response, RATE),)
+    evidence = Evidence("oscillator", records, records, {"stiffness": 40.0}, None, one_record=True, noise=NOISE)
+    free = [FreeParameter("stiffness", 40.0, logarithmic=True), FreeParameter(DAMPING, 0.3, logarithmic=True)]
+    own = [FreeParameter(name, 0.0, 1.0) for name in extra]
+    known = {k: v for k, v in given.items() if not k.startswith("initial")} | {"cubic_stiffness.coefficient": 0.0}
+    return fit_hypothesis(Hypothesis(Oscillator(), tuple(effects), known, (*free, *own)), evidence), own, evidence
+
+
+def told(cubic, extra=("cubic_stiffness.coefficient",)):
+    outcome, own, evidence = fitted(cubic, extra)
+    candidate = SimpleNamespace(presence=False, strengths=range(len(own)), hypothesis=SimpleNamespace(common=own))
+    refit = SimpleNamespace(score=SimpleNamespace(candidate=candidate), name=extra[0].partition(".")[0])
+    return is_told(outcome, refit, evidence)
+
+
+@pytest.mark.parametrize(("cubic", "expected"), [(4.0, True), (-4.0, True), (0.0, False)])
+def test_what_is_there_is_told_and_what_is_not_is_not(cubic, expected):
+    assert told(cubic) is expected
+
+
+def test_what_the_viscous_damping_does_already_is_told_of_no_other_law():
+    extra = ("asymmetric_friction.damping_forward", "asymmetric_friction.damping_backward")
+    assert not told(0.0, extra)
