@@ -159,7 +159,8 @@ def some_rigs(system: str) -> tuple[Rig, ...]:
     """Rigs of a system on which recipes are looked at that depend on the rig."""
     if system == "oscillator":
         values = _values(Oscillator(), None)
-        return Rig(system, radian=1.0, values=values), Rig(system, inputs=("force",), values=values)
+        both = {"frequencies": (3.0, 0.1), "values": values}
+        return Rig(system, radian=1.0, **both), Rig(system, inputs=("force",), **both)
     values = _values(GearPair(), torch.tensor([3e8])) | {"contact_ratio": 1.6}
     others = {"mesh_harmonics": 4, "values": values}
     return Rig(system, 20, 40, **others), Rig(system, 17, 43, inputs=("pinion_angle",), lines=(12.0,), **others)

@@ -14,25 +14,25 @@ from gear_damping.physics.shaft_order import harmonics
 from gear_damping.physics.shapes import padded
 from gear_damping.physics.terms import TransmissionErrorSource, Values
 
-PARTS = 4  # of a pitch, at which the place where teeth take over is tried
 MESHES = 2  # orders are kept up to so many mesh orders
 HANDOVERS = (0.05, 1.0)  # of a pitch; two pairs carry for the contact ratio less one
 TYPICAL = (2, -1, 3, -4, 1, 5, -3, 0, 2, -2, 4, -5, 1, 3, -1, -3, 2, 0, -4, 2)  # um
 
 
 def _by_shaft(rig: Rig) -> tuple[Recipe, ...]:
-    """One error a tooth, on either shaft, the teeth taking over at several places of a pitch."""
+    """One error a tooth, on either shaft; a tooth takes over while two pairs carry."""
+    contact_ratio, mesh_phase = rig.values.get("contact_ratio", 1.6), rig.values.get("mesh_phase", 0.0)
+    alone = mesh_phase - pi * contact_ratio  # of the mesh, in the middle of what a tooth carries
     return tuple(
         Recipe(
             {"values": 3e-6},
-            scanned={"phase": part / PARTS * 2 * pi / rig.teeth(shaft), "handover": 0.6},
+            scanned={"phase": alone / rig.teeth(shaft), "handover": min(max(contact_ratio - 1, 0.2), 0.9)},
             in_si=True,
             sharpest=("handover",),
             options={"shaft": shaft},
             length=rig.teeth(shaft),
         )
         for shaft in SHAFTS
-        for part in range(PARTS)
     )
 
 
