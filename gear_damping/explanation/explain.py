@@ -116,11 +116,12 @@ def explain(
         _tell(nominal, evidence, noise, say)
         found = search(nominal, evidence, noise, say, solver, found.first_fits[:1], budget)
     step(3, STEPS)
-    noise = found.noise or noise
+    floor, noise = noise, found.noise or noise
     before = excess(found.nominal.holdout, evidence.held, noise)
     after = excess(found.outcome.holdout, evidence.held, noise)
     one = _is_one(found, evidence)
-    said = verdict(found, before, after, found.outcome.fitted.converged, one).saying(short, budget.sentence)
+    whole = _taken_of_all(found, evidence, floor)
+    said = verdict(found, before, after, found.outcome.fitted.converged, one, whole).saying(short, budget.sentence)
     judged = Judged(found, before, after, said, tuple(budget.not_tried))
     step(4, STEPS)
     return Explanation(content.of_search(measurement, evidence, noise, judged), evidence, noise, found)
@@ -147,6 +148,12 @@ def is_lost_by(nominal: Outcome, evidence: Evidence) -> bool:
     """Whether the nominal model leaves more than half of any fitted record's variance."""
     left = zip(nominal.fit_residuals, evidence.fitted, strict=True)
     return any(float(residual.square().sum()) > LOST * ac_energy(record) for residual, record in left)
+
+
+def _taken_of_all(found: Search, evidence: Evidence, floor: NoiseLevel) -> float:
+    """Share that causes take of all that the nominal model leaves beyond what was known of the noise at first."""
+    before, after = (excess(one.holdout, evidence.held, floor).percent for one in (found.nominal, found.outcome))
+    return 1 - max(after, 0.0) / before if before > 0 else 1.0
 
 
 def _is_one(found: Search, evidence: Evidence) -> bool | None:

@@ -218,7 +218,7 @@ def _score(candidate: Candidate, beside: Tensor, problem: OutputErrorProblem, st
     if candidate.presence:  # there is no less than nothing of it: the sign counts
         kept = beside[:, :1] / beside[:, :1].norm()
     smallest = VISIBLE * base.noise / float(beside[:, 0].norm().clamp(min=1e-300)) * _unit(candidate)
-    gain = _gain(candidate, problem, states, beside, base)
+    gain = 0.0 if _is_beyond(candidate, coefficients) else _gain(candidate, problem, states, beside, base)
     direction = explained / explained.norm().clamp(min=1e-300)
     if teeth is not None:
         at = problem.own_of(base.outcome.problem, base.outcome.fitted.shared)
@@ -253,6 +253,14 @@ def _start_of_teeth(
 def _tooth_at(candidate: Candidate, number: int, mesh: float) -> float:
     """The phase of a record at whose start a tooth of this number is in mesh, where the mesh has this phase."""
     return float(candidate.hypothesis.given[candidate.own_tooth]) + (2 * torch.pi * number + mesh) / candidate.teeth
+
+
+def _is_beyond(candidate: Candidate, coefficients: Tensor) -> bool:
+    """Whether every strength would have to be less than none, of an effect of which there is no less than that."""
+    if candidate.presence or candidate.phases or candidate.own_phases or candidate.own_tooth:
+        return False
+    own = [candidate.hypothesis.common[place] for place in candidate.strengths]
+    return all(p.lower >= p.start for p in own) and bool((coefficients <= 0).all())
 
 
 def _mesh_phases(problem: OutputErrorProblem, point: Tensor) -> dict[str, float]:

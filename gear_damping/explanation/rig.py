@@ -23,6 +23,7 @@ MOST_TURNS = 20.0  # of a record that are looked at
 BAND = 1.02  # of a frequency, the width of a band in which energy is counted
 OWN = 1.2  # of a frequency: nearer, a mode is not told from its neighbour by a spectrum
 HARMONICS = 5  # of the natural frequency that are no modes
+AROUND, STANDS_OUT = 10, 5.0  # bands at either side; times their median, from which a line stands out
 MODES = 2  # frequencies that are kept
 HIGHEST = 0.45  # of the sampling rate
 FEWEST_CYCLES = 8.0  # in a record
@@ -77,6 +78,7 @@ def strongest_frequencies(residuals: Residuals, natural: float) -> tuple[float, 
         frequency = torch.fft.rfftfreq(len(series), 1 / record.sampling_rate, dtype=torch.float64)
         inside = (frequency >= edges[0]) & (frequency < edges[-1])
         energy.index_add_(0, torch.bucketize(frequency[inside], edges, right=True) - 1, power[inside])
+    energy = torch.where(_stands_out(energy), energy, 0.0)
     multiples = (middles / natural).round().clamp(min=1)
     near = (middles / natural / multiples).log().abs() < torch.where(multiples > 1, log(BAND) * 2, log(OWN))
     energy[near & (multiples <= HARMONICS)] = 0
@@ -88,6 +90,12 @@ def strongest_frequencies(residuals: Residuals, natural: float) -> tuple[float, 
         found.append(float(middles[best]))
         energy[(middles / middles[best]).log().abs() < log(OWN)] = 0
     return tuple(found)
+
+
+def _stands_out(energy: Tensor) -> Tensor:
+    """Where the energy of a band is many times that of the bands about it: a line, and no flank of another."""
+    wide = torch.nn.functional.pad(energy.reshape(1, 1, -1), (AROUND, AROUND), mode="replicate")[0, 0]
+    return energy > STANDS_OUT * wide.unfold(0, 2 * AROUND + 1, 1).median(1).values
 
 
 def strongest_orders(residuals: Residuals, pinion: int, gear: int, speed: float) -> tuple[float, ...]:

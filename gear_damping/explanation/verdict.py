@@ -13,6 +13,7 @@ CONSISTENT, EXPLAINED, AMBIGUOUS = "consistent", "explained", "ambiguous"
 PARTLY, UNEXPLAINED, DATA_PROBLEM = "partly_explained", "unexplained", "data_problem"
 VERDICTS = (CONSISTENT, EXPLAINED, AMBIGUOUS, PARTLY, UNEXPLAINED, DATA_PROBLEM)
 MOST = 0.9  # of the excess that causes must take to be established although a rest is left,
+FLOODED = 0.8  # noise variances: a nominal model cannot leave less than noise, what looks random is more than that
 HALF = 0.5  # or half of it by one cause (several that leave much stand in for something else), where the rest is
 
 
@@ -45,7 +46,12 @@ class Judged:
 
 
 def verdict(
-    found: Search, before: Excess, after: Excess, converged: bool = True, is_one: bool | None = None
+    found: Search,
+    before: Excess,
+    after: Excess,
+    converged: bool = True,
+    is_one: bool | None = None,
+    whole: float = 1.0,
 ) -> Verdict:
     """What the search amounts to.
 
@@ -55,6 +61,7 @@ def verdict(
         after: Excess of the extended one.
         converged: Whether the calibration converged.
         is_one: Whether every cause has one size over all records; None where too few records tell of one.
+        whole: Share that causes take of everything beyond the sensor's noise, what looks random included.
     """
     if not found.accepted and not (before.significant and (is_visible(found.seen) or before.misfit > SMALL_REST)):
         text = f"No evidence of an effect that takes more than {before.threshold:.2g} % of the signal's variance."
@@ -62,6 +69,8 @@ def verdict(
     taken = _taken(found, before, after)
     rest = is_all(after, before) or (not is_visible(found.left) and after.misfit <= SMALL_REST)
     missing = f"The simulation misses {before.percent:.3g} % of the signal's variance"
+    if before.percent <= 0:  # what is missing shows in its form, not in its power
+        missing = f"The simulation misses something, though less than {before.threshold:.2g} % of the signal's variance"
     unsettled = () if converged else ("The calibration did not converge: take the figures with care.",)
     if not found.accepted:
         text = f"{missing}, and no effect of the catalogue is borne out by held-out records."
@@ -69,6 +78,9 @@ def verdict(
     confused = [cause for cause in found.accepted if cause.confusable]
     said = _named(found.accepted)
     classes = [cause for cause in found.accepted if cause.effect.cause.one_class]
+    if rest and (whole < HALF or before.misfit < FLOODED):  # most of the gap is still there, and only looks random
+        text = f"{missing}. Part of it has a name: {said}. What is left looks random, and is more than that."
+        return Verdict(PARTLY, (text, _left(taken), *_not_told_apart(confused), *unsettled))
     if rest and classes:
         return Verdict(AMBIGUOUS, (f"{missing}.", *_one_class(classes), *_not_told_apart(confused), _left(taken)))
     if rest and not confused:

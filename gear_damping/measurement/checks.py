@@ -17,6 +17,7 @@ SAMPLES_PER_PERIOD = 100  # of the fastest content; more only slow the work
 _CONTENT = 0.999  # share of the energy that counts as content
 _DRIFT = 0.1  # of the way that a straight line goes; what may lie about it
 _BEND, _BENT_SHARE, _FEWEST_BENDS = 1e-4, 0.6, 10  # of the largest bend; of the samples; in a record
+_LONE = 5.0  # times as far from the median as any other sample
 _SPEEDS = ("velocity", "pinion_speed", "gear_speed")
 _APPLIED = (*INPUTS, "pinion_angle", "pinion_speed")  # what drives the system
 
@@ -35,7 +36,7 @@ def check_record(record: Record) -> tuple[Finding, ...]:
     """Everything suspicious in the values of a record, beside the findings that it has already."""
     found = []
     for channel in record.channels.values():
-        found += [_constant(channel) or _clipped(channel) or _straight_lines(channel)]
+        found += [_constant(channel) or _clipped(channel) or _straight_lines(channel), _spike(channel)]
     if not any(finding.severity == "data_problem" and finding.channel == "time" for finding in record.findings):
         found.append(stamps_against_values(record))
     found += [_magnitude(record), *check_shafts(record), *not_compared(record), _oversampled(record)]
@@ -50,6 +51,22 @@ def _constant(channel: Channel) -> Finding | None:
     message += "" if driven else "; check the cable and the column"
     severity = "note" if driven else "data_problem"
     return Finding("constant_channel", message, channel=channel.name, severity=severity)
+
+
+def _spike(channel: Channel) -> Finding | None:
+    """One sample, or two, that lie many times as far from the rest as any other: no motion does that."""
+    away = np.abs(channel.values - np.median(channel.values))
+    order = np.argsort(away)[::-1]
+    lone = next((k for k in (1, 2) if len(order) > 10 * k and away[order[k - 1]] > _LONE * away[order[k]] > 0), 0)
+    if not lone:
+        return None
+    places = np.sort(order[:lone])
+    message = (
+        f"{channel.name} is {channel.values[places[0]]:.4g} {channel.unit} at sample {places[0]}, "
+        f"{away[order[lone - 1]] / away[order[lone]]:.3g} times as far from its median as any other sample: a fault of "
+        "the transmission or of the file; repair it there, or use slices beside it"
+    )
+    return Finding("spike", message, channel=channel.name, sample=int(places[0]))
 
 
 def _straight_lines(channel: Channel) -> Finding | None:

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 LEVELS = 2  # a series that knows no more of them switches
-HELD = 0.5  # share of the samples that repeat the one before, from which values are held
+LEAST_RUN = 2  # samples for which it stands still, in the median
 JUMP = 3.0  # least steps of the values in the median change: a coarse converter follows what it reads by single ones
 
 
@@ -18,4 +18,6 @@ def is_staircase(values: NDArray[np.float64]) -> bool:
         return len(levels) == LEVELS
     changes = np.abs(np.diff(values))
     moved = changes[changes > 0]
-    return bool(np.mean(changes == 0) >= HELD and np.median(moved) >= JUMP * np.diff(levels).min())
+    runs = np.diff(np.flatnonzero(np.concatenate([[True], changes > 0, [True]])))
+    usual = np.median(runs)  # a force that rests for long between strokes is no staircase: most of its steps are short
+    return bool(usual >= LEAST_RUN and np.median(moved) >= JUMP * np.diff(levels).min())

@@ -89,6 +89,15 @@ class Recipe:
     replaces: Mapping[str, str] = field(default_factory=dict)
 
 
+def where_there_is_a_spring(*recipes: Recipe) -> Callable[[Rig], tuple[Recipe, ...]]:
+    """Recipes of a law about a place of rest: where nothing pulls the rig back there is none to count from."""
+
+    def of_rig(rig: Rig) -> tuple[Recipe, ...]:
+        return recipes if rig.values.get("stiffness", 1.0) > 0 else ()
+
+    return of_rig
+
+
 Recipes = tuple[Recipe, ...] | Callable[[Rig], tuple[Recipe, ...]]
 
 

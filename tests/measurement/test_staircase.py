@@ -15,6 +15,7 @@ INPUTS = {
     "a sine": (SINE, False),
     "a sine behind a coarse converter": (np.round(20 * SINE) / 20, False),
     "noise behind a coarse converter": (np.round(RNG.normal(size=2000)), False),
+    "a hammer between two rests": (np.where(abs(TIME - 1) < 0.02, np.cos(60 * (TIME - 1)), 0.0), False),
     "a constant": (np.ones(2000), False),
     "a chirp that is held for three samples": (np.repeat(np.sin(2 * np.pi * 3 * TIME[::3] ** 2), 3)[:2000], True),
 }

@@ -10,6 +10,7 @@ from gear_damping.units import parse_unit
 _BRACKETS = re.compile(r"[(\[]([^()\[\]]+)[)\]]\s*$")
 _INDEX = re.compile(r"\w\[\d+\]\s*$")  # `data[3]` is a name, no unit
 _NO_UNIT = ("", "-")
+_TABLE = 3  # rows that a table begins with, none of them of texts alone
 
 
 @dataclass(frozen=True)
@@ -47,21 +48,21 @@ def find_header(rows: Sequence[Sequence[str]], width: int) -> Header:
         width: The number of filled cells that a row of values has.
 
     Returns:
-        The first row of texts as wide as the values, of those before the first row of values; else the last one.
-        Without a row of texts the values begin at the first row.
+        The row of texts as wide as the values or wider with the most different ones, of those before the first row of
+        values; else the last one. Without a row of texts the values begin at the first row.
     """
-    end = next((k for k, row in enumerate(rows) if _is_values(row, width)), len(rows))
+    end = _first_values(rows, width)
     texts = [k for k in range(end) if not _has_number(rows[k])]
     if not texts:
         return Header((), (), 0)
     exact = [k for k in texts if _filled(rows[k]) == width]
     wide = [k for k in texts if _filled(rows[k]) > width]
-    start = (exact or wide or [texts[-1]])[0]
+    start = max(exact + wide, key=lambda k: len({*rows[k]})) if exact or wide else texts[-1]
     names, first = tuple(cell.strip() for cell in rows[start]), start + 1
     units: tuple[str, ...] = ()
     if first < len(rows) and _is_units(rows[first]):
         units, first = tuple(cell.strip() for cell in rows[first]), first + 1
-    return Header(names, units, first, start)
+    return Header(names, units, max(first, end), start + max(end - first, 0))
 
 
 def bracket_unit(name: str) -> str | None:
@@ -81,6 +82,13 @@ def is_number(cell: str) -> bool:
 
 def _has_number(row: Sequence[str]) -> bool:
     return any(is_number(cell.replace(",", ".")) for cell in row)
+
+
+def _first_values(rows: Sequence[Sequence[str]], width: int) -> int:
+    """The first row of values: settings may be numbers too, but a table goes on for a few rows without one of texts."""
+    texts = [not _has_number(row) for row in rows]
+    values = (k for k, row in enumerate(rows) if _is_values(row, width))
+    return next((k for k in values if not any(texts[k : k + _TABLE])), len(rows))
 
 
 def _is_values(row: Sequence[str], width: int) -> bool:

@@ -5,7 +5,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
-from gear_damping.physics.cause import Cause, Recipe
+from gear_damping.physics.cause import Cause, Recipe, where_there_is_a_spring
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import ElasticForce, Values
@@ -20,7 +20,7 @@ class CubicStiffness(ElasticForce):
     parameters: ClassVar = (Parameter("coefficient", "N/m^3", 5.8e16, "k3; default: 5 % at 16.6 um", -1e24, 1e24),)
     cause: ClassVar = Cause(
         "a restoring force that hardens or softens with the cube of the deflection",
-        (Recipe({"coefficient": 0.02}),),
+        where_there_is_a_spring(Recipe({"coefficient": 0.02})),
     )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:

@@ -5,7 +5,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
-from gear_damping.physics.cause import Cause, Recipe
+from gear_damping.physics.cause import Cause, Recipe, where_there_is_a_spring
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.shapes import power_of_size
@@ -27,7 +27,7 @@ class HertzStiffness(StiffnessFactor):
     )
     cause: ClassVar = Cause(
         "a contact stiffness that grows with the load",
-        (Recipe({"exponent": 0.05}, fixed={"reference_deflection": 1.0}),),
+        where_there_is_a_spring(Recipe({"exponent": 0.05}, fixed={"reference_deflection": 1.0})),
     )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:

@@ -4,7 +4,7 @@ from typing import ClassVar
 
 from torch import Tensor
 
-from gear_damping.physics.cause import Cause, Recipe
+from gear_damping.physics.cause import Cause, Recipe, where_there_is_a_spring
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import ElasticForce, Values
@@ -20,7 +20,7 @@ class QuadraticStiffness(ElasticForce):
     systems: ClassVar = ("oscillator",)
     cause: ClassVar = Cause(
         "a restoring force that differs between the two directions of deflection",
-        (Recipe({"coefficient": 0.02}),),
+        where_there_is_a_spring(Recipe({"coefficient": 0.02})),
     )
 
     def elastic_force(self, now: Moment, p: Values) -> Tensor:

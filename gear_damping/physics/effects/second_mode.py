@@ -13,7 +13,9 @@ from gear_damping.physics.terms import ExtraStates, Load, Values
 
 PLACE, RATE = "second_mode.displacement", "second_mode.velocity"
 RATIOS = (0.01, 0.1)  # of the masses
-LOW, HIGH = 1e-4, 10.0  # of the ratio that is fitted: beyond, one of the two masses is none
+LOW, HIGH = 1e-4, 1.0  # of the ratio that is fitted: beyond, the other mass is the first one
+NEAR = 1.15  # of the line that it is sought at: farther, it would take the place of the first mode
+DAMPED = (1e-5, 0.3)  # damping ratios of what shows as a line
 
 
 def _at_the_lines(rig: Rig) -> tuple[Recipe, ...]:
@@ -23,7 +25,11 @@ def _at_the_lines(rig: Rig) -> tuple[Recipe, ...]:
             {"mass_ratio": ratio},
             presence=True,
             scanned={"frequency": frequency, "damping_ratio": 0.01},
-            within={"second_mode.mass_ratio": (LOW, HIGH)},
+            within={
+                "second_mode.mass_ratio": (LOW, HIGH),
+                "second_mode.frequency": (frequency / NEAR, frequency * NEAR),
+                "second_mode.damping_ratio": DAMPED,
+            },
             in_si=True,
         )
         for frequency in rig.frequencies

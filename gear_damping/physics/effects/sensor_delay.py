@@ -12,6 +12,9 @@ from gear_damping.physics.record_filter import filtered
 from gear_damping.physics.terms import Recording, Sensor, Values
 
 
+MODES = 3  # powers of time by which a short beginning is free
+
+
 class SensorDelay(Sensor):
     """The record lags behind its time stamps, by any fraction of a sample."""
 
@@ -34,3 +37,14 @@ class SensorDelay(Sensor):
             return torch.complex(torch.cos(angle), torch.sin(angle))
 
         return filtered(signal, recording.sampling_rate, response)
+
+    @property
+    def start_modes(self) -> int:
+        """What was before the record is seen in it for the time of the delay, and not known."""
+        return MODES
+
+    def left_of_start(self, values: Values, time: Tensor) -> Tensor:
+        """Powers of time over the delay; of a record that runs ahead, at its end."""
+        delay = values["delay"].unsqueeze(1)
+        into = torch.where(delay >= 0, time, time[-1] - time) / delay.abs().clamp(min=1e-300)
+        return torch.stack([torch.where(into < 1, into.clamp(max=1) ** power, 0.0) for power in range(MODES)])
