@@ -26,6 +26,7 @@ from gear_damping.simulation.solver_settings import Solver
 STIFFNESS, DAMPING, GAIN, FORCE = "stiffness", "viscous_damping.damping_coefficient", "force_gain", "offset_force.force"
 TIME = "characteristic_time"
 FIRST_RATIOS = (0.01, 0.05, 0.2)  # damping ratios of the starts
+MOTION, STROKE = 0.999, 0.5  # share of the energy that is the motion; of a record: less is a stroke
 FIRST_SHIFTS = (0.93, 1.0, 1.07)  # of the frequency of the starts
 FIRST_RATES = (0.1, 1.0, 10.0)  # damping coefficients of the starts without a spring, over one by characteristic time
 HORIZON_PERIODS = (4, 20, 100)  # natural periods of the rounds before the whole record
@@ -99,7 +100,7 @@ def fit_oscillator(
         segments = WHOLE if spring else Segments(SEGMENT_TIMES * scale)
     pieces = in_segments(fit_records, segments)
     problem = OutputErrorProblem(linear_oscillator(fit_records), given, free, pieces, solver)
-    fitted = fit(problem, _starts(problem, spring), _horizons(problem, scale), report=report)
+    fitted = _fitted(problem, spring, scale, report)
     if any(isfinite(parameter.deviation) for parameter in problem.free):
         fitted = _with_expectations(problem, fitted)
     values = {name: float(value) for name, value in problem.parameters(fitted.shared).items()}
@@ -184,15 +185,21 @@ def _amplitude(records: Sequence[FitRecord]) -> float:
     return float(torch.stack(scales).square().mean().sqrt())
 
 
-def first_frequency(record: FitRecord) -> float:
-    """A first guess of the natural frequency in Hz: the highest peak of the response per unit of force."""
-    response = record.response.numpy() - float(record.response.mean())
-    window = np.hanning(len(response))
+def first_frequency(record: FitRecord, driven: bool = True) -> float:
+    """A first guess of the natural frequency in Hz: the highest peak of the response per unit of force.
+
+    Args:
+        record: The record.
+        driven: Whether the response is divided by the force, where there is one.
+    """
+    place, window = _motion(record)
+    response = record.response.numpy()[place]
+    response = response - float(record.response.mean())
     spectrum = np.abs(np.fft.rfft(response * window)) ** 2
     frequency = np.fft.rfftfreq(len(response), 1 / record.sampling_rate)
     width = max(1, len(spectrum) // 400)
     smooth = np.convolve(spectrum, np.ones(width) / width, mode="same")
-    drives = [record.inputs[name] for name in ("force", "base_acceleration") if name in record.inputs]
+    drives = [record.inputs[n][place] for n in ("force", "base_acceleration") if driven and n in record.inputs]
     drives = [drive for drive in drives if float(drive.max()) > float(drive.min())]  # a constant one drives nothing
     if drives:
         force = drives[0].numpy()
@@ -202,11 +209,42 @@ def first_frequency(record: FitRecord) -> float:
     return float(frequency[first + int(np.argmax(smooth[first:]))])
 
 
-def _starts(problem: OutputErrorProblem, spring: bool) -> Tensor:
+def _motion(record: FitRecord) -> tuple[slice, np.ndarray]:
+    """The samples that hold the motion, and a window for their spectrum.
+
+    A stroke that has long rung out fills a small part of its record, where a window over all of it has hardly risen.
+    """
+    energy = np.cumsum((record.response.numpy() - float(record.response.mean())) ** 2)
+    first, last = np.searchsorted(energy, np.array([1 - MOTION, MOTION]) * energy[-1])
+    if last - first >= STROKE * len(energy) or last - first < FEWEST_SAMPLES:
+        return slice(0, len(energy)), np.hanning(len(energy))
+    first = max(0, int(first) - (int(last) - int(first)) // 10)  # the stroke comes before what it moves
+    tail = np.hanning(2 * ((last - first) // 4))
+    return slice(first, int(last)), np.concatenate([np.ones(last - first - len(tail) // 2), tail[len(tail) // 2 :]])
+
+
+def _fitted(
+    problem: OutputErrorProblem, spring: bool, scale: float, report: Callable[[int, int], None] | None
+) -> Fitted:
+    """The best fit from several starts, over growing stretches of the records.
+
+    Beside the peak per unit of force the response has one of its own. Where the force is short, as a stroke, that may
+    be the better guess; and a stretch that ends in the stroke leads astray, so that it is tried over all at once.
+    """
+    found = fit(problem, _starts(problem, spring), _horizons(problem, scale), report=report)
+    stiffness = next((p.start for p in problem.free if p.name == STIFFNESS), 0.0)
+    own = 2 * pi * first_frequency(problem.records[0], driven=False) / stiffness**0.5 if stiffness > 0 else 0.0
+    if not spring or own <= 0 or min(FIRST_SHIFTS) <= own <= max(FIRST_SHIFTS):
+        return found
+    other = fit(problem, _starts(problem, spring, (own,)))
+    return min(found, other, key=lambda one: one.cost)
+
+
+def _starts(problem: OutputErrorProblem, spring: bool, shifts: Sequence[float] = ()) -> Tensor:
     """Coordinates of the starts: every frequency with every damping ratio, or every time constant."""
     place = {parameter.name: i for i, parameter in enumerate(problem.free)}
     rows = []
-    for shift in FIRST_SHIFTS if spring else (1.0,):
+    for shift in (shifts or FIRST_SHIFTS) if spring else (1.0,):
         for ratio in FIRST_RATIOS if spring else FIRST_RATES:
             row = torch.zeros(problem.n_shared, dtype=torch.float64)
             if spring:

@@ -11,7 +11,6 @@ from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.record_filter import filtered
 from gear_damping.physics.terms import Recording, Sensor, Values
 
-
 MODES = 3  # powers of time by which a short beginning is free
 
 
