@@ -234,10 +234,17 @@ def _fitted(
     found = fit(problem, _starts(problem, spring), _horizons(problem, scale), report=report)
     stiffness = next((p.start for p in problem.free if p.name == STIFFNESS), 0.0)
     own = 2 * pi * first_frequency(problem.records[0], driven=False) / stiffness**0.5 if stiffness > 0 else 0.0
-    if not spring or own <= 0 or min(FIRST_SHIFTS) <= own <= max(FIRST_SHIFTS):
+    is_new = not min(FIRST_SHIFTS) <= own <= max(FIRST_SHIFTS) or _is_stroke(problem.records[0])
+    if not spring or own <= 0 or not is_new:
         return found
     other = fit(problem, _starts(problem, spring, (own,)))
     return min(found, other, key=lambda one: one.cost)
+
+
+def _is_stroke(record: FitRecord) -> bool:
+    """Whether the motion fills a small part of a record."""
+    place, _ = _motion(record)
+    return place.stop - place.start < STROKE * len(record.response)
 
 
 def _starts(problem: OutputErrorProblem, spring: bool, shifts: Sequence[float] = ()) -> Tensor:
