@@ -62,7 +62,8 @@ def find_header(rows: Sequence[Sequence[str]], width: int) -> Header:
     units: tuple[str, ...] = ()
     if first < len(rows) and _is_units(rows[first]):
         units, first = tuple(cell.strip() for cell in rows[first]), first + 1
-    return Header(names, units, max(first, end), start + max(end - first, 0))
+    between = max(end - first, 0) if end < len(rows) else 0  # texts that are neither names nor units
+    return Header(names, units, first + between, start + between)
 
 
 def bracket_unit(name: str) -> str | None:
