@@ -187,6 +187,7 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
             "excess_explained": cause.share,
             "confusable_with": [*cause.confusable, *cause.effect.cause.looks_like][: LARGEST_SET - 1],
             "status": statuses(judged.verdict.word),
+            "fixed": _fixed(last, cause.name),
             **by_record(last, cause.name, evidence),
         }
         for cause in found.accepted
@@ -203,6 +204,13 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
                 | {"status": "suggested", **by_record(refit.outcome, refit.name, evidence)}
             )
     return sorted(listed, key=lambda cause: -cause["excess_explained"])
+
+
+def _fixed(outcome: Outcome, cause: str) -> dict[str, float]:
+    """Parameters of a cause that were tried and not fitted, as the order of a ripple, by own name."""
+    free = {parameter.name.partition("[")[0] for parameter in outcome.hypothesis.free}
+    own = {name: value for name, value in outcome.hypothesis.given.items() if name.startswith(cause + ".")}
+    return {n.partition(".")[2]: v for n, v in own.items() if n not in free and not isinstance(v, tuple)}
 
 
 def _share(outcome: Outcome, nominal: Outcome) -> float:
