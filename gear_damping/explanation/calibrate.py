@@ -18,7 +18,7 @@ from gear_damping.identification.oscillator import (
     linear_model,
     linear_oscillator,
 )
-from gear_damping.identification.output_error.angles import STARTS, angle_bases, scanned
+from gear_damping.identification.output_error.angles import STARTS, angle_bases, harmonics_to_resonance, scanned
 from gear_damping.identification.output_error.problem import OutputErrorProblem
 from gear_damping.identification.output_error.records import FreeParameter
 from gear_damping.identification.output_error.segments import in_segments
@@ -58,14 +58,20 @@ NOT_FINITE = Problem(
 LEAST_DAMPING = 1e-5  # of the first guess, N s/m
 
 
-def calibrated(evidence: Evidence, solver: Solver | None = None) -> Outcome:
+def calibrated(evidence: Evidence, solver: Solver | None = None, rough: Outcome | None = None) -> Outcome:
     """The nominal model fitted to the evidence.
+
+    Args:
+        evidence: The records.
+        solver: Settings of the solver.
+        rough: A gear pair's fit without the shape of its stiffness, where that was made.
 
     Raises:
         InputError: with what is stated of the rig it cannot be simulated.
     """
     with _simulable():
-        found = _gear_pair(evidence, solver) if evidence.system == "gear_pair" else _oscillator(evidence, solver)
+        is_gear = evidence.system == "gear_pair"
+        found = _gear_pair(evidence, solver, rough) if is_gear else _oscillator(evidence, solver)
     if not bool(found.fitted.prediction.sensitivity.isfinite().all()):
         raise InputError(NOT_FINITE)
     return found
@@ -120,9 +126,9 @@ def restarted(evidence: Evidence, solver: Solver | None = None) -> Outcome | Non
     return _shaped(rough, evidence, 0, solver)
 
 
-def _gear_pair(evidence: Evidence, solver: Solver | None) -> Outcome:
+def _gear_pair(evidence: Evidence, solver: Solver | None, rough: Outcome | None) -> Outcome:
     """Mesh phase by a scan, then damping and stiffness, then free harmonics of the stiffness."""
-    return _shaped(_rough_gear_pair(evidence, solver), evidence, SHAPE_ITERATIONS, solver)
+    return _shaped(rough or _rough_gear_pair(evidence, solver), evidence, SHAPE_ITERATIONS, solver)
 
 
 def _shaped(rough: Outcome, evidence: Evidence, iterations: int, solver: Solver | None) -> Outcome:
@@ -153,20 +159,20 @@ def _rough_gear_pair(evidence: Evidence, solver: Solver | None) -> Outcome:
     return found
 
 
-def angles_counted(evidence: Evidence, solver: Solver | None = None) -> Evidence:
+def angles_counted(evidence: Evidence, solver: Solver | None = None) -> tuple[Evidence, Outcome | None]:
     """The evidence with a phase of its own in every record where their angles do not count from one mark.
 
     An angle that was measured may begin anew in every record, as behind an encoder without an index: then one phase
-    of the mesh does not fit them all.
+    of the mesh does not fit them all. The rough fit that was made to find out comes with it.
     """
     if evidence.system != "gear_pair" or (evidence.has_index and evidence.mesh_index):
-        return evidence
+        return evidence, None
     apart = with_own_angles(evidence)
     if not evidence.has_index or len(evidence.fit) == 1:
-        return evidence if evidence.has_index else apart
+        return evidence if evidence.has_index else apart, None
     with _simulable():
-        one, many = (_rough_gear_pair(either, solver).fitted.cost for either in (evidence, apart))
-    return evidence if one <= APART * many else apart
+        one, many = (_rough_gear_pair(either, solver) for either in (evidence, apart))
+    return (evidence, one) if one.fitted.cost <= APART * many.fitted.cost else (apart, many)
 
 
 def _angles(hypothesis: Hypothesis, evidence: Evidence, horizon: float, solver: Solver | None) -> Mapping[str, float]:
@@ -232,12 +238,7 @@ def _contact_ratio(stated: Mapping[str, float]) -> float:
 
 def _shape_harmonics(rough: Outcome, evidence: Evidence) -> int:
     """Harmonics of the mesh that the natural frequency lets through, at the slowest record."""
-    model, given = rough.hypothesis.model, rough.flat_given()
-    default = float(given.get("pinion_speed", model.parameters()["pinion_speed"].default))
-    slowest = min(abs(record.conditions.get("pinion_speed", default)) for record in evidence.fit)
-    teeth = float(given.get("n_teeth_pinion", model.parameters()["n_teeth_pinion"].default))
-    mesh_frequency = max(teeth * slowest / (2 * pi), 1e-9)
-    count = ceil(SHAPE_BAND * natural_frequency_hz(model, given) / mesh_frequency)
+    count = ceil(SHAPE_BAND * harmonics_to_resonance(rough.hypothesis.model, rough.flat_given(), evidence.fit))
     return min(max(count, FEWEST_HARMONICS), MOST_HARMONICS)
 
 

@@ -8,7 +8,7 @@ from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Given, Hypothesis
 from gear_damping.explanation.rig import Residuals, rig_of
 from gear_damping.identification.output_error.records import FreeParameter
-from gear_damping.physics.cause import Recipe
+from gear_damping.physics.cause import Recipe, Rig
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import Effect
 from gear_damping.units import parse_unit
@@ -71,7 +71,8 @@ def candidates_for(base: Hypothesis, evidence: Evidence, residuals: Residuals | 
     """
     there = {effect.name for effect in base.effects}
     refused = there | COVERED_BY_NUISANCE[base.system.name]
-    rig, sizes = rig_of(base, evidence, residuals), _Sizes(base, evidence)
+    rig = rig_of(base, evidence, residuals)
+    sizes = _Sizes(base, evidence.duration, rig)
     return [
         _candidate(base, kind, recipe, sizes)
         for name, kind in evidence.library.items()
@@ -103,8 +104,8 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Si
     for parameter in kind.parameters:
         given[f"{kind.name}.{parameter.name}"] = sizes.default(kind, parameter, recipe)
     free, strengths, phases, own_phases = [], [], {}, {}
-    own = not sizes.has_index and kind.cause.turns_with == "shaft"
-    own_tooth = f"{kind.name}.phase" if not sizes.has_index and kind.cause.turns_with == "tooth" else ""
+    own = not sizes.rig.indexed and kind.cause.turns_with == "shaft"
+    own_tooth = f"{kind.name}.phase" if not sizes.rig.indexed and kind.cause.turns_with == "tooth" else ""
     first = len(base.common)
     for name, size in recipe.strengths.items():
         for parameter in _elements(kind, name, sizes.size(kind, name, size, recipe), given, recipe):
@@ -125,7 +126,7 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Si
         free, later = [*free, *later], []
     begun = {}
     templates = [FreeParameter(phase, 0.0, per_record=True) for phase in own_phases.values()]
-    teeth = sizes.teeth(effect.chosen["shaft"]) if own_tooth else 0
+    teeth = sizes.rig.teeth(effect.chosen["shaft"]) if own_tooth else 0
     if own_tooth:
         templates = [FreeParameter(own_tooth, 0.0, ANGLE_SCALE, per_record=True, places=teeth)]
     for name, start in recipe.beside.items():
@@ -178,14 +179,9 @@ def _label(kind: type[Effect], recipe: Recipe) -> str:
 class _Sizes:
     """Sizes of an effect's parameters for this rig."""
 
-    def __init__(self, base: Hypothesis, evidence: Evidence) -> None:
-        self.base, self.duration, self.has_index = base, evidence.duration, evidence.has_index
-        prepared = base.model.prepare(base.model.values(1, **base.given))
-        self.scales, self.base_values = prepared.scales, prepared.base
-
-    def teeth(self, shaft: str) -> int:
-        """Teeth of the gear on a shaft."""
-        return round(float(self.base_values[f"n_teeth_{shaft}"].reshape(-1)[0]))
+    def __init__(self, base: Hypothesis, duration: float, rig: Rig) -> None:
+        self.base, self.duration, self.rig = base, duration, rig
+        self.scales = base.model.prepare(base.model.values(1, **base.given)).scales
 
     def natural(self, kind: type[Effect], parameter: Parameter, value: float, exponent: float = 1.0) -> float:
         """A value in natural units, in the rig's own; the unit of a power law hangs on its exponent."""

@@ -11,7 +11,7 @@ from gear_damping.explanation.hypothesis import Outcome, time_scale
 from gear_damping.explanation.rig_units import unit_of
 from gear_damping.explanation.significance import ac_energy
 from gear_damping.identification.output_error.problem import OFFSET, is_of_model, set_value
-from gear_damping.identification.output_error.records import SEPARATOR, FitRecord, FreeParameter
+from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.uncertainty import QUANTILE, covariance
 from gear_damping.physics.terms import DampingLaw
 from gear_damping.simulation.runs import reference_velocity
@@ -63,7 +63,7 @@ def parameters_of(outcome: Outcome, spread: Tensor, cause: str, evidence: Eviden
         effect, _, own = parameter.name.partition(".")
         if effect != cause:
             continue
-        unit = unit_of(_declared_name(parameter), outcome.hypothesis.model, evidence)
+        unit = unit_of(parameter.declared_name, outcome.hypothesis.model, evidence)
         found[own] = _interval(outcome, spread, place, evidence, unit).plain() | {"at_bound": bool(at_bound[place])}
     return found
 
@@ -72,7 +72,7 @@ def final_parameters(outcome: Outcome, spread: Tensor, evidence: Evidence) -> di
     """Every fitted parameter of a model with its 95 % interval, nuisances and those of single records included."""
     declared, found = outcome.hypothesis.model.parameters(), {}
     for place, parameter in enumerate(outcome.problem.free):
-        flat = _declared_name(parameter)
+        flat = parameter.declared_name
         kind, _, channel = flat.partition(".")
         if kind == OFFSET:
             unit = evidence.channel.unit if channel == evidence.channel.name else "own"
@@ -80,11 +80,6 @@ def final_parameters(outcome: Outcome, spread: Tensor, evidence: Evidence) -> di
             unit = unit_of(flat, outcome.hypothesis.model, evidence) if flat in declared else "1"
         found[parameter.name] = _interval(outcome, spread, place, evidence, unit).plain()
     return found
-
-
-def _declared_name(parameter: FreeParameter) -> str:
-    """The name under which a parameter of single records or a place of a list is declared."""
-    return parameter.name.partition(SEPARATOR)[0].partition("[")[0]
 
 
 def _interval(outcome: Outcome, spread: Tensor, place: int, evidence: Evidence, unit: str) -> Interval:
@@ -100,7 +95,7 @@ def _interval(outcome: Outcome, spread: Tensor, place: int, evidence: Evidence, 
         ends = sorted((0.0, value * (1 + half)))
     else:
         ends = sorted(float(parameter.value(z + shift)) for shift in (-half, half))
-    known = outcome.hypothesis.model.parameters().get(_declared_name(parameter))
+    known = outcome.hypothesis.model.parameters().get(parameter.declared_name)
     if known is not None:
         moved = float(outcome.fitted.prediction.sensitivity[..., place].norm())
         at_bound = int(outcome.problem.at_bound(outcome.fitted.shared)[place])

@@ -15,7 +15,6 @@ from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Outcome, time_scale
 from gear_damping.explanation.statistics.random_effects import spread_between, statistic
 from gear_damping.identification.output_error.least_squares import own_basis, without_own
-from gear_damping.identification.output_error.records import SEPARATOR
 from gear_damping.identification.output_error.uncertainty import QUANTILE
 
 TOLERANCE = 0.15  # of the strength: what a real cause may differ by between records
@@ -75,9 +74,9 @@ def homogeneity(outcome: Outcome, cause: str, evidence: Evidence) -> Homogeneity
 def by_record(outcome: Outcome, cause: str, evidence: Evidence) -> dict[str, Any]:
     """The same as plain values: the first strength by record with 95 % intervals, and how much it differs."""
     test = homogeneity(outcome, cause, evidence)
-    name = next(p.name for p in outcome.problem.free if p.name.startswith(cause + "."))
-    size, ends = outcome.values[name], (-QUANTILE, QUANTILE)
-    known = outcome.hypothesis.model.parameters()[name.partition(SEPARATOR)[0].partition("[")[0]]
+    parameter = next(p for p in outcome.problem.free if p.name.startswith(cause + "."))
+    name, ends = parameter.name, (-QUANTILE, QUANTILE)
+    size, known = outcome.values[name], outcome.hypothesis.model.parameters()[parameter.declared_name]
 
     def within(value: float) -> float:
         return min(max(value, known.lower), known.upper)

@@ -8,13 +8,12 @@ from torch import Tensor
 
 from gear_damping.explanation.candidates import Candidate
 from gear_damping.explanation.hypothesis import Outcome, begun_from
-from gear_damping.explanation.own_teeth import Teeth, every_tooth, one_tooth
+from gear_damping.explanation.own_phases import by_record, start_by_record, start_of_teeth, teeth_of, turn_own_phases
 from gear_damping.identification.output_error.least_squares import own_basis, without_own
 from gear_damping.identification.output_error.problem import OutputErrorProblem, prepare_predictions
-from gear_damping.identification.output_error.records import DIFFERENCE, SEPARATOR, FreeParameter
+from gear_damping.identification.output_error.records import DIFFERENCE, FreeParameter
 from gear_damping.simulation.solver_settings import Solver
 
-MESH_PHASE = "mesh_phase"
 PROBE = 0.05  # share of a strength's size that its slope is taken over
 NEGLIGIBLE = 1e-3  # of the residual, for what an effect tried as a whole would change
 MOST_SAMPLES = 4_000_000  # that are predicted at once
@@ -181,12 +180,12 @@ def _score_together(group: Sequence[Candidate], base: Base) -> list[Score]:
     points = problem.completed(points) + problem.own_of(base.outcome.problem, base.outcome.fitted.shared)
     counts = [len(rows) for rows, _ in probes]
     for candidate, rows in zip(group, points.split(counts), strict=True):
-        _turn_own_phases(rows, candidate, problem)
+        turn_own_phases(rows, candidate, problem)
     states = begun_from(problem, base.outcome, len(points))
     found = (problem.predict(points, states) * problem.weights).reshape(len(points), -1)
     columns = (found - base.predicted) / torch.cat([steps for _, steps in probes]).unsqueeze(1)
     apart = bool(group[0].own_phases or group[0].own_tooth)
-    parts = [_by_record(c, problem) if apart else c for c in columns.split(counts)]
+    parts = [by_record(c, problem) if apart else c for c in columns.split(counts)]
     columns = torch.nn.functional.pad(torch.cat(parts), (0, len(base.project.expected))).T
     beside = base.project(columns)
     # What the nuisance takes but for rounding is nothing of its own.
@@ -210,7 +209,7 @@ def _score(candidate: Candidate, beside: Tensor, problem: OutputErrorProblem, st
     if not bool(beside.any()):
         return _unseen(candidate, n_free, len(residual))
     basis, spread, _ = torch.linalg.svd(beside, full_matrices=False)
-    teeth = _teeth(candidate, beside, base.beside, problem)
+    teeth = teeth_of(candidate, beside, base.beside, problem)
     beside = beside if teeth is None else teeth.columns
     coefficients = _coefficients(beside, residual) if teeth is None else teeth.strengths
     explained = beside @ coefficients
@@ -222,37 +221,12 @@ def _score(candidate: Candidate, beside: Tensor, problem: OutputErrorProblem, st
     direction = explained / explained.norm().clamp(min=1e-300)
     if teeth is not None:
         at = problem.own_of(base.outcome.problem, base.outcome.fitted.shared)
-        start, own = _start_of_teeth(candidate, teeth, problem, n_free, _mesh_phases(problem, at))
-        return Score(candidate, gain, start, direction, smallest, kept, own=own)
-    if candidate.own_phases:
-        start, own = _start_by_record(candidate, coefficients, problem, n_free)
-        return Score(candidate, gain, start, direction, smallest, kept, own=own)
-    return Score(candidate, gain, _start(candidate, coefficients, n_free), direction, smallest, kept)
-
-
-def _teeth(candidate: Candidate, beside: Tensor, residual: Tensor, problem: OutputErrorProblem) -> Teeth | None:
-    """Which tooth is in mesh at the start of each record, for what tells teeth apart where nothing else does."""
-    if not candidate.own_tooth:
-        return None
-    search = one_tooth if len(candidate.strengths) == 1 else every_tooth
-    return search(beside, residual, len(_record_names(problem)))
-
-
-def _start_of_teeth(
-    candidate: Candidate, teeth: Teeth, problem: OutputErrorProblem, n_free: int, meshes: Mapping[str, float]
-) -> tuple[Tensor, dict[str, float]]:
-    """Coordinates of the linearised optimum, and the phase of every record."""
-    start = torch.zeros(n_free, dtype=torch.float64)
-    start[list(candidate.strengths)] = teeth.strengths
-    own = {}
-    for name, number in zip(_record_names(problem), teeth.numbers, strict=True):
-        own[f"{candidate.own_tooth}{SEPARATOR}{name}"] = _tooth_at(candidate, number, meshes.get(name, 0.0))
-    return start, own
-
-
-def _tooth_at(candidate: Candidate, number: int, mesh: float) -> float:
-    """The phase of a record at whose start a tooth of this number is in mesh, where the mesh has this phase."""
-    return float(candidate.hypothesis.given[candidate.own_tooth]) + (2 * torch.pi * number + mesh) / candidate.teeth
+        start, own = start_of_teeth(candidate, teeth, problem, n_free, at)
+    elif candidate.own_phases:
+        start, own = start_by_record(candidate, coefficients, problem, n_free)
+    else:
+        start, own = _start(candidate, coefficients, n_free), {}
+    return Score(candidate, gain, start, direction, smallest, kept, own=own)
 
 
 def _is_beyond(candidate: Candidate, coefficients: Tensor) -> bool:
@@ -261,55 +235,6 @@ def _is_beyond(candidate: Candidate, coefficients: Tensor) -> bool:
         return False
     own = [candidate.hypothesis.common[place] for place in candidate.strengths]
     return all(p.lower >= p.start for p in own) and bool((coefficients <= 0).all())
-
-
-def _mesh_phases(problem: OutputErrorProblem, point: Tensor) -> dict[str, float]:
-    """Phases of the mesh by record, (n_shared,), where records have their own."""
-    found = {}
-    for place, parameter in enumerate(problem.free):
-        base, _, record = parameter.name.partition(SEPARATOR)
-        if record and base == MESH_PHASE:
-            found[record] = float(parameter.value(point[place]))
-    return found
-
-
-def _turn_own_phases(points: Tensor, candidate: Candidate, problem: OutputErrorProblem) -> None:
-    """Every second point of a strength whose phases are the records' own: turned by a quarter; of one tooth: by one."""
-    single, meshes = len(candidate.strengths) == 1, _mesh_phases(problem, points[0])
-    for place, parameter in enumerate(problem.free if candidate.own_tooth else ()):
-        if parameter.name.startswith(candidate.own_tooth + SEPARATOR):
-            mesh = meshes.get(parameter.name.partition(SEPARATOR)[2], 0.0)
-            turned = (parameter.coordinate(_tooth_at(candidate, k * single, mesh)) for k in range(len(points)))
-            points[:, place] = torch.tensor(list(turned), dtype=torch.float64)
-    for number, phase in enumerate(candidate.own_phases.values()):
-        for place, parameter in enumerate(problem.free):
-            if parameter.name.startswith(phase + SEPARATOR):
-                points[2 * number, place] = parameter.coordinate(0.0)
-                points[2 * number + 1, place] = parameter.coordinate(torch.pi / 2)
-
-
-def _record_names(problem: OutputErrorProblem) -> list[str]:
-    return list(dict.fromkeys(record.record for record in problem.records))
-
-
-def _by_record(columns: Tensor, problem: OutputErrorProblem) -> Tensor:
-    """Columns (n, samples) split into those of single records, (n * records, samples)."""
-    shaped = columns.unflatten(1, (len(problem.records), -1))
-    reach = torch.tensor([[float(r.record == name) for r in problem.records] for name in _record_names(problem)])
-    return (shaped.unsqueeze(1) * reach[None, :, :, None]).flatten(2).flatten(0, 1)
-
-
-def _start_by_record(
-    candidate: Candidate, coefficients: Tensor, problem: OutputErrorProblem, n_free: int
-) -> tuple[Tensor, dict[str, float]]:
-    """Coordinates of the linearised optimum, and the phase of every record."""
-    names, own = _record_names(problem), {}
-    start = torch.zeros(n_free, dtype=torch.float64)
-    parts = coefficients.unflatten(0, (len(candidate.own_phases), 2, len(names)))
-    for (place, phase), (cosine, sine) in zip(candidate.own_phases.items(), parts, strict=True):
-        start[place] = torch.hypot(cosine, sine).square().mean().sqrt()
-        own |= {f"{phase}{SEPARATOR}{n}": float(torch.atan2(s, c)) for n, c, s in zip(names, cosine, sine, strict=True)}
-    return start, own
 
 
 def _coefficients(columns: Tensor, signal: Tensor) -> Tensor:

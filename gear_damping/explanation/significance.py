@@ -8,6 +8,7 @@ from torch import Tensor
 
 from gear_damping.explanation.noise import NoiseLevel
 from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.identification.output_error.uncertainty import long_run
 
 SMALLEST = 0.03  # % of the channel's AC variance; less is never called significant
 ERRORS = 3.0  # standard errors
@@ -116,13 +117,5 @@ def _t_of_events(before: Sequence[Tensor], after: Sequence[Tensor], blocks: Sequ
     longest = max(blocks)
     lags = [0, *(2**k for k in range(longest.bit_length()) if 2**k <= longest)]
     products = [(old - new) * new for old, new in zip(before, after, strict=True)]
-    variance = max(sum(_long_run(product, lag) for product in products) for lag in lags)
+    variance = max(sum(float(long_run(product.unsqueeze(1), lag)) for product in products) for lag in lags)
     return gain / max(2 * variance**0.5, 1e-300)
-
-
-def _long_run(values: Tensor, lags: int) -> float:
-    """Variance of the sum of values whose neighbours are correlated over so many lags."""
-    total = float(values.square().sum())
-    for lag in range(1, min(lags, len(values) - 1) + 1):
-        total += 2 * (1 - lag / (lags + 1)) * float(values[lag:] @ values[:-lag])
-    return max(total, 0.0)

@@ -49,7 +49,8 @@ def is_told(outcome: Outcome, refit: Refit, evidence: Evidence) -> bool:
         return False
     if rank < len(places):
         return True
-    alone = [_without(columns, k) * size[k] for k in range(len(places))]
+    each = range(len(places))
+    alone = [_without(columns[:, [k]], columns[:, [o for o in each if o != k]])[:, 0] * size[k] for k in each]
     return max(_statistic(outcome, column, lags) for column in alone) > float(chi2.ppf(1 - ALONE_AT, 1))
 
 
@@ -58,15 +59,12 @@ def _beside(outcome: Outcome, places: list[int], cause: str) -> Tensor:
     problem, sensitivity = outcome.problem, outcome.fitted.prediction.sensitivity[0]
     beside = without_own(sensitivity[..., : problem.n_shared], own_basis(sensitivity, problem.n_shared)).flatten(0, 1)
     others = [i for i, p in enumerate(problem.free) if i not in places and not p.name.startswith(cause + ".")]
-    basis = torch.linalg.qr(beside[:, others] / beside[:, others].norm(dim=0).clamp(min=1e-300)).Q
-    return beside[:, places] - basis @ (basis.T @ beside[:, places])
+    return _without(beside[:, places], beside[:, others])
 
 
-def _without(columns: Tensor, place: int) -> Tensor:
-    """One column beside the others, (samples,)."""
-    others = torch.cat([columns[:, :place], columns[:, place + 1 :]], 1)
-    basis = torch.linalg.qr(others / others.norm(dim=0).clamp(min=1e-300)).Q
-    return columns[:, place] - basis @ (basis.T @ columns[:, place])
+def _without(columns: Tensor, others: Tensor) -> Tensor:
+    """Columns (samples, n) without what other ones (samples, m) could do."""
+    return without_own(columns, torch.linalg.qr(others / others.norm(dim=0).clamp(min=1e-300)).Q)
 
 
 def _statistic(outcome: Outcome, change: Tensor, lags: list[int]) -> float:

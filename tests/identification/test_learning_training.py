@@ -185,6 +185,14 @@ def test_training_stops_when_the_error_stops_falling_and_stays_stopped(tmp_path)
     assert len(later) - 1 - later.index(min(later)) == 4
 
 
+@pytest.fixture
+def heeded():
+    """Ctrl-C is heeded, as in a terminal: a shell that starts tests in the background has it ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 def interrupt_after(monkeypatch, batches):
     """Let the user press Ctrl-C at a training batch."""
     made = []
@@ -199,6 +207,7 @@ def interrupt_after(monkeypatch, batches):
     monkeypatch.setattr(datamodule_file.WindowSource, "batch", counted)
 
 
+@pytest.mark.usefixtures("heeded")
 @pytest.mark.parametrize("batches", [5, 30])
 def test_an_interruption_reaches_the_caller_and_can_be_resumed(batches, trained, tmp_path, monkeypatch):
     handler = signal.getsignal(signal.SIGINT)
@@ -211,6 +220,7 @@ def test_an_interruption_reaches_the_caller_and_can_be_resumed(batches, trained,
     assert errors(resumed) == errors(trained[1])
 
 
+@pytest.mark.usefixtures("heeded")
 def test_an_interruption_before_the_first_step_does_not_mute_the_next_one(tmp_path, monkeypatch):
     handler = signal.getsignal(signal.SIGINT)
     monkeypatch.setattr(WindowDataModule, "setup", lambda *_, **__: signal.raise_signal(signal.SIGINT))

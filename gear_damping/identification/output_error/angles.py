@@ -8,7 +8,8 @@ from torch import Tensor
 
 from gear_damping.identification.output_error.least_squares import own_basis, without_own
 from gear_damping.identification.output_error.problem import OutputErrorProblem, is_of_model
-from gear_damping.identification.output_error.records import SEPARATOR
+from gear_damping.identification.output_error.records import SEPARATOR, FitRecord
+from gear_damping.physics.model import Model
 
 MESH_PHASE = "mesh_phase"
 PER_HARMONIC, MOST_STARTS = 4.0, 120  # angles for each harmonic up to the natural frequency
@@ -53,15 +54,22 @@ def scanned(
 
 def _starts(problem: OutputErrorProblem, base: str) -> int:
     """Angles at which a base is tried: of a mesh so many that none of its harmonics up to the resonance is missed."""
-    values = problem.model.values(1, **{k: v for k, v in problem.given.items() if is_of_model(k)})
-    derived = problem.model.prepare(values).derived
-    if base != MESH_PHASE or "n_teeth_pinion" not in values:
+    if base != MESH_PHASE:
         return STARTS
-    default = float(values["pinion_speed"][0])
-    slowest = min(abs(record.conditions.get("pinion_speed", default)) for record in problem.records)
-    mesh = float(values["n_teeth_pinion"][0]) * slowest
-    harmonics = float(derived["natural_frequency"][0]) / max(mesh, 1e-9)
+    given = {name: value for name, value in problem.given.items() if is_of_model(name)}
+    harmonics = harmonics_to_resonance(problem.model, given, problem.records)
     return min(max(STARTS, ceil(PER_HARMONIC * harmonics)), MOST_STARTS)
+
+
+def harmonics_to_resonance(
+    model: Model, given: Mapping[str, float | tuple[float, ...]], records: Sequence[FitRecord]
+) -> float:
+    """Natural frequency of a gear pair over the mesh frequency of its slowest record."""
+    values = model.values(1, **given)
+    default = float(values["pinion_speed"][0])
+    slowest = min(abs(record.conditions.get("pinion_speed", default)) for record in records)
+    mesh = float(values["n_teeth_pinion"][0]) * slowest
+    return float(model.prepare(values).derived["natural_frequency"][0]) / max(mesh, 1e-9)
 
 
 def _costs(problem: OutputErrorProblem, starts: Tensor, tried: Sequence[int], horizon: float | None) -> Tensor:

@@ -45,6 +45,11 @@ class FreeParameter:
         found = self.start * torch.exp(z) if self.logarithmic else self.start + self.scale * z
         return found.clamp(self.lower, self.upper)
 
+    @property
+    def declared_name(self) -> str:
+        """The name under which a parameter of single records or a place of a list is declared."""
+        return self.name.partition(SEPARATOR)[0].partition("[")[0]
+
     def coordinate(self, value: float) -> float:
         """The fitted coordinate of a value within the bounds."""
         return min(max(self._coordinate(value), self.range[0]), self.range[1])

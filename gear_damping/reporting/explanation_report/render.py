@@ -54,7 +54,6 @@ def _content(report: ReportInput) -> dict[str, Any]:
         "candidates": evidence.candidates(report),
         "visible": evidence.visible(report),
         "random": sentences.random_sentences(explanation.get("random"), explanation.get("visible")),
-        "not_tried": sentences.not_tried_sentence(explanation.get("not_tried")),
         "casing": casing.shown(report),
         "residual_forces": list(evidence.residual_forces(report)),
     }

@@ -13,7 +13,6 @@
     residual        {fit: {before, after, unit}, holdout: {before, after, unit}}: RMSE in the channel's unit
     visible         {p, largest: {before, after}, limit, by_name: {effect or `unnamed: ` family: statistic}}
     random          {percent, looks_like, snr_db}: the random part of the fitted records
-    not_tried       list of what the time did not suffice for
     gain            {damping_ratio_percent: {before: {value, interval95, reference_velocity}, after: the same}}
     noise           {channel, value, unit, by_record: {record: value}, method, estimates_agree}
     candidates      list of {name, share, status}: share of the held-out squared residual that a full fit takes (None:

@@ -1,10 +1,13 @@
 """The findings as sentences."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from math import isfinite
 from typing import Any
 
+from gear_damping.explanation import homogeneity
+from gear_damping.explanation.statistics import family_wise
 from gear_damping.reporting.explanation_report.vocabulary import description, listed
+from gear_damping.reporting.figures.visible import UNNAMED
 from gear_damping.reporting.numbers import estimate, number, percent, quantity
 
 HEADLINES = {
@@ -19,8 +22,6 @@ CASING_HEADLINES = {
     "consistent": "Consistent: the casing shows nothing that a sound gear pair does not show.",
     "unexplained": "Unexplained: the casing shows something that a sound gear pair does not show.",
 }
-HOMOGENEOUS_AT = 0.05
-VISIBLE_AT = 0.01
 ONLY_NOISE = 1.5  # noise variances that may be left for saying so
 ALL_THE_SAME = "An effect smaller than those listed under “What could not have been seen” may be there all the same."
 
@@ -53,7 +54,7 @@ def one_size_sentence(homogeneous: Mapping[str, Any] | None) -> str:
     if not homogeneous or not homogeneous.get("testable") or not _known(homogeneous.get("p")):
         return "Too few records tell of it to see whether it has one size in all of them." if homogeneous else ""
     p = number(homogeneous["p"], 2)
-    if homogeneous["p"] < HOMOGENEOUS_AT:
+    if homogeneous["p"] < homogeneity.LEVEL:
         return f"Its size differs between records by more than chance and a tolerance would have it (p = {p})."
     return f"Its size is the same in all records, within a tolerance of {percent(homogeneous['tolerance'])} (p = {p})."
 
@@ -74,15 +75,10 @@ def random_sentences(random: Mapping[str, Any] | None, visible: Mapping[str, Any
 
 
 def _stands_out(p: float, largest: str) -> str:
-    name = listed([largest.removeprefix("unnamed: ")])
-    if p < VISIBLE_AT:
+    name = listed([largest.removeprefix(UNNAMED)])
+    if p < family_wise.LEVEL:
         return f"something stands out of it that chance does not give (p = {number(p, 2)}), {name} first"
     return f"nothing stands out of it that chance would not give (p = {number(p, 2)}; {name} comes first)"
-
-
-def not_tried_sentence(not_tried: Sequence[str] | None) -> str:
-    """What the time did not suffice for."""
-    return f"The time was over before these were tried: {'; '.join(not_tried)}." if not_tried else ""
 
 
 def rest_sentence(misfit: Mapping[str, Any] | None) -> str:

@@ -9,7 +9,7 @@ from matplotlib.patches import Patch
 from gear_damping.reporting.style import BLUE, INK, PALE, new_figure, say_empty, styled
 
 MOST_BARS = 16
-UNNAMED = "unnamed: "
+UNNAMED = "unnamed: "  # as explanation.json writes it; what explains is not imported to draw
 LIMIT = {"color": INK, "linewidth": 1.0, "linestyle": "--"}
 
 
