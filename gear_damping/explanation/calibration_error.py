@@ -5,7 +5,7 @@ import torch
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Outcome
 from gear_damping.explanation.noise import Scatter
-from gear_damping.identification.output_error.least_squares import own_basis, without_own
+from gear_damping.identification.output_error.normal_equations import own_basis, without_own
 from gear_damping.identification.output_error.problem import OutputErrorProblem
 from gear_damping.identification.output_error.segments import in_segments
 from gear_damping.identification.output_error.uncertainty import noise_covariance

@@ -14,7 +14,7 @@ from torch import Tensor
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Outcome, time_scale
 from gear_damping.explanation.statistics.random_effects import spread_between, statistic
-from gear_damping.identification.output_error.least_squares import own_basis, without_own
+from gear_damping.identification.output_error.normal_equations import own_basis, without_own
 from gear_damping.identification.output_error.uncertainty import QUANTILE
 
 TOLERANCE = 0.15  # of the strength: what a real cause may differ by between records
@@ -108,9 +108,7 @@ def _groups(outcome: Outcome) -> tuple[Tensor, list[str]]:
     return torch.arange(len(rows)), [f"{row.record} at {row.begins:.3g} s" for row in rows]
 
 
-def _beside(
-    sensitivity: Tensor, residual: Tensor, place: int, n_shared: int, groups: Tensor
-) -> tuple[Tensor, Tensor]:
+def _beside(sensitivity: Tensor, residual: Tensor, place: int, n_shared: int, groups: Tensor) -> tuple[Tensor, Tensor]:
     """Columns of the strength by group (samples, groups) and the residual, beside every other parameter."""
     count = int(groups.max()) + 1
     own = own_basis(sensitivity, n_shared)

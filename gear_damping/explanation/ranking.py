@@ -9,7 +9,7 @@ from torch import Tensor
 from gear_damping.explanation.candidates import Candidate
 from gear_damping.explanation.hypothesis import Outcome, begun_from
 from gear_damping.explanation.own_phases import by_record, start_by_record, start_of_teeth, teeth_of, turn_own_phases
-from gear_damping.identification.output_error.least_squares import own_basis, without_own
+from gear_damping.identification.output_error.normal_equations import own_basis, without_own
 from gear_damping.identification.output_error.problem import OutputErrorProblem, prepare_predictions
 from gear_damping.identification.output_error.records import DIFFERENCE, FreeParameter
 from gear_damping.simulation.solver_settings import Solver

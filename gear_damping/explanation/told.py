@@ -11,7 +11,7 @@ from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.gain import CORRELATED_PERIODS
 from gear_damping.explanation.hypothesis import Outcome, time_scale
 from gear_damping.explanation.refit import Refit
-from gear_damping.identification.output_error.least_squares import own_basis, without_own
+from gear_damping.identification.output_error.normal_equations import own_basis, without_own
 from gear_damping.identification.output_error.uncertainty import long_run
 
 TOLD_AT, ALONE_AT = 0.01, 0.05  # chance at which strengths that are none would count as told, together and one alone

@@ -17,7 +17,7 @@ from declared_keys import another, declared_keys, holder
 from gear_damping.errors import InputError
 from gear_damping.explanation.explain import explain
 from gear_damping.explanation.trying import Search
-from gear_damping.identification.output_error import least_squares
+from gear_damping.identification.output_error.descent import Descent
 from gear_damping.measurement.fields import Value
 from gear_damping.measurement.load import load_measurement
 from gear_damping.measurement.structure import names
@@ -46,6 +46,7 @@ REFUSED = {
     ("oscillator", "records", "channels", "displacement", "frame"): "drifts away",
     ("oscillator", "records", "channels", "velocity", "frame"): "drifts away",
     ("gear_pair", "records", "channels", "acceleration", "mounting"): "no meaning on a casing",
+    ("gear_pair", "records", "channels", "acceleration", "coupling"): "has lost its mean",
     ("gear_pair", "records", "channels", "gear_speed", "coupling"): "whatever its coupling",
     ("oscillator", "records", "channels", "displacement", "coupling"): "has lost its mean",
     ("oscillator", "records", "channels", "acceleration", "coupling"): "has lost its mean",
@@ -215,6 +216,7 @@ def bases() -> list[dict]:
         gear(record(only(one, "transmission_error") | turning)),
         gear(record(only(one, "transmission_error", **arbitrary) | turning, mesh_index=False), **segments),
         gear(record(tangential | turning)),
+        gear(record(apart(tangential, {"datum": "absolute"}) | turning)),
         gear(record(apart(tangential, arbitrary) | turning)),
         gear(record(only(one, "gear_speed") | turning)),
         gear(record(only(one, "pinion_speed") | balanced, conditions=speed)),
@@ -284,14 +286,14 @@ def answer(content: dict, folder: Path) -> object:
 
 @cache
 def _answer(content: str, folder: Path) -> object:
-    whole = least_squares._round
+    whole = Descent.run
 
-    def short(problem, points, horizon, iterations, enough):
-        return whole(problem, points, horizon, min(iterations, ITERATIONS), enough)
+    def short(descent, iterations):
+        return whole(descent, min(iterations, ITERATIONS))
 
     reading = patch("gear_damping.measurement.load.read_yaml", lambda _: json.loads(content))
     nominal = patch("gear_damping.explanation.explain.search", lambda nominal, *_, **__: Search(nominal, nominal))
-    with reading, nominal, patch.object(least_squares, "_round", short):
+    with reading, nominal, patch.object(Descent, "run", short):
         try:
             return explain(load_measurement(folder / "measurement.yaml"), library={}).content
         except InputError as error:

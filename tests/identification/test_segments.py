@@ -5,7 +5,7 @@ import math
 import pytest
 import torch
 
-from gear_damping.identification.output_error.least_squares import normal_equations, own_basis, without_own
+from gear_damping.identification.output_error.normal_equations import normal_equations, own_basis, without_own
 from gear_damping.identification.output_error.problem import OutputErrorProblem, Prediction, growth
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import WHOLE, Segments, covered, in_segments, joined

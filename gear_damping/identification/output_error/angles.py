@@ -6,7 +6,7 @@ from math import ceil, pi
 import torch
 from torch import Tensor
 
-from gear_damping.identification.output_error.least_squares import own_basis, without_own
+from gear_damping.identification.output_error.normal_equations import own_basis, without_own
 from gear_damping.identification.output_error.problem import OutputErrorProblem, is_of_model
 from gear_damping.identification.output_error.records import SEPARATOR, FitRecord
 from gear_damping.physics.model import Model

@@ -7,7 +7,8 @@ import torch
 from torch import Tensor
 
 from gear_damping.identification.output_error.angles import angle_bases, scanned
-from gear_damping.identification.output_error.least_squares import fit, own_basis, without_own
+from gear_damping.identification.output_error.least_squares import fit
+from gear_damping.identification.output_error.normal_equations import own_basis, without_own
 from gear_damping.identification.output_error.problem import OutputErrorProblem, Prediction, growth
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.identification.output_error.segments import WHOLE, Segments, covered, in_segments, joined

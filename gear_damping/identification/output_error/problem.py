@@ -43,6 +43,10 @@ class Prediction:
     sensitivity: Tensor
     channels: int = 1
 
+    def pick(self, index: Tensor) -> "Prediction":
+        """Some of the starts."""
+        return replace(self, residual=self.residual[index], sensitivity=self.sensitivity[index])
+
 
 class OutputErrorProblem:
     """Predictions of records by a model whose parameters are partly free.
@@ -377,8 +381,23 @@ class OutputErrorProblem:
                 total = total + modes[..., place, None] * shape
         return total
 
+    def residuals(self, shared: Tensor, states: Tensor, horizon: float | None = None) -> Tensor:
+        """Weighted residuals (starts, records, samples) at coordinates; arguments as for `predict`."""
+        samples = self.samples_within(horizon)
+        found = self.predict(shared, states, horizon)
+        return (self._cut(self.response, samples) - found) * self._weighing(horizon, samples)
+
+    def _weighing(self, horizon: float | None, samples: int) -> Tensor:
+        """Weights of the samples within a horizon, (records, channels * samples)."""
+        return self._cut(self.weights, samples) * self._beyond(horizon, samples)
+
     def linearise(
-        self, shared: Tensor, states: Tensor, horizon: float | None = None, only: Collection[int] | None = None
+        self,
+        shared: Tensor,
+        states: Tensor,
+        horizon: float | None = None,
+        only: Collection[int] | None = None,
+        residual: Tensor | None = None,
     ) -> Prediction:
         """Residuals and sensitivities at several starts at once; every column is a member of one batch.
 
@@ -389,24 +408,28 @@ class OutputErrorProblem:
             states: Initial states, (starts, records, local).
             horizon: Seconds of every record that are predicted; all where absent.
             only: Shared coordinates whose sensitivities are worked out; those of the others are 0. All where absent.
+            residual: Weighted residuals at these starts, where they are known.
         """
-        shared, samples = self.completed(shared), self.samples_within(horizon)
+        shared = self.completed(shared)
         starts, moved = shared.shape[0], self._moved
         moved = moved if only is None else [columns for columns in moved if not {*columns}.isdisjoint(only)]
-        steps = torch.zeros(len(moved) + len(self.local) + 1, self.n_shared + len(self.local), dtype=torch.float64)
+        steps = torch.zeros(len(moved) + len(self.local), self.n_shared + len(self.local), dtype=torch.float64)
         for row, columns in enumerate([*moved, *([self.n_shared + i] for i in range(len(self.local)))]):
-            steps[row + 1, columns] = DIFFERENCE
+            steps[row, columns] = DIFFERENCE
+        if residual is None:
+            steps = torch.cat([torch.zeros_like(steps[:1]), steps])
         points = starts * len(steps)
         at = (shared.unsqueeze(1) + steps[:, : self.n_shared]).reshape(points, -1)
         begun = (states.unsqueeze(1) + steps[:, None, self.n_shared :]).reshape(points, len(self.records), -1)
-        found = self.predict(at, begun, horizon).unflatten(0, (starts, -1))
-        weights = self._cut(self.weights, samples) * self._beyond(horizon, samples)
-        residual = (self._cut(self.response, samples) - found[:, 0]) * weights
-        slopes = (found[:, 1:] - found[:, :1]) / DIFFERENCE * weights
-        columns = [slopes[:, row, :, :, None] * self._reach(moved[row]) for row in range(len(moved))]
+        left = self.residuals(at, begun, horizon).unflatten(0, (starts, -1))
+        if residual is None:
+            residual, left = left[:, 0], left[:, 1:]
+        slopes = (residual.unsqueeze(1) - left) / DIFFERENCE
+        reach = self.reach[:, None]
+        columns = [slopes[:, row, :, :, None] * reach[..., moved[row]] for row in range(len(moved))]
         columns.append(slopes[:, len(moved) :].permute(0, 2, 3, 1))
-        sensitivity = residual.new_zeros(*residual.shape, steps.shape[1])
-        places = [c for cs in moved for c in cs] + list(range(self.n_shared, steps.shape[1]))
+        sensitivity = residual.new_zeros(*residual.shape, self.n_shared + len(self.local))
+        places = [c for cs in moved for c in cs] + list(range(self.n_shared, sensitivity.shape[-1]))
         sensitivity[..., places] = torch.cat(columns, -1)
         return Prediction(residual, sensitivity, len(self.channels))
 
@@ -418,13 +441,14 @@ class OutputErrorProblem:
             groups.setdefault(parameter.name.partition(SEPARATOR)[0], []).append(i)
         return list(groups.values())
 
-    def _reach(self, columns: list[int]) -> Tensor:
-        """1 where a column belongs to a record, (records, 1, columns)."""
-        reach = torch.ones(len(self.records), 1, len(columns), dtype=torch.float64)
-        for place, column in enumerate(columns):
-            record = self.free[column].name.partition(SEPARATOR)[2]
-            if record:
-                reach[:, 0, place] = torch.tensor([float(one.record == record) for one in self.records])
+    @cached_property
+    def reach(self) -> Tensor:
+        """1 where a shared coordinate moves a record, (records, n_shared)."""
+        reach = torch.ones(len(self.records), self.n_shared, dtype=torch.float64)
+        for place, parameter in enumerate(self.free):
+            own = parameter.name.partition(SEPARATOR)[2]
+            if own:
+                reach[:, place] = torch.tensor([float(one.record == own) for one in self.records])
         return reach
 
 

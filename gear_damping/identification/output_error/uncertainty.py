@@ -9,7 +9,8 @@ from collections.abc import Callable
 import torch
 from torch import Tensor
 
-from gear_damping.identification.output_error.least_squares import Fitted, own_basis, without_own
+from gear_damping.identification.output_error.least_squares import Fitted
+from gear_damping.identification.output_error.normal_equations import own_basis, without_own
 from gear_damping.identification.output_error.problem import OutputErrorProblem
 
 QUANTILE = 1.959964

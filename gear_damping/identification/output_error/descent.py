@@ -1,0 +1,137 @@
+"""One round of Levenberg–Marquardt, with secant updates between linearisations.
+
+A linearisation simulates a member for every column, a trial only one. As long as the linear model foretells what a
+step brings, its sensitivities are carried along by Broyden's update, record by record; where it does not, where a
+step fails, and before a start counts as converged, they are worked out anew. (Broyden, Math. Comp. 19, 1965; scaled by
+the columns' norms.)
+"""
+
+from dataclasses import dataclass, replace
+
+import torch
+from torch import Tensor
+
+from gear_damping.identification.output_error.normal_equations import normal_equations
+from gear_damping.identification.output_error.problem import OutputErrorProblem, Prediction
+
+FIRST_DAMPING, LARGEST_DAMPING, SMALLEST_DAMPING = 1e-2, 1e10, 1e-12
+SMALLEST_GAIN = 1e-7  # relative fall of the cost below which a start has converged
+CALM_STEPS = 3  # steps in a row that change the cost by little: one alone may be short
+LONGEST_STEP = 2.0  # of any coordinate in one iteration; far out, that many times the way from the start
+FORETOLD = 0.5  # of the fall that the linear model promises: with less of it, it is made anew
+CARRIED = 4  # steps over which sensitivities are carried along at most
+TRIALS = 3  # for each linearisation that a round may take
+
+
+@dataclass
+class Points:
+    """Several starts on their way down.
+
+    Args:
+        shared: Coordinates of the shared parameters, (starts, n_shared).
+        states: Initial states, (starts, records, local).
+    """
+
+    shared: Tensor
+    states: Tensor
+
+    def pick(self, index: Tensor) -> "Points":
+        """Some of the starts."""
+        return Points(self.shared[index], self.states[index])
+
+    def put(self, index: Tensor, other: "Points") -> None:
+        """Other points in the place of some."""
+        self.shared[index], self.states[index] = other.shared, other.states
+
+
+class Descent:
+    """Starts on their way down over one horizon.
+
+    Every tensor has a row for each start: `points`, `now` (the linearisation at them), `cost`, `damping`, `calm` (steps
+    in a row that changed little), `carried` (steps since the sensitivities were worked out), `made` (linearisations).
+    """
+
+    def __init__(self, problem: OutputErrorProblem, points: Points, horizon: float | None, enough: float) -> None:
+        """Begin at points; arguments as for `least_squares.fit`."""
+        self.problem, self.horizon, self.enough = problem, horizon, enough
+        self.points = Points(points.shared.clone(), points.states.clone())
+        self.now = problem.linearise(points.shared, points.states, horizon)
+        self.cost = self._cost(points, self.now.residual)
+        self.damping = torch.full_like(self.cost, FIRST_DAMPING)
+        self.calm, self.made, self.carried = torch.zeros(3, len(self.cost), dtype=torch.long)
+        self.converged = self.calm > 0
+
+    def run(self, iterations: int) -> None:
+        """Go down until every start has converged or has been linearised so many times."""
+        for _ in range(TRIALS * iterations):
+            left = (~self.converged & (self.made < iterations)).nonzero()[:, 0]
+            if not len(left):
+                break
+            self._advance(left)
+        stale = ((self.carried > 0) & ~self.converged).nonzero()[:, 0]
+        if len(stale):
+            self._linearise(stale)
+
+    def _advance(self, left: Tensor) -> None:
+        """One trial of some starts."""
+        points, now, cost, fresh = self.points.pick(left), self.now.pick(left), self.cost[left], self.carried[left] == 0
+        trial = _step(self.problem, points, now, self.damping[left])
+        residual = self.problem.residuals(trial.shared, trial.states, self.horizon)
+        new_cost = self._cost(trial, residual)
+        moves = self._moves(points, trial)
+        linear = (now.sensitivity @ moves.unsqueeze(-1)).squeeze(-1)
+        foretold = cost - self._cost(trial, now.residual - linear)
+        better, gain = new_cost < cost, cost - new_cost
+        flat = gain.abs() <= torch.maximum(SMALLEST_GAIN * cost, torch.full_like(cost, self.enough))
+        counts = better | fresh  # a step that stale sensitivities led astray says nothing
+        self.calm[left] = torch.where(counts, torch.where(flat, self.calm[left] + 1, 0), self.calm[left])
+        softer, harder = self.damping[left] / 5, self.damping[left] * torch.where(fresh, 6.0, 1.0)
+        self.damping[left] = torch.where(better, softer, harder).clamp(SMALLEST_DAMPING, LARGEST_DAMPING)
+        self.converged[left] = fresh & ((self.calm[left] >= CALM_STEPS) | (self.damping[left] >= LARGEST_DAMPING))
+        taken = left[better]
+        self.points.put(taken, trial.pick(better))
+        self.now.residual[taken], self.cost[taken] = residual[better], new_cost[better]
+        self.carried[taken] += 1
+        self._carry(taken, (now.residual - residual - linear)[better], moves[better])
+        carried = self.carried[left]
+        astray = torch.where(better, ~(gain >= FORETOLD * foretold) & ~flat, ~fresh) | (carried >= CARRIED)
+        due = astray | (self.calm[left] >= CALM_STEPS - 1)
+        self._linearise(left[due & (carried > 0) & ~self.converged[left]])
+
+    def _moves(self, old: Points, new: Points) -> Tensor:
+        """Change of every column's coordinate, by record, (starts, records, columns)."""
+        shared = (new.shared - old.shared).unsqueeze(1) * self.problem.reach
+        return torch.cat([shared, new.states - old.states], -1)
+
+    def _carry(self, places: Tensor, missed: Tensor, moves: Tensor) -> None:
+        """Broyden's update of the sensitivities, for what the linear model missed of the response's change."""
+        weighed = moves * self.now.sensitivity[places].square().sum(2)
+        length = (weighed * moves).sum(-1, keepdim=True).clamp(min=1e-300)
+        self.now.sensitivity[places] += missed.unsqueeze(-1) * (weighed / length).unsqueeze(2)
+
+    def _linearise(self, places: Tensor) -> None:
+        """Sensitivities of some starts worked out at their points."""
+        if not len(places):
+            return
+        points, residual = self.points.pick(places), self.now.residual[places]
+        found = self.problem.linearise(points.shared, points.states, self.horizon, residual=residual)
+        self.now.sensitivity[places] = found.sensitivity
+        self.carried[places] = 0
+        self.made[places] += 1
+
+    def _cost(self, points: Points, residual: Tensor) -> Tensor:
+        total = residual.square().sum((1, 2)) + self.problem.expectation(points.shared)[0].square().sum(1)
+        return torch.where(total.isfinite(), total, torch.full_like(total, float("inf")))
+
+
+def _step(problem: OutputErrorProblem, points: Points, now: Prediction, damping: Tensor) -> Points:
+    """The damped step within the bounds; a parameter that is pulled beyond its bound stays there."""
+    equations = normal_equations(now, problem.n_shared)
+    expected, slope = problem.expectation(points.shared)
+    matrix, pull = equations.shared + torch.diag(slope.square()), equations.pull + slope * expected
+    equations = replace(equations, shared=matrix, pull=pull)
+    free = problem.at_bound(points.shared) * pull <= 0
+    shared, own = equations.only(free).step(damping)
+    longest = LONGEST_STEP * torch.where(problem.logarithmic, 1.0, points.shared.abs().clamp(min=1))
+    shared, own = shared.clamp(-longest, longest), own.clamp(-LONGEST_STEP, LONGEST_STEP)
+    return Points(problem.within(points.shared + shared), points.states + own)

@@ -1,0 +1,138 @@
+"""Where a descent with secant updates ends, what it costs, and what its sensitivities are worth."""
+
+import math
+
+import numpy as np
+import pytest
+import torch
+from scipy.integrate import solve_ivp
+from scipy.optimize import least_squares as scipy_least_squares
+
+from gear_damping.identification.output_error.descent import Descent, Points
+from gear_damping.identification.output_error.problem import OutputErrorProblem
+from gear_damping.identification.output_error.records import FitRecord, FreeParameter
+from gear_damping.physics.catalogue import effect_class
+from gear_damping.physics.model import Model
+from gear_damping.physics.systems.oscillator import Oscillator
+
+STIFFNESS, DAMPING, CUBIC = (2 * math.pi * 10) ** 2, 4.0, 3e5
+COEFFICIENT = "viscous_damping.damping_coefficient"
+MODEL = Model(Oscillator(), [effect_class("viscous_damping")(), effect_class("cubic_stiffness")()])
+RATE, SAMPLES, NOISE = 500.0, 300, 1e-3
+FREE = [
+    FreeParameter("stiffness", STIFFNESS * 1.05, logarithmic=True),
+    FreeParameter(COEFFICIENT, DAMPING * 1.5, logarithmic=True),
+    FreeParameter("cubic_stiffness.coefficient", 0.0, scale=CUBIC),
+]
+
+
+def decay(name, damping, seed):
+    """A noisy free decay of a mass of 1 kg, by scipy."""
+
+    def rates(_, state):
+        x, v = state
+        return v, -damping * v - STIFFNESS * x - CUBIC * x**3
+
+    times = np.arange(SAMPLES) / RATE
+    found = solve_ivp(rates, (0, times[-1]), (0.05, 0.0), t_eval=times, rtol=1e-9, atol=1e-12).y[0]
+    noisy = found + NOISE * np.random.default_rng(seed).standard_normal(SAMPLES)
+    return FitRecord(name, torch.tensor(noisy), RATE)
+
+
+def problem_of():
+    records = [decay("first", DAMPING, 0), decay("second", 1.1 * DAMPING, 1)]
+    return OutputErrorProblem(MODEL, {"amplitude": 0.05}, FREE, records)
+
+
+def begun(problem, starts=1):
+    shared = torch.zeros(starts, problem.n_shared, dtype=torch.float64)
+    shared[1:, :3] += 0.05
+    states = problem.first_states().expand(starts, -1, -1)
+    return Descent(problem, Points(shared, states), None, 0.0)
+
+
+def by_scipy(problem):
+    """The same minimum, from another method that works its slopes out anew at every step."""
+    shape = len(problem.records), len(problem.local)
+
+    def residual(z):
+        shared = torch.tensor(z[: problem.n_shared]).unsqueeze(0)
+        states = torch.tensor(z[problem.n_shared :]).reshape(1, *shape)
+        return problem.residuals(shared, states).flatten().numpy()
+
+    first = np.concatenate([np.zeros(problem.n_shared), problem.first_states().flatten().numpy()])
+    return scipy_least_squares(residual, first, x_scale="jac", xtol=1e-12, ftol=1e-14, gtol=1e-12)
+
+
+def test_it_ends_where_another_method_does_with_fewer_linearisations_than_steps():
+    problem = problem_of()
+    descent, other = begun(problem), by_scipy(problem)
+    trials, advance = [], descent._advance
+    descent._advance = lambda left: (trials.append(1), advance(left))
+    descent.run(40)
+    assert bool(descent.converged[0])
+    assert float(descent.cost[0]) == pytest.approx(2 * other.cost, rel=1e-9)
+    assert descent.points.shared[0].numpy() == pytest.approx(other.x[: problem.n_shared], rel=1e-4, abs=1e-6)
+    assert int(descent.made[0]) < 0.6 * len(trials)
+
+
+def test_every_start_goes_down_by_itself():
+    problem = problem_of()
+    both = begun(problem, 2)
+    both.run(40)
+    alone = begun(problem)
+    alone.run(40)
+    assert bool(both.converged.all())
+    assert both.points.shared[0].numpy() == pytest.approx(alone.points.shared[0].numpy(), rel=1e-6)
+    assert both.cost.numpy() == pytest.approx([float(alone.cost[0])] * 2, rel=1e-7)
+
+
+@pytest.mark.parametrize("iterations", [2, 40])
+def test_the_sensitivities_at_the_end_are_those_of_the_point(iterations):
+    problem = problem_of()
+    descent = begun(problem)
+    descent.run(iterations)
+    there = problem.linearise(descent.points.shared, descent.points.states)
+    assert bool(descent.converged[0]) == (iterations == 40)
+    assert torch.allclose(descent.now.residual, there.residual, rtol=1e-9, atol=1e-12)
+    off = (descent.now.sensitivity - there.sensitivity).flatten(0, 2).norm(dim=0)
+    assert bool((off < 1e-3 * there.sensitivity.flatten(0, 2).norm(dim=0)).all())
+
+
+def test_sensitivities_that_lead_astray_are_made_anew():
+    descent = begun(problem_of())
+    descent.now.sensitivity[..., 0] *= -1.0
+    descent.carried[:] = 1
+    descent.run(40)
+    right = begun(problem_of())
+    right.run(40)
+    assert bool(descent.converged[0])
+    assert float(descent.cost[0]) == pytest.approx(float(right.cost[0]), rel=1e-7)
+
+
+def test_a_secant_update_says_what_the_step_has_shown_and_keeps_every_other_direction():
+    problem = problem_of()
+    descent = begun(problem)
+    old = descent.now.sensitivity.clone()
+    moves = torch.zeros(1, 2, old.shape[-1], dtype=torch.float64)
+    moves[:, 0, :2], moves[:, 1, 1] = torch.tensor([0.02, -0.01]), 0.03
+    missed = torch.randn(1, 2, old.shape[2], dtype=torch.float64, generator=torch.Generator().manual_seed(3))
+    descent._carry(torch.tensor([0]), missed, moves)
+    change = descent.now.sensitivity - old
+    shown = torch.einsum("srtc,src->srt", change, moves)
+    assert torch.allclose(shown, missed, atol=1e-12)
+    assert not bool(change[0, 1][:, 0].any())  # no step of the second record in its first column
+    across = torch.zeros(old.shape[-1], dtype=torch.float64)
+    sizes = old[0, 0].square().sum(0)
+    across[0], across[1] = 1 / (sizes[0] * 0.02), 1 / (sizes[1] * 0.01)  # at right angles, as the columns weigh it
+    assert float((change[0, 0] @ across).norm()) < 1e-9 * float(change[0, 0].norm() * across.norm())
+
+
+def test_an_offset_of_one_record_is_left_alone_by_the_others():
+    found = problem_of().reach
+    assert found.shape == (2, len(FREE))
+    problem = problem_of()
+    own = FreeParameter("amplitude", 0.05, per_record=True)
+    apart = OutputErrorProblem(MODEL, {}, [*FREE, own], problem.records)
+    assert apart.reach[:, -2:].tolist() == [[1.0, 0.0], [0.0, 1.0]]
+    assert math.isclose(float(apart.reach[:, :-2].min()), 1.0)
