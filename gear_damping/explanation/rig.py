@@ -22,6 +22,8 @@ LEAST_TURNS = 1.0  # of the pinion in a record: less does not tell one order fro
 MOST_TURNS = 20.0  # of a record that are looked at
 BAND = 1.02  # of a frequency, the width of a band in which energy is counted
 OWN = 1.2  # of a frequency: nearer, a mode is not told from its neighbour by a spectrum
+SWEPT = 2.0  # times the natural frequency: as far as an amplitude may pull that of the motion
+BLURRED = 3.0  # over the length of a record: as far as the window spreads a line, and half as much again
 HARMONICS = 5  # of the natural frequency that are no modes
 AROUND, STANDS_OUT = 10, 5.0  # bands at either side; times their median, from which a line stands out
 MODES = 2  # frequencies that are kept
@@ -59,6 +61,9 @@ def rig_of(base: Hypothesis, evidence: Evidence, residuals: Residuals | None = N
 def strongest_frequencies(residuals: Residuals, natural: float) -> tuple[float, ...]:
     """Frequencies in Hz at which most is left, but for the natural one and its harmonics; the strongest first.
 
+    Where the frequency hangs on the amplitude, what lies between the natural one and that of the motion is the first
+    mode's too.
+
     Args:
         residuals: Records with what is left of them, each (time,).
         natural: Natural frequency in Hz; 0 without a spring, where no frequency stands for a mode.
@@ -71,17 +76,21 @@ def strongest_frequencies(residuals: Residuals, natural: float) -> tuple[float, 
         return ()
     edges = lowest * BAND ** torch.arange(floor(log(highest / lowest) / log(BAND)) + 1, dtype=torch.float64)
     middles = edges[:-1] * sqrt(BAND)
-    energy = torch.zeros(len(middles), dtype=torch.float64)
+    energy, motion = torch.zeros(2, len(middles), dtype=torch.float64)
     for record, left in residuals:
-        series = left[: len(record.response)] * record.weight
-        power = torch.fft.rfft(series * torch.hann_window(len(series), dtype=torch.float64)).abs().square()
-        frequency = torch.fft.rfftfreq(len(series), 1 / record.sampling_rate, dtype=torch.float64)
-        inside = (frequency >= edges[0]) & (frequency < edges[-1])
-        energy.index_add_(0, torch.bucketize(frequency[inside], edges, right=True) - 1, power[inside])
+        for total, series in ((energy, left[: len(record.response)]), (motion, record.response)):
+            power, frequency = _power(series * record.weight, record.sampling_rate)
+            inside = (frequency >= edges[0]) & (frequency < edges[-1])
+            total.index_add_(0, torch.bucketize(frequency[inside], edges, right=True) - 1, power[inside])
     energy = torch.where(_stands_out(energy), energy, 0.0)
     multiples = (middles / natural).round().clamp(min=1)
     near = (middles / natural / multiples).log().abs() < torch.where(multiples > 1, log(BAND) * 2, log(OWN))
     energy[near & (multiples <= HARMONICS)] = 0
+    moving = float(middles[int(motion.argmax())])
+    if moving < SWEPT * natural and natural < SWEPT * moving:
+        blurred = BLURRED * max(record.sampling_rate / len(record.response) for record, _ in residuals)
+        low, high = min(moving, natural), max(moving, natural)
+        energy[(middles > min(low / OWN, low - blurred)) & (middles < max(high * OWN, high + blurred))] = 0
     found = []
     for _ in range(MODES):
         best = int(energy.argmax())
@@ -90,6 +99,13 @@ def strongest_frequencies(residuals: Residuals, natural: float) -> tuple[float, 
         found.append(float(middles[best]))
         energy[(middles / middles[best]).log().abs() < log(OWN)] = 0
     return tuple(found)
+
+
+def _power(series: Tensor, rate: float) -> tuple[Tensor, Tensor]:
+    """Power of a series about its mean and the frequencies in Hz."""
+    window = torch.hann_window(len(series), dtype=torch.float64)
+    power = torch.fft.rfft((series - series.mean()) * window).abs().square()
+    return power, torch.fft.rfftfreq(len(series), 1 / rate, dtype=torch.float64)
 
 
 def _stands_out(energy: Tensor) -> Tensor:

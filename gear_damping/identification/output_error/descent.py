@@ -3,7 +3,7 @@
 A linearisation simulates a member for every column, a trial only one. As long as the linear model foretells what a
 step brings, its sensitivities are carried along by Broyden's update, record by record; where it does not, where a
 step fails, and before a start counts as converged, they are worked out anew. (Broyden, Math. Comp. 19, 1965; scaled by
-the columns' norms.)
+the columns' norms.) Small problems are linearised at every trial.
 """
 
 from dataclasses import dataclass, replace
@@ -20,6 +20,7 @@ CALM_STEPS = 3  # steps in a row that change the cost by little: one alone may b
 LONGEST_STEP = 2.0  # of any coordinate in one iteration; far out, that many times the way from the start
 FORETOLD = 0.5  # of the fall that the linear model promises: with less of it, it is made anew
 CARRIED = 4  # steps over which sensitivities are carried along at most
+AT_ONCE = 2e5  # values of the sensitivities: a linearisation of fewer costs hardly more than a trial
 TRIALS = 3  # for each linearisation that a round may take
 
 
@@ -60,6 +61,7 @@ class Descent:
         self.damping = torch.full_like(self.cost, FIRST_DAMPING)
         self.calm, self.made, self.carried = torch.zeros(3, len(self.cost), dtype=torch.long)
         self.converged = self.calm > 0
+        self.at_once = self.now.sensitivity[0].numel() < AT_ONCE
 
     def run(self, iterations: int) -> None:
         """Go down until every start has converged or has been linearised so many times."""
@@ -76,7 +78,9 @@ class Descent:
         """One trial of some starts."""
         points, now, cost, fresh = self.points.pick(left), self.now.pick(left), self.cost[left], self.carried[left] == 0
         trial = _step(self.problem, points, now, self.damping[left])
-        residual = self.problem.residuals(trial.shared, trial.states, self.horizon)
+        look = self.problem.linearise if self.at_once else self.problem.residuals
+        seen = look(trial.shared, trial.states, self.horizon)
+        residual = seen.residual if self.at_once else seen
         new_cost = self._cost(trial, residual)
         moves = self._moves(points, trial)
         linear = (now.sensitivity @ moves.unsqueeze(-1)).squeeze(-1)
@@ -91,6 +95,10 @@ class Descent:
         taken = left[better]
         self.points.put(taken, trial.pick(better))
         self.now.residual[taken], self.cost[taken] = residual[better], new_cost[better]
+        if self.at_once:
+            self.now.sensitivity[taken] = seen.sensitivity[better]
+            self.made[left] += 1
+            return
         self.carried[taken] += 1
         self._carry(taken, (now.residual - residual - linear)[better], moves[better])
         carried = self.carried[left]
