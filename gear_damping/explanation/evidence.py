@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import floor, log10, pi
 
+from gear_damping.explanation.silent_end import audible_samples
 from gear_damping.identification.observation import (
     MESH_PHASE,
     Known,
@@ -41,6 +42,7 @@ class Evidence:
         stated_segments: How the file says that they are cut; `WHOLE` where it does not.
         has_index: Whether the angle of all records counts from one mark.
         mesh_index: Whether the file says that it counts from the zero of the mesh.
+        silent_s: Seconds at the ends of records that were left out, because the motion had died away.
     """
 
     system: str
@@ -56,6 +58,7 @@ class Evidence:
     stated_segments: Segments = WHOLE
     has_index: bool = True
     mesh_index: bool = False
+    silent_s: float = 0.0
 
     @property
     def parameters(self) -> Mapping[str, float]:
@@ -107,8 +110,9 @@ def evidence_of(measurement: Measurement) -> Evidence:
     if system == "oscillator":
         require_alike([record for record, _ in records], str(measurement.source))
     fit, holdout = _roles(records)
-    one = not holdout
+    one, silent = not holdout, 0.0
     if one:
+        fit, silent = _audible(fit) if system == "oscillator" else (fit, 0.0)
         fit, holdout = _cut(fit)
     modes = {record.gear_torque_mode for record in used} - {None}
     return Evidence(
@@ -122,6 +126,7 @@ def evidence_of(measurement: Measurement) -> Evidence:
         stated_segments=Segments(measurement.segment_s, exact=True) if measurement.segment_s else WHOLE,
         has_index=all("pinion_angle" in record.inputs for record, _ in records) or system != "gear_pair",
         mesh_index=all(record.mesh_index for record in used),
+        silent_s=silent,
     )
 
 
@@ -150,6 +155,18 @@ def _condition(record: FitRecord) -> tuple[float, float]:
     speed, torque = record.conditions.get("pinion_speed", 0.0), record.conditions.get("pinion_torque", 0.0)
     digits = -floor(log10(max(abs(torque), 1e-9))) + 1
     return round(speed * 30 / pi, -1), round(torque, digits)
+
+
+def _audible(records: Sequence[FitRecord]) -> tuple[list[FitRecord], float]:
+    """Records without the ends at which nothing moves any more, and how many seconds these last together."""
+    kept = [_first(record, audible_samples(record)) for record in records]
+    return kept, sum(whole.duration - left.duration for whole, left in zip(records, kept, strict=True))
+
+
+def _first(record: FitRecord, samples: int) -> FitRecord:
+    if samples >= len(record.response):
+        return record
+    return replace(part(record, slice(None, samples)), group=record.group)
 
 
 def _cut(records: Sequence[FitRecord]) -> tuple[list[FitRecord], list[FitRecord]]:

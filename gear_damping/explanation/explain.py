@@ -18,7 +18,7 @@ from gear_damping.explanation.homogeneity import homogeneity
 from gear_damping.explanation.hypothesis import MOST_GROWTH, SEGMENT_TIMES, Outcome, segments_of
 from gear_damping.explanation.noise import NoiseLevel, noise_of, weighted
 from gear_damping.explanation.significance import ac_energy, excess
-from gear_damping.explanation.too_short import too_short
+from gear_damping.explanation.too_short import died_away, too_short
 from gear_damping.explanation.trying import Search
 from gear_damping.explanation.verdict import Judged, verdict
 from gear_damping.identification.decimation import decimated
@@ -31,7 +31,8 @@ from gear_damping.simulation.solver_settings import Solver
 
 Say = Callable[[str], None]
 STEPS = 4
-LOST = 0.5  # of the variance of a record
+LOST = 0.5  # of the variance of a record or of a stretch of it
+STRETCHES, CLEAR = 8, 10.0  # of a record; noise variances that a stretch must hold to tell anything
 MOST_SUBSTEPS = 24  # of an output interval: only forces far beyond the load would need more
 FIT_ACCURACY = 1e-4  # of the deflection: far below the noise of any record that is explained
 
@@ -88,8 +89,9 @@ def explain(
     if faults:
         return Explanation(content.of_faults(measurement, faults))
     evidence = at_useful_rate(evidence)
-    if short := too_short(evidence):
-        say(short)
+    notes = [note for note in (died_away(evidence), too_short(evidence)) if note]
+    for note in notes:
+        say(note)
     fit, holdout, noise = noise_of(evidence.fit, evidence.holdout, measurement)
     say(f"noise {noise.value / evidence.channel.declared_factor:.3g} {evidence.channel.declared_unit} ({noise.method})")
     evidence = replace(evidence, fit=weighted(fit, noise), holdout=weighted(holdout, noise), noise=noise.value)
@@ -121,7 +123,9 @@ def explain(
     after = excess(found.outcome.holdout, evidence.held, noise)
     one = _is_one(found, evidence)
     whole = _taken_of_all(found, evidence, floor)
-    said = verdict(found, before, after, found.outcome.fitted.converged, one, whole).saying(short, budget.sentence)
+    fitted = excess(found.nominal.fit_residuals, evidence.fitted, noise)
+    said = verdict(found, before, after, found.outcome.fitted.converged, one, whole, fitted.misfit)
+    said = said.saying(*notes, budget.sentence)
     judged = Judged(found, before, after, said, tuple(budget.not_tried))
     step(4, STEPS)
     return Explanation(content.of_search(measurement, evidence, noise, judged), evidence, noise, found)
@@ -145,9 +149,19 @@ def first_segments(evidence: Evidence) -> Segments:
 
 
 def is_lost_by(nominal: Outcome, evidence: Evidence) -> bool:
-    """Whether the nominal model leaves more than half of any fitted record's variance."""
-    left = zip(nominal.fit_residuals, evidence.fitted, strict=True)
-    return any(float(residual.square().sum()) > LOST * ac_energy(record) for residual, record in left)
+    """Whether the nominal model leaves more than half of the motion anywhere in a fitted record.
+
+    A frequency that hangs on the amplitude runs out of step in the middle of a long decay, which over the whole of it
+    counts for little, and no law looks right from there.
+    """
+    for residual, record in zip(nominal.fit_residuals, evidence.fitted, strict=True):
+        if float(residual.square().sum()) > LOST * ac_energy(record):
+            return True
+        for left, moved in zip(residual.chunk(STRETCHES), record.stacked.chunk(STRETCHES), strict=True):
+            motion = float((moved - moved.mean()).square().sum())
+            if motion > CLEAR * len(moved) * evidence.noise**2 and float(left.square().sum()) > LOST * motion:
+                return True
+    return False
 
 
 def _taken_of_all(found: Search, evidence: Evidence, floor: NoiseLevel) -> float:

@@ -81,6 +81,12 @@ def noise_level(records: Sequence[FitRecord], channel: Channel) -> NoiseLevel:
     return NoiseLevel(own, said, min(degrees.values()), agree, correlation)
 
 
+def floor_variance(record: FitRecord) -> float:
+    """Variance of the noise of a record's first channel: the lower of the two bands above the signal."""
+    half = record.sampling_rate / 2
+    return min(_floor(record, low * half, high * half)[0] for low, high in BANDS)
+
+
 def _rounding(record: FitRecord) -> float:
     """Variance that the steps of the converter leave."""
     return step_of(record.response.numpy()) ** 2 / 12

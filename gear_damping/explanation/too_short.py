@@ -37,6 +37,16 @@ def too_short(evidence: Evidence) -> str:
     )
 
 
+def died_away(evidence: Evidence) -> str:
+    """A sentence where the ends of records were left out."""
+    if not evidence.silent_s:
+        return ""
+    return (
+        f"The last {evidence.silent_s:.3g} s hold only noise and are left out: what is held out is the end of the "
+        "motion (records with `role: holdout` are taken whole)."
+    )
+
+
 def _characteristic(evidence: Evidence) -> tuple[float, str]:
     """Seconds over which the motion forgets itself, and what so many of them are called."""
     if evidence.system == "oscillator" and evidence.known.values.get("stiffness", 1.0) == 0:

@@ -52,6 +52,7 @@ def verdict(
     converged: bool = True,
     is_one: bool | None = None,
     whole: float = 1.0,
+    fitted: float = 1.0,
 ) -> Verdict:
     """What the search amounts to.
 
@@ -62,8 +63,11 @@ def verdict(
         converged: Whether the calibration converged.
         is_one: Whether every cause has one size over all records; None where too few records tell of one.
         whole: Share that causes take of everything beyond the sensor's noise, what looks random included.
+        fitted: What the nominal model leaves of the fitted records, in noise variances.
     """
-    if not found.accepted and not (before.significant and (is_visible(found.seen) or before.misfit > SMALL_REST)):
+    shown = before.significant and (is_visible(found.seen) or before.misfit > SMALL_REST)
+    unfitted = is_visible(found.seen) and fitted > SMALL_REST and before.misfit > SMALL_REST
+    if not found.accepted and not shown and not unfitted:
         text = f"No evidence of an effect that takes more than {before.threshold:.2g} % of the signal's variance."
         return Verdict(CONSISTENT, (text,))
     taken = _taken(found, before, after)

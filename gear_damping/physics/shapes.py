@@ -10,7 +10,7 @@ from gear_damping.physics.terms import Values
 
 # Widths within which the sign change of a friction is fitted. A mesh rings fast beside its sampling, and steps that
 # follow a sharper change cost too much; a drive that stands still needs one, or it creeps under its load.
-WIDTHS = {"gear_pair": (0.02, 0.5), "oscillator": (0.002, 0.5)}
+WIDTHS = {"gear_pair": (0.02, 0.5), "oscillator": (0.001, 0.5)}
 HARMONICS_AT_ONCE = 4  # in a kernel: lists are filled up to a multiple of it
 SMALLEST = 1e-100  # natural size below which a power counts as zero, so that its slope stays finite
 
