@@ -46,6 +46,7 @@ EXPECTED_SHAPE = 0.1  # of the mean stiffness over the harmonic: what real teeth
 SHORT_PERIODS = 40.0  # natural periods of the first round
 FIRST_RATIO = 0.01
 MOST_SCANS = 8  # of the records' angles, each followed by a fit
+SHAPED = 3.0  # noise variances: what a fit with all its shapes may leave before angles are looked at again
 SCANNED = 0.99  # of the cost before: less is no reason for another scan
 INDEX_ERROR = 0.1  # rad of the mesh: how well a file that states an index knows where the mesh begins
 APART = 1.5  # times the cost of a phase for every record: one phase of all leaves that much where there is none; angles
@@ -133,7 +134,14 @@ def _gear_pair(evidence: Evidence, solver: Solver | None, rough: Outcome | None)
 
 def _shaped(rough: Outcome, evidence: Evidence, iterations: int, solver: Solver | None) -> Outcome:
     shaped = _with_shape(rough.hypothesis, _shape_harmonics(rough, evidence))
-    return fit_hypothesis(shaped, evidence, after=rough, iterations=iterations, solver=solver)
+    options = {"iterations": iterations, "solver": solver, "scan": True}
+    found = fit_hypothesis(shaped, evidence, after=rough, **options)
+    samples = sum(len(record.stacked) for record in evidence.fitted)
+    if evidence.has_index or not iterations or found.fitted.cost < SHAPED * samples * evidence.noise**2:
+        return found
+    angles = _angles(found.hypothesis, evidence, evidence.duration, solver)
+    again = fit_hypothesis(found.hypothesis, evidence, own=angles, **options)
+    return again if again.fitted.cost < SCANNED * found.fitted.cost else found
 
 
 def _rough_gear_pair(evidence: Evidence, solver: Solver | None) -> Outcome:

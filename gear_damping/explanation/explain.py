@@ -5,6 +5,8 @@ from dataclasses import dataclass, replace
 from math import inf
 from typing import Any
 
+from torch import Tensor
+
 from gear_damping.explanation import content
 from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.calibrate import angles_counted, calibrated, recalibrated
@@ -23,6 +25,7 @@ from gear_damping.explanation.trying import Search
 from gear_damping.explanation.verdict import Judged, verdict
 from gear_damping.identification.decimation import decimated
 from gear_damping.identification.oscillator import linear_model
+from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import Segments
 from gear_damping.identification.time_scale import characteristic_time
 from gear_damping.measurement.record import Measurement
@@ -149,18 +152,26 @@ def first_segments(evidence: Evidence) -> Segments:
 
 
 def is_lost_by(nominal: Outcome, evidence: Evidence) -> bool:
-    """Whether the nominal model leaves more than half of the motion anywhere in a fitted record.
+    """Whether the nominal model leaves more than half of the fitted records, or of an oscillator's anywhere in one.
 
     A frequency that hangs on the amplitude runs out of step in the middle of a long decay, which over the whole of it
-    counts for little, and no law looks right from there.
+    counts for little, and no law looks right from there. A gear pair's teeth keep it in step; a record of it far from
+    resonance may hold little but what is hidden.
     """
-    for residual, record in zip(nominal.fit_residuals, evidence.fitted, strict=True):
-        if float(residual.square().sum()) > LOST * ac_energy(record):
+    pairs = list(zip(nominal.fit_residuals, evidence.fitted, strict=True))
+    if evidence.system == "gear_pair":
+        total = sum(ac_energy(record) for _, record in pairs)
+        return sum(float(residual.square().sum()) for residual, _ in pairs) > LOST * total
+    return any(_is_lost(residual, record, evidence.noise) for residual, record in pairs)
+
+
+def _is_lost(residual: Tensor, record: FitRecord, noise: float) -> bool:
+    if float(residual.square().sum()) > LOST * ac_energy(record):
+        return True
+    for left, moved in zip(residual.chunk(STRETCHES), record.stacked.chunk(STRETCHES), strict=True):
+        motion = float((moved - moved.mean()).square().sum())
+        if motion > CLEAR * len(moved) * noise**2 and float(left.square().sum()) > LOST * motion:
             return True
-        for left, moved in zip(residual.chunk(STRETCHES), record.stacked.chunk(STRETCHES), strict=True):
-            motion = float((moved - moved.mean()).square().sum())
-            if motion > CLEAR * len(moved) * evidence.noise**2 and float(left.square().sum()) > LOST * motion:
-                return True
     return False
 
 

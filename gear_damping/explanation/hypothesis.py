@@ -132,6 +132,7 @@ def fit_hypothesis(
     kept: float = 0.5,
     enough: float = 0.0,
     own: Mapping[str, float] | None = None,
+    scan: bool = False,
 ) -> Outcome:
     """Fit to the records to fit, then predict the held-out ones with the parameters frozen.
 
@@ -146,6 +147,7 @@ def fit_hypothesis(
         kept: Share of the starts that goes on from round to round.
         enough: Fall of the cost, in noise variances, below which the fit has converged.
         own: Where parameters of single records begin, by name.
+        scan: Whether angles of held-out records are tried all around, though another fit has found some.
     """
     if not evidence.segments and any(isinstance(effect, Contact) for effect in hypothesis.effects):
         near = _fit_in_segments(hypothesis, evidence, starts, solver=solver, kept=kept, enough=enough)
@@ -163,7 +165,7 @@ def fit_hypothesis(
     free = tuple(_settled(p, values.get(p.name, p.start)) for p in hypothesis.free)
     gains = {name: value for name, value in values.items() if name.startswith(f"{GAIN}.")}
     settled = replace(hypothesis, free=free, given=given, gains=gains)
-    held = None if after is None else after.own
+    held = None if after is None or scan else after.own
     return _outcome(settled, Fit(problem, fitted, values), evidence, solver, held)
 
 
