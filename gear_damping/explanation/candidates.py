@@ -10,7 +10,7 @@ from gear_damping.explanation.rig import Residuals, rig_of
 from gear_damping.identification.output_error.records import FreeParameter
 from gear_damping.physics.cause import Recipe, Rig
 from gear_damping.physics.parameter import Parameter
-from gear_damping.physics.terms import Effect
+from gear_damping.physics.terms import Effect, ElasticForce
 from gear_damping.units import parse_unit
 
 UNSEEN = 50.0  # times smaller than where it begins, a parameter that has no size yet does nothing
@@ -59,6 +59,11 @@ class Candidate:
     def options(self) -> tuple[tuple[str, object], ...]:
         """The form of the effect, as (option, choice)."""
         return tuple(sorted(self.hypothesis.effects[-1].chosen.items()))
+
+    @property
+    def is_elastic(self) -> bool:
+        """Whether it is a law of the restoring force."""
+        return isinstance(self.hypothesis.effects[-1], ElasticForce)
 
 
 def candidates_for(base: Hypothesis, evidence: Evidence, residuals: Residuals | None = None) -> list[Candidate]:

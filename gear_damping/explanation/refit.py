@@ -76,7 +76,7 @@ def block_samples(outcome: Outcome, evidence: Evidence) -> list[int]:
     return [max(SHORTEST_BLOCK, round(seconds * record.sampling_rate)) for record in evidence.held]
 
 
-def chosen(scores: Sequence[Score], least: float = 0.0) -> list[Score]:
+def chosen(scores: Sequence[Score], least: float = 0.0, springs: bool = False) -> list[Score]:
     """The candidates worth a full fit: the best variant of the best effects, and who resembles the first.
 
     An effect that is tried as a whole keeps its other sizes as starts: it is far from linear between them. Another
@@ -85,6 +85,8 @@ def chosen(scores: Sequence[Score], least: float = 0.0) -> list[Score]:
     Args:
         scores: Every candidate, the best first.
         least: What it has to promise, as a share of what the first one does.
+        springs: Whether every elastic law is worth one: a law that is even in the deflection pulls the frequency by its
+            square, which no linear score foresees, and what it promises is next to nothing.
     """
     forms: dict[tuple, list[Score]] = {}
     for score in scores:
@@ -98,7 +100,8 @@ def chosen(scores: Sequence[Score], least: float = 0.0) -> list[Score]:
     promising = [score for score in ranked[FULL_FITS:] if score.gain > LEAST_PROMISE * ranked[0].gain]
     alike = [score for score in promising if collinearity(ranked[0], score) > NEARLY_COLLINEAR]
     instead = [score for score in ranked if score.candidate.replaced]  # adds nothing that could overfit: always tried
-    worth = {score.candidate.name: score.gain for score in [*(first + alike)[:MOST_FITS], *instead]}
+    elastic = [score for score in ranked if springs and score.gain > 0 and score.candidate.is_elastic]
+    worth = {score.candidate.name: score.gain for score in [*(first + alike)[:MOST_FITS], *instead, *elastic]}
     return [s for s in every if s.gain >= OTHER_FORM * worth.get(s.candidate.name, inf)]
 
 

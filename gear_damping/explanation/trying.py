@@ -147,7 +147,7 @@ class Bench:
         if not ranked:
             return []
         fits: list[Refit] = []
-        for score in chosen(ranked, promise):
+        for score in chosen(ranked, promise, springs=self.evidence.system == "oscillator"):
             if self.budget.refuses(score.candidate.name):
                 continue
             most = max((outcome.fitted.cost - fit.outcome.fitted.cost for fit in fits), default=0.0)

@@ -4,11 +4,22 @@ from typing import ClassVar
 
 from torch import Tensor
 
-from gear_damping.physics.cause import Cause, Recipe
+from gear_damping.physics.cause import Cause, Recipe, Rig
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.shapes import power_of_size
 from gear_damping.physics.terms import DampingForce, Values
+
+EXPONENTS = (0.3, 3.0)  # beyond, it is no damping that grows with the deflection, or a stop
+
+
+def _switched_on(rig: Rig) -> tuple[Recipe, ...]:
+    """Preloaded flanks hardly tell the exponent; what swings through zero does."""
+    if rig.system == "gear_pair":
+        return (Recipe({"damping_coefficient": 0.01}, fixed={"exponent": 1.0, "reference_deflection": 1.0}),)
+    within = {"hunt_crossley_damping.exponent": EXPONENTS}
+    scanned, fixed = {"exponent": 1.0}, {"reference_deflection": 1.0}
+    return (Recipe({"damping_coefficient": 0.01}, scanned=scanned, fixed=fixed, within=within),)
 
 
 class HuntCrossleyDamping(DampingForce):
@@ -26,7 +37,7 @@ class HuntCrossleyDamping(DampingForce):
     dissipative = True
     cause: ClassVar = Cause(
         "a damping force that grows with the deflection",
-        (Recipe({"damping_coefficient": 0.01}, fixed={"exponent": 1.0, "reference_deflection": 1.0}),),
+        _switched_on,
     )
 
     def damping_force(self, now: Moment, p: Values) -> Tensor:

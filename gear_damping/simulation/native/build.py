@@ -15,6 +15,7 @@ log = logging.getLogger(__name__)
 HERE = Path(__file__).resolve().parent
 FLAGS = ("-O3", "-march=native", "-ffp-contract=fast", "-fno-math-errno", "-std=c++17", "-shared", "-fPIC", "-w")
 COMPILE_SECONDS = 300
+_said: list[Path] = []
 
 
 @cache
@@ -58,7 +59,7 @@ def cache_folder() -> Path:
 
 
 def compiled(source: str, structure: str | None = None) -> ctypes.CDLL:
-    """The library of a kernel; compiled on first use, which is logged, and found again after that.
+    """The library of a kernel; compiled on first use and found again after that. The first of a process is logged.
 
     Args:
         source: C++ of the kernel.
@@ -70,7 +71,8 @@ def compiled(source: str, structure: str | None = None) -> ctypes.CDLL:
     _, options = width_and_options()
     target = _kept(_digest(source, *FLAGS, *options, _machine()))
     if not target.exists():
-        log.info("compiling the simulation of this model (once, a few seconds)")
+        log.log(logging.DEBUG if _said else logging.INFO, "compiling simulations (once for each model, a few seconds)")
+        _said.append(target)
         _compile(source, options, target)
     if structure is not None:
         _note(_place(structure), target.name)
