@@ -21,6 +21,7 @@ from gear_damping.simulation.solver_settings import Solver
 
 MOST_GROWTH = 2.0  # of an error of the initial state over a record that is predicted from its start
 SEGMENT_TIMES = 5.0  # characteristic times of a segment of a record that cannot be predicted for longer
+ASTRAY = 3.0  # times what is left of the fitted records
 ITERATIONS_NEAR = 20  # to get near enough for the whole records
 Given = dict[str, float | tuple[float, ...]]
 
@@ -206,11 +207,22 @@ def _outcome(
     scale = slowest_time(settled, evidence)
     own = [parameter for parameter in settled.free if parameter.per_record]
     given, segments = {**settled.given, **settled.gains}, evidence.segments
-    held = predict_holdout(settled.model, given, evidence.holdout, scale, solver, segments, own, begun, evidence.noise)
+    options = {"solver": solver, "segments": segments, "own": own, "noise": evidence.noise}
+    held = predict_holdout(settled.model, given, evidence.holdout, scale, begun=begun, **options)
+    if begun and _is_astray(held.residuals, fitted, problem):  # another model's angles may lie in another valley
+        anew = predict_holdout(settled.model, given, evidence.holdout, scale, **options)
+        held = min(held, anew, key=lambda one: sum(float(r.square().sum()) for r in one.residuals))
     residual = joined(fitted.prediction.residual[0], evidence.fitted, evidence.segments, len(problem.channels))
     fit_residuals = [found / record.weight for found, record in zip(residual, evidence.fit, strict=True)]
     grown = max(held.growth, growth(fitted.prediction, problem.n_shared))
     return Outcome(settled, problem, fitted, found.values, held.residuals, fit_residuals, grown, held.own)
+
+
+def _is_astray(held: Sequence[Tensor], fitted: Fitted, problem: OutputErrorProblem) -> bool:
+    """Whether held-out records are predicted far worse than fitted ones are followed, per sample."""
+    count = sum(int((weights > 0).sum()) for weights in problem.weights)
+    left = sum(float(residual.square().sum()) for residual in held) / sum(len(residual) for residual in held)
+    return left > ASTRAY * fitted.cost / max(count, 1)
 
 
 def _fit_in_segments(hypothesis: Hypothesis, evidence: Evidence, starts: Tensor | None, **options: Any) -> Outcome:
