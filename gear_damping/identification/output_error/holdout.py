@@ -16,7 +16,7 @@ from gear_damping.physics.model import Model
 from gear_damping.simulation.solver_settings import Solver
 
 FIRST_PERIODS = 1.25  # characteristic times at the start of a record that its initial state is first sought in
-FIRST_ITERATIONS, LAST_ITERATIONS = 20, 12
+FIRST_ITERATIONS, LAST_ITERATIONS = 20, 20
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,6 @@ def predict_holdout(
     pieces = in_segments(records, segments)
     problem = OutputErrorProblem(model, given, list(own), pieces, solver, noise)
     starts = torch.zeros(1, problem.n_shared, dtype=torch.float64)
-    rounds = [FIRST_PERIODS * characteristic_s, None]
     known = dict(begun or {})
     for place, parameter in enumerate(problem.free):
         starts[0, place] = parameter.coordinate(known[parameter.name]) if parameter.name in known else 0.0
@@ -71,7 +70,9 @@ def predict_holdout(
     for name, angle in scanned(problem, starts[0], bases=unknown).items():
         place = next(i for i, parameter in enumerate(problem.free) if parameter.name == name)
         starts[0, place] = problem.free[place].coordinate(angle)
-    found = fit(problem, starts, rounds, (FIRST_ITERATIONS, LAST_ITERATIONS))
+    # so short a stretch tells nothing of an angle, which would leave the valley that it was begun in
+    horizons = [None] if angle_bases(problem) else [FIRST_PERIODS * characteristic_s, None]
+    found = fit(problem, starts, horizons, (FIRST_ITERATIONS, LAST_ITERATIONS)[-len(horizons) :])
     prediction, weights = found.prediction, problem.weights.clamp(min=1e-300)
     left = prediction.residual[0] / weights
     beside = _beside_own(prediction, problem.n_shared) / weights
