@@ -5,11 +5,24 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
-from gear_damping.physics.cause import Cause, Recipe
+from gear_damping.physics.cause import Cause, Recipe, Rig
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.shapes import power_of_size
 from gear_damping.physics.terms import DampingForce, ExtraStates, Values
+
+YIELDS = (0.05, 0.2, 0.6)  # amplitudes of the motion
+EXPONENTS = (0.5, 4.0)  # of the sharpness that is fitted
+
+
+def _switched_on(rig: Rig) -> tuple[Recipe, ...]:
+    """Flanks hold their load, and hardly tell how they would yield; what swings through zero does."""
+    if rig.system == "gear_pair":
+        return (Recipe({"share": 0.02}, fixed={"yield_deflection": 0.2, "exponent": 1.0}),)
+    within = {"hysteretic_damping.exponent": EXPONENTS}
+    return tuple(
+        Recipe({"share": 0.02}, scanned={"yield_deflection": size, "exponent": 1.0}, within=within) for size in YIELDS
+    )
 
 
 class HystereticDamping(ExtraStates, DampingForce):
@@ -32,7 +45,7 @@ class HystereticDamping(ExtraStates, DampingForce):
     dissipative = True
     cause: ClassVar = Cause(
         "a hysteretic force, whose loss does not hang on the rate",
-        (Recipe({"share": 0.02}, fixed={"yield_deflection": 0.2, "exponent": 1.0}),),
+        _switched_on,
         separated_by="speed",
     )
 
