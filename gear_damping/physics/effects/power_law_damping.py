@@ -10,12 +10,18 @@ from gear_damping.physics.damping_ratio import equivalent_damping_ratio, power_l
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.scales import Scales
-from gear_damping.physics.shapes import power_of_size
+from gear_damping.physics.shapes import power_of_size, sign_change_rate
 from gear_damping.physics.terms import DampingLaw, Values
+
+ROUNDED = 0.02  # of the unit of velocity, below which a law with an exponent below 1 goes on straight through rest
 
 
 class PowerLawDamping(DampingLaw):
-    """A force that grows with a power of the rate, in its direction."""
+    """A force that grows with a power of the rate, in its direction.
+
+    With an exponent below 1 its slope at rest would be infinite, and no step could follow it: there it goes straight
+    through rest, below 2 % of the natural velocity.
+    """
 
     name = "power_law_damping"
     equation = "F_d = alpha sign(delta') |delta'|^n"
@@ -43,7 +49,14 @@ class PowerLawDamping(DampingLaw):
         size = p["coefficient"] * power_of_size(now.delta_rate, p["exponent"])
         if self.chosen["as_printed"]:
             return size * now.delta_rate.abs()
-        return torch.where(now.delta_rate < 0, -size, size)
+        rounded = (now.delta_rate.square() + ROUNDED**2) ** ((p["exponent"] - 1) / 2) * now.delta_rate
+        return torch.where(p["exponent"] < 1, p["coefficient"] * rounded, torch.where(now.delta_rate < 0, -size, size))
+
+    def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
+        """With an exponent below 1 the slope at rest is steep: a rate that follows its turn, as of a dry friction."""
+        steep = values["coefficient"] * ROUNDED ** (values["exponent"] - 1)
+        turning = sign_change_rate(steep * ROUNDED, torch.full_like(steep, ROUNDED), base["equivalent_mass"])
+        return dict(values) | {"fastest_rate": torch.where(values["exponent"] < 1, turning, 0.0)}
 
     def damping_ratio(self, values: Values, mass: Tensor, stiffness: Tensor, velocity: Tensor) -> Tensor:
         """The ratio that dissipates as much per cycle at this velocity amplitude."""
