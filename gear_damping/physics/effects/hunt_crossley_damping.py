@@ -14,9 +14,6 @@ EXPONENTS = (0.3, 3.0)  # beyond, it is no damping that grows with the deflectio
 
 
 def _switched_on(rig: Rig) -> tuple[Recipe, ...]:
-    """Preloaded flanks hardly tell the exponent; what swings through zero does."""
-    if rig.system == "gear_pair":
-        return (Recipe({"damping_coefficient": 0.01}, fixed={"exponent": 1.0, "reference_deflection": 1.0}),)
     within = {"hunt_crossley_damping.exponent": EXPONENTS}
     scanned, fixed = {"exponent": 1.0}, {"reference_deflection": 1.0}
     return (Recipe({"damping_coefficient": 0.01}, scanned=scanned, fixed=fixed, within=within),)
