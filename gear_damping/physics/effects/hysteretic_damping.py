@@ -12,16 +12,16 @@ from gear_damping.physics.shapes import power_of_size
 from gear_damping.physics.terms import DampingForce, ExtraStates, Values
 
 YIELDS = (0.05, 0.2, 0.6)  # amplitudes of the motion
+PRELOADED = (0.2,)
 EXPONENTS = (0.5, 4.0)  # of the sharpness that is fitted
 
 
 def _switched_on(rig: Rig) -> tuple[Recipe, ...]:
-    """Flanks hold their load, and hardly tell how they would yield; what swings through zero does."""
-    if rig.system == "gear_pair":
-        return (Recipe({"share": 0.02}, fixed={"yield_deflection": 0.2, "exponent": 1.0}),)
+    """From several yields, or one where flanks hold a load and hardly tell them apart."""
     within = {"hysteretic_damping.exponent": EXPONENTS}
     return tuple(
-        Recipe({"share": 0.02}, scanned={"yield_deflection": size, "exponent": 1.0}, within=within) for size in YIELDS
+        Recipe({"share": 0.02}, scanned={"yield_deflection": size, "exponent": 1.0}, within=within)
+        for size in (YIELDS if rig.system == "oscillator" else PRELOADED)
     )
 
 
