@@ -128,7 +128,7 @@ def explain(
     one = _is_one(found, evidence)
     whole = _taken_of_all(found, evidence, floor)
     fitted = excess(found.nominal.fit_residuals, evidence.fitted, noise)
-    said = verdict(found, before, after, found.outcome.fitted.converged, one, whole, fitted.misfit)
+    said = verdict(found, before, after, found.outcome.fitted.converged, one, whole, fitted.percent)
     said = said.saying(*notes, budget.sentence)
     judged = Judged(found, before, after, said, tuple(budget.not_tried))
     step(4, STEPS)

@@ -14,6 +14,7 @@ PARTLY, UNEXPLAINED, DATA_PROBLEM = "partly_explained", "unexplained", "data_pro
 VERDICTS = (CONSISTENT, EXPLAINED, AMBIGUOUS, PARTLY, UNEXPLAINED, DATA_PROBLEM)
 MOST = 0.9  # of the excess that causes must take to be established although a rest is left,
 FLOODED = 0.8  # noise variances: a nominal model cannot leave less than noise, what looks random is more than that
+GROSS = 5.0  # % of the fitted records' variance: so much missing is something, whatever held-out records can tell
 HALF = 0.5  # or half of it by one cause (several that leave much stand in for something else), where the rest is
 
 
@@ -52,7 +53,7 @@ def verdict(
     converged: bool = True,
     is_one: bool | None = None,
     whole: float = 1.0,
-    fitted: float = 1.0,
+    fitted: float = 0.0,
 ) -> Verdict:
     """What the search amounts to.
 
@@ -63,10 +64,10 @@ def verdict(
         converged: Whether the calibration converged.
         is_one: Whether every cause has one size over all records; None where too few records tell of one.
         whole: Share that causes take of everything beyond the sensor's noise, what looks random included.
-        fitted: What the nominal model leaves of the fitted records, in noise variances.
+        fitted: What the nominal model leaves of the fitted records beyond the noise, in % of their variance.
     """
     shown = before.significant and (is_visible(found.seen) or before.misfit > SMALL_REST)
-    unfitted = is_visible(found.seen) and fitted > SMALL_REST and before.misfit > SMALL_REST
+    unfitted = is_visible(found.seen) and fitted > GROSS and before.misfit > SMALL_REST
     if not found.accepted and not shown and not unfitted:
         text = f"No evidence of an effect that takes more than {before.threshold:.2g} % of the signal's variance."
         return Verdict(CONSISTENT, (text,))
