@@ -10,7 +10,7 @@ from gear_damping.explanation.gain import spread_of
 from gear_damping.explanation.hypothesis import Hypothesis, Outcome, fit_hypothesis
 from gear_damping.explanation.noise import NoiseLevel
 from gear_damping.explanation.ranking import Score, contains, scores
-from gear_damping.explanation.refit import Refit, block_samples, chosen, compared, refitted
+from gear_damping.explanation.refit import SEEN, Refit, block_samples, chosen, compared, refitted
 from gear_damping.explanation.significance import CLOSE, Excess, excess, paired_gain
 from gear_damping.explanation.visible import Assessment, assessed
 from gear_damping.identification.output_error.records import FreeParameter
@@ -190,12 +190,21 @@ class Bench:
         smaller is taken where the larger does no better; and of several that the data do not tell apart the one
         with the fewest parameters is named first.
         """
-        alike = [f for f in fits if f is best or (f.is_seen_in_fit and self.is_as_good(f.outcome, best.outcome))]
+        alike = [f for f in fits if f is best or (f.is_seen_in_fit and self._is_rival(f, best))]
         inner = [f for f in alike if any(contains(o.score, f.score) for o in alike if o.name != f.name)]
         outer = {f.name for f in alike if any(contains(f.score, o.score) for o in inner if o.name != f.name)}
         kept = [f for f in alike if f.name not in outer] or alike
         first = self._within_bounds(_least(kept), fits)
         return first, tuple(dict.fromkeys(f.name for f in kept if f.name != first.name))
+
+    def _is_rival(self, fit: Refit, best: Refit) -> bool:
+        """Whether it does no worse than the best on held-out records, or nearly as well and fits the others better.
+
+        Near a resonance a small error of a parameter, as any fit has, weighs more than the law.
+        """
+        if self.is_as_good(fit.outcome, best.outcome):
+            return True
+        return fit.gain >= NEARLY * best.gain and fit.fit_gain > best.fit_gain + SEEN
 
     def is_determined(self, fit: Refit) -> bool:
         """Whether the records tell the size of an effect, where its fit leaves more than noise.
