@@ -174,7 +174,7 @@ def test_the_width_of_a_friction_may_rest_at_its_lower_bound():
             for candidate in of(name, base, evidence):
                 (width,) = [p for p in candidate.later if p.name in candidate.sharpest]
                 assert width.name == f"{name}.width"
-                assert width.lower == (0.002 if base.system.name == "oscillator" else 0.02)
+                assert width.lower == (0.001 if base.system.name == "oscillator" else 0.02)
                 assert width.start == 0.05
 
 
@@ -289,3 +289,20 @@ def test_the_rig_of_a_gear_pair_is_that_of_the_records():
     assert rig.values["contact_ratio"] == pytest.approx(1.6)
     assert rig.inputs == ("pinion_angle",)
     assert rig.mesh_harmonics == int(RATE / 2 / (37 * SPEED / (2 * pi)))
+
+
+def test_a_strength_tried_as_a_whole_keeps_the_bounds_of_its_recipe():
+    base, evidence = oscillator()
+    time = torch.arange(400, dtype=torch.float64) / 100
+    left = torch.cos(2 * pi * 9.0 * time)
+    tried = of("second_mode", base, evidence, [(evidence.fit[0], left)])
+    own = {p.name: (p.lower, p.upper) for found in tried for p in found.hypothesis.free}
+    assert own["second_mode.mass_ratio"] == (1e-4, 1.0)
+
+
+@pytest.mark.parametrize(("name", "shapes"), [("hunt_crossley_damping", {"exponent"}),
+                                              ("hysteretic_damping", {"yield_deflection", "exponent"})])  # fmt: skip
+def test_the_shape_of_a_law_joins_the_full_fit(name, shapes):
+    for base, evidence in (oscillator(forced=True), gear_pair((17, 43))):
+        for found in of(name, base, evidence):
+            assert {p.name.partition(".")[2] for p in found.later} == shapes

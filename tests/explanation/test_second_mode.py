@@ -67,3 +67,16 @@ def test_harmonics_of_the_own_frequency_are_no_modes():
     found = strongest_frequencies([(FitRecord("a", left, RATE), left)], 5.0)
     assert found == pytest.approx((17.0, 31.0), rel=0.02)
     assert strongest_frequencies([(FitRecord("a", left, RATE), left)], 0.0) == ()
+
+
+def test_what_lies_between_the_natural_frequency_and_that_of_the_motion_is_the_first_mode():
+    """A pendulum of 5 Hz that swings wide at 3.6 Hz first: its misfit stands between the two."""
+    time = torch.arange(2400, dtype=torch.float64) / RATE
+    frequency = 5.0 - 1.4 * torch.exp(-time / 6.0)
+    motion = torch.exp(-time / 8.0) * torch.cos(2 * math.pi * torch.cumsum(frequency, 0) / RATE)
+    left = sum(a * torch.cos(2 * math.pi * f * time) for a, f in ((9.0, 4.05), (1.0, 8.3)))
+    found = strongest_frequencies([(FitRecord("a", motion, RATE), left)], 5.0)
+    assert found[0] == pytest.approx(8.3, rel=0.02)
+    assert not any(3.8 < frequency < 5.5 for frequency in found)
+    still = FitRecord("a", torch.cos(2 * math.pi * 5.0 * time), RATE)
+    assert strongest_frequencies([(still, left)], 5.0) == pytest.approx((4.05, 8.3), rel=0.02)

@@ -1,0 +1,101 @@
+"""When records count as lost, which laws are fitted in full, and which fits are rivals, on made-up residuals."""
+
+import math
+from types import SimpleNamespace
+
+import pytest
+import torch
+
+from gear_damping.explanation.explain import best_is_lost, is_lost_by
+from gear_damping.explanation.refit import chosen
+from gear_damping.explanation.trying import Bench
+from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.physics.catalogue import effect_class
+
+NOISE, SAMPLES = 1e-3, 800
+
+
+def lost(system, response, residual):
+    record = FitRecord("a", response, 100.0)
+    evidence = SimpleNamespace(system=system, fitted=[record], noise=NOISE)
+    return is_lost_by(SimpleNamespace(fit_residuals=[residual]), evidence)
+
+
+def decay():
+    time = torch.arange(SAMPLES, dtype=torch.float64) / 100
+    return torch.exp(-time) * torch.cos(40 * time)
+
+
+def test_a_stretch_that_is_out_of_step_is_enough_for_an_oscillator():
+    response, residual = decay(), torch.zeros(SAMPLES, dtype=torch.float64)
+    assert not lost("oscillator", response, residual)
+    residual[300:400] = 2 * response[300:400]  # opposite in phase where a thousandth of the energy is left
+    assert float(residual.square().sum() / response.square().sum()) < 0.01
+    assert lost("oscillator", response, residual)
+    assert not lost("gear_pair", response, residual)
+    assert lost("gear_pair", response, response)
+
+
+def test_noise_at_the_end_of_a_decay_is_not_lost():
+    response, residual = decay(), torch.zeros(SAMPLES, dtype=torch.float64)
+    noise = NOISE * torch.randn(SAMPLES, dtype=torch.float64, generator=torch.Generator().manual_seed(1))
+    residual[700:] = noise[700:]
+    assert not lost("oscillator", response + noise, residual)
+
+
+def fit_of(cost, held, seen=True, gain=0.0, fit_gain=0.0):
+    outcome = SimpleNamespace(fitted=SimpleNamespace(cost=cost), holdout_cost=held)
+    return SimpleNamespace(outcome=outcome, is_seen_in_fit=seen, gain=gain, fit_gain=fit_gain)
+
+
+@pytest.mark.parametrize(
+    ("fits", "expected"),
+    [
+        ([], False),
+        ([fit_of(0.1, 50.0)], True),  # fits by far best, and predicts worse than the nominal model
+        ([fit_of(0.1, 5.0)], False),
+        ([fit_of(0.9, 50.0)], False),
+        ([fit_of(0.1, 50.0, seen=False)], False),
+        ([fit_of(0.1, 50.0), fit_of(0.05, 1.0)], False),
+    ],
+)
+def test_the_best_fit_that_loses_the_held_out_records(fits, expected):
+    nominal = SimpleNamespace(fitted=SimpleNamespace(cost=1.0), holdout_cost=10.0)
+    assert best_is_lost(SimpleNamespace(nominal=nominal, first_fits=fits)) is expected
+
+
+@pytest.mark.parametrize(
+    ("gain", "fit_gain", "expected"), [(0.95, 200.0, True), (0.95, 110.0, False), (0.8, 200.0, False)]
+)
+def test_a_law_that_fits_clearly_better_and_predicts_nearly_as_well_is_a_rival(gain, fit_gain, expected, monkeypatch):
+    monkeypatch.setattr(Bench, "is_as_good", lambda *_: False)
+    best = fit_of(1.0, 1.0, gain=1.0, fit_gain=100.0)
+    bench = Bench(None, None, None, None, None)
+    assert bench._is_rival(fit_of(1.0, 1.0, gain=gain, fit_gain=fit_gain), best) is expected
+
+
+def score(name, gain):
+    effect = effect_class(name)()
+    direction = torch.eye(12, dtype=torch.float64)[len(name) % 12]
+    hypothesis = SimpleNamespace(effects=[effect], common=())
+    candidate = SimpleNamespace(
+        name=name, options=(), presence=False, replaced=(), hypothesis=hypothesis,
+        is_elastic=name.endswith("stiffness"),
+    )  # fmt: skip
+    return SimpleNamespaceScore(candidate, gain, direction, direction[:, None])
+
+
+class SimpleNamespaceScore(SimpleNamespace):
+    """A score that `replace` can copy."""
+
+    def __init__(self, candidate, gain, direction, columns, variants=()):
+        super().__init__(candidate=candidate, gain=gain, direction=direction, columns=columns, variants=variants)
+
+
+def test_an_elastic_law_is_fitted_whatever_a_linear_score_promises(monkeypatch):
+    monkeypatch.setattr("gear_damping.explanation.refit.replace", lambda score, variants: score)
+    names = ("coulomb_friction", "power_law_damping", "sensor_delay", "sensor_drift", "quadratic_stiffness")
+    ranked = [score(name, 0.5 / 10**k) for k, name in enumerate(names)]
+    assert "quadratic_stiffness" not in {s.candidate.name for s in chosen(ranked)}
+    assert "quadratic_stiffness" in {s.candidate.name for s in chosen(ranked, springs=True)}
+    assert math.isclose(ranked[-1].gain, 5e-5)
