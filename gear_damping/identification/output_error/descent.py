@@ -76,35 +76,47 @@ class Descent:
 
     def _advance(self, left: Tensor) -> None:
         """One trial of some starts."""
-        points, now, cost, fresh = self.points.pick(left), self.now.pick(left), self.cost[left], self.carried[left] == 0
+        points, now, fresh = self.points.pick(left), self.now.pick(left), self.carried[left] == 0
         trial = _step(self.problem, points, now, self.damping[left])
-        look = self.problem.linearise if self.at_once else self.problem.residuals
-        seen = look(trial.shared, trial.states, self.horizon)
-        residual = seen.residual if self.at_once else seen
-        new_cost = self._cost(trial, residual)
+        seen = self._looked_at(trial)
         moves = self._moves(points, trial)
         linear = (now.sensitivity @ moves.unsqueeze(-1)).squeeze(-1)
-        foretold = cost - self._cost(trial, now.residual - linear)
-        better, gain = new_cost < cost, cost - new_cost
-        flat = gain.abs() <= torch.maximum(SMALLEST_GAIN * cost, torch.full_like(cost, self.enough))
-        counts = better | fresh  # a step that stale sensitivities led astray says nothing
-        self.calm[left] = torch.where(counts, torch.where(flat, self.calm[left] + 1, 0), self.calm[left])
-        softer, harder = self.damping[left] / 5, self.damping[left] * torch.where(fresh, 6.0, 1.0)
-        self.damping[left] = torch.where(better, softer, harder).clamp(SMALLEST_DAMPING, LARGEST_DAMPING)
-        self.converged[left] = fresh & ((self.calm[left] >= CALM_STEPS) | (self.damping[left] >= LARGEST_DAMPING))
+        foretold = self.cost[left] - self._cost(trial, now.residual - linear)
+        cost = self._cost(trial, seen.residual)
+        gain, better = self.cost[left] - cost, cost < self.cost[left]
+        flat = self._judge(left, gain, better, fresh)
         taken = left[better]
         self.points.put(taken, trial.pick(better))
-        self.now.residual[taken], self.cost[taken] = residual[better], new_cost[better]
+        self.now.residual[taken], self.cost[taken] = seen.residual[better], cost[better]
         if self.at_once:
             self.now.sensitivity[taken] = seen.sensitivity[better]
             self.made[left] += 1
             return
         self.carried[taken] += 1
-        self._carry(taken, (now.residual - residual - linear)[better], moves[better])
-        carried = self.carried[left]
-        astray = torch.where(better, ~(gain >= FORETOLD * foretold) & ~flat, ~fresh) | (carried >= CARRIED)
-        due = astray | (self.calm[left] >= CALM_STEPS - 1)
-        self._linearise(left[due & (carried > 0) & ~self.converged[left]])
+        self._carry(taken, (now.residual - seen.residual - linear)[better], moves[better])
+        astray = torch.where(better, ~(gain >= FORETOLD * foretold) & ~flat, ~fresh)
+        due = astray | (self.carried[left] >= CARRIED) | (self.calm[left] >= CALM_STEPS - 1)
+        self._linearise(left[due & (self.carried[left] > 0) & ~self.converged[left]])
+
+    def _looked_at(self, trial: Points) -> Prediction:
+        """Residuals at a trial, with their sensitivities where these come at once."""
+        if self.at_once:
+            return self.problem.linearise(trial.shared, trial.states, self.horizon)
+        residual = self.problem.residuals(trial.shared, trial.states, self.horizon)
+        return Prediction(residual, residual.new_zeros(len(residual), 0))
+
+    def _judge(self, left: Tensor, gain: Tensor, better: Tensor, fresh: Tensor) -> Tensor:
+        """Damping, calm and convergence after a trial; returns whose cost has hardly changed.
+
+        A step that stale sensitivities led astray says nothing.
+        """
+        enough = torch.full_like(gain, self.enough)
+        flat = gain.abs() <= torch.maximum(SMALLEST_GAIN * self.cost[left], enough)
+        self.calm[left] = torch.where(better | fresh, torch.where(flat, self.calm[left] + 1, 0), self.calm[left])
+        softer, harder = self.damping[left] / 5, self.damping[left] * torch.where(fresh, 6.0, 1.0)
+        self.damping[left] = torch.where(better, softer, harder).clamp(SMALLEST_DAMPING, LARGEST_DAMPING)
+        self.converged[left] = fresh & ((self.calm[left] >= CALM_STEPS) | (self.damping[left] >= LARGEST_DAMPING))
+        return flat
 
     def _moves(self, old: Points, new: Points) -> Tensor:
         """Change of every column's coordinate, by record, (starts, records, columns)."""
