@@ -136,16 +136,18 @@ def test_an_unknown_operation_is_refused_by_name():
 
 
 @pytest.mark.usefixtures("compiler")
-def test_kernels_are_kept_between_processes(bench_model, monkeypatch, tmp_path, caplog):
+def test_kernels_are_kept_between_processes_and_the_first_is_said(bench_model, monkeypatch, tmp_path, caplog):
     model, values = bench_model
-    monkeypatch.setenv("GEAR_DAMPING_CACHE", str(tmp_path))
-    for number, said in ((0, True), (1, False)):
+    monkeypatch.setattr(build, "_said", [])
+    for number, (folder, said) in enumerate((("one", True), ("one", False), ("two", False))):
+        monkeypatch.setenv("GEAR_DAMPING_CACHE", str(tmp_path / folder))
         caplog.clear()
         monkeypatch.setattr(compilation, "_libraries", {})
         with caplog.at_level(logging.INFO):
             simulate(model, values(2), sampling_rate=40e3, n_samples=3)
         assert ("compiling" in caplog.text) is said, number
-    assert len(list(tmp_path.glob("kernels/*.so"))) == 1
+    for folder in ("one", "two"):
+        assert len(list(tmp_path.glob(f"{folder}/kernels/*.so"))) == 1
 
 
 @pytest.mark.usefixtures("compiler")
