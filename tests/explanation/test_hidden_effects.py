@@ -27,7 +27,7 @@ def test_a_null_names_no_cause(explained, seed, snr_db):
         ("pinion_eccentricity", "amplitude", 0.05, {"encoder_error"}),  # the same signal
         pytest.param("cubic_stiffness", "coefficient", 0.08, set(), marks=pytest.mark.slow),
         pytest.param("windage_drag", "coefficient", 0.05, set(), marks=pytest.mark.slow),
-        ("torque_variation", "ramp_change", 0.05, set()),
+        pytest.param("torque_variation", "ramp_change", 0.05, set(), marks=pytest.mark.slow),
         pytest.param("load_dependent_contact", "growth", 0.1, set(), marks=pytest.mark.slow),
     ],
 )

@@ -39,7 +39,7 @@ def test_an_undamped_oscillator_in_closed_form():
     )
 
 
-@pytest.mark.parametrize("engine", ["auto", "eager"])
+@pytest.mark.parametrize("engine", ["auto", pytest.param("eager", marks=pytest.mark.slow)])
 @pytest.mark.parametrize("loose", [False, True])
 def test_a_gear_pair_against_central_differences(engine, loose):
     """With backlash: elastic forces are continuous where the flanks part, so the derivatives stay exact."""
