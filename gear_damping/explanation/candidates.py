@@ -228,9 +228,7 @@ def _elements(kind: type[Effect], name: str, size: float, given: Given, recipe: 
     declared = next(p for p in kind.parameters if p.name == name)
     flat, value = f"{kind.name}.{name}", given[f"{kind.name}.{name}"]
     if recipe.presence:
-        low, high = recipe.within.get(flat, (declared.lower, declared.upper))
-        lower, upper = max(declared.lower, low), min(declared.upper, high)
-        return [FreeParameter(flat, float(value), logarithmic=True, lower=lower, upper=upper)]
+        return [_freed(declared, flat, given, recipe.within)]
     if isinstance(value, tuple):
         return [FreeParameter(f"{flat}[{i}]", v, abs(size)) for i, v in enumerate(value)]
     lower, upper = (-float("inf"), float("inf")) if name in recipe.phases else (declared.lower, declared.upper)

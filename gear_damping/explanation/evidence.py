@@ -15,7 +15,7 @@ from gear_damping.identification.observation import (
     response_names,
 )
 from gear_damping.identification.output_error.records import FitRecord
-from gear_damping.identification.output_error.segments import WHOLE, Segments, covered, part
+from gear_damping.identification.output_error.segments import WHOLE, Segments, covered, part, shortened
 from gear_damping.measurement.record import Channel, Measurement
 from gear_damping.physics.catalogue import builtin_effects
 from gear_damping.physics.terms import Effect
@@ -159,14 +159,8 @@ def _condition(record: FitRecord) -> tuple[float, float]:
 
 def _audible(records: Sequence[FitRecord]) -> tuple[list[FitRecord], float]:
     """Records without the ends at which nothing moves any more, and how many seconds these last together."""
-    kept = [_first(record, audible_samples(record)) for record in records]
+    kept = [shortened(record, audible_samples(record)) for record in records]
     return kept, sum(whole.duration - left.duration for whole, left in zip(records, kept, strict=True))
-
-
-def _first(record: FitRecord, samples: int) -> FitRecord:
-    if samples >= len(record.response):
-        return record
-    return replace(part(record, slice(None, samples)), group=record.group)
 
 
 def _cut(records: Sequence[FitRecord]) -> tuple[list[FitRecord], list[FitRecord]]:

@@ -70,20 +70,15 @@ class Descent:
             if not len(left):
                 break
             self._advance(left)
-        stale = ((self.carried > 0) & ~self.converged).nonzero()[:, 0]
-        if len(stale):
-            self._linearise(stale)
+        self._linearise(((self.carried > 0) & ~self.converged).nonzero()[:, 0])
 
     def _advance(self, left: Tensor) -> None:
         """One trial of some starts."""
         points, now, fresh = self.points.pick(left), self.now.pick(left), self.carried[left] == 0
         trial = _step(self.problem, points, now, self.damping[left])
         seen = self._looked_at(trial)
-        moves = self._moves(points, trial)
-        linear = (now.sensitivity @ moves.unsqueeze(-1)).squeeze(-1)
-        foretold = self.cost[left] - self._cost(trial, now.residual - linear)
-        cost = self._cost(trial, seen.residual)
-        gain, better = self.cost[left] - cost, cost < self.cost[left]
+        old, cost = self.cost[left], self._cost(trial, seen.residual)
+        gain, better = old - cost, cost < old
         flat = self._judge(left, gain, better, fresh)
         taken = left[better]
         self.points.put(taken, trial.pick(better))
@@ -92,6 +87,9 @@ class Descent:
             self.now.sensitivity[taken] = seen.sensitivity[better]
             self.made[left] += 1
             return
+        moves = self._moves(points, trial)
+        linear = (now.sensitivity @ moves.unsqueeze(-1)).squeeze(-1)
+        foretold = old - self._cost(trial, now.residual - linear)
         self.carried[taken] += 1
         self._carry(taken, (now.residual - seen.residual - linear)[better], moves[better])
         astray = torch.where(better, ~(gain >= FORETOLD * foretold) & ~flat, ~fresh)

@@ -71,10 +71,11 @@ def in_segments(records: Sequence[FitRecord], segments: Segments) -> list[FitRec
 
 def covered(records: Sequence[FitRecord], segments: Segments) -> list[FitRecord]:
     """The records without the ends that segments leave out."""
-    return [_shortened(record, segments.ends(record)[-1][1]) if segments.exact else record for record in records]
+    return [shortened(record, segments.ends(record)[-1][1]) if segments.exact else record for record in records]
 
 
-def _shortened(record: FitRecord, samples: int) -> FitRecord:
+def shortened(record: FitRecord, samples: int) -> FitRecord:
+    """The first samples of a record, under its name."""
     return replace(part(record, slice(0, samples)), group=record.group)
 
 

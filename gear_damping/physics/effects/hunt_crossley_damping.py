@@ -4,19 +4,19 @@ from typing import ClassVar
 
 from torch import Tensor
 
-from gear_damping.physics.cause import Cause, Recipe, Rig
+from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.shapes import power_of_size
 from gear_damping.physics.terms import DampingForce, Values
 
 EXPONENTS = (0.3, 3.0)  # beyond, it is no damping that grows with the deflection, or a stop
-
-
-def _switched_on(rig: Rig) -> tuple[Recipe, ...]:
-    within = {"hunt_crossley_damping.exponent": EXPONENTS}
-    scanned, fixed = {"exponent": 1.0}, {"reference_deflection": 1.0}
-    return (Recipe({"damping_coefficient": 0.01}, scanned=scanned, fixed=fixed, within=within),)
+SWITCHED_ON = Recipe(
+    {"damping_coefficient": 0.01},
+    scanned={"exponent": 1.0},
+    fixed={"reference_deflection": 1.0},
+    within={"hunt_crossley_damping.exponent": EXPONENTS},
+)
 
 
 class HuntCrossleyDamping(DampingForce):
@@ -34,7 +34,7 @@ class HuntCrossleyDamping(DampingForce):
     dissipative = True
     cause: ClassVar = Cause(
         "a damping force that grows with the deflection",
-        _switched_on,
+        (SWITCHED_ON,),
     )
 
     def damping_force(self, now: Moment, p: Values) -> Tensor:
