@@ -11,7 +11,8 @@ import torch
 
 from gear_damping.identification.oscillator import first_frequency
 from gear_damping.identification.output_error.least_squares import fit
-from gear_damping.identification.output_error.problem import FitRecord, FreeParameter, OutputErrorProblem
+from gear_damping.identification.output_error.problem import OutputErrorProblem
+from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.identification.output_error.uncertainty import covariance, interval
 from gear_damping.measurement.load import load_measurement
 from gear_damping.physics.catalogue import effect_class

@@ -27,9 +27,9 @@ def calibration_error(nominal: Outcome, evidence: Evidence, solver: Solver | Non
     found = problem.linearise(settled, problem.first_states().unsqueeze(0)).sensitivity[0]
     if not bool(found.isfinite().all()):
         return Scatter()
-    common = min(problem.n_common, nominal.problem.n_common)
+    common = min(problem.unknowns.n_common, nominal.problem.unknowns.n_common)
     beside = without_own(found[..., : problem.n_shared], own_basis(found, problem.n_shared)).flatten(0, 1)
-    basis = torch.linalg.qr(beside[:, problem.n_common :]).Q
+    basis = torch.linalg.qr(beside[:, problem.unknowns.n_common :]).Q
     sensitivity = beside[:, :common] - basis @ (basis.T @ beside[:, :common])
     samples = sum(len(piece.stacked) for piece in pieces)
     covariance = noise_covariance(nominal.problem, nominal.fitted)[:common, :common]

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.unexplained import shaft_of
-from gear_damping.identification.output_error.problem import FitRecord
+from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.measurement.record import Finding, Measurement
 from gear_damping.physics.systems.gear_pair import GearPair
 

@@ -10,9 +10,10 @@ from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Outcome, time_scale
 from gear_damping.explanation.rig_units import unit_of
 from gear_damping.explanation.significance import ac_energy
-from gear_damping.identification.output_error.problem import OFFSET, is_of_model, set_value
+from gear_damping.identification.output_error.problem import set_value
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.uncertainty import QUANTILE, covariance
+from gear_damping.identification.output_error.unknowns import OFFSET, is_of_model
 from gear_damping.physics.terms import DampingLaw
 from gear_damping.simulation.runs import reference_velocity
 
@@ -58,7 +59,7 @@ def parameters_of(outcome: Outcome, spread: Tensor, cause: str, evidence: Eviden
     that the fit has driven to its bound, it takes in what lies beyond.
     """
     found = {}
-    at_bound = outcome.problem.at_bound(outcome.fitted.shared)
+    at_bound = outcome.problem.unknowns.at_bound(outcome.fitted.shared)
     for place, parameter in enumerate(outcome.problem.free):
         effect, _, own = parameter.name.partition(".")
         if effect != cause:
@@ -98,7 +99,7 @@ def _interval(outcome: Outcome, spread: Tensor, place: int, evidence: Evidence, 
     known = outcome.hypothesis.model.parameters().get(parameter.declared_name)
     if known is not None:
         moved = float(outcome.fitted.prediction.sensitivity[..., place].norm())
-        at_bound = int(outcome.problem.at_bound(outcome.fitted.shared)[place])
+        at_bound = int(outcome.problem.unknowns.at_bound(outcome.fitted.shared)[place])
         silent = moved < SILENT * evidence.noise and not parameter.logarithmic
         lower = known.lower if silent or at_bound < 0 else ends[0]
         upper = known.upper if silent or at_bound > 0 else ends[1]
@@ -115,7 +116,7 @@ def damping_ratio(outcome: Outcome, spread: Tensor) -> dict[str, object] | None:
     problem, shared = outcome.problem, outcome.fitted.shared
     points = shared.repeat(len(shared) + 1, 1)
     points[1:] += STEP * torch.eye(len(shared), dtype=torch.float64)
-    ratios, velocity = _ratios(outcome, problem.parameters(points), len(points))
+    ratios, velocity = _ratios(outcome, problem.unknowns.parameters(points), len(points))
     if not bool(ratios.isfinite().all()):
         return None
     slope = (ratios[1:] - ratios[0]) / STEP

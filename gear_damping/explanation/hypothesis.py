@@ -10,9 +10,10 @@ from torch import Tensor
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.identification.output_error.holdout import predict_holdout
 from gear_damping.identification.output_error.least_squares import Fitted, fit
-from gear_damping.identification.output_error.problem import GAIN, OutputErrorProblem, growth, is_of_model
+from gear_damping.identification.output_error.problem import OutputErrorProblem, growth
 from gear_damping.identification.output_error.records import SEPARATOR, FitRecord, FreeParameter
 from gear_damping.identification.output_error.segments import Segments, in_segments, joined
+from gear_damping.identification.output_error.unknowns import GAIN, is_of_model
 from gear_damping.identification.time_scale import characteristic_time
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.base import System
@@ -161,7 +162,7 @@ def fit_hypothesis(
     if evidence.segments:  # short already, and begun from what was measured: another model's states lead astray
         begun, horizons = None, horizons and [None] * len(horizons)
     fitted = fit(problem, shared, horizons, iterations, begun, kept=kept, enough=enough * evidence.noise**2)
-    values = {name: float(value) for name, value in problem.parameters(fitted.shared).items()}
+    values = {name: float(value) for name, value in problem.unknowns.parameters(fitted.shared).items()}
     given = placed(hypothesis.given, values)
     free = tuple(_settled(p, values.get(p.name, p.start)) for p in hypothesis.free)
     gains = {name: value for name, value in values.items() if name.startswith(f"{GAIN}.")}
@@ -181,9 +182,9 @@ def _begin(
     if starts is None:
         starts = torch.zeros(1, len(hypothesis.common), dtype=torch.float64)
     begun = None if after is None else begun_from(problem, after, len(starts))
-    shared = problem.completed(starts)
+    shared = problem.unknowns.completed(starts)
     if after is not None:
-        shared = shared + problem.own_of(after.problem, after.fitted.shared)
+        shared = shared + own_from(problem, after)
     for place, parameter in enumerate(problem.free):
         if parameter.name in own:
             shared[:, place] = parameter.coordinate(own[parameter.name])
@@ -212,7 +213,7 @@ def _outcome(
     if begun and _is_astray(held.residuals, fitted, problem):  # another model's angles may lie in another valley
         anew = predict_holdout(settled.model, given, evidence.holdout, scale, **options)
         held = min(held, anew, key=lambda one: sum(float(r.square().sum()) for r in one.residuals))
-    residual = joined(fitted.prediction.residual[0], evidence.fitted, evidence.segments, len(problem.channels))
+    residual = joined(fitted.prediction.residual[0], evidence.fitted, evidence.segments, len(problem.response.channels))
     fit_residuals = [found / record.weight for found, record in zip(residual, evidence.fit, strict=True)]
     grown = max(held.growth, growth(fitted.prediction, problem.n_shared))
     return Outcome(settled, problem, fitted, found.values, held.residuals, fit_residuals, grown, held.own)
@@ -220,7 +221,7 @@ def _outcome(
 
 def _is_astray(held: Sequence[Tensor], fitted: Fitted, problem: OutputErrorProblem) -> bool:
     """Whether held-out records are predicted far worse than fitted ones are followed, per sample."""
-    count = sum(int((weights > 0).sum()) for weights in problem.weights)
+    count = sum(int((weights > 0).sum()) for weights in problem.response.weights)
     left = sum(float(residual.square().sum()) for residual in held) / sum(len(residual) for residual in held)
     return left > ASTRAY * fitted.cost / max(count, 1)
 
@@ -251,6 +252,11 @@ def begun_from(problem: OutputErrorProblem, after: Outcome, points: int) -> Tens
     if len(after.problem.records) != len(problem.records):
         return problem.first_states().repeat(points, 1, 1)
     return problem.states_of(after.problem, after.fitted.states).repeat(points, 1, 1)
+
+
+def own_from(problem: OutputErrorProblem, after: Outcome) -> Tensor:
+    """Coordinates of a problem, (n_shared,): gains and what single records have of their own as a fit found them."""
+    return problem.unknowns.own_of(after.problem.unknowns, after.fitted.shared)
 
 
 def _settled(parameter: FreeParameter, value: float) -> FreeParameter:

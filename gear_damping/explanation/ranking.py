@@ -7,9 +7,9 @@ import torch
 from torch import Tensor
 
 from gear_damping.explanation.candidates import Candidate
-from gear_damping.explanation.hypothesis import Outcome, begun_from
+from gear_damping.explanation.hypothesis import Outcome, begun_from, own_from
 from gear_damping.explanation.own_phases import by_record, start_by_record, start_of_teeth, teeth_of, turn_own_phases
-from gear_damping.identification.output_error.normal_equations import own_basis, without_own
+from gear_damping.explanation.statistics.projector import Projector
 from gear_damping.identification.output_error.problem import OutputErrorProblem, prepare_predictions
 from gear_damping.identification.output_error.records import DIFFERENCE, FreeParameter
 from gear_damping.simulation.solver_settings import Solver
@@ -47,49 +47,6 @@ class Score:
     variants: tuple[Candidate, ...] = ()
     failed: str = ""
     own: Mapping[str, float] = field(default_factory=dict)
-
-
-class Projector:
-    """Takes out of a signal what the free parameters of a fit could do.
-
-    A signal has the samples of the records one after another, and behind them one for each free parameter: what
-    is expected of it.
-    """
-
-    def __init__(self, sensitivity: Tensor, expected: Tensor, slope: Tensor) -> None:
-        """Prepare it.
-
-        Args:
-            sensitivity: (records, time, shared and own columns).
-            expected: Residuals of what is expected of the first shared parameters, (n,).
-            slope: Their slopes, (n,).
-        """
-        self.sensitivity, self.expected, self.slope = sensitivity, expected, slope
-        self.own = own_basis(sensitivity, len(slope))
-        shared = without_own(sensitivity[..., : len(slope)], self.own).flatten(0, 1)
-        jacobian = torch.cat([shared, torch.diag(slope)])
-        norms = jacobian.norm(dim=0).clamp(min=1e-300)
-        self.basis = torch.linalg.qr(jacobian / norms).Q
-
-    def __call__(self, signal: Tensor) -> Tensor:
-        """`signal` (samples + n, m) without its part in the span of the sensitivities."""
-        samples = len(signal) - len(self.slope)
-        rows = signal[:samples].reshape(*self.own.shape[:2], -1)
-        beside = torch.cat([without_own(rows, self.own).flatten(0, 1), signal[samples:]])
-        return beside - self.basis @ (self.basis.T @ beside)
-
-    @property
-    def nuisance(self) -> Tensor:
-        """Orthonormal columns of everything that is taken out, (samples + n, m)."""
-        rows = torch.block_diag(*self.own)
-        rows = rows[:, rows.norm(dim=0) > 0]
-        return torch.cat([torch.nn.functional.pad(rows, (0, 0, 0, len(self.slope))), self.basis], 1)
-
-    def beside_own(self, columns: Tensor) -> "Projector":
-        """With columns (records, time, l) more that every record has of its own."""
-        if not columns.shape[-1]:
-            return self
-        return Projector(torch.cat([self.sensitivity, columns], -1), self.expected, self.slope)
 
 
 def _projector(outcome: Outcome) -> Projector:
@@ -167,7 +124,8 @@ def _varied(group: Sequence[Candidate]) -> list[FreeParameter]:
 
 
 def _predicted(outcome: Outcome) -> Tensor:
-    return (outcome.problem.response * outcome.problem.weights - outcome.fitted.prediction.residual[0]).reshape(-1)
+    measured = outcome.problem.response.values * outcome.problem.response.weights
+    return (measured - outcome.fitted.prediction.residual[0]).reshape(-1)
 
 
 def _score_together(group: Sequence[Candidate], base: Base) -> list[Score]:
@@ -177,12 +135,12 @@ def _score_together(group: Sequence[Candidate], base: Base) -> list[Score]:
     problem = OutputErrorProblem(hypothesis.model, hypothesis.given, free, records, base.solver)
     probes = [_probes(candidate, len(hypothesis.common)) for candidate in group]
     points = torch.cat([_placed_at(rows, one, varied) for (rows, _), one in zip(probes, group, strict=True)])
-    points = problem.completed(points) + problem.own_of(base.outcome.problem, base.outcome.fitted.shared)
+    points = problem.unknowns.completed(points) + own_from(problem, base.outcome)
     counts = [len(rows) for rows, _ in probes]
     for candidate, rows in zip(group, points.split(counts), strict=True):
         turn_own_phases(rows, candidate, problem)
     states = begun_from(problem, base.outcome, len(points))
-    found = (problem.predict(points, states) * problem.weights).reshape(len(points), -1)
+    found = (problem.predict(points, states) * problem.response.weights).reshape(len(points), -1)
     columns = (found - base.predicted) / torch.cat([steps for _, steps in probes]).unsqueeze(1)
     apart = bool(group[0].own_phases or group[0].own_tooth)
     parts = [by_record(c, problem) if apart else c for c in columns.split(counts)]
@@ -220,7 +178,7 @@ def _score(candidate: Candidate, beside: Tensor, problem: OutputErrorProblem, st
     gain = 0.0 if _is_beyond(candidate, coefficients) else _gain(candidate, problem, states, beside, base)
     direction = explained / explained.norm().clamp(min=1e-300)
     if teeth is not None:
-        at = problem.own_of(base.outcome.problem, base.outcome.fitted.shared)
+        at = own_from(problem, base.outcome)
         start, own = start_of_teeth(candidate, teeth, problem, n_free, at)
     elif candidate.own_phases:
         start, own = start_by_record(candidate, coefficients, problem, n_free)
@@ -252,7 +210,7 @@ def _gain(candidate: Candidate, problem: OutputErrorProblem, states: Tensor, bes
     if candidate.presence:
         own = [i for i, p in enumerate(candidate.hypothesis.common) if p.name.startswith(candidate.name + ".")]
         places = [*own, *range(problem.n_shared + 2, problem.n_shared + len(problem.local))]
-        slopes = _slopes(problem, places, states, problem.own_of(base.outcome.problem, base.outcome.fitted.shared))
+        slopes = _slopes(problem, places, states, own_from(problem, base.outcome))
         project = project.beside_own(slopes[..., len(own) :])
         sizes = torch.nn.functional.pad(slopes[..., : len(own)].flatten(0, 1), (0, 0, 0, len(project.slope)))
         residual, beside = project(base.residual.unsqueeze(1))[:, 0], project(torch.cat([beside, sizes], 1))
@@ -267,7 +225,7 @@ def _slopes(problem: OutputErrorProblem, places: Sequence[int], states: Tensor, 
     moves = torch.zeros(len(places) + 1, problem.n_shared + len(problem.local), dtype=torch.float64)
     moves[range(1, len(moves)), places] = DIFFERENCE
     moved = states + moves[:, None, problem.n_shared :]
-    found = problem.predict(at + moves[:, : problem.n_shared], moved) * problem.weights
+    found = problem.predict(at + moves[:, : problem.n_shared], moved) * problem.response.weights
     return ((found[1:] - found[0]) / DIFFERENCE).permute(1, 2, 0)
 
 

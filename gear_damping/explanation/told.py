@@ -73,5 +73,5 @@ def _statistic(outcome: Outcome, change: Tensor, lags: list[int]) -> float:
     products = (change.reshape(residual.shape) * residual).unsqueeze(-1)
     coloured = sum(float(long_run(one, lag)) for one, lag in zip(products, lags, strict=True))
     energy = float(change.square().sum())
-    white = energy * float(residual.square().sum()) / max(float((outcome.problem.weights > 0).sum()), 1.0)
+    white = energy * float(residual.square().sum()) / max(float((outcome.problem.response.weights > 0).sum()), 1.0)
     return energy**2 / max(coloured, white, 1e-300)

@@ -220,7 +220,7 @@ class Bench:
             if parameter.name.startswith(fit.name + "."):
                 half = QUANTILE * float(spread[place, place].clamp(min=0).sqrt())
                 size = 1.0 if parameter.logarithmic else abs(float(parameter.value(shared[place])) / parameter.scale)
-                if half <= DETERMINED * size and not problem.at_bound(shared)[place]:
+                if half <= DETERMINED * size and not problem.unknowns.at_bound(shared)[place]:
                     return True
         return False
 

@@ -35,12 +35,13 @@ def unnamed_columns(outcome: Outcome, evidence: Evidence) -> dict[str, Tensor]:
     found = {}
     for family in families:
         width = max(row[family].shape[1] for row in by_row if family in row)
-        stacked = torch.zeros(len(by_row), len(problem.channels), problem.length, width, dtype=torch.float64)
+        shape = len(problem.response.channels), problem.response.length
+        stacked = torch.zeros(len(by_row), *shape, width, dtype=torch.float64)
         for place, row in enumerate(by_row):
             if family in row:
-                channel = problem.channels.index(problem.records[place].observed.name)
+                channel = problem.response.channels.index(problem.records[place].observed.name)
                 stacked[place, channel, : len(row[family])] = torch.as_tensor(row[family])
-        weighted = stacked.flatten(1, 2) * problem.weights.unsqueeze(-1)
+        weighted = stacked.flatten(1, 2) * problem.response.weights.unsqueeze(-1)
         found[family] = weighted.flatten(0, 1)
     return found
 

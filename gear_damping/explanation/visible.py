@@ -9,8 +9,9 @@ from torch import Tensor
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Outcome, natural_frequency_hz
 from gear_damping.explanation.noise import NoiseLevel
-from gear_damping.explanation.ranking import Projector, Score
+from gear_damping.explanation.ranking import Score
 from gear_damping.explanation.statistics.family_wise import Effect, Lines, Visible, block_numbers, family_wise
+from gear_damping.explanation.statistics.projector import Projector
 from gear_damping.explanation.statistics.whitening import Autoregression, autoregression
 from gear_damping.explanation.unnamed import unnamed_columns
 
@@ -44,13 +45,10 @@ class Random:
     correlation: float
     by_record: dict[str, float]
 
-
     def joined(self, noise: NoiseLevel) -> NoiseLevel:
         """The noise of every record, where the random part is larger than what was known of it."""
         typical = self.variance
-        levels = {
-            name: max(level, self.by_record.get(name, typical) ** 0.5) for name, level in noise.by_record.items()
-        }
+        levels = {name: max(level, self.by_record.get(name, typical) ** 0.5) for name, level in noise.by_record.items()}
         if levels == noise.by_record:
             return noise
         correlation = max(noise.correlation, self.correlation)
@@ -72,9 +70,7 @@ class Assessment:
     taken: float
 
 
-def assessed(
-    outcome: Outcome, scores: Sequence[Score], evidence: Evidence, families: bool = True
-) -> Assessment | None:
+def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, families: bool = True) -> Assessment | None:
     """What the residuals of the fitted records hold; None beside a model that runs away.
 
     Args:
@@ -96,7 +92,7 @@ def assessed(
     every = [*columns.values(), *(_orthonormal(project(c)) for c in unnamed.values())]
     beside = project(residual)
     left, taken = _without(beside, every)
-    random = _random(left[: problem.weights.numel(), 0], taken, outcome)
+    random = _random(left[: problem.response.weights.numel(), 0], taken, outcome)
     white = _Whitener(random, outcome)
     whitened = Projector(white(sensitivity.flatten(0, 1)).reshape(sensitivity.shape), *expected)
     seen = whitened(white.padded(residual))[:, 0]
@@ -109,15 +105,15 @@ def assessed(
     found = _tested(seen, effects, whitened, white, random, outcome)
     if found.visible:
         return found
-    return replace(found, random=_random(beside[: problem.weights.numel(), 0], 0.0, outcome))
+    return replace(found, random=_random(beside[: problem.response.weights.numel(), 0], 0.0, outcome))
 
 
 def _tested(
     seen: Tensor, effects: list[Effect], project: Projector, white: "_Whitener", random: Random, outcome: Outcome
 ) -> Assessment:
     """The test on whitened signals, (samples + n,)."""
-    problem, count = outcome.problem, outcome.problem.weights.numel()
-    rows = problem.weights.reshape(-1, problem.length)
+    problem, count = outcome.problem, outcome.problem.response.weights.numel()
+    rows = problem.response.weights.reshape(-1, problem.response.length)
     samples = float(white.used.sum())
     nuisance = project.nuisance
     bases = [e.columns for e in effects]
@@ -125,7 +121,7 @@ def _tested(
     degrees = max(samples - nuisance.shape[1] - taken, 1.0)
     variance = float(left.square().sum()) / degrees
     length = _block_length(seen[:count].reshape(rows.shape), outcome)
-    blocks = block_numbers([problem.length] * len(rows), length)
+    blocks = block_numbers([problem.response.length] * len(rows), length)
     blocks = torch.cat([blocks, torch.full((len(seen) - count,), int(blocks.max()) + 1)])
     lines = _lines(seen[:count].reshape(rows.shape), white.used, variance, outcome)
     visible = family_wise(seen, effects, blocks, variance, nuisance, lines)
@@ -139,7 +135,7 @@ class _Whitener:
 
     def __init__(self, random: Random, outcome: Outcome) -> None:
         self.random, self.problem = random, outcome.problem
-        weights = self.problem.weights.reshape(-1, self.problem.length)
+        weights = self.problem.response.weights.reshape(-1, self.problem.response.length)
         self.used = _valid(weights, max((law.order for law in random.laws), default=0))
 
     def __call__(self, signal: Tensor) -> Tensor:
@@ -154,7 +150,7 @@ class _Whitener:
 
     def padded(self, signal: Tensor) -> Tensor:
         """The same for a signal that has the residuals of what is expected behind its samples."""
-        count = self.problem.weights.numel()
+        count = self.problem.response.weights.numel()
         return torch.cat([self(signal[:count]), signal[count:]])
 
 
@@ -171,14 +167,14 @@ def _valid(weights: Tensor, order: int) -> Tensor:
 def _random(left: Tensor, taken: float, outcome: Outcome) -> Random:
     """The autoregressions of what is left beside everything that has a shape, (samples,)."""
     problem = outcome.problem
-    rows = left.reshape(-1, problem.length)
-    weights = problem.weights.reshape(-1, problem.length)
+    rows = left.reshape(-1, problem.response.length)
+    weights = problem.response.weights.reshape(-1, problem.response.length)
     keys: dict[object, int] = {}
-    groups = torch.full((len(problem.records), len(problem.channels)), -1)
+    groups = torch.full((len(problem.records), len(problem.response.channels)), -1)
     for place, record in enumerate(problem.records):
         for channel in record.channels:
             key = (channel.name, round(record.sampling_rate))
-            groups[place, problem.channels.index(channel.name)] = keys.setdefault(key, len(keys))
+            groups[place, problem.response.channels.index(channel.name)] = keys.setdefault(key, len(keys))
     flat, laws = groups.reshape(-1), []
     total = float((weights > 0).sum())
     for number in range(len(keys)):
@@ -192,8 +188,8 @@ def _random(left: Tensor, taken: float, outcome: Outcome) -> Random:
         own = [i for i, record in enumerate(problem.records) if record.record == name]
         squares, samples = 0.0, 0
         for i in own:
-            channel = problem.channels.index(problem.records[i].observed.name)
-            row = i * len(problem.channels) + channel
+            channel = problem.response.channels.index(problem.records[i].observed.name)
+            row = i * len(problem.response.channels) + channel
             kept = rows[row][weights[row] > 0] / problem.records[i].weight
             squares, samples = squares + float(kept.square().sum()), samples + len(kept)
             correlation.append(laws[int(flat[row])].correlation)
@@ -214,7 +210,7 @@ def _block_length(rows: Tensor, outcome: Outcome) -> list[int]:
     frequency, found = natural_frequency_hz(outcome.hypothesis.model, outcome.flat_given()), []
     for record in problem.records:
         longest = LONGEST_BLOCK * record.sampling_rate / max(frequency, 1e-9)
-        found += [max(1, round(min(CORRELATION_TIMES * correlated, longest)))] * len(problem.channels)
+        found += [max(1, round(min(CORRELATION_TIMES * correlated, longest)))] * len(problem.response.channels)
     return found
 
 

@@ -103,7 +103,7 @@ def fit_oscillator(
     fitted = _fitted(problem, spring, scale, report)
     if any(isfinite(parameter.deviation) for parameter in problem.free):
         fitted = _with_expectations(problem, fitted)
-    values = {name: float(value) for name, value in problem.parameters(fitted.shared).items()}
+    values = {name: float(value) for name, value in problem.unknowns.parameters(fitted.shared).items()}
     found = _estimates(problem, fitted, scale)
     given = problem.given | {p.name: values[p.name] for p in free}
     residuals = _fit_residuals(problem, fitted, fit_records, segments)
@@ -130,7 +130,7 @@ def fit_oscillator(
 
 def _with_expectations(problem: OutputErrorProblem, fitted: Fitted) -> Fitted:
     """The fit carried on with what is expected of parameters, weighed by the noise that the first one left."""
-    samples = max(float((problem.weights > 0).sum()), 1.0)
+    samples = max(float((problem.response.weights > 0).sum()), 1.0)
     problem.noise = float(fitted.prediction.residual.square().sum() / samples) ** 0.5
     return fit(problem, fitted.shared.unsqueeze(0), states=fitted.states.unsqueeze(0))
 
@@ -264,7 +264,7 @@ def _starts(problem: OutputErrorProblem, spring: bool, shifts: Sequence[float] =
 
 def _horizons(problem: OutputErrorProblem, scale: float) -> list[float | None]:
     rate, total = (f(record.sampling_rate for record in problem.records) for f in (min, max))
-    whole = problem.length / total
+    whole = problem.response.length / total
     return [p * scale for p in HORIZON_PERIODS if FEWEST_SAMPLES / rate <= p * scale < whole] + [None]
 
 
@@ -296,8 +296,8 @@ def _estimates(problem: OutputErrorProblem, fitted: Fitted, scale: float) -> dic
 def _fit_residuals(
     problem: OutputErrorProblem, fitted: Fitted, records: Sequence[FitRecord], segments: Segments
 ) -> dict[str, Tensor]:
-    left = fitted.prediction.residual[0] / problem.weights.clamp(min=1e-300)
-    whole = joined(left, covered(records, segments), segments, len(problem.channels))
+    left = fitted.prediction.residual[0] / problem.response.weights.clamp(min=1e-300)
+    whole = joined(left, covered(records, segments), segments, len(problem.response.channels))
     return {record.name: found for record, found in zip(records, whole, strict=True)}
 
 

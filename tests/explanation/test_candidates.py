@@ -11,7 +11,8 @@ from gear_damping.explanation.candidates import candidates_for, restored
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.hypothesis import Hypothesis
 from gear_damping.explanation.rig import rig_of, strongest_orders
-from gear_damping.identification.output_error.problem import FitRecord, FreeParameter, OutputErrorProblem
+from gear_damping.identification.output_error.problem import OutputErrorProblem
+from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.measurement.record import Channel
 from gear_damping.physics.catalogue import builtin_effects
 from gear_damping.physics.cause import Cause, Recipe

@@ -5,7 +5,7 @@ import torch
 from gear_damping.explanation.evidence import Evidence
 from gear_damping.explanation.gain import parameters_of, spread_of
 from gear_damping.explanation.hypothesis import Hypothesis, fit_hypothesis
-from gear_damping.identification.output_error.problem import FitRecord, FreeParameter
+from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.physics.catalogue import effect_class
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.gear_pair import GearPair

@@ -40,7 +40,7 @@ def fitted(record, free, start=None, iterations=20, **given):
     problem = OutputErrorProblem(MODEL, {"stiffness": STIFFNESS, "amplitude": 0.05} | given, free, [record])
     first = torch.zeros(1, len(free), dtype=torch.float64) if start is None else torch.tensor([start]).double()
     found = fit(problem, first, iterations=iterations, enough=1e-12)
-    return found, {name: float(value) for name, value in problem.parameters(found.shared).items()}
+    return found, {name: float(value) for name, value in problem.unknowns.parameters(found.shared).items()}
 
 
 def test_a_parameter_that_begins_far_beyond_its_bound_comes_back():

@@ -132,7 +132,7 @@ def test_a_secant_update_says_what_the_step_has_shown_and_keeps_every_other_dire
 
 
 def test_an_offset_of_one_record_is_left_alone_by_the_others():
-    found = problem_of().reach
+    found = problem_of().unknowns.reach
     assert found.shape == (2, len(FREE))
     problem = problem_of()
     own = FreeParameter("amplitude", 0.05, per_record=True)

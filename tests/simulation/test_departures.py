@@ -8,7 +8,8 @@ from scipy.integrate import solve_ivp
 
 from gear_damping.errors import InputError
 from gear_damping.identification.output_error.least_squares import fit
-from gear_damping.identification.output_error.problem import FitRecord, OutputErrorProblem
+from gear_damping.identification.output_error.problem import OutputErrorProblem
+from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.physics.effects.bearing_flexibility import BearingFlexibility
 from gear_damping.physics.effects.fourier_mesh_stiffness import FourierMeshStiffness
 from gear_damping.physics.model import Model

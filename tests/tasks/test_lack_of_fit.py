@@ -8,7 +8,7 @@ import pytest
 import torch
 from scipy.integrate import solve_ivp
 
-from gear_damping.identification.output_error.problem import FitRecord
+from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.measurement.record import Channel
 from gear_damping.tasks.command import main
 from gear_damping.tasks.lack_of_fit import lack_of_fit

@@ -7,8 +7,9 @@ import torch
 from torch import Tensor
 
 from gear_damping.identification.output_error.normal_equations import own_basis, without_own
-from gear_damping.identification.output_error.problem import OutputErrorProblem, is_of_model
+from gear_damping.identification.output_error.problem import OutputErrorProblem
 from gear_damping.identification.output_error.records import SEPARATOR, FitRecord
+from gear_damping.identification.output_error.unknowns import is_of_model
 from gear_damping.physics.model import Model
 
 MESH_PHASE = "mesh_phase"
@@ -18,7 +19,7 @@ STARTS = 18  # angles that are tried where a parameter asks for no more, 20 degr
 
 def angle_bases(problem: OutputErrorProblem) -> list[str]:
     """Names of the angles that single records have of their own."""
-    bases = (p.name.partition(SEPARATOR) for p in problem.free[problem.n_common :])
+    bases = (p.name.partition(SEPARATOR) for p in problem.free[problem.unknowns.n_common :])
     return list(dict.fromkeys(base for base, _, _ in bases if base.endswith("phase")))
 
 
@@ -75,7 +76,7 @@ def harmonics_to_resonance(
 def _costs(problem: OutputErrorProblem, starts: Tensor, tried: Sequence[int], horizon: float | None) -> Tensor:
     """Sum of squares by start and record, (starts, records), beside what the record's own start and zero can do."""
     states = problem.first_states().unsqueeze(0)
-    own = [i for i in range(problem.n_common, problem.n_shared) if i not in set(tried)]
+    own = [i for i in range(problem.unknowns.n_common, problem.n_shared) if i not in set(tried)]
     rows = []
     for start in starts:  # one at a time: the sensitivities of all would be large
         prediction = problem.linearise(start.unsqueeze(0), states, horizon, own)

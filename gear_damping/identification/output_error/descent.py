@@ -118,7 +118,7 @@ class Descent:
 
     def _moves(self, old: Points, new: Points) -> Tensor:
         """Change of every column's coordinate, by record, (starts, records, columns)."""
-        shared = (new.shared - old.shared).unsqueeze(1) * self.problem.reach
+        shared = (new.shared - old.shared).unsqueeze(1) * self.problem.unknowns.reach
         return torch.cat([shared, new.states - old.states], -1)
 
     def _carry(self, places: Tensor, missed: Tensor, moves: Tensor) -> None:
@@ -148,8 +148,8 @@ def _step(problem: OutputErrorProblem, points: Points, now: Prediction, damping:
     expected, slope = problem.expectation(points.shared)
     matrix, pull = equations.shared + torch.diag(slope.square()), equations.pull + slope * expected
     equations = replace(equations, shared=matrix, pull=pull)
-    free = problem.at_bound(points.shared) * pull <= 0
+    free = problem.unknowns.at_bound(points.shared) * pull <= 0
     shared, own = equations.only(free).step(damping)
-    longest = LONGEST_STEP * torch.where(problem.logarithmic, 1.0, points.shared.abs().clamp(min=1))
+    longest = LONGEST_STEP * torch.where(problem.unknowns.logarithmic, 1.0, points.shared.abs().clamp(min=1))
     shared, own = shared.clamp(-longest, longest), own.clamp(-LONGEST_STEP, LONGEST_STEP)
-    return Points(problem.within(points.shared + shared), points.states + own)
+    return Points(problem.unknowns.within(points.shared + shared), points.states + own)

@@ -73,13 +73,13 @@ def predict_holdout(
     # so short a stretch tells nothing of an angle, which would leave the valley that it was begun in
     horizons = [None] if angle_bases(problem) else [FIRST_PERIODS * characteristic_s, None]
     found = fit(problem, starts, horizons, (FIRST_ITERATIONS, LAST_ITERATIONS)[-len(horizons) :])
-    prediction, weights = found.prediction, problem.weights.clamp(min=1e-300)
+    prediction, weights = found.prediction, problem.response.weights.clamp(min=1e-300)
     left = prediction.residual[0] / weights
     beside = _beside_own(prediction, problem.n_shared) / weights
-    counted = (problem.weights > 0).double()
-    kept, channels = covered(records, segments), len(problem.channels)
-    whole = [joined(series * counted, kept, segments, channels) for series in (problem.response - left, beside)]
-    values = {name: float(value) for name, value in problem.parameters(found.shared).items()}
+    counted = (problem.response.weights > 0).double()
+    kept, channels = covered(records, segments), len(problem.response.channels)
+    whole = [joined(series * counted, kept, segments, channels) for series in (problem.response.values - left, beside)]
+    values = {name: float(value) for name, value in problem.unknowns.parameters(found.shared).items()}
     return HeldOut(*whole, growth(prediction, problem.n_shared), values)
 
 

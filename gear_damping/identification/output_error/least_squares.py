@@ -44,7 +44,7 @@ def fit(
     """
     if states is None:
         states = problem.first_states().expand(shared.shape[0], -1, -1).clone()
-    points = Points(problem.within(problem.completed(shared)), states)
+    points = Points(problem.unknowns.within(problem.unknowns.completed(shared)), states)
     rounds = list(horizons or [None])
     most = [iterations] * len(rounds) if isinstance(iterations, int) else iterations
     for number, horizon in enumerate(rounds):

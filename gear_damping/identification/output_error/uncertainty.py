@@ -33,7 +33,7 @@ def covariance(problem: OutputErrorProblem, fitted: Fitted, correlated_s: float)
     lags = [round(correlated_s * record.sampling_rate) for record in problem.records]
     meat = sum(long_run(one, lag) for one, lag in zip(scores, lags, strict=True))
     parameters = problem.n_shared + len(problem.records) * len(problem.local)
-    samples = float((problem.weights > 0).sum())
+    samples = float((problem.response.weights > 0).sum())
     sandwich = inverse @ meat @ inverse * samples / max(samples - parameters, 1.0)
     plain = inverse * residual.square().sum() / max(samples - parameters, 1.0)
     wide = torch.maximum(sandwich.diagonal(), plain.diagonal()) / sandwich.diagonal().clamp(min=1e-300)

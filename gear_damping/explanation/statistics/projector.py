@@ -1,0 +1,49 @@
+"""What a signal holds beside everything that the free parameters of a fit could do."""
+
+import torch
+from torch import Tensor
+
+from gear_damping.identification.output_error.normal_equations import own_basis, without_own
+
+
+class Projector:
+    """Takes out of a signal what the free parameters of a fit could do.
+
+    A signal has the samples of the records one after another, and behind them one for each free parameter: what
+    is expected of it.
+    """
+
+    def __init__(self, sensitivity: Tensor, expected: Tensor, slope: Tensor) -> None:
+        """Prepare it.
+
+        Args:
+            sensitivity: (records, time, shared and own columns).
+            expected: Residuals of what is expected of the first shared parameters, (n,).
+            slope: Their slopes, (n,).
+        """
+        self.sensitivity, self.expected, self.slope = sensitivity, expected, slope
+        self.own = own_basis(sensitivity, len(slope))
+        shared = without_own(sensitivity[..., : len(slope)], self.own).flatten(0, 1)
+        jacobian = torch.cat([shared, torch.diag(slope)])
+        norms = jacobian.norm(dim=0).clamp(min=1e-300)
+        self.basis = torch.linalg.qr(jacobian / norms).Q
+
+    def __call__(self, signal: Tensor) -> Tensor:
+        """`signal` (samples + n, m) without its part in the span of the sensitivities."""
+        samples = len(signal) - len(self.slope)
+        rows = signal[:samples].reshape(*self.own.shape[:2], -1)
+        beside = torch.cat([without_own(rows, self.own).flatten(0, 1), signal[samples:]])
+        return beside - self.basis @ (self.basis.T @ beside)
+
+    @property
+    def nuisance(self) -> Tensor:
+        """Orthonormal columns of everything that is taken out, (samples + n, m)."""
+        rows = torch.block_diag(*self.own)
+        rows = rows[:, rows.norm(dim=0) > 0]
+        return torch.cat([torch.nn.functional.pad(rows, (0, 0, 0, len(self.slope))), self.basis], 1)
+
+    def beside_own(self, columns: Tensor) -> "Projector":
+        """With columns (records, time, l) more that every record has of its own."""
+        if not columns.shape[-1]:
+            return self
+        return Projector(torch.cat([self.sensitivity, columns], -1), self.expected, self.slope)
