@@ -137,5 +137,5 @@ def test_an_offset_of_one_record_is_left_alone_by_the_others():
     problem = problem_of()
     own = FreeParameter("amplitude", 0.05, per_record=True)
     apart = OutputErrorProblem(MODEL, {}, [*FREE, own], problem.records)
-    assert apart.reach[:, -2:].tolist() == [[1.0, 0.0], [0.0, 1.0]]
-    assert math.isclose(float(apart.reach[:, :-2].min()), 1.0)
+    assert apart.unknowns.reach[:, -2:].tolist() == [[1.0, 0.0], [0.0, 1.0]]
+    assert math.isclose(float(apart.unknowns.reach[:, :-2].min()), 1.0)

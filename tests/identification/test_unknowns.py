@@ -23,8 +23,8 @@ def records():
 
 
 def test_parameters_come_first_then_gains_then_what_records_have_of_their_own(records):
-    uncertain = replace(records[0], observed=Observed(gain_uncertainty=0.05))
-    found = Unknowns([FREQUENCY, PHASE], [uncertain, *records[1:]], offsets=OFFSETS)
+    uncertain = [replace(one, observed=Observed(gain_uncertainty=0.05)) for one in records]
+    found = Unknowns([FREQUENCY, PHASE], uncertain, offsets=OFFSETS)
     names = [parameter.name for parameter in found.free]
     assert names[:2] == ["natural_frequency", "gain.displacement"]
     assert names[2:4] == ["mesh_phase@one", "mesh_phase@two"]
