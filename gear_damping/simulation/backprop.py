@@ -15,7 +15,7 @@ from gear_damping.physics.model import Model
 from gear_damping.simulation.integrate import groups_of, initial_states
 from gear_damping.simulation.kernel import Kernel, Members
 from gear_damping.simulation.layout import Layout
-from gear_damping.simulation.series import Series
+from gear_damping.simulation.series import Series, SharedSeries
 from gear_damping.simulation.simulate import input_units, true_inputs
 from gear_damping.simulation.solver_settings import Solver
 from gear_damping.simulation.stepper import Stepper
@@ -85,7 +85,8 @@ class _GraphStepper(Stepper):
 
 def _displacement(kernel: Kernel, fixed: Tensor, series: Tensor, state: Tensor, substeps: int, block: int) -> Tensor:
     """The first state in natural units, (batch, time)."""
-    stepper, intervals = _GraphStepper(kernel, fixed, series, compiled=False), len(series)
+    stepper = _GraphStepper(kernel, fixed, SharedSeries.written_out(series), compiled=False)
+    intervals = len(series)
     with torch.no_grad():
         stepper.start(state)
 

@@ -13,6 +13,7 @@ from gear_damping.simulation.native.source import kernel_source, vectors_of
 from gear_damping.simulation.native.stepper import NativeStepper
 from gear_damping.simulation.native.structure import structure_of
 from gear_damping.simulation.native.trace import UntraceableError
+from gear_damping.simulation.series import SharedSeries
 from gear_damping.simulation.solver_settings import Engine
 from gear_damping.simulation.stepper import Stepper
 
@@ -29,7 +30,7 @@ class Choice:
     kernel_library: ctypes.CDLL | None = None
     lanes: int = 1
 
-    def stepper(self, kernel: Kernel, fixed: Tensor, series: Tensor) -> Stepper:
+    def stepper(self, kernel: Kernel, fixed: Tensor, series: SharedSeries) -> Stepper:
         """A stepper for one batch."""
         if self.kernel_library is not None:
             return NativeStepper(kernel, fixed, series, self.kernel_library, self.lanes)

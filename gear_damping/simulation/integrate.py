@@ -42,7 +42,7 @@ def integrate(
     """
     layout, series = Layout(prepared), Series(tuple(sorted(inputs)))
     fixed, start = layout.pack(prepared, interval), initial_states(model, prepared, departures)
-    packed = series.pack(inputs, units, n_samples - 1, interval.shape[0], held).to(fixed.device)
+    packed = series.shared(inputs, units, n_samples - 1, interval.shape[0], held).to(fixed.device)
     example = Members(fixed, packed[0], fixed.new_zeros(()))
     kernel = kernel_of(model, layout, series, example, start)
     choice = choose(solver.engine, kernel, example, start)
@@ -53,7 +53,7 @@ def integrate(
     work, done = sum(n * len(lanes) for n, lanes in groups), 0
     for n, lanes in groups:
         whole = len(groups) == 1
-        some = (fixed, packed) if whole else (fixed[:, lanes].contiguous(), packed[:, :, lanes].contiguous())
+        some = (fixed, packed) if whole else (fixed[:, lanes].contiguous(), packed.of(lanes))
         stepper = choice.stepper(kernel, *some)
         stepper.acceleration = start.new_empty(len(lanes), n_samples) if acceleration else None
         share = _share(progress, done, n * len(lanes), work)

@@ -17,7 +17,7 @@ from gear_damping.simulation.compilation import choose
 from gear_damping.simulation.integrate import groups_of, initial_states, kernel_of, solve
 from gear_damping.simulation.kernel import Kernel, Members
 from gear_damping.simulation.layout import Layout
-from gear_damping.simulation.series import Series
+from gear_damping.simulation.series import Series, SharedSeries
 from gear_damping.simulation.simulate import input_units, true_inputs
 from gear_damping.simulation.solver_settings import Solver
 
@@ -182,7 +182,8 @@ def _integrated(
     intervals = packed.shape[0]
     states = start.new_empty(*start.shape, intervals + 1)
     for n, lanes in groups_of(prepared, fixed[0], intervals, solver):
-        stepper = choice.stepper(kernel, fixed[:, lanes].contiguous(), packed[:, :, lanes].contiguous())
+        own = SharedSeries.written_out(packed[:, :, lanes])
+        stepper = choice.stepper(kernel, fixed[:, lanes].contiguous(), own)
         states[:, lanes] = solve(stepper, start[:, lanes], intervals + 1, n, None)
     return states
 

@@ -8,6 +8,8 @@ controller puts out in steps.
 """
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import lcm
 
 import numpy as np
 import torch
@@ -21,6 +23,46 @@ _KEPT = "_gear_damping_coefficients"  # attribute of a series
 POINTS = 4  # sub-intervals of an output interval at which the sinc interpolation is taken
 MARGIN = 32  # samples of odd reflection beyond each end, which the sinc interpolation needs
 _TO_COEFFICIENTS = torch.tensor(np.linalg.inv(np.vander(np.linspace(0, 1, POINTS + 1), increasing=True)))
+
+
+@dataclass(frozen=True)
+class SharedSeries:
+    """Coefficients of inputs that members of a batch have in common.
+
+    A fit simulates every record a hundred times at once, with the same inputs in units that differ by member: written
+    out for every member they would fill the memory again and again.
+
+    Args:
+        coefficients: As recorded, (intervals, rows, sources).
+        source: Which of them drives a member, (batch,).
+        factor: One over each member's natural unit, (rows, batch).
+    """
+
+    coefficients: Tensor
+    source: Tensor
+    factor: Tensor
+
+    def __len__(self) -> int:
+        """Output intervals."""
+        return len(self.coefficients)
+
+    def __getitem__(self, interval: int) -> Tensor:
+        """What drives every member in one interval, natural units, (rows, batch)."""
+        return self.coefficients[interval][:, self.source] * self.factor
+
+    def of(self, lanes: Tensor) -> "SharedSeries":
+        """That of some members."""
+        return replace(self, source=self.source[lanes], factor=self.factor[:, lanes].contiguous())
+
+    def to(self, device: torch.device) -> "SharedSeries":
+        """On a device."""
+        return SharedSeries(self.coefficients.to(device), self.source.to(device), self.factor.to(device))
+
+    @classmethod
+    def written_out(cls, packed: Tensor) -> "SharedSeries":
+        """From natural units of every member, (intervals, rows, batch)."""
+        own = torch.arange(packed.shape[2], device=packed.device)
+        return cls(packed.contiguous(), own, packed.new_ones(packed.shape[1:]))
 
 
 class Series:
@@ -52,17 +94,27 @@ class Series:
             batch: Members, a multiple of the rows.
             held: Names of those that stay at a sample's value until the next one.
         """
-        packed = torch.empty(intervals, sum(self.heights), batch, dtype=torch.float64)
-        row = 0
+        shared = self.shared(inputs, units, intervals, batch, held)
+        return shared.coefficients[..., shared.source] * shared.factor
+
+    def shared(
+        self,
+        inputs: Mapping[str, Tensor],
+        units: Mapping[str, Tensor],
+        intervals: int,
+        batch: int,
+        held: Collection[str] = (),
+    ) -> SharedSeries:
+        """The same with what members have in common written once; arguments as for `pack`."""
+        sources = lcm(*(len(inputs[name]) for name in self.names))
+        parts, factors = [torch.empty(intervals, 0, sources, dtype=torch.float64)], []
         for name, height in zip(self.names, self.heights, strict=True):
-            found = _kept_coefficients(name, inputs[name].to(torch.float64), name in held).permute(1, 0, 2).unsqueeze(2)
-            rows = packed[:, row : row + height].unflatten(2, (-1, found.shape[-1]))
-            if name in units:
-                torch.div(found, units[name].reshape(-1, found.shape[-1]), out=rows)
-            else:
-                rows.copy_(found)
-            row += height
-        return packed
+            found = _kept_coefficients(name, inputs[name].to(torch.float64), name in held).permute(1, 0, 2)
+            parts.append(found.repeat(1, 1, sources // found.shape[-1]))
+            unit = units.get(name, torch.ones(batch, dtype=torch.float64))
+            factors.append((1 / unit.to(torch.float64)).expand(height, batch))
+        factor = torch.cat(factors) if factors else torch.empty(0, batch, dtype=torch.float64)
+        return SharedSeries(torch.cat(parts, 1), torch.arange(batch) % sources, factor)
 
     def at(self, rows: Tensor, u: Tensor, interval: Tensor) -> dict[str, Tensor]:
         """Every input at position `u` (0…1) of the interval whose rows these are."""

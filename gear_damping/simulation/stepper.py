@@ -7,6 +7,7 @@ from torch import Tensor
 
 from gear_damping.simulation.kernel import Kernel, Members
 from gear_damping.simulation.layout import INTERVAL_ROW
+from gear_damping.simulation.series import SharedSeries
 
 MOST_SPLITS = 8  # of one sub-step; a lane that grazes a corner more often keeps its branch to the end
 REPORT_EVERY = 16  # output intervals
@@ -23,13 +24,13 @@ class Stepper:
     lane_multiple = 4  # gathered lanes come in multiples of this, whole vector registers
     acceleration: Tensor | None = None
 
-    def __init__(self, kernel: Kernel, fixed: Tensor, series: Tensor, compiled: bool) -> None:
+    def __init__(self, kernel: Kernel, fixed: Tensor, series: SharedSeries, compiled: bool) -> None:
         """Prepare a batch.
 
         Args:
             kernel: The model's steps.
             fixed: Packed parameters, (rows, batch).
-            series: Packed inputs, (intervals, rows, batch).
+            series: Packed inputs of the batch.
             compiled: Whether each sub-step runs as one fused kernel.
         """
         self.kernel, self.fixed, self.series = kernel, fixed, series
@@ -42,7 +43,7 @@ class Stepper:
     def members(self, index: int) -> Members:
         """Everything about the batch during output interval `index`."""
         self._index.fill_(index)
-        rows = self.series[min(index, self.series.shape[0] - 1)]
+        rows = self.series[min(index, len(self.series) - 1)]
         return Members(self.fixed, rows, self._index)
 
     def start(self, state: Tensor) -> None:

@@ -12,6 +12,7 @@ from gear_damping.physics.systems.oscillator import Oscillator
 from gear_damping.simulation.inspect import forces_of
 from gear_damping.simulation.series import ANGLE, ANGLE_RATE, Series, continued
 from gear_damping.simulation.simulate import simulate
+from gear_damping.simulation.solver_settings import Solver
 
 
 def test_a_band_limited_input_between_its_samples():
@@ -91,6 +92,37 @@ def test_a_shorter_series_is_continued_as_it_is_interpolated_alone(length):
         for name, value in expected.items():
             torch.testing.assert_close(found[name], value, rtol=1e-5, atol=0)
     assert len(continued(torch.ones(1), 3)) == 3
+
+
+def test_members_share_the_series_of_their_record_in_their_own_units():
+    """Five members of two records, written out by hand and shared."""
+    torques = torch.stack([torch.linspace(1, 2, 9), torch.linspace(5, 3, 9)]).double()
+    series, units = Series(("pinion_torque",)), torch.tensor([1.0, 2.0, 4.0, 0.5, 0.25, 8.0], dtype=torch.float64)
+    shared = series.shared({"pinion_torque": torques}, {"pinion_torque": units}, 8, 6)
+    assert shared.coefficients.shape[2] == 2
+    written = torques.repeat(3, 1) / units.unsqueeze(1)
+    expected = series.pack({"pinion_torque": written}, {}, 8, 6)
+    for interval in (0, 3, 7):
+        torch.testing.assert_close(shared[interval], expected[interval], rtol=1e-12, atol=1e-12)
+    some = torch.tensor([4, 1])
+    torch.testing.assert_close(shared.of(some)[5], expected[5][:, some], rtol=1e-12, atol=1e-12)
+
+
+@pytest.mark.parametrize("engine", ["native", "eager"])
+def test_a_member_moves_as_its_own_record_drives_it(engine):
+    """Beside others of another record, and other units, as alone."""
+    model = Model(Oscillator(), [effect_class("viscous_damping")()])
+    forces = torch.stack([torch.sin(torch.arange(200) / 5), torch.cos(torch.arange(200) / 9)]).double()
+    run = {"sampling_rate": 100.0, "n_samples": 200, "solver": Solver(engine=engine)}
+    values = model.values(6)
+    values["stiffness"] = 400.0 * torch.linspace(0.7, 1.9, 6, dtype=torch.float64)
+    together = simulate(model, values, inputs={"force": forces}, **run)
+    for member in range(6):
+        own = {name: value[..., member : member + 1] for name, value in values.items()}
+        alone = simulate(model, own, inputs={"force": forces[member % 2 : member % 2 + 1]}, **run)
+        torch.testing.assert_close(
+            together.states["displacement"][member], alone.states["displacement"][0], rtol=1e-10, atol=1e-16
+        )
 
 
 def test_an_even_rotation_is_exact():

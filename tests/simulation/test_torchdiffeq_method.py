@@ -8,7 +8,7 @@ from torchdiffeq import odeint
 from gear_damping.simulation import torchdiffeq_method
 from gear_damping.simulation.integrate import Members, initial_states, kernel_of
 from gear_damping.simulation.layout import Layout
-from gear_damping.simulation.series import Series
+from gear_damping.simulation.series import Series, SharedSeries
 from gear_damping.simulation.simulate import simulate
 from gear_damping.simulation.solver_settings import Solver
 from gear_damping.simulation.stepper import Stepper
@@ -23,7 +23,7 @@ def stepper(bench_model):
     fixed, start = layout.pack(prepared, interval), initial_states(model, prepared)
     empty = fixed.new_zeros(50, 0, 3)
     kernel = kernel_of(model, layout, series, Members(fixed, empty[0], fixed.new_zeros(())), start)
-    return Stepper(kernel, fixed, empty, compiled=False), start, prepared
+    return Stepper(kernel, fixed, SharedSeries.written_out(empty), compiled=False), start, prepared
 
 
 def test_dopri5_of_torchdiffeq_agrees_before_the_first_impact(stepper, bench_model):

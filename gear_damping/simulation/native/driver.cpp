@@ -4,7 +4,8 @@
 // switches.
 
 struct Block {
-  vd P[N_FIXED + 1], S[N_SERIES + 1], L[N_SWITCH + 1], Q[N_KEPT + 1];
+  vd P[N_FIXED + 1], S[N_SERIES + 1], L[N_SWITCH + 1], Q[N_KEPT + 1], factor[N_SERIES + 1];
+  long source[WIDTH];
   double index;
 };
 
@@ -195,6 +196,21 @@ static inline vd load(const double* rows, long lanes, long row, long lane) {
   return v;
 }
 
+// Which series drive the lanes of a vector, and what they are multiplied with.
+static inline void choose_series(Block& b, const long* source, const double* factor, long lanes, long lane) {
+  for (int l = 0; l < WIDTH; ++l) b.source[l] = source[lane + l < lanes ? lane + l : lanes - 1];
+  for (int i = 0; i < N_SERIES; ++i) b.factor[i] = load(factor, lanes, i, lane);
+}
+
+// Those series in the interval whose rows (N_SERIES, sources) these are.
+static inline void drive(Block& b, const double* rows, long sources) {
+  for (int i = 0; i < N_SERIES; ++i) {
+    vd v;
+    for (int l = 0; l < WIDTH; ++l) v[l] = rows[i * sources + b.source[l]];
+    b.S[i] = v * b.factor[i];
+  }
+}
+
 static inline void store(double* rows, long lanes, long row, long lane, vd v) {
   for (int l = 0; l < WIDTH && lane + l < lanes; ++l) rows[row * lanes + lane + l] = v[l];
 }
@@ -215,13 +231,13 @@ __attribute__((noinline)) static vd acceleration_of(const vd* y, const Block& b)
   return out[1] / b.P[0];
 }
 
-// fixed (N_FIXED, lanes); series (intervals, N_SERIES, lanes); state (N_STATE, lanes) and branch
-// (N_SWITCH, lanes) are read and left at the last interval; out (N_STATE, lanes, length) gets `count` outputs.
+// fixed (N_FIXED, lanes); series (intervals, N_SERIES, sources), of which source (lanes) drives each lane times factor
+// (N_SERIES, lanes); state (N_STATE, lanes) and branch (N_SWITCH, lanes) are read and left at the last interval; out (N_STATE, lanes, length) gets `count` outputs.
 // acceleration (lanes, length), where not null, gets the rate of the velocity at the same outputs.
 // Lanes `from` to `to` are whole groups of VECTORS vectors, but for the last ones of all.
-extern "C" void walk(long lanes, long from, long to, long first, long count, long substeps, long length,
-                     const double* fixed, const double* series, double* state, double* branch, double* out,
-                     double* acceleration) {
+extern "C" void walk(long lanes, long from, long to, long first, long count, long substeps, long length, long sources,
+                     const double* fixed, const double* series, const long* source, const double* factor,
+                     double* state, double* branch, double* out, double* acceleration) {
   const double part = 1.0 / double(substeps);
   for (long group = from; group < to; group += WIDTH * VECTORS) {
     Block b[VECTORS];
@@ -232,12 +248,12 @@ extern "C" void walk(long lanes, long from, long to, long first, long count, lon
       for (int i = 0; i < N_STATE; ++i) y[m][i] = load(state, lanes, i, lane);
       for (int w = 0; w < N_SWITCH; ++w) b[m].L[w] = load(branch, lanes, w, lane);
       setup(b[m].P, b[m].Q);
+      choose_series(b[m], source, factor, lanes, lane);
     }
     for (long n = 0; n < count; ++n) {
       for (int m = 0; m < VECTORS; ++m) {
         b[m].index = double(first + n);
-        const long row = (first + n) * N_SERIES;
-        for (int i = 0; i < N_SERIES; ++i) b[m].S[i] = load(series, lanes, row + i, group + m * WIDTH);
+        drive(b[m], series + (first + n) * N_SERIES * sources, sources);
       }
       for (long s = 0; s < substeps; ++s) substep(y, vd{} + double(s) * part, vd{} + part, b);
       const int place = n % TILE;

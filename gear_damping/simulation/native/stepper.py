@@ -10,6 +10,7 @@ from itertools import pairwise
 import torch
 from torch import Tensor
 
+from gear_damping.simulation.series import SharedSeries
 from gear_damping.simulation.stepper import Stepper
 
 BLOCK = 128  # output intervals between two reports of progress
@@ -18,15 +19,16 @@ BLOCK = 128  # output intervals between two reports of progress
 class NativeStepper(Stepper):
     """Walks a batch with a compiled kernel; lanes are shared out over PyTorch's number of threads."""
 
-    def __init__(self, kernel: object, fixed: Tensor, series: Tensor, library: ctypes.CDLL, lanes: int) -> None:
+    def __init__(self, kernel: object, fixed: Tensor, series: SharedSeries, library: ctypes.CDLL, lanes: int) -> None:
         """Prepare a batch; arguments as for `Stepper`, and the kernel's library with the lanes it steps together."""
         super().__init__(kernel, fixed, series, compiled=False)
         self.kernel_library, self.group = library, lanes
 
     def run(self, state: Tensor, out: Tensor, substeps: int, report: Callable[[int], None]) -> None:
         """Fill `out` (intervals, n_state, batch), contiguous in time, with the state after each interval."""
-        state, series = state.clone().contiguous(), self.series.contiguous()
-        fixed, locked = self.fixed.contiguous(), self.locked.contiguous()
+        state, fixed, locked = state.clone().contiguous(), self.fixed.contiguous(), self.locked.contiguous()
+        coefficients, source = self.series.coefficients.contiguous(), self.series.source.contiguous()
+        driven, sources = (coefficients, source, self.series.factor.contiguous()), coefficients.shape[2]
         lanes, total, length = fixed.shape[1], out.shape[0], out.stride(2)
         if out.stride() != (1, lanes * length, length):
             raise ValueError("out must be a view of (n_state, batch, time) in memory: permute it")
@@ -35,8 +37,8 @@ class NativeStepper(Stepper):
         for first in range(0, total, BLOCK):
             count = min(BLOCK, total - first)
             now = None if rates is None else rates[:, first + 1 :]  # the first column is the start
-            tensors = (fixed, series, state, locked, out[first : first + count], now)
-            numbers = (first, count, substeps, length)
+            tensors = (fixed, *driven, state, locked, out[first : first + count], now)
+            numbers = (first, count, substeps, length, sources)
             in_parallel(partial(self._walk, lanes, numbers, tensors), shares)
             report(first + count)
 
