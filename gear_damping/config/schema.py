@@ -1,12 +1,13 @@
 """The keys outside the simulator: type, range and choices of each, and their check."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from math import inf, isfinite
 from typing import Any
 
 from gear_damping.config.source import Origin
 from gear_damping.errors import Problem, nearest
+from gear_damping.explanation.settings import SearchSettings
 
 TASKS = ("train", "simulate", "evaluate", "identify", "explain", "inspect")
 MODELS = ("raw_lstm", "cwt_lstm")
@@ -33,6 +34,14 @@ class Key:
     exclusive: bool = False
 
 
+def _thresholds() -> dict[str, Key]:
+    """Of the search, as `SearchSettings` declares them."""
+    return {
+        one.name: Key("int" if one.type is int else "float", one.metadata["lower"], one.metadata["upper"])
+        for one in fields(SearchSettings)
+    }
+
+
 _SHARE = Key("float", 0, 1, exclusive=True)
 SCHEMA: dict[str, Any] = {
     "task": Key("text", choices=TASKS),
@@ -44,7 +53,7 @@ SCHEMA: dict[str, Any] = {
     "data_folder": Key("text"),
     "progress": Key("bool"),
     "ruled_out": Key("names", optional=True),
-    "explain": {"minutes": Key("float", 0, 1e6, exclusive=True)},
+    "explain": {"minutes": Key("float", 0, 1e6, exclusive=True)} | _thresholds(),
     "write_measurement": Key("bool"),
     "protocol": {
         "name": Key("text", choices=("by_run", "paper", "paper_many_runs")),

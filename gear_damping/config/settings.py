@@ -1,7 +1,7 @@
 """The settings of one run: what every task receives."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +11,7 @@ from gear_damping.config.measured import measurement_file
 from gear_damping.config.simulator import SimulatorSettings, read_simulator
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
+from gear_damping.explanation.settings import SearchSettings
 
 
 @dataclass(frozen=True)
@@ -27,6 +28,7 @@ class Settings:
     progress: bool
     ruled_out: tuple[str, ...]
     explain_minutes: float
+    search: SearchSettings
     write_measurement: bool
     simulator: SimulatorSettings
     protocol: dict[str, Any]
@@ -76,6 +78,7 @@ def read_settings(config: Mapping[str, Any], origin: Origin) -> Settings:
         progress=config["progress"],
         ruled_out=tuple(config["ruled_out"] or ()),
         explain_minutes=float(config["explain"]["minutes"]),
+        search=SearchSettings(**{one.name: config["explain"][one.name] for one in fields(SearchSettings)}),
         write_measurement=config["write_measurement"],
         simulator=simulator,
         protocol=dict(config["protocol"]),

@@ -6,7 +6,7 @@ from typing import Any
 from gear_damping.config.settings import Settings
 from gear_damping.errors import InputError, Problem
 from gear_damping.explanation.explain import Explanation, explain
-from gear_damping.explanation.extended_simulator import write_extended
+from gear_damping.explanation.model.extended_simulator import write_extended
 from gear_damping.measurement.load import load_measurement
 from gear_damping.measurement.record import Measurement
 from gear_damping.physics.catalogue import catalogue
@@ -25,7 +25,7 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     measurement = load_measurement(settings.measurement_path)
     _note_inputs(measurement, folder)
     with progress_bar("explaining", settings.progress) as progress:
-        limits = {"library": _library(settings), "minutes": settings.explain_minutes}
+        limits = {"library": _library(settings), "minutes": settings.explain_minutes, "settings": settings.search}
         found = explain(measurement, statements.say, progress, settings.simulator.solver, **limits)
     folder.write_json("explanation.json", found.content)
     if found.found is not None:

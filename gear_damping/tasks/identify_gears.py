@@ -8,13 +8,14 @@ from torch import Tensor
 
 from gear_damping.config.settings import Settings
 from gear_damping.errors import InputError, Problem
+from gear_damping.explanation.answer.gain import damping_ratio, final_parameters, rmse
 from gear_damping.explanation.casing.heard import is_casing
-from gear_damping.explanation.evidence import Evidence
+from gear_damping.explanation.evidence.excess import excess
+from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.explain import Explanation, explain
-from gear_damping.explanation.gain import damping_ratio, final_parameters, rmse, spread_of
-from gear_damping.explanation.hypothesis import Outcome, natural_frequency_hz
-from gear_damping.explanation.significance import excess
-from gear_damping.explanation.too_short import too_short
+from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency_hz
+from gear_damping.explanation.model.spread import spread_of
+from gear_damping.explanation.steps.too_short import too_short
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.measurement.record import Measurement
 from gear_damping.reporting import figures, tables

@@ -6,8 +6,8 @@ from typing import Any
 
 from torch import Tensor
 
-from gear_damping.explanation.noise import noise_level
-from gear_damping.explanation.significance import excess
+from gear_damping.explanation.evidence.excess import excess
+from gear_damping.explanation.evidence.noise import noise_level
 from gear_damping.identification.output_error.holdout import rmse
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.measurement.record import Channel

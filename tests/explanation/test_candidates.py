@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 import torch
 
-from gear_damping.explanation.candidates import candidates_for, restored
-from gear_damping.explanation.evidence import Evidence
-from gear_damping.explanation.hypothesis import Hypothesis
-from gear_damping.explanation.rig import rig_of, strongest_orders
+from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.candidates import candidates_for, restored
+from gear_damping.explanation.model.hypothesis import Hypothesis
+from gear_damping.explanation.model.rig import rig_of, strongest_orders
 from gear_damping.identification.output_error.problem import OutputErrorProblem
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.measurement.record import Channel

@@ -16,7 +16,7 @@ from declared_keys import another, declared_keys, holder
 
 from gear_damping.errors import InputError
 from gear_damping.explanation.explain import explain
-from gear_damping.explanation.trying import Search
+from gear_damping.explanation.state import State
 from gear_damping.identification.output_error.descent import Descent
 from gear_damping.measurement.fields import Value
 from gear_damping.measurement.load import load_measurement
@@ -292,8 +292,10 @@ def _answer(content: str, folder: Path) -> object:
         return whole(descent, min(iterations, ITERATIONS))
 
     reading = patch("gear_damping.measurement.load.read_yaml", lambda _: json.loads(content))
-    nominal = patch("gear_damping.explanation.explain.search", lambda nominal, *_, **__: Search(nominal, nominal))
-    with reading, nominal, patch.object(Descent, "run", short):
+    calibration_alone = patch(
+        "gear_damping.explanation.explain.search", lambda nominal, bench, *_: State(bench, nominal, nominal)
+    )
+    with reading, calibration_alone, patch.object(Descent, "run", short):
         try:
             return explain(load_measurement(folder / "measurement.yaml"), library={}).content
         except InputError as error:

@@ -2,9 +2,10 @@
 
 import torch
 
-from gear_damping.explanation.evidence import Evidence
-from gear_damping.explanation.gain import parameters_of, spread_of
-from gear_damping.explanation.hypothesis import Hypothesis, fit_hypothesis
+from gear_damping.explanation.answer.gain import parameters_of
+from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.hypothesis import Hypothesis, fit_hypothesis
+from gear_damping.explanation.model.spread import spread_of
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.physics.catalogue import effect_class
 from gear_damping.physics.model import Model

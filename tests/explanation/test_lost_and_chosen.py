@@ -7,8 +7,9 @@ import pytest
 import torch
 
 from gear_damping.explanation.explain import best_is_lost, is_lost_by
-from gear_damping.explanation.refit import chosen
-from gear_damping.explanation.trying import Bench
+from gear_damping.explanation.settings import SearchSettings
+from gear_damping.explanation.trials.bench import Bench
+from gear_damping.explanation.trials.refit import chosen
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.physics.catalogue import effect_class
 
@@ -17,7 +18,7 @@ NOISE, SAMPLES = 1e-3, 800
 
 def lost(system, response, residual):
     record = FitRecord("a", response, 100.0)
-    evidence = SimpleNamespace(system=system, fitted=[record], noise=NOISE)
+    evidence = SimpleNamespace(system=system, fitted=[record], noise=NOISE, settings=SearchSettings())
     return is_lost_by(SimpleNamespace(fit_residuals=[residual]), evidence)
 
 
@@ -61,7 +62,8 @@ def fit_of(cost, held, seen=True, gain=0.0, fit_gain=0.0):
 )
 def test_the_best_fit_that_loses_the_held_out_records(fits, expected):
     nominal = SimpleNamespace(fitted=SimpleNamespace(cost=1.0), holdout_cost=10.0)
-    assert best_is_lost(SimpleNamespace(nominal=nominal, first_fits=fits)) is expected
+    bench = SimpleNamespace(settings=SearchSettings())
+    assert best_is_lost(SimpleNamespace(nominal=nominal, first_fits=fits, bench=bench)) is expected
 
 
 @pytest.mark.parametrize(
@@ -70,7 +72,7 @@ def test_the_best_fit_that_loses_the_held_out_records(fits, expected):
 def test_a_law_that_fits_clearly_better_and_predicts_nearly_as_well_is_a_rival(gain, fit_gain, expected, monkeypatch):
     monkeypatch.setattr(Bench, "is_as_good", lambda *_: False)
     best = fit_of(1.0, 1.0, gain=1.0, fit_gain=100.0)
-    bench = Bench(None, None, None, None, None)
+    bench = Bench(SimpleNamespace(settings=SearchSettings()), None, None, None, None)
     assert bench._is_rival(fit_of(1.0, 1.0, gain=gain, fit_gain=fit_gain), best) is expected
 
 
@@ -93,9 +95,9 @@ class SimpleNamespaceScore(SimpleNamespace):
 
 
 def test_an_elastic_law_is_fitted_whatever_a_linear_score_promises(monkeypatch):
-    monkeypatch.setattr("gear_damping.explanation.refit.replace", lambda score, variants: score)
+    monkeypatch.setattr("gear_damping.explanation.trials.refit.replace", lambda score, variants: score)
     names = ("coulomb_friction", "power_law_damping", "sensor_delay", "sensor_drift", "quadratic_stiffness")
     ranked = [score(name, 0.5 / 10**k) for k, name in enumerate(names)]
-    assert "quadratic_stiffness" not in {s.candidate.name for s in chosen(ranked)}
-    assert "quadratic_stiffness" in {s.candidate.name for s in chosen(ranked, springs=True)}
+    assert "quadratic_stiffness" not in {s.candidate.name for s in chosen(ranked, SearchSettings())}
+    assert "quadratic_stiffness" in {s.candidate.name for s in chosen(ranked, SearchSettings(), springs=True)}
     assert math.isclose(ranked[-1].gain, 5e-5)

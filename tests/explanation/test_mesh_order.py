@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import torch
 
-from gear_damping.explanation.data_faults import mesh_order_faults
-from gear_damping.explanation.evidence import Evidence
+from gear_damping.explanation.evidence.data_faults import mesh_order_faults
+from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.identification.observation import Known
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.measurement.record import Channel

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import torch
 
-from gear_damping.explanation.own_teeth import every_tooth, one_tooth
+from gear_damping.explanation.model.own_teeth import every_tooth, one_tooth
 
 TEETH, TURNS = 17, (1.4, 2.3, 0.8)
 

@@ -3,7 +3,7 @@
 import numpy as np
 import torch
 
-from gear_damping.explanation.significance import paired_gain
+from gear_damping.explanation.statistics.paired import paired_gain
 
 SAMPLES, BLOCK, RATE = 1600, 100, 400
 

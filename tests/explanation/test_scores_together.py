@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 import torch
 
-from gear_damping.explanation import ranking
-from gear_damping.explanation.candidates import candidates_for
-from gear_damping.explanation.evidence import Evidence
-from gear_damping.explanation.hypothesis import Hypothesis, fit_hypothesis
+from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.candidates import candidates_for
+from gear_damping.explanation.model.hypothesis import Hypothesis, fit_hypothesis
+from gear_damping.explanation.trials import score as ranking
 from gear_damping.identification.observation import Known
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter, Observed
 from gear_damping.measurement.record import Channel

@@ -9,7 +9,7 @@ import yaml
 from scipy.signal import lsim
 
 from gear_damping.explanation.explain import explain
-from gear_damping.explanation.rig import strongest_frequencies
+from gear_damping.explanation.model.rig import strongest_frequencies
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.measurement.load import load_measurement
 

@@ -7,9 +7,9 @@ from hidden.oscillator.inputs import NONE
 from hidden.oscillator.laws import lanes
 from hidden.oscillator.motion import between, move
 
-from gear_damping.explanation.evidence import evidence_of
+from gear_damping.explanation.evidence.records import evidence_of
+from gear_damping.explanation.evidence.silent_end import audible_samples
 from gear_damping.explanation.explain import explain
-from gear_damping.explanation.silent_end import audible_samples
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.measurement.load import load_measurement
 

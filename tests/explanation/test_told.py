@@ -5,9 +5,9 @@ from types import SimpleNamespace
 import pytest
 import torch
 
-from gear_damping.explanation.evidence import Evidence
-from gear_damping.explanation.hypothesis import Hypothesis, fit_hypothesis
-from gear_damping.explanation.told import is_told
+from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.hypothesis import Hypothesis, fit_hypothesis
+from gear_damping.explanation.steps.told import is_told
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.physics.catalogue import effect_class
 from gear_damping.physics.model import Model

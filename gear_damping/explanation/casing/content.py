@@ -9,7 +9,7 @@ from gear_damping.explanation.casing import findings
 from gear_damping.explanation.casing.heard import NAMES, heard_of
 from gear_damping.explanation.casing.localised import DRAWS
 from gear_damping.explanation.casing.study import Study, study
-from gear_damping.explanation.verdict import CONSISTENT, UNEXPLAINED
+from gear_damping.explanation.steps.judge import CONSISTENT, UNEXPLAINED
 from gear_damping.measurement.record import Measurement
 
 REFERENCE = "reference"

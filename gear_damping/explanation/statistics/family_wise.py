@@ -14,7 +14,6 @@ import torch
 from torch import Tensor
 
 DRAWS = 2000
-LEVEL = 0.01  # family-wise
 FEWEST_BLOCKS = 13.0  # effective ones, below which signs are too few: 2^13 of them give p down to 1e-4
 MOST_CORRECTED = 250  # blocks: with more the leverage of the nuisance within one is negligible
 
@@ -56,10 +55,11 @@ class Visible:
     Args:
         p: Family-wise probability of so large a maximum under the null.
         statistic: The maximum, in standard deviations of a normal variable.
-        limit: Its 99 % quantile under the null.
+        limit: Its quantile under the null, beyond which something is visible.
         draws: How many were drawn.
         effective_blocks: Blocks that count, of the effect with the most of them.
         by_name: The statistic of each effect, of its best form.
+        level: The chance of that.
     """
 
     p: float
@@ -68,6 +68,7 @@ class Visible:
     draws: int
     effective_blocks: float
     by_name: dict[str, float]
+    level: float = 0.01
 
     @property
     def largest(self) -> str | None:
@@ -75,7 +76,7 @@ class Visible:
         return max(self.by_name, key=self.by_name.get, default=None)
 
     def __bool__(self) -> bool:
-        return self.p < LEVEL
+        return self.p < self.level
 
     def shows(self, name: str) -> bool:
         """Whether one effect is visible by itself within the family."""
@@ -90,6 +91,7 @@ def family_wise(
     nuisance: Tensor | None = None,
     lines: Sequence[Lines] = (),
     draws: int = DRAWS,
+    level: float = 0.01,
 ) -> Visible:
     """Test all effects at once.
 
@@ -101,6 +103,7 @@ def family_wise(
         nuisance: Orthonormal columns that were projected out, (samples, m).
         lines: Further statistics that stand in the same maximum.
         draws: Of signs.
+        level: Chance at which anything at all would be called visible under the null.
     """
     generator = torch.Generator().manual_seed(0)
     count = int(blocks.max()) + 1
@@ -129,14 +132,14 @@ def family_wise(
         drawn.append(torch.special.ndtri((uniform ** (1 / len(family.values))).clamp(max=1 - 1e-15)))
         names.append(family.name)
     if not found:
-        return Visible(1.0, 0.0, 0.0, draws, 0.0, {})
+        return Visible(1.0, 0.0, 0.0, draws, 0.0, {}, level)
     largest = torch.stack(drawn).amax(0)
     statistic = max(found)
     by_name: dict[str, float] = {}
     for name, value in zip(names, found, strict=True):
         by_name[name] = max(value, by_name.get(name, value))
     p = (1 + int((largest >= statistic).sum())) / (draws + 1)
-    return Visible(p, statistic, float(largest.quantile(1 - LEVEL)), draws, most, by_name)
+    return Visible(p, statistic, float(largest.quantile(1 - level)), draws, most, by_name, level)
 
 
 def block_numbers(rows: Sequence[int], block: Sequence[int]) -> Tensor:

@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from gear_damping.explanation.evidence import Evidence
+from gear_damping.explanation.answer.gain import parameters_of
+from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.explain import Explanation
-from gear_damping.explanation.extend import LEAST_SHARE
-from gear_damping.explanation.gain import parameters_of, spread_of
-from gear_damping.explanation.hypothesis import Outcome
-from gear_damping.explanation.trying import Search
+from gear_damping.explanation.model.hypothesis import Outcome
+from gear_damping.explanation.model.spread import spread_of
+from gear_damping.explanation.state import State
 from gear_damping.reporting.explanation_report.render import render
 from gear_damping.reporting.explanation_report.report_input import Overlay, ReportInput
 from gear_damping.reporting.explanation_report.residual_arrays import force_map, force_surface, spectrum
@@ -50,7 +50,7 @@ def report_input(explanation: Explanation, provenance: Mapping[str, str] | None 
         unit=pretty_unit(channel.declared_unit),
         overlays=[_overlay(found, evidence, i, noise) for i in order[:MOST_OVERLAYS]],
         spectrum=spectrum(found, evidence, order[0], noise[evidence.holdout[order[0]].name]),
-        needed_share=LEAST_SHARE,
+        needed_share=evidence.settings.least_share,
         force_map=force_map(found.nominal, evidence),
         force_surface=force_surface(found.nominal, evidence),
         parameters=_parameters(found, evidence),
@@ -58,7 +58,7 @@ def report_input(explanation: Explanation, provenance: Mapping[str, str] | None 
     )
 
 
-def worst_first(found: Search) -> list[int]:
+def worst_first(found: State) -> list[int]:
     """Held-out records by what the nominal simulation leaves of them."""
     left = [float(residual.square().mean()) for residual in found.nominal.holdout]
     return sorted(range(len(left)), key=lambda i: -left[i])
@@ -70,7 +70,7 @@ def _title(content: Mapping[str, Any]) -> str:
     return f"{words(str(content.get('system', 'rig'))).capitalize()}, {count}"
 
 
-def _overlay(found: Search, evidence: Evidence, place: int, noise: Mapping[str, float]) -> Overlay:
+def _overlay(found: State, evidence: Evidence, place: int, noise: Mapping[str, float]) -> Overlay:
     record, factor = evidence.held[place], evidence.channel.declared_factor
     measured = record.response.numpy()
     nominal, extended = (
@@ -86,7 +86,7 @@ def _overlay(found: Search, evidence: Evidence, place: int, noise: Mapping[str, 
     )
 
 
-def _parameters(found: Search, evidence: Evidence) -> dict[str, dict[str, Any]]:
+def _parameters(found: State, evidence: Evidence) -> dict[str, dict[str, Any]]:
     """Every fitted parameter before and after, but for those of the causes, which have their own table."""
     before = _estimates(found.nominal, evidence)
     after = _estimates(found.outcome, evidence) if found.accepted else {}

@@ -7,10 +7,11 @@ import torch
 from numpy.typing import NDArray
 from scipy.stats import binned_statistic_2d
 
-from gear_damping.explanation.evidence import Evidence
-from gear_damping.explanation.hypothesis import Outcome, natural_frequency_hz
-from gear_damping.explanation.trying import Search
-from gear_damping.explanation.unexplained import Shaft, first_channel, residual_force, shaft_of
+from gear_damping.explanation.answer.unexplained import first_channel, residual_force
+from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.evidence.shaft import Shaft, shaft_of
+from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency_hz
+from gear_damping.explanation.state import State
 from gear_damping.reporting.explanation_report.report_input import ForceMap, ForceSurface, ResidualSpectrum
 from gear_damping.signals.spectra import amplitude_spectrum, order_spectrum
 
@@ -23,7 +24,7 @@ WHOLE_TURNS = 1.05
 Array = NDArray[np.float64]
 
 
-def spectrum(found: Search, evidence: Evidence, place: int, noise: float) -> ResidualSpectrum:
+def spectrum(found: State, evidence: Evidence, place: int, noise: float) -> ResidualSpectrum:
     """Spectrum of a held-out record's residual, over orders where it holds a whole turn of the pinion.
 
     Args:

@@ -4,8 +4,6 @@ from collections.abc import Mapping
 from math import isfinite
 from typing import Any
 
-from gear_damping.explanation import homogeneity
-from gear_damping.explanation.statistics import family_wise
 from gear_damping.reporting.explanation_report.vocabulary import description, listed
 from gear_damping.reporting.figures.visible import UNNAMED
 from gear_damping.reporting.numbers import estimate, number, percent, quantity
@@ -54,7 +52,7 @@ def one_size_sentence(homogeneous: Mapping[str, Any] | None) -> str:
     if not homogeneous or not homogeneous.get("testable") or not _known(homogeneous.get("p")):
         return "Too few records tell of it to see whether it has one size in all of them." if homogeneous else ""
     p = number(homogeneous["p"], 2)
-    if homogeneous["p"] < homogeneity.LEVEL:
+    if homogeneous["p"] < homogeneous["level"]:
         return f"Its size differs between records by more than chance and a tolerance would have it (p = {p})."
     return f"Its size is the same in all records, within a tolerance of {percent(homogeneous['tolerance'])} (p = {p})."
 
@@ -68,15 +66,15 @@ def random_sentences(random: Mapping[str, Any] | None, visible: Mapping[str, Any
         f"{random['looks_like']}, {number(random['snr_db'], 3)} dB below the signal."
     ]
     p, largest = visible["p"], visible["largest"]
-    told.append(f"Beside the nominal simulation, {_stands_out(p['before'], largest['before'])}.")
+    told.append(f"Beside the nominal simulation, {_stands_out(p['before'], largest['before'], visible['level'])}.")
     if p["after"] != p["before"] or largest["after"] != largest["before"]:
-        told.append(f"Beside the extended one, {_stands_out(p['after'], largest['after'])}.")
+        told.append(f"Beside the extended one, {_stands_out(p['after'], largest['after'], visible['level'])}.")
     return told
 
 
-def _stands_out(p: float, largest: str) -> str:
+def _stands_out(p: float, largest: str, level: float) -> str:
     name = listed([largest.removeprefix(UNNAMED)])
-    if p < family_wise.LEVEL:
+    if p < level:
         return f"something stands out of it that chance does not give (p = {number(p, 2)}), {name} first"
     return f"nothing stands out of it that chance would not give (p = {number(p, 2)}; {name} comes first)"
 

@@ -1,0 +1,306 @@
+"""What explanation.json holds, as plain values."""
+
+from collections.abc import Sequence
+from math import log10
+from typing import Any
+
+from gear_damping.explanation.answer import gain
+from gear_damping.explanation.answer.homogeneity import by_record
+from gear_damping.explanation.answer.next_experiment import confusable_beforehand, next_experiment
+from gear_damping.explanation.answer.unexplained import leftover
+from gear_damping.explanation.evidence.data_faults import sentences
+from gear_damping.explanation.evidence.excess import ac_energy
+from gear_damping.explanation.evidence.noise import NoiseLevel
+from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.evidence.rig_units import rig_unit, unit_of
+from gear_damping.explanation.model.hypothesis import Outcome
+from gear_damping.explanation.model.spread import spread_of
+from gear_damping.explanation.steps.judge import CONSISTENT, DATA_PROBLEM, LARGEST_SET, Judged, statuses
+from gear_damping.explanation.trials.assess import Assessment
+from gear_damping.explanation.trials.score import Score
+from gear_damping.measurement.record import Finding, Measurement
+
+SCHEMA_VERSION = 1
+WHITE = 1.1  # sum of squared autocorrelations: with less of it noise is called white
+KEYS = (
+    "schema_version", "system", "verdict", "sentences", "causes", "misfit", "visible", "random", "residual",
+    "parameters", "gain", "noise",
+    "candidates", "not_tried", "not_observable", "next_experiment", "unexplained", "records", "calibration", "findings",
+    "casing",
+)  # fmt: skip
+
+RAN_AWAY = "its prediction of the held-out records ran away"
+
+
+def of_faults(measurement: Measurement, faults: Sequence[Finding]) -> dict[str, Any]:
+    """The content where the data were refused: no cause, and what to cure."""
+    nothing = dict.fromkeys(KEYS)
+    said = sentences(faults)
+    return nothing | {
+        "schema_version": SCHEMA_VERSION,
+        "system": measurement.system,
+        "verdict": DATA_PROBLEM,
+        "sentences": ["The data are damaged, so no physical cause is named.", *said],
+        "causes": [],
+        "candidates": [],
+        "not_observable": [],
+        "records": {record.name: {"role": record.role} for record in measurement.records},
+        "findings": _findings([*faults, *(f for f in measurement.findings if f not in faults)]),
+    }
+
+
+def of_casing(measurement: Measurement, found: dict[str, Any]) -> dict[str, Any]:
+    """The content where a casing was heard: `found` holds the verdict, its sentences and the findings."""
+    return dict.fromkeys(KEYS) | {
+        "schema_version": SCHEMA_VERSION,
+        "system": measurement.system,
+        "causes": [],
+        "candidates": [],
+        "not_observable": [],
+        "records": {record.name: {"role": record.role} for record in measurement.records},
+        "findings": _findings(measurement.findings),
+        **found,
+    }
+
+
+def of_search(measurement: Measurement, evidence: Evidence, noise: NoiseLevel, judged: Judged) -> dict[str, Any]:
+    """The content of a finished search."""
+    found, before, after = judged.found, judged.before, judged.after
+    unit, factor = evidence.channel.declared_unit, evidence.channel.declared_factor
+    first, last = found.nominal, found.outcome
+    causes = _causes(judged, evidence)
+    names = [name for cause in causes for name in (cause["name"], *cause["confusable_with"])]
+    return {
+        "schema_version": SCHEMA_VERSION,
+        "system": measurement.system,
+        "verdict": judged.verdict.word,
+        "sentences": list(judged.verdict.sentences),
+        "causes": causes,
+        "misfit": {
+            "before": before.misfit,
+            "after": after.misfit,
+            "floor": 1.0,
+            "excess_percent": {"before": before.percent, "after": after.percent, "threshold": after.threshold},
+            "records": {
+                name: {"before": before.per_record[name], "after": after.per_record[name]} for name in before.per_record
+            },
+        },
+        "visible": _visible(found.seen, found.left),
+        "random": _random(found.left, evidence),
+        "residual": {
+            "fit": _residual(first.fit_residuals, last.fit_residuals, unit, factor),
+            "holdout": _residual(first.holdout, last.holdout, unit, factor),
+            "segment_s": evidence.segments.seconds or None,
+        },
+        "parameters": gain.final_parameters(last, spread_of(last, evidence), evidence),
+        "gain": _gain(judged, evidence, noise),
+        "noise": {
+            "channel": evidence.channel.name,
+            "value": noise.value / factor,
+            "unit": unit,
+            "by_record": {name: value / factor for name, value in noise.by_record.items()},
+            "method": noise.method,
+            "estimates_agree": noise.agree,
+        },
+        "candidates": _candidates(judged, evidence),
+        "not_tried": list(judged.not_tried),
+        "not_observable": _not_observable(found.first_scores, names, evidence),
+        "next_experiment": next_experiment(names, evidence),
+        "unexplained": None if judged.verdict.word == CONSISTENT else leftover(last, evidence),
+        "records": _records(evidence, first, last, factor, unit),
+        "calibration": {
+            "converged": first.fitted.converged,
+            "parameters": dict(first.values),
+            "steps": _steps(judged, evidence),
+        },
+        "findings": _findings(measurement.findings),
+        "casing": None,
+    }
+
+
+def _visible(seen: Assessment | None, left: Assessment | None) -> dict[str, Any] | None:
+    """What the test of everything at once says of the nominal model, and of the one at the end."""
+    if seen is None or left is None:
+        return None
+    laws = seen.random.laws
+    return {
+        "p": {"before": seen.visible.p, "after": left.visible.p},
+        "statistic": {"before": seen.visible.statistic, "after": left.visible.statistic},
+        "limit": seen.visible.limit,
+        "level": seen.visible.level,
+        "largest": {"before": seen.visible.largest, "after": left.visible.largest},
+        "not_random": {"before": seen.taken, "after": left.taken},
+        "draws": seen.visible.draws,
+        "effective_blocks": seen.visible.effective_blocks,
+        "whitening": [{"order": law.order, "coefficients": law.coefficients.tolist()} for law in laws],
+        "by_name": seen.visible.by_name,
+    }
+
+
+def _random(left: Assessment | None, evidence: Evidence) -> dict[str, Any] | None:
+    """The random part of the residuals, of the fitted records' AC variance, and what it looks like."""
+    if left is None:
+        return None
+    records = evidence.fitted
+    own = [r.response - r.response.mean() for r in records]
+    spread = sum(float(r.square().sum()) for r in own) / sum(len(r) for r in own)
+    share = left.random.variance / max(spread, 1e-300)
+    order = max((law.order for law in left.random.laws), default=0)
+    looks = "white noise" if left.random.correlation < WHITE else f"coloured noise (autoregression of order {order})"
+    return {
+        "percent": 100 * share,
+        "looks_like": looks,
+        "snr_db": -10 * log10(max(share, 1e-300)),
+        "correlation": left.random.correlation,
+    }
+
+
+def _findings(findings: Sequence[Finding]) -> list[dict[str, Any]]:
+    return [
+        {"kind": f.kind, "message": f.message, "record": f.record, "channel": f.channel, "sample": f.sample}
+        | {"severity": f.severity}
+        for f in findings
+    ]
+
+
+def _steps(judged: Judged, evidence: Evidence) -> list[str]:
+    before = judged.before
+    rest = "came to rest" if judged.found.nominal.fitted.converged else "did not come to rest: take it with care"
+    segments = (
+        f"These records cannot be predicted from their start alone: they were fitted and scored in segments of "
+        f"{evidence.segments.seconds:.3g} s, each from an initial state of its own."
+    )
+    return [
+        f"The nominal simulation was fitted first, so that no wrong parameter passes for physics; the fit {rest}.",
+        f"It leaves {before.percent:.3g} % of the signal's variance beyond the noise on held-out records; "
+        f"more than {before.threshold:.2g} % counts as significant.",
+        *([segments] if evidence.segments else []),
+    ]
+
+
+def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
+    """Accepted causes; where none was, the best of what was tried as a suggestion."""
+    found, last = judged.found, judged.found.outcome
+    spread = spread_of(last, evidence)
+    listed = [
+        {
+            "name": cause.name,
+            "parameters": gain.parameters_of(last, spread, cause.name, evidence),
+            "excess_explained": cause.share,
+            "confusable_with": [*cause.confusable, *cause.effect.cause.looks_like][: LARGEST_SET - 1],
+            "status": statuses(judged.verdict.word),
+            "fixed": _fixed(last, cause.name),
+            **by_record(last, cause.name, evidence),
+        }
+        for cause in found.accepted
+    ]
+    if not listed and judged.verdict.word != CONSISTENT:
+        helping = (r for r in found.rejected if r.gain > 0 and r.is_seen_in_fit)
+        for refit in [r for r in helping if _share(r.outcome, found.nominal) > 0][:1]:
+            spread = spread_of(refit.outcome, evidence)
+            own = gain.parameters_of(refit.outcome, spread, refit.name, evidence)
+            alike = confusable_beforehand(found.first_scores, refit.name)[: LARGEST_SET - 1]
+            share = _share(refit.outcome, found.nominal)
+            listed.append(
+                {"name": refit.name, "parameters": own, "excess_explained": share, "confusable_with": alike}
+                | {"status": "suggested", **by_record(refit.outcome, refit.name, evidence)}
+            )
+    return sorted(listed, key=lambda cause: -cause["excess_explained"])
+
+
+def _fixed(outcome: Outcome, cause: str) -> dict[str, float]:
+    """Parameters of a cause that were tried and not fitted, as the order of a ripple, by own name."""
+    free = {parameter.name.partition("[")[0] for parameter in outcome.hypothesis.free}
+    own = {name: value for name, value in outcome.hypothesis.given.items() if name.startswith(cause + ".")}
+    return {n.partition(".")[2]: v for n, v in own.items() if n not in free and not isinstance(v, tuple)}
+
+
+def _share(outcome: Outcome, nominal: Outcome) -> float:
+    """Share of the held-out squared residual that an outcome takes."""
+    return 1 - (gain.rmse(outcome.holdout) / max(gain.rmse(nominal.holdout), 1e-300)) ** 2
+
+
+def _residual(before: Sequence, after: Sequence, unit: str, factor: float) -> dict[str, Any]:
+    return {"before": gain.rmse(before) / factor, "after": gain.rmse(after) / factor, "unit": unit}
+
+
+def _gain(judged: Judged, evidence: Evidence, noise: NoiseLevel) -> dict[str, Any]:
+    first, last = judged.found.nominal, judged.found.outcome
+    spread = sum(ac_energy(record) for record in evidence.held)
+    floor = sum(len(r.stacked) * noise.by_record[r.name] ** 2 for r in evidence.held)
+    damping = {
+        key: gain.damping_ratio(outcome, spread_of(outcome, evidence))
+        for key, outcome in (("before", first), ("after", last))
+    }
+    whole = all(damping.values())
+    if whole:
+        damping = {key: found | {"velocity_unit": rig_unit("m/s", evidence)} for key, found in damping.items()}
+        damping["bias_of_the_nominal"] = damping["before"]["value"] - damping["after"]["value"]
+    return {
+        "nrmse": {
+            "before": gain.nrmse(first.holdout, evidence.held),
+            "after": gain.nrmse(last.holdout, evidence.held),
+            "floor": (floor / max(spread, 1e-300)) ** 0.5,
+        },
+        "damping_ratio_percent": damping if whole else None,
+    }
+
+
+def _candidates(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
+    """Every effect that was tried: what it promised on fitted records, and what a full fit took of held-out ones."""
+    found = judged.found
+    best_last = reversed(found.first_fits)  # of several forms of an effect the best one counts
+    taken = {refit.name: _share(refit.outcome, found.nominal) for refit in best_last}
+    accepted = {cause.name: cause.share for cause in found.accepted}
+    alike = {name for cause in found.accepted for name in cause.confusable}
+    best: dict[str, Score] = {}
+    for score in found.first_scores:
+        best.setdefault(score.candidate.name, score)
+
+    def status(name: str) -> str:
+        if name in accepted:
+            return statuses(judged.verdict.word)
+        return "confusable" if name in alike else "rejected"
+
+    bounded = {refit.name for refit in found.first_fits if refit.is_at_bound}
+    wild = {name: RAN_AWAY for name, share in taken.items() if share < -1 and name not in accepted}
+    shares = {name: share for name, share in taken.items() if name not in wild} | accepted
+    failed = wild | found.failed
+    return [
+        {"name": name, "promised": score.gain, "share": shares.get(name), "status": status(name)}
+        | {"at_bound": name in bounded, "failed": failed.get(name) or score.failed or None}
+        for name, score in best.items()
+    ]
+
+
+def _not_observable(scores: Sequence[Score], named: Sequence[str], evidence: Evidence) -> list[dict[str, Any]]:
+    """Effects that were not found, with the smallest size that these data would have shown."""
+    best: dict[str, Score] = {}
+    for score in scores:
+        name = score.candidate.name
+        if name not in best or score.smallest < best[name].smallest:
+            best[name] = score
+    listed = []
+    for name, score in best.items():
+        if name in named:
+            continue
+        place = score.candidate.strengths[0]
+        flat = score.candidate.hypothesis.common[place].name
+        unit = unit_of(flat.partition("[")[0], score.candidate.hypothesis.model, evidence)
+        listed.append({"name": name, "parameter": flat, "smallest": score.smallest, "unit": unit})
+    return listed
+
+
+def _records(evidence: Evidence, first: Outcome, last: Outcome, factor: float, unit: str) -> dict[str, Any]:
+    found = {}
+    for role, records, before, after in (
+        ("fit", evidence.fit, first.fit_residuals, last.fit_residuals),
+        ("holdout", evidence.holdout, first.holdout, last.holdout),
+    ):
+        for record, old, new in zip(records, before, after, strict=True):
+            found[record.name] = {
+                "role": role,
+                "samples": len(record.response),
+                "rmse": {"before": gain.rmse([old]) / factor, "after": gain.rmse([new]) / factor, "unit": unit},
+            }
+    return found

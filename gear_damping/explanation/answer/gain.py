@@ -1,0 +1,137 @@
+"""Step 9: what naming the cause was worth, in residuals and in the damping figure."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor
+
+from gear_damping.explanation.evidence.excess import ac_energy
+from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.evidence.rig_units import unit_of
+from gear_damping.explanation.model.hypothesis import Outcome
+from gear_damping.identification.output_error.problem import set_value
+from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.identification.output_error.uncertainty import QUANTILE
+from gear_damping.identification.output_error.unknowns import OFFSET, is_of_model
+from gear_damping.physics.terms import DampingLaw
+from gear_damping.simulation.runs import reference_velocity
+
+SILENT = 0.1  # noise levels that a step of order one moves the records by, in all: less says nothing of a parameter
+STEP = 1e-4  # of a coordinate, for the slope of the damping ratio
+
+
+@dataclass(frozen=True)
+class Interval:
+    """A value with its 95 % interval."""
+
+    value: float
+    interval95: tuple[float, float]
+    unit: str
+
+    def plain(self) -> dict[str, object]:
+        """As JSON types."""
+        return {"value": self.value, "unit": self.unit, "interval95": list(self.interval95)}
+
+
+def rmse(residuals: Sequence[Tensor]) -> float:
+    """Root mean square over all samples."""
+    return (sum(float(r.square().sum()) for r in residuals) / max(sum(len(r) for r in residuals), 1)) ** 0.5
+
+
+def nrmse(residuals: Sequence[Tensor], records: Sequence[FitRecord]) -> float:
+    """Root mean square residual over the standard deviation of the channel within records."""
+    spread = sum(ac_energy(record) for record in records)
+    return (sum(float(r.square().sum()) for r in residuals) / max(spread, 1e-300)) ** 0.5
+
+
+def parameters_of(outcome: Outcome, spread: Tensor, cause: str, evidence: Evidence) -> dict[str, dict[str, object]]:
+    """The fitted parameters of an effect with 95 % intervals, by own name.
+
+    Of one that the records say nothing of (a gap whose far flank is never touched) it is its whole range; of one
+    that the fit has driven to its bound, it takes in what lies beyond.
+    """
+    found = {}
+    at_bound = outcome.problem.unknowns.at_bound(outcome.fitted.shared)
+    for place, parameter in enumerate(outcome.problem.free):
+        effect, _, own = parameter.name.partition(".")
+        if effect != cause:
+            continue
+        unit = unit_of(parameter.declared_name, outcome.hypothesis.model, evidence)
+        found[own] = _interval(outcome, spread, place, evidence, unit).plain() | {"at_bound": bool(at_bound[place])}
+    return found
+
+
+def final_parameters(outcome: Outcome, spread: Tensor, evidence: Evidence) -> dict[str, dict[str, object]]:
+    """Every fitted parameter of a model with its 95 % interval, nuisances and those of single records included."""
+    declared, found = outcome.hypothesis.model.parameters(), {}
+    for place, parameter in enumerate(outcome.problem.free):
+        flat = parameter.declared_name
+        kind, _, channel = flat.partition(".")
+        if kind == OFFSET:
+            unit = evidence.channel.unit if channel == evidence.channel.name else "own"
+        else:
+            unit = unit_of(flat, outcome.hypothesis.model, evidence) if flat in declared else "1"
+        found[parameter.name] = _interval(outcome, spread, place, evidence, unit).plain()
+    return found
+
+
+def _interval(outcome: Outcome, spread: Tensor, place: int, evidence: Evidence, unit: str) -> Interval:
+    """A fitted parameter with its 95 % interval.
+
+    Of one that the records say nothing of it is the whole range; of one that the fit has driven to its bound, it
+    takes in what lies beyond; one that is positive and not told from nothing goes down to zero: its logarithm has no
+    lower end, and the upper end of the logarithm would be far beyond what the records allow.
+    """
+    parameter, z = outcome.problem.free[place], outcome.fitted.shared[place]
+    value, half = float(parameter.value(z)), QUANTILE * float(spread[place, place].clamp(min=0).sqrt())
+    if parameter.logarithmic and half > 1:
+        ends = sorted((0.0, value * (1 + half)))
+    else:
+        ends = sorted(float(parameter.value(z + shift)) for shift in (-half, half))
+    known = outcome.hypothesis.model.parameters().get(parameter.declared_name)
+    if known is not None:
+        moved = float(outcome.fitted.prediction.sensitivity[..., place].norm())
+        at_bound = int(outcome.problem.unknowns.at_bound(outcome.fitted.shared)[place])
+        silent = moved < SILENT * evidence.noise and not parameter.logarithmic
+        lower = known.lower if silent or at_bound < 0 else ends[0]
+        upper = known.upper if silent or at_bound > 0 else ends[1]
+        ends = [min(max(lower, known.lower), value), max(min(upper, known.upper), value)]
+    return Interval(value, (ends[0], ends[1]), unit)
+
+
+def damping_ratio(outcome: Outcome, spread: Tensor) -> dict[str, object] | None:
+    """The equivalent damping ratio of every damping law together, in % of critical, at its reference velocity.
+
+    None where there is no linear stiffness, so that nothing is critical. Laws of damping take energy: the interval
+    ends at zero.
+    """
+    problem, shared = outcome.problem, outcome.fitted.shared
+    points = shared.repeat(len(shared) + 1, 1)
+    points[1:] += STEP * torch.eye(len(shared), dtype=torch.float64)
+    ratios, velocity = _ratios(outcome, problem.unknowns.parameters(points), len(points))
+    if not bool(ratios.isfinite().all()):
+        return None
+    slope = (ratios[1:] - ratios[0]) / STEP
+    half = QUANTILE * float((slope @ spread @ slope).clamp(min=0).sqrt())
+    value = float(ratios[0])
+    ends = (max(value - half, min(value, 0.0)), value + half)
+    return Interval(value, ends, "%").plain() | {"reference_velocity": velocity}
+
+
+def _ratios(outcome: Outcome, free: Mapping[str, Tensor], batch: int) -> tuple[Tensor, float]:
+    """Damping ratios in % of a batch of points."""
+    model = outcome.hypothesis.model
+    values = model.values(batch, **outcome.flat_given())
+    for name, value in free.items():
+        if is_of_model(name):
+            set_value(values, name, value)
+    derived = model.prepare(values).derived
+    speed = reference_velocity(derived)
+    speed = speed[:1].expand(batch)  # the same amplitude for every point
+    total = torch.zeros(batch, dtype=torch.float64)
+    for effect in model.effects:
+        if isinstance(effect, DampingLaw):
+            own = {p.name: values[f"{effect.name}.{p.name}"] for p in effect.parameters}
+            total = total + effect.damping_ratio(own, derived["equivalent_mass"], derived["mean_stiffness"], speed)
+    return 100 * total, float(speed[0])

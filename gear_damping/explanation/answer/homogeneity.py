@@ -1,0 +1,136 @@
+"""Step 9b: is it one constant for all? The strength of a cause, record by record.
+
+What really is there has the same size in every record; what stands in for something else changes with the operating
+condition. Cochran (1954), Biometrics 10: the statistic Q, with a tolerance for what a law in another form may differ.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import torch
+from scipy.stats import chi2
+from torch import Tensor
+
+from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.hypothesis import Outcome, time_scale
+from gear_damping.explanation.statistics.random_effects import spread_between, statistic
+from gear_damping.identification.output_error.normal_equations import own_basis, without_own
+from gear_damping.identification.output_error.uncertainty import QUANTILE
+
+FEWEST = 3  # records or segments with a share of the information
+SHARE = 0.1  # of what they would have in equal parts
+BLOCK_TIMES = 2.0  # characteristic times of a block, over which residuals may be correlated
+
+
+@dataclass(frozen=True)
+class Homogeneity:
+    """Whether a cause has one size.
+
+    Args:
+        names: Records (segments where there are few records) that tell of it.
+        estimates: Its first strength by each of them, relative to that of all.
+        errors: Their standard errors.
+        p: Of the test that they are one within the tolerance; None where too few tell of it.
+        level: Below which they are not.
+    """
+
+    names: tuple[str, ...]
+    estimates: tuple[float, ...]
+    errors: tuple[float, ...]
+    p: float | None
+    level: float
+
+    @property
+    def testable(self) -> bool:
+        """Whether enough records tell of it."""
+        return self.p is not None
+
+    @property
+    def holds(self) -> bool:
+        """Whether it is not refuted."""
+        return self.p is None or self.p >= self.level
+
+
+def homogeneity(outcome: Outcome, cause: str, evidence: Evidence) -> Homogeneity:
+    """Estimates of the first strength of a cause by record, beside every other parameter."""
+    place = next(i for i, p in enumerate(outcome.problem.free) if p.name.startswith(cause + "."))
+    prediction, problem = outcome.fitted.prediction, outcome.problem
+    groups, names = _groups(outcome)
+    columns, residual = _beside(prediction.sensitivity[0], prediction.residual[0], place, problem.n_shared, groups)
+    energy = columns.square().sum(0)
+    kept = (energy > SHARE * energy.sum() / len(names)).nonzero().flatten().tolist()
+    strength = _size(outcome, place)
+    if len(kept) < FEWEST or not strength:
+        return Homogeneity((), (), (), None, evidence.settings.homogeneity_level)
+    shift = torch.linalg.lstsq(columns[:, kept], residual.unsqueeze(1), driver="gelsd").solution[:, 0]
+    block = max(4, round(BLOCK_TIMES * time_scale(outcome.hypothesis, evidence) * evidence.sampling_rate))
+    errors = torch.stack([_error(columns[:, k], residual, block) for k in kept])
+    estimates, errors = 1 + shift / strength, errors / abs(strength)
+    found = tuple(estimates.tolist()), tuple(errors.tolist())
+    p = float(chi2.sf(statistic(*found, evidence.settings.homogeneity_tolerance), len(kept) - 1))
+    return Homogeneity(tuple(names[k] for k in kept), *found, p, evidence.settings.homogeneity_level)
+
+
+def by_record(outcome: Outcome, cause: str, evidence: Evidence) -> dict[str, Any]:
+    """The same as plain values: the first strength by record with 95 % intervals, and how much it differs."""
+    test = homogeneity(outcome, cause, evidence)
+    parameter = next(p for p in outcome.problem.free if p.name.startswith(cause + "."))
+    name, ends = parameter.name, (-QUANTILE, QUANTILE)
+    size, known = outcome.values[name], outcome.hypothesis.model.parameters()[parameter.declared_name]
+
+    def within(value: float) -> float:
+        return min(max(value, known.lower), known.upper)
+
+    rows = [
+        {"record": r, "value": within(size * one), "interval95": sorted(within(size * (one + e * error)) for e in ends)}
+        for r, one, error in zip(test.names, test.estimates, test.errors, strict=True)
+    ]
+    spread = spread_between(test.estimates, test.errors) if test.testable else None
+    return {
+        "per_record": rows,
+        "homogeneous": {
+            "parameter": name,
+            "tau_percent": spread and 100 * spread.value,
+            "interval95": spread and [100 * end for end in spread.interval95],
+            "p": test.p,
+            "tolerance": evidence.settings.homogeneity_tolerance,
+            "level": test.level,
+            "testable": test.testable,
+        },
+    }
+
+
+def _groups(outcome: Outcome) -> tuple[Tensor, list[str]]:
+    """Group of every row of the problem, and the groups' names: records, or segments where there are too few."""
+    rows = outcome.problem.records
+    names = list(dict.fromkeys(row.record for row in rows))
+    if len(names) >= FEWEST:
+        return torch.tensor([names.index(row.record) for row in rows]), names
+    return torch.arange(len(rows)), [f"{row.record} at {row.begins:.3g} s" for row in rows]
+
+
+def _beside(sensitivity: Tensor, residual: Tensor, place: int, n_shared: int, groups: Tensor) -> tuple[Tensor, Tensor]:
+    """Columns of the strength by group (samples, groups) and the residual, beside every other parameter."""
+    count = int(groups.max()) + 1
+    own = own_basis(sensitivity, n_shared)
+    split = torch.zeros(*sensitivity.shape[:2], count, dtype=torch.float64)
+    split[torch.arange(len(groups)), :, groups] = sensitivity[..., place]
+    others = [i for i in range(n_shared) if i != place]
+    rest = without_own(sensitivity[..., others], own).flatten(0, 1)
+    basis = torch.linalg.qr(rest / rest.norm(dim=0).clamp(min=1e-300)).Q
+    columns, left = (without_own(s, own).flatten(0, 1) for s in (split, residual.unsqueeze(-1)))
+    return columns - basis @ (basis.T @ columns), (left - basis @ (basis.T @ left))[:, 0]
+
+
+def _error(column: Tensor, residual: Tensor, block: int) -> Tensor:
+    """Standard error of a coefficient whose residuals are correlated within blocks."""
+    scores = (column * residual)[: len(column) // block * block].reshape(-1, block).sum(1)
+    return scores.square().sum().sqrt() / column.square().sum()
+
+
+def _size(outcome: Outcome, place: int) -> float:
+    """The strength in the coordinate of its parameter, counted from where the effect does nothing."""
+    parameter = outcome.problem.free[place]
+    if parameter.logarithmic:
+        return 1.0
+    return outcome.values[parameter.name] / parameter.scale

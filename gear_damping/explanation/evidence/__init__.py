@@ -1,0 +1,1 @@
+"""What was measured, in the roles that the explanation gives it, with its noise."""

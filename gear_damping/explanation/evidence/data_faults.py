@@ -1,0 +1,95 @@
+"""Step 0: damaged data end the explanation before any physics is blamed."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.evidence.shaft import shaft_of
+from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.measurement.record import Finding, Measurement
+from gear_damping.physics.systems.gear_pair import GearPair
+
+HARMONICS = 4  # of a comb
+FAINT = 0.1  # share of the strongest comb's energy below which the mesh order is absent
+STANDS_OUT = 5.0  # times the energy of the middle comb; a mesh order that does is there, however weak
+STRONG = 0.2  # share of a signal's variance that a comb must have to be another mesh
+HARMONIC = 0.01  # share of a comb's energy that a second harmonic must have
+OTHER_SPEED = 0.05  # relative; speeds that differ by this tell an order from a line of the structure
+LEAST_ORDER = 0.6  # of the tooth count, from which other combs are compared with the mesh
+
+
+def data_faults(measurement: Measurement) -> list[Finding]:
+    """Findings of the measurement that forbid naming a cause."""
+    return [finding for finding in measurement.findings if finding.severity == "data_problem"]
+
+
+def mesh_order_faults(evidence: Evidence) -> list[Finding]:
+    """A finding where the tooth meshing order is absent and another comb stands in its place.
+
+    A comb that follows the shaft and holds much of every record is a mesh, unless the declared order stands out of the
+    combs about it too: orders of the load, of the other shaft and lines of the structure then lie beside a mesh.
+    """
+    if evidence.system != "gear_pair":
+        return []
+    if evidence.channel.name != "transmission_error":
+        return []
+    records = evidence.records
+    teeth = round(evidence.parameters.get("n_teeth_pinion", _declared("n_teeth_pinion")))
+    orders = [n for n in range(max(5, round(LEAST_ORDER * teeth)), 2 * teeth) if n == teeth or n % teeth]
+    shafts = [shaft_of(record, evidence).angle for record in records]
+    series = [record.response.numpy() - float(record.response.mean()) for record in records]
+    shares = _shares(series, shafts, orders)
+    combs = shares.sum(2)  # (records, orders)
+    energy, own = combs.sum(0), orders.index(teeth)
+    at = int(energy.argmax())
+    if energy[own] >= FAINT * energy[at] or combs[:, at].min() < STRONG:
+        return []
+    rest = [values - _waves(values, angle, orders[at]).sum(1) for values, angle in zip(series, shafts, strict=True)]
+    beside = _shares(rest, shafts, orders).sum((0, 2))
+    if beside[own] >= STANDS_OUT * np.median(beside):
+        return []
+    if not (_at_other_speeds(records, shafts) or np.sort(shares[:, at].sum(0))[-2] >= HARMONIC * energy[at]):
+        return []
+    message = (
+        f"the mesh order {teeth} is absent, while order {orders[at]} stands out: check n_teeth_pinion, the shaft that "
+        "pinion_angle belongs to, and its unit"
+    )
+    return [Finding("mesh_order_absent", message, channel="transmission_error")]
+
+
+def _declared(name: str) -> float:
+    """The value of a parameter that the gear pair has where nothing is said."""
+    return next(float(parameter.default) for parameter in GearPair.parameters if parameter.name == name)
+
+
+def _shares(series: Sequence[NDArray], shafts: Sequence[NDArray], orders: Sequence[int]) -> NDArray:
+    """Share of each record's variance at the first harmonics of each order, (records, orders, harmonics)."""
+    energies = [
+        [(_waves(values, angle, order) ** 2).sum(0) / max(values @ values, 1e-300) for order in orders]
+        for values, angle in zip(series, shafts, strict=True)
+    ]
+    return np.array(energies)
+
+
+def _waves(values: NDArray, angle: NDArray, order: int) -> NDArray:
+    """The first harmonics of an order in a record, fitted together, (samples, harmonics)."""
+    phase = np.arange(1, HARMONICS + 1) * order * angle[:, None]
+    waves = np.stack([np.cos(phase), np.sin(phase)], 2)  # (samples, harmonics, 2)
+    found = np.linalg.lstsq(waves.reshape(len(values), -1), values, rcond=1e-8)[0].reshape(HARMONICS, 2)
+    return np.einsum("thp,hp->th", waves, found)
+
+
+def _at_other_speeds(records: Sequence[FitRecord], shafts: Sequence[NDArray]) -> bool:
+    """Whether the shaft turned at different speeds."""
+    speeds = [
+        abs(float(angle[-1] - angle[0])) * record.sampling_rate / max(1, len(angle) - 1)
+        for record, angle in zip(records, shafts, strict=True)
+    ]
+    return max(speeds) > (1 + OTHER_SPEED) * min(speeds)
+
+
+def sentences(findings: Sequence[Finding]) -> list[str]:
+    """One line for each finding."""
+    return [f"{' '.join(filter(None, (f.record, f.channel)))}: {f.message}" for f in findings]

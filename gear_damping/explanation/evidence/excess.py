@@ -1,0 +1,76 @@
+"""Step 4: is anything wrong? The excess of held-out residuals over the noise, with its uncertainty."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from torch import Tensor
+
+from gear_damping.explanation.evidence.noise import NoiseLevel
+from gear_damping.explanation.settings import SearchSettings
+from gear_damping.identification.output_error.records import FitRecord
+
+
+@dataclass(frozen=True)
+class Excess:
+    """Held-out mean squared residual beyond the noise, in % of the channel's AC variance.
+
+    Args:
+        percent: D.
+        threshold: Above it D is significant.
+        chance: What noise alone may leave of it.
+        misfit: Mean squared residual over the noise variance.
+        per_record: The same by record name.
+    """
+
+    percent: float
+    threshold: float
+    chance: float
+    misfit: float
+    per_record: dict[str, float]
+
+    @property
+    def significant(self) -> bool:
+        """Whether the data show that something is missing."""
+        return self.percent > self.threshold
+
+
+def is_settled(left: Excess, first: Excess, settings: SearchSettings) -> bool:
+    """Whether nothing is left of a first excess that is worth another cause."""
+    is_small = left.percent <= settings.settled_share * first.percent and left.misfit <= settings.settled_misfit
+    return is_small or not left.significant
+
+
+def is_all(left: Excess, first: Excess, settings: SearchSettings) -> bool:
+    """Whether causes explain a first excess: what they leave is settled, and noise or a small part of it."""
+    part = max(left.chance, settings.named_share * first.percent)
+    return is_settled(left, first, settings) and left.percent <= part
+
+
+def excess(
+    residuals: Sequence[Tensor], records: Sequence[FitRecord], noise: NoiseLevel, settings: SearchSettings | None = None
+) -> Excess:
+    """D of these residuals, beside what chance would leave if they were noise alone."""
+    settings = settings or SearchSettings()
+    total = sum(len(r) for r in residuals)
+    mean_square = sum(float(r.square().sum()) for r in residuals) / total
+    variance = sum(ac_energy(record) for record in records) / total
+    floors = {record.name: noise.by_record[record.name] ** 2 for record in records}
+    floor = sum(floors[r.name] * len(r.stacked) for r in records) / total
+    effective = total / noise.correlation
+    relative = mean_square / max(floor, 1e-300)
+    beyond = max(mean_square - floor, 0.0) / variance
+    error = (1 + beyond) * (2 / effective + 2 / noise.degrees_of_freedom) ** 0.5 * floor
+    widened = error if noise.agree else 2 * error
+    spread = (widened**2 + (noise.scatter.deviation * floor) ** 2) ** 0.5
+    each = {
+        record.name: float(residual.square().mean()) / max(floors[record.name], 1e-300)
+        for record, residual in zip(records, residuals, strict=True)
+    }
+    chance = float(100 * (noise.scatter.expected * floor + settings.standard_errors * spread) / variance)
+    return Excess(100 * (mean_square - floor) / variance, max(settings.least_excess, chance), chance, relative, each)
+
+
+def ac_energy(record: FitRecord) -> float:
+    """Sum of squares of a record's channels about their means, in the unit of the first."""
+    channels = record.stacked.unflatten(0, (len(record.channels), -1))
+    return float((channels - channels.mean(1, keepdim=True)).square().sum())

@@ -1,0 +1,176 @@
+"""Step 1: what was measured, as the fits see it: records to fit, records held out, what is known of the rig."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from math import floor, log10, pi
+
+from gear_damping.explanation.evidence.silent_end import audible_samples
+from gear_damping.explanation.settings import SearchSettings
+from gear_damping.identification.observation import (
+    MESH_PHASE,
+    Known,
+    fit_record,
+    known_of,
+    require_alike,
+    require_fitted,
+    response_names,
+)
+from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.identification.output_error.segments import WHOLE, Segments, covered, part, shortened
+from gear_damping.measurement.record import Channel, Measurement
+from gear_damping.physics.catalogue import builtin_effects
+from gear_damping.physics.terms import Effect
+
+HELD_OUT = 4  # every so many operating conditions one is held out where the file does not say
+SPLIT = 2 / 3  # of a single record: fitted before, held out behind
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """Records in the roles that the explanation gives them.
+
+    Args:
+        system: `gear_pair` or `oscillator`.
+        fit: Records to fit.
+        holdout: Records that decide what is accepted.
+        known: What the file states of the rig, by its names.
+        channel: The first response channel of the first record, for units.
+        one_record: Whether there was but one record, cut in two.
+        gear_torque_mode: What holds the gear.
+        noise: Standard deviation of the noise over all records, once it is known, in the unit of the first channel.
+        library: Effects that may be causes, by name.
+        segments: How records are cut, because they cannot be predicted from their start for longer.
+        stated_segments: How the file says that they are cut; `WHOLE` where it does not.
+        has_index: Whether the angle of all records counts from one mark.
+        mesh_index: Whether the file says that it counts from the zero of the mesh.
+        silent_s: Seconds at the ends of records that were left out, because the motion had died away.
+        settings: Thresholds of the search.
+    """
+
+    system: str
+    fit: tuple[FitRecord, ...]
+    holdout: tuple[FitRecord, ...]
+    known: Known
+    channel: Channel | None
+    one_record: bool
+    gear_torque_mode: str = "balanced"
+    noise: float = 0.0
+    library: Mapping[str, type[Effect]] = field(default_factory=builtin_effects)
+    segments: Segments = WHOLE
+    stated_segments: Segments = WHOLE
+    has_index: bool = True
+    mesh_index: bool = False
+    silent_s: float = 0.0
+    settings: SearchSettings = field(default_factory=SearchSettings)
+
+    @property
+    def parameters(self) -> Mapping[str, float]:
+        """Nominal values of the rig that the file states, by the file's names."""
+        return self.known.values
+
+    @property
+    def records(self) -> tuple[FitRecord, ...]:
+        """Every record."""
+        return (*self.fit, *self.holdout)
+
+    @property
+    def sampling_rate(self) -> float:
+        """Hz, the highest of the records."""
+        return max(record.sampling_rate for record in self.records)
+
+    @property
+    def duration(self) -> float:
+        """Length of the longest record in s."""
+        return max(record.duration for record in self.records)
+
+    @property
+    def held(self) -> list[FitRecord]:
+        """Held-out records as far as segments cover them."""
+        return covered(self.holdout, self.segments)
+
+    @property
+    def fitted(self) -> list[FitRecord]:
+        """Fitted records as far as segments cover them."""
+        return covered(self.fit, self.segments)
+
+    @property
+    def conditions(self) -> int:
+        """How many operating conditions the records hold."""
+        return len({_condition(record) for record in self.records})
+
+
+def evidence_of(measurement: Measurement) -> Evidence:
+    """The records of a measurement in their roles.
+
+    Raises:
+        InputError: a record lacks a response that can be fitted, or some have an input that others lack.
+    """
+    require_fitted(measurement)
+    system, known = measurement.system, known_of(measurement)
+    spring = known.values.get("stiffness", 1.0) != 0
+    used = [record for record in measurement.records if record.role != "reference"]
+    records = [(fit_record(record, system, spring), record.role) for record in used]
+    if system == "oscillator":
+        require_alike([record for record, _ in records], str(measurement.source))
+    fit, holdout = _roles(records)
+    one, silent = not holdout, 0.0
+    if one:
+        fit, silent = _audible(fit) if system == "oscillator" else (fit, 0.0)
+        fit, holdout = _cut(fit)
+    modes = {record.gear_torque_mode for record in used} - {None}
+    return Evidence(
+        system=system,
+        fit=tuple(fit),
+        holdout=tuple(holdout),
+        known=known,
+        channel=used[0].channels[response_names(used[0], system)[0]],
+        one_record=one and len(used) == 1,
+        gear_torque_mode="held" if any("gear_torque" in r.conditions for r in fit) else next(iter(modes), "balanced"),
+        stated_segments=Segments(measurement.segment_s, exact=True) if measurement.segment_s else WHOLE,
+        has_index=all("pinion_angle" in record.inputs for record, _ in records) or system != "gear_pair",
+        mesh_index=all(record.mesh_index for record in used),
+        silent_s=silent,
+    )
+
+
+def with_own_angles(evidence: Evidence) -> Evidence:
+    """The same where every record has a mesh phase of its own."""
+    fit, holdout = (
+        tuple(replace(record, own=(MESH_PHASE, *record.own)) for record in records)
+        for records in (evidence.fit, evidence.holdout)
+    )
+    return replace(evidence, fit=fit, holdout=holdout, has_index=False)
+
+
+def _roles(records: Sequence[tuple[FitRecord, str | None]]) -> tuple[list[FitRecord], list[FitRecord]]:
+    """Roles as the file says; where it says none, whole operating conditions are held out."""
+    said = [role for _, role in records if role]
+    if said:
+        return [r for r, role in records if role != "holdout"], [r for r, role in records if role == "holdout"]
+    found = sorted({_condition(record) for record, _ in records})
+    held = set(found[HELD_OUT // 2 :: HELD_OUT]) if len(found) > 1 else set()
+    fit = [record for record, _ in records if _condition(record) not in held]
+    return fit, [record for record, _ in records if _condition(record) in held]
+
+
+def _condition(record: FitRecord) -> tuple[float, float]:
+    """Speed and torque of a record, rounded so that repetitions fall together."""
+    speed, torque = record.conditions.get("pinion_speed", 0.0), record.conditions.get("pinion_torque", 0.0)
+    digits = -floor(log10(max(abs(torque), 1e-9))) + 1
+    return round(speed * 30 / pi, -1), round(torque, digits)
+
+
+def _audible(records: Sequence[FitRecord]) -> tuple[list[FitRecord], float]:
+    """Records without the ends at which nothing moves any more, and how many seconds these last together."""
+    kept = [shortened(record, audible_samples(record)) for record in records]
+    return kept, sum(whole.duration - left.duration for whole, left in zip(records, kept, strict=True))
+
+
+def _cut(records: Sequence[FitRecord]) -> tuple[list[FitRecord], list[FitRecord]]:
+    """Every record in two: the first part is fitted, the rest held out."""
+    fit, holdout = [], []
+    for record in records:
+        at = round(SPLIT * len(record.response))
+        fit.append(part(record, slice(None, at), " (first part)"))
+        holdout.append(part(record, slice(at, None), " (last part)"))
+    return fit, holdout

@@ -1,0 +1,237 @@
+"""Step 5a: what could be missing. Every effect of the catalogue as something that can be switched on gradually."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from math import inf, log
+
+from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.hypothesis import Given, Hypothesis
+from gear_damping.explanation.model.rig import Residuals, rig_of
+from gear_damping.identification.output_error.records import FreeParameter
+from gear_damping.physics.cause import Recipe, Rig
+from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.terms import Effect, ElasticForce
+from gear_damping.units import parse_unit
+
+UNSEEN = 50.0  # times smaller than where it begins, a parameter that has no size yet does nothing
+ANGLE_SCALE = 0.1  # rad, a step of order one of an angle that is freed
+SHOWN = ("exponent", "order", "phase", "sine_frequency", "ramp_start")  # of a variant, in its label
+COVERED_BY_NUISANCE = {"oscillator": {"sensor_offset", "sensor_gain"}, "gear_pair": set()}
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One way in which one effect may be missing.
+
+    Args:
+        name: The effect.
+        label: The name with what distinguishes the variant.
+        hypothesis: The calibrated model with the effect added and switched off (or present).
+        strengths: Places of its strengths among the free parameters.
+        phases: Place of the phase by place of its strength.
+        begun: Coordinates at which other parameters begin in the full fit, by their place.
+        moved: How far other parameters are moved for further starts, in coordinates by place.
+        later: Free parameters that join in the full fit only.
+        presence: Whether it is tried as a whole.
+        replaced: Free parameters that it took the place of.
+        sharpest: Names of parameters that may rest at their lower bound without having run into it.
+        own_phases: Name of the phase by place of its strength, where every record has one of its own.
+        own_tooth: Name of the phase that says which tooth is in mesh at the start of a record, where nothing else does.
+        teeth: How many there are, where that is so.
+    """
+
+    name: str
+    label: str
+    hypothesis: Hypothesis
+    strengths: tuple[int, ...]
+    phases: Mapping[int, int]
+    begun: Mapping[int, float]
+    moved: Mapping[int, float]
+    later: tuple[FreeParameter, ...]
+    presence: bool
+    replaced: tuple[FreeParameter, ...] = ()
+    sharpest: tuple[str, ...] = ()
+    own_phases: Mapping[int, str] = field(default_factory=dict)
+    own_tooth: str = ""
+    teeth: int = 0
+
+    @property
+    def options(self) -> tuple[tuple[str, object], ...]:
+        """The form of the effect, as (option, choice)."""
+        return tuple(sorted(self.hypothesis.effects[-1].chosen.items()))
+
+    @property
+    def is_elastic(self) -> bool:
+        """Whether it is a law of the restoring force."""
+        return isinstance(self.hypothesis.effects[-1], ElasticForce)
+
+
+def candidates_for(base: Hypothesis, evidence: Evidence, residuals: Residuals | None = None) -> list[Candidate]:
+    """Every variant of every effect of the library that goes with the system and is not there yet.
+
+    Args:
+        base: The calibrated model.
+        evidence: The records.
+        residuals: What it leaves of them, in whose orders a ripple is sought beyond the low ones.
+    """
+    there = {effect.name for effect in base.effects}
+    refused = there | COVERED_BY_NUISANCE[base.system.name]
+    rig = rig_of(base, evidence, residuals)
+    sizes = _Sizes(base, evidence.duration, rig)
+    return [
+        _candidate(base, kind, recipe, sizes)
+        for name, kind in evidence.library.items()
+        if kind.cause and base.system.name in kind.systems and name not in refused and set(kind.requires) <= there
+        for recipe in kind.cause.recipes_for(rig)
+        if all(_value(base, parameter) > 0 for parameter in recipe.replaces)
+    ]
+
+
+def restored(hypothesis: Hypothesis, cause: str) -> Hypothesis:
+    """A model from which a cause was taken, with what the cause had replaced free again."""
+    replaced = hypothesis.replaced.get(cause, ())
+    given = hypothesis.given | {parameter.name: parameter.start for parameter in replaced}
+    others = {name: parameters for name, parameters in hypothesis.replaced.items() if name != cause}
+    return replace(hypothesis, given=given, free=(*replaced, *hypothesis.free), replaced=others)
+
+
+def _value(base: Hypothesis, name: str) -> float:
+    """Where a free parameter begins; 0 for one that is known."""
+    return next((p.start for p in base.free if p.name == name), 0.0)
+
+
+def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Sizes") -> Candidate:
+    replaced = tuple(p for p in base.free if p.name in recipe.replaces)
+    rest = tuple(p for p in base.free if p not in replaced)
+    base = replace(base, free=rest, given=base.given | {p.name: 0.0 for p in replaced})
+    effect = kind(**recipe.options)
+    given: Given = {}
+    for parameter in kind.parameters:
+        given[f"{kind.name}.{parameter.name}"] = sizes.default(kind, parameter, recipe)
+    free, strengths, phases, own_phases = [], [], {}, {}
+    own = not sizes.rig.indexed and kind.cause.turns_with == "shaft"
+    own_tooth = f"{kind.name}.phase" if not sizes.rig.indexed and kind.cause.turns_with == "tooth" else ""
+    first = len(base.common)
+    for name, size in recipe.strengths.items():
+        for parameter in _elements(kind, name, sizes.size(kind, name, size, recipe), given, recipe):
+            place = first + len(free)
+            free.append(parameter)
+            strengths.append(place)
+            if name in recipe.phases:
+                index = parameter.name.partition("[")[2]
+                phase = f"{kind.name}.{recipe.phases[name]}" + (f"[{index}" if index else "")
+                if own:
+                    own_phases[place] = phase
+                    continue
+                free.append(FreeParameter(phase, 0.0))
+                phases[place] = place + 1
+    joining = [(declared, f"{kind.name}.{declared.name}") for declared in _declared(kind, recipe)]
+    later = [_freed(declared, flat, given, recipe.within) for declared, flat in joining if flat != own_tooth]
+    if recipe.presence:
+        free, later = [*free, *later], []
+    begun = {}
+    templates = [FreeParameter(phase, 0.0, per_record=True) for phase in own_phases.values()]
+    teeth = sizes.rig.teeth(effect.chosen["shaft"]) if own_tooth else 0
+    if own_tooth:
+        templates = [FreeParameter(own_tooth, 0.0, ANGLE_SCALE, per_record=True, places=teeth)]
+    for name, start in recipe.beside.items():
+        if start is not None:
+            given[name] = start / UNSEEN
+            begun[first + len(free)] = log(UNSEEN)
+        if name in given or name in base.given:
+            free.append(_freed(base.model.parameters()[name], name, base.given | given, recipe.within))
+    moved = {i: log(recipe.stood_in[p.name]) for i, p in enumerate(base.common) if p.name in recipe.stood_in}
+    extended = base.with_effect([effect], given, [*free, *templates], kind.name)
+    return Candidate(
+        kind.name,
+        _label(kind, recipe),
+        replace(extended, replaced=base.replaced | {kind.name: replaced}),
+        tuple(strengths),
+        phases,
+        begun,
+        moved,
+        tuple(later),
+        recipe.presence,
+        replaced,
+        tuple(f"{kind.name}.{name}" for name in recipe.sharpest),
+        own_phases,
+        own_tooth,
+        teeth,
+    )
+
+
+def _declared(kind: type[Effect], recipe: Recipe) -> list[Parameter]:
+    """The scanned and timed parameters of a recipe."""
+    declared = {p.name: p for p in kind.parameters}
+    return [declared[name] for name in (*recipe.scanned, *recipe.timed)]
+
+
+def _freed(declared: Parameter, flat: str, given: Given, within: Mapping[str, tuple[float, float]]) -> FreeParameter:
+    """A parameter that joins in the full fit, from its value there; an angle on its own scale."""
+    value, (low, high) = float(given[flat]), within.get(flat, (-inf, inf))
+    if declared.lower < 0:
+        return FreeParameter(flat, value, ANGLE_SCALE)
+    lower, upper = max(declared.lower, low), min(declared.upper, high)
+    return FreeParameter(flat, value, logarithmic=True, lower=lower, upper=upper)
+
+
+def _label(kind: type[Effect], recipe: Recipe) -> str:
+    values = {**recipe.fixed, **recipe.scanned, **recipe.timed}
+    label = kind.name + "".join(f" {k}={v:.3g}" for k, v in values.items() if k in SHOWN)
+    return label + "".join(f" {k}={v}" for k, v in recipe.options.items())
+
+
+class _Sizes:
+    """Sizes of an effect's parameters for this rig."""
+
+    def __init__(self, base: Hypothesis, duration: float, rig: Rig) -> None:
+        self.base, self.duration, self.rig = base, duration, rig
+        self.scales = base.model.prepare(base.model.values(1, **base.given)).scales
+
+    def natural(self, kind: type[Effect], parameter: Parameter, value: float, exponent: float = 1.0) -> float:
+        """A value in natural units, in the rig's own; the unit of a power law hangs on its exponent."""
+        if kind.name == "power_law_damping" and parameter.name == "coefficient":
+            return value * float(self.scales.force[0] / self.scales.velocity[0] ** exponent)
+        return value * float(self.scales.unit_of(parse_unit(parameter.unit).dimension)[0])
+
+    def size(self, kind: type[Effect], name: str, size: float | None, recipe: Recipe) -> float:
+        """The size of a strength that is tried."""
+        replaced = next((theirs for theirs, own in recipe.replaces.items() if own == name), None)
+        if replaced is not None:
+            return (size or 1.0) * _value(self.base, replaced)
+        parameter = next(p for p in kind.parameters if p.name == name)
+        if size is None or recipe.in_si:
+            default = size or parameter.default
+            return default[0] if isinstance(default, tuple) else float(default)
+        return self.natural(kind, parameter, size, recipe.scanned.get("exponent", 1.0))
+
+    def default(self, kind: type[Effect], parameter: Parameter, recipe: Recipe) -> float | tuple[float, ...]:
+        """The value that a parameter has before it is fitted."""
+        if parameter.name in recipe.strengths:
+            neutral = recipe.neutral
+            if recipe.presence:
+                return self.size(kind, parameter.name, recipe.strengths[parameter.name], recipe)
+            return (neutral,) * (recipe.length or len(parameter.default)) if parameter.vector else neutral
+        if parameter.name in recipe.timed:
+            share = recipe.timed[parameter.name]
+            return share / self.duration if parameter.unit == "Hz" else share * self.duration
+        value = recipe.fixed.get(parameter.name, recipe.scanned.get(parameter.name))
+        if value is None:
+            return (0.0,) * (recipe.length or len(parameter.default)) if parameter.vector else parameter.default
+        if recipe.in_si or parameter.unit in ("1", "rad"):
+            return value
+        return self.natural(kind, parameter, value)
+
+
+def _elements(kind: type[Effect], name: str, size: float, given: Given, recipe: Recipe) -> list[FreeParameter]:
+    """A free parameter for a strength, or for each element of a list of them."""
+    declared = next(p for p in kind.parameters if p.name == name)
+    flat, value = f"{kind.name}.{name}", given[f"{kind.name}.{name}"]
+    if recipe.presence:
+        return [_freed(declared, flat, given, recipe.within)]
+    if isinstance(value, tuple):
+        return [FreeParameter(f"{flat}[{i}]", v, abs(size)) for i, v in enumerate(value)]
+    lower, upper = (-float("inf"), float("inf")) if name in recipe.phases else (declared.lower, declared.upper)
+    if name in recipe.phases:
+        return [FreeParameter(flat, value, abs(size))]
+    return [FreeParameter(flat, value, abs(size), lower=lower, upper=upper)]

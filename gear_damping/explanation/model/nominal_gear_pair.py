@@ -1,0 +1,146 @@
+"""The nominal model of a gear pair: what the file says of it, and what of that is fitted."""
+
+from collections.abc import Mapping
+from math import ceil, cos, inf, pi, sin, sqrt
+
+import torch
+
+from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, fit_hypothesis, natural_frequency_hz
+from gear_damping.identification.oscillator import DAMPING, expected_about
+from gear_damping.identification.output_error.angles import angle_bases, harmonics_to_resonance, scanned
+from gear_damping.identification.output_error.problem import OutputErrorProblem
+from gear_damping.identification.output_error.records import FreeParameter
+from gear_damping.identification.output_error.segments import in_segments
+from gear_damping.physics.effects.backlash import Backlash
+from gear_damping.physics.effects.fourier_mesh_stiffness import FourierMeshStiffness
+from gear_damping.physics.effects.mesh_stiffness_shape import MeshStiffnessShape
+from gear_damping.physics.effects.viscous_damping import ViscousDamping
+from gear_damping.physics.model import Model
+from gear_damping.physics.systems.gear_pair import GearPair
+from gear_damping.simulation.solver_settings import Solver
+
+MESH, SHAPE = "fourier_mesh_stiffness", "mesh_stiffness_shape"
+RENAMED = {
+    "mesh_stiffness_max": f"{MESH}.maximum",
+    "mesh_stiffness_min": f"{MESH}.minimum",
+    "contact_ratio": f"{MESH}.contact_ratio",
+    "backlash_gap": "backlash.gap",
+    "damping_ratio": DAMPING,
+}
+SHAPE_BAND = 1.6  # harmonics of the stiffness count up to this many natural frequencies, at the slowest record,
+FEWEST_HARMONICS, MOST_HARMONICS = 6, 20  # within these
+EXPECTED_SHAPE = 0.1  # of the mean stiffness over the harmonic: what real teeth add to the ideal wave
+FIRST_RATIO = 0.01
+INDEX_ERROR = 0.1  # rad of the mesh: how well a file that states an index knows where the mesh begins
+SHAPED = 3.0  # noise variances: what a fit with all its shapes may leave before angles are looked at again
+SCANNED = 0.99  # of the cost before: less is no reason for another scan
+LEAST_DAMPING = 1e-5  # of the first guess, N s/m
+
+
+def stated_frequency(evidence: Evidence) -> float:
+    """The natural frequency in Hz that follows from what the file states of the rig."""
+    if evidence.system != "gear_pair":
+        return sqrt(evidence.parameters["stiffness"]) / (2 * pi)
+    first = first_gear_pair(evidence)
+    return natural_frequency_hz(first.model, first.given)
+
+
+def first_gear_pair(evidence: Evidence) -> Hypothesis:
+    """The nominal gear pair with what the file says of it: known, expected, or a start."""
+    stated = {RENAMED.get(name, name): value for name, value in evidence.parameters.items()}
+    uncertain = {RENAMED.get(name, name): relative for name, relative in evidence.known.uncertainty.items()}
+    effects = [FourierMeshStiffness(), ViscousDamping()]
+    ratio = stated.pop(DAMPING, FIRST_RATIO)
+    if stated.get("backlash.gap", 0.0) > 0:
+        effects.append(Backlash())
+    else:
+        stated.pop("backlash.gap", None)
+    defaults = {p.name: p.default for p in FourierMeshStiffness.parameters}
+    high, low = (stated.get(f"{MESH}.{end}", defaults[end]) for end in ("maximum", "minimum"))
+    contact_ratio = stated.get(f"{MESH}.contact_ratio") or _contact_ratio(stated)
+    system = GearPair(gear_torque_mode=evidence.gear_torque_mode)
+    start = stated | {f"{MESH}.maximum": high, f"{MESH}.minimum": low, f"{MESH}.contact_ratio": contact_ratio}
+    derived = Model(system, effects).prepare(Model(system, effects).values(1, **start)).derived
+    damping = 2 * ratio * float((derived["mean_stiffness"] * derived["equivalent_mass"])[0]) ** 0.5
+    free = [
+        FreeParameter(f"{MESH}.maximum", high, logarithmic=True),
+        FreeParameter(f"{MESH}.minimum", low, logarithmic=True),
+        FreeParameter(f"{MESH}.contact_ratio", contact_ratio, 0.2, lower=1.02, upper=1.98),
+    ]
+    if damping > 0:
+        lower = LEAST_DAMPING * damping
+        free = [FreeParameter(DAMPING, damping, logarithmic=True, lower=lower), *free]
+    if evidence.has_index:
+        free = [FreeParameter("mesh_phase", 0.0, deviation=INDEX_ERROR if evidence.mesh_index else inf), *free]
+    free = [expected_about(parameter, uncertain.pop(parameter.name, None)) for parameter in free]
+    free += [_uncertain(name, stated[name], relative) for name, relative in uncertain.items() if name in stated]
+    return Hypothesis(system, tuple(effects), start | {DAMPING: damping}, tuple(free))
+
+
+def shaped(rough: Outcome, evidence: Evidence, iterations: int, solver: Solver | None = None) -> Outcome:
+    """A gear pair's nominal model with free harmonics of the stiffness, fitted from one without.
+
+    Args:
+        rough: The fit without.
+        evidence: The records.
+        iterations: At most so many linearisations; with none, the harmonics are free and still zero.
+        solver: Settings of the solver.
+    """
+    shaped = _with_shape(rough.hypothesis, _shape_harmonics(rough, evidence))
+    options = {"iterations": iterations, "solver": solver, "scan": True}
+    found = fit_hypothesis(shaped, evidence, after=rough, **options)
+    samples = sum(len(record.stacked) for record in evidence.fitted)
+    if evidence.has_index or not iterations or found.fitted.cost < SHAPED * samples * evidence.noise**2:
+        return found
+    angles = angles_of(found.hypothesis, evidence, evidence.duration, solver)
+    again = fit_hypothesis(found.hypothesis, evidence, own=angles, **options)
+    return again if again.fitted.cost < SCANNED * found.fitted.cost else found
+
+
+def angles_of(hypothesis: Hypothesis, evidence: Evidence, horizon: float, solver: Solver | None) -> Mapping[str, float]:
+    """The best angle of every record's mesh, of several."""
+    pieces = in_segments(evidence.fit, evidence.segments)
+    problem = OutputErrorProblem(hypothesis.model, hypothesis.given, hypothesis.free, pieces, solver, evidence.noise)
+    return scanned(problem, torch.zeros(problem.n_shared, dtype=torch.float64), horizon, angle_bases(problem))
+
+
+def _uncertain(name: str, value: float, relative: float) -> FreeParameter:
+    """A known parameter with its expectation."""
+    return expected_about(FreeParameter(name, value, abs(value), logarithmic=value > 0), relative)
+
+
+def _contact_ratio(stated: Mapping[str, float]) -> float:
+    """Of standard teeth with these numbers of teeth and pressure angle (ISO 21771), within what a spur pair has."""
+    default = {p.name: p.default for p in GearPair.parameters}
+    teeth = [stated.get(name, default[name]) for name in ("n_teeth_pinion", "n_teeth_gear")]
+    angle = stated.get("pressure_angle", default["pressure_angle"])
+    reach = sum(sqrt((z / 2 + 1) ** 2 - (z / 2 * cos(angle)) ** 2) for z in teeth) - sum(teeth) / 2 * sin(angle)
+    return min(max(reach / (pi * cos(angle)), 1.1), 1.9)
+
+
+def _shape_harmonics(rough: Outcome, evidence: Evidence) -> int:
+    """Harmonics of the mesh that the natural frequency lets through, at the slowest record."""
+    count = ceil(SHAPE_BAND * harmonics_to_resonance(rough.hypothesis.model, rough.flat_given(), evidence.fit))
+    return min(max(count, FEWEST_HARMONICS), MOST_HARMONICS)
+
+
+def _with_shape(rough: Hypothesis, harmonics: int) -> Hypothesis:
+    """Free harmonics take over from the contact ratio, which they contain."""
+    names = [f"{SHAPE}.{part}[{h}]" for part in ("in_phase", "quadrature") for h in range(harmonics)]
+    taken_over = ("mesh_phase", f"{MESH}.minimum", f"{MESH}.contact_ratio")
+    free = tuple(p for p in rough.free if p.name not in taken_over)
+    zeros = (0.0,) * harmonics
+    given = rough.given | {f"{SHAPE}.in_phase": zeros, f"{SHAPE}.quadrature": zeros}
+    return Hypothesis(
+        rough.system,
+        (*rough.effects, MeshStiffnessShape()),
+        given,
+        (*free, *(_harmonic(name) for name in names)),
+    )
+
+
+def _harmonic(name: str) -> FreeParameter:
+    """Free within what teeth can be: a harmonic that the fitted speeds hardly show must not be driven by noise."""
+    order = int(name.partition("[")[2].rstrip("]")) + 1
+    return FreeParameter(name, 0.0, scale=0.02, lower=-0.5, upper=0.5, deviation=EXPECTED_SHAPE / order)

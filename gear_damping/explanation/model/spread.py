@@ -1,0 +1,15 @@
+"""How well a fit knows what it moved."""
+
+from torch import Tensor
+
+from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.hypothesis import Outcome, time_scale
+from gear_damping.identification.output_error.uncertainty import covariance
+
+CORRELATED_PERIODS = 3.0  # characteristic times over which residuals may be correlated
+
+
+def spread_of(outcome: Outcome, evidence: Evidence) -> Tensor:
+    """Covariance of the fitted coordinates; residuals may be coloured."""
+    scale = time_scale(outcome.hypothesis, evidence)
+    return covariance(outcome.problem, outcome.fitted, CORRELATED_PERIODS * scale)

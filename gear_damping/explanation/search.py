@@ -1,0 +1,74 @@
+"""The order of a search: causes are added one after another as held-out records bear them out, then doubted."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from gear_damping.explanation.evidence.excess import is_settled
+from gear_damping.explanation.model.hypothesis import Outcome
+from gear_damping.explanation.state import State
+from gear_damping.explanation.steps.faint import faint_cause
+from gear_damping.explanation.steps.pairs import with_pair, with_pair_instead
+from gear_damping.explanation.steps.revise import beside_the_others, exchanged, pruned, simplified
+from gear_damping.explanation.steps.single import single_cause
+from gear_damping.explanation.steps.told import told
+from gear_damping.explanation.trials.bench import Bench
+from gear_damping.explanation.trials.refit import Refit
+
+
+def search(nominal: Outcome, bench: Bench, begun: Sequence[Refit] = ()) -> State:
+    """Extend the nominal model until nothing significant is missing or nothing more is borne out.
+
+    Args:
+        nominal: The calibrated model.
+        bench: The records, their noise, and where candidates are tried.
+        begun: Full fits to other evidence that are carried on.
+    """
+    state, goes_on = looked(State(bench, nominal, nominal, begun=tuple(begun))), True
+    while goes_on and len(state.accepted) < bench.settings.most_causes:
+        state, goes_on = _with_more(state)
+        state = looked(state) if goes_on else state
+    state = told(simplified(state))
+    if len(state.accepted) > 1:
+        state = beside_the_others(pruned(state))
+    return state
+
+
+def looked(state: State) -> State:
+    """With scores beside the present model, and what its residuals hold; the noise follows from what is random."""
+    ranked = tuple(state.bench.ranked(state.outcome))
+    left = state.bench.assessed(state.outcome, ranked)
+    state = replace(state, bench=state.bench.knowing(left), ranked=ranked, left=left)
+    if state.outcome is state.nominal:  # nothing is accepted, or all was calibrated anew
+        state = replace(state, first_scores=ranked, seen=left)
+    return state
+
+
+def _with_more(state: State) -> tuple[State, bool]:
+    """One round: a further cause or two of them, or a better calibration; and whether there was any."""
+    bench, current = state.bench, state.current
+    if state.accepted and bench.budget.refuses("further causes"):
+        return state, False
+    if state.left is not None and not state.left.visible and current.misfit <= bench.settings.small_misfit:
+        return state, False
+    if is_settled(current, state.first, bench.settings):
+        state, best, rivals = faint_cause(state)
+        return (state, False) if best is None else (state.accepting(best, rivals), True)
+    state, best, rivals = single_cause(state)
+    if best is None:
+        further = with_pair(state)
+    else:
+        further = _calibrated_anew(state, best) or with_pair_instead(exchanged(state.accepting(best, rivals)))
+    return (state, False) if further is None else (further, True)
+
+
+def _calibrated_anew(state: State, best: Refit) -> State | None:
+    """The state without the local minimum that an effect seemed needed for: what it took is taken without it."""
+    bench = state.bench
+    if state.calibrations >= bench.settings.most_calibrations:
+        return None
+    settled = bench.without(best.outcome, best.name)
+    if not bench.is_as_good(settled, best.outcome):
+        return None
+    bench.say(f"what {best.name} seemed to take is taken without it: the fit had not come to rest")
+    nominal = state.nominal if state.accepted else settled
+    return replace(state, outcome=settled, nominal=nominal, calibrations=state.calibrations + 1)

@@ -1,0 +1,120 @@
+"""What is known so far: every step of a search takes a state and gives the next."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from gear_damping.explanation.evidence.excess import Excess
+from gear_damping.explanation.evidence.noise import NoiseLevel
+from gear_damping.explanation.model.hypothesis import Outcome
+from gear_damping.explanation.trials.assess import Assessment
+from gear_damping.explanation.trials.bench import Bench
+from gear_damping.explanation.trials.refit import Refit
+from gear_damping.explanation.trials.score import Score
+from gear_damping.physics.terms import Effect
+
+
+@dataclass(frozen=True)
+class Accepted:
+    """A cause that held-out records bear out.
+
+    Args:
+        name: The effect.
+        refit: Its full fit when it was accepted.
+        share: Share of the excess that it took, held out.
+        confusable: Other effects that fit no worse.
+    """
+
+    name: str
+    refit: Refit
+    share: float
+    confusable: tuple[str, ...]
+
+    @property
+    def effect(self) -> Effect:
+        """The effect itself."""
+        return next(e for e in self.refit.outcome.hypothesis.effects if e.name == self.name)
+
+
+@dataclass(frozen=True)
+class State:
+    """Where a search stands.
+
+    Args:
+        bench: Where candidates are tried, with the noise as it is known now.
+        nominal: The calibrated nominal model.
+        outcome: The model with the causes that were accepted.
+        accepted: These causes in the order in which they were accepted.
+        ranked: Every candidate's score beside that model.
+        first_scores: The same beside the nominal model.
+        rejected: Full fits of the last round that were not accepted.
+        first_fits: Full fits of the first round, the best first.
+        begun: Full fits to other evidence that are carried on.
+        seen: What the residuals of the nominal model hold; None where that was not found out.
+        left: What those of the model hold.
+        calibrations: How often the nominal model has been calibrated anew.
+    """
+
+    bench: Bench
+    nominal: Outcome
+    outcome: Outcome
+    accepted: tuple[Accepted, ...] = ()
+    ranked: tuple[Score, ...] = ()
+    first_scores: tuple[Score, ...] = ()
+    rejected: tuple[Refit, ...] = ()
+    first_fits: tuple[Refit, ...] = ()
+    begun: tuple[Refit, ...] = ()
+    seen: Assessment | None = None
+    left: Assessment | None = None
+    calibrations: int = 0
+
+    @property
+    def first(self) -> Excess:
+        """What the nominal model leaves of the held-out records."""
+        return self.bench.excess(self.nominal)
+
+    @property
+    def current(self) -> Excess:
+        """What the model leaves of them."""
+        return self.bench.excess(self.outcome)
+
+    @property
+    def noise(self) -> NoiseLevel:
+        """The noise as it is known now."""
+        return self.bench.noise
+
+    @property
+    def failed(self) -> Mapping[str, str]:
+        """Why an effect could not be fitted in full, by its name."""
+        return self.bench.failed
+
+    @property
+    def names(self) -> frozenset[str]:
+        """The effects that were accepted."""
+        return frozenset(cause.name for cause in self.accepted)
+
+    @property
+    def growth(self) -> float:
+        """How much an error of the initial state grows over a record, by the model or the best of the first round."""
+        best = [fit.outcome for fit in self.first_fits[:1] if fit.is_seen_in_fit]
+        return max(outcome.growth for outcome in (self.nominal, self.outcome, *best))
+
+    @property
+    def is_unpredictable(self) -> bool:
+        """Whether records were predicted over more than they can be: nothing of that counts."""
+        return self.growth > self.bench.settings.most_growth and not self.bench.evidence.segments
+
+    def with_cause(self, place: int, cause: Accepted, outcome: Outcome | None = None) -> "State":
+        """The same with another cause in one place, and the model that goes with it."""
+        accepted = (*self.accepted[:place], cause, *self.accepted[place + 1 :])
+        return replace(self, accepted=accepted, outcome=outcome or self.outcome)
+
+    def accepting(self, best: Refit, rivals: tuple[str, ...] = ()) -> "State":
+        """The same with a further cause."""
+        outcome = self.bench.at_rest(best.outcome)
+        share = min(self.share_taken(outcome), 1.0)
+        self.bench.say(f"{best.name} takes {100 * share:.1f} % of the excess on held-out records")
+        return replace(self, outcome=outcome, accepted=(*self.accepted, Accepted(best.name, best, share, rivals)))
+
+    def share_taken(self, outcome: Outcome) -> float:
+        """What another model takes of what this one leaves, as a share of what the nominal one leaves."""
+        return (self.current.percent - self.bench.excess(outcome).percent) / max(self.first.percent, 1e-300)

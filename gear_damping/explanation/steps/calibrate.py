@@ -1,0 +1,143 @@
+"""Step 3: the nominal simulation at its best, so that wrong parameters do not masquerade as physics."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from math import log, pi
+
+import torch
+
+from gear_damping.errors import InputError, Problem
+from gear_damping.explanation.evidence.records import Evidence, with_own_angles
+from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, fit_hypothesis, natural_frequency_hz
+from gear_damping.explanation.model.nominal_gear_pair import SCANNED, angles_of, first_gear_pair, shaped
+from gear_damping.identification.oscillator import DAMPING, GAIN, fit_oscillator, linear_model, linear_oscillator
+from gear_damping.identification.output_error.angles import STARTS
+from gear_damping.identification.output_error.records import FreeParameter
+from gear_damping.simulation.solver_settings import Solver
+
+LESS_DAMPING = 0.05  # of what was found: what a local minimum takes for damping
+SHAPE_ITERATIONS = 30
+SHORT_PERIODS = 40.0  # natural periods of the first round
+MOST_SCANS = 8  # of the records' angles, each followed by a fit
+APART = 1.5  # times the cost of a phase for every record: one phase of all leaves that much where there is none; angles
+# that begin anywhere agree that well once in a thousand times, for three records
+NOT_FINITE = Problem(
+    "parameters",
+    "with what is stated of the rig and its load, the nominal simulation does not stay finite",
+    remedy="check the values and units of parameters, torques and speeds",
+)
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """The evidence with the nominal model at its best.
+
+    Args:
+        evidence: The records, with phases of their own where their angles do not count from one mark.
+        nominal: The nominal model fitted to them.
+        rough: A gear pair's fit before the shape of its stiffness was freed; None for an oscillator.
+    """
+
+    evidence: Evidence
+    nominal: Outcome
+    rough: Outcome | None = None
+
+
+def calibrated(evidence: Evidence, solver: Solver | None = None) -> Calibration:
+    """The nominal model fitted to the evidence.
+
+    Raises:
+        InputError: with what is stated of the rig it cannot be simulated.
+    """
+    with _simulable():
+        if evidence.system == "gear_pair":
+            found = _gear_pair(evidence, solver)
+        else:
+            found = Calibration(evidence, _oscillator(evidence, solver))
+    if not bool(found.nominal.fitted.prediction.sensitivity.isfinite().all()):
+        raise InputError(NOT_FINITE)
+    return found
+
+
+@contextmanager
+def _simulable() -> Iterator[None]:
+    """What is stated of a rig may be far from any that moves as was recorded."""
+    try:
+        yield
+    except torch.linalg.LinAlgError as error:
+        raise InputError(NOT_FINITE) from error
+
+
+def _oscillator(evidence: Evidence, solver: Solver | None) -> Outcome:
+    """Stiffness, damping, gain; offsets of force and response as nuisances."""
+    found = fit_oscillator(evidence.fit, known=evidence.known, segments=evidence.segments)
+    free, given, _ = linear_model(evidence.fit, evidence.known)
+    free = [_from_here(parameter, found.given[parameter.name]) for parameter in free]
+    model = linear_oscillator(evidence.fit)
+    nominal = Hypothesis(model.system, tuple(model.effects), given, tuple(free))
+    return fit_hypothesis(nominal, evidence, solver=solver)
+
+
+def _from_here(parameter: FreeParameter, value: float) -> FreeParameter:
+    """The parameter from a value that was found; a gain keeps its sign."""
+    logarithmic = parameter.logarithmic or (parameter.name == GAIN and value > 0)
+    expected = parameter.start if parameter.expected is None and parameter.logarithmic else parameter.expected
+    deviation = parameter.deviation
+    if logarithmic and not parameter.logarithmic:  # a relative one counts as such
+        deviation = parameter.deviation / abs(parameter.start)
+    return replace(parameter, start=value, logarithmic=logarithmic, expected=expected, deviation=deviation)
+
+
+def recalibrated(nominal: Outcome, evidence: Evidence, solver: Solver | None = None) -> Outcome:
+    """The nominal model fitted to the evidence in segments, from where it was and from little damping."""
+    hypothesis = nominal.hypothesis
+    starts = torch.zeros(2, len(hypothesis.common), dtype=torch.float64)
+    places = [i for i, parameter in enumerate(hypothesis.free) if parameter.name == DAMPING]
+    starts[1, places] = log(LESS_DAMPING)
+    return fit_hypothesis(hypothesis, evidence, starts, iterations=SHAPE_ITERATIONS, solver=solver)
+
+
+def _gear_pair(evidence: Evidence, solver: Solver | None) -> Calibration:
+    """Mesh phase by a scan, then damping and stiffness, then free harmonics of the stiffness."""
+    evidence, rough = _angles_counted(evidence, solver)
+    rough = rough or _rough_gear_pair(evidence, solver)
+    return Calibration(evidence, shaped(rough, evidence, SHAPE_ITERATIONS, solver), rough)
+
+
+def _rough_gear_pair(evidence: Evidence, solver: Solver | None) -> Outcome:
+    """The contact ratio's wave, with the mesh phase tried all around: one phase, or one of every record."""
+    first = first_gear_pair(evidence)
+    short = SHORT_PERIODS / natural_frequency_hz(first.model, first.given)
+    horizons = [short, None] if short < evidence.duration else [None]
+    options = {"horizons": horizons, "iterations": 12, "solver": solver}
+    if evidence.has_index:
+        starts = torch.zeros(STARTS, len(first.common), dtype=torch.float64)
+        places = [i for i, p in enumerate(first.free) if p.name == "mesh_phase"]
+        starts[:, places] = torch.linspace(0, 2 * pi, STARTS + 1, dtype=torch.float64)[:-1, None]
+        return fit_hypothesis(first, evidence, starts if places else None, kept=0.12, **options)
+    found: Outcome | None = None
+    for _ in range(MOST_SCANS):  # a phase that is wrong makes stiffness and damping wrong, and they the next phase
+        hypothesis = first if found is None else found.hypothesis
+        angles = angles_of(hypothesis, evidence, short, solver)
+        again = fit_hypothesis(hypothesis, evidence, own=angles, **options)
+        is_better = found is None or again.fitted.cost < SCANNED * found.fitted.cost
+        found = again if found is None or again.fitted.cost < found.fitted.cost else found
+        if not is_better:
+            break
+    return found
+
+
+def _angles_counted(evidence: Evidence, solver: Solver | None = None) -> tuple[Evidence, Outcome | None]:
+    """The evidence with a phase of its own in every record where their angles do not count from one mark.
+
+    An angle that was measured may begin anew in every record, as behind an encoder without an index: then one phase
+    of the mesh does not fit them all. The rough fit that was made to find out comes with it.
+    """
+    if evidence.has_index and evidence.mesh_index:
+        return evidence, None
+    apart = with_own_angles(evidence)
+    if not evidence.has_index or len(evidence.fit) == 1:
+        return evidence if evidence.has_index else apart, None
+    one, many = (_rough_gear_pair(either, solver) for either in (evidence, apart))
+    return (evidence, one) if one.fitted.cost <= APART * many.fitted.cost else (apart, many)

@@ -1,0 +1,38 @@
+"""Step 3b: what errors of the calibrated parameters leave on held-out records, though nothing is wrong."""
+
+import torch
+
+from gear_damping.explanation.evidence.noise import Scatter
+from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.hypothesis import Outcome
+from gear_damping.identification.output_error.normal_equations import own_basis, without_own
+from gear_damping.identification.output_error.problem import OutputErrorProblem
+from gear_damping.identification.output_error.segments import in_segments
+from gear_damping.identification.output_error.uncertainty import noise_covariance
+from gear_damping.simulation.solver_settings import Solver
+
+
+def calibration_error(nominal: Outcome, evidence: Evidence, solver: Solver | None = None) -> Scatter:
+    """Mean and deviation of the squared prediction error that noise in the fitted records causes.
+
+    A held-out operating condition may show what the fitted ones hardly do, such as a harmonic of the stiffness at
+    resonance: the error of a parameter weighs more there.
+    """
+    hypothesis = nominal.hypothesis
+    pieces = in_segments(evidence.holdout, evidence.segments)
+    problem = OutputErrorProblem(hypothesis.model, hypothesis.given, hypothesis.free, pieces, solver, evidence.noise)
+    settled = torch.zeros(1, problem.n_shared, dtype=torch.float64)
+    for place, parameter in enumerate(problem.free):
+        settled[0, place] = parameter.coordinate(nominal.own[parameter.name]) if parameter.name in nominal.own else 0.0
+    found = problem.linearise(settled, problem.first_states().unsqueeze(0)).sensitivity[0]
+    if not bool(found.isfinite().all()):
+        return Scatter()
+    common = min(problem.unknowns.n_common, nominal.problem.unknowns.n_common)
+    beside = without_own(found[..., : problem.n_shared], own_basis(found, problem.n_shared)).flatten(0, 1)
+    basis = torch.linalg.qr(beside[:, problem.unknowns.n_common :]).Q
+    sensitivity = beside[:, :common] - basis @ (basis.T @ beside[:, :common])
+    samples = sum(len(piece.stacked) for piece in pieces)
+    covariance = noise_covariance(nominal.problem, nominal.fitted)[:common, :common]
+    shares = sensitivity.T @ sensitivity @ covariance
+    shares = shares / (samples * max(evidence.noise, 1e-300) ** 2)
+    return Scatter(float(shares.trace()), float((2 * (shares @ shares).trace()).clamp(min=0).sqrt()))

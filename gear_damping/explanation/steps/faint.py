@@ -1,0 +1,79 @@
+"""Step 6b: causes that held-out power is too blunt for, but the score of the residuals shows.
+
+Held-out residuals are compared by the whole of their power; what an effect would add to a prediction is compared with
+the residual itself here (Clark & West 2007), which needs a tenth of that power.
+"""
+
+from dataclasses import replace
+
+import torch
+from torch import Tensor
+
+from gear_damping.explanation.model.hypothesis import Outcome
+from gear_damping.explanation.state import State
+from gear_damping.explanation.trials.assess import Assessment
+from gear_damping.explanation.trials.bench import Bench
+from gear_damping.explanation.trials.refit import Refit, block_samples
+from gear_damping.explanation.trials.score import Score
+
+ONE_OR_TWO = 2  # causes; of a further one the size has to be known
+
+
+def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
+    """The state with the fits that were made, the next cause and its rivals; None where none is confirmed."""
+    seen, bench = state.left, state.bench
+    if seen is None:
+        return state, None, ()
+    best: dict[str, Score] = {}
+    for score in state.ranked:
+        best.setdefault(score.candidate.name, score)
+    names = sorted((n for n in best if seen.visible.shows(n)), key=lambda n: -seen.visible.by_name[n])
+    names = names[: bench.settings.full_fits]
+    names = [name for name in names if best[name].gain > 0 and not bench.budget.refuses(name)]
+    fits = [fit for name in names if (fit := bench.full_fit(best[name], state.outcome)) is not None]
+    worth = [fit for fit in fits if _is_worth(fit, state.outcome, seen, bench)]
+    state = replace(state, rejected=tuple(fits), first_fits=state.first_fits or tuple(fits))
+    if len(state.accepted) >= ONE_OR_TWO:
+        worth = [fit for fit in worth if bench.is_determined(fit)]
+    if not worth:
+        return state, None, ()
+    first = max(worth, key=lambda fit: fit.fit_gain)
+    rivals = [fit for fit in worth if fit is not first and not _encompasses(first, fit, bench)]
+    simpler = [fit for fit in rivals if fit.name == _simpler(first, bench)]
+    if simpler:
+        rivals = [fit for fit in (first, *rivals) if fit is not simpler[0]]
+        first = simpler[0]
+    return state, first, tuple(fit.name for fit in rivals)
+
+
+def confirmation(before: Outcome, after: Outcome, bench: Bench) -> float:
+    """The t statistic of what a cause adds to the prediction of held-out records, on what they leave without it."""
+    sums: list[Tensor] = []
+    for old, new, block in zip(before.holdout, after.holdout, block_samples(before, bench.evidence), strict=True):
+        products = (old - new) * old
+        count = max(1, len(products) // block)
+        sums += [part.sum() for part in products[: count * block].chunk(count)]
+    total = torch.stack(sums)
+    return float(total.sum() / total.square().sum().sqrt().clamp(min=1e-300))
+
+
+def _is_worth(fit: Refit, before: Outcome, seen: Assessment, bench: Bench) -> bool:
+    """Whether held-out records confirm a cause that takes its part of what is not random, and lose nothing by it."""
+    if fit.gain <= 0:
+        return False
+    taken = 1 - fit.outcome.fitted.cost / max(before.fitted.cost, 1e-300)
+    settings = bench.settings
+    is_enough = taken >= settings.least_share * seen.taken
+    return is_enough and confirmation(before, fit.outcome, bench) >= settings.confirmed_t
+
+
+def _encompasses(first: Refit, other: Refit, bench: Bench) -> bool:
+    """Whether one is still visible beside the other: what the other says is then not enough."""
+    scores = bench.ranked(other.outcome, {first.name})
+    seen = bench.assessed(other.outcome, scores, families=False) if scores else None
+    return seen is not None and seen.visible.shows(first.name)
+
+
+def _simpler(fit: Refit, bench: Bench) -> str | None:
+    """The effect that this one contains as a special case."""
+    return bench.evidence.library[fit.name].cause.simpler

@@ -1,0 +1,118 @@
+"""Two effects at once, where no single one is accepted or one that was accepted leaves a rest."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from gear_damping.explanation.evidence.excess import Excess
+from gear_damping.explanation.state import Accepted, State
+from gear_damping.explanation.trials.refit import Refit
+from gear_damping.explanation.trials.score import Score
+
+PAIRS = "pairs of effects"
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two effects that held-out records accept together.
+
+    Args:
+        first: The full fit with the first of them.
+        second: The full fit with both.
+        replaces: Whether they take the place of what was accepted so far.
+    """
+
+    first: Refit
+    second: Refit
+    replaces: bool
+
+
+def with_pair(state: State) -> State | None:
+    """The state with the pair that held-out records like best beside what was accepted, or in its place, if any."""
+    bench = state.bench
+    if state.is_unpredictable or bench.budget.refuses(PAIRS):
+        return None
+    beside = _bases([fit for fit in state.rejected if fit.is_seen_in_fit], state)
+    pairs = [Pair(fit, second, False) for fit in beside for second in _seconds(fit, state)]
+    pairs += _instead(state) if len(state.accepted) == 1 else []
+    pair = _accepted(pairs, state.current, state)
+    if pair is None:
+        return None
+    count = 2 if pair.replaces else len(state.accepted) + 2
+    return None if count > bench.settings.most_causes else _with(pair, state, state.current)
+
+
+def with_pair_instead(state: State) -> State:
+    """The state with the pair that held-out records like better than the two causes that were accepted, if any.
+
+    A first cause that only resembles what is there leads the second astray, and both stand in for two others.
+    """
+    if len(state.accepted) != 2 or state.bench.budget.refuses(PAIRS):
+        return state
+    pair = _accepted(_instead(state), state.current, state)
+    return state if pair is None else _with(pair, state, state.first)
+
+
+def _with(pair: Pair, state: State, current: Excess) -> State:
+    """Two causes that only together are accepted; each has half of what they take, until one is taken out."""
+    bench = state.bench
+    if pair.replaces:
+        former = " and ".join(cause.name for cause in state.accepted)
+        bench.say(f"{pair.first.name} and {pair.second.name} take the place of {former}")
+        state, current = replace(state, accepted=()), state.first
+    outcome = bench.at_rest(pair.second.outcome)
+    share = (current.percent - bench.excess(outcome).percent) / max(state.first.percent, 1e-300) / 2
+    causes = [Accepted(fit.name, pair.second, share, ()) for fit in (pair.first, pair.second)]
+    bench.say(f"{pair.first.name} and {pair.second.name} take {200 * share:.1f} % of the excess on held-out records")
+    return replace(state, outcome=outcome, accepted=(*state.accepted, *causes))
+
+
+def _instead(state: State) -> list[Pair]:
+    """Pairs whose first effect took at least half of what the first cause did when both were tried by themselves."""
+    shares = {fit.name: _taken(fit, state) for fit in state.first_fits if fit.is_seen_in_fit}
+    least = state.bench.settings.pair_share * shares.get(state.accepted[0].name, 1.0)
+    rivals = [fit for fit in state.first_fits if fit.is_seen_in_fit and shares[fit.name] >= least]
+    return [Pair(fit, second, True) for fit in _bases(rivals, state) for second in _seconds(fit, state)]
+
+
+def _taken(fit: Refit, state: State) -> float:
+    return 1 - fit.outcome.holdout_cost / max(state.nominal.holdout_cost, 1e-300)
+
+
+def _accepted(pairs: Sequence[Pair], current: Excess, state: State) -> Pair | None:
+    """The best pair that held-out records accept, or of those that do as well the smallest; None without one."""
+    bench, settings = state.bench, state.bench.settings
+
+    def takes(pair: Pair) -> float:
+        return (current.percent - bench.excess(pair.second.outcome).percent) / current.percent
+
+    worth = [pair for pair in pairs if pair.second.t > settings.accepted_t and takes(pair) >= settings.least_share]
+    best = min(worth, key=lambda pair: pair.second.outcome.holdout_cost, default=None)
+    if best is None:
+        return None
+    alike = [pair for pair in worth if bench.is_as_good(pair.second.outcome, best.second.outcome)]
+    return min([best, *alike], key=lambda pair: len(pair.second.outcome.hypothesis.free))
+
+
+def _bases(fits: Sequence[Refit], state: State) -> list[Refit]:
+    """The fits that take most of the fitted records, one an effect."""
+    best: dict[str, Refit] = {}
+    for fit in sorted(fits, key=lambda fit: -fit.fit_gain):
+        if fit.name not in state.names:
+            best.setdefault(fit.name, fit)
+    return list(best.values())[: state.bench.settings.pair_bases]
+
+
+def _seconds(base: Refit, state: State) -> list[Refit]:
+    """Full fits of the most promising effects beside a base, held against what was accepted so far."""
+    bench = state.bench
+    best: dict[str, Score] = {}
+    for score in bench.ranked(base.outcome):
+        if score.gain > 0:
+            best.setdefault(score.candidate.name, score)
+    names = list(best)[: bench.settings.pair_seconds]
+    simpler = (bench.evidence.library[name].cause.simpler for name in names)
+    names += [name for name in simpler if name in best and name not in names]
+    names = [name for name in names if not bench.budget.refuses(f"{base.name} with {name}")]
+    fits = (bench.full_fit(best[name], base.outcome, state.outcome) for name in names)
+    kept = [fit for fit in fits if fit is not None and fit.outcome.fitted.cost < base.outcome.fitted.cost]
+    return [bench.converged(fit, state.outcome) for fit in kept]

@@ -1,0 +1,113 @@
+"""Second thoughts: causes that give way to others, to simpler ones, or to nothing."""
+
+from dataclasses import replace
+
+from gear_damping.explanation.evidence.excess import is_settled
+from gear_damping.explanation.model.hypothesis import Outcome
+from gear_damping.explanation.state import Accepted, State
+from gear_damping.explanation.trials.score import Score
+
+
+def exchanged(state: State) -> State:
+    """Earlier causes give way to what explains more now that a further one is known.
+
+    A cause that was accepted while another was missing may have been its neighbour that came nearest to both. What
+    does no worse in its place is its rival.
+    """
+    for place, cause in enumerate(state.accepted[:-1]):
+        if state.bench.budget.refuses(f"other effects in the place of {cause.name}"):
+            break
+        state = _exchanged_at(place, state)
+    return state
+
+
+def _exchanged_at(place: int, state: State) -> State:
+    bench, cause, before = state.bench, state.accepted[place], state.outcome
+    without = bench.without(before, cause.name)
+    fits = bench.full_fits(bench.ranked(without), without, before, bench.settings.exchange_share)
+    if fits and fits[0].t > bench.settings.accepted_t and fits[0].is_seen_in_fit:
+        best, rivals = bench.simplest(fits[0], fits)
+        if best.name != cause.name:
+            bench.say(f"{best.name} takes the place of {cause.name} beside the others")
+        share = cause.share + state.share_taken(best.outcome)
+        return state.with_cause(place, Accepted(best.name, best, share, rivals), best.outcome)
+    alike = [fit.name for fit in fits if fit.is_seen_in_fit and bench.is_as_good(fit.outcome, before)]
+    rivals = tuple(dict.fromkeys((*cause.confusable, *(name for name in alike if name != cause.name))))
+    return state.with_cause(place, replace(cause, confusable=rivals))
+
+
+def simplified(state: State) -> State:
+    """Every cause, or the simpler one that it contains where that does as well beside the other causes."""
+    for place in range(len(state.accepted)):
+        state = _simplified_at(place, state)
+    return state
+
+
+def _simplified_at(place: int, state: State) -> State:
+    bench, cause = state.bench, state.accepted[place]
+    simpler = cause.effect.cause.simpler
+    if simpler is None or simpler in state.names:
+        return state
+    without = bench.without(state.outcome, cause.name)
+    ranked = bench.ranked(without, {simpler})
+    fit = bench.full_fit(ranked[0], without) if ranked else None
+    if fit is None or not bench.is_as_good(fit.outcome, state.outcome):
+        return state
+    bench.say(f"{simpler} does as well as {cause.name}, with fewer parameters")
+    rivals = tuple(name for name in cause.confusable if name != simpler)
+    return state.with_cause(place, Accepted(simpler, fit, cause.share, rivals), fit.outcome)
+
+
+def pruned(state: State) -> State:
+    """Without causes whose removal costs nothing that held-out records show, or leaves nothing that is visible."""
+    bench = state.bench
+    for cause in state.accepted:
+        if len(state.accepted) == 1:
+            break
+        without = bench.without(state.outcome, cause.name)
+        is_needed = bench.paired_gain(without, state.outcome)[1] >= bench.settings.accepted_t
+        if is_needed and not _is_enough(without, state):
+            continue
+        bench.say(f"{cause.name} is not needed beside the others")
+        first, *others = [other for other in state.accepted if other is not cause]
+        first = replace(first, share=first.share + cause.share)
+        state = replace(state, outcome=without, accepted=(first, *others))
+    return state
+
+
+def _is_enough(outcome: Outcome, state: State) -> bool:
+    """Whether a search that had come to this model would have ended there."""
+    bench = state.bench
+    if not is_settled(bench.excess(outcome), state.first, bench.settings):
+        return False
+    left = bench.assessed(outcome, bench.ranked(outcome))
+    return left is not None and not left.visible
+
+
+def beside_the_others(state: State) -> State:
+    """Every cause with those of its rivals that do no worse in its place, now that the other causes are known."""
+    for place in range(len(state.accepted)):
+        state = _beside_the_others_at(place, state)
+    return state
+
+
+def _beside_the_others_at(place: int, state: State) -> State:
+    bench, cause = state.bench, state.accepted[place]
+    rivals = [name for name in cause.confusable if name not in state.names]
+    if not rivals:
+        return state.with_cause(place, replace(cause, confusable=()))
+    if bench.budget.refuses(f"rivals of {cause.name} beside the others"):
+        return state
+    without = bench.without(state.outcome, cause.name)
+    best: dict[str, Score] = {}
+    for score in bench.ranked(without, rivals):
+        best.setdefault(score.candidate.name, score)
+    fits = [bench.full_fit(score, without) for score in best.values() if score.gain > 0]
+    kept = [fit for fit in fits if fit is not None and bench.is_as_good(fit.outcome, state.outcome)]
+    inside = [fit for fit in kept if not fit.is_at_bound]
+    if cause.refit.is_at_bound and inside:  # it stands in for another at the end of what it can be
+        instead = min(inside, key=lambda fit: (len(fit.outcome.hypothesis.free), fit.outcome.holdout_cost))
+        bench.say(f"{instead.name} does as well as {cause.name}, which has run into a bound")
+        others = tuple(fit.name for fit in inside if fit is not instead)
+        return state.with_cause(place, Accepted(instead.name, instead, cause.share, others), instead.outcome)
+    return state.with_cause(place, replace(cause, confusable=tuple(fit.name for fit in kept)))

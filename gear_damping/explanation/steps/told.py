@@ -1,0 +1,93 @@
+"""Whether the records tell the size of a cause from none.
+
+A law that bends to what another leaves may lower the cost while its own size is anybody's guess.
+"""
+
+from dataclasses import replace
+
+import torch
+from scipy.stats import chi2
+from torch import Tensor
+
+from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.hypothesis import Outcome, time_scale
+from gear_damping.explanation.model.spread import CORRELATED_PERIODS
+from gear_damping.explanation.state import State
+from gear_damping.explanation.trials.refit import Refit
+from gear_damping.identification.output_error.normal_equations import own_basis, without_own
+from gear_damping.identification.output_error.uncertainty import long_run
+
+INDEPENDENT = 1e-3  # of the largest singular value: less is a direction in which strengths do nothing but rounding
+
+
+def told(state: State) -> State:
+    """Without causes whose size the records do not tell from none."""
+    bench = state.bench
+    for cause in state.accepted:
+        if is_told(state.outcome, cause.refit, bench.evidence):
+            continue
+        bench.say(f"{cause.name} lowers the cost, but its size is not told from none")
+        kept = tuple(other for other in state.accepted if other is not cause)
+        outcome = bench.without(state.outcome, cause.name)
+        state = replace(state, outcome=outcome, accepted=kept, rejected=(cause.refit, *state.rejected))
+    return state
+
+
+def is_told(outcome: Outcome, refit: Refit, evidence: Evidence) -> bool:
+    """Whether the strengths of a cause are told from none, together and, where each does something, one at least alone.
+
+    A Wald test along the strengths that were found: what they change of the prediction beside everything else that is
+    free, against what coloured residuals would do in its direction. The shape of the cause (an exponent, a width) is
+    taken as it was found: beside it a strength may be any and the law still be certain.
+
+    Args:
+        outcome: The model with the cause.
+        refit: The fit with which the cause was accepted.
+        evidence: The records.
+    """
+    candidate = refit.score.candidate
+    neutral = {candidate.hypothesis.common[i].name: candidate.hypothesis.common[i].start for i in candidate.strengths}
+    problem, shared = outcome.problem, outcome.fitted.shared
+    places = [i for i, parameter in enumerate(problem.free) if parameter.name in neutral]
+    if candidate.presence or not places:
+        return True
+    away = [float(problem.free[i].value(shared[i])) - neutral[problem.free[i].name] for i in places]
+    free = [problem.free[i] for i in places]
+    size = torch.tensor([1.0 if p.logarithmic else a / p.scale for p, a in zip(free, away, strict=True)])
+    size = size.to(torch.float64)
+    columns = _beside(outcome, places, refit.name)
+    spread = torch.linalg.svdvals(columns / columns.norm(dim=0).clamp(min=1e-300))
+    rank = int((spread > INDEPENDENT * spread[0]).sum())
+    seconds = CORRELATED_PERIODS * time_scale(outcome.hypothesis, evidence)
+    lags = [round(seconds * record.sampling_rate) for record in problem.records]
+    if _statistic(outcome, columns @ size, lags) < float(chi2.ppf(1 - evidence.settings.told_level, max(rank, 1))):
+        return False
+    if rank < len(places):
+        return True
+    each = range(len(places))
+    alone = [_without(columns[:, [k]], columns[:, [o for o in each if o != k]])[:, 0] * size[k] for k in each]
+    limit = float(chi2.ppf(1 - evidence.settings.told_alone_level, 1))
+    return max(_statistic(outcome, column, lags) for column in alone) > limit
+
+
+def _beside(outcome: Outcome, places: list[int], cause: str) -> Tensor:
+    """What the strengths change, (samples, strengths), beside all that is free but the shape of the cause itself."""
+    problem, sensitivity = outcome.problem, outcome.fitted.prediction.sensitivity[0]
+    beside = without_own(sensitivity[..., : problem.n_shared], own_basis(sensitivity, problem.n_shared)).flatten(0, 1)
+    others = [i for i, p in enumerate(problem.free) if i not in places and not p.name.startswith(cause + ".")]
+    return _without(beside[:, places], beside[:, others])
+
+
+def _without(columns: Tensor, others: Tensor) -> Tensor:
+    """Columns (samples, n) without what other ones (samples, m) could do."""
+    return without_own(columns, torch.linalg.qr(others / others.norm(dim=0).clamp(min=1e-300)).Q)
+
+
+def _statistic(outcome: Outcome, change: Tensor, lags: list[int]) -> float:
+    """Square of the energy of a change over the variance of its product with the residuals; coloured or white."""
+    residual = outcome.fitted.prediction.residual[0]
+    products = (change.reshape(residual.shape) * residual).unsqueeze(-1)
+    coloured = sum(float(long_run(one, lag)) for one, lag in zip(products, lags, strict=True))
+    energy = float(change.square().sum())
+    white = energy * float(residual.square().sum()) / max(float((outcome.problem.response.weights > 0).sum()), 1.0)
+    return energy**2 / max(coloured, white, 1e-300)

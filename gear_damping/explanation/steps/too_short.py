@@ -1,0 +1,68 @@
+"""What is too short to judge is said at the start, with the length that would do."""
+
+from collections.abc import Sequence
+from math import ceil
+
+from gear_damping.explanation.evidence.records import SPLIT, Evidence
+from gear_damping.explanation.model.nominal_gear_pair import stated_frequency
+from gear_damping.explanation.trials.refit import FEWEST_BLOCKS
+from gear_damping.identification.oscillator import first_frequency
+from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.identification.time_scale import decorrelation_time
+
+FEWEST_PERIODS = 3.0  # held out, whatever the time over which the motion forgets itself
+
+
+def too_short(evidence: Evidence) -> str:
+    """A sentence where no test over the held-out records can decide, else nothing.
+
+    A test compares residuals over blocks that are independent of each other: a block lasts at least a characteristic
+    time, and the variance of fewer than eight blocks is anybody's guess.
+    """
+    period, name = _characteristic(evidence)
+    held = _times(evidence.holdout, period)
+    needed = max(FEWEST_BLOCKS, FEWEST_PERIODS)
+    if held >= needed:
+        return ""
+    if evidence.one_record:
+        whole, share = _times(evidence.records, period), 1 - SPLIT
+        return (
+            f"This record holds {whole:.3g} {name}, of which the last {held:.2g} are held out; at least "
+            f"{ceil(needed / share)} are needed to judge more than large effects: record at least "
+            f"{needed / share * period:.3g} s."
+        )
+    return (
+        f"The held-out records hold {held:.3g} {name}; at least {needed:g} are needed to judge more than large "
+        f"effects: hold out records of at least {needed * period:.3g} s."
+    )
+
+
+def died_away(evidence: Evidence) -> str:
+    """A sentence where the ends of records were left out."""
+    if not evidence.silent_s:
+        return ""
+    return (
+        f"The last {evidence.silent_s:.3g} s hold only noise and are left out: what is held out is the end of the "
+        "motion (records with `role: holdout` are taken whole)."
+    )
+
+
+def _characteristic(evidence: Evidence) -> tuple[float, str]:
+    """Seconds over which the motion forgets itself, and what so many of them are called."""
+    if evidence.system == "oscillator" and evidence.known.values.get("stiffness", 1.0) == 0:
+        time = max(decorrelation_time(record) for record in evidence.records)
+        return time, f"times of {time:.3g} s, over which the motion forgets itself"
+    frequency = _natural_frequency(evidence)
+    return 1 / frequency, f"natural periods of {frequency:.3g} Hz"
+
+
+def _natural_frequency(evidence: Evidence) -> float:
+    """As stated, or as the longest record shows it, in Hz."""
+    if evidence.system == "gear_pair" or "stiffness" in evidence.known.values:
+        return stated_frequency(evidence)
+    return first_frequency(max(evidence.fit, key=lambda record: record.duration))
+
+
+def _times(records: Sequence[FitRecord], period: float) -> float:
+    """How many periods records last together."""
+    return sum(len(record.response) / record.sampling_rate for record in records) / period

@@ -1,0 +1,273 @@
+"""Step 4: what is random in the residuals, and is anything in them that is not?"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import torch
+from torch import Tensor
+
+from gear_damping.explanation.evidence.noise import NoiseLevel
+from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency_hz
+from gear_damping.explanation.statistics.family_wise import Effect, Lines, Visible, block_numbers, family_wise
+from gear_damping.explanation.statistics.projector import Projector
+from gear_damping.explanation.statistics.whitening import Autoregression, autoregression
+from gear_damping.explanation.trials.score import Score
+from gear_damping.explanation.trials.unnamed import unnamed_columns
+
+COLUMNS_PER_SAMPLE = 0.2  # at most so many columns are taken out before the random part is fitted
+INDEPENDENT = 1e-6  # of the largest: a direction of an effect beside the nuisance that counts
+ALIKE = 1e-6  # of the largest eigenvalue: below it a direction repeats others
+LONGEST_BLOCK = 2.0  # natural periods
+CORRELATION_TIMES = 3.0  # of the whitened residual in a block
+LARGEST_LAG = 50  # samples over which the correlation of the whitened residual is summed
+LINES_OVER = 4.0  # natural frequencies up to which lines are looked for
+RANDOM_PART = "raised to the random part of the residuals"
+UNNAMED = "unnamed: "  # before the names of families
+LINE_FAMILY = UNNAMED + "a line at some frequency"
+
+
+@dataclass(frozen=True)
+class Random:
+    """The random part of the residuals, by channel and rate.
+
+    Args:
+        laws: The autoregression of each group of rows.
+        groups: Group of every row and channel of the problem, (rows, channels); -1 where there is nothing.
+        variance: Of the random part of the fitted records, in the unit of the first channel, unweighted.
+        correlation: Sum of its squared autocorrelations.
+        by_record: Variance by record.
+    """
+
+    laws: tuple[Autoregression, ...]
+    groups: Tensor
+    variance: float
+    correlation: float
+    by_record: dict[str, float]
+
+    def joined(self, noise: NoiseLevel) -> NoiseLevel:
+        """The noise of every record, where the random part is larger than what was known of it."""
+        typical = self.variance
+        levels = {name: max(level, self.by_record.get(name, typical) ** 0.5) for name, level in noise.by_record.items()}
+        if levels == noise.by_record:
+            return noise
+        correlation = max(noise.correlation, self.correlation)
+        return replace(noise, by_record=levels, correlation=correlation, method=f"{noise.method}; {RANDOM_PART}")
+
+
+@dataclass(frozen=True)
+class Assessment:
+    """What residuals hold.
+
+    Args:
+        visible: The test of what is not random.
+        random: What is; where nothing is visible, all that is left beside the nuisance.
+        taken: Share of the whitened residual's energy that effects and families take together, beyond chance.
+    """
+
+    visible: Visible
+    random: Random
+    taken: float
+
+
+def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, families: bool = True) -> Assessment | None:
+    """What the residuals of the fitted records hold; None beside a model that runs away.
+
+    Args:
+        outcome: The fitted model.
+        scores: Of every effect beside it.
+        evidence: The records.
+        families: Whether families without a name stand in the same test.
+    """
+    problem, prediction = outcome.problem, outcome.fitted.prediction
+    sensitivity = prediction.sensitivity[0]
+    if not bool(sensitivity.isfinite().all()):
+        return None
+    expected = problem.expectation(outcome.fitted.shared)
+    project = Projector(sensitivity, *expected)
+    residual = _with_expected(prediction.residual[0].reshape(-1, 1), project)
+    shapes = unnamed_columns(outcome, evidence) if families else {}
+    unnamed = {UNNAMED + name: _padded(columns, project) for name, columns in shapes.items()}
+    columns = {score.candidate.name: score.columns for score in reversed(scores) if score.columns.shape[1]}
+    every = [*columns.values(), *(_orthonormal(project(c)) for c in unnamed.values())]
+    beside = project(residual)
+    left, taken = _without(beside, every)
+    random = _random(left[: problem.response.weights.numel(), 0], taken, outcome)
+    white = _Whitener(random, outcome)
+    whitened = Projector(white(sensitivity.flatten(0, 1)).reshape(sensitivity.shape), *expected)
+    seen = whitened(white.padded(residual))[:, 0]
+    effects = [
+        Effect(s.candidate.name, _orthonormal(whitened(white.padded(s.columns))), bool(s.candidate.presence))
+        for s in scores
+        if s.columns.shape[1]
+    ]
+    effects += [Effect(name, _orthonormal(whitened(white.padded(c)))) for name, c in unnamed.items()]
+    found = _tested(seen, effects, whitened, white, random, outcome, evidence.settings.level)
+    if found.visible:
+        return found
+    return replace(found, random=_random(beside[: problem.response.weights.numel(), 0], 0.0, outcome))
+
+
+def _tested(
+    seen: Tensor,
+    effects: list[Effect],
+    project: Projector,
+    white: "_Whitener",
+    random: Random,
+    outcome: Outcome,
+    level: float,
+) -> Assessment:
+    """The test on whitened signals, (samples + n,)."""
+    problem, count = outcome.problem, outcome.problem.response.weights.numel()
+    rows = problem.response.weights.reshape(-1, problem.response.length)
+    samples = float(white.used.sum())
+    nuisance = project.nuisance
+    bases = [e.columns for e in effects]
+    left, taken = _without(seen.unsqueeze(1), bases)
+    degrees = max(samples - nuisance.shape[1] - taken, 1.0)
+    variance = float(left.square().sum()) / degrees
+    length = _block_length(seen[:count].reshape(rows.shape), outcome)
+    blocks = block_numbers([problem.response.length] * len(rows), length)
+    blocks = torch.cat([blocks, torch.full((len(seen) - count,), int(blocks.max()) + 1)])
+    lines = _lines(seen[:count].reshape(rows.shape), white.used, variance, outcome)
+    visible = family_wise(seen, effects, blocks, variance, nuisance, lines, level=level)
+    total = float(seen.square().sum())
+    share = (total - float(left.square().sum()) - taken * variance) / max(total, 1e-300)
+    return Assessment(visible, random, max(share, 0.0))
+
+
+class _Whitener:
+    """Applies the autoregressions to signals in the order of the problem's samples."""
+
+    def __init__(self, random: Random, outcome: Outcome) -> None:
+        self.random, self.problem = random, outcome.problem
+        weights = self.problem.response.weights.reshape(-1, self.problem.response.length)
+        self.used = _valid(weights, max((law.order for law in random.laws), default=0))
+
+    def __call__(self, signal: Tensor) -> Tensor:
+        """`signal` (samples, n) white where its random part is, at the noise of the evidence."""
+        rows = signal.reshape(*self.used.shape, -1)
+        found = torch.zeros_like(rows)
+        for number, law in enumerate(self.random.laws):
+            places = (self.random.groups.reshape(-1) == number).nonzero().flatten()
+            white = law.whitened(rows[places].transpose(1, 2)).transpose(1, 2)
+            found[places] = white * self.problem.noise / max(law.innovation, 1e-300) ** 0.5
+        return (found * self.used.unsqueeze(-1)).reshape(signal.shape)
+
+    def padded(self, signal: Tensor) -> Tensor:
+        """The same for a signal that has the residuals of what is expected behind its samples."""
+        count = self.problem.response.weights.numel()
+        return torch.cat([self(signal[:count]), signal[count:]])
+
+
+def _valid(weights: Tensor, order: int) -> Tensor:
+    """1 where a sample and the `order` before it count, (rows, time)."""
+    counts = (weights > 0).double()
+    found = counts.clone()
+    for lag in range(1, order + 1):
+        found[:, lag:] *= counts[:, :-lag]
+    found[:, :order] = 0.0
+    return found
+
+
+def _random(left: Tensor, taken: float, outcome: Outcome) -> Random:
+    """The autoregressions of what is left beside everything that has a shape, (samples,)."""
+    problem = outcome.problem
+    rows = left.reshape(-1, problem.response.length)
+    weights = problem.response.weights.reshape(-1, problem.response.length)
+    keys: dict[object, int] = {}
+    groups = torch.full((len(problem.records), len(problem.response.channels)), -1)
+    for place, record in enumerate(problem.records):
+        for channel in record.channels:
+            key = (channel.name, round(record.sampling_rate))
+            groups[place, problem.response.channels.index(channel.name)] = keys.setdefault(key, len(keys))
+    flat, laws = groups.reshape(-1), []
+    total = float((weights > 0).sum())
+    for number in range(len(keys)):
+        places = (flat == number).nonzero().flatten().tolist()
+        kept = [rows[i][weights[i] > 0] for i in places if bool((weights[i] > 0).any())]
+        share = sum(len(row) for row in kept) / max(total, 1.0)
+        laws.append(autoregression(kept, share * (taken + problem.n_shared)))
+    by_record, correlation = {}, []
+    scale = total / max(total - taken - problem.n_shared, 1.0)
+    for name in dict.fromkeys(record.record for record in problem.records):
+        own = [i for i, record in enumerate(problem.records) if record.record == name]
+        squares, samples = 0.0, 0
+        for i in own:
+            channel = problem.response.channels.index(problem.records[i].observed.name)
+            row = i * len(problem.response.channels) + channel
+            kept = rows[row][weights[row] > 0] / problem.records[i].weight
+            squares, samples = squares + float(kept.square().sum()), samples + len(kept)
+            correlation.append(laws[int(flat[row])].correlation)
+        by_record[name] = scale * squares / max(samples, 1)
+    mean = sum(by_record.values()) / len(by_record)
+    return Random(tuple(laws), groups, mean, sum(correlation) / len(correlation), by_record)
+
+
+def _block_length(rows: Tensor, outcome: Outcome) -> list[int]:
+    """Samples of a block by row (record and channel): correlation times of the whitened residual, within periods."""
+    problem = outcome.problem
+    spectrum = torch.fft.rfft(rows, n=2 * rows.shape[1]).abs().square().sum(0)
+    covariance = torch.fft.irfft(spectrum)[: min(LARGEST_LAG, rows.shape[1])]
+    shares = covariance / covariance[0].clamp(min=1e-300)
+    negative = (shares <= 0).nonzero().flatten()
+    stop = int(negative[0]) if len(negative) else len(shares)
+    correlated = 1 + 2 * float(shares[1:stop].sum())
+    frequency, found = natural_frequency_hz(outcome.hypothesis.model, outcome.flat_given()), []
+    for record in problem.records:
+        longest = LONGEST_BLOCK * record.sampling_rate / max(frequency, 1e-9)
+        found += [max(1, round(min(CORRELATION_TIMES * correlated, longest)))] * len(problem.response.channels)
+    return found
+
+
+def _lines(rows: Tensor, used: Tensor, variance: float, outcome: Outcome) -> list[Lines]:
+    """Power of the whitened residual at every frequency, summed over records of one length and rate."""
+    problem = outcome.problem
+    rates = {record.sampling_rate for record in problem.records}
+    if len(rates) > 1:
+        return []
+    power = torch.fft.rfft(rows).abs().square() / used.sum(1, keepdim=True).clamp(min=1) * 2
+    kept = power[used.sum(1) > 0.5 * used.shape[1]].sum(0) / variance
+    frequency = torch.fft.rfftfreq(rows.shape[1], 1 / rates.pop())
+    limit = LINES_OVER * natural_frequency_hz(outcome.hypothesis.model, outcome.flat_given())
+    inside = (frequency > 0) & (frequency < limit)
+    degrees = 2.0 * int((used.sum(1) > 0.5 * used.shape[1]).sum())
+    return [Lines(LINE_FAMILY, kept[inside], degrees)] if bool(inside.any()) and degrees else []
+
+
+def _with_expected(residual: Tensor, project: Projector) -> Tensor:
+    return torch.cat([residual, project.expected.unsqueeze(1)])
+
+
+def _padded(columns: Tensor, project: Projector) -> Tensor:
+    return torch.nn.functional.pad(columns, (0, 0, 0, len(project.expected)))
+
+
+def _orthonormal(columns: Tensor) -> Tensor:
+    """Columns that span the same; the sign of a single one is kept."""
+    if columns.shape[1] == 1:
+        size = columns.norm()
+        return columns / size if float(size) > 0 else columns[:, :0]
+    norms = columns.norm(dim=0)
+    columns = columns[:, norms > INDEPENDENT * norms.max().clamp(min=1e-300)]
+    if not columns.shape[1]:
+        return columns
+    basis, sizes, _ = torch.linalg.svd(columns / columns.norm(dim=0), full_matrices=False)
+    return basis[:, sizes > INDEPENDENT * sizes[0]]
+
+
+def _without(signal: Tensor, bases: Sequence[Tensor]) -> tuple[Tensor, float]:
+    """`signal` (samples, 1) beside all bases, or beside those that take most where there are too many; and how many."""
+    most = int(COLUMNS_PER_SAMPLE * len(signal))
+    gains = sorted(bases, key=lambda b: -float((b.T @ signal).square().sum()) / max(b.shape[1], 1))
+    chosen, count = [], 0
+    for basis in gains:
+        if count + basis.shape[1] <= most:
+            chosen, count = [*chosen, basis], count + basis.shape[1]
+    if not count:
+        return signal, 0.0
+    joined = torch.cat(chosen, 1)
+    sizes, turned = torch.linalg.eigh(joined.T @ joined)
+    kept = sizes > ALIKE * sizes[-1]
+    basis = joined @ (turned[:, kept] / sizes[kept].sqrt())
+    return signal - basis @ (basis.T @ signal), float(basis.shape[1])

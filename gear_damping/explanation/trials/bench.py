@@ -1,0 +1,198 @@
+"""What the search and its second thoughts both do: score, fit in full, compare on held-out records."""
+
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass, field, replace
+
+from gear_damping.explanation.budget import Budget
+from gear_damping.explanation.evidence.excess import Excess, excess
+from gear_damping.explanation.evidence.noise import NoiseLevel
+from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.candidates import candidates_for, restored
+from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, fit_hypothesis
+from gear_damping.explanation.model.spread import spread_of
+from gear_damping.explanation.settings import SearchSettings
+from gear_damping.explanation.statistics.paired import paired_gain
+from gear_damping.explanation.trials.assess import Assessment, assessed
+from gear_damping.explanation.trials.refit import Refit, block_samples, chosen, compared, refitted
+from gear_damping.explanation.trials.score import Score, contains, scores
+from gear_damping.identification.output_error.records import FreeParameter
+from gear_damping.identification.output_error.uncertainty import QUANTILE
+from gear_damping.simulation.solver_settings import Solver
+
+LEAST_TAKEN = 0.25  # of what another takes of the fitted records, for a fit to be carried to its end
+LAST_ITERATIONS = 60  # of a cause that is accepted before its fit has come to rest
+SAME = 1e-3  # of the noise variance: a mean difference below it is none
+Say = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Bench:
+    """Where candidates are tried.
+
+    Args:
+        evidence: The records, with their noise.
+        noise: The same in full.
+        say: Told what is found on the way.
+        solver: Settings of the solver.
+        floor: The noise as it was known before any residual was looked at.
+        failed: Why an effect could not be fitted in full, by its name.
+        budget: The time that is left.
+        rough: A gear pair's nominal model before the shape of its stiffness was freed; None for an oscillator.
+    """
+
+    evidence: Evidence
+    noise: NoiseLevel
+    say: Say
+    solver: Solver | None
+    floor: NoiseLevel
+    failed: dict[str, str] = field(default_factory=dict)
+    budget: Budget = field(default_factory=Budget)
+    rough: Outcome | None = None
+
+    @property
+    def settings(self) -> SearchSettings:
+        """Thresholds."""
+        return self.evidence.settings
+
+    def excess(self, outcome: Outcome) -> Excess:
+        """What a model leaves of the held-out records."""
+        return excess(outcome.holdout, self.evidence.held, self.noise, self.settings)
+
+    def assessed(self, outcome: Outcome, ranked: Sequence[Score], families: bool = True) -> Assessment | None:
+        """What the residuals of a model hold that is not random, and what is; beside families without a name or not."""
+        return assessed(outcome, ranked, self.evidence, families)
+
+    def knowing(self, seen: Assessment | None) -> "Bench":
+        """The same with the noise that an assessment found: the random part, where little else is left.
+
+        Beside something large the random part takes in what no column follows, and is no noise yet.
+        """
+        if seen is None or (seen.visible and seen.taken > self.settings.random_share):
+            return replace(self, noise=self.floor)
+        return replace(self, noise=seen.random.joined(self.floor))
+
+    def ranked(self, outcome: Outcome, names: Collection[str] | None = None) -> list[Score]:
+        """Every candidate beside a model, or those of some effects, the most promising first."""
+        residuals = list(zip(self.evidence.fitted, outcome.fit_residuals, strict=True))
+        tried = candidates_for(outcome.hypothesis, self.evidence, residuals)
+        tried = tried if names is None else [candidate for candidate in tried if candidate.name in names]
+        return scores(outcome, tried, self.noise.value, self.solver)
+
+    def full_fit(
+        self, score: Score, outcome: Outcome, against: Outcome | None = None, least: float = 0.0
+    ) -> Refit | None:
+        """A candidate fitted in full from a model, held against it or another; no further where it takes too little."""
+        return refitted(score, outcome, self.evidence, self.solver, against, least)
+
+    def full_fits(
+        self, ranked: Sequence[Score], outcome: Outcome, against: Outcome, promise: float = 0.0
+    ) -> tuple[Refit, ...]:
+        """The candidates worth it, fitted in full; the best first."""
+        if not ranked:
+            return ()
+        fits: list[Refit] = []
+        for score in chosen(ranked, self.settings, promise, springs=self.evidence.system == "oscillator"):
+            if self.budget.refuses(score.candidate.name):
+                continue
+            most = max((outcome.fitted.cost - fit.outcome.fitted.cost for fit in fits), default=0.0)
+            fit = self.full_fit(score, outcome, against, LEAST_TAKEN * most) if score.gain > 0 else None
+            if fit is None and score.gain > 0:
+                self.failed[score.candidate.name] = "its full fit ran away on held-out records"
+            fits += [] if fit is None else [fit]
+        return tuple(sorted(fits, key=lambda fit: fit.outcome.holdout_cost))
+
+    def without(self, outcome: Outcome, name: str) -> Outcome:
+        """A model without one of its causes, fitted from where it was."""
+        return fit_hypothesis(_without(outcome.hypothesis, name), self.evidence, None, outcome, solver=self.solver)
+
+    def at_rest(self, outcome: Outcome) -> Outcome:
+        """A model whose fit is carried on where it had not come to rest."""
+        if outcome.fitted.converged:
+            return outcome
+        hypothesis, solver = outcome.hypothesis, self.solver
+        return fit_hypothesis(hypothesis, self.evidence, None, outcome, iterations=LAST_ITERATIONS, solver=solver)
+
+    def converged(self, fit: Refit, against: Outcome) -> Refit:
+        """A full fit carried on where it had not converged, and held against a model."""
+        if fit.outcome.fitted.converged:
+            return fit
+        return compared(fit.score, self.at_rest(fit.outcome), against, self.evidence)
+
+    def is_as_good(self, outcome: Outcome, best: Outcome) -> bool:
+        """Whether a model is not worse than another by the paired test."""
+        gain, t = self.paired_gain(outcome, best)
+        return t < self.settings.rival_t or gain < SAME * self.noise.value**2
+
+    def paired_gain(self, before: Outcome, after: Outcome) -> tuple[float, float]:
+        """Gain of the second over the first on held-out records, with its t."""
+        return paired_gain(before.holdout, after.holdout, block_samples(after, self.evidence))
+
+    def simplest(self, best: Refit, fits: Sequence[Refit]) -> tuple[Refit, tuple[str, ...]]:
+        """The explanation with its rivals, the effects whose full fit is not worse by the paired test.
+
+        Of two of which one contains the other (a friction with two sides contains one with equal sides), the
+        smaller is taken where the larger does no better; and of several that the data do not tell apart the one
+        with the fewest parameters is named first.
+        """
+        alike = [f for f in fits if f is best or (f.is_seen_in_fit and self._is_rival(f, best))]
+        inner = [f for f in alike if any(contains(o.score, f.score) for o in alike if o.name != f.name)]
+        outer = {f.name for f in alike if any(contains(f.score, o.score) for o in inner if o.name != f.name)}
+        kept = [f for f in alike if f.name not in outer] or alike
+        first = self._within_bounds(_least(kept), fits)
+        return first, tuple(dict.fromkeys(f.name for f in kept if f.name != first.name))
+
+    def _is_rival(self, fit: Refit, best: Refit) -> bool:
+        """Whether it does no worse than the best on held-out records, or nearly as well and fits the others better.
+
+        Near a resonance a small error of a parameter, as any fit has, weighs more than the law.
+        """
+        if self.is_as_good(fit.outcome, best.outcome):
+            return True
+        settings = self.settings
+        return fit.gain >= settings.rival_share * best.gain and fit.fit_gain > best.fit_gain + settings.seen_in_fit
+
+    def is_determined(self, fit: Refit) -> bool:
+        """Whether the records tell the size of an effect, where its fit leaves more than noise.
+
+        Where much is left that is not random, a test over blocks takes a further law that can bend to it for one that
+        is there; its parameters then hardly matter to the fit.
+        """
+        if self.excess(fit.outcome).misfit <= self.settings.small_misfit:
+            return True
+        spread = spread_of(fit.outcome, self.evidence)
+        problem, shared = fit.outcome.problem, fit.outcome.fitted.shared
+        for place, parameter in enumerate(problem.free):
+            if parameter.name.startswith(fit.name + "."):
+                half = QUANTILE * float(spread[place, place].clamp(min=0).sqrt())
+                size = 1.0 if parameter.logarithmic else abs(float(parameter.value(shared[place])) / parameter.scale)
+                if half <= self.settings.determined * size and not problem.unknowns.at_bound(shared)[place]:
+                    return True
+        return False
+
+    def _within_bounds(self, first: Refit, fits: Sequence[Refit]) -> Refit:
+        """The explanation, or where it has run into a bound and so stands in for another, the one that settles too."""
+        if not first.is_at_bound:
+            return first
+        others = [fit for fit in fits if fit.is_seen_in_fit and not fit.is_at_bound]
+        near = [fit for fit in others if fit.gain >= self.settings.rival_share * first.gain]
+        close = [fit for fit in others if self.excess(fit.outcome).misfit <= self.settings.settled_misfit]
+        return _least(close or near or [first])
+
+
+def _least(fits: Sequence[Refit]) -> Refit:
+    """The fit with the fewest parameters; of several the one that held-out records like best."""
+    return min(fits, key=lambda fit: (len(fit.outcome.hypothesis.free), fit.outcome.holdout_cost))
+
+
+def _without(hypothesis: Hypothesis, name: str) -> Hypothesis:
+    def other(parameter: FreeParameter) -> bool:
+        return not parameter.name.startswith(name + ".")
+
+    left = replace(
+        hypothesis,
+        effects=tuple(effect for effect in hypothesis.effects if effect.name != name),
+        given={key: value for key, value in hypothesis.given.items() if not key.startswith(name + ".")},
+        free=tuple(parameter for parameter in hypothesis.free if other(parameter)),
+        causes=tuple(cause for cause in hypothesis.causes if cause != name),
+    )
+    return restored(left, name)

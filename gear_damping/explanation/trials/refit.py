@@ -1,0 +1,186 @@
+"""Step 6: the full fit of a candidate, and whether held-out records bear it out."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import inf, isclose
+
+import torch
+from torch import Tensor
+
+from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.candidates import Candidate
+from gear_damping.explanation.model.hypothesis import Outcome, fit_hypothesis, time_scale
+from gear_damping.explanation.settings import SearchSettings
+from gear_damping.explanation.statistics.paired import paired_gain
+from gear_damping.explanation.trials.score import Score, collinearity
+from gear_damping.simulation.solver_settings import Solver
+
+NEARLY_COLLINEAR = 0.7
+OTHER_FORM = 0.95  # of what the best form of an effect promises, for a full fit of another form
+LEAST_PROMISE = 0.3  # of the first one's, for a full fit of one that resembles it
+BLOCK_TIMES = 6.0  # characteristic times of a block of the paired test,
+FEWEST_BLOCKS = 8  # but at least so many blocks: the variance of fewer is anybody's guess
+SHORTEST_BLOCK = 4  # samples
+CAUTIOUS = 0.3  # of the linearised optimum: the second start, where the first one leads too far
+FIRST_PART = 0.25  # of the records, by which the better start is chosen
+ONE = 1e-9  # share of the starts that goes on: the best
+ENOUGH = 0.1  # noise variances: a tenth of what a parameter of no use gains from noise
+FIRST_ITERATIONS, LAST_ITERATIONS = 10, 30
+AT_BOUND = 0.05  # of a bound: a parameter as near to it as that has run into it
+VARIANTS_KEPT = 0.25  # of the sizes of an effect that is tried as a whole, after the first round
+
+
+@dataclass(frozen=True)
+class Refit:
+    """A candidate fitted in full.
+
+    Args:
+        score: What it promised.
+        outcome: What came of it.
+        gain: Mean fall of held-out squared residuals.
+        t: Its t statistic over blocks.
+        fit_gain: Fall of the fitted records' squared residuals, in noise variances.
+        is_seen_in_fit: Whether the records to which it was fitted show it: what only held-out records show is their
+            luck.
+    """
+
+    score: Score
+    outcome: Outcome
+    gain: float
+    t: float
+    fit_gain: float
+    is_seen_in_fit: bool
+
+    @property
+    def is_at_bound(self) -> bool:
+        """Whether a parameter of the effect itself has run into a bound of what is tried."""
+        own = [p for p in self.outcome.problem.free if p.name.startswith(self.name + ".")]
+        values, sharpest = self.outcome.values, self.score.candidate.sharpest
+        ends = [(p, p.upper) for p in own] + [(p, p.lower) for p in own if p.name not in sharpest]
+        return any(isclose(values[p.name], end, rel_tol=AT_BOUND) for p, end in ends if end)
+
+    @property
+    def name(self) -> str:
+        """The effect."""
+        return self.score.candidate.name
+
+
+def block_samples(outcome: Outcome, evidence: Evidence) -> list[int]:
+    """Samples of a block of the paired test, by held-out record; short records have shorter blocks."""
+    total = sum(record.duration for record in evidence.held)
+    seconds = min(BLOCK_TIMES * time_scale(outcome.hypothesis, evidence), total / FEWEST_BLOCKS)
+    return [max(SHORTEST_BLOCK, round(seconds * record.sampling_rate)) for record in evidence.held]
+
+
+def chosen(
+    scores: Sequence[Score], settings: SearchSettings, least: float = 0.0, springs: bool = False
+) -> list[Score]:
+    """The candidates worth a full fit: the best variant of the best effects, and who resembles the first.
+
+    An effect that is tried as a whole keeps its other sizes as starts: it is far from linear between them. Another
+    form of an effect (a filter of another order) is tried too where it promises nearly as much.
+
+    Args:
+        scores: Every candidate, the best first.
+        settings: How many are worth it.
+        least: What it has to promise, as a share of what the first one does.
+        springs: Whether every elastic law is worth one: a law that is even in the deflection pulls the frequency by its
+            square, which no linear score foresees, and what it promises is next to nothing.
+    """
+    forms: dict[tuple, list[Score]] = {}
+    for score in scores:
+        forms.setdefault((score.candidate.name, *score.candidate.options), []).append(score)
+    every = [replace(found[0], variants=_other_sizes(found)) for found in forms.values()]
+    best: dict[str, Score] = {}
+    for score in every:
+        best.setdefault(score.candidate.name, score)
+    ranked = list(best.values())
+    first = [score for score in ranked[: settings.full_fits] if score.gain >= least * ranked[0].gain]
+    promising = [score for score in ranked[settings.full_fits :] if score.gain > LEAST_PROMISE * ranked[0].gain]
+    alike = [score for score in promising if collinearity(ranked[0], score) > NEARLY_COLLINEAR]
+    instead = [score for score in ranked if score.candidate.replaced]  # adds nothing that could overfit: always tried
+    elastic = [score for score in ranked if springs and score.gain > 0 and score.candidate.is_elastic]
+    taken = [*(first + alike)[: settings.most_full_fits], *instead, *elastic]
+    worth = {score.candidate.name: score.gain for score in taken}
+    return [s for s in every if s.gain >= OTHER_FORM * worth.get(s.candidate.name, inf)]
+
+
+def _other_sizes(found: Sequence[Score]) -> tuple[Candidate, ...]:
+    """The other sizes of the best variant of one form of an effect that is tried as a whole."""
+    return tuple(score.candidate for score in found[1:] if score.candidate.presence)
+
+
+def refitted(
+    score: Score,
+    outcome: Outcome,
+    evidence: Evidence,
+    solver: Solver | None = None,
+    against: Outcome | None = None,
+    least: float = 0.0,
+) -> Refit | None:
+    """The candidate's full fit from `outcome`, held against it or another; None where the fit ran away.
+
+    Parameters that join later do so where the cost has fallen by at least `least` without them.
+    """
+    candidate = score.candidate
+    hypothesis = candidate.hypothesis
+    options = {"solver": solver, "enough": ENOUGH}
+    if score.own:
+        options["own"] = score.own
+    found = fit_hypothesis(
+        hypothesis,
+        evidence,
+        _starts(score),
+        outcome,
+        horizons=[FIRST_PART * evidence.duration, None],
+        iterations=(FIRST_ITERATIONS, LAST_ITERATIONS),
+        kept=VARIANTS_KEPT if candidate.presence else ONE,
+        **options,
+    )
+    if candidate.later and outcome.fitted.cost - found.fitted.cost >= least:
+        freed = replace(found.hypothesis, free=(*found.hypothesis.free, *candidate.later))
+        freed = replace(
+            freed, free=tuple(replace(p, start=float(found.hypothesis.given.get(p.name, p.start))) for p in freed.free)
+        )
+        found = fit_hypothesis(freed, evidence, None, found, **(options | {"own": None}))
+    if not torch.isfinite(torch.tensor(found.holdout_cost)):
+        return None
+    return compared(score, found, against or outcome, evidence)
+
+
+def again(refit: Refit, against: Outcome, evidence: Evidence, solver: Solver | None = None) -> Refit:
+    """A full fit carried on with other evidence, as with the same records in pieces, and held against another model."""
+    found = fit_hypothesis(refit.outcome.hypothesis, evidence, solver=solver, enough=ENOUGH)
+    return compared(refit.score, found, against, evidence)
+
+
+def compared(score: Score, found: Outcome, against: Outcome, evidence: Evidence) -> Refit:
+    """A fit held against another model on held-out records."""
+    gain, t = paired_gain(against.holdout, found.holdout, block_samples(against, evidence))
+    fit_gain = (against.fitted.cost - found.fitted.cost) / max(evidence.noise, 1e-300) ** 2
+    return Refit(score, found, gain, t, fit_gain, fit_gain > evidence.settings.seen_in_fit)
+
+
+def _starts(score: Score) -> Tensor:
+    """Coordinates of the starts, (starts, n_free), and those with what stood in for the effect moved back."""
+    starts, moved = _begun_at(score), torch.zeros_like(score.start)
+    for place, coordinate in score.candidate.moved.items():
+        moved[place] = coordinate
+    return torch.cat([starts, starts + moved]) if score.candidate.moved else starts
+
+
+def _begun_at(score: Score) -> Tensor:
+    """The linearised optimum and less of it, or every size."""
+    candidate = score.candidate
+    if not candidate.presence:
+        starts = score.start.repeat(2, 1)
+        starts[1, list(candidate.strengths)] *= CAUTIOUS
+        return starts
+    return torch.stack([score.start, *(score.start + _apart(other, candidate) for other in score.variants)])
+
+
+def _apart(other: Candidate, candidate: Candidate) -> Tensor:
+    """Coordinates of another size of the candidate, in the candidate's own."""
+    pairs = zip(other.hypothesis.common, candidate.hypothesis.common, strict=True)
+    ratios = [o.start / p.start if p.logarithmic else 1.0 for o, p in pairs]
+    return torch.tensor(ratios, dtype=torch.float64).log()

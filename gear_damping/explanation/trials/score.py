@@ -1,0 +1,301 @@
+"""Step 5b: what each candidate could explain, by its sensitivity with the nuisance projected out (score test)."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import torch
+from torch import Tensor
+
+from gear_damping.explanation.model.candidates import Candidate
+from gear_damping.explanation.model.hypothesis import Outcome, begun_from, own_from
+from gear_damping.explanation.model.own_phases import (
+    by_record,
+    start_by_record,
+    start_of_teeth,
+    teeth_of,
+    turn_own_phases,
+)
+from gear_damping.explanation.statistics.projector import Projector
+from gear_damping.identification.output_error.problem import OutputErrorProblem, prepare_predictions
+from gear_damping.identification.output_error.records import DIFFERENCE, FreeParameter
+from gear_damping.simulation.solver_settings import Solver
+
+PROBE = 0.05  # share of a strength's size that its slope is taken over
+NEGLIGIBLE = 1e-3  # of the residual, for what an effect tried as a whole would change
+MOST_SAMPLES = 4_000_000  # that are predicted at once
+CONTAINED = 0.99  # cosine with what another can do, from which it contains this one
+VISIBLE = 5.0  # standard deviations at which an effect counts as visible
+
+
+@dataclass(frozen=True)
+class Score:
+    """What a candidate promises.
+
+    Args:
+        candidate: The candidate.
+        gain: Share of the fitted residual's energy that it would take, linearised.
+        start: Coordinates of its free parameters at that optimum.
+        direction: Unit vector of what it would explain, nuisance projected out.
+        smallest: Size of its first strength that would just be visible, in the strength's own unit.
+        columns: Orthonormal basis of what it can do beside the nuisance, (samples, n); of an effect that is tried as
+            a whole, what it would add, with its sign.
+        variants: Of an effect that is tried as a whole, its other sizes.
+        failed: Why it could not be scored; empty where it could.
+        own: Where phases of single records begin, by name.
+    """
+
+    candidate: Candidate
+    gain: float
+    start: Tensor
+    direction: Tensor
+    smallest: float
+    columns: Tensor
+    variants: tuple[Candidate, ...] = ()
+    failed: str = ""
+    own: Mapping[str, float] = field(default_factory=dict)
+
+
+def _projector(outcome: Outcome) -> Projector:
+    return Projector(outcome.fitted.prediction.sensitivity[0], *outcome.problem.expectation(outcome.fitted.shared))
+
+
+@dataclass(frozen=True)
+class Base:
+    """The model beside which candidates are scored.
+
+    Args:
+        outcome: The fitted model.
+        project: Takes out what its own parameters could do.
+        residual: What it leaves of the fitted records, (samples + n,).
+        beside: The same without what the model's own parameters could do.
+        predicted: What it predicts of them, (samples,).
+        noise: Standard deviation of the noise.
+        solver: Settings of the solver.
+    """
+
+    outcome: Outcome
+    project: Projector
+    residual: Tensor
+    beside: Tensor
+    predicted: Tensor
+    noise: float
+    solver: Solver | None
+
+
+def scores(
+    outcome: Outcome,
+    candidates: Sequence[Candidate],
+    noise: float,
+    solver: Solver | None = None,
+    report: Callable[[int, int], None] | None = None,
+) -> list[Score]:
+    """Every candidate's score, the most promising first."""
+    if not bool(outcome.fitted.prediction.sensitivity.isfinite().all()):
+        return []  # beside a model that runs away nothing can be told
+    project = _projector(outcome)
+    residual = torch.cat([outcome.fitted.prediction.residual[0].reshape(-1), project.expected])
+    beside = project(residual.unsqueeze(1))[:, 0]
+    base = Base(outcome, project, residual, beside, _predicted(outcome), noise, solver)
+    found: list[Score] = []
+    groups = _alike(candidates, len(residual))
+    hypotheses = [group[0].hypothesis for group in groups]
+    prepare_predictions([(h.model, h.given) for h in hypotheses], outcome.problem.records, solver)
+    for group in groups:
+        found += _score_together(group, base)
+        if report:
+            report(len(found), len(candidates))
+    return sorted(found, key=lambda score: -score.gain)
+
+
+def _alike(candidates: Sequence[Candidate], samples: int) -> list[list[Candidate]]:
+    """Candidates that one simulation serves: of one form and switched on alike, with other values (of a phase)."""
+    groups: dict[object, list[Candidate]] = {}
+    for candidate in candidates:
+        lists = tuple((k, v) for k, v in candidate.hypothesis.given.items() if isinstance(v, tuple))
+        own = (*candidate.own_phases.items(), candidate.own_tooth)
+        alike = (candidate.name, candidate.options, candidate.hypothesis.free, candidate.strengths, lists, own)
+        groups.setdefault(id(candidate) if candidate.presence else alike, []).append(candidate)
+    found = []
+    for group in groups.values():
+        most = max(1, MOST_SAMPLES // (samples * len(_probes(group[0], len(group[0].hypothesis.common))[0])))
+        found += [group[i : i + most] for i in range(0, len(group), most)]
+    return found
+
+
+def _varied(group: Sequence[Candidate]) -> list[FreeParameter]:
+    """Values in which candidates of a group differ, beginning at those of the first."""
+    first = group[0].hypothesis.given
+    names = [name for name, value in first.items() if any(c.hypothesis.given[name] != value for c in group)]
+    return [FreeParameter(name, float(first[name])) for name in names]
+
+
+def _predicted(outcome: Outcome) -> Tensor:
+    measured = outcome.problem.response.values * outcome.problem.response.weights
+    return (measured - outcome.fitted.prediction.residual[0]).reshape(-1)
+
+
+def _score_together(group: Sequence[Candidate], base: Base) -> list[Score]:
+    """Scores of candidates that one simulation serves."""
+    hypothesis, varied = group[0].hypothesis, _varied(group)
+    records, free = base.outcome.problem.records, (*hypothesis.free, *varied)
+    problem = OutputErrorProblem(hypothesis.model, hypothesis.given, free, records, base.solver)
+    probes = [_probes(candidate, len(hypothesis.common)) for candidate in group]
+    points = torch.cat([_placed_at(rows, one, varied) for (rows, _), one in zip(probes, group, strict=True)])
+    points = problem.unknowns.completed(points) + own_from(problem, base.outcome)
+    counts = [len(rows) for rows, _ in probes]
+    for candidate, rows in zip(group, points.split(counts), strict=True):
+        turn_own_phases(rows, candidate, problem)
+    states = begun_from(problem, base.outcome, len(points))
+    found = (problem.predict(points, states) * problem.response.weights).reshape(len(points), -1)
+    columns = (found - base.predicted) / torch.cat([steps for _, steps in probes]).unsqueeze(1)
+    apart = bool(group[0].own_phases or group[0].own_tooth)
+    parts = [by_record(c, problem) if apart else c for c in columns.split(counts)]
+    columns = torch.nn.functional.pad(torch.cat(parts), (0, len(base.project.expected))).T
+    beside = base.project(columns)
+    # What the nuisance takes but for rounding is nothing of its own.
+    own = beside.norm(dim=0) > 1e-6 * columns.norm(dim=0).clamp(min=1e-300)
+    beside = torch.where(own | ~columns.isfinite().all(0), beside, torch.zeros_like(beside))
+    split = beside.split([len(part) for part in parts], 1)
+    return [_score(one, part, problem, states[:1], base) for one, part in zip(group, split, strict=True)]
+
+
+def _placed_at(rows: Tensor, candidate: Candidate, varied: Sequence[FreeParameter]) -> Tensor:
+    """Coordinates of a candidate with those of the values that vary in its group behind them."""
+    values = [p.coordinate(float(candidate.hypothesis.given[p.name])) for p in varied]
+    return torch.cat([rows, rows.new_tensor(values).expand(len(rows), -1)], 1)
+
+
+def _score(candidate: Candidate, beside: Tensor, problem: OutputErrorProblem, states: Tensor, base: Base) -> Score:
+    """The score of a candidate from what it would change beside the nuisance, (samples + n, columns)."""
+    residual, n_free = base.residual, len(candidate.hypothesis.common)
+    if not bool(beside.isfinite().all()):
+        return replace(_unseen(candidate, n_free, len(residual)), failed="its prediction diverged")
+    if not bool(beside.any()):
+        return _unseen(candidate, n_free, len(residual))
+    basis, spread, _ = torch.linalg.svd(beside, full_matrices=False)
+    teeth = teeth_of(candidate, beside, base.beside, problem)
+    beside = beside if teeth is None else teeth.columns
+    coefficients = _coefficients(beside, residual) if teeth is None else teeth.strengths
+    explained = beside @ coefficients
+    kept = basis[:, spread > 1e-6 * spread[0]]
+    if candidate.presence:  # there is no less than nothing of it: the sign counts
+        kept = beside[:, :1] / beside[:, :1].norm()
+    smallest = VISIBLE * base.noise / float(beside[:, 0].norm().clamp(min=1e-300)) * _unit(candidate)
+    gain = 0.0 if _is_beyond(candidate, coefficients) else _gain(candidate, problem, states, beside, base)
+    direction = explained / explained.norm().clamp(min=1e-300)
+    if teeth is not None:
+        at = own_from(problem, base.outcome)
+        start, own = start_of_teeth(candidate, teeth, problem, n_free, at)
+    elif candidate.own_phases:
+        start, own = start_by_record(candidate, coefficients, problem, n_free)
+    else:
+        start, own = _start(candidate, coefficients, n_free), {}
+    return Score(candidate, gain, start, direction, smallest, kept, own=own)
+
+
+def _is_beyond(candidate: Candidate, coefficients: Tensor) -> bool:
+    """Whether every strength would have to be less than none, of an effect of which there is no less than that."""
+    if candidate.presence or candidate.phases or candidate.own_phases or candidate.own_tooth:
+        return False
+    own = [candidate.hypothesis.common[place] for place in candidate.strengths]
+    return all(p.lower >= p.start for p in own) and bool((coefficients <= 0).all())
+
+
+def _coefficients(columns: Tensor, signal: Tensor) -> Tensor:
+    return torch.linalg.lstsq(columns, signal.unsqueeze(1), rcond=1e-9, driver="gelsd").solution[:, 0]
+
+
+def _gain(candidate: Candidate, problem: OutputErrorProblem, states: Tensor, beside: Tensor, base: Base) -> float:
+    """Share of the residual's energy that a candidate would take, linearised.
+
+    An effect that is tried as a whole is far from linear: what another size of it would change counts with it, and
+    another start of its states; otherwise it would be judged by a size that fits badly.
+    """
+    project, residual = base.project, base.beside
+    free = residual.square().sum()
+    if candidate.presence:
+        own = [i for i, p in enumerate(candidate.hypothesis.common) if p.name.startswith(candidate.name + ".")]
+        places = [*own, *range(problem.n_shared + 2, problem.n_shared + len(problem.local))]
+        slopes = _slopes(problem, places, states, own_from(problem, base.outcome))
+        project = project.beside_own(slopes[..., len(own) :])
+        sizes = torch.nn.functional.pad(slopes[..., : len(own)].flatten(0, 1), (0, 0, 0, len(project.slope)))
+        residual, beside = project(base.residual.unsqueeze(1))[:, 0], project(torch.cat([beside, sizes], 1))
+        # A difference far below the residual is the integrator's: no size that makes sense would lift it to that.
+        beside = beside[:, beside.norm(dim=0) > NEGLIGIBLE * residual.norm()]
+    left = residual - beside @ _coefficients(beside, residual)
+    return float((free - left.square().sum()) / base.residual.square().sum())
+
+
+def _slopes(problem: OutputErrorProblem, places: Sequence[int], states: Tensor, at: Tensor) -> Tensor:
+    """Slopes of the prediction at coordinates `at` in these shared and local coordinates, (records, time, n)."""
+    moves = torch.zeros(len(places) + 1, problem.n_shared + len(problem.local), dtype=torch.float64)
+    moves[range(1, len(moves)), places] = DIFFERENCE
+    moved = states + moves[:, None, problem.n_shared :]
+    found = problem.predict(at + moves[:, : problem.n_shared], moved) * problem.response.weights
+    return ((found[1:] - found[0]) / DIFFERENCE).permute(1, 2, 0)
+
+
+def _unseen(candidate: Candidate, n_free: int, samples: int) -> Score:
+    nothing = torch.zeros(samples, dtype=torch.float64)
+    start = torch.zeros(n_free, dtype=torch.float64)
+    return Score(candidate, 0.0, start, nothing, float("inf"), nothing.reshape(-1, 1)[:, :0])
+
+
+def _unit(candidate: Candidate) -> float:
+    """One coordinate of the first strength in its own unit."""
+    parameter = candidate.hypothesis.common[candidate.strengths[0]]
+    return abs(parameter.start) if candidate.presence else parameter.scale
+
+
+def _probes(candidate: Candidate, n_free: int) -> tuple[Tensor, Tensor]:
+    """Coordinates at which the candidate is tried, and how far each is from switched off."""
+    rows, steps = [], []
+    for place in candidate.strengths:
+        row = torch.zeros(n_free, dtype=torch.float64)
+        if candidate.presence:
+            return torch.zeros(1, n_free, dtype=torch.float64), torch.ones(1, dtype=torch.float64)
+        row[place] = PROBE
+        repeats = candidate.teeth if candidate.own_tooth and len(candidate.strengths) == 1 else 1
+        rows += [row] * repeats
+        steps += [PROBE] * repeats
+        if place in candidate.phases or place in candidate.own_phases:
+            turned = row.clone()
+            if place in candidate.phases:
+                turned[candidate.phases[place]] = torch.pi / 2
+            rows.append(turned)
+            steps.append(PROBE)
+    return torch.stack(rows), torch.tensor(steps, dtype=torch.float64)
+
+
+def _start(candidate: Candidate, coefficients: Tensor, n_free: int) -> Tensor:
+    """Coordinates of the linearised optimum: amplitudes and phases from their cosine and sine parts."""
+    start = torch.zeros(n_free, dtype=torch.float64)
+    for place, coordinate in candidate.begun.items():
+        start[place] = coordinate
+    if candidate.presence:
+        return start
+    column = 0
+    for place in candidate.strengths:
+        if place in candidate.phases:
+            cosine, sine = coefficients[column], coefficients[column + 1]
+            start[place] = torch.hypot(cosine, sine)
+            start[candidate.phases[place]] = torch.atan2(sine, cosine)
+            column += 2
+        else:
+            start[place] = coefficients[column]
+            column += 1
+    return start
+
+
+def collinearity(first: Score, second: Score) -> float:
+    """Largest cosine between what two candidates can do beside the nuisance; 1 means not to be told apart."""
+    if not first.columns.shape[1] or not second.columns.shape[1]:
+        return 0.0
+    one, other = first.direction, second.columns
+    return float((other.T @ one).norm())
+
+
+def contains(larger: Score, smaller: Score) -> bool:
+    """Whether one candidate can do what the other would, with more parameters."""
+    more = larger.columns.shape[1] > smaller.columns.shape[1] > 0
+    return more and collinearity(smaller, larger) > CONTAINED
