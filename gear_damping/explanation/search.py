@@ -7,7 +7,7 @@ from gear_damping.explanation.evidence.excess import is_settled
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.state import State
 from gear_damping.explanation.steps.faint import faint_cause
-from gear_damping.explanation.steps.pairs import with_pair, with_pair_instead
+from gear_damping.explanation.steps.pairs import with_pair, with_pair_instead, with_pair_of_as_many
 from gear_damping.explanation.steps.revise import beside_the_others, exchanged, pruned, simplified
 from gear_damping.explanation.steps.single import single_cause
 from gear_damping.explanation.steps.told import told
@@ -23,13 +23,20 @@ def search(nominal: Outcome, bench: Bench, begun: Sequence[Refit] = ()) -> State
         bench: The records, their noise, and where candidates are tried.
         begun: Full fits to other evidence that are carried on.
     """
-    state, goes_on = looked(State(bench, nominal, nominal, begun=tuple(begun))), True
-    while goes_on and len(state.accepted) < bench.settings.most_causes:
+    state = simplified(_extended(looked(State(bench, nominal, nominal, begun=tuple(begun)))))
+    checked = told(state)
+    while checked.names < state.names and not bench.budget.refuses("effects beside those of no known size"):
+        state = simplified(_extended(looked(checked.without_candidates(state.names - checked.names))))
+        checked = told(state)
+    return beside_the_others(pruned(checked)) if len(checked.accepted) > 1 else checked
+
+
+def _extended(state: State) -> State:
+    """With causes as long as there are any to add."""
+    goes_on = True
+    while goes_on and len(state.accepted) < state.bench.settings.most_causes:
         state, goes_on = _with_more(state)
         state = looked(state) if goes_on else state
-    state = told(simplified(state))
-    if len(state.accepted) > 1:
-        state = beside_the_others(pruned(state))
     return state
 
 
@@ -52,7 +59,8 @@ def _with_more(state: State) -> tuple[State, bool]:
         return state, False
     if is_settled(current, state.first, bench.settings):
         state, best, rivals = faint_cause(state)
-        return (state, False) if best is None else (state.accepting(best, rivals), True)
+        further = with_pair_of_as_many(state) if best is None else state.accepting(best, rivals)
+        return (state, False) if further is None else (further, True)
     state, best, rivals = single_cause(state)
     if best is None:
         further = with_pair(state)

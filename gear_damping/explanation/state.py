@@ -1,6 +1,6 @@
 """What is known so far: every step of a search takes a state and gives the next."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
 from gear_damping.explanation.evidence.excess import Excess
@@ -108,6 +108,15 @@ class State:
         accepted = (*self.accepted[:place], cause, *self.accepted[place + 1 :])
         return replace(self, accepted=accepted, outcome=outcome or self.outcome)
 
+    def without_candidates(self, names: Collection[str]) -> "State":
+        """The same where some effects are no candidates any more."""
+        evidence = self.bench.evidence
+        library = {name: effect for name, effect in evidence.library.items() if name not in names}
+        bench = replace(self.bench, evidence=replace(evidence, library=library))
+        first = tuple(score for score in self.first_scores if score.candidate.name not in names)
+        outcome = self.outcome if self.accepted else self.nominal
+        return replace(self, bench=bench, outcome=outcome, first_scores=first, begun=())
+
     def accepting(self, best: Refit, rivals: tuple[str, ...] = ()) -> "State":
         """The same with a further cause."""
         outcome = self.bench.at_rest(best.outcome)
@@ -117,4 +126,10 @@ class State:
 
     def share_taken(self, outcome: Outcome) -> float:
         """What another model takes of what this one leaves, as a share of what the nominal one leaves."""
-        return (self.current.percent - self.bench.excess(outcome).percent) / max(self.first.percent, 1e-300)
+        return self.share_between(self.outcome, outcome)
+
+    def share_between(self, before: Outcome, after: Outcome) -> float:
+        """The fall of the held-out excess as a share of the first one; of all residuals where there was none."""
+        if self.first.percent > 0:
+            return (self.bench.excess(before).percent - self.bench.excess(after).percent) / self.first.percent
+        return (before.holdout_cost - after.holdout_cost) / max(self.nominal.holdout_cost, 1e-300)

@@ -12,7 +12,10 @@ DECORRELATED = 1 / np.e  # of the autocorrelation of the rate
 
 
 def characteristic_time(records: Sequence[FitRecord], natural_frequency: float = 0.0, damping: float = 0.0) -> float:
-    """Seconds: the natural period where a spring dominates, else the time constant of the rate, else its decorrelation.
+    """Seconds: the natural period where a spring dominates, else a time constant, else the decorrelation of the rate.
+
+    A spring that creeps back behind a strong damper does so in damping over stiffness; without a spring the rate dies
+    away in one over the damping.
 
     Args:
         records: The records, of which a tenth of the longest is the limit.
@@ -22,6 +25,8 @@ def characteristic_time(records: Sequence[FitRecord], natural_frequency: float =
     limit = MOST * max(record.duration for record in records)
     if natural_frequency > damping / 2 and natural_frequency > 0:
         return min(2 * pi / natural_frequency, limit)
+    if natural_frequency > 0:
+        return min(damping / natural_frequency**2, limit)
     found = 1 / damping if damping > 0 else inf
     if found >= limit:
         found = max(decorrelation_time(record) for record in records)

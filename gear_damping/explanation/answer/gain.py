@@ -10,6 +10,7 @@ from gear_damping.explanation.evidence.excess import ac_energy
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.evidence.rig_units import unit_of
 from gear_damping.explanation.model.hypothesis import Outcome
+from gear_damping.explanation.model.spread import SILENT
 from gear_damping.identification.output_error.problem import set_value
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.uncertainty import QUANTILE
@@ -17,7 +18,6 @@ from gear_damping.identification.output_error.unknowns import OFFSET, is_of_mode
 from gear_damping.physics.terms import DampingLaw
 from gear_damping.simulation.runs import reference_velocity
 
-SILENT = 0.1  # noise levels that a step of order one moves the records by, in all: less says nothing of a parameter
 STEP = 1e-4  # of a coordinate, for the slope of the damping ratio
 
 

@@ -7,6 +7,7 @@ from gear_damping.explanation.model.hypothesis import Outcome, time_scale
 from gear_damping.identification.output_error.uncertainty import covariance
 
 CORRELATED_PERIODS = 3.0  # characteristic times over which residuals may be correlated
+SILENT = 0.1  # noise levels that a step of order one moves the records by, in all: less says nothing of a parameter
 
 
 def spread_of(outcome: Outcome, evidence: Evidence) -> Tensor:

@@ -31,6 +31,7 @@ def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
     names = names[: bench.settings.full_fits]
     names = [name for name in names if best[name].gain > 0 and not bench.budget.refuses(name)]
     fits = [fit for name in names if (fit := bench.full_fit(best[name], state.outcome)) is not None]
+    fits = [bench.converged(fit, state.outcome) if _is_worth(fit, state.outcome, seen, bench) else fit for fit in fits]
     worth = [fit for fit in fits if _is_worth(fit, state.outcome, seen, bench)]
     state = replace(state, rejected=tuple(fits), first_fits=state.first_fits or tuple(fits))
     if len(state.accepted) >= ONE_OR_TWO:

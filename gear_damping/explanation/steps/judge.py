@@ -62,41 +62,63 @@ def verdict(
         whole: Share that causes take of everything beyond the sensor's noise, what looks random included.
         fitted: What the nominal model leaves of the fitted records beyond the noise, in % of their variance.
     """
-    settings = found.bench.settings
-    shown = before.significant and (is_visible(found.seen) or before.misfit > settings.small_misfit)
-    unfitted = is_visible(found.seen) and fitted > settings.gross_percent and before.misfit > settings.small_misfit
-    if not found.accepted and not shown and not unfitted:
-        text = f"No evidence of an effect that takes more than {before.threshold:.2g} % of the signal's variance."
-        return Verdict(CONSISTENT, (text,))
-    taken = _taken(found, before, after)
-    rest = is_all(after, before, settings) or (not is_visible(found.left) and after.misfit <= settings.small_misfit)
-    missing = f"The simulation misses {before.percent:.3g} % of the signal's variance"
-    if before.percent <= 0:  # what is missing shows in its form, not in its power
-        missing = f"The simulation misses something, though less than {before.threshold:.2g} % of the signal's variance"
     unsettled = () if converged else ("The calibration did not converge: take the figures with care.",)
     if not found.accepted:
-        text = f"{missing}, and no effect of the catalogue is borne out by held-out records."
-        return Verdict(UNEXPLAINED, (text, *unsettled))
+        return _without_name(found, before, fitted, unsettled)
+    settings, missing = found.bench.settings, _missing(before)
+    taken, said = _taken(found, before, after), _named(found.accepted)
     confused = [cause for cause in found.accepted if cause.confusable]
-    said = _named(found.accepted)
     classes = [cause for cause in found.accepted if cause.effect.cause.one_class]
-    looks_random = whole < settings.taken_by_one or before.misfit < settings.random_misfit
-    if rest and looks_random:  # most of the gap is still there
+    rest = is_all(after, before, settings) or (not is_visible(found.left) and after.misfit <= settings.small_misfit)
+    beside = (taken.sentence, *_not_told_apart(confused), *unsettled)
+    if not rest:
+        is_alone = len(found.accepted) == 1 and (after.misfit <= settings.small_misfit or bool(is_one))
+        if taken.share >= (settings.taken_by_one if is_alone else settings.taken_by_all):
+            text = f"{missing}. Part of it has a name: {said}. A rest of {after.percent:.3g} % has none."
+            return Verdict(PARTLY, (text, *beside))
+        text = f"{missing}. {said[0].upper()}{said[1:]} would take part of it, but too much is left to name a cause."
+        return Verdict(UNEXPLAINED, (text, *unsettled))
+    if whole < settings.taken_by_one or before.misfit < settings.random_misfit:  # most of the gap is still there
         text = f"{missing}. Part of it has a name: {said}. What is left looks random, and is more than that."
-        return Verdict(PARTLY, (text, _left(taken), *_not_told_apart(confused), *unsettled))
-    if rest and classes:
-        return Verdict(AMBIGUOUS, (f"{missing}.", *_one_class(classes), *_not_told_apart(confused), _left(taken)))
-    if rest and not confused:
-        return Verdict(EXPLAINED, (f"{missing}: {said}.", _left(taken), *_same_record(found.accepted), *unsettled))
-    if rest:
-        return Verdict(AMBIGUOUS, (f"{missing}.", *_not_told_apart(confused), _left(taken), *unsettled))
-    is_alone = len(found.accepted) == 1 and (after.misfit <= settings.small_misfit or bool(is_one))
-    one_takes_half = is_alone and taken >= settings.taken_by_one
-    if taken >= settings.taken_by_all or one_takes_half:
-        text = f"{missing}. Part of it has a name: {said}. A rest of {after.percent:.3g} % has none."
-        return Verdict(PARTLY, (text, _left(taken), *_not_told_apart(confused), *unsettled))
-    text = f"{missing}. {said[0].upper()}{said[1:]} would take part of it, but too much is left to name a cause."
-    return Verdict(UNEXPLAINED, (text, *unsettled))
+        return Verdict(PARTLY, (text, *beside))
+    if classes:
+        return Verdict(AMBIGUOUS, (f"{missing}.", *_one_class(classes), *beside, *_small_rest(found, after)))
+    if confused:
+        return Verdict(AMBIGUOUS, (f"{missing}.", *beside, *_small_rest(found, after)))
+    same = _same_record(found.accepted)
+    return Verdict(EXPLAINED, (f"{missing}: {said}.", *beside, *same, *_small_rest(found, after)))
+
+
+def _without_name(found: State, before: Excess, fitted: float, unsettled: tuple[str, ...]) -> Verdict:
+    """Nothing is missing, or no name was found for it."""
+    settings, visible = found.bench.settings, is_visible(found.seen)
+    is_more = before.misfit > settings.small_misfit
+    missing = (before.significant and (visible or is_more)) or (visible and is_more and fitted > settings.gross_percent)
+    if missing:
+        text = f"{_missing(before)}, and no effect of the catalogue is borne out by held-out records."
+        return Verdict(UNEXPLAINED, (text, *unsettled))
+    if visible and before.threshold > settings.gross_percent:
+        text = (
+            "Something is visible that is not random, and no effect of the catalogue is borne out; these records would "
+            f"not show one of less than {before.threshold:.2g} % of the signal's variance."
+        )
+        return Verdict(UNEXPLAINED, (text, *unsettled))
+    text = f"No evidence of an effect that takes more than {before.threshold:.2g} % of the signal's variance."
+    return Verdict(CONSISTENT, (text,))
+
+
+def _missing(before: Excess) -> str:
+    if before.percent > 0:
+        return f"The simulation misses {before.percent:.3g} % of the signal's variance"
+    # what is missing shows in its form, not in its power
+    return f"The simulation misses something, though less than {before.threshold:.2g} % of the signal's variance"
+
+
+def _small_rest(found: State, after: Excess) -> tuple[str, ...]:
+    """What is left and not random, where causes explain nearly all."""
+    if not is_visible(found.left) or after.percent <= 0:
+        return ()
+    return (f"What is left, {after.percent:.2g} % of the signal's variance, is not all random.",)
 
 
 def is_visible(seen: Assessment | None) -> bool:
@@ -104,11 +126,26 @@ def is_visible(seen: Assessment | None) -> bool:
     return seen is None or bool(seen.visible)
 
 
-def _taken(found: State, before: Excess, after: Excess) -> float:
-    """Share of what was missing that causes take: of held-out power, or of what is not random where that is small."""
-    if before.significant or found.seen is None or found.left is None or not found.seen.taken:
-        return min((before.percent - after.percent) / before.percent, 1.0)  # what is left may by chance be below noise
-    return 1 - min(found.left.taken / found.seen.taken, 1.0)
+@dataclass(frozen=True)
+class _Taken:
+    """Share of what was missing that causes take, and what it is a share of."""
+
+    share: float
+    of: str
+
+    @property
+    def sentence(self) -> str:
+        return f"With it {self.of} falls by {100 * self.share:.1f} %."
+
+
+def _taken(found: State, before: Excess, after: Excess) -> _Taken:
+    """Of held-out power, or of what is not random where that is small."""
+    seen, left = found.seen, found.left
+    if not before.significant and seen is not None and left is not None and seen.taken:
+        return _Taken(1 - min(left.taken / seen.taken, 1.0), "what is not random in the fitted records")
+    fall = before.percent - after.percent
+    share = fall / before.percent if before.percent > 0 else 0.0
+    return _Taken(min(share, 1.0), "the held-out excess")  # what is left may by chance be below noise
 
 
 def statuses(word: str) -> str:
@@ -141,7 +178,3 @@ def _same_record(accepted: Sequence[Accepted]) -> tuple[str, ...]:
         for cause in accepted
         for other in cause.effect.cause.looks_like
     )
-
-
-def _left(taken: float) -> str:
-    return f"With it the held-out excess falls by {100 * taken:.1f} %."

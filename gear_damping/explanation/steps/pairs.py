@@ -8,7 +8,7 @@ from gear_damping.explanation.state import Accepted, State
 from gear_damping.explanation.trials.refit import Refit
 from gear_damping.explanation.trials.score import Score
 
-PAIRS = "pairs of effects"
+PAIRS, PAIR = "pairs of effects", 2
 
 
 @dataclass(frozen=True)
@@ -37,8 +37,8 @@ def with_pair(state: State) -> State | None:
     pair = _accepted(pairs, state.current, state)
     if pair is None:
         return None
-    count = 2 if pair.replaces else len(state.accepted) + 2
-    return None if count > bench.settings.most_causes else _with(pair, state, state.current)
+    count = PAIR if pair.replaces else len(state.accepted) + PAIR
+    return None if count > bench.settings.most_causes else _with(pair, state)
 
 
 def with_pair_instead(state: State) -> State:
@@ -46,23 +46,38 @@ def with_pair_instead(state: State) -> State:
 
     A first cause that only resembles what is there leads the second astray, and both stand in for two others.
     """
-    if len(state.accepted) != 2 or state.bench.budget.refuses(PAIRS):
+    if len(state.accepted) != PAIR or state.bench.budget.refuses(PAIRS):
         return state
     pair = _accepted(_instead(state), state.current, state)
-    return state if pair is None else _with(pair, state, state.first)
+    return state if pair is None else _with(pair, state)
 
 
-def _with(pair: Pair, state: State, current: Excess) -> State:
+def with_pair_of_as_many(state: State) -> State | None:
+    """The state with a pair in the place of one law of as many parameters, where that leaves more than noise; if any.
+
+    A law with a shape of its own (a hysteresis) bends to what two plain ones do together.
+    """
+    bench, own = state.bench, len(state.outcome.hypothesis.free) - len(state.nominal.hypothesis.free)
+    leaves_more = state.left is not None and state.left.visible and state.current.misfit > bench.settings.small_misfit
+    if len(state.accepted) != 1 or own < PAIR or not leaves_more or bench.budget.refuses(PAIRS):
+        return None
+    most = len(state.outcome.hypothesis.free)
+    pairs = [pair for pair in _instead(state) if len(pair.second.outcome.hypothesis.free) <= most]
+    pair = _accepted(pairs, state.current, state)
+    return None if pair is None else _with(pair, state)
+
+
+def _with(pair: Pair, state: State) -> State:
     """Two causes that only together are accepted; each has half of what they take, until one is taken out."""
     bench = state.bench
     if pair.replaces:
         former = " and ".join(cause.name for cause in state.accepted)
         bench.say(f"{pair.first.name} and {pair.second.name} take the place of {former}")
-        state, current = replace(state, accepted=()), state.first
+        state = replace(state, accepted=(), outcome=state.nominal)
     outcome = bench.at_rest(pair.second.outcome)
-    share = (current.percent - bench.excess(outcome).percent) / max(state.first.percent, 1e-300) / 2
-    causes = [Accepted(fit.name, pair.second, share, ()) for fit in (pair.first, pair.second)]
-    bench.say(f"{pair.first.name} and {pair.second.name} take {200 * share:.1f} % of the excess on held-out records")
+    share = state.share_taken(outcome)
+    causes = [Accepted(fit.name, pair.second, share / PAIR, ()) for fit in (pair.first, pair.second)]
+    bench.say(f"{pair.first.name} and {pair.second.name} take {100 * share:.1f} % of the excess on held-out records")
     return replace(state, outcome=outcome, accepted=(*state.accepted, *causes))
 
 

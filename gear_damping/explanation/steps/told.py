@@ -11,12 +11,13 @@ from torch import Tensor
 
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.hypothesis import Outcome, time_scale
-from gear_damping.explanation.model.spread import CORRELATED_PERIODS
+from gear_damping.explanation.model.spread import CORRELATED_PERIODS, SILENT, spread_of
 from gear_damping.explanation.state import State
 from gear_damping.explanation.trials.refit import Refit
 from gear_damping.identification.output_error.normal_equations import own_basis, without_own
-from gear_damping.identification.output_error.uncertainty import long_run
+from gear_damping.identification.output_error.uncertainty import QUANTILE, long_run
 
+WITHIN = 1.0  # of a logarithm: the half of its 95 % interval, beyond which no size is known
 INDEPENDENT = 1e-3  # of the largest singular value: less is a direction in which strengths do nothing but rounding
 
 
@@ -49,8 +50,10 @@ def is_told(outcome: Outcome, refit: Refit, evidence: Evidence) -> bool:
     neutral = {candidate.hypothesis.common[i].name: candidate.hypothesis.common[i].start for i in candidate.strengths}
     problem, shared = outcome.problem, outcome.fitted.shared
     places = [i for i, parameter in enumerate(problem.free) if parameter.name in neutral]
-    if candidate.presence or not places:
+    if not places:
         return True
+    if candidate.presence:
+        return _are_sized(outcome, places, evidence)
     away = [float(problem.free[i].value(shared[i])) - neutral[problem.free[i].name] for i in places]
     free = [problem.free[i] for i in places]
     size = torch.tensor([1.0 if p.logarithmic else a / p.scale for p, a in zip(free, away, strict=True)])
@@ -68,6 +71,21 @@ def is_told(outcome: Outcome, refit: Refit, evidence: Evidence) -> bool:
     alone = [_without(columns[:, [k]], columns[:, [o for o in each if o != k]])[:, 0] * size[k] for k in each]
     limit = float(chi2.ppf(1 - evidence.settings.told_alone_level, 1))
     return max(_statistic(outcome, column, lags) for column in alone) > limit
+
+
+def _are_sized(outcome: Outcome, places: list[int], evidence: Evidence) -> bool:
+    """Whether the sizes of what is tried as a whole are known at all, each within a factor.
+
+    There is no none of it to compare with: an absorber without mass, a stop out of reach, a stiff bearing are at the
+    end of a logarithm. What a size does not move any more (a gap whose far flank is never touched) is no size.
+    """
+    spread, problem = spread_of(outcome, evidence), outcome.problem
+    for place in places:
+        half = QUANTILE * float(spread[place, place].clamp(min=0).sqrt())
+        moved = float(outcome.fitted.prediction.sensitivity[..., place].norm())
+        if problem.free[place].logarithmic and moved >= SILENT * evidence.noise and half > WITHIN:
+            return False
+    return True
 
 
 def _beside(outcome: Outcome, places: list[int], cause: str) -> Tensor:

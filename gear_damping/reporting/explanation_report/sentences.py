@@ -28,7 +28,8 @@ def verdict_sentences(explanation: Mapping[str, Any]) -> list[str]:
     """The verdict and what was found, the most important first."""
     headlines = CASING_HEADLINES if explanation.get("casing") else HEADLINES
     told = [headlines[explanation["verdict"]], *(explanation.get("sentences") or ())]
-    told += [rest_sentence(explanation.get("misfit"))] if explanation["verdict"] == "explained" else []
+    if explanation["verdict"] == "explained":
+        told.append(rest_sentence(explanation.get("misfit"), explanation.get("visible")))
     told += [ALL_THE_SAME] if explanation["verdict"] == "consistent" and explanation.get("not_observable") else []
     told += [misfit_sentence(explanation.get("misfit")), damping_sentence(explanation.get("gain"))]
     return [sentence for sentence in told if sentence]
@@ -79,12 +80,14 @@ def _stands_out(p: float, largest: str, level: float) -> str:
     return f"nothing stands out of it that chance would not give (p = {number(p, 2)}; {name} comes first)"
 
 
-def rest_sentence(misfit: Mapping[str, Any] | None) -> str:
+def rest_sentence(misfit: Mapping[str, Any] | None, visible: Mapping[str, Any] | None = None) -> str:
     """Whether only noise is left of what was explained."""
     excess = (misfit or {}).get("excess_percent") or {}
     if not _known(excess.get("after")) or not _known(excess.get("threshold")):
         return ""
     small = misfit["after"] <= ONLY_NOISE
+    if visible and visible["p"]["after"] < visible["level"]:
+        return "What is left is small beside what was explained, but it is not all random."
     if small and excess["after"] <= excess["threshold"]:
         return "With it only noise is left."
     return "What is left is small beside what was explained, but it is more than noise."
