@@ -50,3 +50,19 @@ def test_what_is_there_is_told_and_what_is_not_is_not(cubic, expected):
 def test_what_the_viscous_damping_does_already_is_told_of_no_other_law():
     extra = ("asymmetric_friction.damping_forward", "asymmetric_friction.damping_backward")
     assert not told(0.0, extra)
+
+
+@pytest.mark.parametrize(("moved", "half", "expected"), [(1e3, 0.2, True), (1e3, 4.0, False), (0.0, 4.0, True)])
+def test_what_is_tried_as_a_whole_needs_a_size_where_the_size_does_something(moved, half, expected, monkeypatch):
+    """A mass within a factor; one of which nothing is known; a gap whose far flank is never touched."""
+    parameter = FreeParameter("second_mode.mass_ratio", 0.01, logarithmic=True)
+    sensitivity = torch.full((1, 1, 4, 3), moved * NOISE / 2, dtype=torch.float64)
+    outcome = SimpleNamespace(
+        problem=SimpleNamespace(free=[parameter]),
+        fitted=SimpleNamespace(shared=torch.zeros(1), prediction=SimpleNamespace(sensitivity=sensitivity)),
+    )
+    spread = torch.full((1, 1), (half / 1.96) ** 2, dtype=torch.float64)
+    monkeypatch.setattr("gear_damping.explanation.steps.told.spread_of", lambda *_: spread)
+    candidate = SimpleNamespace(presence=True, strengths=[0], hypothesis=SimpleNamespace(common=[parameter]))
+    refit = SimpleNamespace(score=SimpleNamespace(candidate=candidate), name="second_mode")
+    assert is_told(outcome, refit, SimpleNamespace(noise=NOISE)) is expected

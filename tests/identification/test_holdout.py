@@ -1,11 +1,13 @@
 """Held-out records: only their start is found, and what an error of it leaves is kept apart from the model's."""
 
 import math
+from dataclasses import replace
 
 import pytest
 import torch
 
 from gear_damping.identification.output_error.holdout import predict_holdout
+from gear_damping.identification.output_error.problem import OutputErrorProblem
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.physics.catalogue import effect_class
 from gear_damping.physics.model import Model
@@ -13,6 +15,7 @@ from gear_damping.physics.systems.oscillator import Oscillator
 
 FREQUENCY, RATIO, RATE, NOISE = 10.0, 0.001, 200.0, 1e-3
 OMEGA = 2 * math.pi * FREQUENCY
+DAMPING = "viscous_damping.damping_coefficient"
 MODEL = Model(Oscillator(), [effect_class("viscous_damping")()])
 
 
@@ -25,7 +28,7 @@ def record(seed):
 
 
 def held_out(damping_ratio):
-    given = {"stiffness": OMEGA**2, "viscous_damping.damping_coefficient": 2 * damping_ratio * OMEGA}
+    given = {"stiffness": OMEGA**2, DAMPING: 2 * damping_ratio * OMEGA}
     return torch.stack(predict_holdout(MODEL, given, [record(seed) for seed in range(8)], 1 / FREQUENCY).residuals)
 
 
@@ -46,3 +49,17 @@ def test_a_prediction_that_runs_away_stays_what_it_is():
         found = predict_holdout(MODEL, given, [record(0)], 1 / FREQUENCY)
     assert len(found.residuals) == 1
     assert not bool(found.residuals[0].isfinite().all()) or float(found.residuals[0].abs().max()) > 1e3
+
+
+def test_a_record_that_runs_away_from_its_first_guess_begins_nearer_to_rest():
+    """A softening spring pushes away beyond .03 m; the records begin at .05 m and at .02 m."""
+    model = Model(Oscillator(), [effect_class("viscous_damping")(), effect_class("cubic_stiffness")()])
+    given = {"stiffness": OMEGA**2, "cubic_stiffness.coefficient": -(OMEGA**2) / 0.03**2, DAMPING: 2 * RATIO * OMEGA}
+    far, near = record(0), replace(record(1), response=0.4 * record(1).response)
+    problem = OutputErrorProblem(model, given, (), [far, near])
+    shared = torch.zeros(problem.n_shared, dtype=torch.float64)
+    guess, safe = problem.first_states(), problem.safe_states(shared)
+    assert not bool(problem.residuals(shared[None], guess[None])[0, 0].isfinite().all())
+    assert bool(problem.residuals(shared[None], safe[None]).isfinite().all())
+    torch.testing.assert_close(safe[0], guess[0] / 2)
+    torch.testing.assert_close(safe[1], guess[1])

@@ -31,11 +31,15 @@ def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
     names = names[: bench.settings.full_fits]
     names = [name for name in names if best[name].gain > 0 and not bench.budget.refuses(name)]
     fits = [fit for name in names if (fit := bench.full_fit(best[name], state.outcome)) is not None]
-    fits = [bench.converged(fit, state.outcome) if _is_worth(fit, state.outcome, seen, bench) else fit for fit in fits]
+    fits = [bench.converged(fit, state.outcome) if fit.gain > 0 else fit for fit in fits]
     worth = [fit for fit in fits if _is_worth(fit, state.outcome, seen, bench)]
     state = replace(state, rejected=tuple(fits), first_fits=state.first_fits or tuple(fits))
+    borne_out = [fit for fit in fits if _is_borne_out(fit, state)]
     if len(state.accepted) >= ONE_OR_TWO:
-        worth = [fit for fit in worth if bench.is_determined(fit)]
+        worth, borne_out = ([fit for fit in some if bench.is_determined(fit)] for some in (worth, borne_out))
+    if borne_out:
+        best = min(borne_out, key=lambda fit: fit.outcome.holdout_cost)
+        return state, *bench.simplest(best, fits)
     if not worth:
         return state, None, ()
     first = max(worth, key=lambda fit: fit.fit_gain)
@@ -66,6 +70,17 @@ def _is_worth(fit: Refit, before: Outcome, seen: Assessment, bench: Bench) -> bo
     settings = bench.settings
     is_enough = taken >= settings.least_share * seen.taken
     return is_enough and confirmation(before, fit.outcome, bench) >= settings.confirmed_t
+
+
+def _is_borne_out(fit: Refit, state: State) -> bool:
+    """Whether held-out records bear a cause out by their power after all, though it is less than chance may leave.
+
+    Where the fitted records hardly show what a held-out one does, as one at resonance, that chance is large.
+    """
+    settings, left = state.bench.settings, state.current.percent
+    takes = left - state.bench.excess(fit.outcome).percent
+    is_enough = left > 0 and takes >= settings.least_share * left
+    return is_enough and fit.is_seen_in_fit and fit.t > settings.accepted_t
 
 
 def _encompasses(first: Refit, other: Refit, bench: Bench) -> bool:

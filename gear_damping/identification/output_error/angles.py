@@ -24,7 +24,11 @@ def angle_bases(problem: OutputErrorProblem) -> list[str]:
 
 
 def scanned(
-    problem: OutputErrorProblem, shared: Tensor, horizon: float | None = None, bases: Sequence[str] | None = None
+    problem: OutputErrorProblem,
+    shared: Tensor,
+    horizon: float | None = None,
+    bases: Sequence[str] | None = None,
+    states: Tensor | None = None,
 ) -> Mapping[str, float]:
     """The best of several angles of every record, by name; everything else stays.
 
@@ -33,8 +37,10 @@ def scanned(
         shared: Coordinates of everything else, (n_shared,).
         horizon: Seconds of each record that are looked at; all where absent.
         bases: Which angles; all of them where absent, one after another.
+        states: How the records begin, (records, local); as they themselves show it where absent.
     """
     found: dict[str, float] = {}
+    states = problem.first_states() if states is None else states
     for base in angle_bases(problem) if bases is None else bases:
         places = [i for i, p in enumerate(problem.free) if p.name.startswith(base + SEPARATOR)]
         count = max([_starts(problem, base), *(problem.free[place].places for place in places)])
@@ -42,7 +48,7 @@ def scanned(
         starts = shared.repeat(count, 1)
         for place in places:
             starts[:, place] = torch.tensor([problem.free[place].coordinate(float(a)) for a in angles])
-        cost = _costs(problem, starts, places, horizon)
+        cost = _costs(problem, starts, places, horizon, states)
         for place in places:
             record = problem.free[place].name.partition(SEPARATOR)[2]
             own = [i for i, one in enumerate(problem.records) if one.record == record]
@@ -73,13 +79,14 @@ def harmonics_to_resonance(
     return float(model.prepare(values).derived["natural_frequency"][0]) / max(mesh, 1e-9)
 
 
-def _costs(problem: OutputErrorProblem, starts: Tensor, tried: Sequence[int], horizon: float | None) -> Tensor:
+def _costs(
+    problem: OutputErrorProblem, starts: Tensor, tried: Sequence[int], horizon: float | None, states: Tensor
+) -> Tensor:
     """Sum of squares by start and record, (starts, records), beside what the record's own start and zero can do."""
-    states = problem.first_states().unsqueeze(0)
     own = [i for i in range(problem.unknowns.n_common, problem.n_shared) if i not in set(tried)]
     rows = []
     for start in starts:  # one at a time: the sensitivities of all would be large
-        prediction = problem.linearise(start.unsqueeze(0), states, horizon, own)
+        prediction = problem.linearise(start.unsqueeze(0), states.unsqueeze(0), horizon, own)
         residual, sensitivity = prediction.residual[0], prediction.sensitivity[0]
         columns = torch.cat([sensitivity[..., own], sensitivity[..., problem.n_shared :]], -1)
         good = bool(columns.isfinite().all() & residual.isfinite().all())

@@ -67,12 +67,14 @@ def predict_holdout(
     for place, parameter in enumerate(problem.free):
         starts[0, place] = parameter.coordinate(known[parameter.name]) if parameter.name in known else 0.0
     unknown = [base for base in angle_bases(problem) if not any(name.startswith(base) for name in known)]
-    for name, angle in scanned(problem, starts[0], bases=unknown).items():
+    states = problem.safe_states(starts[0])
+    for name, angle in scanned(problem, starts[0], bases=unknown, states=states).items():
         place = next(i for i, parameter in enumerate(problem.free) if parameter.name == name)
         starts[0, place] = problem.free[place].coordinate(angle)
     # so short a stretch tells nothing of an angle, which would leave the valley that it was begun in
     horizons = [None] if angle_bases(problem) else [FIRST_PERIODS * characteristic_s, None]
-    found = fit(problem, starts, horizons, (FIRST_ITERATIONS, LAST_ITERATIONS)[-len(horizons) :])
+    iterations = (FIRST_ITERATIONS, LAST_ITERATIONS)[-len(horizons) :]
+    found = fit(problem, starts, horizons, iterations, states.unsqueeze(0))
     prediction, weights = found.prediction, problem.response.weights.clamp(min=1e-300)
     left = prediction.residual[0] / weights
     beside = _beside_own(prediction, problem.n_shared) / weights

@@ -123,6 +123,22 @@ class OutputErrorProblem:
             guesses[i, :2] = self._first_motion(record, i)[0]
         return guesses / self.scales
 
+    def safe_states(self, shared: Tensor) -> Tensor:
+        """The first guess, or rest for records that run away from it, (records, local).
+
+        A displacement that was integrated from an acceleration may be far off, and beyond the edge of the well of a
+        softening spring.
+
+        Args:
+            shared: Coordinates of everything else, (n_shared,).
+        """
+        guess, rest = self.first_states(), torch.zeros_like(self.scales)
+        rest[:, 0] = self.static / self.scales[:, 0]
+        tried = torch.stack([guess, (guess + rest) / 2, rest])
+        stays = self.residuals(shared.expand(len(tried), -1), tried).isfinite().all(-1)
+        first = stays.long().argmax(0)  # 0, the guess itself, where none stays
+        return tried[first, torch.arange(len(guess))]
+
     def _first_motion(self, record: FitRecord, place: int) -> tuple[Tensor, Tensor]:
         name = _offset_of(record, record.observed.name)
         offset = next((parameter.start for parameter in self.free if parameter.name == name), 0.0)

@@ -1,0 +1,72 @@
+"""The word for what was found, on made-up searches."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from gear_damping.explanation.evidence.excess import Excess
+from gear_damping.explanation.settings import SearchSettings
+from gear_damping.explanation.state import State
+from gear_damping.explanation.steps.judge import CONSISTENT, EXPLAINED, PARTLY, UNEXPLAINED, verdict
+
+
+def excess_of(percent, misfit, threshold=0.1):
+    return Excess(percent, threshold, threshold, misfit, {})
+
+
+def search(visible=True, accepted=(), left=False):
+    seen = [SimpleNamespace(visible=one, taken=share) for one, share in ((visible, 0.8), (left, 0.05))]
+    bench = SimpleNamespace(settings=SearchSettings())
+    return SimpleNamespace(bench=bench, accepted=accepted, seen=seen[0], left=seen[1])
+
+
+def cause(name="coulomb_friction"):
+    declared = SimpleNamespace(sentence="a law", one_class=(), looks_like=())
+    return SimpleNamespace(name=name, confusable=(), effect=SimpleNamespace(cause=declared))
+
+
+NOTHING, MUCH = excess_of(0.0, 1.0), excess_of(8.0, 40.0)
+
+
+@pytest.mark.parametrize(
+    ("visible", "before", "fitted", "word"),
+    [
+        (False, NOTHING, 0.0, CONSISTENT),
+        (True, NOTHING, 0.0, CONSISTENT),  # visible, but far below what could matter
+        (True, MUCH, 8.0, UNEXPLAINED),
+        (True, excess_of(4.0, 9.0, threshold=20.0), 12.0, UNEXPLAINED),  # held-out records tell nothing, the others do
+        (True, excess_of(-60.0, 0.04, threshold=68.0), 4.0, UNEXPLAINED),  # what would not show is no consistency
+        (False, excess_of(-60.0, 0.04, threshold=68.0), 4.0, CONSISTENT),
+    ],
+)
+def test_without_a_name(visible, before, fitted, word):
+    assert verdict(search(visible), before, before, fitted=fitted).word == word
+
+
+def test_what_is_left_and_not_random_is_said():
+    after = excess_of(0.05, 1.1)
+    clean = verdict(search(accepted=(cause(),)), MUCH, after)
+    rest = verdict(search(accepted=(cause(),), left=True), MUCH, after)
+    assert clean.word == rest.word == EXPLAINED
+    assert not any("not all random" in sentence for sentence in clean.sentences)
+    assert any("0.05 % of the signal's variance, is not all random" in sentence for sentence in rest.sentences)
+
+
+def test_a_fall_is_one_of_what_it_is_measured_by():
+    power = verdict(search(accepted=(cause(),)), MUCH, NOTHING)
+    assert "With it the held-out excess falls by 100.0 %." in power.sentences
+    faint = verdict(search(accepted=(cause(),)), excess_of(-0.05, 0.99), excess_of(-0.06, 0.98))
+    assert "With it what is not random in the fitted records falls by 93.8 %." in faint.sentences
+
+
+@pytest.mark.parametrize(("is_one", "word"), [(True, PARTLY), (False, UNEXPLAINED)])
+def test_one_cause_with_one_size_may_leave_a_rest(is_one, word):
+    left = excess_of(3.0, 10.0)
+    assert verdict(search(accepted=(cause(),), left=True), MUCH, left, is_one=is_one).word == word
+
+
+@pytest.mark.parametrize(("first", "share"), [(8.0, 0.75), (-1.0, 0.4)])
+def test_a_share_is_one_of_residuals_where_nothing_was_left_beyond_noise(first, share):
+    outcomes = [SimpleNamespace(percent=p, holdout_cost=c) for p, c in ((first, 10.0), (first - 6.0, 6.0))]
+    bench = SimpleNamespace(excess=lambda outcome: excess_of(outcome.percent, 1.0))
+    assert State(bench, outcomes[0], outcomes[0]).share_taken(outcomes[1]) == pytest.approx(share)
