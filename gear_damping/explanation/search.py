@@ -23,12 +23,10 @@ def search(nominal: Outcome, bench: Bench, begun: Sequence[Refit] = ()) -> State
         bench: The records, their noise, and where candidates are tried.
         begun: Full fits to other evidence that are carried on.
     """
-    state = simplified(_extended(looked(State(bench, nominal, nominal, begun=tuple(begun)))))
-    checked = told(state)
-    while checked.names < state.names and not bench.budget.refuses("effects beside those of no known size"):
-        state = simplified(_extended(looked(checked.without_candidates(state.names - checked.names))))
-        checked = told(state)
-    return beside_the_others(pruned(checked)) if len(checked.accepted) > 1 else checked
+    state = _doubted(_extended(looked(State(bench, nominal, nominal, begun=tuple(begun)))))
+    while state.unsized and not bench.budget.refuses("effects in the place of those of no known size"):
+        state = _doubted(_extended(looked(state.without_unsized())))
+    return beside_the_others(state) if len(state.accepted) > 1 else state
 
 
 def _extended(state: State) -> State:
@@ -38,6 +36,12 @@ def _extended(state: State) -> State:
         state, goes_on = _with_more(state)
         state = looked(state) if goes_on else state
     return state
+
+
+def _doubted(state: State) -> State:
+    """Causes that are no simpler, told from none, and needed beside each other; one fewer may leave another untold."""
+    state = told(simplified(state))
+    return told(pruned(state)) if len(state.accepted) > 1 else state
 
 
 def looked(state: State) -> State:

@@ -1,6 +1,6 @@
 """What is known so far: every step of a search takes a state and gives the next."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from gear_damping.explanation.evidence.excess import Excess
@@ -52,6 +52,7 @@ class State:
         seen: What the residuals of the nominal model hold; None where that was not found out.
         left: What those of the model hold.
         calibrations: How often the nominal model has been calibrated anew.
+        unsized: Causes that were dropped because the records do not tell their size from none.
     """
 
     bench: Bench
@@ -66,6 +67,7 @@ class State:
     seen: Assessment | None = None
     left: Assessment | None = None
     calibrations: int = 0
+    unsized: frozenset[str] = frozenset()
 
     @property
     def first(self) -> Excess:
@@ -108,14 +110,14 @@ class State:
         accepted = (*self.accepted[:place], cause, *self.accepted[place + 1 :])
         return replace(self, accepted=accepted, outcome=outcome or self.outcome)
 
-    def without_candidates(self, names: Collection[str]) -> "State":
-        """The same where some effects are no candidates any more."""
-        evidence = self.bench.evidence
+    def without_unsized(self) -> "State":
+        """The same where effects whose size was not told from none are no candidates any more."""
+        evidence, names = self.bench.evidence, self.unsized
         library = {name: effect for name, effect in evidence.library.items() if name not in names}
         bench = replace(self.bench, evidence=replace(evidence, library=library))
         first = tuple(score for score in self.first_scores if score.candidate.name not in names)
         outcome = self.outcome if self.accepted else self.nominal
-        return replace(self, bench=bench, outcome=outcome, first_scores=first, begun=())
+        return replace(self, bench=bench, outcome=outcome, first_scores=first, begun=(), unsized=frozenset())
 
     def accepting(self, best: Refit, rivals: tuple[str, ...] = ()) -> "State":
         """The same with a further cause."""

@@ -30,7 +30,8 @@ def told(state: State) -> State:
         bench.say(f"{cause.name} lowers the cost, but its size is not told from none")
         kept = tuple(other for other in state.accepted if other is not cause)
         outcome = bench.without(state.outcome, cause.name)
-        state = replace(state, outcome=outcome, accepted=kept, rejected=(cause.refit, *state.rejected))
+        rejected, unsized = (cause.refit, *state.rejected), state.unsized | {cause.name}
+        state = replace(state, outcome=outcome, accepted=kept, rejected=rejected, unsized=unsized)
     return state
 
 
