@@ -15,7 +15,7 @@ from gear_damping.config.measured import INSPECT
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
 from gear_damping.tasks.own_effects import errors_in, plugins_of
-from gear_damping.tasks.run_folder import FAILED, FINISHED, INTERRUPTED, RunFolder
+from gear_damping.tasks.run_folder import FAILED, FINISHED, INTERRUPTED, RunFolder, problem_with_used
 from gear_damping.tasks.wrong_declaration import WRONG_INPUT, say_problems
 
 if TYPE_CHECKING:
@@ -28,6 +28,10 @@ OK, INTERRUPTED_CODE = 0, 130
 def run_job(config: Mapping[str, Any], origin: Origin, folder: Path) -> int:
     """Do one job; returns its exit code. A KeyboardInterrupt is passed on after the folder was closed."""
     signal.signal(signal.SIGTERM, _interrupt)
+    used = problem_with_used(folder, config)
+    if used is not None:
+        say_problems(InputError(used))
+        return WRONG_INPUT
     try:
         run_folder = RunFolder(folder, config, origin.choices)
     except OSError as error:

@@ -4,7 +4,6 @@ from pathlib import Path
 from typing import Any
 
 from gear_damping.config.settings import Settings
-from gear_damping.errors import InputError, Problem
 from gear_damping.explanation.explain import Explanation, explain
 from gear_damping.explanation.model.extended_simulator import write_extended
 from gear_damping.measurement.load import load_measurement
@@ -14,14 +13,13 @@ from gear_damping.physics.terms import Effect
 from gear_damping.reporting.explanation_report import write_report
 from gear_damping.tasks import statements
 from gear_damping.tasks.progress import progress_bar
-from gear_damping.tasks.run_folder import RunFolder
+from gear_damping.tasks.run_folder import EDITED, RunFolder
 
-EXTENDED = "extended_simulator.yaml"
+EXTENDED = EDITED["explain"]
 
 
 def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     """Explain; returns the metrics for run.json."""
-    _refuse_used(folder.path)
     measurement = load_measurement(settings.measurement_path)
     _note_inputs(measurement, folder)
     with progress_bar("explaining", settings.progress) as progress:
@@ -41,13 +39,6 @@ def _library(settings: Settings) -> dict[str, type[Effect]]:
     """The catalogue with the user's own effects, without those that are ruled out."""
     known = catalogue(settings.simulator.plugins)
     return {name: kind for name, kind in known.items() if name not in settings.ruled_out}
-
-
-def _refuse_used(folder: Path) -> None:
-    """An extended simulator may have been edited by hand: it is never overwritten."""
-    if (folder / EXTENDED).exists():
-        rule, remedy = f"holds an {EXTENDED} already", "give another folder, or move the file away"
-        raise InputError(Problem("hydra.run.dir", rule, str(folder), remedy))
 
 
 def _note_inputs(measurement: Measurement, folder: RunFolder) -> None:

@@ -12,7 +12,6 @@ import numpy as np
 
 from gear_damping.config.light import InspectSettings
 from gear_damping.config.measured import YAML_SUFFIXES
-from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.column_kinds import CONSTANT
 from gear_damping.measurement.formats.registry import read_table
 from gear_damping.measurement.guessing import UNKNOWN, Guess, guesses, system_of
@@ -24,9 +23,9 @@ from gear_damping.measurement.spectral_floor import Spectrum, spectrum_of
 from gear_damping.measurement.starting_yaml import starting_yaml
 from gear_damping.reporting.inspection import Curve, Panel, inspection_figure
 from gear_damping.reporting.style import save
-from gear_damping.tasks.run_folder import RunFolder
+from gear_damping.tasks.run_folder import EDITED, RunFolder
 
-YAML_NAME, TEXT_NAME, FIGURE_NAME = "measurement.yaml", "inspection.txt", "inspection.png"
+YAML_NAME, TEXT_NAME, FIGURE_NAME = EDITED["inspect"], "inspection.txt", "inspection.png"
 say = logging.getLogger("gear_damping").info
 
 
@@ -40,9 +39,6 @@ def run(settings: InspectSettings, folder: RunFolder) -> dict[str, Any]:
 
 def _bare(path: Path, folder: RunFolder) -> dict[str, Any]:
     start = folder.path / YAML_NAME
-    if start.exists():
-        rule, remedy = f"holds a {YAML_NAME} already", "give another folder, or move the file away"
-        raise InputError(Problem("hydra.run.dir", rule, str(folder.path), remedy))
     found = inspect_table(read_table(path))
     folder.add_input(path)
     system = system_of(found)

@@ -13,9 +13,11 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from gear_damping.errors import writing
+from gear_damping.config.measured import INSPECT, YAML_SUFFIXES
+from gear_damping.errors import Problem, writing
 
 RUNNING, FINISHED, FAILED, INTERRUPTED = "running", "finished", "failed", "interrupted"
+EDITED = {"explain": "extended_simulator.yaml", "inspect": "measurement.yaml"}  # what people edit, by task
 PACKAGES = ("gear-damping", "torch", "lightning", "hydra-core", "torchdiffeq", "numpy", "scipy")
 
 
@@ -73,6 +75,21 @@ class RunFolder:
 
     def _write(self) -> None:
         self.write_json("run.json", self.record)
+
+
+def problem_with_used(folder: Path, config: Mapping[str, Any]) -> Problem | None:
+    """The problem with a folder that holds already what the task leaves for people to edit, if it does.
+
+    Nothing is written there then, run.json neither.
+    """
+    name = EDITED.get(config.get("task") or "")
+    measured = (config.get("measurement") or {}).get("path") or ""
+    is_declared = config.get("task") == INSPECT and Path(measured).suffix.lower() in YAML_SUFFIXES  # leaves no YAML
+    if name is None or is_declared or not (folder / name).exists():
+        return None
+    article = "an" if name[0] in "aeiou" else "a"
+    remedy = "give another folder, or move the file away"
+    return Problem("hydra.run.dir", f"holds {article} {name} already", str(folder), remedy)
 
 
 def write_json(path: Path, content: Any) -> Path:

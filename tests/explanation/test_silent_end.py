@@ -47,6 +47,12 @@ def test_an_input_that_moves_is_no_silence():
     assert audible_samples(stroke) < 5 * RATE
 
 
+def test_noise_on_a_measured_input_is_no_movement():
+    noise = np.random.default_rng(7).standard_normal
+    stroke = record_of(0.03, 30.0, force=lambda time: 1.0 * (time < 0.005) + 0.02 * noise(len(time)))
+    assert audible_samples(stroke) < 5 * RATE
+
+
 @pytest.mark.parametrize(("knobs", "names"), [({}, set()), ({"cubic": 0.3}, {"cubic_stiffness"})])
 def test_a_long_tail_changes_no_answer(knobs, names, tmp_path):
     periods = 400.0

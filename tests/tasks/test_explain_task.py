@@ -83,8 +83,9 @@ def test_the_extended_simulator_runs_again(explained, tmp_path):
 
 
 def test_a_used_folder_is_not_written_over(explained, caplog, capsys):
-    kept = (explained / "extended_simulator.yaml").read_bytes()
+    kept, said = ((explained / name).read_bytes() for name in ("extended_simulator.yaml", "run.json"))
     again = [f"measurement.path={explained.parent / 'measurement.yaml'}", f"hydra.run.dir={explained}"]
     assert main(["task=explain", "simulator=oscillator", "family=none", "progress=false", *again]) == 1
     assert "holds an extended_simulator.yaml already" in caplog.text + capsys.readouterr().err
     assert (explained / "extended_simulator.yaml").read_bytes() == kept
+    assert (explained / "run.json").read_bytes() == said, "how the first run ended stays known"

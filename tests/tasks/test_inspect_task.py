@@ -133,7 +133,8 @@ def test_a_yaml_that_was_begun_is_not_written_over(tmp_path, caplog, capsys):
     _csv(tmp_path / "run.csv")
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / "measurement.yaml").write_text("mine\n")
-    assert inspected(tmp_path / "run.csv", tmp_path / "out")[0] == 1
+    assert main(["task=inspect", f"measurement.path={tmp_path / 'run.csv'}", f"hydra.run.dir={tmp_path / 'out'}"]) == 1
+    assert not (tmp_path / "out" / "run.json").exists()
     assert "holds a measurement.yaml already; remedy: " in caplog.text + capsys.readouterr().err
     assert (tmp_path / "out" / "measurement.yaml").read_text() == "mine\n"
     assert not (tmp_path / "out" / "inspection.png").exists()

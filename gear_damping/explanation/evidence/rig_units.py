@@ -6,6 +6,7 @@ from gear_damping.physics.model import Model
 from gear_damping.physics.terms import Sensor
 from gear_damping.units import parse_unit
 
+CYCLES = "Hz"  # and not 1/s, which would be read as rad/s
 DERIVATIVES = {"velocity": 1, "acceleration": 2}
 
 
@@ -17,7 +18,7 @@ def rig_unit(declared: str, evidence: Evidence, recorded: bool = False) -> str:
         evidence: The records.
         recorded: Whether it is of a sensor, which acts on what was recorded: a length is one of that then.
     """
-    if evidence.system == "gear_pair" and not recorded:
+    if declared == CYCLES or (evidence.system == "gear_pair" and not recorded):
         return declared
     dimension = parse_unit(declared).dimension
     length, seconds = (evidence.channel.unit, 0) if recorded else _length(evidence.channel)

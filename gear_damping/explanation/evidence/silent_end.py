@@ -1,5 +1,6 @@
 """Where the motion of a record has died away: what lies behind tells of the noise alone."""
 
+from dataclasses import replace
 from math import ceil
 
 import torch
@@ -12,7 +13,7 @@ from gear_damping.identification.output_error.records import FitRecord
 
 PERIODS, FEWEST_SAMPLES = 2.0, 64  # of a block: the longer of the two
 CHANCE = 0.01  # that noise alone is taken for motion anywhere in a record
-STILL = 1e-3  # of the largest movement of an input in a block: with less it rests
+STILL = 1e-3  # of the largest movement of an input in a block: with less, or no more than its noise, it rests
 FEWEST_BLOCKS = 3  # that are left: fewer tell nothing of a decay
 
 
@@ -28,10 +29,11 @@ def audible_samples(record: FitRecord) -> int:
     count, noise = ceil(total / block), floor_variance(record)
     if count <= FEWEST_BLOCKS or noise <= 0:
         return total
-    moves = _power(record.response, block) > noise * float(chi2.ppf(1 - CHANCE / count, block - 1)) / (block - 1)
+    limit = float(chi2.ppf(1 - CHANCE / count, block - 1)) / (block - 1)
+    moves = _power(record.response, block) > noise * limit
     for series in record.inputs.values():
-        power = _power(series, block)
-        moves = moves | (power > STILL**2 * power.max())
+        power, own = _power(series, block), floor_variance(replace(record, response=series))
+        moves = moves | (power > torch.clamp(STILL**2 * power.max(), min=own * limit))
     last = int(moves.nonzero().max()) if bool(moves.any()) else count
     return min(total, max(last + 1, FEWEST_BLOCKS) * block)
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.io import loadmat
-from scipy.io.matlab import MatlabFunction, MatlabOpaque, matfile_version
+from scipy.io.matlab import MatlabFunction, MatlabOpaque, MatReadWarning, matfile_version
 
 from gear_damping.measurement.formats.table import (
     ArrayTable,
@@ -52,7 +52,9 @@ def _is_hdf5(path: Path) -> bool:
 
 def _read_older(path: Path, max_bytes: int) -> dict[str, Any]:
     refuse_size(path, _unpacked_size(path, max_bytes), max_bytes)
-    content = loadmat(path, squeeze_me=True)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", MatReadWarning)  # of what it cannot hold; what is missing is not listed
+        content = loadmat(path, squeeze_me=True)
     return {name: value for name, value in content.items() if not name.startswith("__")}
 
 
