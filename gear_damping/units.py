@@ -50,7 +50,8 @@ _N = Dimension(1, 1, -2)
 _ATOMS: dict[str, Unit] = {
     "1": Unit(1.0, _ONE), "%": Unit(1e-2, _ONE), "dB": Unit(1.0, _ONE),
     "kg": Unit(1.0, _KG), "gram": Unit(1e-3, _KG), "t": Unit(1e3, _KG),
-    "m": Unit(1.0, _M), "cm": Unit(1e-2, _M), "mm": Unit(1e-3, _M), "um": Unit(1e-6, _M), "nm": Unit(1e-9, _M),
+    "km": Unit(1e3, _M), "m": Unit(1.0, _M),
+    "cm": Unit(1e-2, _M), "mm": Unit(1e-3, _M), "um": Unit(1e-6, _M), "nm": Unit(1e-9, _M),
     "s": Unit(1.0, _S), "ms": Unit(1e-3, _S), "us": Unit(1e-6, _S), "min": Unit(60.0, _S), "h": Unit(3600.0, _S),
     "Hz": Unit(1.0, _S**-1), "kHz": Unit(1e3, _S**-1), "MHz": Unit(1e6, _S**-1),
     "N": Unit(1.0, _N), "kN": Unit(1e3, _N), "mN": Unit(1e-3, _N),
@@ -64,6 +65,11 @@ _ATOMS: dict[str, Unit] = {
 _SPELLINGS = {"µ": "u", "μ": "u", "·": "*", "²": "^2", "³": "^3", "°": "deg", "**": "^"}
 _SPELLINGS |= {"N.m": "N*m", "N m": "N*m"}
 _FACTOR = re.compile(r"^(?P<atom>[A-Za-z%]+|1)(\^(?P<power>-?\d+(\.\d+)?))?$")
+
+
+def unit_names() -> tuple[str, ...]:
+    """Every unit that may stand in a product or a quotient."""
+    return tuple(_ATOMS)
 
 
 @cache

@@ -11,6 +11,7 @@ from gear_damping.measurement import channels as c
 from gear_damping.measurement import layout, rig
 from gear_damping.measurement.structure import Declared, kind_of, names
 from gear_damping.measurement.vocabulary import CHANNEL_MODELS
+from gear_damping.units import unit_names
 
 BEGIN = "<!-- reference: begin; written by `make docs` from the declarations, do not edit -->"
 END = "<!-- reference: end -->"
@@ -46,6 +47,10 @@ def _lines() -> Iterator[str]:
     yield "## Every key\n"
     yield "A key acts as its row says, or is refused with the reason. `{value, unit}` stands for a value in a unit of"
     yield "the kind that is named; a relative `uncertainty` beside them is a Gaussian prior.\n"
+    named = ", ".join(f"`{name}`" for name in unit_names())
+    yield f"Units are {named}, and products and quotients of them with powers, such as `km/h`, `N*m`, `m/s^2` or"
+    yield "`kg*m^2`; `g` by itself is standard gravity. A response of an oscillator may be in any of them, volts and"
+    yield "degrees too: its parameters are then in that one. Counts of a converter are `1`.\n"
     yield from _keys("The file", layout.GearFile)
     yield from _keys("A record", layout.AnyRecord)
     yield from _keys("A record of a gear pair also has", layout.GearRecord, layout.AnyRecord)

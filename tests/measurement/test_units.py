@@ -1,0 +1,32 @@
+"""Units: every one that may stand in a product has its factor, and what nobody knows is refused by name."""
+
+import pytest
+
+from gear_damping.errors import InputError
+from gear_damping.units import parse_unit, unit_names
+
+STANDARD_GRAVITY = 9.80665
+
+
+@pytest.mark.parametrize(
+    ("text", "factor"),
+    [
+        ("km/h", 1 / 3.6), ("N*m", 1.0), ("g", STANDARD_GRAVITY), ("m/s^2", 1.0), ("rpm", 0.10471975511965977),
+        ("kg*mm^2", 1e-6), ("deg/s", 0.017453292519943295), ("µm", 1e-6),
+    ],
+)  # fmt: skip
+def test_a_unit_has_its_factor(text, factor):
+    assert parse_unit(text).factor == pytest.approx(factor, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", unit_names())
+def test_every_listed_unit_is_read_by_itself_and_in_a_quotient(name):
+    unit = parse_unit(name)
+    assert unit.factor > 0
+    assert parse_unit(f"{name}/s").dimension.time == unit.dimension.time - 1
+
+
+@pytest.mark.parametrize("text", ["furlong", "N**", "g*m"])
+def test_an_unknown_unit_is_refused(text):
+    with pytest.raises(InputError, match="unit"):
+        parse_unit(text)
