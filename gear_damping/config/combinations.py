@@ -19,6 +19,7 @@ from gear_damping.simulation.families import DAMPING_RATIO, coefficients_for
 from gear_damping.simulation.runs import reference_velocity
 
 SIMULATING = ("train", "simulate", "evaluate")  # tasks that simulate runs of the configured simulator
+SEARCHED = ("explain", "ruled_out")  # keys of a search for causes
 RESUMABLE = "*/seed_*/last.ckpt"  # what an interrupted training leaves in its folder
 Found = Iterator[tuple[str, str, Any, str]]  # key, rule, value, remedy
 
@@ -72,6 +73,14 @@ def _resume(whole: Whole) -> Found:
 
 def _measurement(whole: Whole) -> Found:
     yield from wrong_measurement(whole.config)
+
+
+def _of_a_search(whole: Whole) -> Found:
+    """What only a search for causes reads would be accepted by other tasks without any effect."""
+    for typed in whole.origin.overrides if whole["task"] != "explain" else ():
+        key, _, value = typed.lstrip("+~").partition("=")
+        if key.split(".")[0] in SEARCHED:
+            yield key, f"acts in task=explain, and this is task={whole['task']}", value, "leave it out"
 
 
 def _ruled_out(whole: Whole) -> Found:
@@ -223,6 +232,7 @@ CHECKS: tuple[tuple[tuple[str, ...], Callable[[Whole], Found]], ...] = (
     (("task", "checkpoint"), _checkpoint),
     (("resume",), _resume),
     (("task", "measurement"), _measurement),
+    (("task", "explain", "ruled_out"), _of_a_search),
     (("ruled_out", "simulator"), _ruled_out),
     (("task", "data_folder"), _data_folder),
     (("task", "protocol", "simulator"), _windows),

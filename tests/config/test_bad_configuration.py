@@ -33,6 +33,8 @@ FAULTS = {
     "unknown_key": (["sed=3"], ["sed: no such key", "did you mean 'seed'"]),
     "unknown_plus_key": (["+foo=3"], ["foo: no such key", "command line: foo=3"]),
     "no_override": (["backlash"], ["backlash: is not an override"]),
+    "of_another_task": (["task=simulate", "explain.accepted_t=4"], ["explain.accepted_t", "acts in task=explain"]),
+    "outside_a_search": (["task=explain", "explain.level=2"], ["explain.level = 2", "within 0.0001 and 0.5"]),
     "wrong_task": (["task=fly"], ["task = 'fly'", "identify"]),
     "whole_number": (["training.batch_size=2.5"], ["training.batch_size = 2.5", "whole number"]),
     "positive": (["training.learning_rate=0"], ["training.learning_rate", "just above 0"]),
