@@ -211,8 +211,7 @@ def _is_lost(residual: Tensor, record: FitRecord, evidence: Evidence) -> bool:
 
 def _taken_of_all(state: State) -> float:
     """Share that causes take of all that the nominal model leaves beyond what was known of the noise at first."""
-    sensor = replace(state.bench, noise=state.bench.floor)
-    before, after = (sensor.excess(outcome).percent for outcome in (state.nominal, state.outcome))
+    before, after = (state.beyond_sensor(outcome).percent for outcome in (state.nominal, state.outcome))
     return 1 - max(after, 0.0) / before if before > 0 else 1.0
 
 

@@ -79,6 +79,10 @@ class State:
         """What the model leaves of them."""
         return self.bench.excess(self.outcome)
 
+    def beyond_sensor(self, outcome: Outcome) -> Excess:
+        """What a model leaves beyond the noise as it was known before any residual was looked at."""
+        return replace(self.bench, noise=self.bench.floor).excess(outcome)
+
     @property
     def noise(self) -> NoiseLevel:
         """The noise as it is known now."""

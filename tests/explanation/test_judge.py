@@ -14,10 +14,12 @@ def excess_of(percent, misfit, threshold=0.1):
     return Excess(percent, threshold, threshold, misfit, {})
 
 
-def search(visible=True, accepted=(), left=False):
+def search(visible=True, accepted=(), left=False, sensor=100.0):
     seen = [SimpleNamespace(visible=one, taken=share) for one, share in ((visible, 0.8), (left, 0.05))]
     bench = SimpleNamespace(settings=SearchSettings())
-    return SimpleNamespace(bench=bench, accepted=accepted, seen=seen[0], left=seen[1])
+    found = SimpleNamespace(bench=bench, accepted=accepted, seen=seen[0], left=seen[1], nominal=None)
+    found.beyond_sensor = lambda outcome: excess_of(1.0, sensor)
+    return found
 
 
 def cause(name="coulomb_friction"):
@@ -41,6 +43,13 @@ NOTHING, MUCH = excess_of(0.0, 1.0), excess_of(8.0, 40.0)
 )
 def test_without_a_name(visible, before, fitted, word):
     assert verdict(search(visible), before, before, fitted=fitted).word == word
+
+
+def test_noise_that_is_the_sensor_s_own_hides_nothing():
+    """A short null: its held-out record could hide much, but no more is left than its sensor makes."""
+    before = excess_of(-8.0, 0.7, threshold=18.0)
+    assert verdict(search(sensor=2.0), before, before, fitted=1.0).word == CONSISTENT
+    assert verdict(search(sensor=900.0), before, before, fitted=1.0).word == UNEXPLAINED
 
 
 def test_what_is_left_and_not_random_is_said():

@@ -97,7 +97,8 @@ def _without_name(found: State, before: Excess, fitted: float, unsettled: tuple[
     if missing:
         text = f"{_missing(before)}, and no effect of the catalogue is borne out by held-out records."
         return Verdict(UNEXPLAINED, (text, *unsettled))
-    if visible and before.threshold > settings.gross_percent:
+    raised = found.beyond_sensor(found.nominal).misfit > settings.small_misfit  # more looks random than a sensor makes
+    if visible and raised and before.threshold > settings.gross_percent:
         text = (
             "Something is visible that is not random, and no effect of the catalogue is borne out; these records would "
             f"not show one of less than {before.threshold:.2g} % of the signal's variance."
