@@ -30,6 +30,7 @@ class SearchSettings:
         accepted_t: t of the held-out gain that a cause needs (paired test over blocks).
         confirmed_t: t of what a faint cause adds to held-out predictions, one-sided (Clark & West 2007).
         rival_t: t below which two explanations are not told apart.
+        rival_evidence: Twice the logarithm of the odds below which they are not told apart either: 100 to 1.
         rival_share: Of the best one's gain that a rival needs which fits the other records better.
         least_share: Of what is left that a cause must take, so that none is named before a larger rest.
         seen_in_fit: Fall of the fitted cost in noise variances by which a cause is seen: five deviations.
@@ -66,6 +67,7 @@ class SearchSettings:
     accepted_t: float = within(3.0, 0, 100)
     confirmed_t: float = within(2.0, 0, 100)
     rival_t: float = within(2.0, 0, 100)
+    rival_evidence: float = within(9.2, 0, 1e6)
     rival_share: float = within(0.9, 0, 1)
     least_share: float = within(0.25, 0, 1)
     seen_in_fit: float = within(25.0, 0, 1000000000.0)

@@ -101,3 +101,21 @@ def test_an_elastic_law_is_fitted_whatever_a_linear_score_promises(monkeypatch):
     assert "quadratic_stiffness" not in {s.candidate.name for s in chosen(ranked, SearchSettings())}
     assert "quadratic_stiffness" in {s.candidate.name for s in chosen(ranked, SearchSettings(), springs=True)}
     assert math.isclose(ranked[-1].gain, 5e-5)
+
+
+@pytest.mark.parametrize(
+    ("difference", "correlation", "expected"),
+    [(2.0, 1.0, True), (40.0, 1.0, False), (40.0, 10.0, True), (-40.0, 1.0, True)],
+)
+def test_too_little_to_bet_on_does_not_tell_two_apart(difference, correlation, expected):
+    """A difference of one sign in every block, of so many noise variances in all."""
+    best = torch.full((SAMPLES,), NOISE, dtype=torch.float64)
+    other = best * math.sqrt(1 + difference / SAMPLES)
+    held = [SimpleNamespace(duration=SAMPLES / 100.0, sampling_rate=100.0)]
+    noise = SimpleNamespace(value=NOISE, correlation=correlation)
+    evidence = SimpleNamespace(settings=SearchSettings(), held=held)
+    bench = Bench(evidence, noise, None, None, noise)
+    outcomes = [SimpleNamespace(holdout=[residual]) for residual in (other, best)]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("gear_damping.explanation.trials.bench.block_samples", lambda *_: [SAMPLES // 16])
+        assert bench.is_as_good(*outcomes) is expected

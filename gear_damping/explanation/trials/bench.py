@@ -119,8 +119,15 @@ class Bench:
         return compared(fit.score, self.at_rest(fit.outcome), against, self.evidence)
 
     def is_as_good(self, outcome: Outcome, best: Outcome) -> bool:
-        """Whether a model is not worse than another by the paired test."""
+        """Whether a model is not worse than another by the paired test, or by too little for anybody to bet on it.
+
+        What two predictions differ by may be small and yet have one sign in all blocks. The difference of their sums
+        of squares in noise variances is twice the logarithm of the odds between them.
+        """
         gain, t = self.paired_gain(outcome, best)
+        samples = sum(len(residual) for residual in best.holdout) / self.noise.correlation
+        if gain * samples < self.settings.rival_evidence * self.noise.value**2:
+            return True
         return t < self.settings.rival_t or gain < SAME * self.noise.value**2
 
     def paired_gain(self, before: Outcome, after: Outcome) -> tuple[float, float]:
