@@ -119,3 +119,12 @@ def test_too_little_to_bet_on_does_not_tell_two_apart(difference, correlation, e
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("gear_damping.explanation.trials.bench.block_samples", lambda *_: [SAMPLES // 16])
         assert bench.is_as_good(*outcomes) is expected
+
+
+def test_what_is_tried_as_a_whole_is_fitted_whatever_it_promises_at_one_size(monkeypatch):
+    monkeypatch.setattr("gear_damping.explanation.trials.refit.replace", lambda score, variants: score)
+    names = ("coulomb_friction", "power_law_damping", "sensor_delay", "sensor_drift", "sensor_saturation")
+    ranked = [score(name, 0.5 / 10**k) for k, name in enumerate(names)]
+    ranked[-1].candidate.presence = True
+    assert "sensor_saturation" not in {s.candidate.name for s in chosen(ranked, SearchSettings())}
+    assert "sensor_saturation" in {s.candidate.name for s in chosen(ranked, SearchSettings(), springs=True)}

@@ -84,8 +84,9 @@ def chosen(
         scores: Every candidate, the best first.
         settings: How many are worth it.
         least: What it has to promise, as a share of what the first one does.
-        springs: Whether every elastic law is worth one: a law that is even in the deflection pulls the frequency by its
-            square, which no linear score foresees, and what it promises is next to nothing.
+        springs: Whether everything far from linear is worth one, as for an oscillator, whose fits are cheap: a law that
+            is even in the deflection pulls the frequency by its square, and what is tried as a whole (a sensor that
+            saturates) promises little at a wrong size. No linear score foresees either.
     """
     forms: dict[tuple, list[Score]] = {}
     for score in scores:
@@ -99,10 +100,14 @@ def chosen(
     promising = [score for score in ranked[settings.full_fits :] if score.gain > LEAST_PROMISE * ranked[0].gain]
     alike = [score for score in promising if collinearity(ranked[0], score) > NEARLY_COLLINEAR]
     instead = [score for score in ranked if score.candidate.replaced]  # adds nothing that could overfit: always tried
-    elastic = [score for score in ranked if springs and score.gain > 0 and score.candidate.is_elastic]
-    taken = [*(first + alike)[: settings.most_full_fits], *instead, *elastic]
+    far = [score for score in ranked if springs and score.gain > 0 and _is_far_from_linear(score.candidate)]
+    taken = [*(first + alike)[: settings.most_full_fits], *instead, *far]
     worth = {score.candidate.name: score.gain for score in taken}
     return [s for s in every if s.gain >= OTHER_FORM * worth.get(s.candidate.name, inf)]
+
+
+def _is_far_from_linear(candidate: Candidate) -> bool:
+    return candidate.is_elastic or bool(candidate.presence)
 
 
 def _other_sizes(found: Sequence[Score]) -> tuple[Candidate, ...]:
