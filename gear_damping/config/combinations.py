@@ -19,7 +19,7 @@ from gear_damping.simulation.families import DAMPING_RATIO, coefficients_for
 from gear_damping.simulation.runs import reference_velocity
 
 SIMULATING = ("train", "simulate", "evaluate")  # tasks that simulate runs of the configured simulator
-SEARCHED = ("explain", "ruled_out")  # keys of a search for causes
+SEARCHED = ("explain.", "ruled_out")  # how keys of a search for causes begin
 RESUMABLE = "*/seed_*/last.ckpt"  # what an interrupted training leaves in its folder
 Found = Iterator[tuple[str, str, Any, str]]  # key, rule, value, remedy
 
@@ -79,7 +79,7 @@ def _of_a_search(whole: Whole) -> Found:
     """What only a search for causes reads would be accepted by other tasks without any effect."""
     for typed in whole.origin.overrides if whole["task"] != "explain" else ():
         key, _, value = typed.lstrip("+~").partition("=")
-        if key.split(".")[0] in SEARCHED:
+        if key.startswith(SEARCHED):
             yield key, f"acts in task=explain, and this is task={whole['task']}", value, "leave it out"
 
 
