@@ -12,6 +12,8 @@ from gear_damping.explanation.trials.refit import Refit
 from gear_damping.explanation.trials.score import Score
 from gear_damping.physics.terms import Effect
 
+FREELY_NAMED = 2  # causes whose size may be anybody's guess when they are accepted
+
 
 @dataclass(frozen=True)
 class Accepted:
@@ -97,6 +99,11 @@ class State:
     def names(self) -> frozenset[str]:
         """The effects that were accepted."""
         return frozenset(cause.name for cause in self.accepted)
+
+    @property
+    def needs_known_size(self) -> bool:
+        """Whether a further cause counts only where its size is known: beside so many a law bends to what is left."""
+        return len(self.accepted) >= FREELY_NAMED
 
     @property
     def growth(self) -> float:

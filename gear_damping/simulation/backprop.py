@@ -53,7 +53,7 @@ def simulate_with_gradient(
     layout, series = Layout(prepared), Series(tuple(sorted(inputs)))
     fixed, start = layout.pack(prepared, interval), initial_states(model, prepared)
     driving = true_inputs(model, values, inputs, interval.shape[0])
-    packed = series.pack(driving, input_units(model, inputs, prepared), n_samples - 1, interval.shape[0])
+    packed = series.shared(driving, input_units(model, inputs, prepared), n_samples - 1, interval.shape[0]).for_each()
     with torch.no_grad():
         groups = groups_of(prepared, interval, n_samples - 1, solver)
         kernel = _GraphKernel(model, layout, series, Members(fixed, packed[0], fixed.new_zeros(())), start)

@@ -43,7 +43,7 @@ def _inputs(runs: Runs, member: int) -> dict[str, Tensor]:
     prepared = runs.model.prepare({name: value[..., member : member + 1] for name, value in runs.values.items()})
     inputs = {name: value[member : member + 1] for name, value in runs.inputs.items()}
     series, intervals = Series(tuple(sorted(inputs))), len(runs.time) - 1
-    packed = series.pack(inputs, input_units(runs.model, inputs, prepared), intervals, 1)
+    packed = series.shared(inputs, input_units(runs.model, inputs, prepared), intervals, 1).for_each()
     rows = torch.cat([packed, packed[-1:]])[..., 0].T  # the last output is the end of the last interval
     u = torch.zeros(intervals + 1, dtype=rows.dtype)
     u[-1] = 1

@@ -155,8 +155,9 @@ def _natural(
     def natural(changed: Mapping[str, Tensor]) -> Natural:
         prepared = model.prepare({**given, **changed}, scales)
         driving = true_inputs(model, {**given, **changed}, inputs, interval.shape[0])
-        packed = series.pack(driving, input_units(model, inputs, prepared), n_samples - 1, interval.shape[0])
-        return Layout(prepared).pack(prepared, interval), initial_states(model, prepared), packed
+        units = input_units(model, inputs, prepared)
+        packed = series.shared(driving, units, n_samples - 1, interval.shape[0])
+        return Layout(prepared).pack(prepared, interval), initial_states(model, prepared), packed.for_each()
 
     return natural
 

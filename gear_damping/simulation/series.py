@@ -58,6 +58,10 @@ class SharedSeries:
         """On a device."""
         return SharedSeries(self.coefficients.to(device), self.source.to(device), self.factor.to(device))
 
+    def for_each(self) -> Tensor:
+        """Natural units of every member, (intervals, rows, batch)."""
+        return self.coefficients[..., self.source] * self.factor
+
     @classmethod
     def written_out(cls, packed: Tensor) -> "SharedSeries":
         """From natural units of every member, (intervals, rows, batch)."""
@@ -68,34 +72,13 @@ class SharedSeries:
 class Series:
     """Coefficients of every input series, and their evaluation inside an interval.
 
-    The packed tensor has shape (intervals, rows, batch).
+    Written out for every member they have shape (intervals, rows, batch).
     """
 
     def __init__(self, names: tuple[str, ...]) -> None:
         """Order the rows of the inputs called `names`."""
         self.names = names
         self.heights = [_height(name) for name in names]
-
-    def pack(
-        self,
-        inputs: Mapping[str, Tensor],
-        units: Mapping[str, Tensor],
-        intervals: int,
-        batch: int,
-        held: Collection[str] = (),
-    ) -> Tensor:
-        """Coefficients in natural units.
-
-        Args:
-            inputs: Series of shape (rows, time), or (rows, intervals) if held; where a batch repeats them,
-                each is interpolated once.
-            units: Their natural units, (batch,); of a held load none.
-            intervals: Output intervals.
-            batch: Members, a multiple of the rows.
-            held: Names of those that stay at a sample's value until the next one.
-        """
-        shared = self.shared(inputs, units, intervals, batch, held)
-        return shared.coefficients[..., shared.source] * shared.factor
 
     def shared(
         self,
@@ -105,7 +88,16 @@ class Series:
         batch: int,
         held: Collection[str] = (),
     ) -> SharedSeries:
-        """The same with what members have in common written once; arguments as for `pack`."""
+        """Coefficients, with what members have in common written once.
+
+        Args:
+            inputs: Series of shape (rows, time), or (rows, intervals) if held; where a batch repeats them,
+                each is interpolated once.
+            units: Their natural units, (batch,); of a held load none.
+            intervals: Output intervals.
+            batch: Members, a multiple of the rows.
+            held: Names of those that stay at a sample's value until the next one.
+        """
         sources = lcm(*(len(inputs[name]) for name in self.names))
         parts, factors = [torch.empty(intervals, 0, sources, dtype=torch.float64)], []
         for name, height in zip(self.names, self.heights, strict=True):

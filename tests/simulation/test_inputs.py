@@ -20,7 +20,7 @@ def test_a_band_limited_input_between_its_samples():
     index = torch.arange(n, dtype=torch.float64)
     tone = torch.sin(2 * np.pi * cycles * index + 0.4).unsqueeze(0)
     series = Series(("force",))
-    packed = series.pack({"force": tone}, {}, n - 1, 1)
+    packed = series.shared({"force": tone}, {}, n - 1, 1).for_each()
     for u in (0.0, 0.3, 0.77, 1.0):
         position = torch.full((1,), u, dtype=torch.float64)
         found = torch.stack([series.at(rows, position, position)["force"] for rows in packed])[50:-50, 0]
@@ -32,7 +32,7 @@ def test_a_held_load_and_an_even_rotation():
     series = Series((HELD_LOAD, ANGLE))
     load = torch.tensor([[1.0, -2.0, 5.0]], dtype=torch.float64)
     angle = torch.tensor([[0.5, 1.5, 2.5, 3.5]], dtype=torch.float64)
-    packed = series.pack({HELD_LOAD: load, ANGLE: angle}, {}, 3, 1)
+    packed = series.shared({HELD_LOAD: load, ANGLE: angle}, {}, 3, 1).for_each()
     half, interval = torch.tensor([0.5], dtype=torch.float64), torch.tensor([0.1], dtype=torch.float64)
     found = series.at(packed[1], half, interval)
     assert float(found[HELD_LOAD]) == -2
@@ -59,7 +59,7 @@ def test_an_uneven_rotation_between_its_samples():
     every = torch.arange(300, dtype=torch.float64)
     angle, _ = uneven_angle(every)
     series = Series((ANGLE,))
-    packed = series.pack({ANGLE: angle.unsqueeze(0)}, {}, 299, 1)
+    packed = series.shared({ANGLE: angle.unsqueeze(0)}, {}, 299, 1).for_each()
     inside = torch.arange(40, 260)
     for u in (0.1, 0.4, 0.5, 0.85):
         found, rate = between(series, packed, inside, u)
@@ -73,7 +73,7 @@ def test_an_uneven_rotation_between_its_samples():
 def test_the_rate_of_an_angle_does_not_jump_at_samples():
     angle, true_rate = uneven_angle(torch.arange(300, dtype=torch.float64))
     series, inside = Series((ANGLE,)), torch.arange(40, 260)
-    packed = series.pack({ANGLE: angle.unsqueeze(0)}, {}, 299, 1)
+    packed = series.shared({ANGLE: angle.unsqueeze(0)}, {}, 299, 1).for_each()
     jump = between(series, packed, inside, 1.0)[1] - between(series, packed, inside + 1, 0.0)[1]
     assert jump.abs().max() < 1e-4 * (true_rate - true_rate.mean()).abs().max()
 
@@ -83,9 +83,9 @@ def test_a_shorter_series_is_continued_as_it_is_interpolated_alone(length):
     index = torch.arange(60, dtype=torch.float64)
     given = {ANGLE: uneven_angle(index, 3.0)[0], "pinion_torque": 150 + 30 * torch.cos(index / 5)}
     series = Series(tuple(given))
-    alone = series.pack({name: value.unsqueeze(0) for name, value in given.items()}, {}, 59, 1)
+    alone = series.shared({name: value.unsqueeze(0) for name, value in given.items()}, {}, 59, 1).for_each()
     longer = {name: continued(value, length).unsqueeze(0) for name, value in given.items()}
-    together = series.pack(longer, {}, length - 1, 1)[:59]
+    together = series.shared(longer, {}, length - 1, 1).for_each()[:59]
     one = torch.ones(59, dtype=torch.float64)
     for u in (0.0, 0.3, 1.0):
         expected, found = (series.at(p[..., 0].T, u * one, one) for p in (alone, together))
@@ -101,7 +101,7 @@ def test_members_share_the_series_of_their_record_in_their_own_units():
     shared = series.shared({"pinion_torque": torques}, {"pinion_torque": units}, 8, 6)
     assert shared.coefficients.shape[2] == 2
     written = torques.repeat(3, 1) / units.unsqueeze(1)
-    expected = series.pack({"pinion_torque": written}, {}, 8, 6)
+    expected = series.shared({"pinion_torque": written}, {}, 8, 6)
     for interval in (0, 3, 7):
         torch.testing.assert_close(shared[interval], expected[interval], rtol=1e-12, atol=1e-12)
     some = torch.tensor([4, 1])
@@ -129,7 +129,7 @@ def test_an_even_rotation_is_exact():
     """Also after ten thousand turns."""
     series = Series((ANGLE,))
     angle = 3.0 + 2.5 * torch.arange(25000, dtype=torch.float64).unsqueeze(0)
-    packed = series.pack({ANGLE: angle}, {}, 24999, 1)
+    packed = series.shared({ANGLE: angle}, {}, 24999, 1).for_each()
     inside = torch.arange(24999)
     found, rate = between(series, packed, inside, 0.37)
     assert (found - (3.0 + 2.5 * (inside.double() + 0.37))).abs().max() < 1e-10

@@ -17,7 +17,7 @@ from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.spread import spread_of
 from gear_damping.explanation.steps.judge import CONSISTENT, DATA_PROBLEM, LARGEST_SET, Judged, statuses
 from gear_damping.explanation.trials.assess import Assessment
-from gear_damping.explanation.trials.score import Score
+from gear_damping.explanation.trials.score import Score, best_by_effect
 from gear_damping.measurement.record import Finding, Measurement
 
 SCHEMA_VERSION = 1
@@ -253,9 +253,7 @@ def _candidates(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
     taken = {refit.name: _share(refit.outcome, found.nominal) for refit in best_last}
     accepted = {cause.name: cause.share for cause in found.accepted}
     alike = {name for cause in found.accepted for name in cause.confusable}
-    best: dict[str, Score] = {}
-    for score in found.first_scores:
-        best.setdefault(score.candidate.name, score)
+    best = best_by_effect(found.first_scores)
 
     def status(name: str) -> str:
         if name in accepted:

@@ -14,9 +14,7 @@ from gear_damping.explanation.state import State
 from gear_damping.explanation.trials.assess import Assessment
 from gear_damping.explanation.trials.bench import Bench
 from gear_damping.explanation.trials.refit import Refit, block_samples
-from gear_damping.explanation.trials.score import Score
-
-ONE_OR_TWO = 2  # causes; of a further one the size has to be known
+from gear_damping.explanation.trials.score import best_by_effect
 
 
 def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
@@ -24,9 +22,7 @@ def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
     seen, bench = state.left, state.bench
     if seen is None:
         return state, None, ()
-    best: dict[str, Score] = {}
-    for score in state.ranked:
-        best.setdefault(score.candidate.name, score)
+    best = best_by_effect(state.ranked)
     names = sorted((n for n in best if seen.visible.shows(n)), key=lambda n: -seen.visible.by_name[n])
     names = names[: bench.settings.full_fits]
     names = [name for name in names if best[name].gain > 0 and not bench.budget.refuses(name)]
@@ -35,7 +31,7 @@ def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
     worth = [fit for fit in fits if _is_worth(fit, state.outcome, seen, bench)]
     state = replace(state, rejected=tuple(fits), first_fits=state.first_fits or tuple(fits))
     borne_out = [fit for fit in fits if _is_borne_out(fit, state)]
-    if len(state.accepted) >= ONE_OR_TWO:
+    if state.needs_known_size:
         worth, borne_out = ([fit for fit in some if bench.is_determined(fit)] for some in (worth, borne_out))
     if borne_out:
         best = min(borne_out, key=lambda fit: fit.outcome.holdout_cost)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from gear_damping.explanation.evidence.excess import Excess
 from gear_damping.explanation.state import Accepted, State
 from gear_damping.explanation.trials.refit import Refit
-from gear_damping.explanation.trials.score import Score
+from gear_damping.explanation.trials.score import best_by_effect
 
 PAIRS, PAIR = "pairs of effects", 2
 
@@ -120,10 +120,7 @@ def _bases(fits: Sequence[Refit], state: State) -> list[Refit]:
 def _seconds(base: Refit, state: State) -> list[Refit]:
     """Full fits of the most promising effects beside a base, held against what was accepted so far."""
     bench = state.bench
-    best: dict[str, Score] = {}
-    for score in bench.ranked(base.outcome):
-        if score.gain > 0:
-            best.setdefault(score.candidate.name, score)
+    best = best_by_effect(score for score in bench.ranked(base.outcome) if score.gain > 0)
     names = list(best)[: bench.settings.pair_seconds]
     simpler = (bench.evidence.library[name].cause.simpler for name in names)
     names += [name for name in simpler if name in best and name not in names]

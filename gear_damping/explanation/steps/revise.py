@@ -1,11 +1,13 @@
 """Second thoughts: causes that give way to others, to simpler ones, or to nothing."""
 
 from dataclasses import replace
+from functools import reduce
 
 from gear_damping.explanation.evidence.excess import is_settled
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.state import Accepted, State
-from gear_damping.explanation.trials.score import Score
+from gear_damping.explanation.trials.bench import smallest
+from gear_damping.explanation.trials.score import best_by_effect
 
 
 def exchanged(state: State) -> State:
@@ -17,11 +19,11 @@ def exchanged(state: State) -> State:
     for place, cause in enumerate(state.accepted[:-1]):
         if state.bench.budget.refuses(f"other effects in the place of {cause.name}"):
             break
-        state = _exchanged_at(place, state)
+        state = _exchanged_at(state, place)
     return state
 
 
-def _exchanged_at(place: int, state: State) -> State:
+def _exchanged_at(state: State, place: int) -> State:
     bench, cause, before = state.bench, state.accepted[place], state.outcome
     without = bench.without(before, cause.name)
     fits = bench.full_fits(bench.ranked(without), without, before, bench.settings.exchange_share)
@@ -38,12 +40,10 @@ def _exchanged_at(place: int, state: State) -> State:
 
 def simplified(state: State) -> State:
     """Every cause, or the simpler one that it contains where that does as well beside the other causes."""
-    for place in range(len(state.accepted)):
-        state = _simplified_at(place, state)
-    return state
+    return reduce(_simplified_at, range(len(state.accepted)), state)
 
 
-def _simplified_at(place: int, state: State) -> State:
+def _simplified_at(state: State, place: int) -> State:
     bench, cause = state.bench, state.accepted[place]
     simpler = cause.effect.cause.simpler
     if simpler is None or simpler in state.names:
@@ -86,12 +86,10 @@ def _is_enough(outcome: Outcome, state: State) -> bool:
 
 def beside_the_others(state: State) -> State:
     """Every cause with those of its rivals that do no worse in its place, now that the other causes are known."""
-    for place in range(len(state.accepted)):
-        state = _beside_the_others_at(place, state)
-    return state
+    return reduce(_beside_the_others_at, range(len(state.accepted)), state)
 
 
-def _beside_the_others_at(place: int, state: State) -> State:
+def _beside_the_others_at(state: State, place: int) -> State:
     bench, cause = state.bench, state.accepted[place]
     rivals = [name for name in cause.confusable if name not in state.names]
     if not rivals:
@@ -99,14 +97,12 @@ def _beside_the_others_at(place: int, state: State) -> State:
     if bench.budget.refuses(f"rivals of {cause.name} beside the others"):
         return state
     without = bench.without(state.outcome, cause.name)
-    best: dict[str, Score] = {}
-    for score in bench.ranked(without, rivals):
-        best.setdefault(score.candidate.name, score)
-    fits = [bench.full_fit(score, without) for score in best.values() if score.gain > 0]
+    best = best_by_effect(bench.ranked(without, rivals)).values()
+    fits = [bench.full_fit(score, without) for score in best if score.gain > 0]
     kept = [fit for fit in fits if fit is not None and bench.is_as_good(fit.outcome, state.outcome)]
     inside = [fit for fit in kept if not fit.is_at_bound]
     if cause.refit.is_at_bound and inside:  # it stands in for another at the end of what it can be
-        instead = min(inside, key=lambda fit: (len(fit.outcome.hypothesis.free), fit.outcome.holdout_cost))
+        instead = smallest(inside)
         bench.say(f"{instead.name} does as well as {cause.name}, which has run into a bound")
         others = tuple(fit.name for fit in inside if fit is not instead)
         return state.with_cause(place, Accepted(instead.name, instead, cause.share, others), instead.outcome)

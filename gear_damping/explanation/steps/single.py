@@ -9,8 +9,6 @@ from gear_damping.explanation.state import State
 from gear_damping.explanation.trials.refit import Refit, again
 from gear_damping.explanation.trials.score import Score
 
-ONE_OR_TWO = 2  # causes; of a further one the size has to be known
-
 
 def single_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
     """The state with the fits that were made, the next cause and its rivals; None where nothing more is borne out."""
@@ -26,7 +24,7 @@ def single_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
     fits = _rivals_at_rest(fits, state)
     state = replace(state, rejected=fits)
     best = _best(fits, state)
-    if best is None or (len(state.accepted) >= ONE_OR_TWO and not bench.is_determined(best)):
+    if best is None or (state.needs_known_size and not bench.is_determined(best)):
         return state, None, ()
     return state, *bench.simplest(best, fits)
 

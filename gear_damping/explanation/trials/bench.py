@@ -145,7 +145,7 @@ class Bench:
         inner = [f for f in alike if any(contains(o.score, f.score) for o in alike if o.name != f.name)]
         outer = {f.name for f in alike if any(contains(f.score, o.score) for o in inner if o.name != f.name)}
         kept = [f for f in alike if f.name not in outer] or alike
-        first = self._within_bounds(_least(kept), fits)
+        first = self._within_bounds(smallest(kept), fits)
         return first, tuple(dict.fromkeys(f.name for f in kept if f.name != first.name))
 
     def _is_rival(self, fit: Refit, best: Refit) -> bool:
@@ -183,10 +183,10 @@ class Bench:
         others = [fit for fit in fits if fit.is_seen_in_fit and not fit.is_at_bound]
         near = [fit for fit in others if fit.gain >= self.settings.rival_share * first.gain]
         close = [fit for fit in others if self.excess(fit.outcome).misfit <= self.settings.settled_misfit]
-        return _least(close or near or [first])
+        return smallest(close or near or [first])
 
 
-def _least(fits: Sequence[Refit]) -> Refit:
+def smallest(fits: Sequence[Refit]) -> Refit:
     """The fit with the fewest parameters; of several the one that held-out records like best."""
     return min(fits, key=lambda fit: (len(fit.outcome.hypothesis.free), fit.outcome.holdout_cost))
 

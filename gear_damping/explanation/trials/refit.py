@@ -12,7 +12,7 @@ from gear_damping.explanation.model.candidates import Candidate
 from gear_damping.explanation.model.hypothesis import Outcome, fit_hypothesis, time_scale
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.statistics.paired import paired_gain
-from gear_damping.explanation.trials.score import Score, collinearity
+from gear_damping.explanation.trials.score import Score, best_by_effect, collinearity
 from gear_damping.simulation.solver_settings import Solver
 
 NEARLY_COLLINEAR = 0.7
@@ -92,10 +92,7 @@ def chosen(
     for score in scores:
         forms.setdefault((score.candidate.name, *score.candidate.options), []).append(score)
     every = [replace(found[0], variants=_other_sizes(found)) for found in forms.values()]
-    best: dict[str, Score] = {}
-    for score in every:
-        best.setdefault(score.candidate.name, score)
-    ranked = list(best.values())
+    ranked = list(best_by_effect(every).values())
     first = [score for score in ranked[: settings.full_fits] if score.gain >= least * ranked[0].gain]
     promising = [score for score in ranked[settings.full_fits :] if score.gain > LEAST_PROMISE * ranked[0].gain]
     alike = [score for score in promising if collinearity(ranked[0], score) > NEARLY_COLLINEAR]

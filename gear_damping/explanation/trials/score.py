@@ -1,6 +1,6 @@
 """Step 5b: what each candidate could explain, by its sensitivity with the nuisance projected out (score test)."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import torch
@@ -53,6 +53,14 @@ class Score:
     variants: tuple[Candidate, ...] = ()
     failed: str = ""
     own: Mapping[str, float] = field(default_factory=dict)
+
+
+def best_by_effect(scores: Iterable[Score]) -> dict[str, Score]:
+    """The first score of every effect, which of scores in their order is its best, by the effect's name."""
+    best: dict[str, Score] = {}
+    for score in scores:
+        best.setdefault(score.candidate.name, score)
+    return best
 
 
 def _projector(outcome: Outcome) -> Projector:
