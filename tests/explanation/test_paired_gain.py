@@ -1,9 +1,10 @@
 """The test of a gain on held-out records: what noise gives, what a few events give, what a wrong prediction gives."""
 
 import numpy as np
+import pytest
 import torch
 
-from gear_damping.explanation.statistics.paired import paired_gain
+from gear_damping.explanation.statistics.paired import confirmation, paired_gain, share_taken
 
 SAMPLES, BLOCK, RATE = 1600, 100, 400
 
@@ -49,3 +50,33 @@ def test_a_gain_all_along_is_tested_over_blocks():
     wave = np.cos(0.3 * np.arange(SAMPLES))
     found = [t_of(0.1 * wave, 0.2 * wave, rng) for _ in range(200)]
     assert np.mean(np.array(found) > 3.0) <= 0.01
+
+
+def test_what_a_prediction_adds_is_confirmed_on_what_is_left_without_it():
+    """The sum over blocks of what is added times what is left, by hand; noise alone gives a standard normal."""
+    rng = np.random.default_rng(11)
+    old, added = rng.normal(size=SAMPLES), np.cos(0.3 * np.arange(SAMPLES))
+    by_hand = (added * old).reshape(-1, BLOCK).sum(1)
+    found = confirmation([torch.tensor(old)], [torch.tensor(old - added)], [BLOCK])
+    assert found == pytest.approx(by_hand.sum() / np.sqrt((by_hand**2).sum()), rel=1e-12)
+    nothing = [rng.normal(size=SAMPLES) for _ in range(400)]
+    drawn = np.array([confirmation([torch.tensor(n)], [torch.tensor(n - added)], [BLOCK]) for n in nothing])
+    assert abs(drawn.mean()) < 0.2
+    assert 0.8 < drawn.std() < 1.2
+
+
+def test_the_interval_of_a_share_holds_it_as_often_as_it_says():
+    rng, inside = np.random.default_rng(12), []
+    wave = np.cos(0.3 * np.arange(SAMPLES))
+    truth = (0.5 * wave**2).sum() / ((wave**2).sum() + SAMPLES)  # half of the wave's power is taken
+    for _ in range(400):
+        noise = rng.normal(size=SAMPLES)
+        pair = ([torch.tensor(wave + noise)], [torch.tensor(0.5**0.5 * wave + noise)])
+        found = share_taken(*pair, [BLOCK])
+        inside.append(found.interval95[0] < truth + _cross(wave) < found.interval95[1])
+    assert 0.92 < np.mean(inside) < 0.98
+
+
+def _cross(wave):
+    """Nothing: noise and wave have no product on average."""
+    return 0.0

@@ -15,8 +15,10 @@ from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.evidence.rig_units import rig_unit, unit_of
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.spread import spread_of
+from gear_damping.explanation.statistics.paired import share_taken
 from gear_damping.explanation.steps.judge import CONSISTENT, DATA_PROBLEM, LARGEST_SET, Judged, statuses
 from gear_damping.explanation.trials.assess import Assessment
+from gear_damping.explanation.trials.refit import block_samples
 from gear_damping.explanation.trials.score import Score, best_by_effect
 from gear_damping.measurement.record import Finding, Measurement
 
@@ -243,7 +245,16 @@ def _gain(judged: Judged, evidence: Evidence, noise: NoiseLevel) -> dict[str, An
             "floor": (floor / max(spread, 1e-300)) ** 0.5,
         },
         "damping_ratio_percent": damping if whole else None,
+        "confirmed": _confirmed(judged) if judged.found.accepted else None,
     }
+
+
+def _confirmed(judged: Judged) -> dict[str, Any]:
+    """What the causes together add to the prediction of held-out records, and the share of these that they take."""
+    first, last, bench = judged.found.nominal, judged.found.outcome, judged.found.bench
+    share = share_taken(first.holdout, last.holdout, block_samples(last, bench.evidence))
+    interval = [100 * end for end in share.interval95]
+    return {"t": bench.confirmation(first, last), "percent": 100 * share.value, "interval95": interval}
 
 
 def _candidates(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:

@@ -1,12 +1,15 @@
 """Which of two predictions is nearer: the gain of squared residuals, with its t statistic over blocks."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import torch
+from scipy.stats import t as student
 from torch import Tensor
 
 from gear_damping.identification.output_error.uncertainty import long_run
 
+UPPER = 0.975  # end of a 95 % interval
 FEW_BLOCKS = 9.0  # effective ones: the t of a gain over n blocks is sqrt(n) at most, 3 of nine
 
 
@@ -31,6 +34,48 @@ def paired_gain(before: Sequence[Tensor], after: Sequence[Tensor], blocks: Seque
     if float(size.sum() ** 2) < FEW_BLOCKS * float(size.square().sum()):
         tested.append(_t_of_events(before, after, blocks))
     return float(found.mean()), max(tested, key=abs)
+
+
+def confirmation(before: Sequence[Tensor], after: Sequence[Tensor], blocks: Sequence[int]) -> float:
+    """The t statistic of what a second prediction adds to the first, on what the first leaves, over blocks.
+
+    Of two predictions of which one contains the other the difference of squares is blunt: what the larger one adds is
+    compared with the residual itself (Clark & West 2007, Journal of Econometrics 138).
+    """
+    sums: list[Tensor] = []
+    for old, new, block in zip(before, after, blocks, strict=True):
+        products = (old - new) * old
+        count = max(1, len(products) // block)
+        sums += [part.sum() for part in products[: count * block].chunk(count)]
+    total = torch.stack(sums)
+    return float(total.sum() / total.square().sum().sqrt().clamp(min=1e-300))
+
+
+@dataclass(frozen=True)
+class Share:
+    """A share of squared residuals, with its 95 % interval."""
+
+    value: float
+    interval95: tuple[float, float]
+
+
+def share_taken(before: Sequence[Tensor], after: Sequence[Tensor], blocks: Sequence[int]) -> Share:
+    """Share of the squared residuals of a first prediction that a second one takes.
+
+    A ratio of sums over blocks: its error is that of what it misses in each of them (Cochran 1977, Sampling
+    Techniques, 2.11).
+    """
+    sums = []
+    for old, new, block in zip(before, after, blocks, strict=True):
+        count = max(1, len(old) // block)
+        parts = zip(*(residual.square().chunk(count) for residual in (old, new)), strict=True)
+        sums += [torch.stack([part.sum() for part in both]) for both in parts]
+    left, taken = torch.stack(sums)[:, 0], torch.stack(sums) @ torch.tensor([1.0, -1.0], dtype=torch.float64)
+    total = float(left.sum().clamp(min=1e-300))
+    value, count = float(taken.sum()) / total, len(sums)
+    missed = (taken - value * left).square().sum() * count / max(count - 1, 1)
+    half = float(student.ppf(UPPER, max(count - 1, 1)) * missed.sqrt()) / total
+    return Share(value, (value - half, min(value + half, 1.0)))
 
 
 def _t(values: Tensor) -> float:

@@ -6,14 +6,11 @@ the residual itself here (Clark & West 2007), which needs a tenth of that power.
 
 from dataclasses import replace
 
-import torch
-from torch import Tensor
-
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.state import State
 from gear_damping.explanation.trials.assess import Assessment
 from gear_damping.explanation.trials.bench import Bench
-from gear_damping.explanation.trials.refit import Refit, block_samples
+from gear_damping.explanation.trials.refit import Refit
 from gear_damping.explanation.trials.score import best_by_effect
 
 
@@ -47,17 +44,6 @@ def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
     return state, first, tuple(fit.name for fit in rivals)
 
 
-def confirmation(before: Outcome, after: Outcome, bench: Bench) -> float:
-    """The t statistic of what a cause adds to the prediction of held-out records, on what they leave without it."""
-    sums: list[Tensor] = []
-    for old, new, block in zip(before.holdout, after.holdout, block_samples(before, bench.evidence), strict=True):
-        products = (old - new) * old
-        count = max(1, len(products) // block)
-        sums += [part.sum() for part in products[: count * block].chunk(count)]
-    total = torch.stack(sums)
-    return float(total.sum() / total.square().sum().sqrt().clamp(min=1e-300))
-
-
 def _is_worth(fit: Refit, before: Outcome, seen: Assessment, bench: Bench) -> bool:
     """Whether held-out records confirm a cause that takes its part of what is not random, and lose nothing by it."""
     if fit.gain <= 0:
@@ -65,7 +51,7 @@ def _is_worth(fit: Refit, before: Outcome, seen: Assessment, bench: Bench) -> bo
     taken = 1 - fit.outcome.fitted.cost / max(before.fitted.cost, 1e-300)
     settings = bench.settings
     is_enough = taken >= settings.least_share * seen.taken
-    return is_enough and confirmation(before, fit.outcome, bench) >= settings.confirmed_t
+    return is_enough and bench.confirmation(before, fit.outcome) >= settings.confirmed_t
 
 
 def _is_borne_out(fit: Refit, state: State) -> bool:

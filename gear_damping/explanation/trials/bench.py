@@ -11,7 +11,7 @@ from gear_damping.explanation.model.candidates import candidates_for, restored
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, fit_hypothesis
 from gear_damping.explanation.model.spread import spread_of
 from gear_damping.explanation.settings import SearchSettings
-from gear_damping.explanation.statistics.paired import paired_gain
+from gear_damping.explanation.statistics.paired import confirmation, paired_gain
 from gear_damping.explanation.trials.assess import Assessment, assessed
 from gear_damping.explanation.trials.refit import Refit, block_samples, chosen, compared, refitted
 from gear_damping.explanation.trials.score import Score, contains, scores
@@ -133,6 +133,10 @@ class Bench:
     def paired_gain(self, before: Outcome, after: Outcome) -> tuple[float, float]:
         """Gain of the second over the first on held-out records, with its t."""
         return paired_gain(before.holdout, after.holdout, block_samples(after, self.evidence))
+
+    def confirmation(self, before: Outcome, after: Outcome) -> float:
+        """The t statistic of what the second adds to the prediction of held-out records."""
+        return confirmation(before.holdout, after.holdout, block_samples(after, self.evidence))
 
     def simplest(self, best: Refit, fits: Sequence[Refit]) -> tuple[Refit, tuple[str, ...]]:
         """The explanation with its rivals, the effects whose full fit is not worse by the paired test.
