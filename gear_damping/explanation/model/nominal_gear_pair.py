@@ -1,7 +1,7 @@
 """The nominal model of a gear pair: what the file says of it, and what of that is fitted."""
 
 from collections.abc import Mapping
-from math import ceil, cos, inf, pi, sin, sqrt
+from math import ceil, cos, floor, inf, pi, sin, sqrt
 
 import torch
 
@@ -28,8 +28,9 @@ RENAMED = {
     "backlash_gap": "backlash.gap",
     "damping_ratio": DAMPING,
 }
-SHAPE_BAND = 1.6  # harmonics of the stiffness count up to this many natural frequencies, at the slowest record,
-FEWEST_HARMONICS, MOST_HARMONICS = 6, 20  # within these
+SHAPE_BAND = 1.6  # harmonics of the stiffness count up to this many natural frequencies, at the slowest record, at
+FEWEST_HARMONICS, MOST_OF_BAND = 6, 20  # least; within these
+MOST_HARMONICS = 40  # where sensors show them: an accelerometer weighs the highest as the lowest
 EXPECTED_SHAPE = 0.1  # of the mean stiffness over the harmonic: what real teeth add to the ideal wave
 FIRST_RATIO = 0.01
 INDEX_ERROR = 0.1  # rad of the mesh: how well a file that states an index knows where the mesh begins
@@ -87,8 +88,8 @@ def shaped(rough: Outcome, evidence: Evidence, iterations: int, solver: Solver |
         iterations: At most so many linearisations; with none, the harmonics are free and still zero.
         solver: Settings of the solver.
     """
-    shaped = _with_shape(rough.hypothesis, _shape_harmonics(rough, evidence))
     options = {"iterations": iterations, "solver": solver, "scan": True}
+    shaped = _with_shape(rough.hypothesis, _shape_harmonics(rough, evidence, solver))
     found = fit_hypothesis(shaped, evidence, after=rough, **options)
     samples = sum(len(record.stacked) for record in evidence.fitted)
     if evidence.has_index or not iterations or found.fitted.cost < SHAPED * samples * evidence.noise**2:
@@ -119,10 +120,28 @@ def _contact_ratio(stated: Mapping[str, float]) -> float:
     return min(max(reach / (pi * cos(angle)), 1.1), 1.9)
 
 
-def _shape_harmonics(rough: Outcome, evidence: Evidence) -> int:
-    """Harmonics of the mesh that the natural frequency lets through, at the slowest record."""
-    count = ceil(SHAPE_BAND * harmonics_to_resonance(rough.hypothesis.model, rough.flat_given(), evidence.fit))
-    return min(max(count, FEWEST_HARMONICS), MOST_HARMONICS)
+def _shape_harmonics(rough: Outcome, evidence: Evidence, solver: Solver | None) -> int:
+    """Harmonics of the mesh that the natural frequency lets through, or more where the sensors would show them."""
+    model, given = rough.hypothesis.model, rough.flat_given()
+    resonance = harmonics_to_resonance(model, given, evidence.fit)
+    count = min(max(ceil(SHAPE_BAND * resonance), FEWEST_HARMONICS), MOST_OF_BAND)
+    sampled = resonance * evidence.sampling_rate / 2 / natural_frequency_hz(model, given)
+    most = min(MOST_HARMONICS, floor(sampled))
+    return max(count, _seen_harmonics(rough, most, evidence, solver)) if most > count else count
+
+
+def _seen_harmonics(rough: Outcome, most: int, evidence: Evidence, solver: Solver | None) -> int:
+    """The highest harmonic that the records would show if it had the size that real teeth may give it."""
+    hypothesis = _with_shape(rough.hypothesis, most)
+    probe = fit_hypothesis(hypothesis, evidence, after=rough, iterations=0, solver=solver)
+    moved = probe.fitted.prediction.sensitivity[0].square().sum((0, 1))
+    seen = [
+        int(p.name.partition("[")[2].rstrip("]")) + 1
+        for energy, p in zip(moved.tolist(), probe.problem.free, strict=False)
+        if p.name.startswith(SHAPE)
+        and energy * (p.deviation / p.scale) ** 2 > evidence.settings.seen_in_fit * evidence.noise**2
+    ]
+    return max(seen, default=0)
 
 
 def _with_shape(rough: Hypothesis, harmonics: int) -> Hypothesis:
