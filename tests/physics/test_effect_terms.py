@@ -129,26 +129,28 @@ def test_pitch_error_goes_through_its_values_without_mean_and_first_order(shaft,
     close(found, values - values.mean() - first)
 
 
+@pytest.mark.parametrize("rounding", [0.0, 1.0])
 @pytest.mark.parametrize(("shaft", "teeth", "share"), [("pinion", 20, 0.4), ("pinion", 21, 0.7), ("gear", 40, 1.0)])
-def test_pitch_error_is_that_of_the_tooth_in_mesh_and_hands_over_by_a_cosine(shaft, teeth, share):
+def test_pitch_error_is_that_of_the_tooth_in_mesh_and_hands_over(shaft, teeth, share, rounding):
+    """The next tooth takes over at a rate that is even, or swells and fades like 1 - cos: summed up in small steps."""
     source = np.random.default_rng(2)
     values = 1e-6 * source.standard_normal(teeth)
-    angle = 2 * np.pi * np.arange(teeth) / teeth
-    first = values @ np.cos(angle) * np.cos(angle) + values @ np.sin(angle) * np.sin(angle)
-    values -= values.mean() + 2 / teeth * first
-    fine = 64 * teeth  # angles a turn at which the steps are written down
-    off = (np.arange(fine)[:, None] * teeth / fine - np.arange(teeth) + teeth / 2) % teeth - teeth / 2
-    past = np.clip(((1 + share) / 2 - np.abs(off)) / share, 0, 1)  # 0 before a tooth has taken over, 1 when it has
-    steps = (1 - np.cos(np.pi * past)) / 2 @ values
-    lines = np.fft.rfft(steps)
-    lines[2 * teeth + 1 :] = 0
-    kept, at = np.fft.irfft(lines, fine), 2 * np.pi * np.arange(fine) / fine
+    lines = np.fft.rfft(values)
+    lines[:2] = 0
+    values = np.fft.irfft(lines, teeth)
+    fine = 400  # angles a pitch
+    at = (np.arange(fine) + 0.5) / fine
+    pace = np.where(abs(at - 0.5) < share / 2, 1 - rounding * np.cos(2 * np.pi * (at - 0.5 + share / 2) / share), 0.0)
+    taken = np.cumsum(pace) / pace.sum()
+    expected = values[:, None] + (np.roll(values, -1) - values)[:, None] * taken
     given = {"pitch_error.values": values.tolist(), f"n_teeth_{shaft}": teeth, "pitch_error.handover": share}
-    bench = Bench("pitch_error", {"shaft": shaft}, given, batch=len(at))
+    given |= {"pitch_error.rounding": rounding, "pitch_error.phase": 0.3}
+    bench = Bench("pitch_error", {"shaft": shaft}, given, batch=teeth * fine)
     speed = 4600 * math.pi / 30 * (1.0 if shaft == "pinion" else 0.5)
-    now = bench.evaluated(time=torch.as_tensor((at + 2 * np.pi) / speed))
+    angle = 2 * np.pi * (np.arange(teeth * fine) + 1) / (teeth * fine) + 2 * np.pi - 0.3
+    now = bench.evaluated(time=torch.as_tensor(angle / speed))
     found = bench.equation.imposed_error(now, bench.prepared.terms)[0] * bench.unit("m")
-    close(found, kept, 2e-3)  # of the sampled steps
+    close(found, expected.reshape(-1), 5e-3)  # of sums over small steps
 
 
 def load(bench: Bench) -> torch.Tensor:

@@ -8,13 +8,12 @@ from torch import Tensor
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.physics.cause import SHAFTS, Cause, Recipe, Rig
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.moment import Moment, Rotation
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.shaft_order import harmonics
 from gear_damping.physics.shapes import padded
 from gear_damping.physics.terms import TransmissionErrorSource, Values
 
-MESHES = 2  # orders are kept up to so many mesh orders
 HANDOVERS = (0.05, 1.0)  # of a pitch; two pairs carry for the contact ratio less one
 TYPICAL = (2, -1, 3, -4, 1, 5, -3, 0, 2, -2, 4, -5, 1, 3, -1, -3, 2, 0, -4, 2)  # um
 
@@ -36,28 +35,23 @@ def _by_shaft(rig: Rig) -> tuple[Recipe, ...]:
     )
 
 
-def _window(order: Tensor, share: Tensor) -> Tensor:
-    """Spectrum, by mesh order, of one tooth's part of a turn: a pitch wide, its edges smoothed over a share of it."""
-    smooth = order * share
-    return torch.sinc(order) * (torch.sinc(smooth - 0.5) + torch.sinc(smooth + 0.5)) * (pi / 4)
-
-
 class PitchError(TransmissionErrorSource):
     """One deviation a tooth, repeated every turn.
 
     While a pair of teeth carries alone, its deviation counts; while two carry, the next takes over. That gives
     sidebands of the shaft's order about every mesh order. Through sensors that weigh high frequencies, these are most
-    of what is seen. Orders up to two meshes are kept. The mean is no error of the pitch and the first order is
-    eccentricity: both are removed.
+    of what is seen, and how smoothly a tooth takes over counts as much as its error. The mean is no error of the pitch
+    and the first order is eccentricity: both are removed.
     """
 
     name = "pitch_error"
-    equation = "e(theta) = e_j about theta + phi = 2 pi j / z, from one to the next by a cosine over h of a pitch"
+    equation = "e(theta) = e_j about theta + phi = 2 pi j / z, to the next over h pitches as u + r sin(2 pi u) / 2 pi"
     reference = "Velex & Maatar (1996), J. Sound Vib. 191(5)"
     parameters: ClassVar = (
         Parameter("values", "m", tuple(1e-6 * v for v in TYPICAL), "e_j, one value a tooth", -1e-3, 1e-3, vector=True),
         Parameter("phase", "rad", 0.0, "phi"),
         Parameter("handover", "1", 0.6, "h, share of a pitch over which the next tooth takes over", *HANDOVERS),
+        Parameter("rounding", "1", 1.0, "r, of a ramp without bends; 0 is a straight one", 0, 1),
     )
     options: ClassVar = (
         Option("shaft", SHAFTS, "pinion", "which of the two gears"),
@@ -71,28 +65,48 @@ class PitchError(TransmissionErrorSource):
     )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
-        """Cosine and sine parts by shaft order."""
+        """The error of every tooth and of the next one; or cosine and sine parts by order."""
         teeth, count = values["values"], values["values"].shape[0]
         self._check_count(count, base[f"n_teeth_{self.chosen['shaft']}"])
-        steps = self.chosen["form"] == "handover"
-        order = torch.arange(1, 1 + (MESHES * count if steps else count // 2), dtype=teeth.dtype, device=teeth.device)
-        angle = order.unsqueeze(1) * torch.arange(count, dtype=teeth.dtype, device=teeth.device) * (2 * pi / count)
-        is_none = torch.isin(order % count, order.new_tensor([0, 1, count - 1]))  # the mean, and eccentricity
-        weight = (2 / count * (~is_none).to(teeth)).unsqueeze(1)
-        if steps:
-            weight = weight * _window(order.unsqueeze(1) / count, values["handover"])
-        elif count % 2 == 0:
-            weight[-1] = 1 / count
+        order = torch.arange(count // 2 + 1, dtype=teeth.dtype, device=teeth.device).unsqueeze(1)
+        angle = order * torch.arange(count, dtype=teeth.dtype, device=teeth.device) * (2 * pi / count)
+        weight = ((order > 1).to(order) + (2 * order < count).to(order) * (order > 1)) / count  # see above
         even, odd = (weight * (wave @ teeth) for wave in (torch.cos(angle), torch.sin(angle)))
-        turned = order.unsqueeze(1) * values["phase"]
-        cosine, sine = torch.cos(turned), torch.sin(turned)
-        return padded({"in_phase": even * cosine + odd * sine, "quadrature": odd * cosine - even * sine})
+        if self.chosen["form"] == "interpolated":
+            turned = order * values["phase"]
+            cosine, sine = torch.cos(turned), torch.sin(turned)
+            parts = {"in_phase": even * cosine + odd * sine, "quadrature": odd * cosine - even * sine}
+            return padded({name: part[1:] for name, part in parts.items()})
+        own = torch.cos(angle).T @ even + torch.sin(angle).T @ odd
+        phase = values["phase"]
+        counted = {"teeth": torch.full_like(phase, count), "pitch": torch.full_like(phase, 2 * pi / count)}
+        known = {name: values[name] for name in ("phase", "handover", "rounding")}
+        return padded({"here": own, "following": own.roll(-1, 0)}) | known | counted
 
     def error(self, now: Moment, p: Values) -> tuple[Tensor, Tensor]:
         """The error and its rate."""
-        return harmonics(getattr(now, self.chosen["shaft"]), p["in_phase"], p["quadrature"])
+        turn = getattr(now, self.chosen["shaft"])
+        if self.chosen["form"] == "interpolated":
+            return harmonics(turn, p["in_phase"], p["quadrature"])
+        return _stepped(turn, p)
 
     def _check_count(self, count: int, teeth: Tensor) -> None:
         if not bool((teeth == count).all()):
             rule = f"has {count} values, the {self.chosen['shaft']} has {teeth.max().item():g} teeth"
             raise InputError(Problem("simulator.pitch_error.values", rule, remedy="give one value for each tooth"))
+
+
+def _stepped(turn: Rotation, p: Values) -> tuple[Tensor, Tensor]:
+    """From the error of the tooth in mesh to that of the next, and its rate."""
+    passed = (turn.angle + p["phase"]) / p["pitch"]
+    tooth = torch.floor(passed)
+    share = torch.clamp((passed - tooth - 0.5) / p["handover"] + 0.5, 0.0, 1.0)
+    tooth = tooth - p["teeth"] * torch.floor((tooth + 0.5) / p["teeth"])
+    here = following = torch.zeros_like(passed)
+    for number, (one, next_one) in enumerate(zip(p["here"].unbind(0), p["following"].unbind(0), strict=True)):
+        is_it = tooth == number
+        here, following = torch.where(is_it, one, here), torch.where(is_it, next_one, following)
+    rounded = p["rounding"] / (2 * pi) * torch.sin(2 * pi * (share - 0.5))
+    slope = (1 + p["rounding"] * torch.cos(2 * pi * (share - 0.5))) / (p["handover"] * p["pitch"])
+    slope = torch.where((share > 0.0) & (share < 1.0), slope, torch.zeros_like(slope))
+    return here + (following - here) * (share + rounded), (following - here) * slope * turn.speed
