@@ -37,9 +37,10 @@ check: setup  ## everything `make test` runs and the slow tests
 	$(BIN)/lint-imports
 	$(PYTEST) $(ARGS)
 
-docs: setup  ## write docs/effects.md with its figures and the reference of docs/measurement.md from the declarations
+docs: setup  ## write docs/effects.md with its figures, docs/explanation.md and the reference of docs/measurement.md
 	$(BIN)/python -m gear_damping.reporting.effects_page $(ARGS)
 	$(BIN)/python -m gear_damping.reporting.measurement_page
+	$(BIN)/python -m gear_damping.reporting.explanation_page
 
 # The peers have an environment of their own; the package needs none of them.
 BENCH_VENV := .venv-bench

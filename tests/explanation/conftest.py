@@ -10,6 +10,7 @@ import pytest
 from hidden import draw_case, write_case
 
 from gear_damping.explanation.explain import explain
+from gear_damping.explanation.schema import Explanation
 from gear_damping.measurement.load import load_measurement
 from gear_damping.physics.catalogue import builtin_effects
 
@@ -33,6 +34,7 @@ def _explained(
     library = {name: kind for name, kind in builtin_effects().items() if name != removed}
     with tempfile.TemporaryDirectory() as folder:
         content = explain(load_measurement(write_case(case, Path(folder) / "measured")), library=library).content
+    Explanation.model_validate(content)
     return content | {"truth": case.truth}
 
 

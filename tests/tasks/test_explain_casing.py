@@ -6,6 +6,7 @@ import re
 import pytest
 from casing import draw_case, write_case
 
+from gear_damping.explanation.schema import Explanation
 from gear_damping.tasks.command import main
 
 
@@ -24,6 +25,7 @@ def explained(tmp_path_factory):
 
 def test_findings_stand_under_casing(explained):
     content = json.loads((explained / "explanation.json").read_text())
+    Explanation.model_validate(content)
     assert content["verdict"] == "unexplained"
     assert content["causes"] == []
     assert content["casing"]["families"][0]["flagged"]

@@ -8,6 +8,7 @@ import pytest
 import yaml
 from scipy.integrate import solve_ivp
 
+from gear_damping.explanation.schema import Explanation
 from gear_damping.tasks.command import main
 
 STIFFNESS, DAMPING, CUBIC, NOISE = 900.0, 0.6, -30.0, 2e-4  # 1/s^2, 1/s, 1/(rad^2 s^2), rad
@@ -46,6 +47,7 @@ def explained(tmp_path_factory):
 
 def test_the_hidden_stiffness_is_named_with_its_size(explained):
     content = json.loads((explained / "explanation.json").read_text())
+    Explanation.model_validate(content)
     assert set(content) >= KEYS
     assert content["verdict"] == "explained"
     cause = content["causes"][0]

@@ -15,6 +15,7 @@ from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.evidence.rig_units import rig_unit, unit_of
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.spread import spread_of
+from gear_damping.explanation.schema import KEYS, SCHEMA_VERSION
 from gear_damping.explanation.statistics.paired import share_taken
 from gear_damping.explanation.steps.judge import CONSISTENT, DATA_PROBLEM, LARGEST_SET, Judged, statuses
 from gear_damping.explanation.trials.assess import Assessment
@@ -22,15 +23,7 @@ from gear_damping.explanation.trials.refit import block_samples
 from gear_damping.explanation.trials.score import Score, best_by_effect
 from gear_damping.measurement.record import Finding, Measurement
 
-SCHEMA_VERSION = 1
 WHITE = 1.1  # sum of squared autocorrelations: with less of it noise is called white
-KEYS = (
-    "schema_version", "system", "verdict", "sentences", "causes", "misfit", "visible", "random", "residual",
-    "parameters", "gain", "noise",
-    "candidates", "not_tried", "not_observable", "next_experiment", "unexplained", "records", "calibration", "findings",
-    "casing",
-)  # fmt: skip
-
 RAN_AWAY = "its prediction of the held-out records ran away"
 
 

@@ -1,28 +1,7 @@
 """What the report of an explanation is made of: the content of `explanation.json` and the arrays behind its figures.
 
-`explanation` is a mapping with these keys; one that is absent, None or empty leaves its section out:
-
-    verdict         consistent, explained, ambiguous, partly_explained, unexplained or data_problem (required)
-    sentences       what was found, the most important first; `words` in backticks are names
-    causes          list, strongest first: {name, parameters: {name: {value, unit, interval95}}, excess_explained
-                    (share of the held-out excess), confusable_with: [names], status: established or suggested,
-                    per_record: [{record, value, interval95}], homogeneous: {parameter, p, tolerance, testable}}
-    misfit          {before, after, floor, records: {held-out record: {before, after}}}: mean squared residual over
-                    the noise variance
-    records         {record: {role: fit or holdout, samples, rmse: {before, after, unit}}}
-    residual        {fit: {before, after, unit}, holdout: {before, after, unit}}: RMSE in the channel's unit
-    visible         {p, largest: {before, after}, limit, by_name: {effect or `unnamed: ` family: statistic}}
-    random          {percent, looks_like, snr_db}: the random part of the fitted records
-    gain            {damping_ratio_percent: {before: {value, interval95, reference_velocity}, after: the same}}
-    noise           {channel, value, unit, by_record: {record: value}, method, estimates_agree}
-    candidates      list of {name, share, status}: share of the held-out squared residual that a full fit takes (None:
-                    it had none), status established, confusable, suggested or rejected
-    not_observable  list of {name, parameter, smallest, unit}; smallest None or infinite: not at any size
-    next_experiment {what, separates: [names], predicted_separation}
-    unexplained     {shares: {family: share}, orders: {family: share}, contact_phase: [values], kurtosis, bursts}
-    calibration     {converged, steps: [sentences]}
-    casing          {families, findings, what_changed, records}: of an accelerometer on a casing
-    findings        list of {record, channel, message}: what was found in the data
+`explanation` is a mapping with the keys of `gear_damping.explanation.schema` (docs/explanation.md); one that is absent,
+None or empty leaves its section out. Only `verdict` must be there.
 
 Units are as in `gear_damping.units`; what is not a number (NaN) counts as not known.
 """
