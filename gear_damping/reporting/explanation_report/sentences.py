@@ -31,7 +31,8 @@ def verdict_sentences(explanation: Mapping[str, Any]) -> list[str]:
     if explanation["verdict"] == "explained":
         told.append(rest_sentence(explanation.get("misfit"), explanation.get("visible")))
     told += [ALL_THE_SAME] if explanation["verdict"] == "consistent" and explanation.get("not_observable") else []
-    told += [misfit_sentence(explanation.get("misfit")), damping_sentence(explanation.get("gain"))]
+    gain = explanation.get("gain")
+    told += [misfit_sentence(explanation.get("misfit")), confirmed_sentence(gain), damping_sentence(gain)]
     return [sentence for sentence in told if sentence]
 
 
@@ -102,6 +103,16 @@ def misfit_sentence(misfit: Mapping[str, Any] | None) -> str:
     if _known(misfit.get("after")) and misfit["after"] != misfit["before"]:
         said += f" with the calibrated nominal simulation and {number(misfit['after'], 3)} times with the extended one"
     return f"{said}; noise alone would leave {floor}."
+
+
+def confirmed_sentence(gain: Mapping[str, Any] | None) -> str:
+    """What the causes are worth on held-out records, and how sure that is."""
+    confirmed = (gain or {}).get("confirmed") or {}
+    if not _known(confirmed.get("percent")) or not _known(confirmed.get("t")):
+        return ""
+    low, high = (number(end) for end in confirmed["interval95"])
+    share, t = number(confirmed["percent"]), number(confirmed["t"], 3)
+    return f"There the causes take {share} % ({low} to {high} %) of the squared residuals; t of what they add is {t}."
 
 
 def damping_sentence(gain: Mapping[str, Any] | None) -> str:
