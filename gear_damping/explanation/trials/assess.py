@@ -15,7 +15,8 @@ from gear_damping.explanation.statistics.whitening import Autoregression, autore
 from gear_damping.explanation.trials.score import Score
 from gear_damping.explanation.trials.unnamed import unnamed_columns
 
-COLUMNS_PER_SAMPLE = 0.2  # at most so many columns are taken out before the random part is fitted
+COLUMNS_PER_SAMPLE = 0.2  # at most so many columns are taken out of white noise, whose variance then stays known,
+SHOWN_PER_SAMPLE = 0.05  # and so many before the colour of the noise is fitted, which they take with them
 INDEPENDENT = 1e-6  # of the largest: a direction of an effect beside the nuisance that counts
 ALIKE = 1e-6  # of the largest eigenvalue: below it a direction repeats others
 LONGEST_BLOCK = 2.0  # natural periods
@@ -73,6 +74,10 @@ class Assessment:
 def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, families: bool = True) -> Assessment | None:
     """What the residuals of the fitted records hold; None beside a model that runs away.
 
+    The random part is what is left beside the nuisance, and where something is visible in that, what is left beside
+    all that is. Taking out every effect that could be there would take the colour of the noise with them, and noise
+    alone would then look like something in short records.
+
     Args:
         outcome: The fitted model.
         scores: Of every effect beside it.
@@ -89,23 +94,29 @@ def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, fami
     shapes = unnamed_columns(outcome, evidence) if families else {}
     unnamed = {UNNAMED + name: _padded(columns, project) for name, columns in shapes.items()}
     columns = {score.candidate.name: score.columns for score in reversed(scores) if score.columns.shape[1]}
-    every = [*columns.values(), *(_orthonormal(project(c)) for c in unnamed.values())]
-    beside = project(residual)
-    left, taken = _without(beside, every)
-    random = _random(left[: problem.response.weights.numel(), 0], taken, outcome)
-    white = _Whitener(random, outcome)
-    whitened = Projector(white(sensitivity.flatten(0, 1)).reshape(sensitivity.shape), *expected)
-    seen = whitened(white.padded(residual))[:, 0]
-    effects = [
-        Effect(s.candidate.name, _orthonormal(whitened(white.padded(s.columns))), bool(s.candidate.presence))
-        for s in scores
-        if s.columns.shape[1]
-    ]
-    effects += [Effect(name, _orthonormal(whitened(white.padded(c)))) for name, c in unnamed.items()]
-    found = _tested(seen, effects, whitened, white, random, outcome, evidence.settings.level)
-    if found.visible:
+    shapes = columns | {name: _orthonormal(project(c)) for name, c in unnamed.items()}
+    beside, count = project(residual), problem.response.weights.numel()
+
+    def looked_at(random: Random) -> Assessment:
+        white = _Whitener(random, outcome)
+        whitened = Projector(white(sensitivity.flatten(0, 1)).reshape(sensitivity.shape), *expected)
+        seen = whitened(white.padded(residual))[:, 0]
+        effects = [
+            Effect(s.candidate.name, _orthonormal(whitened(white.padded(s.columns))), bool(s.candidate.presence))
+            for s in scores
+            if s.columns.shape[1]
+        ]
+        effects += [Effect(name, _orthonormal(whitened(white.padded(c)))) for name, c in unnamed.items()]
+        return _tested(seen, effects, whitened, white, random, outcome, evidence.settings.level)
+
+    noise = _random(beside[:count, 0], 0.0, outcome)
+    found = looked_at(noise)
+    if not found.visible:
         return found
-    return replace(found, random=_random(beside[: problem.response.weights.numel(), 0], 0.0, outcome))
+    shown = [shape for name, shape in shapes.items() if found.visible.shows(name)]
+    left, taken = _without(beside, shown, SHOWN_PER_SAMPLE)
+    again = looked_at(_random(left[:count, 0], taken, outcome))
+    return again if again.visible else replace(again, random=noise)
 
 
 def _tested(
@@ -256,9 +267,12 @@ def _orthonormal(columns: Tensor) -> Tensor:
     return basis[:, sizes > INDEPENDENT * sizes[0]]
 
 
-def _without(signal: Tensor, bases: Sequence[Tensor]) -> tuple[Tensor, float]:
-    """`signal` (samples, 1) beside all bases, or beside those that take most where there are too many; and how many."""
-    most = int(COLUMNS_PER_SAMPLE * len(signal))
+def _without(signal: Tensor, bases: Sequence[Tensor], share: float = COLUMNS_PER_SAMPLE) -> tuple[Tensor, float]:
+    """`signal` (samples, 1) beside all bases, or beside those that take most where there are too many; and how many.
+
+    At most a `share` of as many columns as there are samples is taken out.
+    """
+    most = int(share * len(signal))
     gains = sorted(bases, key=lambda b: -float((b.T @ signal).square().sum()) / max(b.shape[1], 1))
     chosen, count = [], 0
     for basis in gains:
