@@ -1,7 +1,7 @@
 """Units cross the door here, once: everything inside is SI, or the solver's natural units.
 
-A unit is a factor to SI and the exponents of (mass, length, time, angle, voltage). Angle and
-voltage are kept apart at the door only, so that an angle cannot be read as a pure number.
+A unit is a factor to SI and the exponents of (mass, length, time, angle, voltage, current). Angle, voltage
+and current are kept apart at the door only, so that an angle cannot be read as a pure number.
 Unknown units are refused: a guess would be worse.
 """
 
@@ -22,6 +22,7 @@ class Dimension:
     time: float = 0
     angle: float = 0
     voltage: float = 0
+    current: float = 0
 
     def __mul__(self, other: "Dimension") -> "Dimension":
         return Dimension(*(a + b for a, b in zip(self.exponents, other.exponents, strict=True)))
@@ -32,7 +33,7 @@ class Dimension:
     @property
     def exponents(self) -> tuple[float, ...]:
         """The exponents in the order of the fields."""
-        return (self.mass, self.length, self.time, self.angle, self.voltage)
+        return (self.mass, self.length, self.time, self.angle, self.voltage, self.current)
 
 
 @dataclass(frozen=True)
@@ -44,13 +45,14 @@ class Unit:
 
 
 _KG, _M, _S = Dimension(mass=1), Dimension(length=1), Dimension(time=1)
-_RAD, _V, _ONE = Dimension(angle=1), Dimension(voltage=1), Dimension()
+_RAD, _V, _A, _ONE = Dimension(angle=1), Dimension(voltage=1), Dimension(current=1), Dimension()
 _N = Dimension(1, 1, -2)
 
 _ATOMS: dict[str, Unit] = {
     "1": Unit(1.0, _ONE), "%": Unit(1e-2, _ONE), "dB": Unit(1.0, _ONE),
     "kg": Unit(1.0, _KG), "gram": Unit(1e-3, _KG), "t": Unit(1e3, _KG),
     "km": Unit(1e3, _M), "m": Unit(1.0, _M),
+    "in": Unit(0.0254, _M), "ft": Unit(0.3048, _M), "lbf": Unit(4.4482216152605, _N), "kgf": Unit(9.80665, _N),
     "cm": Unit(1e-2, _M), "mm": Unit(1e-3, _M), "um": Unit(1e-6, _M), "nm": Unit(1e-9, _M),
     "s": Unit(1.0, _S), "ms": Unit(1e-3, _S), "us": Unit(1e-6, _S), "min": Unit(60.0, _S), "h": Unit(3600.0, _S),
     "Hz": Unit(1.0, _S**-1), "kHz": Unit(1e3, _S**-1), "MHz": Unit(1e6, _S**-1),
@@ -59,7 +61,14 @@ _ATOMS: dict[str, Unit] = {
     "deg": Unit(pi / 180, _RAD), "arcmin": Unit(pi / 10800, _RAD), "arcsec": Unit(pi / 648000, _RAD),
     "rev": Unit(2 * pi, _RAD), "rpm": Unit(2 * pi / 60, _RAD * _S**-1),
     "V": Unit(1.0, _V), "mV": Unit(1e-3, _V), "uV": Unit(1e-6, _V),
+    "A": Unit(1.0, _A), "mA": Unit(1e-3, _A),
     "gn": Unit(9.80665, _M * _S**-2),
+}  # fmt: skip
+
+_POUND = "write 'lbf' for a force, or give a mass in kg"
+_MEANT = {
+    "g": "write 'gram' or 'gn' (9.80665 m/s^2)",
+    "lb": _POUND, "lbs": _POUND, "pound": _POUND, "pounds": _POUND,
 }  # fmt: skip
 
 _SPELLINGS = {"µ": "u", "μ": "u", "·": "*", "²": "^2", "³": "^3", "°": "deg", "**": "^"}
@@ -99,7 +108,7 @@ def _parse_factor(piece: str, text: str, key: str, source: str) -> tuple[Unit, f
     match = _FACTOR.match(piece)
     name = match["atom"] if match else piece
     if not match or name not in _ATOMS:
-        remedy = "write 'gram' or 'gn' (9.80665 m/s^2)" if name == "g" else nearest(name, list(_ATOMS))
+        remedy = _MEANT.get(name.lower()) or nearest(name, list(_ATOMS))
         raise InputError(Problem(key, f"unknown unit '{text}'", remedy=remedy, source=source))
     return _ATOMS[name], float(match["power"] or 1)
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.checks import check_record
 from gear_damping.measurement.cutting import moved
-from gear_damping.measurement.encoders import base_radius, transmission_error
+from gear_damping.measurement.encoders import FROM_ENCODERS, base_radius, transmission_error
 from gear_damping.measurement.fields import Problems
 from gear_damping.measurement.own_units import Conversion, UnitSystem
 from gear_damping.measurement.plan import Plan
@@ -16,6 +16,7 @@ from gear_damping.measurement.raw import RawChannel, RawRecord
 from gear_damping.measurement.record import Channel, Finding, Quantity, Record
 from gear_damping.measurement.shaft_check import tooth_ratio
 from gear_damping.measurement.staircase import is_staircase
+from gear_damping.measurement.timebase import TimeBase
 from gear_damping.measurement.vocabulary import HOLDABLE
 from gear_damping.units import parse_unit
 
@@ -70,7 +71,7 @@ class Assembler:
             values = _unwrapped(values, notes)
         if raw.own_time is None:
             recorded, values = values, record.base.resample(values)
-            findings += _lost(recorded, values, plan.name) if record.plan.resample else []
+            findings += _lost(recorded, values, plan.name, record.base) if record.plan.resample else []
         else:
             values = moved(record.base, raw.own_time, values, plan.key, str(record.table.path))
             rate = raw.own_time.sampling_rate
@@ -105,7 +106,7 @@ class Assembler:
             return
         key = f"{raw.plan.key}.encoders"
         channels["transmission_error"] = self._error(raw.angles, raw, key, findings)
-        notes.append("transmission_error: r_b1 theta_1 - r_b2 theta_2 from the encoders, without its mean")
+        notes.append(FROM_ENCODERS)
 
     def _error(self, angles: dict[str, NDArray], raw: RawRecord, key: str, findings: list[Finding]) -> Channel:
         missing = [name for name in _GEOMETRY if name not in self.plan.parameters]
@@ -156,9 +157,13 @@ class Assembler:
             self.problems.append(Problem(f"{raw.plan.key}.channels", rule, None, remedy, self.source))
 
 
-def _lost(recorded: NDArray[np.float64], kept: NDArray[np.float64], name: str) -> list[Finding]:
-    """What a filter before a lower rate has taken of a channel, where that is much."""
-    share = 1 - float(np.var(kept)) / max(float(np.var(recorded)), 1e-300)
+def _lost(recorded: NDArray[np.float64], kept: NDArray[np.float64], name: str, base: TimeBase) -> list[Finding]:
+    """What a filter before a lower rate has taken of a channel, where that is much; uneven samples by their time."""
+    own = getattr(base, "recorded", None)
+    weights = None if own is None or own.uniform else np.gradient(own.time)
+    mean = np.average(recorded, weights=weights)
+    before = float(np.average((recorded - mean) ** 2, weights=weights))
+    share = 1 - float(np.var(kept)) / max(before, 1e-300)
     if share < LOST:
         return []
     message = (

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.clipping import clipped_at
+from gear_damping.measurement.encoders import FROM_ENCODERS
 from gear_damping.measurement.not_compared import not_compared
 from gear_damping.measurement.record import Channel, Finding, Record
 from gear_damping.measurement.shaft_check import LARGEST_TRANSMISSION_ERROR, check_shafts
@@ -133,10 +134,10 @@ def _magnitude(record: Record) -> Finding | None:
             "check the tooth counts and the counts per revolution that it was made with"
         )
         return Finding("drifting_error", message, channel=channel.name)
-    message = (
-        f"the transmission error reaches {largest:.3g} m, and gear pairs stay below 1 mm; "
-        f"check its unit '{channel.declared_unit}' (mm or um read as m?)"
-    )
+    check = f"check its unit '{channel.declared_unit}' (mm or um read as m?)"
+    if FROM_ENCODERS in record.notes:
+        check = "check the tooth counts and the counts per revolution, and whether counts were lost"
+    message = f"the transmission error reaches {largest:.3g} m, and gear pairs stay below 1 mm; {check}"
     return Finding("implausible_magnitude", message, channel=channel.name, sample=where)
 
 

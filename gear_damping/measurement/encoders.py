@@ -7,6 +7,7 @@ from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.splines import monotone_spline
 
 TURN = 2 * np.pi
+FROM_ENCODERS = "transmission_error: r_b1 theta_1 - r_b2 theta_2 from the encoders, without its mean"  # a note
 
 
 def angle_from_counts(counts: NDArray[np.float64], per_revolution: float, direction: int = 1) -> NDArray[np.float64]:

@@ -122,7 +122,11 @@ class RawReader:
             self.first, self.stop = self.first + rows[0], self.first + rows[1]
         if self.stop - self.first < LEAST_SAMPLES:
             rule = f"{self.stop - self.first} samples; a record needs at least {LEAST_SAMPLES}"
-            raise InputError(Problem(self.plan.key, rule, None, "use a longer slice, window or file", self.source))
+            remedy = "use a longer slice, window or file"
+            if n < LEAST_SAMPLES:
+                rule += f", and {columns[0][1]} = {columns[0][0]!r} holds {n}"
+                remedy = f"name another column: {self.table.path.name} holds {self.table.listing(True)}"
+            raise InputError(Problem(self.plan.key, rule, None, remedy, self.source))
 
     def _seconds(self) -> NDArray[np.float64]:
         """The times of the record's rows as they stand in the file, which may be no times at all."""

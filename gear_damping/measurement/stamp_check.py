@@ -18,7 +18,7 @@ _NEIGHBOURS = 33  # frequencies that give the level about a line
 _SLOPE_ERROR = 0.1  # of the power of s' e; nothing is weighted higher than this error of the slope allows
 _FLOOR, _OVER = 0.1, 4.0  # quantile of the power that is noise; times this, what a line must be above
 _DECIDED = 0.35  # share below which the stamps are wrong
-_ERRORS = 4.0  # standard errors that the share must be below by
+_ERRORS = 4.0  # standard errors that the share must be nearer to none by
 
 
 def stamps_against_values(record: Record) -> Finding | None:
@@ -27,7 +27,7 @@ def stamps_against_values(record: Record) -> Finding | None:
         return None
     for channel in record.channels.values():
         share, error = share_at_stamps(channel.values, record.time)
-        if share + _ERRORS * error < _DECIDED:
+        if abs(share) + _ERRORS * error < _DECIDED:  # a share far below 0 is neither: values that wait for an event
             message = (
                 f"the values of {channel.name} were sampled evenly and the stamps were not ({100 * share:.2g} % of the "
                 f"jitter of the stamps shows in the values, +-{100 * error:.2g} %): a computer wrote them late; "

@@ -3,9 +3,11 @@
 Jitter is explained where every step rounds to one: a step between 0.5 and 1.5 of the usual one is what two stamps
 within a quarter of a step of their places make, and a band-limited signal is determined by samples so placed (Kadec's
 theorem). Beyond, a step could as well be a lost or a doubled sample, and the stamps alone no longer say which. A few
-late stamps (one in a thousand) that the next ones make good again are a busy recorder's and are let pass. What stays
-unexplained is said as a data problem: a lasting shift of whole steps (samples were dropped), any other lasting shift
-(the clock jumps), another rate over an eighth of the record (the clock changes its rate), steps all over the place.
+late stamps (one in a thousand) that the next ones make good again are a busy recorder's and are let pass. Another rate
+over an eighth of the record is a recorder's that slowed down, or one that writes events: samples are taken at their
+stamps, which is said. What stays unexplained is a data problem: a lasting shift of whole steps (samples were dropped),
+any other lasting shift (the clock jumps), steps all over the place. Whether the values were taken at their stamps is
+asked of them too (`stamp_check`).
 """
 
 from dataclasses import dataclass
@@ -66,7 +68,7 @@ def _last_digit(since: NDArray, rounding: float) -> float | None:
 
 
 def irregularity(stamps: NDArray[np.float64]) -> Finding | None:
-    """The data problem that uneven stamps show, or None where they jitter as a recorder's do.
+    """The data problem or the note that uneven stamps call for, or None where they jitter as a recorder's do.
 
     Args:
         stamps: (n,) strictly increasing, in s.
@@ -82,7 +84,7 @@ def irregularity(stamps: NDArray[np.float64]) -> Finding | None:
     few = run < _RUN and lasting.size < _MANY * steps.size
     changes = _change_of_rate(np.delete(steps, lasting) if few else steps)
     if changes is not None:
-        return _unexplained(steps, changes, "the clock changes its rate")
+        return _changing(steps, changes)
     if lasting.size:
         return _unexplained(steps, int(lasting[0]) + 1, "the clock jumps")
     if odd.size > 2 * max(1.0, _LATE_SHARE * steps.size):  # a late stamp has an odd step at either side
@@ -141,6 +143,15 @@ def _dropped(lost: NDArray, gaps: NDArray) -> Finding:
         f"the first before sample {where}; use slices between the gaps"
     )
     return Finding("dropped_samples", message, channel="time", sample=where)
+
+
+def _changing(steps: NDArray, where: int) -> Finding:
+    message = (
+        f"time steps from {steps.min():.4g} to {steps.max():.4g} s about a median of {np.median(steps):.4g} s: the "
+        f"rate changes, first before sample {where}; samples are taken at their stamps; where the clock and not the "
+        "sampling did that, give sampling_rate instead of the time column"
+    )
+    return Finding("uneven_stamps", message, channel="time", sample=where, severity="note")
 
 
 def _unexplained(steps: NDArray, where: int, what: str) -> Finding:

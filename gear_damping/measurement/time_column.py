@@ -13,6 +13,7 @@ from gear_damping.units import to_si
 
 NAMED = re.compile(r"^(t|ts|tt)$|time|zeit|temps|tiempo|stamp|second|millis|micros|elapsed|clock|abscissa", re.I)
 _SUFFIX = re.compile(r"[_ .\-/](s|sec|ms|us|µs|min|h)$", re.I)
+_SLOW = 200  # whole numbers a step: as milliseconds less than 5 Hz, and few vibrate as slowly
 _EPOCHS = ((1e8, 1e10, "s"), (1e11, 1e13, "ms"), (1e14, 1e16, "us"))  # counted from 1970
 _FEWEST = 8  # stamps
 _ADVANCING = 0.9  # share of the steps of a named column that go forward
@@ -120,5 +121,8 @@ def _unit(column: _Column) -> tuple[str, str]:
         if low < first < high:
             return unit, "counted from 1970"
     if np.all(column.inside == np.round(column.inside)):
-        return "ms", "whole numbers; where they are seconds, write s, where they count samples, give sampling_rate"
+        step = float(np.median(np.diff(column.inside)))
+        unit, other = ("us", "ms") if step >= _SLOW else ("ms", "us")
+        why = f"whole numbers in steps of {step:.4g}; write {other} or s where they are those"
+        return unit, f"{why}, and give sampling_rate where they count samples"
     return "s", "the usual one"

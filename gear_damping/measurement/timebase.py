@@ -43,8 +43,8 @@ def stamped_time(stamps: NDArray[np.float64], key: str, source: str, first: int 
 
     Stamps on a grid stay; stamps within a hundredth of a step of one are moved there by a spline; stamps that were
     rounded to few digits are replaced by the grid that they round; stamps that jitter are kept, and their samples
-    are fitted where they were taken (`uniform` is False, with a note). Lost samples, a clock that jumps and one
-    that changes its rate are data problems.
+    are fitted where they were taken (`uniform` is False, with a note), and so are those of a changing rate. Lost
+    samples and a clock that jumps are data problems.
 
     Args:
         stamps: (n,) in s, n >= 2.
@@ -69,9 +69,10 @@ def stamped_time(stamps: NDArray[np.float64], key: str, source: str, first: int 
     if written is not None:
         note = f"time stamps are rounded to {written.digit:.3g} s: taken as an even {written.rate:.6g} Hz"
         return TimeBase(written.start + np.arange(stamps.size) / written.rate, written.rate, notes=(note,))
-    fault = irregularity(stamps)
-    if fault:
-        return TimeBase(stamps, 1 / float(np.median(np.diff(stamps))), uniform=False, findings=(fault,))
+    found = irregularity(stamps)
+    if found:
+        usual = rate if found.severity == "note" else 1 / float(np.median(np.diff(stamps)))
+        return TimeBase(stamps, usual, uniform=False, findings=(found,))
     return TimeBase(stamps, rate, uniform=False, findings=(jitter_note(stamps),))
 
 

@@ -33,7 +33,7 @@ class Parameter:
 
     @property
     def dimension(self) -> Dimension:
-        """Exponents of mass, length, time, angle and voltage."""
+        """Exponents of mass, length, time, angle, voltage and current."""
         return parse_unit(self.unit).dimension
 
     def problem(self, value: float, key: str, source: str = "") -> Problem | None:

@@ -187,3 +187,20 @@ def test_settings_above_a_table_without_a_header_are_left_out(tmp_path):
 def test_a_header_that_is_wider_than_its_table_is_no_such_setting(tmp_path):
     with pytest.raises(InputError, match="2 cells where the first line has 3"):
         _csv(tmp_path, "time,x,remark\n" + "\n".join(f"{k / 10},{k}" for k in range(50)))
+
+
+LABVIEW = (
+    "LabVIEW Measurement{s}\nWriter_Version{s}2\nSeparator{s}x\n***End_of_Header***{s}\n{s}\nChannels{s}2{s}{s}\n"
+    "Samples{s}3{s}3{s}\nY_Unit_Label{s}Volts{s}g{s}\nX0{s}0.0E+0{s}0.0E+0{s}\nDelta_X{s}0.001{s}0.001{s}\n"
+    "***End_of_Header***{s}{s}{s}\nX_Value{s}Voltage{s}Acceleration{s}{last}\n"
+    "0.000{s}-0.17{s}-0.016\n0.001{s}-0.63{s}-0.094\n0.002{s}-0.51{s}-0.066\n"
+)
+
+
+@pytest.mark.parametrize("sign", [",", "\t"])
+@pytest.mark.parametrize("last", ["Comment", ""])
+def test_a_labview_text_file_is_read_below_its_last_header(tmp_path, sign, last):
+    table = _csv(tmp_path, LABVIEW.format(s=sign, last=last))
+    assert [name for name in table.names if name] == ["X_Value", "Voltage", "Acceleration"]
+    assert _column(table, "X_Value") == [0, 0.001, 0.002]
+    assert _column(table, "Acceleration") == [-0.016, -0.094, -0.066]

@@ -13,6 +13,7 @@ STANDARD_GRAVITY = 9.80665
     [
         ("km/h", 1 / 3.6), ("N*m", 1.0), ("g", STANDARD_GRAVITY), ("m/s^2", 1.0), ("rpm", 0.10471975511965977),
         ("kg*mm^2", 1e-6), ("deg/s", 0.017453292519943295), ("µm", 1e-6),
+        ("in", 0.0254), ("ft/s^2", 0.3048), ("lbf", 4.4482216152605), ("kgf", STANDARD_GRAVITY), ("mA", 1e-3),
     ],
 )  # fmt: skip
 def test_a_unit_has_its_factor(text, factor):
@@ -24,6 +25,16 @@ def test_every_listed_unit_is_read_by_itself_and_in_a_quotient(name):
     unit = parse_unit(name)
     assert unit.factor > 0
     assert parse_unit(f"{name}/s").dimension.time == unit.dimension.time - 1
+
+
+def test_a_current_is_no_voltage_and_no_number():
+    kinds = {parse_unit(name).dimension for name in ("A", "V", "1")}
+    assert len(kinds) == 3
+
+
+def test_a_pound_may_be_either():
+    with pytest.raises(InputError, match="lbf"):
+        parse_unit("Pounds")
 
 
 @pytest.mark.parametrize("text", ["furlong", "N**", "g*m"])

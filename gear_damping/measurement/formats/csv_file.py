@@ -6,6 +6,7 @@ import io
 import re
 import warnings
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import cached_property
 from itertools import islice
 from pathlib import Path
@@ -19,6 +20,7 @@ from gear_damping.measurement.formats.table import Table, is_real, refuse_size, 
 _HEAD = 100  # rows among which the header is looked for
 _PREAMBLE, _BELOW = 20, 20  # rows that may be settings; rows of the table below them, at least
 _NAN = ("nan", "NaN", "NAN", "Nan", "-nan", "+nan")
+_END_OF_HEADER = re.compile(r"^\*+ ?end[_ ]of[_ ]header", re.IGNORECASE)
 _COMMENT = re.compile(rb"^[ \t]*#", re.MULTILINE)
 
 
@@ -124,7 +126,10 @@ def _header(text: _Text) -> tuple[Header, int]:
         rows.append(row)
     if not rows:
         raise InputError(Problem("file", "no rows", str(text.path), "export it again"))
+    start = _behind_marks(rows)
+    lines, rows = lines[start:], rows[start:]
     header = _below_preamble(rows, text.width) or find_header(rows, text.width)
+    header = _of_labview(header, start) if start else header
     if header.first == len(rows):
         raise InputError(Problem("file", "a header and no rows of numbers", str(text.path), "export it again"))
     if not header.names:
@@ -133,6 +138,18 @@ def _header(text: _Text) -> tuple[Header, int]:
         names = names if len(names) == width else [""] * width
         header = Header(tuple(names), (), header.first, header.skipped)
     return header, lines[header.first]
+
+
+def _behind_marks(rows: list[list[str]]) -> int:
+    """The row behind the last line that says that a header ends (LabVIEW: `***End_of_Header***`), 0 without one."""
+    ends = [k for k, row in enumerate(rows) if _END_OF_HEADER.match(row[0])]
+    return ends[-1] + 1 if ends and ends[-1] + 1 < len(rows) else 0
+
+
+def _of_labview(header: Header, start: int) -> Header:
+    """The header below `start` lines of settings, without the column of comments, whose cells are not written."""
+    kept = len(header.names) - (header.names[-1:] == ("Comment",))
+    return replace(header, names=header.names[:kept], units=header.units[:kept], skipped=header.skipped + start)
 
 
 def _below_preamble(rows: list[list[str]], width: int) -> Header | None:
