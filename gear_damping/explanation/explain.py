@@ -90,7 +90,8 @@ def explain(
     if is_casing(measurement):
         found, studies = explain_casing(measurement, say)
         return Explanation(content.of_casing(measurement, found), casing=studies)
-    evidence = replace(evidence_of(measurement), settings=settings or SearchSettings())
+    settings = settings or SearchSettings()
+    evidence = replace(evidence_of(measurement), settings=settings, is_over=lambda: budget.spent)
     faults = mesh_order_faults(evidence)
     if faults:
         return Explanation(content.of_faults(measurement, faults))
@@ -152,7 +153,7 @@ def _judged(state: State, notes: Sequence[str], not_tried: tuple[str, ...]) -> J
     fitted = excess(state.nominal.fit_residuals, evidence.fitted, state.noise, settings)
     one, whole = _is_one(state), _taken_of_all(state)
     converged = state.outcome.fitted.converged
-    said = verdict(state, state.first, state.current, converged, one, whole, fitted.percent).saying(*notes)
+    said = verdict(state, state.first, state.current, converged, one, whole, fitted.percent, not_tried).saying(*notes)
     return Judged(state, state.first, state.current, said, not_tried)
 
 

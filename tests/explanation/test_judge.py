@@ -52,6 +52,15 @@ def test_noise_that_is_the_sensor_s_own_hides_nothing():
     assert verdict(search(sensor=900.0), before, before, fitted=1.0).word == UNEXPLAINED
 
 
+@pytest.mark.parametrize(
+    ("untried", "word"), [((), CONSISTENT), (("torque_ripple",), CONSISTENT), (("crack",), UNEXPLAINED)]
+)
+def test_what_is_visible_and_was_not_tried_is_no_consistency(untried, word):
+    found = search()
+    found.seen.visible = SimpleNamespace(shows=lambda name: name == "crack")
+    assert verdict(found, NOTHING, NOTHING, untried=untried).word == word
+
+
 def test_what_is_left_and_not_random_is_said():
     after = excess_of(0.05, 1.1)
     clean = verdict(search(accepted=(cause(),)), MUCH, after)

@@ -79,6 +79,20 @@ def test_it_ends_where_another_method_does_with_fewer_linearisations_than_steps(
     assert int(descent.made[0]) == len(trials) if at_once else int(descent.made[0]) < 0.6 * len(trials)
 
 
+def test_when_time_is_over_a_few_steps_are_all():
+    problem = problem_of()
+    whole, cut = begun(problem), begun(problem)
+    trials, advance = [], cut._advance
+    cut._advance = lambda left: (trials.append(1), advance(left))
+    cut.run(40, is_over=lambda: True)
+    whole.run(40)
+    assert 1 <= len(trials) <= 3
+    assert not bool(cut.converged[0])
+    assert float(cut.cost[0]) > float(whole.cost[0])
+    there = problem.linearise(cut.points.shared, cut.points.states)
+    assert torch.allclose(cut.now.residual, there.residual, rtol=1e-9, atol=1e-12)
+
+
 def test_every_start_goes_down_by_itself():
     problem = problem_of()
     both = begun(problem, 2)

@@ -1,6 +1,6 @@
 """Step 1: what was measured, as the fits see it: records to fit, records held out, what is known of the rig."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import floor, log10, pi
 
@@ -45,6 +45,7 @@ class Evidence:
         mesh_index: Whether the file says that it counts from the zero of the mesh.
         silent_s: Seconds at the ends of records that were left out, because the motion had died away.
         settings: Thresholds of the search.
+        is_over: Whether the time for fits is over.
     """
 
     system: str
@@ -62,6 +63,7 @@ class Evidence:
     mesh_index: bool = False
     silent_s: float = 0.0
     settings: SearchSettings = field(default_factory=SearchSettings)
+    is_over: Callable[[], bool] = lambda: False
 
     @property
     def parameters(self) -> Mapping[str, float]:

@@ -160,7 +160,8 @@ def fit_hypothesis(
     begun, shared = _begin(problem, hypothesis, starts, after, own or {})
     if evidence.segments:  # short already, and begun from what was measured: another model's states lead astray
         begun, horizons = None, horizons and [None] * len(horizons)
-    fitted = fit(problem, shared, horizons, iterations, begun, kept=kept, enough=enough * evidence.noise**2)
+    ends = {"enough": enough * evidence.noise**2, "is_over": evidence.is_over}
+    fitted = fit(problem, shared, horizons, iterations, begun, kept=kept, **ends)
     values = {name: float(value) for name, value in problem.unknowns.parameters(fitted.shared).items()}
     given = placed(hypothesis.given, values)
     free = tuple(_settled(p, values.get(p.name, p.start)) for p in hypothesis.free)

@@ -50,6 +50,7 @@ def verdict(
     is_one: bool | None = None,
     whole: float = 1.0,
     fitted: float = 0.0,
+    untried: Sequence[str] = (),
 ) -> Verdict:
     """What the search amounts to.
 
@@ -61,10 +62,11 @@ def verdict(
         is_one: Whether every cause has one size over all records; None where too few records tell of one.
         whole: Share that causes take of everything beyond the sensor's noise, what looks random included.
         fitted: What the nominal model leaves of the fitted records beyond the noise, in % of their variance.
+        untried: What there was no time for.
     """
     unsettled = () if converged else ("The calibration did not converge: take the figures with care.",)
     if not found.accepted:
-        return _without_name(found, before, fitted, unsettled)
+        return _without_name(found, before, fitted, unsettled, untried)
     settings, missing = found.bench.settings, _missing(before)
     taken, said = _taken(found, before, after), _named(found.accepted)
     confused = [cause for cause in found.accepted if cause.confusable]
@@ -89,7 +91,9 @@ def verdict(
     return Verdict(EXPLAINED, (f"{missing}: {said}.", *beside, *same, *_small_rest(found, after)))
 
 
-def _without_name(found: State, before: Excess, fitted: float, unsettled: tuple[str, ...]) -> Verdict:
+def _without_name(
+    found: State, before: Excess, fitted: float, unsettled: tuple[str, ...], untried: Sequence[str]
+) -> Verdict:
     """Nothing is missing, or no name was found for it."""
     settings, visible = found.bench.settings, is_visible(found.seen)
     is_more = before.misfit > settings.small_misfit
@@ -103,6 +107,9 @@ def _without_name(found: State, before: Excess, fitted: float, unsettled: tuple[
             "Something is visible that is not random, and no effect of the catalogue is borne out; these records would "
             f"not show one of less than {before.threshold:.2g} % of the signal's variance."
         )
+        return Verdict(UNEXPLAINED, (text, *unsettled))
+    if visible and found.seen is not None and any(found.seen.visible.shows(name) for name in untried):
+        text = "Something is visible that is not random, and there was no time to try what it could be."
         return Verdict(UNEXPLAINED, (text, *unsettled))
     text = f"No evidence of an effect that takes more than {before.threshold:.2g} % of the signal's variance."
     return Verdict(CONSISTENT, (text,))

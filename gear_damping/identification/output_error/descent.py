@@ -6,6 +6,7 @@ step fails, and before a start counts as converged, they are worked out anew. (B
 the columns' norms.) Small problems are linearised at every trial.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import torch
@@ -22,6 +23,7 @@ FORETOLD = 0.5  # of the fall that the linear model promises: with less of it, i
 CARRIED = 4  # steps over which sensitivities are carried along at most
 AT_ONCE = 2e5  # values of the sensitivities: a linearisation of fewer costs hardly more than a trial
 TRIALS = 3  # for each linearisation that a round may take
+LEAST_TRIALS = 3  # whatever the time: a model without one of its causes is nearly at rest by then
 
 
 @dataclass
@@ -63,11 +65,11 @@ class Descent:
         self.converged = self.calm > 0
         self.at_once = self.now.sensitivity[0].numel() < AT_ONCE
 
-    def run(self, iterations: int) -> None:
-        """Go down until every start has converged or has been linearised so many times."""
-        for _ in range(TRIALS * iterations):
+    def run(self, iterations: int, is_over: Callable[[], bool] = lambda: False) -> None:
+        """Go down until every start has converged or has been linearised so many times, or time is over."""
+        for number in range(TRIALS * iterations):
             left = (~self.converged & (self.made < iterations)).nonzero()[:, 0]
-            if not len(left):
+            if not len(left) or (number >= LEAST_TRIALS and is_over()):
                 break
             self._advance(left)
         self._linearise(((self.carried > 0) & ~self.converged).nonzero()[:, 0])

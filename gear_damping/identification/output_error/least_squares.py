@@ -29,6 +29,7 @@ def fit(
     report: Callable[[int, int], None] | None = None,
     kept: float = 0.5,
     enough: float = 0.0,
+    is_over: Callable[[], bool] = lambda: False,
 ) -> Fitted:
     """The best of several starts.
 
@@ -41,6 +42,7 @@ def fit(
         report: Told (done, total) rounds.
         kept: Share of the starts, the best ones, that goes on from round to round.
         enough: Fall of the cost below which a start has converged, whatever share of the cost it is.
+        is_over: Whether time is over: after a few steps of each round nothing more is tried then.
     """
     if states is None:
         states = problem.first_states().expand(shared.shape[0], -1, -1).clone()
@@ -49,7 +51,7 @@ def fit(
     most = [iterations] * len(rounds) if isinstance(iterations, int) else iterations
     for number, horizon in enumerate(rounds):
         descent = Descent(problem, points, horizon, enough)
-        descent.run(most[number])
+        descent.run(most[number], is_over)
         if number < len(rounds) - 1:
             points = descent.points.pick(descent.cost.argsort()[: max(1, round(kept * len(descent.cost)))])
         if report:
