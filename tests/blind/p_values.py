@@ -1,4 +1,4 @@
-"""`make p_values`: is the family-wise p value one? Noise alone is put in the place of the residuals of a null.
+"""`make p-values`: is the family-wise p value one? Noise alone is put in the place of the residuals of a null.
 
 A null of every rig is calibrated as in any diagnosis. Then the residuals of its fitted records are drawn again and
 again, and the test of everything at once (whitening, scores of every effect, families without a name, sign flips)
@@ -122,7 +122,7 @@ def page(by_kind: dict[str, list[float]], seeds: dict[str, list[int]]) -> str:
     text = __doc__.split("\n", 2)[2].strip()
     return (
         f"# Is p a p value?\n\n{text}\n\nShare of draws below a level, with its 95 % interval; written by "
-        f"`make p_values`.\n\n| noise | draws | rigs | {head} |\n|{'---|' * (3 + len(LEVELS))}\n" + "\n".join(rows)
+        f"`make p-values`.\n\n| noise | draws | rigs | {head} |\n|{'---|' * (3 + len(LEVELS))}\n" + "\n".join(rows)
         + f"\n\n![Share of draws below p, over p]({FIGURE})\n"
     )  # fmt: skip
 
@@ -138,7 +138,7 @@ def main(given: list[str] | None = None) -> int:
     """Draw what has not been drawn yet, then write what there is."""
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     sys.path.insert(0, str(ROOT / "tests" / "oracles"))
-    parser = argparse.ArgumentParser(prog="make p_values ARGS=...", description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(prog="make p-values ARGS=...", description=__doc__.splitlines()[0])
     parser.add_argument("--draws", type=int, default=250, help="of each kind of noise on each null")
     parser.add_argument("--nulls", type=int, default=4)
     parser.add_argument("--seed", type=int, default=32000, help="of the first null")
