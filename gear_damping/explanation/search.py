@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from gear_damping.explanation.evidence.excess import is_settled
+from gear_damping.explanation.evidence.excess import is_form, is_settled
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.state import State
 from gear_damping.explanation.steps.faint import faint_cause
@@ -60,6 +60,8 @@ def _with_more(state: State) -> tuple[State, bool]:
     if state.accepted and bench.budget.refuses("further causes"):
         return state, False
     if state.left is not None and not state.left.visible and current.misfit <= bench.settings.small_misfit:
+        return state, False
+    if state.accepted and state.first.significant and is_form(current, state.first, bench.settings):
         return state, False
     if is_settled(current, state.first, bench.settings):
         state, best, rivals = faint_cause(state)

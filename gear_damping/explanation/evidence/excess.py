@@ -36,8 +36,12 @@ class Excess:
 
 def is_settled(left: Excess, first: Excess, settings: SearchSettings) -> bool:
     """Whether nothing is left of a first excess that is worth another cause."""
-    is_small = left.percent <= settings.settled_share * first.percent and left.misfit <= settings.settled_misfit
-    return is_small or not left.significant
+    return is_form(left, first, settings) or not left.significant
+
+
+def is_form(left: Excess, first: Excess, settings: SearchSettings) -> bool:
+    """Whether what is left of a first excess is no more than the form of an effect that is right may leave."""
+    return left.percent <= settings.settled_share * first.percent and left.misfit <= settings.settled_misfit
 
 
 def is_all(left: Excess, first: Excess, settings: SearchSettings) -> bool:
