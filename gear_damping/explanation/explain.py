@@ -153,7 +153,9 @@ def _judged(state: State, notes: Sequence[str], not_tried: tuple[str, ...]) -> J
     fitted = excess(state.nominal.fit_residuals, evidence.fitted, state.noise, settings)
     one, whole = _is_one(state), _taken_of_all(state)
     converged = state.outcome.fitted.converged
-    said = verdict(state, state.first, state.current, converged, one, whole, fitted.percent, not_tried).saying(*notes)
+    of_fit = 1 - state.outcome.fitted.cost / max(state.nominal.fitted.cost, 1e-300)
+    known = {"is_one": one, "whole": whole, "fitted": fitted.percent, "untried": not_tried, "of_fit": of_fit}
+    said = verdict(state, state.first, state.current, converged, **known).saying(*notes)
     return Judged(state, state.first, state.current, said, not_tried)
 
 

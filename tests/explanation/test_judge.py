@@ -83,6 +83,21 @@ def test_one_cause_with_one_size_may_leave_a_rest(is_one, word):
     assert verdict(search(accepted=(cause(),), left=True), MUCH, left, is_one=is_one).word == word
 
 
+@pytest.mark.parametrize(
+    ("is_one", "of_fit", "word"), [(None, 0.97, PARTLY), (None, 0.6, UNEXPLAINED), (False, 0.97, UNEXPLAINED)]
+)
+def test_one_cause_that_takes_nearly_all_of_one_record_is_part_of_the_answer(is_one, of_fit, word):
+    found, after = search(accepted=(cause(),), left=True), excess_of(3.5, 20.0)
+    assert verdict(found, MUCH, after, is_one=is_one, of_fit=of_fit).word == word
+
+
+@pytest.mark.parametrize(("misfit", "whole", "word"), [(0.1, 0.2, UNEXPLAINED), (0.1, 0.9, PARTLY), (1.0, 0.2, PARTLY)])
+def test_a_small_part_of_what_only_looks_random_is_no_cause(misfit, whole, word):
+    """A jump in a decay is no noise: held out there is less of it. A random load is one, and hides no cause."""
+    before = excess_of(-20.0, misfit, threshold=15.0)
+    assert verdict(search(accepted=(cause(),)), before, before, whole=whole).word == word
+
+
 @pytest.mark.parametrize(("first", "share"), [(8.0, 0.75), (-1.0, 0.4)])
 def test_a_share_is_one_of_residuals_where_nothing_was_left_beyond_noise(first, share):
     outcomes = [SimpleNamespace(percent=p, holdout_cost=c) for p, c in ((first, 10.0), (first - 6.0, 6.0))]

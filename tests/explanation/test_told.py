@@ -63,6 +63,26 @@ def test_what_is_tried_as_a_whole_needs_a_size_where_the_size_does_something(mov
     )
     spread = torch.full((1, 1), (half / 1.96) ** 2, dtype=torch.float64)
     monkeypatch.setattr("gear_damping.explanation.steps.told.spread_of", lambda *_: spread)
-    candidate = SimpleNamespace(presence=True, strengths=[0], hypothesis=SimpleNamespace(common=[parameter]))
+    common = SimpleNamespace(common=[parameter])
+    candidate = SimpleNamespace(presence=True, strengths=[0], hypothesis=common, replaced=())
     refit = SimpleNamespace(score=SimpleNamespace(candidate=candidate), name="second_mode")
+    assert is_told(outcome, refit, SimpleNamespace(noise=NOISE)) is expected
+
+
+@pytest.mark.parametrize(("moved", "half", "expected"), [(1e3, 0.2, True), (1e3, 4.0, False), (0.0, 0.2, False)])
+def test_what_took_the_place_of_a_spring_needs_a_shape_of_its_own(moved, half, expected, monkeypatch):
+    """A pendulum whose length is known; one of any length; one whose length does nothing: a spring again."""
+    free = [FreeParameter(f"sine_restoring.{name}", 1.0, logarithmic=True) for name in ("stiffness", "length")]
+    sensitivity = torch.full((1, 1, 4, 4), 1e3 * NOISE, dtype=torch.float64)
+    sensitivity[..., 1] = moved * NOISE / 2
+    outcome = SimpleNamespace(
+        problem=SimpleNamespace(free=free),
+        fitted=SimpleNamespace(shared=torch.zeros(2), prediction=SimpleNamespace(sensitivity=sensitivity)),
+    )
+    spread = torch.diag(torch.tensor([1e-4, (half / 1.96) ** 2], dtype=torch.float64))
+    monkeypatch.setattr("gear_damping.explanation.steps.told.spread_of", lambda *_: spread)
+    candidate = SimpleNamespace(
+        presence=True, strengths=[0], hypothesis=SimpleNamespace(common=free), replaced=("stiffness",)
+    )
+    refit = SimpleNamespace(score=SimpleNamespace(candidate=candidate), name="sine_restoring")
     assert is_told(outcome, refit, SimpleNamespace(noise=NOISE)) is expected

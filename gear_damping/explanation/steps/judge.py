@@ -51,6 +51,7 @@ def verdict(
     whole: float = 1.0,
     fitted: float = 0.0,
     untried: Sequence[str] = (),
+    of_fit: float = 0.0,
 ) -> Verdict:
     """What the search amounts to.
 
@@ -63,6 +64,7 @@ def verdict(
         whole: Share that causes take of everything beyond the sensor's noise, what looks random included.
         fitted: What the nominal model leaves of the fitted records beyond the noise, in % of their variance.
         untried: What there was no time for.
+        of_fit: Share that causes take of the squared residuals of the fitted records.
     """
     unsettled = () if converged else ("The calibration did not converge: take the figures with care.",)
     if not found.accepted:
@@ -74,11 +76,16 @@ def verdict(
     rest = is_all(after, before, settings) or (not is_visible(found.left) and after.misfit <= settings.small_misfit)
     beside = (taken.sentence, *_not_told_apart(confused), *unsettled)
     if not rest:
-        is_alone = len(found.accepted) == 1 and (after.misfit <= settings.small_misfit or bool(is_one))
+        nobody_knows = is_one is None and of_fit >= settings.taken_by_all  # one size: but nearly all of one record
+        is_small = after.misfit <= settings.small_misfit
+        is_alone = len(found.accepted) == 1 and (is_small or bool(is_one) or nobody_knows)
         if taken.share >= (settings.taken_by_one if is_alone else settings.taken_by_all):
             text = f"{missing}. Part of it has a name: {said}. A rest of {after.percent:.3g} % has none."
             return Verdict(PARTLY, (text, *beside))
         text = f"{missing}. {said[0].upper()}{said[1:]} would take part of it, but too much is left to name a cause."
+        return Verdict(UNEXPLAINED, (text, *unsettled))
+    if whole < settings.taken_by_one and before.misfit < settings.random_misfit:  # no steady noise, and most of it
+        text = f"{missing}. {said[0].upper()}{said[1:]} would take part of it; most of it looks random, and is not."
         return Verdict(UNEXPLAINED, (text, *unsettled))
     if whole < settings.taken_by_one or before.misfit < settings.random_misfit:  # most of the gap is still there
         text = f"{missing}. Part of it has a name: {said}. What is left looks random, and is more than that."

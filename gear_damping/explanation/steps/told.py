@@ -54,7 +54,9 @@ def is_told(outcome: Outcome, refit: Refit, evidence: Evidence) -> bool:
     if not places:
         return True
     if candidate.presence:
-        return _are_sized(outcome, places, evidence)
+        shape = [i for i, p in enumerate(problem.free) if p.name.startswith(f"{refit.name}.") and i not in places]
+        has_shape = not (candidate.replaced and shape) or any(_is_sized(outcome, i, evidence) for i in shape)
+        return has_shape and _are_sized(outcome, places, evidence)
     away = [float(problem.free[i].value(shared[i])) - neutral[problem.free[i].name] for i in places]
     free = [problem.free[i] for i in places]
     size = torch.tensor([1.0 if p.logarithmic else a / p.scale for p, a in zip(free, away, strict=True)])
@@ -72,6 +74,16 @@ def is_told(outcome: Outcome, refit: Refit, evidence: Evidence) -> bool:
     alone = [_without(columns[:, [k]], columns[:, [o for o in each if o != k]])[:, 0] * size[k] for k in each]
     limit = float(chi2.ppf(1 - evidence.settings.told_alone_level, 1))
     return max(_statistic(outcome, column, lags) for column in alone) > limit
+
+
+def _is_sized(outcome: Outcome, place: int, evidence: Evidence) -> bool:
+    """Whether a size does something and is known within a factor.
+
+    What took the place of a linear spring is that spring again where its own shape (a length) does nothing.
+    """
+    spread, moved = spread_of(outcome, evidence), outcome.fitted.prediction.sensitivity[..., place].norm()
+    half = QUANTILE * float(spread[place, place].clamp(min=0).sqrt())
+    return float(moved) >= SILENT * evidence.noise and half <= WITHIN
 
 
 def _are_sized(outcome: Outcome, places: list[int], evidence: Evidence) -> bool:
