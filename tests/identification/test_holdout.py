@@ -6,7 +6,8 @@ from dataclasses import replace
 import pytest
 import torch
 
-from gear_damping.identification.output_error.holdout import predict_holdout
+from gear_damping.identification.output_error.holdout import _begun_anew, predict_holdout
+from gear_damping.identification.output_error.least_squares import fit
 from gear_damping.identification.output_error.problem import OutputErrorProblem
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.physics.catalogue import effect_class
@@ -63,3 +64,21 @@ def test_a_record_that_runs_away_from_its_first_guess_begins_nearer_to_rest():
     assert bool(problem.residuals(shared[None], safe[None]).isfinite().all())
     torch.testing.assert_close(safe[0], guess[0] / 2)
     torch.testing.assert_close(safe[1], guess[1])
+
+
+def test_a_record_that_seems_to_have_begun_wrong_is_begun_from_rest():
+    """A strongly damped record whose start is far off forgets it; the other one began right and stays as it is."""
+    ratio, time = 0.1, torch.arange(800, dtype=torch.float64) / RATE
+    decay = torch.exp(-ratio * OMEGA * time) * torch.cos(OMEGA * math.sqrt(1 - ratio**2) * time)
+    noise = NOISE * torch.randn(2, 800, generator=torch.Generator().manual_seed(5), dtype=torch.float64)
+    records = [FitRecord(name, 0.05 * decay + one, RATE) for name, one in zip("ab", noise, strict=True)]
+    given = {"stiffness": OMEGA**2, DAMPING: 2 * ratio * OMEGA}
+    problem = OutputErrorProblem(MODEL, given, (), records)
+    shared, states = torch.zeros(1, problem.n_shared, dtype=torch.float64), problem.first_states()
+    right = fit(problem, shared, None, 20, states.unsqueeze(0))
+    off = right.states.clone()
+    off[1] += 40.0 * (off[1].abs() + 1)
+    wrong = fit(problem, shared, None, 0, off.unsqueeze(0))
+    assert wrong.cost > 100 * right.cost
+    assert _begun_anew(problem, wrong, 20).cost == pytest.approx(right.cost, rel=1e-6)
+    assert _begun_anew(problem, right, 20) is right

@@ -7,7 +7,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.identification.output_error.angles import angle_bases, scanned
-from gear_damping.identification.output_error.least_squares import fit
+from gear_damping.identification.output_error.least_squares import Fitted, fit
 from gear_damping.identification.output_error.normal_equations import own_basis, without_own
 from gear_damping.identification.output_error.problem import OutputErrorProblem, Prediction, growth
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
@@ -17,6 +17,7 @@ from gear_damping.simulation.solver_settings import Solver
 
 FIRST_PERIODS = 1.25  # characteristic times at the start of a record that its initial state is first sought in
 FIRST_ITERATIONS, LAST_ITERATIONS = 20, 20
+FIRST_PART, MOST_OF_IT = 0.25, 0.75  # of a record; share of what is left in it that a wrong start would leave there
 
 
 @dataclass(frozen=True)
@@ -74,7 +75,7 @@ def predict_holdout(
     # so short a stretch tells nothing of an angle, which would leave the valley that it was begun in
     horizons = [None] if angle_bases(problem) else [FIRST_PERIODS * characteristic_s, None]
     iterations = (FIRST_ITERATIONS, LAST_ITERATIONS)[-len(horizons) :]
-    found = fit(problem, starts, horizons, iterations, states.unsqueeze(0))
+    found = _begun_anew(problem, fit(problem, starts, horizons, iterations, states.unsqueeze(0)), iterations[-1])
     prediction, weights = found.prediction, problem.response.weights.clamp(min=1e-300)
     left = prediction.residual[0] / weights
     beside = _beside_own(prediction, problem.n_shared) / weights
@@ -83,6 +84,24 @@ def predict_holdout(
     whole = [joined(series * counted, kept, segments, channels) for series in (problem.response.values - left, beside)]
     values = {name: float(value) for name, value in problem.unknowns.parameters(found.shared).items()}
     return HeldOut(*whole, growth(prediction, problem.n_shared), values)
+
+
+def _begun_anew(problem: OutputErrorProblem, found: Fitted, iterations: int) -> Fitted:
+    """The fit with records that seem to have begun wrong begun from rest, or half way to it, where that is better.
+
+    What is left of such a record lies at its beginning. A displacement that was integrated twice from an acceleration
+    may be so far off that no small step leads back.
+    """
+    residual = found.prediction.residual[0].unflatten(-1, (len(problem.response.channels), -1)).square().sum(1)
+    lengths = torch.tensor([len(record.response) for record in problem.records])
+    is_first = torch.arange(residual.shape[1]) < (FIRST_PART * lengths).unsqueeze(1)
+    wrong = (residual * is_first).sum(1) > MOST_OF_IT * residual.sum(1)
+    rest, best = problem.states_at_rest(), found
+    for share in (1.0, 0.5) if bool(wrong.any()) else ():
+        states = torch.where(wrong.unsqueeze(1), found.states + share * (rest - found.states), found.states)
+        again = fit(problem, found.shared.unsqueeze(0), None, iterations, states.unsqueeze(0))
+        best = again if again.cost < best.cost else best
+    return best
 
 
 def _beside_own(found: Prediction, n_shared: int) -> Tensor:

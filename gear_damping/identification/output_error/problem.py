@@ -132,12 +132,17 @@ class OutputErrorProblem:
         Args:
             shared: Coordinates of everything else, (n_shared,).
         """
-        guess, rest = self.first_states(), torch.zeros_like(self.scales)
-        rest[:, 0] = self.static / self.scales[:, 0]
+        guess, rest = self.first_states(), self.states_at_rest()
         tried = torch.stack([guess, (guess + rest) / 2, rest])
         stays = self.residuals(shared.expand(len(tried), -1), tried).isfinite().all(-1)
         first = stays.long().argmax(0)  # 0, the guess itself, where none stays
         return tried[first, torch.arange(len(guess))]
+
+    def states_at_rest(self) -> Tensor:
+        """The initial states of records that begin where their load holds them, (records, local)."""
+        rest = torch.zeros_like(self.scales)
+        rest[:, 0] = self.static / self.scales[:, 0]
+        return rest
 
     def _first_motion(self, record: FitRecord, place: int) -> tuple[Tensor, Tensor]:
         name = _offset_of(record, record.observed.name)
