@@ -63,7 +63,7 @@ class Assessment:
     Args:
         visible: The test of what is not random.
         random: What is; where nothing is visible, all that is left beside the nuisance.
-        taken: Share of the whitened residual's energy that effects and families take together, beyond chance.
+        taken: Share of the residual's energy, whitened or as it is, that effects and families take beyond chance.
     """
 
     visible: Visible
@@ -74,9 +74,9 @@ class Assessment:
 def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, families: bool = True) -> Assessment | None:
     """What the residuals of the fitted records hold; None beside a model that runs away.
 
-    The random part is what is left beside the nuisance, and where something is visible in that, what is left beside
-    all that is. Taking out every effect that could be there would take the colour of the noise with them, and noise
-    alone would then look like something in short records.
+    The random part is what is left beside the nuisance and beside what would take a large part of it, and where
+    something is visible in that, what is left beside all that is. Taking out every effect that could be there would
+    take the colour of the noise with them, and noise alone would then look like something in short records.
 
     Args:
         outcome: The fitted model.
@@ -109,14 +109,20 @@ def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, fami
         effects += [Effect(name, _orthonormal(whitened(white.padded(c)))) for name, c in unnamed.items()]
         return _tested(seen, effects, whitened, white, random, outcome, evidence.settings.level)
 
-    noise = _random(beside[:count, 0], 0.0, outcome)
-    found = looked_at(noise)
+    def random_beside(shown: Sequence[str]) -> tuple[Random, Tensor, float]:
+        left, taken = _without(beside, [shapes[name] for name in shown], SHOWN_PER_SAMPLE)
+        return _random(left[:count, 0], taken, outcome), left, taken
+
+    large = [s.candidate.name for s in scores if s.gain > evidence.settings.random_share and s.columns.shape[1]]
+    found = looked_at(random_beside(dict.fromkeys(large))[0])
     if not found.visible:
-        return found
-    shown = [shape for name, shape in shapes.items() if found.visible.shows(name)]
-    left, taken = _without(beside, shown, SHOWN_PER_SAMPLE)
-    again = looked_at(_random(left[:count, 0], taken, outcome))
-    return again if again.visible else replace(again, random=noise)
+        return replace(found, random=random_beside(())[0])
+    random, left, taken = random_beside([name for name in shapes if found.visible.shows(name)])
+    again = looked_at(random)
+    if not again.visible:
+        return replace(again, random=random_beside(())[0])
+    share = 1 - float(left.square().sum()) / max(float(beside.square().sum()), 1e-300) - taken / count
+    return replace(again, taken=max(again.taken, share))  # a colour that is fitted to an effect hides its part
 
 
 def _tested(
