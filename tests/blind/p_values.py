@@ -1,6 +1,6 @@
 """`make p-values`: is the family-wise p value one? Noise alone is put in the place of the residuals of a null.
 
-A null of every rig is calibrated as in any diagnosis. Then the residuals of its fitted records are drawn again and
+A null of the usual rig is calibrated as in any diagnosis. Then the residuals of its fitted records are drawn again and
 again, and the test of everything at once (whitening, scores of every effect, families without a name, sign flips)
 runs on each draw as it would on measured ones. Under noise alone p is below any level as often as that level says.
 """
@@ -122,7 +122,7 @@ def page(by_kind: dict[str, list[float]], seeds: dict[str, list[int]]) -> str:
     text = __doc__.split("\n", 2)[2].strip()
     return (
         f"# Is p a p value?\n\n{text}\n\nShare of draws below a level, with its 95 % interval; written by "
-        f"`make p-values`.\n\n| noise | draws | rigs | {head} |\n|{'---|' * (3 + len(LEVELS))}\n" + "\n".join(rows)
+        f"`make p-values`.\n\n| noise | draws | nulls | {head} |\n|{'---|' * (3 + len(LEVELS))}\n" + "\n".join(rows)
         + f"\n\n![Share of draws below p, over p]({FIGURE})\n"
     )  # fmt: skip
 
