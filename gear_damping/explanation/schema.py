@@ -3,12 +3,13 @@
 What writes the file follows it, tests hold every answer against it, and docs/explanation.md is written from it.
 """
 
-from typing import Literal
+from typing import Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Field
 
 SCHEMA_VERSION = 1
 Word = Literal["consistent", "explained", "ambiguous", "partly_explained", "unexplained", "data_problem"]
+VERDICTS: tuple[str, ...] = get_args(Word)
 Interval95 = tuple[float, float]
 
 

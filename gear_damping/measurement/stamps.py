@@ -147,16 +147,16 @@ def _dropped(lost: NDArray, gaps: NDArray) -> Finding:
 
 def _changing(steps: NDArray, where: int) -> Finding:
     message = (
-        f"time steps from {steps.min():.4g} to {steps.max():.4g} s about a median of {np.median(steps):.4g} s: the "
-        f"rate changes, first before sample {where}; samples are taken at their stamps; where the clock and not the "
-        "sampling did that, give sampling_rate instead of the time column"
+        f"{_range_of(steps)}: the rate changes, first before sample {where}; samples are taken at their stamps; where "
+        "the clock and not the sampling did that, give sampling_rate instead of the time column"
     )
     return Finding("uneven_stamps", message, channel="time", sample=where, severity="note")
 
 
 def _unexplained(steps: NDArray, where: int, what: str) -> Finding:
-    message = (
-        f"time steps from {steps.min():.4g} to {steps.max():.4g} s about a median of {np.median(steps):.4g} s: "
-        f"{what}, first before sample {where}; use slices of one rate, {REMEDY}"
-    )
+    message = f"{_range_of(steps)}: {what}, first before sample {where}; use slices of one rate, {REMEDY}"
     return Finding("uneven_stamps", message, channel="time", sample=where)
+
+
+def _range_of(steps: NDArray) -> str:
+    return f"time steps from {steps.min():.4g} to {steps.max():.4g} s about a median of {np.median(steps):.4g} s"

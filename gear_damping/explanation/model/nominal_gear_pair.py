@@ -136,7 +136,7 @@ def _seen_harmonics(rough: Outcome, most: int, evidence: Evidence, solver: Solve
     probe = fit_hypothesis(hypothesis, evidence, after=rough, iterations=0, solver=solver)
     moved = probe.fitted.prediction.sensitivity[0].square().sum((0, 1))
     seen = [
-        int(p.name.partition("[")[2].rstrip("]")) + 1
+        _order(p.name)
         for energy, p in zip(moved.tolist(), probe.problem.free, strict=False)
         if p.name.startswith(SHAPE)
         and energy * (p.deviation / p.scale) ** 2 > evidence.settings.seen_in_fit * evidence.noise**2
@@ -161,5 +161,9 @@ def _with_shape(rough: Hypothesis, harmonics: int) -> Hypothesis:
 
 def _harmonic(name: str) -> FreeParameter:
     """Free within what teeth can be: a harmonic that the fitted speeds hardly show must not be driven by noise."""
-    order = int(name.partition("[")[2].rstrip("]")) + 1
-    return FreeParameter(name, 0.0, scale=0.02, lower=-0.5, upper=0.5, deviation=EXPECTED_SHAPE / order)
+    return FreeParameter(name, 0.0, scale=0.02, lower=-0.5, upper=0.5, deviation=EXPECTED_SHAPE / _order(name))
+
+
+def _order(name: str) -> int:
+    """The order of the mesh that an element of the shape belongs to."""
+    return int(name.partition("[")[2].rstrip("]")) + 1

@@ -10,7 +10,6 @@ from gear_damping.physics.catalogue import builtin_effects
 
 CONSISTENT, EXPLAINED, AMBIGUOUS = "consistent", "explained", "ambiguous"
 PARTLY, UNEXPLAINED, DATA_PROBLEM = "partly_explained", "unexplained", "data_problem"
-VERDICTS = (CONSISTENT, EXPLAINED, AMBIGUOUS, PARTLY, UNEXPLAINED, DATA_PROBLEM)
 LARGEST_SET = 4  # names in a set
 
 
@@ -19,7 +18,7 @@ class Verdict:
     """The word and its sentences.
 
     Args:
-        word: One of `VERDICTS`.
+        word: One of `schema.VERDICTS`.
         sentences: For the reader, the most important first.
     """
 
@@ -84,10 +83,11 @@ def verdict(
             return Verdict(PARTLY, (text, *beside))
         text = f"{missing}. {said[0].upper()}{said[1:]} would take part of it, but too much is left to name a cause."
         return Verdict(UNEXPLAINED, (text, *unsettled))
-    if whole < settings.taken_by_one and before.misfit < settings.random_misfit:  # no steady noise, and most of it
+    is_part, is_unsteady = whole < settings.taken_by_one, before.misfit < settings.random_misfit  # held-out: less noise
+    if is_part and is_unsteady:
         text = f"{missing}. {said[0].upper()}{said[1:]} would take part of it; most of it looks random, and is not."
         return Verdict(UNEXPLAINED, (text, *unsettled))
-    if whole < settings.taken_by_one or before.misfit < settings.random_misfit:  # most of the gap is still there
+    if is_part or is_unsteady:  # most of the gap is still there
         text = f"{missing}. Part of it has a name: {said}. What is left looks random, and is more than that."
         return Verdict(PARTLY, (text, *beside))
     if classes:

@@ -55,8 +55,7 @@ def is_told(outcome: Outcome, refit: Refit, evidence: Evidence) -> bool:
         return True
     if candidate.presence:
         shape = [i for i, p in enumerate(problem.free) if p.name.startswith(f"{refit.name}.") and i not in places]
-        has_shape = not (candidate.replaced and shape) or any(_is_sized(outcome, i, evidence) for i in shape)
-        return has_shape and _are_sized(outcome, places, evidence)
+        return _are_sized(outcome, places, shape if candidate.replaced else [], evidence)
     away = [float(problem.free[i].value(shared[i])) - neutral[problem.free[i].name] for i in places]
     free = [problem.free[i] for i in places]
     size = torch.tensor([1.0 if p.logarithmic else a / p.scale for p, a in zip(free, away, strict=True)])
@@ -76,29 +75,20 @@ def is_told(outcome: Outcome, refit: Refit, evidence: Evidence) -> bool:
     return max(_statistic(outcome, column, lags) for column in alone) > limit
 
 
-def _is_sized(outcome: Outcome, place: int, evidence: Evidence) -> bool:
-    """Whether a size does something and is known within a factor.
-
-    What took the place of a linear spring is that spring again where its own shape (a length) does nothing.
-    """
-    spread, moved = spread_of(outcome, evidence), outcome.fitted.prediction.sensitivity[..., place].norm()
-    half = QUANTILE * float(spread[place, place].clamp(min=0).sqrt())
-    return float(moved) >= SILENT * evidence.noise and half <= WITHIN
-
-
-def _are_sized(outcome: Outcome, places: list[int], evidence: Evidence) -> bool:
+def _are_sized(outcome: Outcome, places: list[int], shape: list[int], evidence: Evidence) -> bool:
     """Whether the sizes of what is tried as a whole are known at all, each within a factor.
 
     There is no none of it to compare with: an absorber without mass, a stop out of reach, a stiff bearing are at the
-    end of a logarithm. What a size does not move any more (a gap whose far flank is never touched) is no size.
+    end of a logarithm. What a size does not move any more (a gap whose far flank is never touched) is no size. What
+    took the place of a linear spring is that spring again where nothing of its `shape` (a length) does anything.
     """
-    spread, problem = spread_of(outcome, evidence), outcome.problem
-    for place in places:
-        half = QUANTILE * float(spread[place, place].clamp(min=0).sqrt())
-        moved = float(outcome.fitted.prediction.sensitivity[..., place].norm())
-        if problem.free[place].logarithmic and moved >= SILENT * evidence.noise and half > WITHIN:
-            return False
-    return True
+    spread, free = spread_of(outcome, evidence), outcome.problem.free
+    half = QUANTILE * spread.diagonal().clamp(min=0).sqrt()
+    columns = outcome.fitted.prediction.sensitivity.unbind(-1)
+    moves = [float(column.norm()) >= SILENT * evidence.noise for column in columns]
+    if shape and not any(moves[i] and half[i] <= WITHIN for i in shape):
+        return False
+    return not any(free[i].logarithmic and moves[i] and half[i] > WITHIN for i in places)
 
 
 def _beside(outcome: Outcome, places: list[int], cause: str) -> Tensor:

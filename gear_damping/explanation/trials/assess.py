@@ -93,8 +93,7 @@ def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, fami
     residual = _with_expected(prediction.residual[0].reshape(-1, 1), project)
     shapes = unnamed_columns(outcome, evidence) if families else {}
     unnamed = {UNNAMED + name: _padded(columns, project) for name, columns in shapes.items()}
-    columns = {score.candidate.name: score.columns for score in reversed(scores) if score.columns.shape[1]}
-    shapes = columns | {name: _orthonormal(project(c)) for name, c in unnamed.items()}
+    named = {score.candidate.name: score.columns for score in reversed(scores) if score.columns.shape[1]}
     beside, count = project(residual), problem.response.weights.numel()
 
     def looked_at(random: Random) -> Assessment:
@@ -109,18 +108,20 @@ def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, fami
         effects += [Effect(name, _orthonormal(whitened(white.padded(c)))) for name, c in unnamed.items()]
         return _tested(seen, effects, whitened, white, random, outcome, evidence.settings.level)
 
-    def random_beside(shown: Sequence[str]) -> tuple[Random, Tensor, float]:
-        left, taken = _without(beside, [shapes[name] for name in shown], SHOWN_PER_SAMPLE)
-        return _random(left[:count, 0], taken, outcome), left, taken
+    def random_in(left: Tensor, taken: float) -> Random:
+        return _random(left[:count, 0], taken, outcome)
 
-    large = [s.candidate.name for s in scores if s.gain > evidence.settings.random_share and s.columns.shape[1]]
-    found = looked_at(random_beside(dict.fromkeys(large))[0])
+    large = {s.candidate.name for s in scores if s.gain > evidence.settings.random_share}
+    taken_out = [columns for name, columns in named.items() if name in large]
+    found = looked_at(random_in(*_without(beside, taken_out, SHOWN_PER_SAMPLE)))
     if not found.visible:
-        return replace(found, random=random_beside(())[0])
-    random, left, taken = random_beside([name for name in shapes if found.visible.shows(name)])
-    again = looked_at(random)
+        return replace(found, random=random_in(beside, 0.0)) if taken_out else found
+    shown = [columns for name, columns in named.items() if found.visible.shows(name)]
+    shown += [_orthonormal(project(columns)) for name, columns in unnamed.items() if found.visible.shows(name)]
+    left, taken = _without(beside, shown, SHOWN_PER_SAMPLE)
+    again = looked_at(random_in(left, taken))
     if not again.visible:
-        return replace(again, random=random_beside(())[0])
+        return replace(again, random=random_in(beside, 0.0))
     share = 1 - float(left.square().sum()) / max(float(beside.square().sum()), 1e-300) - taken / count
     return replace(again, taken=max(again.taken, share))  # a colour that is fitted to an effect hides its part
 

@@ -70,7 +70,8 @@ class PitchError(TransmissionErrorSource):
         self._check_count(count, base[f"n_teeth_{self.chosen['shaft']}"])
         order = torch.arange(count // 2 + 1, dtype=teeth.dtype, device=teeth.device).unsqueeze(1)
         angle = order * torch.arange(count, dtype=teeth.dtype, device=teeth.device) * (2 * pi / count)
-        weight = ((order > 1).to(order) + (2 * order < count).to(order) * (order > 1)) / count  # see above
+        twice = 1 + (2 * order < count).to(order)  # all but the highest order of an even count
+        weight = twice * (order > 1) / count  # without the mean and eccentricity
         even, odd = (weight * (wave @ teeth) for wave in (torch.cos(angle), torch.sin(angle)))
         if self.chosen["form"] == "interpolated":
             turned = order * values["phase"]

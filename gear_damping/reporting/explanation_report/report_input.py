@@ -13,8 +13,7 @@ from typing import Any
 from numpy.typing import ArrayLike
 
 from gear_damping.explanation.casing.content import CasingStudy
-
-VERDICTS = ("consistent", "explained", "ambiguous", "partly_explained", "unexplained", "data_problem")
+from gear_damping.explanation.schema import VERDICTS
 
 
 @dataclass(frozen=True, eq=False)
