@@ -36,18 +36,24 @@ def shaft_motion(runs: Runs) -> dict[str, Tensor]:
     """
     if runs.model.system.name != "gear_pair":
         raise ValueError(f"shaft_motion needs a gear_pair, this is a {runs.model.system.name}: it has no shafts")
-    radii = [runs.derived[f"base_radius_{shaft}"].unsqueeze(1) for shaft in ("pinion", "gear")]
-    shares = [sign * share for sign, share in zip((1, -1), _participation(runs), strict=True)]
+    moves = ACCELERATION in runs.states
+    names = [PINION_SPEED, GEAR_SPEED, *([PINION_ACCELERATION, GEAR_ACCELERATION] if moves else [])]
+    return {name: motion_of_shaft(runs, name) for name in names}
+
+
+def motion_of_shaft(runs: Runs, name: str) -> Tensor:
+    """One of the series of `shaft_motion`, (batch, time)."""
+    shaft, _, quantity = name.partition("_")
+    radius = runs.derived[f"base_radius_{shaft}"].unsqueeze(1)
+    sign, share = (1, _participation(runs)[0]) if shaft == "pinion" else (-1, _participation(runs)[1])
     common = _common_acceleration(runs)
-    drift = _integral(common, runs.sampling_rate)
-    drift = drift - drift.mean(-1, keepdim=True)
-    found = {}
-    for name, radius, share in zip((PINION_SPEED, GEAR_SPEED), radii, shares, strict=True):
-        found[name] = drift / radius + share * runs.states["velocity"]
-    if ACCELERATION in runs.states:
-        for name, radius, share in zip((PINION_ACCELERATION, GEAR_ACCELERATION), radii, shares, strict=True):
-            found[name] = common / radius + share * runs.states[ACCELERATION]
-    return found
+    if quantity == "acceleration":
+        return torch.addcmul(common / radius, share, runs.states[ACCELERATION], value=sign)
+    own = runs.states["velocity"] * (sign * share)
+    if common.shape[1] == 1 and not bool(common.any()):
+        return own
+    drift = _integral(common.expand_as(own), runs.sampling_rate)
+    return own + (drift - drift.mean(-1, keepdim=True)) / radius
 
 
 def _compliances(runs: Runs) -> tuple[Tensor, Tensor]:
@@ -65,10 +71,9 @@ def _participation(runs: Runs) -> tuple[Tensor, Tensor]:
 
 
 def _common_acceleration(runs: Runs) -> Tensor:
-    """The acceleration of both pitch circles as one body, m/s^2, (batch, time)."""
-    zero = torch.zeros_like(runs.states["velocity"])
+    """The acceleration of both pitch circles as one body, m/s^2, (batch, time), or (batch, 1) where it is steady."""
     pinion_radius, gear_radius = (runs.derived[f"base_radius_{s}"].unsqueeze(1) for s in ("pinion", "gear"))
-    unbalanced = zero + _through_shaft(runs) / pinion_radius
+    unbalanced = _through_shaft(runs) / pinion_radius
     if runs.model.system.chosen["gear_torque_mode"] == "held":
         torques = (runs.inputs.get(f"{s}_torque", runs.values[f"{s}_torque"].unsqueeze(1)) for s in ("pinion", "gear"))
         drive, brake = torques

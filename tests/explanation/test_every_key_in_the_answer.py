@@ -288,8 +288,8 @@ def answer(content: dict, folder: Path) -> object:
 def _answer(content: str, folder: Path) -> object:
     whole = Descent.run
 
-    def short(descent, iterations, is_over):
-        return whole(descent, min(iterations, ITERATIONS), is_over)
+    def short(descent, iterations, *others):
+        return whole(descent, min(iterations, ITERATIONS), *others)
 
     reading = patch("gear_damping.measurement.load.read_yaml", lambda _: json.loads(content))
     calibration_alone = patch(

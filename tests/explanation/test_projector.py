@@ -43,10 +43,15 @@ def test_the_nuisance_is_an_orthonormal_basis_of_what_is_taken_out(drawn):
 
 
 def test_more_columns_of_the_records_own_are_taken_out_too(drawn):
-    sensitivity, _ = drawn
+    sensitivity, signal = drawn
     more = torch.randn(RECORDS, TIME, 1, generator=torch.Generator().manual_seed(5), dtype=torch.float64)
     project = Projector(sensitivity, torch.zeros(SHARED), torch.zeros(SHARED, dtype=torch.float64))
     alone = torch.zeros(RECORDS * TIME + SHARED, 1, dtype=torch.float64)
     alone[:TIME] = more[0]
+    found = project.beside_own(more)(signal).numpy()
+    own = np.concatenate([np.kron(np.eye(RECORDS)[:, [i]], more[i].numpy()) for i in range(RECORDS)], 1)
+    columns = np.concatenate([whole(sensitivity, torch.zeros(SHARED)), np.pad(own, ((0, SHARED), (0, 0)))], 1)
+    expected = signal.numpy() - columns @ np.linalg.lstsq(columns, signal.numpy(), rcond=None)[0]
+    np.testing.assert_allclose(found, expected, atol=1e-12)
     assert float(project.beside_own(more)(alone).norm()) < 1e-12 < float(project(alone).norm())
     assert project.beside_own(more[..., :0]) is project

@@ -8,7 +8,7 @@ import torch
 from scipy.integrate import solve_ivp
 from scipy.optimize import least_squares as scipy_least_squares
 
-from gear_damping.identification.output_error.descent import Descent, Points
+from gear_damping.identification.output_error.descent import Descent, Lent, Points
 from gear_damping.identification.output_error.problem import OutputErrorProblem
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.physics.catalogue import effect_class
@@ -44,11 +44,16 @@ def problem_of():
     return OutputErrorProblem(MODEL, {"amplitude": 0.05}, FREE, records)
 
 
-def begun(problem, starts=1, at_once=False):
+@pytest.fixture(autouse=True)
+def every_problem_counts_as_large(monkeypatch):
+    monkeypatch.setattr("gear_damping.identification.output_error.descent.AT_ONCE", 0.0)
+
+
+def begun(problem, starts=1, at_once=False, **options):
     shared = torch.zeros(starts, problem.n_shared, dtype=torch.float64)
     shared[1:, :3] += 0.05
     states = problem.first_states().expand(starts, -1, -1)
-    descent = Descent(problem, Points(shared, states), None, 0.0)
+    descent = Descent(problem, Points(shared, states), None, 0.0, **options)
     descent.at_once = at_once
     return descent
 
@@ -143,6 +148,54 @@ def test_a_secant_update_says_what_the_step_has_shown_and_keeps_every_other_dire
     sizes = old[0, 0].square().sum(0)
     across[0], across[1] = 1 / (sizes[0] * 0.02), 1 / (sizes[1] * 0.01)  # at right angles, as the columns weigh it
     assert float((change[0, 0] @ across).norm()) < 1e-9 * float(change[0, 0].norm() * across.norm())
+
+
+def lent_by(problem, places, factor=1.0):
+    columns = begun(problem).now.sensitivity[0][..., places]
+    return Lent(places, factor * columns)
+
+
+@pytest.mark.parametrize("factor", [1.0, 0.7, -1.0])
+def test_with_lent_sensitivities_it_ends_where_it_does_with_its_own(factor):
+    problem = problem_of()
+    borrowing, own = begun(problem, lent=lent_by(problem, [0, 2], factor)), begun(problem)
+    borrowing.run(40)
+    own.run(40)
+    assert bool(borrowing.converged[0])
+    assert float(borrowing.cost[0]) == pytest.approx(float(own.cost[0]), rel=1e-7)
+    there = problem.linearise(borrowing.points.shared, borrowing.points.states)
+    off = (borrowing.now.sensitivity - there.sensitivity).flatten(0, 2).norm(dim=0)
+    assert bool((off < 1e-3 * there.sensitivity.flatten(0, 2).norm(dim=0)).all())
+
+
+def test_what_is_lent_is_not_worked_out_until_it_is_given_back():
+    problem = problem_of()
+    asked, linearise = [], problem.linearise
+    problem.linearise = lambda *args, **named: (asked.append(args[3]), linearise(*args, **named))[1]
+    descent = begun(problem, lent=Lent([0, 2], linearise(*start_of(problem)).sensitivity[0][..., [0, 2]]))
+    descent.run(40)
+    first = next(i for i, only in enumerate(asked) if only is None)
+    assert first > 0
+    assert all(only == [1] for only in asked[:first])
+    assert all(only is None for only in asked[first:])
+
+
+def start_of(problem):
+    return torch.zeros(1, problem.n_shared, dtype=torch.float64), problem.first_states().unsqueeze(0)
+
+
+def test_a_fit_that_will_not_reach_a_cost_is_given_up():
+    problem = problem_of()
+    whole = begun(problem)
+    whole.run(40)
+    least = float(whole.cost[0])
+    given_up, goes_on = begun(problem, reach=0.5 * least), begun(problem, reach=1.5 * least)
+    given_up.run(40)
+    goes_on.run(40)
+    assert not bool(given_up.converged[0])
+    assert int(given_up.made[0]) < int(whole.made[0])
+    assert bool(goes_on.converged[0])
+    assert float(goes_on.cost[0]) == pytest.approx(least, rel=1e-7)
 
 
 def test_an_offset_of_one_record_is_left_alone_by_the_others():

@@ -2,12 +2,14 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from math import inf
 from typing import Any
 
 import torch
 from torch import Tensor
 
 from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.identification.output_error.descent import Lent
 from gear_damping.identification.output_error.holdout import predict_holdout
 from gear_damping.identification.output_error.least_squares import Fitted, fit
 from gear_damping.identification.output_error.problem import OutputErrorProblem, growth
@@ -132,6 +134,7 @@ def fit_hypothesis(
     solver: Solver | None = None,
     kept: float = 0.5,
     enough: float = 0.0,
+    reach: float = inf,
     own: Mapping[str, float] | None = None,
     scan: bool = False,
 ) -> Outcome:
@@ -147,6 +150,7 @@ def fit_hypothesis(
         solver: Settings of the solver.
         kept: Share of the starts that goes on from round to round.
         enough: Fall of the cost, in noise variances, below which the fit has converged.
+        reach: Cost of the whole records; a fit that will not get below it is given up.
         own: Where parameters of single records begin, by name.
         scan: Whether angles of held-out records are tried all around, though another fit has found some.
     """
@@ -160,7 +164,8 @@ def fit_hypothesis(
     begun, shared = _begin(problem, hypothesis, starts, after, own or {})
     if evidence.segments:  # short already, and begun from what was measured: another model's states lead astray
         begun, horizons = None, horizons and [None] * len(horizons)
-    ends = {"enough": enough * evidence.noise**2, "is_over": evidence.is_over}
+    ends = {"enough": enough * evidence.noise**2, "is_over": evidence.is_over, "reach": reach}
+    ends["lent"] = None if after is None else lent_from(problem, after)
     fitted = fit(problem, shared, horizons, iterations, begun, kept=kept, **ends)
     values = {name: float(value) for name, value in problem.unknowns.parameters(fitted.shared).items()}
     given = placed(hypothesis.given, values)
@@ -252,6 +257,20 @@ def begun_from(problem: OutputErrorProblem, after: Outcome, points: int) -> Tens
     if len(after.problem.records) != len(problem.records):
         return problem.first_states().repeat(points, 1, 1)
     return problem.states_of(after.problem, after.fitted.states).repeat(points, 1, 1)
+
+
+def lent_from(problem: OutputErrorProblem, after: Outcome) -> Lent | None:
+    """Sensitivities by elements of lists, as a fit to the same records found them; None where there are none.
+
+    A list has many, as the harmonics of a stiffness, and another effect changes little of what each of them does.
+    """
+    there = {p.name: place for place, p in enumerate(after.problem.free) if "[" in p.name}
+    places = [place for place, p in enumerate(problem.free) if p.name in there]
+    columns = after.fitted.prediction.sensitivity[0]
+    if not places or columns.shape[:2] != problem.response.values.shape:
+        return None
+    columns = columns[..., [there[problem.free[place].name] for place in places]]
+    return Lent(places, columns) if bool(columns.isfinite().all()) else None
 
 
 def own_from(problem: OutputErrorProblem, after: Outcome) -> Tensor:

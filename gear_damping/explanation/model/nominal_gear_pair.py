@@ -1,6 +1,7 @@
 """The nominal model of a gear pair: what the file says of it, and what of that is fitted."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from math import ceil, cos, floor, inf, pi, sin, sqrt
 
 import torch
@@ -104,6 +105,14 @@ def angles_of(hypothesis: Hypothesis, evidence: Evidence, horizon: float, solver
     pieces = in_segments(evidence.fit, evidence.segments)
     problem = OutputErrorProblem(hypothesis.model, hypothesis.given, hypothesis.free, pieces, solver, evidence.noise)
     return scanned(problem, torch.zeros(problem.n_shared, dtype=torch.float64), horizon, angle_bases(problem))
+
+
+def with_stiffness(hypothesis: Hypothesis, factor: float) -> Hypothesis:
+    """A gear pair whose mesh begins stiffer by a factor."""
+    ends = [f"{MESH}.maximum", f"{MESH}.minimum"]
+    given = hypothesis.given | {name: factor * hypothesis.given[name] for name in ends}
+    free = tuple(replace(p, start=factor * p.start) if p.name in ends else p for p in hypothesis.free)
+    return replace(hypothesis, given=given, free=free)
 
 
 def _uncertain(name: str, value: float, relative: float) -> FreeParameter:

@@ -1,9 +1,11 @@
 """What a signal holds beside everything that the free parameters of a fit could do."""
 
+from copy import copy
+
 import torch
 from torch import Tensor
 
-from gear_damping.identification.output_error.normal_equations import own_basis, without_own
+from gear_damping.identification.output_error.normal_equations import INDEPENDENT, own_basis, without_own
 
 
 class Projector:
@@ -43,7 +45,16 @@ class Projector:
         return torch.cat([torch.nn.functional.pad(rows, (0, 0, 0, len(self.slope))), self.basis], 1)
 
     def beside_own(self, columns: Tensor) -> "Projector":
-        """With columns (records, time, l) more that every record has of its own."""
+        """With columns (records, time, l) more that every record has of its own.
+
+        What they can do beside the others joins the basis: the old part of it need not be worked out again.
+        """
         if not columns.shape[-1]:
             return self
-        return Projector(torch.cat([self.sensitivity, columns], -1), self.expected, self.slope)
+        rows = torch.block_diag(*columns)
+        beside = self(torch.nn.functional.pad(rows, (0, 0, 0, len(self.slope))))
+        own = beside.norm(dim=0) > INDEPENDENT * rows.norm(dim=0)
+        basis, sizes, _ = torch.linalg.svd(beside[:, own] / beside[:, own].norm(dim=0), full_matrices=False)
+        more = copy(self)
+        more.basis = torch.cat([self.basis, basis[:, sizes > INDEPENDENT]], 1)
+        return more

@@ -10,7 +10,13 @@ import torch
 from gear_damping.errors import InputError, Problem
 from gear_damping.explanation.evidence.records import Evidence, with_own_angles
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, fit_hypothesis, natural_frequency_hz
-from gear_damping.explanation.model.nominal_gear_pair import SCANNED, angles_of, first_gear_pair, shaped
+from gear_damping.explanation.model.nominal_gear_pair import (
+    SCANNED,
+    angles_of,
+    first_gear_pair,
+    shaped,
+    with_stiffness,
+)
 from gear_damping.identification.oscillator import DAMPING, GAIN, fit_oscillator, linear_model, linear_oscillator
 from gear_damping.identification.output_error.angles import STARTS
 from gear_damping.identification.output_error.records import FreeParameter
@@ -20,6 +26,7 @@ LESS_DAMPING = 0.05  # of what was found: what a local minimum takes for damping
 SHAPE_ITERATIONS = 30
 SHORT_PERIODS = 40.0  # natural periods of the first round
 MOST_SCANS = 8  # of the records' angles, each followed by a fit
+STIFFNESSES = (1.0, 0.85, 0.92, 1.08, 1.17)  # times where it begins: with a wrong one angles of records are wrong too
 APART = 1.5  # times the cost of a phase for every record: one phase of all leaves that much where there is none; angles
 # that begin anywhere agree that well once in a thousand times, for three records
 NOT_FINITE = Problem(
@@ -119,8 +126,12 @@ def _rough_gear_pair(evidence: Evidence, solver: Solver | None) -> Outcome:
     found: Outcome | None = None
     for _ in range(MOST_SCANS):  # a phase that is wrong makes stiffness and damping wrong, and they the next phase
         hypothesis = first if found is None else found.hypothesis
-        angles = angles_of(hypothesis, evidence, short, solver)
-        again = fit_hypothesis(hypothesis, evidence, own=angles, **options)
+        tried = []
+        for factor in STIFFNESSES:
+            begun = with_stiffness(hypothesis, factor)
+            angles = angles_of(begun, evidence, short, solver)
+            tried.append(fit_hypothesis(begun, evidence, own=angles, **options))
+        again = min(tried, key=lambda outcome: outcome.fitted.cost)
         is_better = found is None or again.fitted.cost < SCANNED * found.fitted.cost
         found = again if found is None or again.fitted.cost < found.fitted.cost else found
         if not is_better:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field, replace
+from math import inf
 
 from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.evidence.excess import Excess, excess
@@ -79,10 +80,10 @@ class Bench:
         return scores(outcome, tried, self.noise.value, self.solver)
 
     def full_fit(
-        self, score: Score, outcome: Outcome, against: Outcome | None = None, least: float = 0.0
+        self, score: Score, outcome: Outcome, against: Outcome | None = None, reach: float = inf
     ) -> Refit | None:
-        """A candidate fitted in full from a model, held against it or another; no further where it takes too little."""
-        return refitted(score, outcome, self.evidence, self.solver, against, least)
+        """A candidate fitted in full from a model and held against one; given up where it cannot reach a cost."""
+        return refitted(score, outcome, self.evidence, self.solver, against, reach)
 
     def full_fits(
         self, ranked: Sequence[Score], outcome: Outcome, against: Outcome, promise: float = 0.0
@@ -91,11 +92,13 @@ class Bench:
         if not ranked:
             return ()
         fits: list[Refit] = []
+        base = (outcome if outcome.fitted.converged else against).fitted.cost
         for score in chosen(ranked, self.settings, promise, springs=self.evidence.system == "oscillator"):
             if self.budget.refuses(score.candidate.name):
                 continue
-            most = max((outcome.fitted.cost - fit.outcome.fitted.cost for fit in fits), default=0.0)
-            fit = self.full_fit(score, outcome, against, LEAST_TAKEN * most) if score.gain > 0 else None
+            most = max((base - fit.outcome.fitted.cost for fit in fits), default=0.0)
+            reach = base - LEAST_TAKEN * most if most > 0 else inf
+            fit = self.full_fit(score, outcome, against, reach) if score.gain > 0 else None
             if fit is None and score.gain > 0:
                 self.failed[score.candidate.name] = "its full fit ran away on held-out records"
             fits += [] if fit is None else [fit]

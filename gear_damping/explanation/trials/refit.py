@@ -118,11 +118,11 @@ def refitted(
     evidence: Evidence,
     solver: Solver | None = None,
     against: Outcome | None = None,
-    least: float = 0.0,
+    reach: float = inf,
 ) -> Refit | None:
     """The candidate's full fit from `outcome`, held against it or another; None where the fit ran away.
 
-    Parameters that join later do so where the cost has fallen by at least `least` without them.
+    A fit that will not get the cost below `reach` is not carried to its end, and what would join later does not join.
     """
     candidate = score.candidate
     hypothesis = candidate.hypothesis
@@ -137,9 +137,10 @@ def refitted(
         horizons=[FIRST_PART * evidence.duration, None],
         iterations=(FIRST_ITERATIONS, LAST_ITERATIONS),
         kept=VARIANTS_KEPT if candidate.presence else ONE,
+        reach=reach,
         **options,
     )
-    if candidate.later and outcome.fitted.cost - found.fitted.cost >= least:
+    if candidate.later and found.fitted.cost <= reach:
         freed = replace(found.hypothesis, free=(*found.hypothesis.free, *candidate.later))
         freed = replace(
             freed, free=tuple(replace(p, start=float(found.hypothesis.given.get(p.name, p.start))) for p in freed.free)

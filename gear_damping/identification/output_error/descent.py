@@ -3,11 +3,13 @@
 A linearisation simulates a member for every column, a trial only one. As long as the linear model foretells what a
 step brings, its sensitivities are carried along by Broyden's update, record by record; where it does not, where a
 step fails, and before a start counts as converged, they are worked out anew. (Broyden, Math. Comp. 19, 1965; scaled by
-the columns' norms.) Small problems are linearised at every trial.
+the columns' norms.) Small problems are linearised at every trial. Sensitivities that another fit of the same records
+has lent are worked out only where the others lead no further.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from math import inf
 
 import torch
 from torch import Tensor
@@ -22,8 +24,24 @@ LONGEST_STEP = 2.0  # of any coordinate in one iteration; far out, that many tim
 FORETOLD = 0.5  # of the fall that the linear model promises: with less of it, it is made anew
 CARRIED = 4  # steps over which sensitivities are carried along at most
 AT_ONCE = 2e5  # values of the sensitivities: a linearisation of fewer costs hardly more than a trial
+LENT_FOR = 6  # linearisations that borrow at most,
+LENT_DAMPING = 1e3  # and the damping at which borrowing leads no further
 TRIALS = 3  # for each linearisation that a round may take
+SHORT_OF = 2  # linearisations in a row that foretell no success: then a start is given up
 LEAST_TRIALS = 3  # whatever the time: a model without one of its causes is nearly at rest by then
+
+
+@dataclass(frozen=True)
+class Lent:
+    """Sensitivities by some shared coordinates, as another fit to the same records found them.
+
+    Args:
+        places: The coordinates.
+        columns: (records, samples, places), of whole records.
+    """
+
+    places: list[int]
+    columns: Tensor
 
 
 @dataclass
@@ -51,28 +69,72 @@ class Descent:
     """Starts on their way down over one horizon.
 
     Every tensor has a row for each start: `points`, `now` (the linearisation at them), `cost`, `damping`, `calm` (steps
-    in a row that changed little), `carried` (steps since the sensitivities were worked out), `made` (linearisations).
+    in a row that changed little), `carried` (steps since the sensitivities were worked out), `made` (linearisations),
+    `short` (those in a row from which a start seemed not to get below `reach`).
     """
 
-    def __init__(self, problem: OutputErrorProblem, points: Points, horizon: float | None, enough: float) -> None:
+    def __init__(
+        self,
+        problem: OutputErrorProblem,
+        points: Points,
+        horizon: float | None,
+        enough: float,
+        reach: float = inf,
+        lent: Lent | None = None,
+    ) -> None:
         """Begin at points; arguments as for `least_squares.fit`."""
-        self.problem, self.horizon, self.enough = problem, horizon, enough
+        self.problem, self.horizon, self.enough, self.reach = problem, horizon, enough, reach
         self.points = Points(points.shared.clone(), points.states.clone())
-        self.now = problem.linearise(points.shared, points.states, horizon)
+        samples = problem.response.samples_within(horizon) * len(problem.response.channels)
+        self.at_once = samples * len(problem.records) * (problem.n_shared + len(problem.local)) < AT_ONCE
+        self.lent = None if self.at_once else lent
+        self.now = problem.linearise(points.shared, points.states, horizon, self._own())
+        if self.lent:
+            columns = problem.response.cut(self.lent.columns.permute(2, 0, 1), horizon).permute(1, 2, 0)
+            self.now.sensitivity[..., self.lent.places] = columns
         self.cost = self._cost(points, self.now.residual)
         self.damping = torch.full_like(self.cost, FIRST_DAMPING)
-        self.calm, self.made, self.carried = torch.zeros(3, len(self.cost), dtype=torch.long)
+        self.calm, self.made, self.carried, self.short = torch.zeros(4, len(self.cost), dtype=torch.long)
+        self.looked_at = self.made - 1
         self.converged = self.calm > 0
-        self.at_once = self.now.sensitivity[0].numel() < AT_ONCE
 
-    def run(self, iterations: int, is_over: Callable[[], bool] = lambda: False) -> None:
-        """Go down until every start has converged or has been linearised so many times, or time is over."""
-        for number in range(TRIALS * iterations):
-            left = (~self.converged & (self.made < iterations)).nonzero()[:, 0]
+    def run(self, iterations: int, is_over: Callable[[], bool] = lambda: False, is_last: bool = True) -> None:
+        """Go down until every start has converged or has been linearised so many times, or time is over.
+
+        Where another round follows, nothing is worked out but the points that are reached.
+        """
+        self._go_down(iterations, is_over)
+        if not is_last:
+            return
+        if self.lent:
+            self._give_back()
+            self._go_down(iterations, is_over)
+        self._linearise(((self.carried > 0) & ~self.converged & self.is_promising).nonzero()[:, 0])
+
+    @property
+    def is_promising(self) -> Tensor:
+        """Which starts are not given up, (starts,)."""
+        return self.short < SHORT_OF
+
+    def _go_down(self, iterations: int, is_over: Callable[[], bool]) -> None:
+        most = min(iterations, LENT_FOR) if self.lent else iterations
+        for number in range(TRIALS * most):
+            left = (~self.converged & (self.made < most) & self.is_promising).nonzero()[:, 0]
             if not len(left) or (number >= LEAST_TRIALS and is_over()):
                 break
             self._advance(left)
-        self._linearise(((self.carried > 0) & ~self.converged).nonzero()[:, 0])
+
+    def _own(self) -> list[int] | None:
+        """The coordinates whose sensitivities are worked out; None for all."""
+        return None if self.lent is None else sorted({*range(self.problem.n_shared)} - {*self.lent.places})
+
+    def _give_back(self) -> None:
+        """Go on with sensitivities of one's own, the points that are reached being new starts."""
+        self.lent = None
+        self.calm, self.made = torch.zeros(2, len(self.cost), dtype=torch.long)
+        self.converged = torch.zeros_like(self.converged)
+        self.damping = torch.full_like(self.damping, FIRST_DAMPING)
+        self._linearise(torch.arange(len(self.cost)))
 
     def _advance(self, left: Tensor) -> None:
         """One trial of some starts."""
@@ -80,6 +142,8 @@ class Descent:
         trial = _step(self.problem, points, now, self.damping[left])
         seen = self._looked_at(trial)
         old, cost = self.cost[left], self._cost(trial, seen.residual)
+        if not self.at_once and not self.lent and self.reach < inf:
+            self._look_ahead(left[self.looked_at[left] < self.made[left]])
         gain, better = old - cost, cost < old
         flat = self._judge(left, gain, better, fresh)
         taken = left[better]
@@ -115,8 +179,18 @@ class Descent:
         self.calm[left] = torch.where(better | fresh, torch.where(flat, self.calm[left] + 1, 0), self.calm[left])
         softer, harder = self.damping[left] / 5, self.damping[left] * torch.where(fresh, 6.0, 1.0)
         self.damping[left] = torch.where(better, softer, harder).clamp(SMALLEST_DAMPING, LARGEST_DAMPING)
-        self.converged[left] = fresh & ((self.calm[left] >= CALM_STEPS) | (self.damping[left] >= LARGEST_DAMPING))
+        is_stuck = self.damping[left] >= (LENT_DAMPING if self.lent else LARGEST_DAMPING)
+        self.converged[left] = fresh & ((self.calm[left] >= CALM_STEPS) | is_stuck)
         return flat
+
+    def _look_ahead(self, fresh: Tensor) -> None:
+        """Count in how many linearisations in a row the undamped step would not get below what is to be reached."""
+        self.looked_at[fresh] = self.made[fresh]
+        points, now = self.points.pick(fresh), self.now.pick(fresh)
+        end = _step(self.problem, points, now, torch.full((len(fresh),), SMALLEST_DAMPING, dtype=torch.float64))
+        linear = (now.sensitivity @ self._moves(points, end).unsqueeze(-1)).squeeze(-1)
+        falls_short = self._cost(end, now.residual - linear) > self.reach
+        self.short[fresh] = torch.where(falls_short, self.short[fresh] + 1, 0)
 
     def _moves(self, old: Points, new: Points) -> Tensor:
         """Change of every column's coordinate, by record, (starts, records, columns)."""
@@ -134,7 +208,9 @@ class Descent:
         if not len(places):
             return
         points, residual = self.points.pick(places), self.now.residual[places]
-        found = self.problem.linearise(points.shared, points.states, self.horizon, residual=residual)
+        found = self.problem.linearise(points.shared, points.states, self.horizon, self._own(), residual=residual)
+        if self.lent:
+            found.sensitivity[..., self.lent.places] = self.now.sensitivity[places][..., self.lent.places]
         self.now.sensitivity[places] = found.sensitivity
         self.carried[places] = 0
         self.made[places] += 1

@@ -2,10 +2,11 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from math import inf
 
 from torch import Tensor
 
-from gear_damping.identification.output_error.descent import Descent, Points
+from gear_damping.identification.output_error.descent import Descent, Lent, Points
 from gear_damping.identification.output_error.problem import OutputErrorProblem, Prediction
 
 
@@ -30,6 +31,8 @@ def fit(
     kept: float = 0.5,
     enough: float = 0.0,
     is_over: Callable[[], bool] = lambda: False,
+    reach: float = inf,
+    lent: Lent | None = None,
 ) -> Fitted:
     """The best of several starts.
 
@@ -43,6 +46,8 @@ def fit(
         kept: Share of the starts, the best ones, that goes on from round to round.
         enough: Fall of the cost below which a start has converged, whatever share of the cost it is.
         is_over: Whether time is over: after a few steps of each round nothing more is tried then.
+        reach: Cost in the last round; a start that will not get below it is given up.
+        lent: Sensitivities to begin with, as another fit to the same records found them.
     """
     if states is None:
         states = problem.first_states().expand(shared.shape[0], -1, -1).clone()
@@ -50,9 +55,10 @@ def fit(
     rounds = list(horizons or [None])
     most = [iterations] * len(rounds) if isinstance(iterations, int) else iterations
     for number, horizon in enumerate(rounds):
-        descent = Descent(problem, points, horizon, enough)
-        descent.run(most[number], is_over)
-        if number < len(rounds) - 1:
+        is_last = number == len(rounds) - 1
+        descent = Descent(problem, points, horizon, enough, reach if is_last else inf, lent)
+        descent.run(most[number], is_over, is_last)
+        if not is_last:
             points = descent.points.pick(descent.cost.argsort()[: max(1, round(kept * len(descent.cost)))])
         if report:
             report(number + 1, len(rounds))

@@ -8,7 +8,7 @@ from torch import Tensor
 
 from gear_damping.identification.output_error.records import Filter, Observed
 from gear_damping.physics.record_filter import butterworth_modes, butterworth_response, filtered
-from gear_damping.simulation.observed import shaft_motion
+from gear_damping.simulation.observed import motion_of_shaft
 from gear_damping.simulation.runs import Runs
 
 SENSOR_NOISE = "sensor_noise"
@@ -27,8 +27,8 @@ def motion(runs: Runs, channel: Observed) -> Tensor:
 def _shaft_motion(runs: Runs, channel: Observed) -> Tensor:
     """Speed fluctuation of a shaft, or tangential acceleration on it."""
     if channel.derivatives == 1:
-        return shaft_motion(runs)[channel.name]
-    return channel.radius * shaft_motion(runs)[f"{channel.shaft}_acceleration"]
+        return motion_of_shaft(runs, channel.name)
+    return channel.radius * motion_of_shaft(runs, f"{channel.shaft}_acceleration")
 
 
 def recorded(runs: Runs, channel: Observed, first: bool, begins: Tensor | None = None) -> Tensor:

@@ -114,11 +114,15 @@ class Response:
     def left(self, shown: Tensor, horizon: float | None) -> Tensor:
         """Weighted residuals (points, records, channels * samples) beside what was predicted within a horizon."""
         samples = self.samples_within(horizon)
-        weights = self._cut(self.weights, samples) * self._beyond(horizon, samples)
-        return (self._cut(self.values, samples) - shown) * weights
+        return (self._cut(self.values, samples) - shown) * self.cut(self.weights, horizon)
+
+    def cut(self, weighted: Tensor, horizon: float | None) -> Tensor:
+        """Weighted samples (..., records, channels * time) within a horizon, 0 beyond it."""
+        samples = self.samples_within(horizon)
+        return self._cut(weighted, samples) * self._beyond(horizon, samples)
 
     def _cut(self, stacked: Tensor, samples: int) -> Tensor:
-        """(records, channels * time) cut to the first samples of every channel."""
+        """(..., records, channels * time) cut to the first samples of every channel."""
         return stacked.unflatten(-1, (len(self.channels), -1))[..., :samples].flatten(-2)
 
     def _beyond(self, horizon: float | None, samples: int) -> Tensor | float:
