@@ -11,7 +11,7 @@ PYTEST := $(BIN)/python -m pytest -n auto --dist worksteal
 ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test check bench blind p-values docs clean
+.PHONY: help setup run test check bench blind power p-values docs clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-11s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -56,6 +56,9 @@ bench: setup  ## time simulation, transforms and training beside other libraries
 
 blind: setup  ## hide effects in measurements, have them explained, write outputs/blind (resumes; 85 minutes at most)
 	$(BIN)/python -m tests.blind $(ARGS)
+
+power: setup  ## how small an effect is found, beside how small anybody could find it (85 minutes at most, resumes)
+	$(BIN)/python -m tests.blind.power $(ARGS)
 
 p-values: setup  ## draw noise in the place of residuals and count how often something is called visible (resumes)
 	$(BIN)/python -m tests.blind.p_values $(ARGS)

@@ -25,6 +25,7 @@ MINUTES = 5.0  # of a search, as in conf/explain
 REFUSED = "refused"  # the data could not be read: one error that names file, channel and remedy
 KEPT = (
     "verdict", "causes", "misfit", "residual", "not_observable", "next_experiment", "noise", "sentences", "findings",
+    "visible",
 )  # fmt: skip
 
 

@@ -6,13 +6,15 @@ from pathlib import Path
 from .case import HiddenCase, draw_case, draw_cases
 from .catalogue import EFFECTS, FAULTS, FOREIGN, STRATA
 from .instruments import HiddenRecord
+from .limit import Limit, amplitude_of, limits, power_of_size
 from .oscillator import OSCILLATOR_EFFECTS, OscillatorCase, draw_oscillator, write_oscillator
 from .setup import PLANS as SENSORS
 from .write import write_case as _write_gears
 
 __all__ = [
-    "EFFECTS", "FAULTS", "FOREIGN", "OSCILLATOR_EFFECTS", "SENSORS", "STRATA", "HiddenCase", "HiddenRecord",
-    "OscillatorCase", "draw_case", "draw_cases", "draw_oscillator", "write_case",
+    "EFFECTS", "FAULTS", "FOREIGN", "OSCILLATOR_EFFECTS", "SENSORS", "STRATA", "HiddenCase", "HiddenRecord", "Limit",
+    "OscillatorCase", "amplitude_of", "draw_case", "draw_cases", "draw_oscillator", "limits", "power_of_size",
+    "write_case",
 ]  # fmt: skip
 
 

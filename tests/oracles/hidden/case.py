@@ -57,14 +57,15 @@ class HiddenCase:
 def draw_case(
     stratum: str, seed: int, *, duration: float = 0.05, snr_db: float | None = None,
     target_excess: float | None = None, rig: str | Rig | None = None, sensors: str | Setup | None = None,
-    chosen: Mapping[str, float | str] | None = None,
+    chosen: Mapping[str, float | str] | None = None, size: float | None = None,
 ) -> HiddenCase:
     """One case; see draw_cases, which draws many at a fraction of the cost of each.
 
     rig: the usual one where None, `drawn`, or its teeth, `17/43`. sensors: the usual ones where None, `drawn`, or a
-    plan by name (setup.PLANS). chosen: parameters of the first effect, where chance should not choose them.
+    plan by name (setup.PLANS). chosen: parameters of the first effect, where chance should not choose them. size: of
+    the effects as a share of their largest, in the place of an excess.
     """  # fmt: skip
-    asked = Wanted(stratum, seed, duration, snr_db, target_excess, rig, sensors, chosen or {})
+    asked = Wanted(stratum, seed, duration, snr_db, target_excess, rig, sensors, chosen or {}, size)
     return _drawn([draft(asked)])[0]
 
 
@@ -138,7 +139,7 @@ def _case(one: Draft, sized: Sized, knobs: Arrays, path: Trajectory) -> HiddenCa
 def _truth(one: Draft, sized: Sized, path: Trajectory, seen: np.ndarray, sigma: float) -> dict[str, object]:
     basis = sized.basis
     difference = seen[: basis.response.shape[0]] - basis.response
-    misread = sum(p for e, p in zip(one.effects, sized.promised, strict=True) if e.as_modelled)
+    misread = sum(p or 0.0 for e, p in zip(one.effects, sized.promised, strict=True) if e.as_modelled)
     stiffness = true_mean_stiffness(one.shape)
     rms_rate = float(np.sqrt(np.mean(np.var(path.v, axis=0))))
     return {

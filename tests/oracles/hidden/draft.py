@@ -29,7 +29,8 @@ class Wanted:
 
     duration: s on the usual rig; elsewhere as many natural periods, or as many turns of the gear. snr_db, target: of
     the channel, and excess / %; drawn where None. rig: see rigs.rig_of; sensors: see setup.setup_of. chosen:
-    parameters of the first effect that are not left to chance.
+    parameters of the first effect that are not left to chance. size: of every effect, as a share of its largest, in
+    the place of the excess.
     """
 
     stratum: str
@@ -40,6 +41,7 @@ class Wanted:
     rig: str | Rig | None = None
     sensors: str | Setup | None = None
     chosen: Mapping[str, float | str] = field(default_factory=dict)
+    size: float | None = None
 
 
 @dataclass
@@ -98,6 +100,9 @@ def draft(wanted: Wanted) -> Draft:
     params = [_params(effect, sizes, duration, bench, setup) for effect in effects]
     if effects:
         params[0] |= wanted.chosen
+    if wanted.size is not None:
+        params = [effect.at(drawn, wanted.size) for effect, drawn in zip(effects, params, strict=True)]
+        targets = [None for _ in effects]
     return Draft(
         stratum, seed, plan, conditions, records, effects, params,
         targets, float(sizes.uniform(20.0, 40.0)) if wanted.snr_db is None else wanted.snr_db,

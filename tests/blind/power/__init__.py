@@ -1,0 +1,1 @@
+"""How small an effect is still seen and named, beside how small anybody could see and name it."""

@@ -1,0 +1,59 @@
+"""`make power`: hide every effect at multiples of its limit, count what is seen and named. Resumes where it stopped."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import signal
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[3]
+DOCS = ROOT / "docs"
+
+
+def main(given: list[str] | None = None) -> int:
+    """Run; 0 when done or time is up, 130 when stopped by Ctrl-C."""
+    os.environ["OMP_NUM_THREADS"] = "1"
+    sys.path.insert(0, str(ROOT / "tests" / "oracles"))
+    os.environ["PYTHONPATH"] = os.pathsep.join([str(ROOT / "tests" / "oracles"), str(ROOT)])  # of the workers
+    from ..run import CASES, ask, done_cases
+    from .cases import EFFECTS, answered, power_questions
+    from .page import FIGURE, draw, markdown, summary
+
+    parser = argparse.ArgumentParser(prog="make power ARGS=...", description=__doc__)
+    parser.add_argument("--effect", action="append", choices=EFFECTS, help="only this one; may be repeated")
+    parser.add_argument("--cases", type=int, default=20, help="of each effect")
+    parser.add_argument("--seed", type=int, default=40000, help="the first; seeds below 20000 are for tuning")
+    parser.add_argument("--minutes", type=float, default=85.0, help="begin no case after so many; call again to go on")
+    parser.add_argument("--processes", type=int, default=2, choices=(1, 2))
+    parser.add_argument("--page", action="store_true", help="write docs/power.md, docs/power.json and the figure too")
+    parser.add_argument("--out", type=Path, default=ROOT / "outputs" / "power", help="folder of cases and power.json")
+    options = parser.parse_args(given)
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.default_int_handler)
+    asked = power_questions(options.effect or EFFECTS, options.cases, options.seed)
+    stopped = False
+    try:
+        rows = ask(asked, options.out, options.processes, _say, options.minutes, solve=answered)
+    except KeyboardInterrupt:
+        stopped, rows = True, done_cases(options.out / CASES)
+        _say("stopped; the cases done so far are kept, and the same command goes on from here")
+    if not rows:
+        return 130 if stopped else 0
+    found = summary(rows, options.seed)
+    for folder in (options.out, DOCS) if options.page else (options.out,):
+        (folder / "power.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+        (folder / "power.md").write_text(markdown(found), encoding="utf-8")
+        draw(found, folder / FIGURE)
+        _say(f"wrote {folder / 'power.json'}, power.md and {FIGURE}")
+    return 130 if stopped else 0
+
+
+def _say(text: str) -> None:
+    print(text, flush=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
