@@ -99,9 +99,9 @@ def explain(
     notes = [note for note in (died_away(evidence), too_short(evidence)) if note]
     for note in notes:
         say(note)
-    evidence, noise = _with_noise(evidence, measurement, say)
+    evidence, noise = with_noise(evidence, measurement, say)
     step(1, STEPS)
-    state = _searched(evidence, noise, say, _solver(solver), budget, lambda: step(2, STEPS))
+    state = _searched(evidence, noise, say, fitting_solver(solver), budget, lambda: step(2, STEPS))
     step(3, STEPS)
     judged = _judged(state, (*notes, budget.sentence), tuple(budget.not_tried))
     step(4, STEPS)
@@ -109,14 +109,15 @@ def explain(
     return Explanation(content.of_search(measurement, evidence, state.noise, judged), evidence, state.noise, state)
 
 
-def _with_noise(evidence: Evidence, measurement: Measurement, say: Say) -> tuple[Evidence, NoiseLevel]:
+def with_noise(evidence: Evidence, measurement: Measurement, say: Say) -> tuple[Evidence, NoiseLevel]:
     """The evidence with its records weighted by their noise, and that noise."""
     fit, holdout, noise = noise_of(evidence.fit, evidence.holdout, measurement)
     say(f"noise {noise.value / evidence.channel.declared_factor:.3g} {evidence.channel.declared_unit} ({noise.method})")
     return replace(evidence, fit=weighted(fit, noise), holdout=weighted(holdout, noise), noise=noise.value), noise
 
 
-def _solver(given: Solver | None) -> Solver:
+def fitting_solver(given: Solver | None) -> Solver:
+    """Settings that are fine enough for a fit, and no finer."""
     solver = given or Solver()
     return replace(solver, accuracy=max(solver.accuracy, FIT_ACCURACY), most_substeps=MOST_SUBSTEPS)
 

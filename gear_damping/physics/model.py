@@ -64,8 +64,14 @@ class Model:
             found |= {f"{effect.name}.{p.name}": p for p in effect.parameters}
         return found
 
+    @property
+    def given(self) -> dict[str, float | tuple[float, ...]]:
+        """Parameters with which its system and effects were made, in SI by flat name."""
+        own = {f"{effect.name}.{name}": value for effect in self.effects for name, value in effect.given.items()}
+        return {**self.system.given, **own}
+
     def values(self, batch: int, **given: float | Sequence[float] | Tensor) -> dict[str, Tensor]:
-        """Values for a batch in SI: the defaults, with those in `given` put in their place.
+        """Values for a batch in SI: the model's own and the defaults, with those in `given` put in their place.
 
         Flat names with a dot are given as `**{"backlash.gap": 1e-4}`. Scalars are shared by the
         batch; tensors have shape (batch,), or (n, batch) for list-valued parameters.
@@ -73,7 +79,7 @@ class Model:
         Raises:
             InputError: a name is unknown, or a parameter without a default is not given.
         """
-        declared = self.parameters()
+        declared, given = self.parameters(), self.given | given
         problems = [Problem(k, "no such parameter", remedy=nearest(k, list(declared))) for k in given.keys() - declared]
         chosen = {name: given.get(name, p.default) for name, p in declared.items()}
         problems += [Problem(k, "must be given", remedy=declared[k].meaning) for k, v in chosen.items() if v is None]

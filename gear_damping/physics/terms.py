@@ -15,44 +15,30 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
-from gear_damping.errors import InputError
 from gear_damping.physics.cause import Cause
+from gear_damping.physics.declared import Declared
 from gear_damping.physics.moment import Moment
-from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.scales import Scales
 
 Values = Mapping[str, Tensor]
 
 
-class Effect(ABC):
-    """What every effect declares; `name` is its configuration key, cause name and file name."""
+class Effect(Declared, ABC):
+    """What every effect declares; `name` is its configuration key, cause name and file name.
 
-    name: ClassVar[str]
+    Printed, it is its equation.
+    """
+
     equation: ClassVar[str]
     reference: ClassVar[str]
-    parameters: ClassVar[tuple[Parameter, ...]]
-    options: ClassVar[tuple[Option, ...]] = ()
     systems: ClassVar[tuple[str, ...]] = ("gear_pair", "oscillator")
     dissipative: ClassVar[bool] = False
     requires: ClassVar[tuple[str, ...]] = ()  # names of effects that must be there too
     cause: ClassVar[Cause | None] = None  # what `task=explain` tries and says of it; None: it is no candidate
     refinement: ClassVar[float] = 1.0  # of the steps, where the force bends too sharply for them; measured
 
-    def __init__(self, **options: object) -> None:
-        """Choose options by name.
-
-        Raises:
-            InputError: an option has a value that is not among its choices.
-        """
-        declared = {option.name: option for option in self.options}
-        unknown = set(options) - set(declared)
-        if unknown:
-            raise TypeError(f"{self.name} has no option {sorted(unknown)}")
-        chosen = {name: options.get(name, option.default) for name, option in declared.items()}
-        problems = [declared[k].problem(v, f"{self.name}.{k}") for k, v in chosen.items()]
-        if any(problems):
-            raise InputError([p for p in problems if p])
-        self.chosen = chosen
+    def __str__(self) -> str:
+        return f"{self.name}: {self.equation}"
 
     def to_natural(self, values: Values, scales: Scales) -> dict[str, Tensor]:
         """The parameters in natural units, from SI; shapes (batch,) or (n, batch)."""

@@ -1,18 +1,17 @@
 """task=simulate: write simulated runs as arrays, as a figure and, where asked for, as a measurement."""
 
 from dataclasses import replace
-from math import pi
 from typing import Any
 
 import numpy as np
 
 from gear_damping.config.settings import Settings
 from gear_damping.errors import writing
+from gear_damping.interface.simulated import run_figure
 from gear_damping.measurement.write import write_measurement
 from gear_damping.reporting import figures
-from gear_damping.simulation.runs import Runs
 from gear_damping.tasks import statements
-from gear_damping.tasks.recorded import Channels, as_records, recorded_channels, rig_parameters
+from gear_damping.tasks.recorded import as_records, recorded_channels, rig_parameters
 from gear_damping.tasks.run_folder import RunFolder
 from gear_damping.tasks.simulated import plan_of, simulated
 
@@ -38,21 +37,7 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
         records, system = as_records(runs, channels), runs.model.system.name
         path = write_measurement(folder.path / "measurement", system, records, rig_parameters(settings))
         statements.say(f"wrote {path}: measurement.path={path} takes the runs as measured records")
-    figures.save(_figure(runs, channels), folder.path / "simulation.png")
+    shown = run_figure(runs, channels[runs.model.system.response])
+    figures.save(shown, folder.path / "simulation.png")
     statements.say(f"wrote {folder.path / 'runs.npz'}: {len(runs.status)} runs of {len(runs.time)} samples")
     return {"n_runs": len(runs.status), "n_diverged": runs.n_diverged}
-
-
-def _figure(runs: Runs, channels: Channels) -> figures.Figure:
-    """The first run."""
-    name = runs.model.system.response
-    response, velocity = channels[name][0].numpy(), runs.states["velocity"][0].numpy()
-    words = {"label": name.replace("_", " "), "title": f"run 1 of {len(runs.status)}"}
-    if "pinion_speed" not in runs.values:
-        return figures.simulation_figure(runs.time.numpy(), response, velocity, "m", runs.sampling_rate, **words)
-    speed, teeth = (float(runs.values[key][0]) for key in ("pinion_speed", "n_teeth_pinion"))
-    return figures.simulation_figure(
-        runs.time.numpy(), 1e6 * response, velocity, "µm", runs.sampling_rate, **words,
-        shaft_frequency_hz=abs(speed) / (2 * pi) or None, n_teeth_pinion=teeth,
-        gear_order=teeth / float(runs.values["n_teeth_gear"][0]),
-    )  # fmt: skip

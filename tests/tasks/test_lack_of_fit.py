@@ -9,9 +9,9 @@ import torch
 from scipy.integrate import solve_ivp
 
 from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.interface.lack_of_fit import lack_of_fit
 from gear_damping.measurement.record import Channel
 from gear_damping.tasks.command import main
-from gear_damping.tasks.lack_of_fit import lack_of_fit
 
 RATE, OMEGA, DAMPING = 500.0, 40.0, 2.0
 TIME = np.arange(1500) / RATE

@@ -6,31 +6,22 @@ from typing import ClassVar
 
 from torch import Tensor
 
-from gear_damping.errors import InputError
+from gear_damping.physics.declared import Declared
 from gear_damping.physics.moment import Moment, Rotation
-from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.scales import Scales
 
 Values = Mapping[str, Tensor]
 
 
-class System(ABC):
+class System(Declared, ABC):
     """A single-degree-of-freedom base; effects are added to it as terms."""
 
-    name: ClassVar[str]
     response: ClassVar[str]  # the channel that displacement is recorded in
-    parameters: ClassVar[tuple[Parameter, ...]]
-    options: ClassVar[tuple[Option, ...]] = ()
     inputs: ClassVar[dict[str, str]]  # series that may be given, with their SI units
     derived_units: ClassVar[dict[str, str]]
 
-    def __init__(self, **options: object) -> None:
-        """Choose options by name; an unknown value raises InputError."""
-        declared = {option.name: option for option in self.options}
-        self.chosen = {name: options.get(name, option.default) for name, option in declared.items()}
-        problems = [declared[k].problem(v, k) for k, v in self.chosen.items()]
-        if any(problems):
-            raise InputError([p for p in problems if p])
+    def _key(self, name: str) -> str:
+        return name  # beside those of effects
 
     @abstractmethod
     def derived(self, values: Values, mean_stiffness: Tensor | None) -> dict[str, Tensor]:

@@ -1,0 +1,119 @@
+"""What a simulation gets wrong of a measurement, and its name."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import fields
+from html import escape
+from math import inf
+from pathlib import Path
+from typing import Any
+
+from gear_damping.errors import InputError, Problem, nearest
+from gear_damping.explanation import explain as explaining
+from gear_damping.explanation.settings import SearchSettings
+from gear_damping.interface.model import Model
+from gear_damping.measurement.record import Measurement
+from gear_damping.physics.catalogue import catalogue
+from gear_damping.reporting.explanation_report import render, report_input
+from gear_damping.simulation.solver_settings import Solver
+
+
+class Answer:
+    """An explanation: `verdict`, `sentences`, `causes`, the extended `model`, and all of it as `content`."""
+
+    def __init__(self, found: explaining.Explanation) -> None:
+        """Hold what `gear_damping.explanation.explain` found."""
+        self.found = found
+
+    @property
+    def content(self) -> dict[str, Any]:
+        """What stands in explanation.json (docs/explanation.md)."""
+        return self.found.content
+
+    @property
+    def verdict(self) -> str:
+        """`consistent`, `explained`, `ambiguous`, `partly_explained`, `unexplained` or `data_problem`."""
+        return self.content["verdict"]
+
+    @property
+    def sentences(self) -> list[str]:
+        """The verdict in words, the most important sentence first."""
+        return self.content["sentences"]
+
+    @property
+    def causes(self) -> list[dict[str, Any]]:
+        """Every cause with `name`, `status`, `parameters` and their intervals, `confusable_with`."""
+        return self.content["causes"]
+
+    @property
+    def model(self) -> Model | None:
+        """The simulation with its causes and fitted values; None where nothing was fitted."""
+        if self.found.found is None:
+            return None
+        outcome = self.found.found.outcome
+        return Model.holding(outcome.hypothesis.model, outcome.flat_given())
+
+    def report(self, path: Path | str) -> Path:
+        """Write the report as one HTML file; an existing one stays.
+
+        Raises:
+            FileExistsError: there is such a file.
+        """
+        path = Path(path)
+        with path.open("x", encoding="utf-8") as file:
+            file.write(render(report_input(self.found)))
+        return path
+
+    def __repr__(self) -> str:
+        return f"<{self.verdict}: {self.sentences[0]}>"
+
+    def _repr_html_(self) -> str:
+        lines = "".join(f"<li>{escape(sentence)}</li>" for sentence in self.sentences)
+        return f"<p><b>{escape(self.verdict)}</b></p><ul>{lines}</ul>"
+
+
+def explain(
+    measurement: Measurement,
+    *,
+    minutes: float = inf,
+    ruled_out: Sequence[str] = (),
+    plugins: Sequence[str | Path] = (),
+    settings: Mapping[str, Any] | None = None,
+    say: Callable[[str], None] = lambda text: None,
+    progress: Callable[[int, int], None] | None = None,
+    solver: Solver | None = None,
+) -> Answer:
+    """Find what the simulation of a measured rig misses.
+
+    Args:
+        measurement: As `load` gives it.
+        minutes: Time of the search; when it is over, the best answer so far says what was not tried.
+        ruled_out: Names of effects that are known not to be there.
+        plugins: Files of one's own effects, which are tried as causes too.
+        settings: Thresholds of the search by name (conf/explain/default.yaml); the defaults where absent.
+        say: Told what is found on the way.
+        progress: Told (done, total) steps.
+        solver: Settings of the solver.
+
+    Raises:
+        InputError: the measurement cannot be explained, or a name is unknown.
+    """
+    known = catalogue(plugins)
+    wrong = [Problem("ruled_out", "no such effect", n, nearest(n, list(known))) for n in ruled_out if n not in known]
+    wrong += _wrong(settings or {})
+    if wrong:
+        raise InputError(wrong)
+    library = {name: kind for name, kind in known.items() if name not in ruled_out}
+    wanted = SearchSettings(**(settings or {}))
+    return Answer(explaining.explain(measurement, say, progress, solver, library, minutes, wanted))
+
+
+def _wrong(settings: Mapping[str, Any]) -> list[Problem]:
+    """What is wrong with thresholds: their names, and values out of range."""
+    known, problems = {one.name: one.metadata for one in fields(SearchSettings)}, []
+    for name, value in settings.items():
+        if name not in known:
+            problems.append(Problem(f"settings.{name}", "no such threshold", remedy=nearest(name, list(known))))
+        elif not known[name]["lower"] <= value <= known[name]["upper"]:
+            rule = f"must lie within {known[name]['lower']:g} … {known[name]['upper']:g}"
+            problems.append(Problem(f"settings.{name}", rule, value, "see conf/explain/default.yaml"))
+    return problems

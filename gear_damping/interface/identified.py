@@ -1,0 +1,119 @@
+"""Damping and everything else that is free, from measured records by output error."""
+
+from collections.abc import Callable, Sequence
+from functools import cached_property
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from gear_damping.errors import InputError, Problem
+from gear_damping.interface import identified_gears, identified_oscillator
+from gear_damping.interface.model import Model
+from gear_damping.measurement.record import Measurement
+from gear_damping.simulation.integrate import Progress
+from gear_damping.simulation.solver_settings import Solver
+
+Fitted = identified_gears.Fitted | identified_oscillator.Fitted
+
+
+class Identification:
+    """What was identified: `content`, as in identification.json, a `table()` and a `plot()` of it."""
+
+    def __init__(self, measurement: Measurement, fitted: Fitted) -> None:
+        """Hold a fit."""
+        self.measurement, self.fitted = measurement, fitted
+        linear = isinstance(fitted, identified_oscillator.Fitted)
+        self._words = identified_oscillator if linear else identified_gears
+
+    @cached_property
+    def content(self) -> dict[str, Any]:
+        """Parameters with 95 % intervals, damping ratio, natural frequency, residuals, lack of fit."""
+        return self._words.content_of(self.measurement, self.fitted)
+
+    @property
+    def parameters(self) -> dict[str, dict[str, Any]]:
+        """Every fitted parameter by name: `value`, `interval95`, `unit`."""
+        return self.content["parameters"]
+
+    @property
+    def damping_ratio_percent(self) -> dict[str, Any] | None:
+        """`value` and `interval95` in % of critical; None where nothing is critical."""
+        return self.content["damping_ratio_percent"]
+
+    @property
+    def converged(self) -> bool:
+        """Whether the search came to rest."""
+        return self.content["converged"]
+
+    @property
+    def model(self) -> Model | None:
+        """The model with the fitted values; None of the linear oscillator, whose parameters say it all."""
+        if isinstance(self.fitted, identified_oscillator.Fitted):
+            return None
+        outcome = self.fitted.outcome
+        return Model.holding(outcome.hypothesis.model, outcome.flat_given())
+
+    def table(self) -> str:
+        """The parameters with their intervals, and what is missing, as text."""
+        return self._words.table_of(self.content)
+
+    def plot(self) -> Figure:
+        """Measured and simulated records with their residuals."""
+        return self._words.figure_of(self.fitted, self.content)
+
+    def __repr__(self) -> str:
+        return self.table()
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{self.table()}</pre>"
+
+
+def identify(
+    measurement: Measurement,
+    model: Model | None = None,
+    free: Sequence[str] = (),
+    *,
+    say: Callable[[str], None] = lambda text: None,
+    progress: Progress | None = None,
+    solver: Solver | None = None,
+) -> Identification:
+    """Fit a simulation to the records that are to be fitted, and predict the held-out ones.
+
+    Args:
+        measurement: As `load` gives it.
+        model: What is fitted; the linear oscillator, or the nominal gear pair, where absent.
+        free: Its free parameters, by flat name (`backlash.gap`); `damping_ratio` stands for the coefficient of its one
+            damping law. Initial states and unknown zeros of channels are always free.
+        say: Told what is found on the way.
+        progress: Told (done, total) of the fit of an oscillator.
+        solver: Settings of the solver.
+
+    Raises:
+        InputError: the data are damaged, nothing can be fitted, or a name is unknown.
+    """
+    refuse_faults(measurement)
+    if model is None and free:
+        raise InputError(Problem("free", "names parameters of a model", list(free), "give the model too"))
+    if model is not None:
+        if not free:
+            raise InputError(Problem("free", "names nothing to be fitted", remedy="for example ['damping_ratio']"))
+        return Identification(measurement, identified_gears.own_fit(measurement, model, free, say, solver))
+    if measurement.system == "oscillator":
+        return Identification(measurement, identified_oscillator.linear_fit(measurement, progress, solver))
+    return Identification(measurement, identified_gears.nominal_fit(measurement, say, solver))
+
+
+def refuse_faults(measurement: Measurement) -> None:
+    """Damaged data give no damping figure.
+
+    Raises:
+        InputError: with every fault.
+    """
+    found = [finding for finding in measurement.findings if finding.severity == "data_problem"]
+    if found:
+        raise InputError(
+            [
+                Problem(f"{f.record}.{f.channel}".strip("."), f"{f.kind}: {f.message}", source=str(measurement.source))
+                for f in found
+            ]
+        )

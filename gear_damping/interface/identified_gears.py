@@ -1,0 +1,210 @@
+"""Gear pairs, and any model of one's own, fitted to whatever channels respond."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from torch import Tensor
+
+from gear_damping.errors import InputError, Problem, nearest
+from gear_damping.explanation.answer.gain import damping_ratio, final_parameters, rmse
+from gear_damping.explanation.casing.heard import is_casing
+from gear_damping.explanation.evidence.excess import excess
+from gear_damping.explanation.evidence.noise import NoiseLevel
+from gear_damping.explanation.evidence.records import Evidence, evidence_of, with_own_angles
+from gear_damping.explanation.explain import at_useful_rate, explain, fitting_solver, with_noise
+from gear_damping.explanation.model.hypothesis import Given, Hypothesis, Outcome, fit_hypothesis, natural_frequency_hz
+from gear_damping.explanation.model.nominal_gear_pair import angles_of, first_gear_pair
+from gear_damping.explanation.model.spread import spread_of
+from gear_damping.explanation.steps.too_short import too_short
+from gear_damping.identification.oscillator import linear_model
+from gear_damping.identification.output_error.records import FitRecord, FreeParameter
+from gear_damping.measurement.record import Measurement
+from gear_damping.physics.model import Model
+from gear_damping.physics.terms import DampingLaw
+from gear_damping.reporting import figures, tables
+from gear_damping.simulation.solver_settings import Solver
+
+MOST_PANELS = 3  # records of each role shown in the figure
+SHOWN = ("mesh_stiffness_shape",)  # what is fitted in many numbers stands in the JSON alone
+DAMPING_RATIO = "damping_ratio"  # stands for the coefficient of a model's one damping law
+ITERATIONS = 40  # at most, of a fit of one's own model
+Say = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A fitted model with the records it was fitted to, and their noise."""
+
+    evidence: Evidence
+    noise: NoiseLevel
+    outcome: Outcome
+
+
+def nominal_fit(measurement: Measurement, say: Say, solver: Solver | None) -> Fitted:
+    """The nominal gear pair as `explain` fits it, where no effect may be a cause.
+
+    Raises:
+        InputError: nothing was measured that a simulation can be compared with.
+    """
+    _refuse_casing(measurement)
+    found = explain(measurement, say, solver=solver, library={})
+    return Fitted(found.evidence, found.noise, found.found.outcome)
+
+
+def own_fit(measurement: Measurement, model: Model, free: Sequence[str], say: Say, solver: Solver | None) -> Fitted:
+    """A model of one's own with these parameters free; what it was not given is what the file states of the rig.
+
+    Raises:
+        InputError: the model is of another system, a name is unknown, or a free parameter begins at zero.
+    """
+    _refuse_casing(measurement)
+    evidence = at_useful_rate(evidence_of(measurement))
+    if model.system.name != evidence.system:
+        rule = f"is a {model.system.name}, the records are those of a {evidence.system}"
+        raise InputError(Problem("model", rule, remedy="give a model of the measured system"))
+    evidence, noise = with_noise(evidence, measurement, say)
+    given = {k: v for k, v in _stated(evidence).items() if k in model.parameters()} | model.given
+    begun = Hypothesis(model.system, model.effects, given, _free(model, given, free))
+    solver, own = fitting_solver(solver), None
+    if not evidence.has_index:
+        evidence = with_own_angles(evidence)
+        own = angles_of(begun, evidence, evidence.duration, solver)
+    outcome = fit_hypothesis(begun, evidence, own=own, iterations=ITERATIONS, solver=solver)
+    return Fitted(evidence, noise, outcome)
+
+
+def _refuse_casing(measurement: Measurement) -> None:
+    if is_casing(measurement):
+        rule = "an accelerometer on a casing tells no damping: its path from the mesh is unknown"
+        remedy = "measure a transmission error or a shaft, or choose task=explain for what the casing shows"
+        raise InputError(Problem("records", rule, remedy=remedy, source=str(measurement.source)))
+
+
+def _stated(evidence: Evidence) -> Given:
+    """What the file states of the rig, by flat name of the simulator's parameters."""
+    if evidence.system == "gear_pair":
+        return first_gear_pair(evidence).given
+    free, given, _ = linear_model(evidence.fit, evidence.known)
+    return given | {parameter.name: parameter.start for parameter in free}
+
+
+def _free(model: Model, given: Given, names: Sequence[str]) -> tuple[FreeParameter, ...]:
+    """Free parameters that begin where the model has them."""
+    declared, found, problems = model.parameters(), [], []
+    for name in names:
+        flat = _law(model) if name == DAMPING_RATIO and name not in declared else name
+        if flat is None or flat not in declared:
+            remedy = nearest(name, [*declared, DAMPING_RATIO])
+            problems.append(Problem(f"free.{name}", "no such parameter of the model", remedy=remedy))
+            continue
+        start, known = given.get(flat, declared[flat].default), declared[flat]
+        if known.vector or not (start or known.unit == "rad"):
+            rule = "is a list, which is not fitted" if known.vector else "begins at zero, so that its size is unknown"
+            problems.append(Problem(f"free.{name}", rule, remedy="give the model a value that is about right"))
+            continue
+        scale = 1.0 if known.unit == "rad" else abs(float(start))
+        grows = start > 0 and known.lower >= 0
+        bounds = {"lower": known.lower, "upper": known.upper}
+        found.append(FreeParameter(flat, float(start), scale, logarithmic=grows, **bounds))
+    if problems:
+        raise InputError(problems)
+    return tuple(found)
+
+
+def _law(model: Model) -> str | None:
+    """The coefficient of the model's one damping law."""
+    laws = [effect for effect in model.effects if isinstance(effect, DampingLaw)]
+    return f"{laws[0].name}.{laws[0].parameters[0].name}" if len(laws) == 1 else None
+
+
+def content_of(measurement: Measurement, found: Fitted) -> dict[str, Any]:
+    """What stands in identification.json."""
+    evidence, outcome = found.evidence, found.outcome
+    unit, factor = evidence.channel.declared_unit, evidence.channel.declared_factor
+    spread = spread_of(outcome, evidence)
+    left = excess(outcome.holdout, evidence.held, found.noise)
+    roles = {"fit": (evidence.fitted, outcome.fit_residuals), "holdout": (evidence.held, outcome.holdout)}
+    return {
+        "system": measurement.system,
+        "method": "output_error",
+        "channels": [channel.name for channel in evidence.fit[0].channels],
+        "parameters": final_parameters(outcome, spread, evidence),
+        "damping_ratio_percent": damping_ratio(outcome, spread),
+        "natural_frequency_hz": {"value": natural_frequency_hz(outcome.hypothesis.model, outcome.flat_given())},
+        "residual": {
+            role: {"rmse": rmse(residuals) / factor, "unit": unit} for role, (_, residuals) in roles.items()
+        },
+        "lack_of_fit": {
+            "significant": left.significant,
+            "excess_percent": left.percent,
+            "threshold_percent": left.threshold,
+            "source": str(measurement.source),
+        },
+        "too_short": too_short(evidence) or None,
+        "segment_s": evidence.segments.seconds or None,
+        "records": {
+            record.name: {"role": role, "rmse": rmse([residual]) / factor, "unit": unit}
+            for role, (records, residuals) in roles.items()
+            for record, residual in zip(records, residuals, strict=True)
+        },
+        "converged": outcome.fitted.converged,
+    }
+
+
+def table_of(content: dict[str, Any]) -> str:
+    """The parameters with their intervals, and what is missing."""
+    rows = []
+    shown = {k: v for k, v in content["parameters"].items() if not k.startswith(SHOWN)}
+    for name, found in {"damping_ratio_percent": content["damping_ratio_percent"], **shown}.items():
+        if found is not None:
+            low, high = found["interval95"]
+            rows.append((name, f"{found['value']:.6g}", f"{low:.6g} … {high:.6g}", found["unit"]))
+    rows.append(("natural_frequency_hz", f"{content['natural_frequency_hz']['value']:.6g}", "", "Hz"))
+    for name, found in content["records"].items():
+        rows.append((f"residual of {name} ({found['role']})", f"{found['rmse']:.4g}", "", found["unit"]))
+    text = tables.parameter_table(f"identified by output error from {', '.join(content['channels'])}", rows)
+    lacking = content["lack_of_fit"]
+    if lacking["significant"]:
+        text = (
+            f"{text.rstrip()}\n\nlack of fit: the nominal simulation misses {lacking['excess_percent']:.3g} % of the "
+            f"held-out signal's variance beyond the noise, and the intervals do not cover what is missing; "
+            f"task=explain measurement.path={lacking['source']} looks for its name\n"
+        )
+    return f"{text.rstrip()}\n\n{content['too_short']}\n" if content["too_short"] else text
+
+
+def figure_of(found: Fitted, content: dict[str, Any]) -> figures.Figure:
+    """Measured and simulated records, with what was found."""
+    evidence, outcome = found.evidence, found.outcome
+    factor = evidence.channel.declared_factor
+    panels = [
+        *_panels("fit", evidence.fitted[:MOST_PANELS], outcome.fit_residuals[:MOST_PANELS], factor),
+        *_panels("holdout", evidence.held[:MOST_PANELS], outcome.holdout[:MOST_PANELS], factor),
+    ]
+    text = [f"natural frequency {content['natural_frequency_hz']['value']:.5g} Hz"]
+    if ratio := content["damping_ratio_percent"]:
+        low, high = ratio["interval95"]
+        text = [f"damping ratio {ratio['value']:.4g} % ({low:.4g} … {high:.4g})", *text]
+    return figures.identification_figure(panels, content["residual"]["fit"]["unit"], text, evidence.channel.name)
+
+
+def _panels(
+    role: str, records: Sequence[FitRecord], residuals: Sequence[Tensor], factor: float
+) -> list[dict[str, Any]]:
+    """The first channel of records beside what the simulation makes of it."""
+    found = []
+    for record, residual in zip(records, residuals, strict=True):
+        samples = len(residual) // len(record.channels)
+        measured = record.response[:samples]
+        found.append(
+            {
+                "name": record.name,
+                "role": role,
+                "time": np.arange(samples) / record.sampling_rate,
+                "measured": measured.numpy() / factor,
+                "simulated": (measured - residual[:samples]).numpy() / factor,
+            }
+        )
+    return found

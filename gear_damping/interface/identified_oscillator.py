@@ -1,0 +1,144 @@
+"""Oscillators, fitted by the linear model, with what it lacks."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from gear_damping.identification.observation import fit_record, known_of, require_alike, require_fitted
+from gear_damping.identification.oscillator import Estimate, OscillatorFit, fit_oscillator
+from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.identification.output_error.segments import Segments
+from gear_damping.interface.lack_of_fit import lack_of_fit, sentence
+from gear_damping.measurement.record import Channel, Measurement, Record
+from gear_damping.reporting import figures, tables
+from gear_damping.simulation.integrate import Progress
+from gear_damping.simulation.solver_settings import Solver
+
+MOST_PANELS = 3  # records of each role shown in the figure
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A fitted linear oscillator with the records by role, and the channel that responded."""
+
+    found: OscillatorFit
+    roles: Mapping[str, Sequence[FitRecord]]
+    channel: Channel
+
+
+def linear_fit(measurement: Measurement, progress: Progress | None, solver: Solver | None) -> Fitted:
+    """The linear oscillator fitted to the records that are for that.
+
+    Raises:
+        InputError: a record has no response that can be fitted, or some have an input that others lack.
+    """
+    require_fitted(measurement)
+    known = known_of(measurement)
+    spring = known.values.get("stiffness", 1.0) != 0
+    roles = {
+        "fit": [fit_record(r, "oscillator", spring) for r in _fit_on(measurement)],
+        "holdout": [fit_record(r, "oscillator", spring) for r in measurement.with_role("holdout")],
+    }
+    require_alike([*roles["fit"], *roles["holdout"]], str(measurement.source))
+    channels = {name: c for record in measurement.records for name, c in record.channels.items()}
+    channel = channels[roles["fit"][0].observed.name]
+    stated = Segments(measurement.segment_s, exact=True) if measurement.segment_s else None
+    found = fit_oscillator(roles["fit"], roles["holdout"], progress, solver, known, stated)
+    return Fitted(found, roles, channel)
+
+
+def _fit_on(measurement: Measurement) -> Sequence[Record]:
+    return measurement.with_role("fit") or measurement.with_role(None)
+
+
+def content_of(measurement: Measurement, fitted: Fitted) -> dict[str, Any]:
+    """What stands in identification.json."""
+    found, roles, channel = fitted.found, fitted.roles, fitted.channel
+    content = _identification(found, measurement, roles, channel)
+    lacking = lack_of_fit(found.predictions, roles["fit"], roles["holdout"], channel)
+    return content | {"lack_of_fit": lacking and lacking | {"source": str(measurement.source)}}
+
+
+def table_of(content: dict[str, Any]) -> str:
+    """The parameters with their intervals, and what is missing."""
+    text, lacking = _table(content), content["lack_of_fit"]
+    if lacking and lacking["significant"]:
+        text = f"{text.rstrip()}\n\n{sentence(lacking, lacking['source'])}\n"
+    return text
+
+
+def _identification(
+    found: OscillatorFit, measurement: Measurement, roles: Mapping[str, Sequence[FitRecord]], channel: Channel
+) -> dict[str, Any]:
+    unit, factor = channel.declared_unit, channel.declared_factor
+
+    def residual(value: float | None) -> dict[str, Any] | None:
+        return None if value is None else {"rmse": value / factor, "unit": unit}
+
+    def plain(estimate: Estimate | None) -> dict[str, Any] | None:
+        return None if estimate is None else asdict(estimate)
+
+    records = {
+        record.name: {
+            "role": role,
+            "rmse": float(found.residuals[record.name].square().mean().sqrt()) / factor,
+            "unit": unit,
+        }
+        for role, listed in roles.items()
+        for record in listed
+    }
+    return {
+        "system": measurement.system,
+        "method": "output_error",
+        "channel": channel.name,
+        "parameters": {name.split(".")[-1]: asdict(value) for name, value in found.parameters.items()},
+        "damping_ratio_percent": plain(found.damping_ratio_percent),
+        "natural_frequency_hz": plain(found.natural_frequency_hz),
+        "log_decrement": plain(found.log_decrement),
+        "residual": {"fit": residual(found.rmse["fit"]), "holdout": residual(found.rmse["holdout"])},
+        "segment_s": found.segments.seconds or None,
+        "own": found.own,
+        "records": records,
+        "converged": found.converged,
+    }
+
+
+def _table(content: dict[str, Any]) -> str:
+    rows = []
+    named = {key: content[key] for key in ("damping_ratio_percent", "natural_frequency_hz", "log_decrement")}
+    for name, found in {**named, **content["parameters"]}.items():
+        if found is not None:
+            low, high = found["interval95"]
+            rows.append((name, f"{found['value']:.6g}", f"{low:.6g} … {high:.6g}", found["unit"]))
+    for name, found in content["records"].items():
+        rows.append((f"residual of {name} ({found['role']})", f"{found['rmse']:.4g}", "", found["unit"]))
+    title = "identified by output error, per unit of mass"
+    if content["segment_s"]:
+        title += f", in segments of {content['segment_s']:.3g} s"
+    return tables.parameter_table(title, rows)
+
+
+def figure_of(fitted: Fitted, content: dict[str, Any]) -> figures.Figure:
+    """Measured and simulated records, with what was found."""
+    found, roles, channel = fitted.found, fitted.roles, fitted.channel
+    factor, panels = channel.declared_factor, []
+    for record in (*roles["fit"][:MOST_PANELS], *roles["holdout"][-MOST_PANELS:]):
+        simulated = found.predictions[record.name]
+        samples = len(simulated) // len(record.channels)
+        panels.append(
+            {
+                "name": record.name,
+                "role": content["records"][record.name]["role"],
+                "time": np.arange(samples) / record.sampling_rate,
+                "measured": record.response[:samples].numpy() / factor,
+                "simulated": simulated[:samples].numpy() / factor,
+            }
+        )
+    stated = content["parameters"].items()
+    text = [f"{key.replace('_', ' ')} {entry['value']:.4g} {entry['unit']}" for key, entry in stated]
+    if zeta := content["damping_ratio_percent"]:
+        text = [f"damping ratio {zeta['value']:.4g} % ({zeta['interval95'][0]:.4g} … {zeta['interval95'][1]:.4g})"]
+        text.append(f"natural frequency {content['natural_frequency_hz']['value']:.5g} Hz")
+    return figures.identification_figure(panels, content["residual"]["fit"]["unit"], text, channel.name)

@@ -1,0 +1,136 @@
+"""A model with its values, and the configuration that says the same."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from gear_damping.config.simulator import SimulatorSettings, read_simulator
+from gear_damping.config.source import Origin
+from gear_damping.errors import InputError, Problem
+from gear_damping.physics import model as physics
+from gear_damping.physics.systems.base import System
+from gear_damping.physics.terms import Effect
+
+HOW = {
+    "n_runs": 1, "n_samples": 2, "damping_law": None, "damping_ratio_percent": None, "diverged_share": 0.0,
+    "extended": None, "plugins": [], "solver": {"accuracy": 1e-5, "substeps": None, "engine": "auto", "chunk": 4096},
+}  # fmt: skip
+FIXED = {"name": "fixed", "start": "static", "perturbation": 0.0}  # a family of which nothing varies
+HEADER = "# A simulator; every value is SI. Use it by simulator.extended=PATH, or gd.Model.from_config(PATH).\n"
+
+
+class Model(physics.Model):
+    """A base system with its effects and the values of both.
+
+    Printed, it is its equation, term by term. Two models are equal where system, effects and values are.
+    """
+
+    def __init__(self, system: System, effects: Sequence[Effect] = ()) -> None:
+        """Compose it.
+
+        Args:
+            system: `GearPair(...)` or `Oscillator(...)`.
+            effects: Any of the catalogue's, and of one's own.
+
+        Raises:
+            InputError: an effect does not go with the system, is there twice, lacks another one that it needs or a
+                value without a default, or there is not exactly one mesh stiffness in a gear pair.
+        """
+        super().__init__(system, effects)
+        self.prepare(self.values(1))  # lists of unequal length and missing values show here
+
+    @classmethod
+    def from_config(cls, node: Mapping[str, Any] | Path | str) -> "Model":
+        """The model of a `simulator` node, or of a file that holds one, such as `extended_simulator.yaml`.
+
+        Args:
+            node: Keys as on the command line: numbers in SI or {value, unit}, or with the unit in the key.
+
+        Raises:
+            InputError: everything that is wrong with it.
+        """
+        content, source = (node, "the mapping") if isinstance(node, Mapping) else (_read(Path(node)), str(node))
+        return cls.of_settings(read_simulator({**HOW, **content}, FIXED, _Given(source)))
+
+    @classmethod
+    def of_settings(cls, settings: SimulatorSettings) -> "Model":
+        """The model that the command line was asked for."""
+        return cls.holding(settings.model, settings.given)
+
+    @classmethod
+    def holding(cls, model: physics.Model, values: Mapping[str, float | tuple[float, ...]]) -> "Model":
+        """A model with values, by flat name in SI, in its own hands."""
+        known = model.parameters()
+        given = {name: value for name, value in values.items() if name in known}
+        system = type(model.system)(**model.system.chosen, **{k: v for k, v in given.items() if "." not in k})
+        effects = [
+            type(effect)(**effect.chosen, **{p.name: given[f"{effect.name}.{p.name}"] for p in effect.parameters
+                                             if f"{effect.name}.{p.name}" in given})
+            for effect in model.effects
+        ]  # fmt: skip
+        return cls(system, effects)
+
+    def to_config(self) -> dict[str, Any]:
+        """The `simulator` node that describes it: plain values in SI, every option, every value that was given."""
+        node: dict[str, Any] = {"system": self.system.name, **self.system.chosen, **_plain(self.system.given)}
+        return node | {effect.name: {**effect.chosen, **_plain(effect.given)} for effect in self.effects}
+
+    def write(self, path: Path | str) -> Path:
+        """Write the node as YAML, for `simulator.extended=PATH` and `Model.from_config`; an existing file stays.
+
+        Raises:
+            FileExistsError: there is such a file.
+        """
+        path = Path(path)
+        with path.open("x", encoding="utf-8") as file:
+            file.write(HEADER + yaml.safe_dump(self.to_config(), sort_keys=False))
+        return path
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Model):
+            return NotImplemented
+        return (self.system, self.effects) == (other.system, other.effects)
+
+    def __hash__(self) -> int:
+        return hash((self.system, self.effects))
+
+    def __repr__(self) -> str:
+        return f"Model({self.system!r}, [{', '.join(map(repr, self.effects))}])"
+
+    def __str__(self) -> str:
+        declared, lines = self.parameters(), [repr(self.system), *(f"  {effect}" for effect in self.effects)]
+        for name, value in self.given.items():
+            shown = f"{value:g}" if isinstance(value, float) else "[" + ", ".join(f"{v:g}" for v in value) + "]"
+            unit = declared[name].unit
+            lines.append(f"    {name} = {shown}" + ("" if unit == "1" else f" {unit}"))
+        return "\n".join(lines)
+
+
+class _Given(Origin):
+    """Where values come from that were handed over in Python."""
+
+    def __init__(self, source: str) -> None:
+        super().__init__()
+        object.__setattr__(self, "source", source)
+
+    def of(self, key: str) -> str:
+        """The mapping, or the file."""
+        return self.source
+
+
+def _read(path: Path) -> Mapping[str, Any]:
+    try:
+        content = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        rule = f"cannot be read: {str(error).splitlines()[0]}"
+        raise InputError(Problem("simulator", rule, str(path), "give the path of a simulator's YAML")) from error
+    if not isinstance(content, Mapping) or "system" not in content:
+        remedy = "give a file that begins with `system: gear_pair`, as extended_simulator.yaml does"
+        raise InputError(Problem("simulator", "holds no simulator: it names no system", str(path), remedy))
+    return content
+
+
+def _plain(given: Mapping[str, float | tuple[float, ...]]) -> dict[str, Any]:
+    return {name: list(value) if isinstance(value, tuple) else value for name, value in given.items()}

@@ -1,0 +1,200 @@
+"""Simulated runs with what one does with them: channels, wavelet transforms, pictures."""
+
+from collections.abc import Mapping, Sequence
+from math import pi
+from typing import Any
+
+import numpy as np
+import torch
+from matplotlib.figure import Figure
+from numpy.typing import ArrayLike, NDArray
+
+from gear_damping.errors import InputError
+from gear_damping.physics.model import Model
+from gear_damping.reporting import figures
+from gear_damping.signals.wavelets import MorletCWT, RickerCWT
+from gear_damping.simulation.integrate import Progress
+from gear_damping.simulation.runs import Runs
+from gear_damping.simulation.simulate import simulate as integrate
+from gear_damping.simulation.solver_settings import Solver
+
+WAVELETS = {"ricker": RickerCWT, "morlet": MorletCWT}
+LOWEST, HIGHEST, SCALES = 4.0, 0.4, 32  # periods of the record; share of the sampling rate; frequencies between
+Array = NDArray[np.float64]
+
+
+class Simulation:
+    """Runs of one model, SI.
+
+    Every channel is an attribute, (batch, time): `transmission_error` or `displacement`, `velocity`, states of effects,
+    inputs and angles; `names` lists them.
+    """
+
+    def __init__(self, runs: Runs) -> None:
+        """Hold runs of `gear_damping.simulation.simulate`."""
+        self.runs = runs
+
+    @property
+    def model(self) -> Model:
+        """The model."""
+        return self.runs.model
+
+    @property
+    def sampling_rate(self) -> float:
+        """Hz."""
+        return self.runs.sampling_rate
+
+    @property
+    def time(self) -> Array:
+        """Time of the samples in s, (time,)."""
+        return self.runs.time.numpy()
+
+    @property
+    def damping_ratio_percent(self) -> Array:
+        """Equivalent damping ratio of all damping laws together at the reference velocity, % of critical, (batch,)."""
+        return self.runs.damping_ratio_percent.numpy()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Channels, the response first."""
+        others = (self.runs.states | self.runs.inputs | self.runs.angles).keys() - {"displacement"}
+        return (self.model.system.response, *sorted(others))
+
+    def __getattr__(self, name: str) -> Array:
+        if name.startswith("_") or name == "runs":
+            raise AttributeError(name)
+        return self.channel(name)
+
+    def channel(self, name: str) -> Array:
+        """A channel by its name, such as `shaft_torsion.twist`, (batch, time).
+
+        Raises:
+            AttributeError: there is no such channel.
+        """
+        try:
+            return self.runs.channel(name).numpy()
+        except KeyError as error:
+            raise AttributeError(f"no channel '{name}'; there are {', '.join(self.names)}") from error
+
+    def recorded(self, seed: int = 0) -> Array:
+        """The response behind the model's sensors, noise included, (batch, time)."""
+        return self.runs.record(torch.Generator().manual_seed(seed)).numpy()
+
+    def cwt(
+        self, wavelet: str = "ricker", frequencies_hz: Sequence[float] | None = None, channel: str | None = None
+    ) -> tuple[Array, Array]:
+        """Continuous wavelet transform of a channel.
+
+        Args:
+            wavelet: `ricker` (real) or `morlet` (complex).
+            frequencies_hz: 32 in equal ratios from four periods of the record to 0.4 of the rate where absent.
+            channel: The response where absent.
+
+        Returns:
+            Coefficients (batch, frequencies, time), and the frequencies in Hz.
+
+        Raises:
+            ValueError: there is no such wavelet, or a frequency is out of range.
+        """
+        if wavelet not in WAVELETS:
+            raise ValueError(f"no wavelet '{wavelet}'; choose one of {', '.join(WAVELETS)}")
+        if frequencies_hz is None:
+            lowest = LOWEST * self.sampling_rate / len(self.runs.time)
+            frequencies_hz = np.geomspace(lowest, HIGHEST * self.sampling_rate, SCALES).tolist()
+        transform = WAVELETS[wavelet](self.sampling_rate, frequencies_hz=frequencies_hz)
+        signal = self.runs.channel(channel or self.model.system.response)
+        return transform(signal).numpy(), np.asarray(frequencies_hz)
+
+    def plot(self, run: int = 0) -> Figure:
+        """One run over time, its spectrum (in orders where there is a shaft), and its phase plane."""
+        return run_figure(self.runs, self.runs.response, run)
+
+    def __len__(self) -> int:
+        return len(self.runs.status)
+
+    def __repr__(self) -> str:
+        samples, seconds = len(self.runs.time), len(self.runs.time) / self.sampling_rate
+        lost = f", {self.runs.n_diverged} diverged" if self.runs.n_diverged else ""
+        return f"<{len(self)} runs of {samples} samples, {seconds:.4g} s at {self.sampling_rate:g} Hz{lost}>"
+
+
+def simulate(
+    model: Model,
+    *,
+    sampling_rate: float,
+    n_samples: int,
+    batch: int = 1,
+    inputs: Mapping[str, ArrayLike] | None = None,
+    values: Mapping[str, ArrayLike] | None = None,
+    seed: int = 0,
+    solver: Solver | None = None,
+    progress: Progress | None = None,
+    **parameters: ArrayLike,
+) -> Simulation:
+    """Simulate a batch of runs.
+
+    Args:
+        model: What is simulated, with its values.
+        sampling_rate: Output samples per second, Hz.
+        n_samples: Output samples of a run.
+        batch: Runs.
+        inputs: Measured series that drive it, (time,) or (batch, time), SI: `force`, `base_acceleration`;
+            `pinion_torque`, `gear_torque`, `pinion_angle`.
+        values: Parameters in the place of the model's, by flat name (`backlash.gap`) in SI: numbers, or (batch,).
+        seed: Of drawn loads.
+        solver: Settings of the solver.
+        progress: Told (done, total).
+        parameters: The same as `values` for parameters of the system (`pinion_speed=300`).
+
+    Raises:
+        InputError: a name is unknown, or a value out of range.
+    """
+    given = _within_bounds(model, {**(values or {}), **parameters})
+    series = {name: _rows(value) for name, value in (inputs or {}).items()}
+    runs = integrate(
+        model,
+        model.values(batch, **given),
+        sampling_rate=sampling_rate,
+        n_samples=n_samples,
+        inputs=series,
+        solver=solver,
+        seed=seed,
+        progress=progress,
+    )
+    return Simulation(runs)
+
+
+def _within_bounds(model: Model, values: Mapping[str, ArrayLike]) -> dict[str, torch.Tensor]:
+    """Values as tensors; the model itself refuses names that it does not know."""
+    found = {name: torch.as_tensor(np.asarray(value, dtype=float)) for name, value in values.items()}
+    declared = model.parameters()
+    ends = [(name, float(end)) for name, v in found.items() if name in declared for end in (v.min(), v.max())]
+    problems = [problem for name, end in ends if (problem := declared[name].problem(end, name))]
+    if problems:
+        raise InputError(list(dict.fromkeys(problems)))
+    return found
+
+
+def _rows(series: ArrayLike) -> torch.Tensor:
+    return torch.as_tensor(np.atleast_2d(np.asarray(series, dtype=float)))
+
+
+def run_figure(runs: Runs, response: torch.Tensor, run: int = 0) -> Figure:
+    """One run over time, its spectrum and its phase plane.
+
+    Args:
+        runs: The runs.
+        response: What is shown of them, (batch, time).
+        run: Which.
+    """
+    signal, velocity = response[run].numpy(), runs.states["velocity"][run].numpy()
+    name = runs.model.system.response
+    words: dict[str, Any] = {"label": name.replace("_", " "), "title": f"run {run + 1} of {len(runs.status)}"}
+    if "pinion_speed" not in runs.values:
+        return figures.simulation_figure(runs.time.numpy(), signal, velocity, "m", runs.sampling_rate, **words)
+    speed, teeth = (float(runs.values[key][run]) for key in ("pinion_speed", "n_teeth_pinion"))
+    return figures.simulation_figure(
+        runs.time.numpy(), 1e6 * signal, velocity, "µm", runs.sampling_rate, **words,
+        shaft_frequency_hz=abs(speed) / (2 * pi) or None, n_teeth_pinion=teeth,
+        gear_order=teeth / float(runs.values["n_teeth_gear"][run]),
+    )  # fmt: skip

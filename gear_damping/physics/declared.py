@@ -1,0 +1,93 @@
+"""What systems and effects have in common: options and parameters that are declared, and chosen by name."""
+
+from inspect import Parameter as Argument
+from inspect import Signature
+from math import isfinite
+from typing import Any, ClassVar
+
+from gear_damping.errors import InputError, Problem, nearest
+from gear_damping.physics.parameter import Option, Parameter
+
+Given = dict[str, float | tuple[float, ...]]
+
+
+class Declared:
+    """Something with a name, options and parameters; two of them are equal where all of that is.
+
+    `chosen` holds every option, `given` those parameters that were given, in SI.
+    """
+
+    name: ClassVar[str]
+    parameters: ClassVar[tuple[Parameter, ...]]
+    options: ClassVar[tuple[Option, ...]] = ()
+
+    def __init_subclass__(cls, **kwargs: Any) -> None:
+        """Give every final class the signature of its options and parameters."""
+        super().__init_subclass__(**kwargs)
+        known = [*getattr(cls, "parameters", ()), *cls.options]
+        own = [Argument(one.name, Argument.KEYWORD_ONLY, default=one.default) for one in known]
+        cls.__signature__ = Signature(own)
+
+    def __init__(self, **given: Any) -> None:
+        """Choose options and parameters by name.
+
+        Args:
+            given: Options, and parameters in SI: numbers, or sequences of numbers for a list.
+
+        Raises:
+            InputError: everything that is wrong: unknown names, values out of range.
+        """
+        options = {option.name: option for option in self.options}
+        declared = {parameter.name: parameter for parameter in self.parameters}
+        known = [*options, *declared]
+        problems = [
+            Problem(self._key(name), "no such parameter or option", remedy=nearest(name, known) if known else "")
+            for name in given
+            if name not in known
+        ]
+        self.chosen = {name: given.get(name, option.default) for name, option in options.items()}
+        problems += [p for name, value in self.chosen.items() if (p := options[name].problem(value, self._key(name)))]
+        self.given: Given = {}
+        for name in (name for name in declared if name in given):
+            found = _numbers(given[name], declared[name], self._key(name))
+            problems += [found] if isinstance(found, Problem) else []
+            self.given[name] = found
+        if problems:
+            raise InputError(problems)
+
+    def _key(self, name: str) -> str:
+        return f"{self.name}.{name}"
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Declared):
+            return NotImplemented
+        return type(self) is type(other) and (self.chosen, self.given) == (other.chosen, other.given)
+
+    def __hash__(self) -> int:
+        return hash((type(self), tuple(sorted(self.chosen.items())), tuple(sorted(self.given.items()))))
+
+    def __repr__(self) -> str:
+        defaults = {option.name: option.default for option in self.options}
+        other = {name: value for name, value in self.chosen.items() if value != defaults[name]}
+        words = ", ".join(f"{name}={_plain(value)}" for name, value in (self.given | other).items())
+        return f"{type(self).__name__}({words})"
+
+
+def _numbers(value: Any, parameter: Parameter, key: str) -> float | tuple[float, ...] | Problem:
+    """The value of a parameter, or what is wrong with it."""
+    listed = list(value) if parameter.vector and hasattr(value, "__iter__") and not isinstance(value, str) else [value]
+    try:
+        numbers = [float(one) for one in listed if not isinstance(one, bool | str)]
+    except (TypeError, ValueError):
+        numbers = []
+    if len(numbers) < len(listed) or not numbers or not all(map(isfinite, numbers)):
+        what = "numbers" if parameter.vector else "number"
+        rule = f"must be {'finite' if parameter.vector else 'a finite'} {what} in {parameter.unit}"
+        return Problem(key, rule, value, "give it in SI")
+    wrong = (parameter.problem(number, key) for number in numbers)
+    problem = next((one for one in wrong if one), None)
+    return problem or (tuple(numbers) if parameter.vector else numbers[0])
+
+
+def _plain(value: object) -> str:
+    return f"{value:g}" if isinstance(value, float) else repr(value)
