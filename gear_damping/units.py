@@ -62,7 +62,8 @@ _ATOMS: dict[str, Unit] = {
     "rev": Unit(2 * pi, _RAD), "rpm": Unit(2 * pi / 60, _RAD * _S**-1),
     "V": Unit(1.0, _V), "mV": Unit(1e-3, _V), "uV": Unit(1e-6, _V),
     "A": Unit(1.0, _A), "mA": Unit(1e-3, _A),
-    "gn": Unit(9.80665, _M * _S**-2),
+    "gn": Unit(9.80665, _M * _S**-2), "kNm": Unit(1e3, _N * _M), "mNm": Unit(1e-3, _N * _M),
+    "mil": Unit(2.54e-5, _M), "ips": Unit(0.0254, _M * _S**-1),
 }  # fmt: skip
 
 _POUND = "write 'lbf' for a force, or give a mass in kg"
@@ -73,7 +74,14 @@ _MEANT = {
 
 _SPELLINGS = {"µ": "u", "μ": "u", "·": "*", "²": "^2", "³": "^3", "°": "deg", "**": "^"}
 _SPELLINGS |= {"N.m": "N*m", "N m": "N*m"}
-_FACTOR = re.compile(r"^(?P<atom>[A-Za-z%]+|1)(\^(?P<power>-?\d+(\.\d+)?))?$")
+_ALSO = {
+    "sec": "s", "secs": "s", "second": "s", "seconds": "s", "msec": "ms", "usec": "us", "minutes": "min",
+    "micron": "um", "microns": "um", "mils": "mil", "thou": "mil", "inch": "in", "inches": "in", "Inch": "in",
+    "RPM": "rpm", "U/min": "rpm", "Volt": "V", "Volts": "V", "volt": "V", "volts": "V", "Newton": "N", "hz": "Hz",
+    "HZ": "Hz", "Deg": "deg", "degree": "deg", "degrees": "deg", "radian": "rad", "radians": "rad",
+}  # fmt: skip
+# a power may stand without its sign: m/s2
+_FACTOR = re.compile(r"^(?P<atom>[A-Za-z%]+|1)((\^(?P<power>-?\d+(\.\d+)?))|(?P<raised>[23]))?$")
 
 
 def unit_names() -> tuple[str, ...]:
@@ -90,7 +98,7 @@ def parse_unit(text: str, key: str = "unit", source: str = "") -> Unit:
             gravity to others. By itself it is the unit of an accelerometer: nothing here is a mass.
     """
     plain = text.strip()
-    plain = "gn" if plain == "g" else plain
+    plain = "gn" if plain == "g" else _ALSO.get(plain, plain)
     for spelling, ours in _SPELLINGS.items():
         plain = plain.replace(spelling, ours)
     plain = plain.replace("(", "").replace(")", "") if "/" not in plain else plain
@@ -107,10 +115,12 @@ def parse_unit(text: str, key: str = "unit", source: str = "") -> Unit:
 def _parse_factor(piece: str, text: str, key: str, source: str) -> tuple[Unit, float]:
     match = _FACTOR.match(piece)
     name = match["atom"] if match else piece
-    if not match or name not in _ATOMS:
+    name = _ALSO.get(name, name)
+    alone = match and match["raised"] and "/" not in text and "*" not in text  # `V2` may be the name of a channel
+    if not match or name not in _ATOMS or alone:
         remedy = _MEANT.get(name.lower()) or nearest(name, list(_ATOMS))
         raise InputError(Problem(key, f"unknown unit '{text}'", remedy=remedy, source=source))
-    return _ATOMS[name], float(match["power"] or 1)
+    return _ATOMS[name], float(match["power"] or match["raised"] or 1)
 
 
 def to_si(value: float, unit: str, expected: str, key: str = "value", source: str = "") -> float:

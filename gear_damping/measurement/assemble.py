@@ -194,6 +194,8 @@ def _unit_conflict(raw: RawChannel, conversion: Conversion) -> Finding | None:
     except InputError:
         return None  # brackets that hold no unit
     stated = parse_unit(raw.unit)
+    if header.dimension != stated.dimension and raw.plan.sensor["gain"] != 1:
+        return None  # a gain of another kind lies between: volts in the file, what they stand for in the YAML
     if (header.dimension, header.factor) == (stated.dimension, stated.factor):
         return None
     message = (

@@ -18,6 +18,9 @@ SAMPLES_PER_PERIOD = 100  # of the fastest content; more only slow the work
 _CONTENT = 0.999  # share of the energy that counts as content
 _DRIFT = 0.1  # of the way that a straight line goes; what may lie about it
 _BEND, _BENT_SHARE, _FEWEST_BENDS = 1e-4, 0.6, 10  # of the largest bend; of the samples; in a record
+_FEWEST_MARKS, _MOST_MARKED = 3, 0.1  # samples of one value; share of all
+_WITH_A_STROKE = 5  # samples between an input's largest value and a leap that it made
+STRUCK = ("force", "base_acceleration")  # which one blow may make
 _LONE = 5.0  # times as far from the median as any other sample
 _SPEEDS = ("velocity", "pinion_speed", "gear_speed")
 _APPLIED = (*INPUTS, "pinion_angle", "pinion_speed")  # what drives the system
@@ -37,7 +40,9 @@ def check_record(record: Record) -> tuple[Finding, ...]:
     """Everything suspicious in the values of a record, beside the findings that it has already."""
     found = []
     for channel in record.channels.values():
-        found += [_constant(channel) or _clipped(channel) or _straight_lines(channel), _spike(channel)]
+        marked = _marked(channel)
+        found += [marked or _constant(channel) or _clipped(channel) or _straight_lines(channel)]
+        found += [] if marked or channel.name in STRUCK else [_spike(channel, _strokes(record))]
     if not any(finding.severity == "data_problem" and finding.channel == "time" for finding in record.findings):
         found.append(stamps_against_values(record))
     found += [_magnitude(record), *check_shafts(record), *not_compared(record), _oversampled(record)]
@@ -54,8 +59,28 @@ def _constant(channel: Channel) -> Finding | None:
     return Finding("constant_channel", message, channel=channel.name, severity=severity)
 
 
-def _spike(channel: Channel) -> Finding | None:
-    """One sample, or two, that lie many times as far from the rest as any other: no motion does that."""
+def _marked(channel: Channel) -> Finding | None:
+    """A value far from all others that comes back exactly: what a logger writes where it has none (-9999)."""
+    values, away = channel.values, np.abs(channel.values - np.median(channel.values))
+    at = values == values[np.argmax(away)]
+    count = int(at.sum())
+    if not _FEWEST_MARKS <= count < _MOST_MARKED * at.size or away.max() < _LONE * away[~at].max():
+        return None
+    where = int(np.argmax(at))
+    message = (
+        f"{channel.name} is {values[where]:.6g} {channel.unit} at {count} samples, the first at {where}, and nowhere "
+        "else near it: a mark for a missing value; put what was measured there, or use slices beside it"
+    )
+    return Finding("marked_values", message, channel=channel.name, sample=where)
+
+
+def _strokes(record: Record) -> NDArray[np.int64]:
+    """Where an input is largest: a hammer's blow, with which a response may leap."""
+    return np.array([np.argmax(np.abs(c.values)) for name, c in record.channels.items() if name in STRUCK], dtype=int)
+
+
+def _spike(channel: Channel, strokes: NDArray[np.int64]) -> Finding | None:
+    """One sample, or two, that lie many times as far from the rest as any other: no motion does that by itself."""
     away = np.abs(channel.values - np.median(channel.values))
     most = np.argpartition(away, -3)[-3:] if away.size > 3 else np.arange(away.size)
     order = most[np.argsort(away[most])[::-1]]
@@ -63,6 +88,8 @@ def _spike(channel: Channel) -> Finding | None:
     if not lone:
         return None
     places = np.sort(order[:lone])
+    if strokes.size and np.min(np.abs(places[:, None] - strokes)) <= _WITH_A_STROKE:
+        return None
     message = (
         f"{channel.name} is {channel.values[places[0]]:.4g} {channel.unit} at sample {places[0]}, "
         f"{away[order[lone - 1]] / away[order[lone]]:.3g} times as far from its median as any other sample: a fault of "

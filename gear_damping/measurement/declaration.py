@@ -172,7 +172,7 @@ def _encoders(record: layout.GearRecord, key: str) -> list[EncoderPlan]:
                 f"{key}.encoders.{name}",
                 encoder.timestamps if stamped else encoder.column,
                 stamped,
-                encoder.unit or ("s" if stamped else "V"),
+                encoder.unit,
                 encoder.pulses_per_revolution if tacho else encoder.counts_per_revolution,
                 None if tacho else encoder.index,
                 encoder.direction,

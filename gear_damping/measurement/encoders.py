@@ -7,12 +7,20 @@ from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.splines import monotone_spline
 
 TURN = 2 * np.pi
+FEWEST_PULSES = 2  # in a record
+COUNTERS = (16, 24, 32)  # bits
 FROM_ENCODERS = "transmission_error: r_b1 theta_1 - r_b2 theta_2 from the encoders, without its mean"  # a note
 
 
 def angle_from_counts(counts: NDArray[np.float64], per_revolution: float, direction: int = 1) -> NDArray[np.float64]:
-    """(n,) rad from counts per sample; a counter may begin again after each revolution."""
-    return direction * np.unwrap(TURN * counts / per_revolution)
+    """(n,) rad from counts per sample; a counter may begin again after each revolution, or at the end of its range."""
+    span = float(np.ptp(counts))
+    for bits in COUNTERS:
+        if span < 2**bits and np.any(np.abs(np.diff(counts)) > 2 ** (bits - 1)):
+            counts, span = np.unwrap(counts, period=2**bits), np.inf
+            break
+    angle = TURN * counts / per_revolution
+    return direction * (np.unwrap(angle) if span < per_revolution else angle)
 
 
 def angle_from_pulses(
@@ -50,6 +58,10 @@ def angle_from_pulses(
         rule = f"pulses from {pulses[0]:.6g} to {pulses[-1]:.6g} s do not cover the record"
         rule += f" ({time[0]:.6g} to {time[-1]:.6g} s)"
         raise InputError(Problem(key, rule, remedy="shorten the record with slice", source=source))
+    if np.sum((pulses >= time[0]) & (pulses <= time[-1])) < FEWEST_PULSES:
+        rule = f"pulses from {pulses[0]:.6g} to {pulses[-1]:.6g} s, and fewer than {FEWEST_PULSES} of them in the"
+        rule += f" record ({time[0]:.6g} to {time[-1]:.6g} s)"
+        raise InputError(Problem(key, rule, remedy="check the unit of the pulses and the clock", source=source))
     angle = TURN * np.arange(pulses.size) / per_revolution
     return direction * _extended(pulses, angle, time)
 

@@ -30,6 +30,7 @@ class Column:
         says: What that was seen by, for people.
         step: The quantisation step, 0.0 where none was seen.
         spectrum: Of a signal with a constant rate; in cycles a sample where no rate is known.
+        rate: Its own samples a second, or None.
     """
 
     reference: str | int
@@ -40,6 +41,7 @@ class Column:
     says: str = ""
     step: float = 0.0
     spectrum: Spectrum | None = None
+    rate: float | None = None
 
     @property
     def inside(self) -> NDArray[np.float64]:
@@ -103,7 +105,7 @@ def inspect_table(table: Table) -> Inspection:
     length = _length(columns, stamps)
     rows = _rows([c for c in columns if c.values.size == length])
     base, faults = _base(table, columns, stamps, length, rows)
-    found = [_seen(c, stamps, columns, base, length) for c in columns]
+    found = [_seen(c, stamps, columns, base, length, table.clock(k)) for k, c in enumerate(columns)]
     return Inspection(table, tuple(found), length, stamps, base, rows, faults)
 
 
@@ -160,7 +162,12 @@ def _base(
 
 
 def _seen(
-    column: Column, stamps: Stamps | None, columns: Sequence[Column], base: TimeBase | None, length: int
+    column: Column,
+    stamps: Stamps | None,
+    columns: Sequence[Column],
+    base: TimeBase | None,
+    length: int,
+    clock: tuple[float, float] | None,
 ) -> Column:
     if stamps is not None and column is columns[stamps.index]:
         return replace(column, kind=TIME, says=stamps.says)
@@ -169,5 +176,7 @@ def _seen(
     kind, says = kind_of(column.inside, str(column.reference), column.unit)
     if kind in (CONSTANT, EMPTY):
         return replace(column, kind=kind, says=says)
-    rate = base.sampling_rate if base is not None and column.values.size == length else 1.0
-    return replace(column, kind=kind, says=says, step=step_of(column.inside), spectrum=spectrum_of(column.inside, rate))
+    own = clock[1] if clock else None
+    rate = base.sampling_rate if base is not None and column.values.size == length else own
+    spectrum = spectrum_of(column.inside, rate or 1.0)
+    return replace(column, kind=kind, says=says, step=step_of(column.inside), spectrum=spectrum, rate=rate)

@@ -44,7 +44,7 @@ class Encoder(Pulses):
     """An encoder that counts."""
 
     title: ClassVar[str] = "an encoder"
-    unit: Annotated[str, Text()] = key("Unit of `timestamps`; s where absent.", "angle")
+    unit: Annotated[str, Text()] = key("Unit of `timestamps`; where absent that of the file, else s.", "angle")
     counts_per_revolution: Annotated[float, Number(least=1)] = key(
         "Counts in one turn of its shaft.", "angle", missing="give the number in one turn of its shaft"
     )
@@ -65,7 +65,9 @@ class Tacho(Pulses):
 
     title: ClassVar[str] = "a tacho"
     refused: ClassVar[c.Reasons] = Frozen({"index": ("the zero of its angle is its first pulse", "leave it out")})
-    unit: Annotated[str, Text()] = key("Unit of the column; V where absent, s of `timestamps`.", "threshold; angle")
+    unit: Annotated[str, Text()] = key(
+        "Unit of the column; where absent that of the file, else V, or s of `timestamps`.", "threshold; angle"
+    )
     pulses_per_revolution: Annotated[float, Number(least=1)] = key(
         "Pulses in one turn of its shaft.", "angle", missing="give the number in one turn of its shaft"
     )

@@ -30,13 +30,16 @@ class ChannelPlan:
 
 @dataclass(frozen=True)
 class EncoderPlan:
-    """A shaft encoder or tacho: counts or a pulse train per sample, or the times of the pulses."""
+    """A shaft encoder or tacho: counts or a pulse train per sample, or the times of the pulses.
+
+    `unit` None asks the file.
+    """
 
     name: str
     key: str
     column: str | int
     timestamps: bool
-    unit: str
+    unit: str | None
     per_revolution: float
     index: str | int | None = None
     direction: int = 1

@@ -2,7 +2,7 @@
 
 import hashlib
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -15,13 +15,15 @@ from gear_damping.measurement.fields import Problems
 from gear_damping.measurement.formats.registry import read_table
 from gear_damping.measurement.formats.table import Table
 from gear_damping.measurement.paths import resolve_file
-from gear_damping.measurement.plan import ChannelPlan, RecordPlan, TimePlan
+from gear_damping.measurement.plan import ChannelPlan, EncoderPlan, RecordPlan, TimePlan
 from gear_damping.measurement.shaft import ReadColumn, shaft_angle
+from gear_damping.measurement.time_column import is_time
 from gear_damping.measurement.timebase import TimeBase, stamped_time, steady_time
 from gear_damping.units import to_si
 
 LEAST_SAMPLES = 8
 _SAME_RATE = 1e-3  # how far a declared rate may lie from the file's
+_SAME_UNIT = 1e-9  # the same of units
 
 
 class Files:
@@ -92,13 +94,18 @@ class RawReader:
         angles = {}
         for plan in self.plan.encoders if base else ():
             with self.problems.collecting():
-                angles[plan.name] = shaft_angle(plan, base, self.sliced, self.unsliced, self.file)
+                angles[plan.name] = shaft_angle(self._with_unit(plan), base, self.sliced, self.unsliced, self.file)
         if base is None:
             return None
         with self.problems.collecting():
             base = self._at_its_rate(base)
         complete = len(self.problems) == before
         return RawRecord(self.plan, self.table, sha256, base, channels, angles, complete)
+
+    def _with_unit(self, plan: EncoderPlan) -> EncoderPlan:
+        """An encoder with the unit of its column: as declared, else that of the file, else s of times and V."""
+        unit = plan.unit or self.table.unit(self.table.index(plan.column, f"{plan.key}.column"))
+        return replace(plan, unit=unit or ("s" if plan.timestamps else "V"))
 
     def _find_rows(self) -> None:
         """The number of rows is that of the time stamps, else of the first column that can be read."""
@@ -154,8 +161,15 @@ class RawReader:
             remedy = "give the channel its own time or sampling_rate"
             raise InputError(Problem(key, rule, remedy=remedy, source=self.file))
         values = values[self.first : self.stop]
+        self._refuse_cells(column, key, self.first, self.stop)
         refuse_not_finite(values, self._named(key, column), self.file, self.first)
         return values
+
+    def _refuse_cells(self, column: str | int, key: str, first: int, stop: int) -> None:
+        """Cells that are no numbers are faults in the rows that are used, and nowhere else."""
+        problems = self.table.bad_cells(self.table.index(column, key), first, stop)
+        if problems:
+            raise InputError(problems)
 
     def _named(self, key: str, column: str | int) -> str:
         return f"{key}, {self.table.path.name} column '{column}'"
@@ -205,10 +219,16 @@ class RawReader:
 
     def _in_seconds(self, timing: TimePlan, key: str) -> float:
         """One unit of the time stamps in s."""
-        unit = timing.unit or self.table.unit(self.table.index(timing.column, key))
+        header = self.table.unit(self.table.index(timing.column, key))
+        unit = timing.unit or header
         if unit is None:
             raise InputError(Problem(f"{key}.unit", "is missing", None, "give unit: s", self.source))
-        return to_si(1.0, unit, "s", f"{key}.unit", self.source)
+        found = to_si(1.0, unit, "s", f"{key}.unit", self.source)
+        if timing.unit and header and is_time(header) and abs(to_si(1.0, header, "s") / found - 1) > _SAME_UNIT:
+            rule = f"the header of column '{timing.column}' says '{header}'"
+            remedy = "correct the one that is wrong, or give sampling_rate instead of the time column"
+            raise InputError(Problem(f"{key}.unit", rule, unit, remedy, self.source))
+        return found
 
     def _channel(self, plan: ChannelPlan) -> RawChannel:
         header = self.table.unit(self.table.index(plan.column, f"{plan.key}.column"))
@@ -233,8 +253,11 @@ class RawReader:
         return clock
 
     def unsliced(self, column: str | int, key: str) -> NDArray[np.float64]:
-        """All finite values of a column."""
+        """All finite values of a column, without the empty rows behind a slower one."""
         values = self._all(column, key)
+        filled = np.flatnonzero(np.isfinite(values))
+        values = values[: filled[-1] + 1] if filled.size else values
+        self._refuse_cells(column, key, 0, values.size)
         refuse_not_finite(values, self._named(key, column), self.file)
         return values
 

@@ -63,12 +63,12 @@ def find_stamps(columns: Sequence[_Column]) -> Stamps | None:
 
 
 def _by_unit(index: int, column: _Column) -> str:
-    return "advances, in a unit of time" if _is_time(column.unit) and _advances(column) else ""
+    return "advances, in a unit of time" if is_time(column.unit) and _advances(column) else ""
 
 
 def _by_name(index: int, column: _Column) -> str:
     named = NAMED.search(_bare(column.reference)) or _SUFFIX.search(_bare(column.reference))
-    free = column.unit is None or _is_time(column.unit)
+    free = column.unit is None or is_time(column.unit)
     return "advances and is named like a time" if named and free and _advances(column) else ""
 
 
@@ -94,11 +94,13 @@ def _advances(column: _Column) -> bool:
 
 
 def _bare(reference: str | int) -> str:
-    """A name without the unit in its brackets and without the path before it."""
-    return re.sub(r"[(\[].*$", "", str(reference)).strip().split("/")[-1].split(".")[-1]
+    """A name without the unit in its brackets and without the path before it; `Zeit/s` has its unit behind a slash."""
+    name = re.sub(r"[(\[].*$", "", str(reference)).strip()
+    return name if _SUFFIX.search(name) and name.count("/") == 1 else name.split("/")[-1].split(".")[-1]
 
 
-def _is_time(unit: str | None) -> bool:
+def is_time(unit: str | None) -> bool:
+    """Whether a unit is one of time."""
     try:
         return unit is not None and to_si(1.0, unit, "s") > 0
     except InputError:
@@ -107,7 +109,7 @@ def _is_time(unit: str | None) -> bool:
 
 def _unit(column: _Column) -> tuple[str, str]:
     """The unit of the stamps, and why where the file does not say it."""
-    if _is_time(column.unit):
+    if is_time(column.unit):
         return column.unit, ""
     suffix = _SUFFIX.search(_bare(column.reference))
     if suffix:

@@ -23,8 +23,10 @@ class _Loader(yaml.SafeLoader):
         """Refuse a key that appears twice, where YAML would silently keep the last."""
         seen = set()
         for key_node, _ in node.value:
+            where = key_node.start_mark
+            if not isinstance(key_node, yaml.ScalarNode):
+                raise yaml.constructor.ConstructorError(None, None, "a key is a name, not a list or a mapping", where)
             if key_node.value in seen:
-                where = key_node.start_mark
                 raise yaml.constructor.ConstructorError(None, None, f"the key '{key_node.value}' appears twice", where)
             seen.add(key_node.value)
         return super().construct_mapping(node, deep)

@@ -114,7 +114,7 @@ def _looks(column: Column, found: Inspection) -> Iterator[str]:
         yield f"{missing} of {column.values.size} values are not finite"
     if values.size and column.kind != CONSTANT:
         yield f"from {values.min():.5g} to {values.max():.5g}, offset (mean) {values.mean():.5g}"
-    yield _noise(column.spectrum, column.step, found.rate)
+    yield _noise(column.spectrum, column.step, column.rate)
 
 
 def _noise(spectrum: Spectrum | None, step: float, rate: float | None) -> str:

@@ -403,9 +403,11 @@ def test_xlsx_sheets_rows_of_units_and_times(tmp_path):
 def test_a_cell_of_xlsx_that_is_no_number_is_named_with_its_row(tmp_path):
     table = read_table(_workbook(tmp_path / "a.xlsx", S=[["t", "x"], [0, 1], [1, "n/a"], [2, None], [3, 4]]))
     np.testing.assert_array_equal(table.values(0), [0, 1, 2, 3])
-    with pytest.raises(InputError, match=r"row 1 .line 3., column 1 'x' = 'n/a': not a number") as caught:
-        table.values(1)
-    assert "row 2 (line 4), column 1 'x' = '': an empty cell" in str(caught.value)
+    assert np.isnan(table.values(1)).tolist() == [False, True, True, False]
+    first, second = map(str, table.bad_cells(1, 0, 4))
+    assert "row 1 (line 3), column 1 'x' = 'n/a': not a number" in first
+    assert "row 2 (line 4), column 1 'x' = '': an empty cell" in second
+    assert table.bad_cells(1, 3, 4) == []
 
 
 def test_xlsx_without_rows_or_too_large_is_refused(tmp_path):

@@ -1,5 +1,6 @@
 """Tables of cells, as texts and spreadsheets hold them: a cell that is no number is named with its row."""
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +12,15 @@ from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.formats.header import is_number
 from gear_damping.measurement.formats.table import Table, is_real
 
+MOMENT = "a date or a clock, which is not read from a text"
+_MOMENT = re.compile(r"\d{1,2}:\d{2}|\d{4}-\d{2}-\d{2}|\d{1,2}[./]\d{1,2}[./]\d{2,4}")
+NO_VALUE = ("", "-", "--", "?", "n/a", "na", "#n/a", "null", "none", "ovld", "overload", "err", "error")
 SHOWN = 3  # faults of one kind that are listed one by one
+
+
+def _not_a_number(cell: str) -> str:
+    """What is said of a cell; a date or a clock, which many tables have for their time, is no number of seconds."""
+    return MOMENT if _MOMENT.search(cell) else "not a number"
 
 
 def decimal_commas(path: Path) -> str:
@@ -43,13 +52,18 @@ class CellTable(Table):
         super().__init__(path, [(one.name, (len(one.values),)) for one in columns])
         self._columns, self._commas = list(columns), decimal_commas
         self._read: dict[int, NDArray[np.float64]] = {}
+        self._bad: dict[int, tuple[list[str], list[int]]] = {}
 
     def unit(self, index: int) -> str | None:
         """The unit in the header of a column, or None."""
         return self._columns[index].unit
 
     def values(self, index: int) -> NDArray[np.float64]:
-        """(n,) float64: a column; raises InputError naming the row of each cell that is no number."""
+        """(n,) float64: a column, nan where a cell says that there is no value.
+
+        Raises:
+            InputError: another cell is no number, with its row; or none of them is one.
+        """
         if index not in self._read:
             values = self._columns[index].values
             self._read[index] = values.astype(np.float64) if is_real(values.dtype) else self._numbers(index)
@@ -60,7 +74,17 @@ class CellTable(Table):
         try:
             return np.array(cells, dtype=np.float64)
         except ValueError:
-            raise InputError(self._bad_cells(index, cells)) from None
+            bad = [k for k, cell in enumerate(cells) if not is_number(cell)]
+            if len(bad) == len(cells) or any(cells[k].strip().lower() not in NO_VALUE for k in bad):
+                raise InputError(self._problems(index, cells, bad)) from None
+            self._bad[index] = cells, bad
+            missing = set(bad)
+            return np.array([np.nan if k in missing else float(cell) for k, cell in enumerate(cells)])
+
+    def bad_cells(self, index: int, first: int, stop: int) -> list[Problem]:
+        """The cells of a column that are no numbers in some rows, with their lines."""
+        cells, bad = self._bad.get(index, ([], []))
+        return self._problems(index, cells, [k for k in bad if first <= k < stop])
 
     def _decimal_points(self, cells: list[str]) -> list[str]:
         """Cells with decimal points; where a column has points and commas the commas stay, and fail."""
@@ -70,14 +94,13 @@ class CellTable(Table):
         self.notes = self.notes if note in self.notes else (*self.notes, note)
         return [cell.replace(",", ".") for cell in cells]
 
-    def _bad_cells(self, index: int, cells: list[str]) -> list[Problem]:
-        bad = [k for k, cell in enumerate(cells) if not is_number(cell)]
+    def _problems(self, index: int, cells: list[str], bad: list[int]) -> list[Problem]:
         title = f"column {index}" + (f" '{self.names[index]}'" if self.names[index] else "")
         problems = []
         for k in bad[:SHOWN]:
-            rule = "an empty cell" if not cells[k].strip() else "not a number"
+            rule = "an empty cell" if not cells[k].strip() else _not_a_number(cells[k])
             key = f"{self.path.name}, row {k} (line {self._columns[index].line(k)}), {title}"
-            remedy = "correct the cell, or leave its row out"
+            remedy = "give sampling_rate" if rule == MOMENT else "correct the cell, or leave its row out"
             problems.append(Problem(key, rule, cells[k], remedy, str(self.path)))
         if len(bad) > SHOWN:
             rule = f"{len(bad) - SHOWN} more cells are no numbers"

@@ -20,6 +20,7 @@ from gear_damping.measurement.formats.table import Table, is_real, refuse_size, 
 _HEAD = 100  # rows among which the header is looked for
 _PREAMBLE, _BELOW = 20, 20  # rows that may be settings; rows of the table below them, at least
 _NAN = ("nan", "NaN", "NAN", "Nan", "-nan", "+nan")
+_NUMBER, _IS_COMMENT = re.compile(r"\d"), re.compile(r"\s*#")
 _END_OF_HEADER = re.compile(r"^\*+ ?end[_ ]of[_ ]header", re.IGNORECASE)
 _COMMENT = re.compile(rb"^[ \t]*#", re.MULTILINE)
 
@@ -56,7 +57,7 @@ class _Text:
         self.path = path
         self.utf8 = _utf8(path, raw)
         ending = self.utf8[-(2**16) :].decode("utf-8", "replace").splitlines()
-        last = next((line for line in reversed(ending) if line.strip(" \t;,\r")), "")
+        last = next((line for line in reversed(ending) if _NUMBER.search(line) and not _IS_COMMENT.match(line)), "")
         # Headers hold all kinds of signs, numbers only one.
         self.delimiter = next((sign for sign in (";", "\t", ",") if sign in last), " ")
         self.width = max((k + 1 for k, cell in enumerate(next(self._cells([last]), [])) if cell.strip()), default=0)
@@ -130,6 +131,8 @@ def _header(text: _Text) -> tuple[Header, int]:
     lines, rows = lines[start:], rows[start:]
     header = _below_preamble(rows, text.width) or find_header(rows, text.width)
     header = _of_labview(header, start) if start else header
+    if text.delimiter == " " and len(header.names) > text.width > 0:  # a title: names in words would be as many
+        header = Header(("",) * text.width, (), header.first, header.first)
     if header.first == len(rows):
         raise InputError(Problem("file", "a header and no rows of numbers", str(text.path), "export it again"))
     if not header.names:

@@ -10,6 +10,7 @@ from gear_damping.units import parse_unit
 _BRACKETS = re.compile(r"[(\[]([^()\[\]]+)[)\]]\s*$")
 _INDEX = re.compile(r"\w\[\d+\]\s*$")  # `data[3]` is a name, no unit
 _NO_UNIT = ("", "-")
+_COMMENTS = ("%", "%%", ";", "//", "!", "'", "*")  # that other programs write before a line of names
 _TABLE = 3  # rows that a table begins with, none of them of texts alone
 
 
@@ -48,22 +49,40 @@ def find_header(rows: Sequence[Sequence[str]], width: int) -> Header:
         width: The number of filled cells that a row of values has.
 
     Returns:
-        The row of texts as wide as the values or wider with the most different ones, of those before the first row of
-        values; else the last one. Without a row of texts the values begin at the first row.
+        The row of texts as wide as the values with the most different ones, of those before the first row of values,
+        the last of several; else a wider one, else the last one. Without a row of texts the values begin at the first
+        row.
     """
     end = _first_values(rows, width)
     texts = [k for k in range(end) if not _has_number(rows[k])]
     if not texts:
         return Header((), (), 0)
+    rows = [_names(row, width) if k in texts else row for k, row in enumerate(rows)]
+    texts = [k for k in texts if not (_is_units(rows[k]) and k - 1 in texts and _filled(rows[k - 1]) == width)]
     exact = [k for k in texts if _filled(rows[k]) == width]
     wide = [k for k in texts if _filled(rows[k]) > width]
-    start = max(exact + wide, key=lambda k: len({*rows[k]})) if exact or wide else texts[-1]
+    start = max(exact or wide or texts[-1:], key=lambda k: (len({*rows[k]}), k))
     names, first = tuple(cell.strip() for cell in rows[start]), start + 1
     units: tuple[str, ...] = ()
     if first < len(rows) and _is_units(rows[first]):
         units, first = tuple(cell.strip() for cell in rows[first]), first + 1
     between = max(end - first, 0) if end < len(rows) else 0  # texts that are neither names nor units
     return Header(names, units, first + between, start + between)
+
+
+def _names(row: Sequence[str], width: int) -> Sequence[str]:
+    """A row of texts, without a sign of comment before them and with units in brackets beside their names."""
+    if _filled(row) <= width and row[0].strip() not in _COMMENTS:
+        return row
+    cells = [cell for cell in row if cell.strip()]
+    cells = cells[1:] if cells[0].strip() in _COMMENTS else cells
+    joined: list[str] = []
+    for cell in cells:
+        if joined and cell.strip()[0] in "([":
+            joined[-1] += f" {cell.strip()}"
+        else:
+            joined.append(cell)
+    return joined if len(joined) == width else row
 
 
 def bracket_unit(name: str) -> str | None:

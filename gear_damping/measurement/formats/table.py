@@ -75,6 +75,10 @@ class Table(ABC):
             raise InputError(Problem(key, rule, column, remedy, str(self.path)))
         raise InputError(self._absent(column, key))
 
+    def bad_cells(self, index: int, first: int, stop: int) -> list[Problem]:
+        """What is wrong with cells of a column in some rows; of a table of numbers nothing."""
+        return []
+
     def _named(self, column: str) -> list[int]:
         return [index for index, name in enumerate(self.names) if name and name == column]
 

@@ -23,7 +23,7 @@ def read_wav(path: Path, max_bytes: int) -> Table:
     channels = np.atleast_2d(scaled.T)
     table = ArrayTable(path, [Held("", one.shape, lambda one=one: one) for one in channels if one.size])
     table.sampling_rate = float(rate)
-    table.full_scale = 1.0 if samples.dtype.kind in "iu" else None
+    table.full_scale = 1.0 if samples.dtype.kind in "iu" or np.max(np.abs(samples), initial=0.0) <= 1.0 else None
     table.notes = (note,)
     return table
 

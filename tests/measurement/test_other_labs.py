@@ -1,0 +1,237 @@
+"""Files as other labs write them: what stood before, behind and beside the values was once taken for something else."""
+
+import numpy as np
+import pytest
+import yaml
+from nptdms import ChannelObject, TdmsWriter
+from scipy.io import wavfile
+
+from gear_damping.errors import InputError
+from gear_damping.measurement.checks import check_record
+from gear_damping.measurement.encoders import angle_from_counts, angle_from_pulses
+from gear_damping.measurement.formats.registry import read_table
+from gear_damping.measurement.inspection import inspect_table
+from gear_damping.measurement.load import load_measurement
+from gear_damping.units import parse_unit, to_si
+
+TIME = np.arange(400) / 500.0
+DECAY = 30e-3 * np.exp(-2 * TIME) * np.cos(2 * np.pi * 12 * TIME)
+ROWS = "\n".join(f"{t:.4f} {x:.6g}" for t, x in zip(TIME, DECAY, strict=True))
+
+
+def loaded(folder, text, channels, system="oscillator", name="data.csv", **record):
+    """The measurement of one record that lies in a text file."""
+    (folder / name).write_text(text, encoding="utf-8")
+    content = {"system": system, "records": [{"file": name, "channels": channels, **record}]}
+    (folder / "measurement.yaml").write_text(yaml.safe_dump(content))
+    return load_measurement(folder / "measurement.yaml")
+
+
+def decay_of(measurement):
+    return measurement.records[0].channels["displacement"].values
+
+
+BY_INDEX = {"time": {"column": 0, "unit": "s"}, "displacement": {"column": 1, "unit": "m"}}
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        "Beam test no. five, tip sensor\nt a\n",
+        "Beam test no. five, tip sensor\n",
+        "% t a\n",
+        "; t a\n",
+        "// t a\n",
+        "! t a\n",
+        "Time (s)   Acc (m)\n",
+        "# made by hand\nt a\n",
+        "",
+    ],
+)
+def test_titles_and_signs_of_comment_are_no_columns(tmp_path, head):
+    found = loaded(tmp_path, head + ROWS, BY_INDEX, name="data.txt")
+    np.testing.assert_allclose(decay_of(found), DECAY, atol=1e-7)
+    assert found.records[0].sampling_rate == pytest.approx(500.0)
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        "Beam, tip sensor, lab three, Monday\nt,x\n",
+        "File,beam.csv\nRate (Hz),500\nChannels,2\nt,x\n",
+        "File,beam.csv\nt,x\n",
+    ],
+)
+def test_the_names_are_those_next_above_the_values(tmp_path, head):
+    channels = {"time": {"column": "t", "unit": "s"}, "displacement": {"column": "x", "unit": "m"}}
+    found = loaded(tmp_path, head + ROWS.replace(" ", ","), channels)
+    np.testing.assert_allclose(decay_of(found), DECAY, atol=1e-7)
+
+
+def test_a_row_of_units_never_gives_the_names(tmp_path):
+    (tmp_path / "a.csv").write_text("Zeit;Kanal 1;Kanal 1\n[s];[g];[mm/s^2]\n0;1;2\n1;3;4\n2;4;5\n")
+    table = read_table(tmp_path / "a.csv")
+    assert list(table.names) == ["Zeit", "Kanal 1", "Kanal 1"]
+    assert [table.unit(k) for k in range(3)] == ["s", "g", "mm/s^2"]
+
+
+def test_a_comment_behind_the_values_is_no_row(tmp_path):
+    text = "t,x\n" + ROWS.replace(" ", ",") + "\n# end of data\n"
+    channels = {"time": {"column": "t", "unit": "s"}, "displacement": {"column": "x", "unit": "m"}}
+    np.testing.assert_allclose(decay_of(loaded(tmp_path, text, channels)), DECAY, atol=1e-7)
+
+
+def test_a_gain_may_lie_between_volts_in_the_file_and_what_they_stand_for(tmp_path):
+    text = "t,CH1 [mV]\n" + "\n".join(f"{t:.4f},{98.2 * x:.8g}" for t, x in zip(TIME, DECAY, strict=True))
+    channel = {"column": "CH1 [mV]", "unit": "m", "gain": 98.2}
+    found = loaded(tmp_path, text, {"time": {"column": "t", "unit": "s"}, "displacement": channel})
+    np.testing.assert_allclose(decay_of(found), DECAY, atol=1e-8)
+    assert not [f for f in found.findings if f.kind == "unit_conflict"]
+    other = loaded(tmp_path, text, {"time": {"column": "t", "unit": "s"}, "displacement": channel | {"gain": 1.0}})
+    assert [f.kind for f in other.findings if f.severity == "data_problem"] == ["unit_conflict"]
+
+
+def test_a_wrong_unit_of_time_is_not_silent(tmp_path):
+    text = "Time [ms],x\n" + "\n".join(f"{1e3 * t:.4f},{x:.6g}" for t, x in zip(TIME, DECAY, strict=True))
+    channels = {"time": {"column": "Time [ms]", "unit": "s"}, "displacement": {"column": "x", "unit": "m"}}
+    with pytest.raises(InputError, match=r"time.unit = 's': the header of column 'Time \[ms\]' says 'ms'"):
+        loaded(tmp_path, text, channels)
+    assert loaded(tmp_path, text, channels | {"time": {"column": 0}}).records[0].sampling_rate == pytest.approx(500.0)
+
+
+def test_pulses_take_the_unit_of_their_column(tmp_path):
+    time, pulses = np.arange(1000) / 1000, np.arange(0, 1.2, 0.01) - 0.05
+    encoders = {"pinion": {"timestamps": 2, "counts_per_revolution": 60}}
+    rows = [f"{t:.4f},{1e-6:g},{1e6 * p:.1f}" if i < len(pulses) else f"{t:.4f},{1e-6:g}," for i, (t, p) in
+            enumerate(zip(time, np.pad(pulses, (0, 1000 - len(pulses))), strict=True))]  # fmt: skip
+    channels = {"time": {"column": 0, "unit": "s"}, "transmission_error": {"column": 1, "unit": "m"}}
+    asked = {"system": "gear_pair", "encoders": encoders, "conditions": {"pinion_torque": {"value": 9, "unit": "N*m"}}}
+    found = loaded(tmp_path, "t,x,tp [us]\n" + "\n".join(rows), channels, **asked)
+    angle = found.records[0].channels["pinion_angle"].values
+    assert np.ptp(angle) == pytest.approx(2 * np.pi * 0.999 / 0.01 / 60, rel=1e-3)
+
+
+def test_pulses_that_all_lie_behind_the_record_are_refused():
+    with pytest.raises(InputError, match="fewer than 2 of them in the record"):
+        angle_from_pulses(np.arange(1, 70) * 1e4, np.arange(0, 1, 1e-3), 60, 1, "tacho", "file")
+
+
+@pytest.mark.parametrize("bits", [16, 24, 32])
+def test_a_counter_that_runs_over_goes_on(bits):
+    true = 2**bits - 3000 + 7.0 * np.arange(2000)
+    found = angle_from_counts(true % 2**bits, 1000)
+    np.testing.assert_allclose(found - found[0], 2 * np.pi * (true - true[0]) / 1000, atol=1e-9)
+
+
+def test_a_counter_of_two_counts_a_turn_counts_turns():
+    counts = np.floor(np.arange(500) / 7.0)
+    assert angle_from_counts(counts, 2)[-1] == pytest.approx(np.pi * counts[-1])
+    again = angle_from_counts(np.arange(500) % 60, 60)  # and one that begins anew after each turn
+    assert again[-1] == pytest.approx(2 * np.pi * 499 / 60)
+
+
+@pytest.mark.parametrize("places", [(70, 71, 72), (70, 120, 150, 220), (5, 6, 7, 150, 151, 220)])
+def test_marks_for_missing_values_are_no_motion(tmp_path, places):
+    values = DECAY.copy()
+    values[list(places)] = -9999
+    text = "t,x\n" + "\n".join(f"{t:.4f},{x:.6g}" for t, x in zip(TIME, values, strict=True))
+    found = loaded(tmp_path, text, {"time": {"column": "t", "unit": "s"}, "displacement": {"column": "x", "unit": "m"}})
+    said = [f for f in check_record(found.records[0]) if f.severity == "data_problem"]
+    assert [f.kind for f in said] == ["marked_values"]
+    assert f"-9999 m at {len(places)} samples, the first at {places[0]}" in said[0].message
+
+
+def test_a_blow_of_a_hammer_is_no_fault(tmp_path):
+    force, answer = np.zeros(400), np.where(TIME > 0.1, 2 * np.exp(-3 * (TIME - 0.1)), 0.0) * np.sin(75 * (TIME - 0.1))
+    force[50], answer[50] = 119.9, 40.0
+    source = np.random.default_rng(1)
+    force, answer = force + 0.1 * source.standard_normal(400), answer + 0.01 * source.standard_normal(400)
+    text = "t,f,a\n" + "\n".join(",".join(f"{v:.6g}" for v in row) for row in zip(TIME, force, answer, strict=True))
+    channels = {"time": {"column": "t", "unit": "s"}, "force": {"column": "f", "unit": "N"}}
+    channels["acceleration"] = {"column": "a", "unit": "m/s^2"}
+    assert not [f for f in loaded(tmp_path, text, channels).findings if f.kind == "spike"]
+    force[50], force[300] = 0.0, 119.9  # a leap of the response by itself is one
+    text = "t,f,a\n" + "\n".join(",".join(f"{v:.6g}" for v in row) for row in zip(TIME, force, answer, strict=True))
+    assert [f.kind for f in loaded(tmp_path, text, channels).findings if f.kind == "spike"] == ["spike"]
+
+
+@pytest.mark.parametrize("empty", ["", "NaN", "N/A", "-", "OVLD"])
+def test_what_is_missing_outside_the_used_rows_is_no_fault(tmp_path, empty):
+    cells = [empty if i < 20 else f"{x:.6g}" for i, x in enumerate(DECAY)]
+    text = "t,x\n" + "\n".join(f"{t:.4f},{x}" for t, x in zip(TIME, cells, strict=True))
+    channels = {"time": {"column": "t", "unit": "s"}, "displacement": {"column": "x", "unit": "m"}}
+    found = loaded(tmp_path, text, channels, slice=[20, 400])
+    np.testing.assert_allclose(decay_of(found), DECAY[20:], atol=1e-7)
+    with pytest.raises(InputError, match=r"an empty cell|not a number|not finite"):
+        loaded(tmp_path, text, channels, slice=[10, 400])
+
+
+@pytest.mark.parametrize("empty", ["", "NaN"])
+def test_a_slower_channel_ends_where_its_rows_do(tmp_path, empty):
+    slow, torque = TIME[::10], np.sin(TIME[::10])
+    rows = []
+    for i, (t, x) in enumerate(zip(TIME, DECAY, strict=True)):
+        beside = f"{slow[i]:.4f},{torque[i]:.6g}" if i < len(slow) else f"{empty},{empty}"
+        rows.append(f"{t:.4f},{x:.6g},{beside}")
+    channels = {"time": {"column": "t", "unit": "s"}, "displacement": {"column": "x", "unit": "m"}}
+    channels["force"] = {"column": "f", "unit": "N", "time": {"column": "ts", "unit": "s"}}
+    found = loaded(tmp_path, "t,x,ts,f\n" + "\n".join(rows), channels, slice=[0, 380])
+    np.testing.assert_allclose(found.records[0].channels["force"].values, np.sin(TIME[:380]), atol=1e-3)
+
+
+def test_the_range_of_a_wav_of_floats_is_what_one_stands_for(tmp_path):
+    samples = (DECAY / 0.1).astype(np.float32)
+    wavfile.write(tmp_path / "a.wav", 500, samples)
+    content = {"system": "oscillator", "records": [{"file": "a.wav", "channels": {
+        "acceleration": {"column": 0, "unit": "m/s^2", "range": {"value": 100, "unit": "m/s^2"}}}}]}  # fmt: skip
+    (tmp_path / "measurement.yaml").write_text(yaml.safe_dump(content))
+    found = load_measurement(tmp_path / "measurement.yaml").records[0].channels["acceleration"]
+    np.testing.assert_allclose(found.values, 100 * DECAY / 0.1, rtol=1e-5)
+
+
+@pytest.mark.parametrize("line", ["? [a, b]\n: 3\n", "{a: b}: 3\n"])
+def test_a_key_that_is_no_name_is_said(tmp_path, line):
+    (tmp_path / "measurement.yaml").write_text("system: oscillator\n" + line)
+    with pytest.raises(InputError, match="a key is a name, not a list or a mapping"):
+        load_measurement(tmp_path / "measurement.yaml")
+
+
+def test_a_column_of_another_clock_keeps_its_own_frequencies(tmp_path):
+    fast, slow = np.sin(2 * np.pi * 40 * np.arange(2000) / 1000), np.sin(2 * np.pi * 3 * np.arange(500) / 100)
+    with TdmsWriter(tmp_path / "a.tdms") as writer:
+        writer.write_segment([ChannelObject("g", "fast", fast, {"wf_increment": 1e-3}),
+                              ChannelObject("g", "slow", slow, {"wf_increment": 1e-2}),
+                              ChannelObject("g", "fast2", fast, {"wf_increment": 1e-3})])  # fmt: skip
+    found = inspect_table(read_table(tmp_path / "a.tdms"))
+    strongest = {c.reference.split("/")[-1]: c.spectrum.strongest for c in found.columns}
+    assert strongest["slow"] == pytest.approx(3.0, abs=0.3)
+    assert strongest["fast"] == pytest.approx(40.0, abs=1.0)
+
+
+@pytest.mark.parametrize(
+    ("unit", "same", "factor"),
+    [("m/s2", "m/s^2", 1.0), ("sec", "s", 1.0), ("mil", "um", 25.4), ("ips", "mm/s", 25.4), ("RPM", "rpm", 1.0),
+     ("micron", "um", 1.0), ("kNm", "N*m", 1e3), ("Volts", "mV", 1e3), ("kg*m2", "kg*m^2", 1.0)],
+)  # fmt: skip
+def test_units_as_they_are_written(unit, same, factor):
+    assert to_si(1.0, unit, same) == pytest.approx(factor * to_si(1.0, same, same))
+
+
+@pytest.mark.parametrize("name", ["V2", "A2", "t2", "12"])
+def test_the_name_of_a_channel_is_no_unit(name):
+    with pytest.raises(InputError):
+        parse_unit(name)
+
+
+def test_a_clock_in_a_text_is_named_as_one(tmp_path):
+    rows = "\n".join(f"2023-11-05T23:59:{t:06.3f}Z,{x:.6g}" for t, x in zip(TIME, DECAY, strict=True))
+    channels = {"time": {"column": "t", "unit": "s"}, "displacement": {"column": "x", "unit": "m"}}
+    with pytest.raises(InputError, match="a date or a clock, which is not read from a text; remedy: give sampling_rate"):
+        loaded(tmp_path, "t,x\n" + rows, channels)
+
+
+def test_time_in_the_notation_of_iso_is_time(tmp_path):
+    (tmp_path / "a.csv").write_text("Zeit/s,a\n" + ROWS.replace(" ", ","))
+    found = inspect_table(read_table(tmp_path / "a.csv"))
+    assert (found.time.index, found.time.unit) == (0, "s")
+    assert found.rate == pytest.approx(500.0)
