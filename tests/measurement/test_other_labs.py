@@ -226,7 +226,7 @@ def test_the_name_of_a_channel_is_no_unit(name):
 def test_a_clock_in_a_text_is_named_as_one(tmp_path):
     rows = "\n".join(f"2023-11-05T23:59:{t:06.3f}Z,{x:.6g}" for t, x in zip(TIME, DECAY, strict=True))
     channels = {"time": {"column": "t", "unit": "s"}, "displacement": {"column": "x", "unit": "m"}}
-    with pytest.raises(InputError, match="a date or a clock, which is not read from a text; remedy: give sampling_rate"):
+    with pytest.raises(InputError, match="a date or a clock, which is not read from a text; remedy: give sampling"):
         loaded(tmp_path, "t,x\n" + rows, channels)
 
 
