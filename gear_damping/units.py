@@ -132,5 +132,7 @@ def to_si(value: float, unit: str, expected: str, key: str = "value", source: st
     found, wanted = parse_unit(unit, key, source), parse_unit(expected)
     if found.dimension != wanted.dimension:
         rule = f"the unit '{unit}' is not one of the kind of '{expected}'"
-        raise InputError(Problem(key, rule, value, f"give it in '{expected}'", source))
+        turns = found.dimension * _RAD == wanted.dimension == _RAD * _S**-1
+        remedy = "say what it counts: 'rpm', 'rev/s' or 'rad/s'" if turns else f"give it in '{expected}'"
+        raise InputError(Problem(key, rule, value, remedy, source))
     return value * found.factor

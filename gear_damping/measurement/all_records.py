@@ -27,6 +27,34 @@ def _compared(file: layout.AnyFile, records: Numbered) -> Found:
         yield Problem("records", rule, None, "leave out the role of the others")
 
 
+def _held_out_apart(file: layout.AnyFile, records: Numbered) -> Found:
+    """What is held out is never fitted: the same rows of the same columns, or the same time."""
+    for k, held in records:
+        others = ((i, one) for i, one in records if held.role == "holdout" and one.role in ("fit", None))
+        for i, one in others:
+            if one.file == held.file and _columns(one) & _columns(held) and (what := _both(one, held)):
+                rule = f"is held out, and {what} of it are fitted in records[{i}]"
+                yield Problem(f"records[{k}]", rule, None, "let the two end and begin at the same place")
+
+
+def _columns(record: layout.AnyRecord) -> set[object]:
+    """The columns of its channels that are no time."""
+    columns = (getattr(channel, "column", None) for channel in given(record.channels).values())
+    return {column for column in columns if column is not None}
+
+
+def _both(one: layout.AnyRecord, other: layout.AnyRecord) -> str:
+    """What two records of a file have in common; "" where that is nothing, or not known before it is read."""
+    for words, spans in (("rows {} to {}", (one.slice, other.slice)),
+                         ("{:g} s to {:g} s", [w.window and w.window.seconds for w in (one, other)])):  # fmt: skip
+        known = [span for span in spans if span]
+        if len(known) == 2:
+            first, stop = max(span[0] for span in known), min(span[1] for span in known)
+            return words.format(first, stop) if first < stop else ""
+    parts = (one.slice, one.window, other.slice, other.window)
+    return "" if (one.slice or one.window) and (other.slice or other.window) else "all rows" if not any(parts) else "rows"
+
+
 def _inputs_of_all(file: layout.AnyFile, records: Numbered) -> Found:
     """An input that some records have and others lack was there and not measured, or is zero and not said."""
     for name in ("force", "base_acceleration"):
@@ -93,7 +121,7 @@ def _one_mesh_index(file: layout.AnyFile, records: Numbered) -> Found:
 
 
 _Rule = Callable[[layout.AnyFile, Numbered], Found]
-_OF_GEARS: tuple[_Rule, ...] = (_compared, _one_gear_torque, _one_mesh_index)
+_OF_GEARS: tuple[_Rule, ...] = (_compared, _held_out_apart, _one_gear_torque, _one_mesh_index)
 _OF_OSCILLATORS: tuple[_Rule, ...] = (
-    _compared, _inputs_of_all, _force_that_tells, _gain_of_nothing, _gain_of_the_force,
+    _compared, _held_out_apart, _inputs_of_all, _force_that_tells, _gain_of_nothing, _gain_of_the_force,
 )  # fmt: skip

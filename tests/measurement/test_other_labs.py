@@ -223,6 +223,12 @@ def test_the_name_of_a_channel_is_no_unit(name):
         parse_unit(name)
 
 
+@pytest.mark.parametrize("unit", ["Hz", "1/min"])
+def test_a_speed_says_what_it_counts(unit):
+    with pytest.raises(InputError, match="say what it counts: 'rpm', 'rev/s' or 'rad/s'"):
+        to_si(1.0, unit, "rad/s")
+
+
 def test_a_clock_in_a_text_is_named_as_one(tmp_path):
     rows = "\n".join(f"2023-11-05T23:59:{t:06.3f}Z,{x:.6g}" for t, x in zip(TIME, DECAY, strict=True))
     channels = {"time": {"column": "t", "unit": "s"}, "displacement": {"column": "x", "unit": "m"}}
@@ -235,3 +241,30 @@ def test_time_in_the_notation_of_iso_is_time(tmp_path):
     found = inspect_table(read_table(tmp_path / "a.csv"))
     assert (found.time.index, found.time.unit) == (0, "s")
     assert found.rate == pytest.approx(500.0)
+
+
+@pytest.mark.parametrize(
+    ("fit", "held", "said"),
+    [
+        ({"slice": [0, 250]}, {"slice": [200, 400]}, "rows 200 to 250 of it are fitted in records\\[0\\]"),
+        ({"slice": [0, 250]}, {}, "rows of it are fitted"),
+        ({}, {}, "all rows of it are fitted"),
+        ({"slice": [0, 250]}, {"slice": [250, 400]}, ""),
+        (
+            {"window": {"from": 0, "to": 0.5, "unit": "s"}},
+            {"window": {"from": 300, "to": 700, "unit": "ms"}},
+            "0.3 s to 0.5 s of it",
+        ),
+    ],
+)
+def test_what_is_held_out_is_not_fitted(tmp_path, fit, held, said):
+    (tmp_path / "data.csv").write_text("t,x\n" + ROWS.replace(" ", ","))
+    channels = {"time": {"column": "t", "unit": "s"}, "displacement": {"column": "x", "unit": "m"}}
+    records = [{"file": "data.csv", "name": role, "role": role, "channels": channels, **rows}
+               for role, rows in (("fit", fit), ("holdout", held))]  # fmt: skip
+    (tmp_path / "measurement.yaml").write_text(yaml.safe_dump({"system": "oscillator", "records": records}))
+    if not said:
+        assert len(load_measurement(tmp_path / "measurement.yaml").records) == 2
+        return
+    with pytest.raises(InputError, match=said):
+        load_measurement(tmp_path / "measurement.yaml")
