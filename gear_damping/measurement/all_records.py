@@ -51,8 +51,8 @@ def _both(one: layout.AnyRecord, other: layout.AnyRecord) -> str:
         if len(known) == 2:
             first, stop = max(span[0] for span in known), min(span[1] for span in known)
             return words.format(first, stop) if first < stop else ""
-    parts = (one.slice, one.window, other.slice, other.window)
-    return "" if (one.slice or one.window) and (other.slice or other.window) else "all rows" if not any(parts) else "rows"
+    parts = [record.slice or record.window for record in (one, other)]
+    return "" if all(parts) else "rows" if any(parts) else "all rows"  # a slice beside a window is not compared
 
 
 def _inputs_of_all(file: layout.AnyFile, records: Numbered) -> Found:
