@@ -82,6 +82,7 @@ def load_measurement(path: str | Path, max_bytes: int | None = None) -> Measurem
     problems.raise_any()
     parameters = {**plan.parameters, **own}
     _refuse_unseen_spring(parameters.get("stiffness"), records, source)
+    _refuse_longer_than_records(plan, records, source)
     return Measurement(plan.system, parameters, _compared(_free(records)), path.resolve(), plan.segment_s)
 
 
@@ -148,6 +149,21 @@ def _refuse_unseen_spring(stiffness: Quantity | None, records: list[Record], sou
         rule = f"a natural frequency of {stated:.4g} Hz, and these records show nothing beyond {highest:.4g} Hz"
         remedy = "check its unit: it is the stiffness over the mass, in 1/s^2"
         raise InputError(Problem("parameters.stiffness", rule, stiffness.value, remedy, source))
+
+
+def _refuse_longer_than_records(plan: Plan, records: list[Record], source: str) -> None:
+    """Segments and delays lie within records."""
+    longest, problems = max(record.duration for record in records), []
+    if plan.segment_s is not None and plan.segment_s > longest:
+        rule = f"is longer than every record, the longest of {longest:.4g} s"
+        problems.append(Problem("segments", rule, f"{plan.segment_s:g} s", "shorten it, or leave it out", source))
+    for declared, record in zip(plan.records, records, strict=True):
+        for name, channel in record.channels.items():
+            if abs(channel.delay) >= record.duration:
+                key, rule = f"{declared.key}.channels.{name}.delay", f"the record is {record.duration:.4g} s long"
+                problems.append(Problem(key, rule, f"{channel.delay:g} s", "check its unit", source))
+    if problems:
+        raise InputError(problems)
 
 
 def _free(records: list[Record]) -> list[Record]:

@@ -268,3 +268,17 @@ def test_what_is_held_out_is_not_fitted(tmp_path, fit, held, said):
         return
     with pytest.raises(InputError, match=said):
         load_measurement(tmp_path / "measurement.yaml")
+
+
+def test_segments_and_delays_lie_within_the_records(tmp_path):
+    channels = {"time": {"column": "t", "unit": "s"}, "displacement": {"column": "x", "unit": "m"}}
+    text = "t,x\n" + ROWS.replace(" ", ",")
+    late = channels | {"displacement": {"column": "x", "unit": "m", "delay": {"value": 3, "unit": "s"}}}
+    with pytest.raises(InputError, match=r"records\[0\].channels.displacement.delay = '3 s': the record is 0.798 s long"):
+        loaded(tmp_path, text, late)
+    (tmp_path / "data.csv").write_text(text)
+    content = {"system": "oscillator", "segments": {"value": 50, "unit": "s"}}
+    content["records"] = [{"file": "data.csv", "channels": channels}]
+    (tmp_path / "measurement.yaml").write_text(yaml.safe_dump(content))
+    with pytest.raises(InputError, match=r"segments = '50 s': is longer than every record, the longest of 0.798 s"):
+        load_measurement(tmp_path / "measurement.yaml")
