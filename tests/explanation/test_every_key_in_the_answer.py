@@ -58,6 +58,8 @@ REFUSED = {
        for name in ("n_teeth_pinion", "n_teeth_gear", "module", "pressure_angle", "inertia_pinion", "inertia_gear",
                     "mesh_stiffness_max", "mesh_stiffness_min", "contact_ratio")},
     **{(system, "records", "window", "unit"): "the record goes from" for system in ("gear_pair", "oscillator")},
+    **{(system, "segments", "unit"): "longer than every record" for system in ("gear_pair", "oscillator")},
+    ("oscillator", "records", "role"): "is held out, and all rows of it are fitted",
     **{(system, "records", "resample", "unit"): "samples; a record needs" for system in ("gear_pair", "oscillator")},
 }
 SI = {"transmission_error": "m", "pinion_torque": "N*m", "gear_torque": "N*m", "pinion_angle": "rad",

@@ -274,7 +274,7 @@ def test_segments_and_delays_lie_within_the_records(tmp_path):
     channels = {"time": {"column": "t", "unit": "s"}, "displacement": {"column": "x", "unit": "m"}}
     text = "t,x\n" + ROWS.replace(" ", ",")
     late = channels | {"displacement": {"column": "x", "unit": "m", "delay": {"value": 3, "unit": "s"}}}
-    with pytest.raises(InputError, match=r"records\[0\].channels.displacement.delay = '3 s': the record is 0.798 s long"):
+    with pytest.raises(InputError, match=r"channels.displacement.delay = '3 s': the record is 0.798 s long"):
         loaded(tmp_path, text, late)
     (tmp_path / "data.csv").write_text(text)
     content = {"system": "oscillator", "segments": {"value": 50, "unit": "s"}}

@@ -39,9 +39,9 @@ def test_every_field_of_a_channel_is_written_and_read(name, tmp_path):
     channel = replace(channel, **needed.get(name, {}) | {name: DIFFERENT[name]})
     base = {"base_acceleration": Channel("base_acceleration", values, "m/s^2")} if name == "frame" else {}
     record = _of(system, channel, **base)
-    measurement = load_measurement(write_measurement(tmp_path, system, [record], None, 0.5))
+    measurement = load_measurement(write_measurement(tmp_path, system, [record], None, 0.002))
     read = measurement.records[0]
-    assert measurement.segment_s == 0.5
+    assert measurement.segment_s == 0.002
     assert (read.role, dict(read.conditions), read.gear_torque_mode, read.mesh_index) == (
         record.role, dict(record.conditions), record.gear_torque_mode, record.mesh_index,
     )  # fmt: skip
@@ -66,5 +66,5 @@ def test_whether_an_input_is_held_is_written_and_read(hold, tmp_path):
     steps = values if hold else np.sign(values)
     force = Channel("force", steps, "N", hold=hold)
     record = _of("oscillator", Channel("displacement", values, "m"), force=force)
-    read = load_measurement(write_measurement(tmp_path, "oscillator", [record], None, 0.5)).records[0]
+    read = load_measurement(write_measurement(tmp_path, "oscillator", [record], None, 0.002)).records[0]
     assert read.channels["force"].hold is hold
