@@ -236,6 +236,13 @@ def test_a_clock_in_a_text_is_named_as_one(tmp_path):
         loaded(tmp_path, "t,x\n" + rows, channels)
 
 
+@pytest.mark.parametrize(("written", "asked"), [("x \u00b5m", "x \u03bcm"), ("La\u0308nge", "L\u00e4nge")])
+def test_letters_in_other_codes_are_the_same(tmp_path, written, asked):
+    channels = {"time": {"column": "t", "unit": "s"}, "displacement": {"column": asked, "unit": "m"}}
+    found = loaded(tmp_path, f"t,{written}\n" + ROWS.replace(" ", ","), channels)
+    np.testing.assert_allclose(decay_of(found), DECAY, atol=1e-7)
+
+
 def test_time_in_the_notation_of_iso_is_time(tmp_path):
     (tmp_path / "a.csv").write_text("Zeit/s,a\n" + ROWS.replace(" ", ","))
     found = inspect_table(read_table(tmp_path / "a.csv"))

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
+from unicodedata import normalize
 from types import ModuleType
 
 import numpy as np
@@ -80,7 +81,9 @@ class Table(ABC):
         return []
 
     def _named(self, column: str) -> list[int]:
-        return [index for index, name in enumerate(self.names) if name and name == column]
+        exact = [index for index, name in enumerate(self.names) if name and name == column]
+        alike = normalize("NFKC", column)  # the same letters in other codes: µ and μ, ä and a with two dots
+        return exact or [index for index, name in enumerate(self.names) if name and normalize("NFKC", name) == alike]
 
     def _absent(self, column: str, key: str) -> Problem:
         named = [name for name in self.names if name]
