@@ -7,8 +7,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from unicodedata import normalize
 from types import ModuleType
+from unicodedata import normalize
 
 import numpy as np
 from numpy.typing import NDArray
