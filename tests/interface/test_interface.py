@@ -130,9 +130,9 @@ def test_the_command_line_simulates_the_written_model(tmp_path):
     rest = ["simulator.n_runs=2", "simulator.n_samples=200", "progress=false", f"data_folder={tmp_path / 'data'}"]
     place = f"hydra.run.dir={tmp_path / 'run'}"
     assert main(["task=simulate", f"simulator.extended={path}", "family=none", place, *rest]) == 0
-    written = np.load(tmp_path / "run" / "runs.npz")
-    assert written["parameters/backlash.gap"][0] == 8e-5
-    assert written["parameters/pinion_speed"][0] == 300
+    with np.load(tmp_path / "run" / "runs.npz") as written:
+        assert written["parameters/backlash.gap"][0] == 8e-5
+        assert written["parameters/pinion_speed"][0] == 300
 
 
 def test_a_simulation_is_that_of_the_engine():

@@ -57,7 +57,8 @@ class _Text:
         self.path = path
         self.utf8 = _utf8(path, raw)
         ending = self.utf8[-(2**16) :].decode("utf-8", "replace").splitlines()
-        last = next((line for line in reversed(ending) if _NUMBER.search(line) and not _IS_COMMENT.match(line)), "")
+        kept = [line for line in ending if line.strip(" \t;,\r") and not _IS_COMMENT.match(line)]
+        last = next((line for line in reversed(kept) if _NUMBER.search(line)), kept[-1] if kept else "")
         # Headers hold all kinds of signs, numbers only one.
         self.delimiter = next((sign for sign in (";", "\t", ",") if sign in last), " ")
         self.width = max((k + 1 for k, cell in enumerate(next(self._cells([last]), [])) if cell.strip()), default=0)
