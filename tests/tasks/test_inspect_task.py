@@ -178,7 +178,7 @@ def test_a_yaml_is_told_with_roles_channels_rates_conditions_findings_and_segmen
         ("run.mat", b"MATLAB 5.0 and nothing else", "run.mat"),
         ("run.h5", b"\x89HDF\r\n\x1a\n and nothing else", "run.h5"),
         ("run.csv", b"", "the file is empty"),
-        ("run.csv", b"a,b\nx,y\n", "no column holds numbers; the first: not a number"),
+        ("run.csv", b"a,b\nx,y\n", "a header and no rows of numbers"),
         ("run.bin", b"123", "unknown format '.bin'"),
         ("measurement.yaml", b"", "must be a mapping with keys among"),
         ("measurement.yaml", b"system: oscillator\nrecords:\n- {file: no.csv, channels: {displacement: {column: x}}}\n",
