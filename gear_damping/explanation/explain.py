@@ -21,7 +21,7 @@ from gear_damping.explanation.search import search
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import State
 from gear_damping.explanation.steps.calibrate import calibrated, recalibrated
-from gear_damping.explanation.steps.calibration_error import calibration_error
+from gear_damping.explanation.steps.confirm import Confirmed, confirmed
 from gear_damping.explanation.steps.judge import Judged, verdict
 from gear_damping.explanation.steps.too_short import died_away, too_short
 from gear_damping.explanation.trials.bench import Bench
@@ -99,14 +99,16 @@ def explain(
     notes = [note for note in (died_away(evidence), too_short(evidence)) if note]
     for note in notes:
         say(note)
-    evidence, noise = with_noise(evidence, measurement, say)
+    sealed = evidence.holdout
+    evidence, noise = with_noise(replace(evidence, holdout=()), measurement, say)
     step(1, STEPS)
     state = _searched(evidence, noise, say, fitting_solver(solver), budget, lambda: step(2, STEPS))
     step(3, STEPS)
-    judged = _judged(state, (*notes, budget.sentence), tuple(budget.not_tried))
+    found = confirmed(state, sealed, measurement)
+    judged = _judged(found, (*notes, budget.sentence), tuple(budget.not_tried))
     step(4, STEPS)
-    evidence = state.bench.evidence
-    return Explanation(content.of_search(measurement, evidence, state.noise, judged), evidence, state.noise, state)
+    evidence, noise = found.state.bench.evidence, found.noise
+    return Explanation(content.of_search(measurement, evidence, noise, judged), evidence, noise, found.state)
 
 
 def with_noise(evidence: Evidence, measurement: Measurement, say: Say) -> tuple[Evidence, NoiseLevel]:
@@ -128,7 +130,7 @@ def _searched(
     """Calibration and search, over whole records as far as these can be predicted from their start."""
     found = calibrated(replace(evidence, segments=first_segments(evidence)), solver)
     nominal, evidence = found.nominal, found.evidence
-    noise = replace(noise, scatter=calibration_error(nominal, evidence, solver))
+    noise = replace(noise, scatter=nominal.scatter)
     bench = Bench(evidence, noise, say, solver, noise, budget=budget, rough=found.rough)
     _tell(nominal, bench)
     is_calibrated()
@@ -142,22 +144,23 @@ def _searched(
     why = "the nominal model loses a record" if is_lost else "small errors grow"
     say(f"{why}: records are predicted in segments of {evidence.segments.seconds:.3g} s")
     nominal = recalibrated(nominal, evidence, solver)
-    noise = replace(noise, scatter=calibration_error(nominal, evidence, solver))
+    noise = replace(noise, scatter=nominal.scatter)
     bench = replace(bench, evidence=evidence, noise=noise, floor=noise)
     _tell(nominal, bench)
     return search(nominal, bench, state.first_fits[:1])
 
 
-def _judged(state: State, notes: Sequence[str], not_tried: tuple[str, ...]) -> Judged:
+def _judged(found: Confirmed, notes: Sequence[str], not_tried: tuple[str, ...]) -> Judged:
     """The state with its verdict."""
+    state, before, after = found.state, found.before, found.after
     evidence, settings = state.bench.evidence, state.bench.settings
     fitted = excess(state.nominal.fit_residuals, evidence.fitted, state.noise, settings)
     one, whole = _is_one(state), _taken_of_all(state)
     converged = state.outcome.fitted.converged
     of_fit = 1 - state.outcome.fitted.cost / max(state.nominal.fitted.cost, 1e-300)
     known = {"is_one": one, "whole": whole, "fitted": fitted.percent, "untried": not_tried, "of_fit": of_fit}
-    said = verdict(state, state.first, state.current, converged, **known).saying(*notes)
-    return Judged(state, state.first, state.current, said, not_tried)
+    said = verdict(state, before, after, converged, **known).saying(*notes)
+    return Judged(state, before, after, said, not_tried, found.t)
 
 
 def at_useful_rate(evidence: Evidence) -> Evidence:
@@ -199,7 +202,7 @@ def best_is_lost(found: State) -> bool:
     seen = [fit.outcome for fit in found.first_fits if fit.is_seen_in_fit]
     best = min(seen, key=lambda outcome: outcome.fitted.cost, default=found.nominal)
     takes = best.fitted.cost < found.bench.settings.lost_share * found.nominal.fitted.cost
-    return takes and best.holdout_cost > found.nominal.holdout_cost
+    return takes and best.left_out_cost > found.nominal.left_out_cost
 
 
 def _is_lost(residual: Tensor, record: FitRecord, evidence: Evidence) -> bool:

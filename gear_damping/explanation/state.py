@@ -145,4 +145,4 @@ class State:
         """The fall of the held-out excess as a share of the first one; of all residuals where there was none."""
         if self.first.percent > 0:
             return (self.bench.excess(before).percent - self.bench.excess(after).percent) / self.first.percent
-        return (before.holdout_cost - after.holdout_cost) / max(self.nominal.holdout_cost, 1e-300)
+        return (before.left_out_cost - after.left_out_cost) / max(self.nominal.left_out_cost, 1e-300)

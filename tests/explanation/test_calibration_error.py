@@ -8,8 +8,8 @@ import torch
 from gear_damping.explanation.evidence.excess import excess
 from gear_damping.explanation.evidence.noise import NoiseLevel, Scatter
 from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.calibration_error import calibration_error
 from gear_damping.explanation.model.hypothesis import Hypothesis, fit_hypothesis
-from gear_damping.explanation.steps.calibration_error import calibration_error
 from gear_damping.identification.observation import Known
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.physics.effects.viscous_damping import ViscousDamping

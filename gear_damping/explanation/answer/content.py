@@ -212,7 +212,7 @@ def _fixed(outcome: Outcome, cause: str) -> dict[str, float]:
 
 def _share(outcome: Outcome, nominal: Outcome) -> float:
     """Share of the held-out squared residual that an outcome takes."""
-    return 1 - (gain.rmse(outcome.holdout) / max(gain.rmse(nominal.holdout), 1e-300)) ** 2
+    return 1 - outcome.left_out_cost / max(nominal.left_out_cost, 1e-300)
 
 
 def _residual(before: Sequence, after: Sequence, unit: str, factor: float) -> dict[str, Any]:
@@ -245,9 +245,9 @@ def _gain(judged: Judged, evidence: Evidence, noise: NoiseLevel) -> dict[str, An
 def _confirmed(judged: Judged) -> dict[str, Any]:
     """What the causes together add to the prediction of held-out records, and the share of these that they take."""
     first, last, bench = judged.found.nominal, judged.found.outcome, judged.found.bench
-    share = share_taken(first.holdout, last.holdout, block_samples(last, bench.evidence))
+    share = share_taken(first.holdout, last.holdout, block_samples(last, bench.evidence, bench.evidence.held))
     interval = [100 * end for end in share.interval95]
-    return {"t": bench.confirmation(first, last), "percent": 100 * share.value, "interval95": interval}
+    return {"t": judged.confirmed_t, "percent": 100 * share.value, "interval95": interval}
 
 
 def _candidates(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:

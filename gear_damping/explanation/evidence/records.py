@@ -98,7 +98,7 @@ class Evidence:
     @property
     def conditions(self) -> int:
         """How many operating conditions the records hold."""
-        return len({_condition(record) for record in self.records})
+        return len({condition_of(record) for record in self.records})
 
 
 def evidence_of(measurement: Measurement) -> Evidence:
@@ -149,13 +149,13 @@ def _roles(records: Sequence[tuple[FitRecord, str | None]]) -> tuple[list[FitRec
     said = [role for _, role in records if role]
     if said:
         return [r for r, role in records if role != "holdout"], [r for r, role in records if role == "holdout"]
-    found = sorted({_condition(record) for record, _ in records})
+    found = sorted({condition_of(record) for record, _ in records})
     held = set(found[HELD_OUT // 2 :: HELD_OUT]) if len(found) > 1 else set()
-    fit = [record for record, _ in records if _condition(record) not in held]
-    return fit, [record for record, _ in records if _condition(record) in held]
+    fit = [record for record, _ in records if condition_of(record) not in held]
+    return fit, [record for record, _ in records if condition_of(record) in held]
 
 
-def _condition(record: FitRecord) -> tuple[float, float]:
+def condition_of(record: FitRecord) -> tuple[float, float]:
     """Speed and torque of a record, rounded so that repetitions fall together."""
     speed, torque = record.conditions.get("pinion_speed", 0.0), record.conditions.get("pinion_torque", 0.0)
     digits = -floor(log10(max(abs(torque), 1e-9))) + 1

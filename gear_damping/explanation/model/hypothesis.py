@@ -8,9 +8,10 @@ from typing import Any
 import torch
 from torch import Tensor
 
+from gear_damping.explanation.evidence.noise import Scatter
 from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.cross_fit import cross_fitted
 from gear_damping.identification.output_error.descent import Lent
-from gear_damping.identification.output_error.holdout import predict_holdout
 from gear_damping.identification.output_error.least_squares import Fitted, fit
 from gear_damping.identification.output_error.problem import OutputErrorProblem, growth
 from gear_damping.identification.output_error.records import SEPARATOR, FitRecord, FreeParameter
@@ -23,7 +24,6 @@ from gear_damping.physics.terms import Contact, Effect
 from gear_damping.simulation.solver_settings import Solver
 
 SEGMENT_TIMES = 5.0  # characteristic times of a segment of a record that cannot be predicted for longer
-ASTRAY = 3.0  # times what is left of the fitted records
 ITERATIONS_NEAR = 20  # to get near enough for the whole records
 Given = dict[str, float | tuple[float, ...]]
 
@@ -82,9 +82,12 @@ class Outcome:
         problem: The fit's statement.
         fitted: The fit.
         values: Fitted values by flat name.
-        holdout: Residuals of held-out records, the channels of each one after another: by these, models are compared.
+        left_out: Residuals of fitted records, each operating condition by parameters fitted to the others, the channels
+            of a record one after another: by these, models are compared.
         fit_residuals: Residuals of fitted records.
+        scatter: What errors of the parameters add to the residuals that are left out.
         growth: How much an error of the initial state grows over a record, in the one where it grows most.
+        holdout: Residuals of held-out records; empty until they are opened.
         own: What held-out records have of their own, by name.
     """
 
@@ -92,15 +95,17 @@ class Outcome:
     problem: OutputErrorProblem
     fitted: Fitted
     values: dict[str, float]
-    holdout: list[Tensor] = field(repr=False)
+    left_out: list[Tensor] = field(repr=False)
     fit_residuals: list[Tensor] = field(repr=False)
+    scatter: Scatter = field(default_factory=Scatter)
     growth: float = 0.0
+    holdout: list[Tensor] = field(default_factory=list, repr=False)
     own: dict[str, float] = field(default_factory=dict, repr=False)
 
     @property
-    def holdout_cost(self) -> float:
-        """Sum of squares over held-out samples."""
-        return sum(float(r.square().sum()) for r in self.holdout)
+    def left_out_cost(self) -> float:
+        """Sum of squares of what is left of conditions that are left out."""
+        return sum(float(r.square().sum()) for r in self.left_out)
 
     def flat_given(self) -> Given:
         """Every value of the model by flat name, lists as tuples."""
@@ -136,9 +141,8 @@ def fit_hypothesis(
     enough: float = 0.0,
     reach: float = inf,
     own: Mapping[str, float] | None = None,
-    scan: bool = False,
 ) -> Outcome:
-    """Fit to the records to fit, then predict the held-out ones with the parameters frozen.
+    """Fit to the records to fit.
 
     Args:
         hypothesis: What is fitted; its free parameters start where they say.
@@ -152,7 +156,6 @@ def fit_hypothesis(
         enough: Fall of the cost, in noise variances, below which the fit has converged.
         reach: Cost of the whole records; a fit that will not get below it is given up.
         own: Where parameters of single records begin, by name.
-        scan: Whether angles of held-out records are tried all around, though another fit has found some.
     """
     if not evidence.segments and any(isinstance(effect, Contact) for effect in hypothesis.effects):
         near = _fit_in_segments(hypothesis, evidence, starts, solver=solver, kept=kept, enough=enough)
@@ -172,8 +175,7 @@ def fit_hypothesis(
     free = tuple(_settled(p, values.get(p.name, p.start)) for p in hypothesis.free)
     gains = {name: value for name, value in values.items() if name.startswith(f"{GAIN}.")}
     settled = replace(hypothesis, free=free, given=given, gains=gains)
-    held = None if after is None or scan else after.own
-    return _outcome(settled, Fit(problem, fitted, values), evidence, solver, held)
+    return _outcome(settled, Fit(problem, fitted, values), evidence)
 
 
 def _begin(
@@ -205,30 +207,17 @@ class Fit:
     values: dict[str, float]
 
 
-def _outcome(
-    settled: Hypothesis, found: Fit, evidence: Evidence, solver: Solver | None, begun: Mapping[str, float] | None
-) -> Outcome:
-    """The fit with its residuals, and the prediction of held-out records, their angles begun where they were."""
+def _outcome(settled: Hypothesis, found: Fit, evidence: Evidence) -> Outcome:
+    """The fit with what it leaves of its records, as they are and with operating conditions left out."""
     problem, fitted = found.problem, found.fitted
-    scale = slowest_time(settled, evidence)
-    own = [parameter for parameter in settled.free if parameter.per_record]
-    given, segments = {**settled.given, **settled.gains}, evidence.segments
-    options = {"solver": solver, "segments": segments, "own": own, "noise": evidence.noise}
-    held = predict_holdout(settled.model, given, evidence.holdout, scale, begun=begun, **options)
-    if begun and _is_astray(held.residuals, fitted, problem):  # another model's angles may lie in another valley
-        anew = predict_holdout(settled.model, given, evidence.holdout, scale, **options)
-        held = min(held, anew, key=lambda one: sum(float(r.square().sum()) for r in one.residuals))
-    residual = joined(fitted.prediction.residual[0], evidence.fitted, evidence.segments, len(problem.response.channels))
-    fit_residuals = [found / record.weight for found, record in zip(residual, evidence.fit, strict=True)]
-    grown = max(held.growth, growth(fitted.prediction, problem.n_shared))
-    return Outcome(settled, problem, fitted, found.values, held.residuals, fit_residuals, grown, held.own)
-
-
-def _is_astray(held: Sequence[Tensor], fitted: Fitted, problem: OutputErrorProblem) -> bool:
-    """Whether held-out records are predicted far worse than fitted ones are followed, per sample."""
-    count = sum(int((weights > 0).sum()) for weights in problem.response.weights)
-    left = sum(float(residual.square().sum()) for residual in held) / sum(len(residual) for residual in held)
-    return left > ASTRAY * fitted.cost / max(count, 1)
+    crossed = cross_fitted(problem, fitted)
+    left = [
+        [part / record.weight for part, record in zip(whole, evidence.fit, strict=True)]
+        for series in (crossed.residuals, fitted.prediction.residual[0])
+        for whole in [joined(series, evidence.fitted, evidence.segments, len(problem.response.channels))]
+    ]
+    grown = growth(fitted.prediction, problem.n_shared)
+    return Outcome(settled, problem, fitted, found.values, *left, crossed.scatter, grown)
 
 
 def _fit_in_segments(hypothesis: Hypothesis, evidence: Evidence, starts: Tensor | None, **options: Any) -> Outcome:

@@ -89,7 +89,7 @@ def shaped(rough: Outcome, evidence: Evidence, iterations: int, solver: Solver |
         iterations: At most so many linearisations; with none, the harmonics are free and still zero.
         solver: Settings of the solver.
     """
-    options = {"iterations": iterations, "solver": solver, "scan": True}
+    options = {"iterations": iterations, "solver": solver}
     shaped = _with_shape(rough.hypothesis, _shape_harmonics(rough, evidence, solver))
     found = fit_hypothesis(shaped, evidence, after=rough, **options)
     samples = sum(len(record.stacked) for record in evidence.fitted)

@@ -31,7 +31,7 @@ def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
     if state.needs_known_size:
         worth, borne_out = ([fit for fit in some if bench.is_determined(fit)] for some in (worth, borne_out))
     if borne_out:
-        best = min(borne_out, key=lambda fit: fit.outcome.holdout_cost)
+        best = min(borne_out, key=lambda fit: fit.outcome.left_out_cost)
         return state, *bench.simplest(best, fits)
     if not worth:
         return state, None, ()

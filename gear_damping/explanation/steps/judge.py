@@ -32,13 +32,16 @@ class Verdict:
 
 @dataclass(frozen=True)
 class Judged:
-    """A search with what it leaves, what it is called, and what there was no time for."""
+    """A search with what it leaves of held-out records, what it is called, what there was no time for, and how clearly
+    held-out records bear it out.
+    """
 
     found: State
     before: Excess
     after: Excess
     verdict: Verdict
     not_tried: tuple[str, ...] = ()
+    confirmed_t: float = 0.0
 
 
 def verdict(

@@ -90,7 +90,7 @@ def _instead(state: State) -> list[Pair]:
 
 
 def _taken(fit: Refit, state: State) -> float:
-    return 1 - fit.outcome.holdout_cost / max(state.nominal.holdout_cost, 1e-300)
+    return 1 - fit.outcome.left_out_cost / max(state.nominal.left_out_cost, 1e-300)
 
 
 def _accepted(pairs: Sequence[Pair], current: Excess, state: State) -> Pair | None:
@@ -101,7 +101,7 @@ def _accepted(pairs: Sequence[Pair], current: Excess, state: State) -> Pair | No
         return (current.percent - bench.excess(pair.second.outcome).percent) / current.percent
 
     worth = [pair for pair in pairs if pair.second.t > settings.accepted_t and takes(pair) >= settings.least_share]
-    best = min(worth, key=lambda pair: pair.second.outcome.holdout_cost, default=None)
+    best = min(worth, key=lambda pair: pair.second.outcome.left_out_cost, default=None)
     if best is None:
         return None
     alike = [pair for pair in worth if bench.is_as_good(pair.second.outcome, best.second.outcome)]

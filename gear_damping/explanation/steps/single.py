@@ -43,7 +43,7 @@ def _first_fits(state: State) -> tuple[Refit, ...]:
         if begun is None:
             continue
         fits += bench.full_fits(begun[1], begun[0], state.nominal)
-        fits.sort(key=lambda fit: fit.outcome.holdout_cost)
+        fits.sort(key=lambda fit: fit.outcome.left_out_cost)
         if _best(fits, state):
             break
     return tuple(fits)
@@ -75,7 +75,7 @@ def _rivals_at_rest(fits: Sequence[Refit], state: State) -> tuple[Refit, ...]:
     against = state.outcome if state.accepted else state.nominal
     alike = [fit for fit in fits if fit is best or bench.is_as_good(fit.outcome, best.outcome)]
     ends = [bench.converged(fit, against) if any(fit is one for one in alike) else fit for fit in fits]
-    return tuple(sorted(ends, key=lambda fit: fit.outcome.holdout_cost))
+    return tuple(sorted(ends, key=lambda fit: fit.outcome.left_out_cost))
 
 
 def _best(fits: Sequence[Refit], state: State) -> Refit | None:

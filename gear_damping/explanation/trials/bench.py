@@ -56,8 +56,8 @@ class Bench:
         return self.evidence.settings
 
     def excess(self, outcome: Outcome) -> Excess:
-        """What a model leaves of the held-out records."""
-        return excess(outcome.holdout, self.evidence.held, self.noise, self.settings)
+        """What a model leaves of operating conditions that are left out of its fit."""
+        return excess(outcome.left_out, self.evidence.fitted, self.noise, self.settings)
 
     def assessed(self, outcome: Outcome, ranked: Sequence[Score], families: bool = True) -> Assessment | None:
         """What the residuals of a model hold that is not random, and what is; beside families without a name or not."""
@@ -102,7 +102,7 @@ class Bench:
             if fit is None and score.gain > 0:
                 self.failed[score.candidate.name] = "its full fit ran away on held-out records"
             fits += [] if fit is None else [fit]
-        return tuple(sorted(fits, key=lambda fit: fit.outcome.holdout_cost))
+        return tuple(sorted(fits, key=lambda fit: fit.outcome.left_out_cost))
 
     def without(self, outcome: Outcome, name: str) -> Outcome:
         """A model without one of its causes, fitted from where it was."""
@@ -128,18 +128,21 @@ class Bench:
         of squares in noise variances is twice the logarithm of the odds between them.
         """
         gain, t = self.paired_gain(outcome, best)
-        samples = sum(len(residual) for residual in best.holdout) / self.noise.correlation
+        samples = sum(len(residual) for residual in best.left_out) / self.noise.correlation
         if gain * samples < self.settings.rival_evidence * self.noise.value**2:
             return True
         return t < self.settings.rival_t or gain < SAME * self.noise.value**2
 
     def paired_gain(self, before: Outcome, after: Outcome) -> tuple[float, float]:
         """Gain of the second over the first on held-out records, with its t."""
-        return paired_gain(before.holdout, after.holdout, block_samples(after, self.evidence))
+        return paired_gain(before.left_out, after.left_out, self._blocks(after))
 
     def confirmation(self, before: Outcome, after: Outcome) -> float:
         """The t statistic of what the second adds to the prediction of held-out records."""
-        return confirmation(before.holdout, after.holdout, block_samples(after, self.evidence))
+        return confirmation(before.left_out, after.left_out, self._blocks(after))
+
+    def _blocks(self, outcome: Outcome) -> list[int]:
+        return block_samples(outcome, self.evidence, self.evidence.fitted)
 
     def simplest(self, best: Refit, fits: Sequence[Refit]) -> tuple[Refit, tuple[str, ...]]:
         """The explanation with its rivals, the effects whose full fit is not worse by the paired test.
@@ -195,7 +198,7 @@ class Bench:
 
 def smallest(fits: Sequence[Refit]) -> Refit:
     """The fit with the fewest parameters; of several the one that held-out records like best."""
-    return min(fits, key=lambda fit: (len(fit.outcome.hypothesis.free), fit.outcome.holdout_cost))
+    return min(fits, key=lambda fit: (len(fit.outcome.hypothesis.free), fit.outcome.left_out_cost))
 
 
 def _without(hypothesis: Hypothesis, name: str) -> Hypothesis:

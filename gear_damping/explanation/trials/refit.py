@@ -13,6 +13,7 @@ from gear_damping.explanation.model.hypothesis import Outcome, fit_hypothesis, t
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.statistics.paired import paired_gain
 from gear_damping.explanation.trials.score import Score, best_by_effect, collinearity
+from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.simulation.solver_settings import Solver
 
 NEARLY_COLLINEAR = 0.7
@@ -65,11 +66,11 @@ class Refit:
         return self.score.candidate.name
 
 
-def block_samples(outcome: Outcome, evidence: Evidence) -> list[int]:
-    """Samples of a block of the paired test, by held-out record; short records have shorter blocks."""
-    total = sum(record.duration for record in evidence.held)
+def block_samples(outcome: Outcome, evidence: Evidence, records: Sequence[FitRecord]) -> list[int]:
+    """Samples of a block of the paired test, by record; short records have shorter blocks."""
+    total = sum(record.duration for record in records)
     seconds = min(BLOCK_TIMES * time_scale(outcome.hypothesis, evidence), total / FEWEST_BLOCKS)
-    return [max(SHORTEST_BLOCK, round(seconds * record.sampling_rate)) for record in evidence.held]
+    return [max(SHORTEST_BLOCK, round(seconds * record.sampling_rate)) for record in records]
 
 
 def chosen(
@@ -146,7 +147,7 @@ def refitted(
             freed, free=tuple(replace(p, start=float(found.hypothesis.given.get(p.name, p.start))) for p in freed.free)
         )
         found = fit_hypothesis(freed, evidence, None, found, **(options | {"own": None}))
-    if not torch.isfinite(torch.tensor(found.holdout_cost)):
+    if not torch.isfinite(torch.tensor(found.left_out_cost)):
         return None
     return compared(score, found, against or outcome, evidence)
 
@@ -159,7 +160,7 @@ def again(refit: Refit, against: Outcome, evidence: Evidence, solver: Solver | N
 
 def compared(score: Score, found: Outcome, against: Outcome, evidence: Evidence) -> Refit:
     """A fit held against another model on held-out records."""
-    gain, t = paired_gain(against.holdout, found.holdout, block_samples(against, evidence))
+    gain, t = paired_gain(against.left_out, found.left_out, block_samples(against, evidence, evidence.fitted))
     fit_gain = (against.fitted.cost - found.fitted.cost) / max(evidence.noise, 1e-300) ** 2
     return Refit(score, found, gain, t, fit_gain, fit_gain > evidence.settings.seen_in_fit)
 

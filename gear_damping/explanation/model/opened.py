@@ -1,0 +1,46 @@
+"""Held-out records, opened once: a fitted model on records that took no part in any choice."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from torch import Tensor
+
+from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.hypothesis import Outcome, slowest_time
+from gear_damping.identification.output_error.holdout import predict_holdout
+from gear_damping.identification.output_error.least_squares import Fitted
+from gear_damping.identification.output_error.problem import OutputErrorProblem
+from gear_damping.simulation.solver_settings import Solver
+
+ASTRAY = 3.0  # times what is left of the fitted records
+
+
+def opened(
+    outcome: Outcome, evidence: Evidence, solver: Solver | None = None, begun: Mapping[str, float] | None = None
+) -> Outcome:
+    """A model with what it leaves of the held-out records, its parameters frozen.
+
+    Args:
+        outcome: The fitted model.
+        evidence: The records, those held out among them.
+        solver: Settings of the solver.
+        begun: Where angles of held-out records begin, by name; they are tried all around where absent.
+    """
+    settled = outcome.hypothesis
+    scale = slowest_time(settled, evidence)
+    own = [parameter for parameter in settled.free if parameter.per_record]
+    given = {**settled.given, **settled.gains}
+    options = {"solver": solver, "segments": evidence.segments, "own": own, "noise": evidence.noise}
+    held = predict_holdout(settled.model, given, evidence.holdout, scale, begun=begun, **options)
+    if begun and _is_astray(held.residuals, outcome.fitted, outcome.problem):
+        # another model's angles may lie in another valley
+        anew = predict_holdout(settled.model, given, evidence.holdout, scale, **options)
+        held = min(held, anew, key=lambda one: sum(float(r.square().sum()) for r in one.residuals))
+    return replace(outcome, holdout=held.residuals, own=held.own, growth=max(outcome.growth, held.growth))
+
+
+def _is_astray(held: Sequence[Tensor], fitted: Fitted, problem: OutputErrorProblem) -> bool:
+    """Whether held-out records are predicted far worse than fitted ones are followed, per sample."""
+    count = sum(int((weights > 0).sum()) for weights in problem.response.weights)
+    left = sum(float(residual.square().sum()) for residual in held) / sum(len(residual) for residual in held)
+    return left > ASTRAY * fitted.cost / max(count, 1)

@@ -1,0 +1,96 @@
+"""Step 9: held-out records, which took no part in any choice, are opened once.
+
+They tell what the causes are worth on records that nobody has looked at, and whether they are borne out there at all.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from gear_damping.explanation.evidence.excess import Excess, excess
+from gear_damping.explanation.evidence.noise import NoiseLevel, noise_of, weighted
+from gear_damping.explanation.evidence.records import Evidence, with_own_angles
+from gear_damping.explanation.model.calibration_error import calibration_error
+from gear_damping.explanation.model.hypothesis import Outcome
+from gear_damping.explanation.model.opened import opened
+from gear_damping.explanation.state import State
+from gear_damping.explanation.statistics.paired import confirmation
+from gear_damping.explanation.trials.refit import block_samples
+from gear_damping.identification.observation import MESH_PHASE
+from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.measurement.record import Measurement
+
+
+@dataclass(frozen=True)
+class Confirmed:
+    """A search with what held-out records say of it.
+
+    Args:
+        state: Where it ended, with the causes that are borne out; its records hold those held out.
+        noise: Of all records.
+        before: What the nominal model leaves of held-out records.
+        after: What the extended one does.
+        t: Of what the causes together add to the prediction of held-out records; 0 where there is none.
+    """
+
+    state: State
+    noise: NoiseLevel
+    before: Excess
+    after: Excess
+    t: float = 0.0
+
+
+def confirmed(state: State, sealed: Sequence[FitRecord], measurement: Measurement) -> Confirmed:
+    """The state with its held-out records, without causes that these do not bear out.
+
+    Args:
+        state: Where the search ended.
+        sealed: The held-out records.
+        measurement: Where they are from.
+    """
+    evidence, noise = _with_sealed(state, sealed, measurement)
+    bench = replace(state.bench, evidence=evidence)
+    nominal = opened(state.nominal, evidence, bench.solver)
+    scatter = calibration_error(nominal, evidence, bench.solver)
+    noise = replace(noise, scatter=scatter)
+    extended = opened(state.outcome, evidence, bench.solver, nominal.own) if state.accepted else nominal
+    state, t = _borne_out(replace(state, bench=bench, nominal=nominal, outcome=extended))
+    before, after = (excess(one.holdout, evidence.held, noise, bench.settings) for one in (nominal, state.outcome))
+    return Confirmed(state, noise, before, after, t)
+
+
+def _with_sealed(state: State, sealed: Sequence[FitRecord], measurement: Measurement) -> tuple[Evidence, NoiseLevel]:
+    """The evidence with its held-out records as the others are seen, and the noise of all of them."""
+    evidence, known = state.bench.evidence, state.noise
+    if any(MESH_PHASE in record.own for record in evidence.fit):
+        sealed = with_own_angles(replace(evidence, holdout=tuple(sealed))).holdout
+    _, scaled, found = noise_of(evidence.fit, sealed, measurement)
+    least = known.value if known.by_record != state.bench.floor.by_record else 0.0  # much more looks random
+    levels = {record.name: max(found.by_record[record.name], least) for record in sealed}
+    noise = replace(known, by_record={**known.by_record, **levels})
+    return replace(evidence, holdout=weighted(scaled, noise)), noise
+
+
+def _borne_out(state: State) -> tuple[State, float]:
+    """The state with the causes that held-out records bear out, and the t of what these add to the prediction."""
+    if not state.accepted:
+        return state, 0.0
+    bench, least = state.bench, state.bench.settings.confirmed_t
+    for cause in state.accepted if len(state.accepted) > 1 else ():
+        without = bench.without(state.outcome, cause.name)
+        without = opened(without, bench.evidence, bench.solver, state.nominal.own)
+        if _t(without, state.outcome, state) < least:
+            bench.say(f"{cause.name} is not borne out by held-out records")
+            kept = tuple(other for other in state.accepted if other is not cause)
+            state = replace(state, accepted=kept, outcome=without, rejected=(cause.refit, *state.rejected))
+    t = _t(state.nominal, state.outcome, state)
+    if t < least:
+        bench.say("held-out records do not bear out what was found")
+        fits = tuple(cause.refit for cause in state.accepted)
+        return replace(state, accepted=(), outcome=state.nominal, rejected=(*fits, *state.rejected)), 0.0
+    return state, t
+
+
+def _t(before: Outcome, after: Outcome, state: State) -> float:
+    """The t statistic of what a second model adds to the prediction of held-out records."""
+    evidence = state.bench.evidence
+    return confirmation(before.holdout, after.holdout, block_samples(after, evidence, evidence.held))
