@@ -40,14 +40,18 @@ def confirmation(before: Sequence[Tensor], after: Sequence[Tensor], blocks: Sequ
     """The t statistic of what a second prediction adds to the first, on what the first leaves, over blocks.
 
     Of two predictions of which one contains the other the difference of squares is blunt: what the larger one adds is
-    compared with the residual itself (Clark & West 2007, Journal of Econometrics 138).
+    compared with the residual itself (Clark & West 2007, Journal of Econometrics 138). Over n blocks this t is sqrt(n)
+    at most; where what is added lies in a few of them, its variance is that of what the second one leaves.
     """
-    sums: list[Tensor] = []
+    sums, sizes = [], []
     for old, new, block in zip(before, after, blocks, strict=True):
-        products = (old - new) * old
-        count = max(1, len(products) // block)
-        sums += [part.sum() for part in products[: count * block].chunk(count)]
-    total = torch.stack(sums)
+        added = old - new
+        count = max(1, len(added) // block)
+        sums += [part.sum() for part in (added * old)[: count * block].chunk(count)]
+        sizes += [part.sum() for part in added.square()[: count * block].chunk(count)]
+    total, size = torch.stack(sums), torch.stack(sizes)
+    if float(size.sum() ** 2) < FEW_BLOCKS * float(size.square().sum()):
+        return float(total.sum()) / max(_deviation(before, after, blocks), 1e-300)
     return float(total.sum() / total.square().sum().sqrt().clamp(min=1e-300))
 
 
@@ -90,8 +94,13 @@ def _t_of_events(before: Sequence[Tensor], after: Sequence[Tensor], blocks: Sequ
     is estimated at every lag up to a block (Newey & West 1987), and the largest of these variances counts.
     """
     gain = sum(float((old.square() - new.square()).sum()) for old, new in zip(before, after, strict=True))
+    return gain / max(2 * _deviation(before, after, blocks), 1e-300)
+
+
+def _deviation(before: Sequence[Tensor], after: Sequence[Tensor], blocks: Sequence[int]) -> float:
+    """Standard deviation of what a second prediction adds times what it leaves, summed."""
     longest = max(blocks)
     lags = [0, *(2**k for k in range(longest.bit_length()) if 2**k <= longest)]
     products = [(old - new) * new for old, new in zip(before, after, strict=True)]
     variance = max(sum(float(long_run(product.unsqueeze(1), lag)) for product in products) for lag in lags)
-    return gain / max(2 * variance**0.5, 1e-300)
+    return max(variance, 0.0) ** 0.5
