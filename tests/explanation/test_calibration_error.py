@@ -10,6 +10,7 @@ from gear_damping.explanation.evidence.noise import NoiseLevel, Scatter
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.calibration_error import calibration_error
 from gear_damping.explanation.model.hypothesis import Hypothesis, fit_hypothesis
+from gear_damping.explanation.model.opened import opened
 from gear_damping.identification.observation import Known
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.physics.effects.viscous_damping import ViscousDamping
@@ -72,7 +73,8 @@ def test_chance_is_wider_where_the_calibration_is_uncertain():
     outcome, evidence = calibrated(0)
     noise = NoiseLevel({"fit": NOISE, "held": NOISE}, "declared", 1e9, True)
     scattered = NoiseLevel({"fit": NOISE, "held": NOISE}, "declared", 1e9, True, scatter=Scatter(0.5, 0.3))
-    found, wider = (excess(outcome.holdout, evidence.holdout, level) for level in (noise, scattered))
+    held = opened(outcome, evidence).holdout
+    found, wider = (excess(held, evidence.holdout, level) for level in (noise, scattered))
     assert wider.percent == found.percent
     floor = 100 * NOISE**2 / float((evidence.holdout[0].response - evidence.holdout[0].response.mean()).square().mean())
     plain = found.chance / 3  # one standard error, in % of the channel's variance

@@ -100,6 +100,6 @@ def test_a_small_part_of_what_only_looks_random_is_no_cause(misfit, whole, word)
 
 @pytest.mark.parametrize(("first", "share"), [(8.0, 0.75), (-1.0, 0.4)])
 def test_a_share_is_one_of_residuals_where_nothing_was_left_beyond_noise(first, share):
-    outcomes = [SimpleNamespace(percent=p, holdout_cost=c) for p, c in ((first, 10.0), (first - 6.0, 6.0))]
+    outcomes = [SimpleNamespace(percent=p, left_out_cost=c) for p, c in ((first, 10.0), (first - 6.0, 6.0))]
     bench = SimpleNamespace(excess=lambda outcome: excess_of(outcome.percent, 1.0))
     assert State(bench, outcomes[0], outcomes[0]).share_taken(outcomes[1]) == pytest.approx(share)

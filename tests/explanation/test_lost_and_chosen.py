@@ -45,7 +45,7 @@ def test_noise_at_the_end_of_a_decay_is_not_lost():
 
 
 def fit_of(cost, held, seen=True, gain=0.0, fit_gain=0.0):
-    outcome = SimpleNamespace(fitted=SimpleNamespace(cost=cost), holdout_cost=held)
+    outcome = SimpleNamespace(fitted=SimpleNamespace(cost=cost), left_out_cost=held)
     return SimpleNamespace(outcome=outcome, is_seen_in_fit=seen, gain=gain, fit_gain=fit_gain)
 
 
@@ -61,7 +61,7 @@ def fit_of(cost, held, seen=True, gain=0.0, fit_gain=0.0):
     ],
 )
 def test_the_best_fit_that_loses_the_held_out_records(fits, expected):
-    nominal = SimpleNamespace(fitted=SimpleNamespace(cost=1.0), holdout_cost=10.0)
+    nominal = SimpleNamespace(fitted=SimpleNamespace(cost=1.0), left_out_cost=10.0)
     bench = SimpleNamespace(settings=SearchSettings())
     assert best_is_lost(SimpleNamespace(nominal=nominal, first_fits=fits, bench=bench)) is expected
 
@@ -113,9 +113,9 @@ def test_too_little_to_bet_on_does_not_tell_two_apart(difference, correlation, e
     other = best * math.sqrt(1 + difference / SAMPLES)
     held = [SimpleNamespace(duration=SAMPLES / 100.0, sampling_rate=100.0)]
     noise = SimpleNamespace(value=NOISE, correlation=correlation)
-    evidence = SimpleNamespace(settings=SearchSettings(), held=held)
+    evidence = SimpleNamespace(settings=SearchSettings(), fitted=held)
     bench = Bench(evidence, noise, None, None, noise)
-    outcomes = [SimpleNamespace(holdout=[residual]) for residual in (other, best)]
+    outcomes = [SimpleNamespace(left_out=[residual]) for residual in (other, best)]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("gear_damping.explanation.trials.bench.block_samples", lambda *_: [SAMPLES // 16])
         assert bench.is_as_good(*outcomes) is expected

@@ -19,7 +19,7 @@ class LeftOut:
     Args:
         residuals: (samples,).
         expected: Mean of what errors of the parameters add to the sum of squares, in noise variances.
-        deviation: Its standard deviation.
+        deviation: Its standard deviation at most: errors of folds that share most of the others hang together.
     """
 
     residuals: Tensor
@@ -48,7 +48,7 @@ def left_out(columns: Tensor, residual: Tensor, folds: Tensor, slope: Tensor, ex
     white = vectors[:, kept] / values[kept].sqrt()
     columns, pull = columns @ white, white.T @ (slope * expected)
     pull = pull + columns.T @ residual
-    found, mean, variance = residual.clone(), 0.0, 0.0
+    found, mean, deviation = residual.clone(), 0.0, 0.0
     for fold in folds.unique():
         own = folds == fold
         inside = columns[own]
@@ -57,5 +57,5 @@ def left_out(columns: Tensor, residual: Tensor, folds: Tensor, slope: Tensor, ex
         others = turned.T @ (pull - inside.T @ residual[own])
         found[own] = residual[own] - inside @ (turned @ (others / elsewhere))
         added = shares.clamp(0, 1) / elsewhere
-        mean, variance = mean + float(added.sum()), variance + 2 * float(added.square().sum())
-    return LeftOut(found, mean, variance**0.5)
+        mean, deviation = mean + float(added.sum()), deviation + float((2 * added.square().sum()).sqrt())
+    return LeftOut(found, mean, deviation)

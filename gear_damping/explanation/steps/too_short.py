@@ -50,7 +50,7 @@ def died_away(evidence: Evidence) -> str:
 def _characteristic(evidence: Evidence) -> tuple[float, str]:
     """Seconds over which the motion forgets itself, and what so many of them are called."""
     if evidence.system == "oscillator" and evidence.known.values.get("stiffness", 1.0) == 0:
-        time = max(decorrelation_time(record) for record in evidence.records)
+        time = max(decorrelation_time(record) for record in evidence.fit)
         return time, f"times of {time:.3g} s, over which the motion forgets itself"
     frequency = _natural_frequency(evidence)
     return 1 / frequency, f"natural periods of {frequency:.3g} Hz"

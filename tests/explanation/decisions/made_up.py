@@ -18,19 +18,21 @@ NAMES = (
 
 
 def left(percent: float, misfit: float = 1.0, threshold: float = 0.01, chance: float = 0.0) -> Excess:
-    """What held-out residuals hold."""
+    """What residuals of conditions left out hold."""
     return Excess(percent, threshold, chance, misfit, {})
 
 
-def outcome(cost: float = 1.0, held: float = 1.0, **more: object) -> SimpleNamespace:
+def outcome(cost: float = 1.0, squares: float = 1.0, **more: object) -> SimpleNamespace:
     """A fitted model by its sums of squares."""
-    return SimpleNamespace(fitted=SimpleNamespace(cost=cost, converged=True), holdout_cost=held, growth=1.0, **more)
+    return SimpleNamespace(fitted=SimpleNamespace(cost=cost, converged=True), left_out_cost=squares, growth=1.0, **more)
 
 
-def fit(name: str = NAMES[0], cost: float = 0.5, held: float = 0.5, t: float = 50.0, **more: object) -> SimpleNamespace:
-    """A full fit that held-out records bear out, unless said otherwise."""
+def fit(
+    name: str = NAMES[0], cost: float = 0.5, squares: float = 0.5, t: float = 50.0, **more: object
+) -> SimpleNamespace:
+    """A full fit that conditions left out bear out, unless said otherwise."""
     known = {"gain": 1.0, "fit_gain": 1e4, "is_seen_in_fit": True, "is_at_bound": False} | more
-    return SimpleNamespace(name=name, outcome=outcome(cost, held), t=t, **known)
+    return SimpleNamespace(name=name, outcome=outcome(cost, squares), t=t, **known)
 
 
 @dataclass(frozen=True)

@@ -42,11 +42,11 @@ def confirmed(settings: SearchSettings):
     for right in (16, 10):
         signs = torch.tensor([1.0] * right + [-1.0] * (BLOCKS - right), dtype=torch.float64)
         old = torch.ones(BLOCKS * BLOCK, dtype=torch.float64)
-        before = outcome(holdout=[old])
+        before = outcome(left_out=[old])
         found = fit(cost=0.5)
-        found.outcome.holdout = [old - 0.1 * signs.repeat_interleave(BLOCK)]
+        found.outcome.left_out = [old - 0.1 * signs.repeat_interleave(BLOCK)]
         with patch.object(benches, "block_samples", lambda *_: [BLOCK]):
-            worth.append(faint._is_worth(found, before, SimpleNamespace(taken=0.1), bench(settings)))
+            worth.append(faint._is_worth(found, before, SimpleNamespace(taken=0.1), bench(settings, fitted=[])))
     return tuple(worth)
 
 
@@ -112,7 +112,7 @@ def seconds_of_pairs(settings: SearchSettings):
 def bases_in_the_place_of_a_cause(settings: SearchSettings):
     """The cause took .8 by itself, the others .6 and .2."""
     nominal = outcome()
-    tried = tuple(fit(NAMES[place], held=1 - taken) for place, taken in enumerate((0.8, 0.6, 0.2)))
+    tried = tuple(fit(NAMES[place], squares=1 - taken) for place, taken in enumerate((0.8, 0.6, 0.2)))
     state = State(bench(settings), nominal, nominal, (SimpleNamespace(name=NAMES[0]),), first_fits=tried)
     state = replace(state, accepted=(SimpleNamespace(name=NAMES[0]),))
     with (

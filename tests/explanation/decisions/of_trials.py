@@ -37,26 +37,26 @@ def tried_in_the_place_of_a_cause(settings: SearchSettings):
 @decides("seen_in_fit", (True, False))
 def seen_in_fit(settings: SearchSettings):
     """Falls of the fitted cost by 60 and by 10 noise variances."""
-    evidence = SimpleNamespace(settings=settings, noise=0.1)
+    evidence = SimpleNamespace(settings=settings, noise=0.1, fitted=[])
     with (
         patch("gear_damping.explanation.trials.refit.paired_gain", lambda *_: (1.0, 50.0)),
         patch("gear_damping.explanation.trials.refit.block_samples", lambda *_: [BLOCK]),
     ):
-        before = outcome(cost=1.0, holdout=[])
-        fits = (compared(None, outcome(cost=1 - fall / 100, holdout=[]), before, evidence) for fall in (60, 10))
+        before = outcome(cost=1.0, left_out=[])
+        fits = (compared(None, outcome(cost=1 - fall / 100, left_out=[]), before, evidence) for fall in (60, 10))
         return tuple(one.is_seen_in_fit for one in fits)
 
 
-def held_out(gains: torch.Tensor) -> list[SimpleNamespace]:
+def of_conditions_left_out(gains: torch.Tensor) -> list[SimpleNamespace]:
     """Two models by their residuals: of a size of 3 in every block, and of so much more power."""
     best = torch.full((BLOCKS * BLOCK,), 3.0, dtype=torch.float64)
     other = (best.square() + gains.repeat_interleave(BLOCK)).sqrt()
-    return [SimpleNamespace(holdout=[residual]) for residual in (other, best)]
+    return [SimpleNamespace(left_out=[residual]) for residual in (other, best)]
 
 
 def as_good(gains: torch.Tensor, settings: SearchSettings) -> bool:
     with patch.object(benches, "block_samples", lambda *_: [BLOCK]):
-        return bench(settings, held=[HELD]).is_as_good(*held_out(gains))
+        return bench(settings, fitted=[HELD]).is_as_good(*of_conditions_left_out(gains))
 
 
 @decides("rival_t", (True, False))
