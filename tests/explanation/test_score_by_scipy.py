@@ -117,3 +117,4 @@ def test_estimates_by_record_are_those_of_least_squares_over_all_of_them():
     assert found.names == tuple(f"run {i}" for i in range(len(CUBICS)))
     assert coefficient * np.array(found.estimates) == pytest.approx(coefficient + shift, rel=5e-3)
     assert np.argmax(found.estimates) == np.argmax(CUBICS)
+    assert not found.holds  # one of four records has twice what the others have

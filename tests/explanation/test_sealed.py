@@ -31,7 +31,8 @@ def of_decays(folder: Path) -> Path:
     for place, start in enumerate((1.0, 0.7, 0.45)):
         motion = move(lanes([{"zeta": 0.01, "dry": 0.01, "dry_width": 1e-3}]), [NONE], np.array([[start], [0.0]]), 80.0)
         values = between(motion, 0, 2 * np.pi * np.arange(400) / 40, 0) + 2e-3 * random.standard_normal(400)
-        np.savetxt(folder / f"{place}.csv", np.c_[np.arange(400) / 80, values], delimiter=",", header="t,x", comments="")
+        table = np.c_[np.arange(400) / 80, values]
+        np.savetxt(folder / f"{place}.csv", table, delimiter=",", header="t,x", comments="")
         channels = {"time": {"column": "t", "unit": "s"}, "displacement": {"column": "x", "unit": "mm"}}
         records.append({"file": f"{place}.csv", "channels": channels, "role": "holdout" if place == 2 else "fit"})
     path = folder / "measurement.yaml"

@@ -24,7 +24,7 @@ from gear_damping.explanation.trials.score import Score, best_by_effect
 from gear_damping.measurement.record import Finding, Measurement
 
 WHITE = 1.1  # sum of squared autocorrelations: with less of it noise is called white
-RAN_AWAY = "its prediction of the held-out records ran away"
+RAN_AWAY = "its prediction of conditions that are left out ran away"
 
 
 def of_faults(measurement: Measurement, faults: Sequence[Finding]) -> dict[str, Any]:
@@ -211,7 +211,7 @@ def _fixed(outcome: Outcome, cause: str) -> dict[str, float]:
 
 
 def _share(outcome: Outcome, nominal: Outcome) -> float:
-    """Share of the held-out squared residual that an outcome takes."""
+    """Share of the cross-fitted squared residual that an outcome takes."""
     return 1 - outcome.left_out_cost / max(nominal.left_out_cost, 1e-300)
 
 
@@ -251,7 +251,7 @@ def _confirmed(judged: Judged) -> dict[str, Any]:
 
 
 def _candidates(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
-    """Every effect that was tried: what it promised on fitted records, and what a full fit took of held-out ones."""
+    """Every effect that was tried: what it promised on fitted records, and what a full fit took, cross-fitted."""
     found = judged.found
     best_last = reversed(found.first_fits)  # of several forms of an effect the best one counts
     taken = {refit.name: _share(refit.outcome, found.nominal) for refit in best_last}

@@ -64,7 +64,8 @@ def homogeneity(outcome: Outcome, cause: str, evidence: Evidence) -> Homogeneity
         return Homogeneity((), (), (), None, evidence.settings.homogeneity_level)
     shift = torch.linalg.lstsq(columns[:, kept], residual.unsqueeze(1), driver="gelsd").solution[:, 0]
     block = max(4, round(BLOCK_TIMES * time_scale(outcome.hypothesis, evidence) * evidence.sampling_rate))
-    errors = torch.stack([_error(columns[:, k], residual, block) for k in kept])
+    left = residual - columns[:, kept] @ shift  # a size that differs between records is no noise
+    errors = torch.stack([_error(columns[:, k], left, block) for k in kept])
     estimates, errors = 1 + shift / strength, errors / abs(strength)
     found = tuple(estimates.tolist()), tuple(errors.tolist())
     p = float(chi2.sf(statistic(*found, evidence.settings.homogeneity_tolerance), len(kept) - 1))

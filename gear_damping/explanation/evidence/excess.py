@@ -1,4 +1,4 @@
-"""Step 4: is anything wrong? The excess of held-out residuals over the noise, with its uncertainty."""
+"""Step 4: is anything wrong? The excess of residuals over the noise, with its uncertainty."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from gear_damping.identification.output_error.records import FitRecord
 
 @dataclass(frozen=True)
 class Excess:
-    """Held-out mean squared residual beyond the noise, in % of the channel's AC variance.
+    """Mean squared residual, cross-fitted or held out, beyond the noise, in % of the channel's AC variance.
 
     Args:
         percent: D.

@@ -36,7 +36,7 @@ class NoiseLevel:
         degrees_of_freedom: Of the estimate of the variance.
         agree: Whether the estimates are within 20 % of each other.
         correlation: Sum of its squared autocorrelations: samples for one that is independent.
-        scatter: What errors of the calibration add on held-out records.
+        scatter: What errors of the calibration add to residuals of records that were not fitted.
     """
 
     by_record: dict[str, float]

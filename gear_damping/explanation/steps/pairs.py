@@ -13,7 +13,7 @@ PAIRS, PAIR = "pairs of effects", 2
 
 @dataclass(frozen=True)
 class Pair:
-    """Two effects that held-out records accept together.
+    """Two effects that are accepted together.
 
     Args:
         first: The full fit with the first of them.
@@ -27,7 +27,7 @@ class Pair:
 
 
 def with_pair(state: State) -> State | None:
-    """The state with the pair that held-out records like best beside what was accepted, or in its place, if any."""
+    """The state with the pair that leaves least beside what was accepted, or in its place, if any."""
     bench = state.bench
     if state.is_unpredictable or bench.budget.refuses(PAIRS):
         return None
@@ -42,7 +42,7 @@ def with_pair(state: State) -> State | None:
 
 
 def with_pair_instead(state: State) -> State:
-    """The state with the pair that held-out records like better than the two causes that were accepted, if any.
+    """The state with the pair that leaves less than the two causes that were accepted, if any.
 
     A first cause that only resembles what is there leads the second astray, and both stand in for two others.
     """
@@ -77,7 +77,7 @@ def _with(pair: Pair, state: State) -> State:
     outcome = bench.at_rest(pair.second.outcome)
     share = state.share_taken(outcome)
     causes = [Accepted(fit.name, pair.second, share / PAIR, ()) for fit in (pair.first, pair.second)]
-    bench.say(f"{pair.first.name} and {pair.second.name} take {100 * share:.1f} % of the excess on held-out records")
+    bench.say(f"{pair.first.name} and {pair.second.name} take {100 * share:.1f} % of the excess, cross-fitted")
     return replace(state, outcome=outcome, accepted=(*state.accepted, *causes))
 
 
@@ -94,7 +94,7 @@ def _taken(fit: Refit, state: State) -> float:
 
 
 def _accepted(pairs: Sequence[Pair], current: Excess, state: State) -> Pair | None:
-    """The best pair that held-out records accept, or of those that do as well the smallest; None without one."""
+    """The best pair that is borne out, or of those that do as well the smallest; None without one."""
     bench, settings = state.bench, state.bench.settings
 
     def takes(pair: Pair) -> float:

@@ -1,4 +1,4 @@
-"""What the search and its second thoughts both do: score, fit in full, compare on held-out records."""
+"""What the search and its second thoughts both do: score, fit in full, compare by cross-fitting."""
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field, replace
@@ -100,7 +100,7 @@ class Bench:
             reach = base - LEAST_TAKEN * most if most > 0 else inf
             fit = self.full_fit(score, outcome, against, reach) if score.gain > 0 else None
             if fit is None and score.gain > 0:
-                self.failed[score.candidate.name] = "its full fit ran away on held-out records"
+                self.failed[score.candidate.name] = "its full fit ran away"
             fits += [] if fit is None else [fit]
         return tuple(sorted(fits, key=lambda fit: fit.outcome.left_out_cost))
 
@@ -134,11 +134,11 @@ class Bench:
         return t < self.settings.rival_t or gain < SAME * self.noise.value**2
 
     def paired_gain(self, before: Outcome, after: Outcome) -> tuple[float, float]:
-        """Gain of the second over the first on held-out records, with its t."""
+        """Gain of the second over the first, cross-fitted, with its t."""
         return paired_gain(before.left_out, after.left_out, self._blocks(after))
 
     def confirmation(self, before: Outcome, after: Outcome) -> float:
-        """The t statistic of what the second adds to the prediction of held-out records."""
+        """The t statistic of what the second adds to the prediction of conditions left out."""
         return confirmation(before.left_out, after.left_out, self._blocks(after))
 
     def _blocks(self, outcome: Outcome) -> list[int]:
@@ -159,7 +159,7 @@ class Bench:
         return first, tuple(dict.fromkeys(f.name for f in kept if f.name != first.name))
 
     def _is_rival(self, fit: Refit, best: Refit) -> bool:
-        """Whether it does no worse than the best on held-out records, or nearly as well and fits the others better.
+        """Whether it does no worse than the best, or nearly as well and fits the others better.
 
         Near a resonance a small error of a parameter, as any fit has, weighs more than the law.
         """
@@ -197,7 +197,7 @@ class Bench:
 
 
 def smallest(fits: Sequence[Refit]) -> Refit:
-    """The fit with the fewest parameters; of several the one that held-out records like best."""
+    """The fit with the fewest parameters; of several the one that leaves least."""
     return min(fits, key=lambda fit: (len(fit.outcome.hypothesis.free), fit.outcome.left_out_cost))
 
 

@@ -1,4 +1,4 @@
-"""Step 6: the full fit of a candidate, and whether held-out records bear it out."""
+"""Step 6: the full fit of a candidate, and whether cross-fitting bears it out."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -38,11 +38,11 @@ class Refit:
     Args:
         score: What it promised.
         outcome: What came of it.
-        gain: Mean fall of held-out squared residuals.
+        gain: Mean fall of cross-fitted squared residuals.
         t: Its t statistic over blocks.
         fit_gain: Fall of the fitted records' squared residuals, in noise variances.
-        is_seen_in_fit: Whether the records to which it was fitted show it: what only held-out records show is their
-            luck.
+        is_seen_in_fit: Whether the records to which it was fitted show it: what shows only in conditions that are left
+            out is their luck.
     """
 
     score: Score
@@ -159,7 +159,7 @@ def again(refit: Refit, against: Outcome, evidence: Evidence, solver: Solver | N
 
 
 def compared(score: Score, found: Outcome, against: Outcome, evidence: Evidence) -> Refit:
-    """A fit held against another model on held-out records."""
+    """A fit held against another model by cross-fitting."""
     gain, t = paired_gain(against.left_out, found.left_out, block_samples(against, evidence, evidence.fitted))
     fit_gain = (against.fitted.cost - found.fitted.cost) / max(evidence.noise, 1e-300) ** 2
     return Refit(score, found, gain, t, fit_gain, fit_gain > evidence.settings.seen_in_fit)

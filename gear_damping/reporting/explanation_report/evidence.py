@@ -76,9 +76,9 @@ def candidates(report: ReportInput) -> Shown | None:
     rows = [{**row, "share": excess_share(row.get("share"), misfit)} for row in tried]
     figure = figures.candidates_figure(rows, needed_share=report.needed_share)
     caption = (
-        "What each effect explains of the excess on held-out records, after its full fit. Only those that promised "
+        "What each effect explains of the excess after its full fit, every condition left out in turn. Only those that "
     )
-    return _shown(figure, caption + "most on the fitted records were fitted in full.")
+    return _shown(figure, caption + "promised most on the fitted records were fitted in full.")
 
 
 def visible(report: ReportInput) -> Shown | None:

@@ -41,7 +41,7 @@ def cause_sentences(cause: Mapping[str, Any], own: Mapping[str, str]) -> list[st
     told = [description(cause["name"], own)]
     share = cause.get("excess_explained")
     if _known(share):
-        told.append(f"It takes {percent(share)} of the excess on held-out records.")
+        told.append(f"It takes {percent(share)} of the excess, every condition left out of the fit in turn.")
     if cause.get("confusable_with"):
         told.append(f"These data do not tell it from {listed(cause['confusable_with'], 'or')}.")
     if cause.get("status") == "suggested":

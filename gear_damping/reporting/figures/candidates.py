@@ -24,10 +24,10 @@ Row = tuple[str, float, str]  # name, share in %, status
 
 
 def candidates_figure(candidates: Sequence[Mapping[str, Any]], *, needed_share: float | None = None) -> Figure:
-    """Bars of the candidates with the share of the held-out excess that each explains, the largest on top.
+    """Bars of the candidates with the share of the excess that each explains, the largest on top.
 
     Args:
-        candidates: Each with `name`, `share` (1 = the whole excess; below 0 it makes held-out records worse;
+        candidates: Each with `name`, `share` (1 = the whole excess; below 0 it makes what is left out worse;
             None or NaN: not fitted) and `status`, one of established, confusable, suggested, rejected.
         needed_share: Share that a cause must take to be accepted, marked by a line.
 
@@ -40,7 +40,7 @@ def candidates_figure(candidates: Sequence[Mapping[str, Any]], *, needed_share: 
         figure = new_figure(1.2 + 0.31 * max(len(shown), 3))
         axes = figure.subplots()
         rest = f"      ({len(left_out)} smaller ones not shown)" if left_out else ""
-        axes.set_xlabel(f"share of the held-out excess explained / %{rest}")
+        axes.set_xlabel(f"share of the cross-fitted excess explained / %{rest}")
         if not shown:
             say_empty(axes, "no candidates were tried")
             return figure
