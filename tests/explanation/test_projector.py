@@ -6,7 +6,7 @@ import torch
 
 from gear_damping.explanation.statistics.projector import Projector
 
-RECORDS, TIME, SHARED, OWN = 3, 12, 2, 2
+RECORDS, TIME, SHARED, OWN = 3, 12, 4, 2
 
 
 @pytest.fixture
@@ -27,7 +27,7 @@ def whole(sensitivity: torch.Tensor, slope: torch.Tensor) -> np.ndarray:
 
 def test_what_is_left_is_that_of_least_squares_over_all_columns(drawn):
     sensitivity, signal = drawn
-    slope = torch.tensor([0.5, 0.0], dtype=torch.float64)
+    slope = torch.tensor([0.5, 0.0, 2.0, 0.0], dtype=torch.float64)
     found = Projector(sensitivity, torch.zeros(SHARED), slope)(signal)
     columns = whole(sensitivity, slope)
     expected = signal.numpy() - columns @ np.linalg.lstsq(columns, signal.numpy(), rcond=None)[0]
@@ -42,12 +42,14 @@ def test_the_nuisance_is_an_orthonormal_basis_of_what_is_taken_out(drawn):
     torch.testing.assert_close(signal - basis @ (basis.T @ signal), project(signal))
 
 
-def test_more_columns_of_the_records_own_are_taken_out_too(drawn):
+@pytest.mark.parametrize("count", [1, 2])
+def test_more_columns_of_the_records_own_are_taken_out_too(drawn, count):
+    """Fewer than are shared, and more."""
     sensitivity, signal = drawn
-    more = torch.randn(RECORDS, TIME, 1, generator=torch.Generator().manual_seed(5), dtype=torch.float64)
+    more = torch.randn(RECORDS, TIME, count, generator=torch.Generator().manual_seed(5), dtype=torch.float64)
     project = Projector(sensitivity, torch.zeros(SHARED), torch.zeros(SHARED, dtype=torch.float64))
     alone = torch.zeros(RECORDS * TIME + SHARED, 1, dtype=torch.float64)
-    alone[:TIME] = more[0]
+    alone[:TIME] = more[0, :, :1]
     found = project.beside_own(more)(signal).numpy()
     own = np.concatenate([np.kron(np.eye(RECORDS)[:, [i]], more[i].numpy()) for i in range(RECORDS)], 1)
     columns = np.concatenate([whole(sensitivity, torch.zeros(SHARED)), np.pad(own, ((0, SHARED), (0, 0)))], 1)

@@ -47,10 +47,13 @@ class Projector:
     def beside_own(self, columns: Tensor) -> "Projector":
         """With columns (records, time, l) more that every record has of its own.
 
-        What they can do beside the others joins the basis: the old part of it need not be worked out again.
+        What they can do beside the others joins the basis: the old part of it need not be worked out again. Of many
+        short records they are more than all that is shared, which is then worked out anew beside them.
         """
         if not columns.shape[-1]:
             return self
+        if len(columns) * columns.shape[-1] > len(self.slope):
+            return Projector(torch.cat([self.sensitivity, columns], -1), self.expected, self.slope)
         rows = torch.block_diag(*columns)
         beside = self(torch.nn.functional.pad(rows, (0, 0, 0, len(self.slope))))
         own = beside.norm(dim=0) > INDEPENDENT * rows.norm(dim=0)
