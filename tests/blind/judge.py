@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from .strata import same_class
+from .strata import NOISES, same_class
 
 LOUD = 4.0  # times the noise floor, from where an effect outside the catalogue has to be called unexplained
 LARGEST_SET = 4
@@ -66,13 +66,16 @@ def _pairs(case: Case, answer: dict) -> dict[str, bool | None]:
 def _outside(case: Case, answer: dict) -> dict[str, bool | None]:
     misfit = (answer.get("misfit") or {}).get("before", 0.0)
     loud = answer["verdict"] == "unexplained" if misfit >= LOUD else None
-    return {"outside, called explained": answer["verdict"] in ("explained", "ambiguous"), "outside, unexplained": loud}
+    return {"outside, called explained": answer["verdict"] in ("explained", "ambiguous"), "outside, unexplained": loud,
+            "outside or removed, a name established": bool(established(answer))}  # fmt: skip
 
 
 def _removed(case: Case, answer: dict) -> dict[str, bool | None]:
     called = answer["verdict"] == "explained"
-    wrong = called and not any(same_class(case["removed"], name) for name in established(answer))
-    return {"removed, explained by another": wrong}
+    wrong = [name for name in established(answer) if not same_class(case["removed"], name)]
+    named = bool(wrong) and not any(same_class(case["removed"], name) for name in offered(answer))
+    return {"removed, explained by another": called and len(wrong) == len(established(answer)),
+            "outside or removed, a name established": named}  # fmt: skip
 
 
 def _one_record(case: Case, answer: dict) -> dict[str, bool | None]:
@@ -122,6 +125,14 @@ def _inertia_found(answer: dict) -> bool:
     return answer["verdict"] == "ambiguous" and {"sensor_gain", "inertia_error"} <= {*offered(answer)}
 
 
+def _noises(case: Case, answer: dict) -> dict[str, bool | None]:
+    kind = NOISES[case["seed"] % len(NOISES)].replace("_", " ")
+    return {"other noise: consistent": answer["verdict"] == "consistent",
+            "other noise: damping in its interval": damping_held(case, answer),
+            f"{kind}: consistent": answer["verdict"] == "consistent",
+            f"{kind}: damping in its interval": damping_held(case, answer)}  # fmt: skip
+
+
 def damping_held(case: Case, answer: dict) -> bool | None:
     """Whether the 95 % interval of the damping ratio holds the truth; None where none is stated."""
     interval = (answer.get("damping_ratio_percent") or {}).get("interval95")
@@ -146,4 +157,5 @@ JUDGES = {
     "null": _null, "single": _single, "faint": _faint, "below": _below, "pairs": _pairs, "outside": _outside,
     "removed": _removed, "one_record": _one_record, "tacho_error": _tacho, "unidentifiable": _unidentifiable,
     "data_fault": _fault, "rigs": _any_lab("other rig"), "oscillators": _any_lab("oscillator"), "channels": _channels,
+    "noises": _noises,
 }  # fmt: skip

@@ -10,6 +10,7 @@ from scipy.stats import beta
 
 from .accuracy import errors, misfits
 from .judge import Case, channel_of, damping_held, judged, names
+from .strata import NOISES
 
 # claim -> (target, whether the rate should be at least or at most that)
 TARGETS = {
@@ -42,6 +43,14 @@ TARGETS = {
     "usual channel: a wrong name": (0.05, "at most"),
     "another channel: named or in the set": (0.90, "at least"),
     "another channel: a wrong name": (0.05, "at most"),
+    "other noise: consistent": (0.95, "at least"),
+    "other noise: damping in its interval": (0.90, "at least"),
+    **{
+        f"{kind.replace('_', ' ')}: {what}": (target, "at least")
+        for kind in NOISES
+        for what, target in (("consistent", 0.95), ("damping in its interval", 0.90))
+    },
+    "outside or removed, a name established": (0.02, "at most"),
     "did not crash": (1.0, "at least"),
 }
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from math import log10
 
 from hidden import EFFECTS, OSCILLATOR_EFFECTS
 
@@ -30,6 +31,9 @@ CHANNEL_ROWS = (
     *((name, channel) for name in CHANNEL_OSCILLATORS for channel in OSCILLATOR_CHANNELS),
 )  # fmt: skip
 
+NOISES = ("coloured_noise", "random_load", "coarse_angle", "noisy_torque", "noisy_force")
+LARGEST_LOAD_NOISE, FORCE_SNR = 0.05, 20.0  # of the mean torque; dB
+
 CLASSES = (
     frozenset({"encoder_error", "pinion_eccentricity", "gear_eccentricity", "pitch_error"}),
     frozenset({"sensor_gain", "inertia_error"}),
@@ -44,7 +48,8 @@ class Question:
     stratum: the row of the table. drawn: the stratum of the hidden case. removed: taken out of the catalogue.
     added: explain a second time with the records that were added later. rig, sensors: `drawn`, or by name; the
     usual ones where None. system: gear_pair or oscillator. channel: of an oscillator; drawn where None. draw: the
-    seed that the case is drawn from, where several questions look at the same one.
+    seed that the case is drawn from, where several questions look at the same one. chosen: parameters of the effect.
+    kind, force_snr_db: excitation of an oscillator, and noise of the measured force.
     """
 
     stratum: str
@@ -59,6 +64,9 @@ class Question:
     system: str = "gear_pair"
     channel: str | None = None
     draw: int | None = None
+    chosen: tuple[tuple[str, float], ...] = ()
+    kind: str | None = None
+    force_snr_db: float | None = None
 
     @property
     def key(self) -> tuple[str, int]:
@@ -70,7 +78,7 @@ class Question:
 COUNTS = {
     "null": 60, "single": 3 * len(NAMEABLE), "faint": len(NAMEABLE), "pairs": 24, "outside": 25, "one_record": 20,
     "removed": 2 * len(COMMON), "tacho_error": 10, "below": 10, "unidentifiable": 5, "data_fault": 24,
-    "rigs": 60, "channels": len(CHANNEL_ROWS), "oscillators": 52,
+    "rigs": 60, "channels": len(CHANNEL_ROWS), "oscillators": 52, "noises": 100 * len(NOISES),
 }  # fmt: skip
 MEANING = {
     "null": "nothing is hidden, the stiffness has another shape",
@@ -86,6 +94,7 @@ MEANING = {
     "data_fault": "a damaged file",
     "rigs": "another rig, other sensors, units, rate and length: nothing or one effect hidden, or a wrong inertia",
     "channels": "one effect sized for one channel: gear pairs and oscillators, the usual channel and the others",
+    "noises": "nothing is hidden in noise of another kind: coloured, of the load, of an encoder or of a measured load",
     "oscillators": "an oscillator of any frequency, unit, datum, excitation and channel: nothing or one effect",
 }
 
@@ -142,7 +151,20 @@ def _of_oscillators(seed: int) -> Question:
     return Question("oscillators", seed, name, target_excess=None if name == "null" else 3.0, system="oscillator")
 
 
-ANY_LAB = {"rigs": _of_rigs, "channels": _of_channels, "oscillators": _of_oscillators}
+def _of_noises(seed: int) -> Question:
+    """Every kind in turn; a random load of up to 5 % of the mean one."""
+    kind = NOISES[seed % len(NOISES)]
+    if kind == "noisy_force":
+        excitation = ("multisine", "random", "sweep")[seed // len(NOISES) % 3]
+        asked = {"system": "oscillator", "kind": excitation, "force_snr_db": FORCE_SNR}
+        return Question("noises", seed, "null", snr_db=30.0, **asked)
+    if kind == "random_load":
+        share = LARGEST_LOAD_NOISE * (1 + seed // len(NOISES) % 10) / 10
+        return Question("noises", seed, "load_noise", snr_db=30.0, chosen=(("snr_db", -20 * log10(share)),))
+    return Question("noises", seed, "null", snr_db=30.0, sensors=kind)
+
+
+ANY_LAB = {"rigs": _of_rigs, "channels": _of_channels, "oscillators": _of_oscillators, "noises": _of_noises}
 
 
 def questions(strata: tuple[str, ...], cases: int | None, first_seed: int) -> list[Question]:

@@ -44,8 +44,9 @@ def drawn(question: Question, duration: float = DURATION) -> HiddenCase | Oscill
     size = {"target_excess": question.target_excess, "snr_db": question.snr_db}
     seed = question.seed if question.draw is None else question.draw
     if question.system == "oscillator":
-        return draw_oscillator(question.drawn, seed, channel=question.channel, **size)
-    asked = {"rig": question.rig, "sensors": question.sensors}
+        asked = {"channel": question.channel, "kind": question.kind, "force_snr_db": question.force_snr_db}
+        return draw_oscillator(question.drawn, seed, **size, **asked)
+    asked = {"rig": question.rig, "sensors": question.sensors, "chosen": dict(question.chosen)}
     return draw_case(question.drawn, seed, duration=duration, **size, **asked)
 
 

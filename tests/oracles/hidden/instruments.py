@@ -58,8 +58,14 @@ def _of_setup(one: Draft, knobs: Arrays, path: Trajectory, seen, angle, channels
     kept = {"pinion_torque": (channels["pinion_torque"] - setup.torque_offset) / setup.torque_gain}
     if setup.torque == "condition":
         kept = {}
+    if setup.torque_noise:
+        torque = kept["pinion_torque"]
+        level = setup.torque_noise * np.abs(torque.mean(axis=0))
+        kept["pinion_torque"] = torque + level * one.noise.normal(size=torque.shape)
     if setup.angle:
         kept["pinion_angle"] = channels["pinion_angle"]
+    if setup.angle_step:
+        kept["pinion_angle"] = setup.angle_step * np.floor(angle / setup.angle_step)
     if setup.counts is not None:
         return kept | _counts(one, knobs, seen, angle)
     if setup.order == 1:

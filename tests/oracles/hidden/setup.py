@@ -34,8 +34,12 @@ PLANS: dict[str, dict[str, object]] = {
     "torque_gain": {"torque": "gain"},
     "torque_condition": {"torque": "condition"},
     "inertia_wrong": {"inertia": 1.1},
+    "coloured_noise": {"colour": 0.9},
+    "coarse_angle": {"angle_step": 2.0 * math.pi / 4096.0, "colour": 0.0},
+    "noisy_torque": {"torque_noise": 0.1, "colour": 0.0},
 }  # fmt: skip
-FREE = tuple(name for name in PLANS if name != "inertia_wrong")  # that leave the truth to be found
+ASKED_FOR = ("inertia_wrong", "coloured_noise", "coarse_angle", "noisy_torque")  # by name alone
+FREE = tuple(name for name in PLANS if name not in ASKED_FOR)  # that leave the truth to be found
 MOVES_THE_SHAFTS = ("bearing_flexibility", "shaft_torsion", "unbalance", "encoder_error")
 SPEED_UNCERTAINTY = 0.005
 
@@ -48,7 +52,8 @@ class Setup:
     arbitrary. corner: Hz, of a first-order high-pass. shaft, radius / m: of an accelerometer. angle: whether there
     is a channel of it. speed: None, or what a condition says of it: known | uncertain. torque: channel | gain |
     condition. torque_gain, torque_offset / N m: true torque = gain * read + offset. inertia: stated over true.
-    colour: correlation of the noise from sample to sample.
+    colour: correlation of the noise from sample to sample. angle_step: rad, of the encoder. torque_noise: white
+    noise of the measured torque, as a share of its mean.
     """
 
     name: str = "full"
@@ -65,6 +70,8 @@ class Setup:
     torque_offset: float = 0.0
     inertia: float = 1.0
     colour: float = 0.0
+    angle_step: float = 0.0
+    torque_noise: float = 0.0
     units: dict[str, str] = field(default_factory=lambda: {name: units[0] for name, units in UNITS.items()} | {
         "pinion_angle": "rad", "pinion_speed": "rad/s"})  # fmt: skip
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import zlib
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -85,11 +85,13 @@ class _Draft:
 def draw_oscillator(
     stratum: str, seed: int, *, channel: str | None = None, kind: str | None = None, periods: float | None = None,
     snr_db: float | None = None, target_excess: float | None = None, unit: str | None = None,
+    force_snr_db: float | None = None,
 ) -> OscillatorCase:
     """A case; the same arguments draw the same case.
 
     stratum: an effect, or `null`. channel: displacement, velocity or acceleration; kind: multisine, random, sweep or
     decay; periods: of each record; snr_db; target_excess: D / % in that channel; unit: all drawn where None.
+    force_snr_db: of the measured force, white; none where None.
     """  # fmt: skip
     if stratum != "null" and stratum not in OSCILLATOR_EFFECTS:
         raise ValueError(f"no oscillator {stratum!r}; choose null or one of {', '.join(OSCILLATOR_EFFECTS)}")
@@ -100,7 +102,7 @@ def draw_oscillator(
     level = float(sizes.uniform(20.0, 40.0)) if snr_db is None else snr_db
     sized = _sized(draft, target)
     desk = _desk(draft, sized, level, writing)
-    records = _records(draft, sized, desk, writing, noise)
+    records = _with_noise(_records(draft, sized, desk, writing, noise), force_snr_db, noise)
     truth = {"stratum": stratum, "seed": seed} | _truth(draft, sized, desk, target)
     truth |= {"snr_db": level, "rates": [r.rate for r in records], "even": records[0].even}
     nominal = _nominal(truth, writing)
@@ -226,6 +228,14 @@ def _records(draft: _Draft, sized: _Sized, desk: _Desk, rng, noise) -> tuple[Osc
         role = "holdout" if draft.held_out[i] else "fit"
         records.append(OscillatorRecord(f"run_{i + 1}", role, rate, stamps, y, force, not desk.jitter))
     return tuple(records)
+
+
+def _with_noise(records: tuple[OscillatorRecord, ...], snr_db: float | None, noise) -> tuple[OscillatorRecord, ...]:
+    """Records whose measured force has noise of its own."""
+    if snr_db is None:
+        return records
+    share = 10.0 ** (-snr_db / 20.0)
+    return tuple(replace(r, force=r.force + share * r.force.std() * noise.normal(size=r.force.size)) for r in records)
 
 
 def _truth(draft: _Draft, sized: _Sized, desk: _Desk, target: float) -> dict[str, object]:
