@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from gear_damping.explanation.evidence.excess import Excess
+from gear_damping.explanation.evidence.excess import Excess, is_settled
+from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.state import Accepted, State
 from gear_damping.explanation.trials.refit import Refit
 from gear_damping.explanation.trials.score import best_by_effect
@@ -46,7 +47,8 @@ def with_pair_instead(state: State) -> State:
 
     A first cause that only resembles what is there leads the second astray, and both stand in for two others.
     """
-    if len(state.accepted) != PAIR or state.bench.budget.refuses(PAIRS):
+    is_all = is_settled(state.current, state.first, state.bench.settings)
+    if len(state.accepted) != PAIR or is_all or state.bench.budget.refuses(PAIRS):
         return state
     pair = _accepted(_instead(state), state.current, state)
     return state if pair is None else _with(pair, state)
@@ -117,14 +119,28 @@ def _bases(fits: Sequence[Refit], state: State) -> list[Refit]:
     return list(best.values())[: state.bench.settings.pair_bases]
 
 
+def _needed(base: Outcome, state: State) -> float:
+    """Share of what a base leaves that a second effect must take, over what a further cause must.
+
+    Where nothing is accepted yet, a pair that leaves more than half names nothing.
+    """
+    bench, settings = state.bench, state.bench.settings
+    if state.accepted:
+        return 1.0
+    left = bench.beyond_noise(base) / max(bench.beyond_noise(state.nominal), 1e-300)
+    return max(1 - (1 - settings.taken_by_one) / max(left, 1e-300), 0.0) / settings.least_share
+
+
 def _seconds(base: Refit, state: State) -> list[Refit]:
     """Full fits of the most promising effects beside a base, held against what was accepted so far."""
     bench = state.bench
-    best = best_by_effect(score for score in bench.ranked(base.outcome) if score.gain > 0)
+    worth = bench.worth(bench.ranked(base.outcome), base.outcome, _needed(base.outcome, state))
+    best = best_by_effect(score for score in worth if score.gain > 0)
     names = list(best)[: bench.settings.pair_seconds]
     simpler = (bench.evidence.library[name].cause.simpler for name in names)
     names += [name for name in simpler if name in best and name not in names]
     names = [name for name in names if not bench.budget.refuses(f"{base.name} with {name}")]
-    fits = (bench.full_fit(best[name], base.outcome, state.outcome) for name in names)
+    goal = bench.goal(state.outcome)
+    fits = (bench.full_fit(best[name], base.outcome, state.outcome, goal) for name in names)
     kept = [fit for fit in fits if fit is not None and fit.outcome.fitted.cost < base.outcome.fitted.cost]
     return [bench.converged(fit, state.outcome) for fit in kept]

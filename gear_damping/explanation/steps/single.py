@@ -14,7 +14,7 @@ def single_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
     """The state with the fits that were made, the next cause and its rivals; None where nothing more is borne out."""
     bench = state.bench
     if state.accepted:
-        fits = bench.full_fits(state.ranked, state.outcome, state.outcome)
+        fits = bench.full_fits(bench.worth(state.ranked, state.outcome), state.outcome, state.outcome)
     else:
         fits = _first_fits(state)
         state = replace(state, first_fits=fits)

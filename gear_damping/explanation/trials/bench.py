@@ -79,6 +79,33 @@ class Bench:
         tried = tried if names is None else [candidate for candidate in tried if candidate.name in names]
         return scores(outcome, tried, self.noise.value, self.solver)
 
+    def noise_cost(self, outcome: Outcome) -> float:
+        """Sum of squares that noise alone leaves of the fitted records."""
+        return self.evidence.noise**2 * float((outcome.problem.response.weights > 0).sum())
+
+    def beyond_noise(self, outcome: Outcome) -> float:
+        """The rest of it."""
+        return max(outcome.fitted.cost - self.noise_cost(outcome), 0.0)
+
+    def worth(self, ranked: Sequence[Score], outcome: Outcome, share: float = 1.0) -> list[Score]:
+        """Those of the candidates beside a model with causes which promise enough of what it leaves beyond noise.
+
+        Fits of oscillators are cheap, and their laws far from linear.
+
+        Args:
+            ranked: Scores beside it.
+            outcome: The model.
+            share: Of what is enough as a further cause.
+        """
+        if self.evidence.system == "oscillator":
+            return list(ranked)
+        least = share * self.settings.least_promise * self.beyond_noise(outcome) / max(outcome.fitted.cost, 1e-300)
+        return [score for score in ranked if score.gain >= least or score.candidate.replaced]
+
+    def goal(self, outcome: Outcome) -> float:
+        """The cost that a fit has to get below to take as much of what a model leaves as a cause must."""
+        return outcome.fitted.cost - self.settings.least_share * self.beyond_noise(outcome)
+
     def full_fit(
         self, score: Score, outcome: Outcome, against: Outcome | None = None, reach: float = inf
     ) -> Refit | None:

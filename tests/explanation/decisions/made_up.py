@@ -60,6 +60,10 @@ class MadeUpBench(Bench):
 
     leaves: dict[int, Excess] = field(default_factory=dict)
 
+    def noise_cost(self, outcome: SimpleNamespace) -> float:
+        """Nothing."""
+        return 0.0
+
     def excess(self, outcome: SimpleNamespace) -> Excess:
         """As said of this model, by its identity."""
         return self.leaves[id(outcome)]

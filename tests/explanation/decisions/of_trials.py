@@ -34,6 +34,13 @@ def tried_in_the_place_of_a_cause(settings: SearchSettings):
     return [score.candidate.name for score in chosen(ranked, settings, settings.exchange_share)]
 
 
+@decides("least_promise", [NAMES[0], NAMES[1]])
+def worth_a_full_fit_beside_causes(settings: SearchSettings):
+    """Of promises of 80, 15 and 5 % of what a model leaves, none of it noise."""
+    ranked = [scored(place, gain) for place, gain in enumerate((0.8, 0.15, 0.05))]
+    return [score.candidate.name for score in bench(settings).worth(ranked, outcome(cost=1.0))]
+
+
 @decides("seen_in_fit", (True, False))
 def seen_in_fit(settings: SearchSettings):
     """Falls of the fitted cost by 60 and by 10 noise variances."""

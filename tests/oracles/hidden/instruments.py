@@ -60,7 +60,7 @@ def _of_setup(one: Draft, knobs: Arrays, path: Trajectory, seen, angle, channels
         kept = {}
     if setup.torque_noise:
         torque = kept["pinion_torque"]
-        level = setup.torque_noise * np.abs(torque.mean(axis=0))
+        level = setup.torque_noise * torque.std(axis=0)
         kept["pinion_torque"] = torque + level * one.noise.normal(size=torque.shape)
     if setup.angle:
         kept["pinion_angle"] = channels["pinion_angle"]
