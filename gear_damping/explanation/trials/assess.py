@@ -2,16 +2,17 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 
 import torch
 from torch import Tensor
 
-from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency_hz
 from gear_damping.explanation.statistics.family_wise import Effect, Lines, Visible, block_numbers, family_wise
 from gear_damping.explanation.statistics.projector import Projector
-from gear_damping.explanation.statistics.whitening import Autoregression, autoregression
+from gear_damping.explanation.trials.innovations import recurrences
+from gear_damping.explanation.trials.random_part import Random, Whitener, random_part
 from gear_damping.explanation.trials.score import Score
 from gear_damping.explanation.trials.unnamed import unnamed_columns
 
@@ -23,37 +24,8 @@ LONGEST_BLOCK = 2.0  # natural periods
 CORRELATION_TIMES = 3.0  # of the whitened residual in a block
 LARGEST_LAG = 50  # samples over which the correlation of the whitened residual is summed
 LINES_OVER = 4.0  # natural frequencies up to which lines are looked for
-RANDOM_PART = "raised to the random part of the residuals"
 UNNAMED = "unnamed: "  # before the names of families
 LINE_FAMILY = UNNAMED + "a line at some frequency"
-
-
-@dataclass(frozen=True)
-class Random:
-    """The random part of the residuals, by channel and rate.
-
-    Args:
-        laws: The autoregression of each group of rows.
-        groups: Group of every row and channel of the problem, (rows, channels); -1 where there is nothing.
-        variance: Of the random part of the fitted records, in the unit of the first channel, unweighted.
-        correlation: Sum of its squared autocorrelations.
-        by_record: Variance by record.
-    """
-
-    laws: tuple[Autoregression, ...]
-    groups: Tensor
-    variance: float
-    correlation: float
-    by_record: dict[str, float]
-
-    def joined(self, noise: NoiseLevel) -> NoiseLevel:
-        """The noise of every record, where the random part is larger than what was known of it."""
-        typical = self.variance
-        levels = {name: max(level, self.by_record.get(name, typical) ** 0.5) for name, level in noise.by_record.items()}
-        if levels == noise.by_record:
-            return noise
-        correlation = max(noise.correlation, self.correlation)
-        return replace(noise, by_record=levels, correlation=correlation, method=f"{noise.method}; {RANDOM_PART}")
 
 
 @dataclass(frozen=True)
@@ -95,9 +67,10 @@ def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, fami
     unnamed = {UNNAMED + name: _padded(columns, project) for name, columns in shapes.items()}
     named = {score.candidate.name: score.columns for score in reversed(scores) if score.columns.shape[1]}
     beside, count = project(residual), problem.response.weights.numel()
+    motions = cache(lambda: recurrences(outcome))
 
     def looked_at(random: Random) -> Assessment:
-        white = _Whitener(random, outcome)
+        white = Whitener(random, outcome)
         whitened = Projector(white(sensitivity.flatten(0, 1)).reshape(sensitivity.shape), *expected)
         seen = whitened(white.padded(residual))[:, 0]
         effects = [
@@ -109,7 +82,7 @@ def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, fami
         return _tested(seen, effects, whitened, white, random, outcome, evidence.settings.level)
 
     def random_in(left: Tensor, taken: float) -> Random:
-        return _random(left[:count, 0], taken, outcome)
+        return random_part(left[:count, 0], taken, outcome, motions)
 
     large = {s.candidate.name for s in scores if s.gain > evidence.settings.random_share}
     taken_out = [columns for name, columns in named.items() if name in large]
@@ -130,7 +103,7 @@ def _tested(
     seen: Tensor,
     effects: list[Effect],
     project: Projector,
-    white: "_Whitener",
+    white: "Whitener",
     random: Random,
     outcome: Outcome,
     level: float,
@@ -152,74 +125,6 @@ def _tested(
     total = float(seen.square().sum())
     share = (total - float(left.square().sum()) - taken * variance) / max(total, 1e-300)
     return Assessment(visible, random, max(share, 0.0))
-
-
-class _Whitener:
-    """Applies the autoregressions to signals in the order of the problem's samples."""
-
-    def __init__(self, random: Random, outcome: Outcome) -> None:
-        self.random, self.problem = random, outcome.problem
-        weights = self.problem.response.weights.reshape(-1, self.problem.response.length)
-        self.used = _valid(weights, max((law.order for law in random.laws), default=0))
-
-    def __call__(self, signal: Tensor) -> Tensor:
-        """`signal` (samples, n) white where its random part is, at the noise of the evidence."""
-        rows = signal.reshape(*self.used.shape, -1)
-        found = torch.zeros_like(rows)
-        for number, law in enumerate(self.random.laws):
-            places = (self.random.groups.reshape(-1) == number).nonzero().flatten()
-            white = law.whitened(rows[places].transpose(1, 2)).transpose(1, 2)
-            found[places] = white * self.problem.noise / max(law.innovation, 1e-300) ** 0.5
-        return (found * self.used.unsqueeze(-1)).reshape(signal.shape)
-
-    def padded(self, signal: Tensor) -> Tensor:
-        """The same for a signal that has the residuals of what is expected behind its samples."""
-        count = self.problem.response.weights.numel()
-        return torch.cat([self(signal[:count]), signal[count:]])
-
-
-def _valid(weights: Tensor, order: int) -> Tensor:
-    """1 where a sample and the `order` before it count, (rows, time)."""
-    counts = (weights > 0).double()
-    found = counts.clone()
-    for lag in range(1, order + 1):
-        found[:, lag:] *= counts[:, :-lag]
-    found[:, :order] = 0.0
-    return found
-
-
-def _random(left: Tensor, taken: float, outcome: Outcome) -> Random:
-    """The autoregressions of what is left beside everything that has a shape, (samples,)."""
-    problem = outcome.problem
-    rows = left.reshape(-1, problem.response.length)
-    weights = problem.response.weights.reshape(-1, problem.response.length)
-    keys: dict[object, int] = {}
-    groups = torch.full((len(problem.records), len(problem.response.channels)), -1)
-    for place, record in enumerate(problem.records):
-        for channel in record.channels:
-            key = (channel.name, round(record.sampling_rate))
-            groups[place, problem.response.channels.index(channel.name)] = keys.setdefault(key, len(keys))
-    flat, laws = groups.reshape(-1), []
-    total = float((weights > 0).sum())
-    for number in range(len(keys)):
-        places = (flat == number).nonzero().flatten().tolist()
-        kept = [rows[i][weights[i] > 0] for i in places if bool((weights[i] > 0).any())]
-        share = sum(len(row) for row in kept) / max(total, 1.0)
-        laws.append(autoregression(kept, share * (taken + problem.n_shared)))
-    by_record, correlation = {}, []
-    scale = total / max(total - taken - problem.n_shared, 1.0)
-    for name in dict.fromkeys(record.record for record in problem.records):
-        own = [i for i, record in enumerate(problem.records) if record.record == name]
-        squares, samples = 0.0, 0
-        for i in own:
-            channel = problem.response.channels.index(problem.records[i].observed.name)
-            row = i * len(problem.response.channels) + channel
-            kept = rows[row][weights[row] > 0] / problem.records[i].weight
-            squares, samples = squares + float(kept.square().sum()), samples + len(kept)
-            correlation.append(laws[int(flat[row])].correlation)
-        by_record[name] = scale * squares / max(samples, 1)
-    mean = sum(by_record.values()) / len(by_record)
-    return Random(tuple(laws), groups, mean, sum(correlation) / len(correlation), by_record)
 
 
 def _block_length(rows: Tensor, outcome: Outcome) -> list[int]:

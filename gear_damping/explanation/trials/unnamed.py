@@ -13,7 +13,7 @@ from torch import Tensor
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.evidence.shaft import Shaft, shaft_of
 from gear_damping.explanation.model.hypothesis import Outcome
-from gear_damping.identification.output_error.problem import OutputErrorProblem
+from gear_damping.explanation.trials.innovations import linear_of
 from gear_damping.identification.output_error.records import FitRecord
 
 Array = NDArray[np.float64]
@@ -26,11 +26,18 @@ TOOTH_WAVES = 2  # harmonics of the mesh that modulate the displacement
 def unnamed_columns(outcome: Outcome, evidence: Evidence) -> dict[str, Tensor]:
     """Columns (samples, n) by family, in the order of the problem's weighted samples.
 
-    Forces are seen through the linear oscillator that the model is on average, lines are seen as they are.
+    Forces are seen through the linear oscillator that the model is on average, lines are seen as they are. They act on
+    the motion that is predicted: what was measured holds the random part, which would follow itself.
     """
     problem = outcome.problem
-    linear = _linear(outcome)
-    by_row = [_of_row(row, problem, evidence, linear) for row in problem.records]
+    linear = linear_of(outcome)
+    shown = problem.response.values - outcome.fitted.prediction.residual[0] / problem.response.weights.clamp(min=1e-300)
+    channels = problem.response.channels
+    first = [
+        one.unflatten(0, (len(channels), -1))[channels.index(row.observed.name), : len(row.response)]
+        for row, one in zip(problem.records, shown, strict=True)
+    ]
+    by_row = [_of_row(row, one.numpy(), evidence, linear) for row, one in zip(problem.records, first, strict=True)]
     families = dict.fromkeys(name for row in by_row for name in row)
     found = {}
     for family in families:
@@ -46,20 +53,12 @@ def unnamed_columns(outcome: Outcome, evidence: Evidence) -> dict[str, Tensor]:
     return found
 
 
-def _linear(outcome: Outcome) -> tuple[float, float, float]:
-    """Mass, damping coefficient and stiffness of the model on average."""
-    model, given = outcome.hypothesis.model, outcome.flat_given()
-    derived = model.prepare(model.values(1, **given)).derived
-    damping = float(given.get("viscous_damping.damping_coefficient", 0.0))
-    return float(derived["equivalent_mass"][0]), damping, float(derived["mean_stiffness"][0])
-
-
 def _of_row(
-    record: FitRecord, problem: OutputErrorProblem, evidence: Evidence, linear: tuple[float, float, float]
+    record: FitRecord, shown: Array, evidence: Evidence, linear: tuple[float, float, float]
 ) -> Mapping[str, Array]:
-    """Columns of one record or segment by family, (time, n)."""
-    place, rate = _motion(record)
+    """Columns of one record or segment by family, (time, n), from what its first channel is predicted to show."""
     order = record.observed.derivatives
+    place, rate = _motion(shown, order)
 
     def moved(forces: Sequence[Array]) -> Array:
         return _through(np.stack(forces, 1), record.sampling_rate, linear, order)
@@ -96,13 +95,12 @@ def _at_shafts(shaft: Shaft, place: Array, rate: Array, moved: object) -> dict[s
     }
 
 
-def _motion(record: FitRecord) -> tuple[Array, Array]:
-    """Displacement and rate about their means, each of unit spread, from the first channel."""
-    values = record.response.numpy()
-    values = values - values.mean()
-    if record.observed.derivatives == 0:
+def _motion(shown: Array, order: int) -> tuple[Array, Array]:
+    """Displacement and rate about their means, each of unit spread, from a derivative of the displacement."""
+    values = shown - shown.mean()
+    if order == 0:
         place, rate = values, np.gradient(values)
-    elif record.observed.derivatives == 1:
+    elif order == 1:
         place, rate = _summed(values), values
     else:
         rate = _summed(values)

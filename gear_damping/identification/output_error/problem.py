@@ -203,6 +203,23 @@ class OutputErrorProblem:
             self.response.show(found, runs, values, start[..., 2 + len(self.extra) :], rows)
         return found.flatten(-2)
 
+    def motion(self, shared: Tensor, states: Tensor) -> list[Tensor]:
+        """Displacement and velocity of every record at one point, (2, time).
+
+        Args:
+            shared: Coordinates of the shared parameters, (n_shared,).
+            states: Initial states, (records, local).
+        """
+        values = self.unknowns.by_record(shared.unsqueeze(0))
+        found: list[Tensor] = [torch.empty(0)] * len(self.records)
+        for rows in self._alike:
+            count = max(len(self.records[i].response) for i in rows)
+            runs = self._simulated(values, states[None, rows] * self.scales[rows], rows, count)
+            path = torch.stack([runs.states["displacement"], runs.states["velocity"]], 1)
+            for place, row in enumerate(rows):
+                found[row] = path[place, :, : len(self.records[row].response)]
+        return found
+
     def _simulated(self, values: Mapping[str, Tensor], start: Tensor, rows: list[int], samples: int) -> Runs:
         """Every point and record of these rows as members of one batch, from states (points, rows, local) in SI."""
         records = [self.records[i] for i in rows]

@@ -1,0 +1,71 @@
+"""The random load's part of residuals: how the free motion about the fitted one goes on, record by record."""
+
+import torch
+from torch import Tensor
+
+from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency_hz
+from gear_damping.explanation.statistics.load_noise import Recurrence, drive_correlation, recurrence
+from gear_damping.identification.output_error.problem import OutputErrorProblem
+from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.identification.output_error.segments import part
+
+PIECE = 3.0  # natural periods that the free motion is followed over: it must not have died away
+FEWEST = 6  # samples of a piece
+
+
+def recurrences(outcome: Outcome) -> list[Recurrence] | None:
+    """How the free motion of the first channel goes on in each record of the problem.
+
+    None where more than displacement and velocity goes on (a further mode, a filter), where samples are not even, or
+    where several channels respond, whose random parts hang together.
+    """
+    problem = outcome.problem
+    even = all(record.stamps is None for record in problem.records)
+    if problem.extra or problem.response.modes or len(problem.response.channels) > 1 or not even:
+        return None
+    mass, damping, stiffness = linear_of(outcome)
+    if stiffness <= 0:
+        return None
+    columns, found = _free_motion(outcome), []
+    for record, shown in zip(problem.records, columns, strict=True):
+        order = record.observed.derivatives
+        correlation = drive_correlation(mass, damping, stiffness, 1 / record.sampling_rate, order)
+        pairs = [recurrence(one.numpy()) for one in shown]
+        first, second = (torch.cat([torch.as_tensor(pair[k]) for pair in pairs]).numpy() for k in (0, 1))
+        found.append(Recurrence(first, second, correlation))
+    return found
+
+
+def linear_of(outcome: Outcome) -> tuple[float, float, float]:
+    """Mass, damping coefficient and stiffness of the model on average."""
+    model, given = outcome.hypothesis.model, outcome.flat_given()
+    derived = model.prepare(model.values(1, **given)).derived
+    damping = float(given.get("viscous_damping.damping_coefficient", 0.0))
+    return float(derived["equivalent_mass"][0]), damping, float(derived["mean_stiffness"][0])
+
+
+def _free_motion(outcome: Outcome) -> list[list[Tensor]]:
+    """What the first channel shows of two free motions, (time, 2), of each record piece by piece.
+
+    A piece begins two samples before the last one ends: its first two tell how the third follows.
+    """
+    problem, hypothesis = outcome.problem, outcome.hypothesis
+    shared, states = outcome.fitted.shared, outcome.fitted.states
+    period = 1 / natural_frequency_hz(hypothesis.model, outcome.flat_given())
+    motion = problem.motion(shared, states)
+    pieces: list[FitRecord] = []
+    starts, counts = [], []
+    for record, path in zip(problem.records, motion, strict=True):
+        length = max(FEWEST, round(PIECE * period * record.sampling_rate))
+        begins = list(range(0, len(record.response) - 2, length - 2))
+        pieces += [part(record, slice(at, min(at + length, len(record.response)))) for at in begins]
+        starts += [path[:, at] for at in begins]
+        counts.append(len(begins))
+    given = {**hypothesis.given, **hypothesis.gains}
+    short = OutputErrorProblem(hypothesis.model, given, hypothesis.free, pieces, problem.solver, problem.noise)
+    begun = torch.zeros(1, len(pieces), len(short.local), dtype=torch.float64)
+    begun[0, :, :2] = torch.stack(starts) / short.scales[:, :2]
+    settled = short.unknowns.own_of(problem.unknowns, shared).unsqueeze(0)
+    found = short.linearise(settled, begun, only=[]).sensitivity[0][..., short.n_shared :]
+    cut = iter([one[: len(piece.response), :2] for one, piece in zip(found, pieces, strict=True)])
+    return [[next(cut) for _ in range(count)] for count in counts]

@@ -1,0 +1,179 @@
+"""The random part of residuals: of a load, of the colour of a sensor, and how it is made white."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from math import log
+
+import torch
+from torch import Tensor
+
+from gear_damping.explanation.evidence.noise import NoiseLevel
+from gear_damping.explanation.model.hypothesis import Outcome
+from gear_damping.explanation.statistics.load_noise import MEMORY, LoadNoise, Recurrence, load_noise
+from gear_damping.explanation.statistics.whitening import Autoregression, autoregression
+
+RANDOM_PART = "raised to the random part of the residuals"
+PER_LOAD = 2  # numbers of a load's part: its level and the sensor's
+
+
+@dataclass(frozen=True)
+class Random:
+    """The random part of the residuals, by channel and rate.
+
+    Args:
+        laws: The autoregression of each group of rows, of what is left beside the random load's part.
+        loads: The random load's part of each row; none where its likelihood is no better for it.
+        groups: Group of every row and channel of the problem, (rows, channels); -1 where there is nothing.
+        variance: Of the random part of the fitted records, in the unit of the first channel, unweighted.
+        correlation: Sum of its squared autocorrelations.
+        by_record: Variance by record.
+    """
+
+    laws: tuple[Autoregression, ...]
+    groups: Tensor
+    variance: float
+    correlation: float
+    by_record: dict[str, float]
+    loads: tuple[LoadNoise, ...] = ()
+
+    def joined(self, noise: NoiseLevel) -> NoiseLevel:
+        """The noise of every record, where the random part is larger than what was known of it."""
+        typical = self.variance
+        levels = {name: max(level, self.by_record.get(name, typical) ** 0.5) for name, level in noise.by_record.items()}
+        if levels == noise.by_record:
+            return noise
+        correlation = max(noise.correlation, self.correlation)
+        return replace(noise, by_record=levels, correlation=correlation, method=f"{noise.method}; {RANDOM_PART}")
+
+
+def random_part(left: Tensor, taken: float, outcome: Outcome, motions: Callable[[], list[Recurrence] | None]) -> Random:
+    """The random part of what is left beside everything that has a shape.
+
+    An autoregression of each channel; or, where that tells more (Schwarz 1978), a random load's part of each record
+    beside one.
+
+    Args:
+        left: (samples,).
+        taken: Degrees of freedom that were taken out.
+        outcome: The fitted model.
+        motions: How the free motion goes on in each record; None where that is not known.
+    """
+    problem = outcome.problem
+    groups, count = _grouped(outcome)
+    rows = left.reshape(-1, problem.response.length)
+    weights = problem.response.weights.reshape(rows.shape)
+    total = float((weights > 0).sum())
+    regressed = _Regressed(groups.reshape(-1), count, weights > 0, (taken + problem.n_shared) / max(total, 1.0))
+    laws, loads = regressed.of(rows), ()
+    kept = laws
+    if any(law.order for law in laws) and (known := motions()) is not None:
+        parts = [load_noise(row[: len(m.first) + MEMORY].numpy(), m) for row, m in zip(rows, known, strict=True)]
+        beside = regressed.of(innovations(rows.unsqueeze(-1), parts).squeeze(-1))
+        deviance = sum(part.deviance + PER_LOAD * log(total) for part in parts) + regressed.deviance(beside)
+        if deviance < regressed.deviance(laws):
+            kept, loads = beside, tuple(parts)
+    scale = total / max(total - taken - problem.n_shared, 1.0)
+    correlation = [laws[int(g)].correlation for g in groups.reshape(-1) if g >= 0]
+    by_record = _by_record(rows, weights, outcome, scale)
+    mean = sum(by_record.values()) / len(by_record)
+    return Random(kept, groups, mean, sum(correlation) / len(correlation), by_record, loads)
+
+
+@dataclass(frozen=True)
+class _Regressed:
+    """How rows are pooled to groups that share an autoregression: their group, whether samples count, what was taken
+    of each.
+    """
+
+    groups: Tensor
+    count: int
+    counts: Tensor
+    taken: float
+
+    def of(self, rows: Tensor) -> tuple[Autoregression, ...]:
+        """The autoregression of each group of rows (rows, time)."""
+        found = []
+        for number in range(self.count):
+            places = (self.groups == number).nonzero().flatten().tolist()
+            kept = [rows[i][self.counts[i]] for i in places if bool(self.counts[i].any())]
+            found.append(autoregression(kept, self.taken * sum(len(row) for row in kept)))
+        return tuple(found)
+
+    def deviance(self, laws: Sequence[Autoregression]) -> float:
+        """Minus twice the logarithm of their likelihood, with what their coefficients cost."""
+        samples = [float(self.counts[self.groups == number].sum()) for number in range(self.count)]
+        pairs = zip(laws, samples, strict=True)
+        return sum(n * log(max(law.innovation, 1e-300)) + law.order * log(max(n, 2.0)) for law, n in pairs)
+
+
+def _grouped(outcome: Outcome) -> tuple[Tensor, int]:
+    """Group of every record and channel, (records, channels), -1 where there is nothing; and how many there are."""
+    problem = outcome.problem
+    keys: dict[object, int] = {}
+    groups = torch.full((len(problem.records), len(problem.response.channels)), -1)
+    for place, record in enumerate(problem.records):
+        for channel in record.channels:
+            key = (channel.name, round(record.sampling_rate))
+            groups[place, problem.response.channels.index(channel.name)] = keys.setdefault(key, len(keys))
+    return groups, len(keys)
+
+
+def _by_record(rows: Tensor, weights: Tensor, outcome: Outcome, scale: float) -> dict[str, float]:
+    """Variance of the first channel of each record, unweighted."""
+    problem, squares, samples = outcome.problem, {}, {}
+    for place, record in enumerate(problem.records):
+        row = place * len(problem.response.channels) + problem.response.channels.index(record.observed.name)
+        kept, name = rows[row][weights[row] > 0] / record.weight, record.record
+        squares[name] = squares.get(name, 0.0) + float(kept.square().sum())
+        samples[name] = samples.get(name, 0) + len(kept)
+    return {name: scale * squares[name] / max(samples[name], 1) for name in squares}
+
+
+class Whitener:
+    """Applies what is known of the random part to signals in the order of the problem's samples."""
+
+    def __init__(self, random: Random, outcome: Outcome) -> None:
+        self.random, self.problem = random, outcome.problem
+        weights = self.problem.response.weights.reshape(-1, self.problem.response.length)
+        lost = max((law.order for law in random.laws), default=0) + (MEMORY if random.loads else 0)
+        self.used = _valid(weights, lost)
+
+    def __call__(self, signal: Tensor) -> Tensor:
+        """`signal` (samples, n) white where its random part is, at the noise of the evidence."""
+        rows = self._beside_load(signal.reshape(*self.used.shape, -1))
+        found = torch.zeros_like(rows)
+        for number, law in enumerate(self.random.laws):
+            places = (self.random.groups.reshape(-1) == number).nonzero().flatten()
+            white = law.whitened(rows[places].transpose(1, 2)).transpose(1, 2)
+            found[places] = white * self.problem.noise / max(law.innovation, 1e-300) ** 0.5
+        return (found * self.used.unsqueeze(-1)).reshape(signal.shape)
+
+    def _beside_load(self, rows: Tensor) -> Tensor:
+        """Innovations of rows (rows, time, n) where a random load is part of them."""
+        if not self.random.loads:
+            return rows
+        return innovations(rows, self.random.loads)
+
+    def padded(self, signal: Tensor) -> Tensor:
+        """The same for a signal that has the residuals of what is expected behind its samples."""
+        count = self.problem.response.weights.numel()
+        return torch.cat([self(signal[:count]), signal[count:]])
+
+
+def _valid(weights: Tensor, order: int) -> Tensor:
+    """1 where a sample and the `order` before it count, (rows, time)."""
+    counts = (weights > 0).double()
+    found = counts.clone()
+    for lag in range(1, order + 1):
+        found[:, lag:] *= counts[:, :-lag]
+    found[:, :order] = 0.0
+    return found
+
+
+def innovations(rows: Tensor, loads: Sequence[LoadNoise]) -> Tensor:
+    """Rows (rows, time, n) with the random load's part made white, of unit variance."""
+    found = torch.zeros_like(rows)
+    for place, load in enumerate(loads):
+        length = len(load.motion.first) + MEMORY
+        found[place, :length] = torch.as_tensor(load.innovations(rows[place, :length].numpy()))
+    return found
