@@ -135,7 +135,7 @@ class Random(Part):
     """The random part of the fitted records."""
 
     percent: float = said("of the channel's variance", "%")
-    looks_like: str = said("white or coloured")
+    looks_like: str = said("white or coloured noise, or what a random load makes of the motion")
     snr_db: float = said("the same as a signal-to-noise ratio", "dB")
     correlation: float = said("sum of its squared autocorrelations; 1 for white noise")
 

@@ -13,7 +13,7 @@ from gear_damping.explanation.statistics.load_noise import (
 )
 
 MASS, DAMPING, MEAN, RATE, SAMPLES, FINER = 0.3, 400.0, 3e8, 50e3, 3000, 20
-SENSOR = 2e-8
+LOAD, SENSOR = 0.3, 2e-7  # of a sub-step; m: the motion that the load leaves is three times as large
 
 
 def stiffness(time):
@@ -84,7 +84,7 @@ def test_the_correlation_of_what_drives_is_that_of_many_draws():
 
 
 def test_innovations_are_white_and_the_load_is_found(transitions, motion):
-    seen = drawn(transitions, 200.0, 3)
+    seen = drawn(transitions, LOAD, 3)
     part = load_noise(seen, motion)
     white = part.innovations(seen[:, None])[2:, 0]
     assert white.var() == pytest.approx(1.0, rel=0.01)
@@ -105,7 +105,7 @@ def test_without_a_load_next_to_nothing_is_gained(transitions, motion):
 
 def test_innovations_are_those_of_a_kalman_filter(transitions, motion):
     """With the load and the sensor that were drawn, from a start of which nothing is known."""
-    load, seen = 200.0, drawn(transitions, 200.0, 5)
+    load, seen = LOAD, drawn(transitions, LOAD, 5)
     late = (np.arange(FINER) + 0.5) / (RATE * FINER)
     shape = np.stack([late, np.ones(FINER)])
     noise = shape @ shape.T * (load / MASS * (FINER / RATE) ** 0.5 / FINER) ** 2

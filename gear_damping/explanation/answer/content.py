@@ -19,6 +19,7 @@ from gear_damping.explanation.schema import KEYS, SCHEMA_VERSION
 from gear_damping.explanation.statistics.paired import share_taken
 from gear_damping.explanation.steps.judge import CONSISTENT, DATA_PROBLEM, LARGEST_SET, Judged, statuses
 from gear_damping.explanation.trials.assess import Assessment
+from gear_damping.explanation.trials.random_part import Random
 from gear_damping.explanation.trials.refit import block_samples
 from gear_damping.explanation.trials.score import Score, best_by_effect
 from gear_damping.measurement.record import Finding, Measurement
@@ -140,14 +141,19 @@ def _random(left: Assessment | None, evidence: Evidence) -> dict[str, Any] | Non
     own = [r.response - r.response.mean() for r in records]
     spread = sum(float(r.square().sum()) for r in own) / sum(len(r) for r in own)
     share = left.random.variance / max(spread, 1e-300)
-    order = max((law.order for law in left.random.laws), default=0)
-    looks = "white noise" if left.random.correlation < WHITE else f"coloured noise (autoregression of order {order})"
     return {
         "percent": 100 * share,
-        "looks_like": looks,
+        "looks_like": _looks_like(left.random),
         "snr_db": -10 * log10(max(share, 1e-300)),
         "correlation": left.random.correlation,
     }
+
+
+def _looks_like(random: Random) -> str:
+    if random.loads:
+        return "the motion that a random load makes, and the noise of the sensor"
+    order = max((law.order for law in random.laws), default=0)
+    return "white noise" if random.correlation < WHITE else f"coloured noise (autoregression of order {order})"
 
 
 def _findings(findings: Sequence[Finding]) -> list[dict[str, Any]]:
