@@ -92,14 +92,14 @@ def explain(
         return Explanation(content.of_casing(measurement, found), casing=studies)
     settings = settings or SearchSettings()
     evidence = replace(evidence_of(measurement), settings=settings, is_over=lambda: budget.spent)
-    evidence = at_useful_rate(evidence if library is None else replace(evidence, library=library))
-    notes = [note for note in (died_away(evidence), too_short(evidence)) if note]
-    evidence, sealed = replace(evidence, holdout=()), evidence.holdout
     faults = mesh_order_faults(evidence)
     if faults:
         return Explanation(content.of_faults(measurement, faults))
+    evidence = at_useful_rate(evidence if library is None else replace(evidence, library=library))
+    notes = [note for note in (died_away(evidence), too_short(evidence)) if note]
     for note in notes:
         say(note)
+    evidence, sealed = replace(evidence, holdout=()), evidence.holdout
     evidence, noise = with_noise(evidence, measurement, say)
     step(1, STEPS)
     state = _searched(evidence, noise, say, fitting_solver(solver), budget, lambda: step(2, STEPS))

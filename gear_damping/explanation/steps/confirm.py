@@ -12,7 +12,7 @@ from gear_damping.explanation.evidence.records import Evidence, with_own_angles
 from gear_damping.explanation.model.calibration_error import calibration_error
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.opened import opened
-from gear_damping.explanation.state import State
+from gear_damping.explanation.state import Accepted, State
 from gear_damping.explanation.statistics.paired import confirmation
 from gear_damping.explanation.trials.refit import block_samples
 from gear_damping.identification.observation import MESH_PHASE
@@ -53,7 +53,7 @@ def confirmed(state: State, sealed: Sequence[FitRecord], measurement: Measuremen
     scatter = calibration_error(nominal, evidence, bench.solver)
     noise = replace(noise, scatter=scatter)
     extended = opened(state.outcome, evidence, bench.solver, nominal.own) if state.accepted else nominal
-    state, t = _borne_out(replace(state, bench=bench, nominal=nominal, outcome=extended))
+    state, t = _borne_out(_told_apart(replace(state, bench=bench, nominal=nominal, outcome=extended)))
     before, after = (excess(one.holdout, evidence.held, noise, bench.settings) for one in (nominal, state.outcome))
     return Confirmed(state, noise, before, after, t)
 
@@ -68,6 +68,35 @@ def _with_sealed(state: State, sealed: Sequence[FitRecord], measurement: Measure
     levels = {record.name: max(found.by_record[record.name], least) for record in sealed}
     noise = replace(known, by_record={**known.by_record, **levels})
     return replace(evidence, holdout=weighted(scaled, noise)), noise
+
+
+def _told_apart(state: State) -> State:
+    """The state without rivals of its one cause that held-out records refute, the cause itself among them.
+
+    Which effects are rivals was settled before; none can come in here.
+    """
+    if len(state.accepted) != 1 or not state.accepted[0].confusable:
+        return state
+    bench, cause = state.bench, state.accepted[0]
+    fits = {fit.name: fit for fit in reversed((*state.rejected, *state.first_fits))}
+    tried = {name: fits[name] for name in cause.confusable if name in fits}
+    rivals = {n: opened(fit.outcome, bench.evidence, bench.solver, state.nominal.own) for n, fit in tried.items()}
+    every = {cause.name: state.outcome, **rivals}
+    best = min(every.values(), key=_held_out_cost)
+    blocks = block_samples(best, bench.evidence, bench.evidence.held)
+    kept = {n: one for n, one in every.items() if one is best or bench.no_worse(one.holdout, best.holdout, blocks)}
+    inside = [name for name in kept if name != cause.name and not tried[name].is_at_bound]
+    if cause.name in kept or not inside:
+        left = tuple(name for name in cause.confusable if name not in rivals or name in kept)
+        return state.with_cause(0, replace(cause, confusable=left))
+    first = min(inside, key=lambda name: (len(kept[name].hypothesis.free), kept[name].fitted.cost))
+    bench.say(f"held-out records tell {first} from {cause.name}")
+    others = tuple(name for name in kept if name != first)
+    return state.with_cause(0, Accepted(first, tried[first], cause.share, others), kept[first])
+
+
+def _held_out_cost(outcome: Outcome) -> float:
+    return sum(float(residual.square().sum()) for residual in outcome.holdout)
 
 
 def _borne_out(state: State) -> tuple[State, float]:

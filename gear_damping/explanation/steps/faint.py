@@ -36,7 +36,7 @@ def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
     if not worth:
         return state, None, ()
     first = max(worth, key=lambda fit: fit.fit_gain)
-    rivals = [fit for fit in worth if fit is not first and not _encompasses(first, fit, bench)]
+    rivals = [fit for fit in worth if fit is not first and not bench.encompasses(first, fit)]
     simpler = [fit for fit in rivals if fit.name == _simpler(first, bench)]
     if simpler:
         rivals = [fit for fit in (first, *rivals) if fit is not simpler[0]]
@@ -63,13 +63,6 @@ def _is_borne_out(fit: Refit, state: State) -> bool:
     takes = left - state.bench.excess(fit.outcome).percent
     is_enough = left > 0 and takes >= settings.least_share * left
     return is_enough and fit.is_seen_in_fit and fit.t > settings.accepted_t
-
-
-def _encompasses(first: Refit, other: Refit, bench: Bench) -> bool:
-    """Whether one is still visible beside the other: what the other says is then not enough."""
-    scores = bench.ranked(other.outcome, {first.name})
-    seen = bench.assessed(other.outcome, scores, families=False) if scores else None
-    return seen is not None and seen.visible.shows(first.name)
 
 
 def _simpler(fit: Refit, bench: Bench) -> str | None:

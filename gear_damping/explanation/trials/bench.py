@@ -4,6 +4,8 @@ from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field, replace
 from math import inf
 
+from torch import Tensor
+
 from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.evidence.excess import Excess, excess
 from gear_damping.explanation.evidence.noise import NoiseLevel
@@ -154,8 +156,12 @@ class Bench:
         What two predictions differ by may be small and yet have one sign in all blocks. The difference of their sums
         of squares in noise variances is twice the logarithm of the odds between them.
         """
-        gain, t = self.paired_gain(outcome, best)
-        samples = sum(len(residual) for residual in best.left_out) / self.noise.correlation
+        return self.no_worse(outcome.left_out, best.left_out, self._blocks(best))
+
+    def no_worse(self, other: Sequence[Tensor], best: Sequence[Tensor], blocks: Sequence[int]) -> bool:
+        """The same of residuals, over blocks of so many samples by record."""
+        gain, t = paired_gain(other, best, blocks)
+        samples = sum(len(residual) for residual in best) / self.noise.correlation
         if gain * samples < self.settings.rival_evidence * self.noise.value**2:
             return True
         return t < self.settings.rival_t or gain < SAME * self.noise.value**2
@@ -176,14 +182,27 @@ class Bench:
 
         Of two of which one contains the other (a friction with two sides contains one with equal sides), the
         smaller is taken where the larger does no better; and of several that the data do not tell apart the one
-        with the fewest parameters is named first.
+        with the fewest parameters is named first. A rival beside which the best one is still visible, and that is
+        not visible beside it, is none (Davidson & MacKinnon 1981, Econometrica 49).
         """
         alike = [f for f in fits if f is best or (f.is_seen_in_fit and self._is_rival(f, best))]
         inner = [f for f in alike if any(contains(o.score, f.score) for o in alike if o.name != f.name)]
         outer = {f.name for f in alike if any(contains(f.score, o.score) for o in inner if o.name != f.name)}
-        kept = [f for f in alike if f.name not in outer] or alike
+        kept = self._not_encompassed(best, [f for f in alike if f.name not in outer] or alike)
         first = self._within_bounds(smallest(kept), fits)
         return first, tuple(dict.fromkeys(f.name for f in kept if f.name != first.name))
+
+    def _not_encompassed(self, best: Refit, alike: Sequence[Refit]) -> list[Refit]:
+        """Those that the best explanation does not beat by what the other leaves."""
+        if len(alike) < 2 or not any(fit is best for fit in alike):
+            return list(alike)
+        return [f for f in alike if f is best or not self.encompasses(best, f) or self.encompasses(f, best)]
+
+    def encompasses(self, first: Refit, other: Refit) -> bool:
+        """Whether one is still visible beside the other: what the other says is then not enough."""
+        scores = self.ranked(other.outcome, {first.name})
+        seen = self.assessed(other.outcome, scores, families=False) if scores else None
+        return seen is not None and seen.visible.shows(first.name)
 
     def _is_rival(self, fit: Refit, best: Refit) -> bool:
         """Whether it does no worse than the best, or nearly as well and fits the others better.
@@ -224,8 +243,8 @@ class Bench:
 
 
 def smallest(fits: Sequence[Refit]) -> Refit:
-    """The fit with the fewest parameters; of several the one that leaves least."""
-    return min(fits, key=lambda fit: (len(fit.outcome.hypothesis.free), fit.outcome.left_out_cost))
+    """The fit with the fewest parameters; of several the one that fits best."""
+    return min(fits, key=lambda fit: (len(fit.outcome.hypothesis.free), fit.outcome.fitted.cost))
 
 
 def _without(hypothesis: Hypothesis, name: str) -> Hypothesis:
