@@ -1,0 +1,119 @@
+"""What held-out records decide when they are opened, on made-up residuals; and how records are left out before."""
+
+from types import SimpleNamespace
+from unittest.mock import patch
+
+import pytest
+import torch
+
+from gear_damping.explanation.model.cross_fit import STRETCHES, folds_of
+from gear_damping.explanation.settings import SearchSettings
+from gear_damping.explanation.state import Accepted, State
+from gear_damping.explanation.steps import confirm
+from gear_damping.explanation.trials.bench import Bench
+from gear_damping.identification.output_error.records import FitRecord
+
+BLOCKS, BLOCK = 16, 50
+LENGTH = BLOCKS * BLOCK
+NOISE = torch.randn(LENGTH, dtype=torch.float64, generator=torch.Generator().manual_seed(8))
+
+
+def model(free=1, size=0.0, cost=1.0):
+    """A model that leaves noise and a wave of so many noise levels on held-out records."""
+    wave = size * torch.cos(torch.arange(LENGTH, dtype=torch.float64))
+    hypothesis = SimpleNamespace(free=[None] * free)
+    return SimpleNamespace(holdout=[NOISE + wave], hypothesis=hypothesis, fitted=SimpleNamespace(cost=cost))
+
+
+def refit(name, outcome, at_bound=False):
+    return SimpleNamespace(name=name, outcome=outcome, is_at_bound=at_bound)
+
+
+class MadeUp(Bench):
+    """A bench whose models without a cause are given."""
+
+    def without(self, outcome, name):
+        return self.failed[name]
+
+
+def state_of(causes, outcome, fits=(), without=None):
+    """A state with causes (name, rivals), its model and the fits of rivals."""
+    evidence = SimpleNamespace(settings=SearchSettings(), held=[None])
+    noise = SimpleNamespace(value=1.0, correlation=1.0)
+    bench = MadeUp(evidence, noise, lambda text: None, None, noise, failed=without or {})
+    accepted = tuple(Accepted(name, refit(name, outcome), 0.5, rivals) for name, rivals in causes)
+    nominal = SimpleNamespace(own={}, **vars(model(size=3.0)))
+    return State(bench, nominal, outcome, accepted, first_fits=tuple(fits))
+
+
+@pytest.fixture(autouse=True)
+def residuals_as_they_are():
+    with (
+        patch.object(confirm, "opened", lambda outcome, *_: outcome),
+        patch.object(confirm, "block_samples", lambda *_: [BLOCK]),
+    ):
+        yield
+
+
+def test_a_rival_that_held_out_records_refute_leaves_the_set():
+    fits = [refit("alike", model()), refit("refuted", model(size=1.0))]
+    found = confirm._told_apart(state_of([("named", ("alike", "refuted", "never fitted"))], model(), fits))
+    assert (found.accepted[0].name, found.accepted[0].confusable) == ("named", ("alike", "never fitted"))
+
+
+def test_a_cause_that_held_out_records_refute_gives_way_to_its_rival():
+    better = model(cost=0.9)
+    fits = [refit("worse fit", model()), refit("better", better), refit("bounded", model(0), at_bound=True)]
+    found = confirm._told_apart(state_of([("named", ("worse fit", "better", "bounded"))], model(size=1.0), fits))
+    assert (found.accepted[0].name, found.accepted[0].confusable) == ("better", ("worse fit", "bounded"))
+    assert found.outcome is better
+
+
+def test_a_cause_among_others_that_adds_nothing_is_taken_out():
+    without = {"needed": model(size=2.0), "idle": model(size=0.0)}
+    found, t = confirm._borne_out(state_of([("needed", ()), ("idle", ())], model(), without=without))
+    assert [cause.name for cause in found.accepted] == ["needed"]
+    assert t > SearchSettings().confirmed_t
+
+
+def test_what_adds_nothing_to_predictions_is_no_cause():
+    worse = model(size=3.001)
+    found, t = confirm._borne_out(state_of([("named", ())], worse))
+    assert (found.accepted, t) == ((), 0.0)
+    assert found.outcome is found.nominal
+    assert found.rejected[0].name == "named"
+
+
+def problem_of(records):
+    response = SimpleNamespace(length=max(len(r.response) for r in records))
+    return SimpleNamespace(records=records, response=response)
+
+
+def record(name, samples=80, **conditions):
+    return FitRecord(name, torch.zeros(samples, dtype=torch.float64), 10.0, conditions=conditions)
+
+
+def test_operating_conditions_are_left_out_whole():
+    speeds = (100.0, 200.0, 100.0, 300.0)
+    records = [record(str(i), pinion_speed=speed, pinion_torque=50.0) for i, speed in enumerate(speeds)]
+    assert folds_of(problem_of(records))[:, 0].tolist() == [0, 1, 0, 2]
+
+
+def test_records_are_where_conditions_are_few():
+    records = [record(str(i), pinion_speed=100.0, pinion_torque=50.0) for i in range(3)]
+    assert folds_of(problem_of(records))[:, -1].tolist() == [0, 1, 2]
+
+
+def test_stretches_of_time_are_where_records_are_few_too():
+    folds = folds_of(problem_of([record("a"), record("b", 40)]))
+    assert [int((folds[0] == k).sum()) for k in range(STRETCHES)] == [80 // STRETCHES] * STRETCHES
+    assert folds[1, :40].unique().tolist() == list(range(STRETCHES, 2 * STRETCHES))
+
+
+def test_a_rival_that_the_best_one_encompasses_is_none():
+    best, beaten, both, neither = (refit(name, name) for name in ("best", "beaten", "both", "neither"))
+    seen = {("best", "beaten"), ("best", "both"), ("both", "best")}
+    bench = Bench(SimpleNamespace(settings=SearchSettings()), None, None, None, None)
+    with patch.object(Bench, "encompasses", lambda _, first, other: (first.name, other.name) in seen):
+        kept = bench._not_encompassed(best, [best, beaten, both, neither])
+    assert [fit.name for fit in kept] == ["best", "both", "neither"]
