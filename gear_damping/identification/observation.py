@@ -11,6 +11,7 @@ from scipy.stats import f as f_distribution
 from torch import Tensor
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.identification.angle_steps import between_steps
 from gear_damping.identification.output_error.records import Filter, FitRecord, FreeParameter, Observed
 from gear_damping.measurement.record import Channel, Measurement, Quantity, Record
 
@@ -84,6 +85,8 @@ def fit_record(record: Record, system: str, spring: bool = True) -> FitRecord:
         raise InputError(Problem(f"{record.name}.channels", rule, remedy=remedy, source=str(record.file)))
     channels = [(_observed(record, record.channels[name], spring), record.channels[name].values) for name in names]
     inputs = {name: _input(record, record.channels[name]) for name in INPUTS[system] if name in record.channels}
+    if "pinion_angle" in inputs:
+        inputs["pinion_angle"] = torch.as_tensor(between_steps(inputs["pinion_angle"].numpy()))
     uncertain = _uncertain(record)
     known = {name: quantity.value for name, quantity in record.conditions.items()}
     if "pinion_speed" in record.channels and "pinion_angle" not in inputs:
