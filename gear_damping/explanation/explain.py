@@ -14,8 +14,9 @@ from gear_damping.explanation.casing.content import CasingStudy, explain_casing
 from gear_damping.explanation.casing.heard import is_casing
 from gear_damping.explanation.evidence.data_faults import data_faults, mesh_order_faults
 from gear_damping.explanation.evidence.excess import ac_energy, excess
-from gear_damping.explanation.evidence.noise import NoiseLevel, noise_of, weighted
+from gear_damping.explanation.evidence.noise import NoiseLevel, Scatter, noise_of, weighted
 from gear_damping.explanation.evidence.records import Evidence, evidence_of
+from gear_damping.explanation.model.calibration_error import calibration_error
 from gear_damping.explanation.model.hypothesis import SEGMENT_TIMES, Outcome, segments_of
 from gear_damping.explanation.search import search
 from gear_damping.explanation.settings import SearchSettings
@@ -99,7 +100,8 @@ def explain(
     notes = [note for note in (died_away(evidence), too_short(evidence)) if note]
     for note in notes:
         say(note)
-    evidence, sealed = replace(evidence, holdout=()), evidence.holdout
+    sealed = evidence.holdout if evidence.can_be_sealed else ()
+    evidence = replace(evidence, holdout=(), sealed=True) if sealed else evidence
     evidence, noise = with_noise(evidence, measurement, say)
     step(1, STEPS)
     state = _searched(evidence, noise, say, fitting_solver(solver), budget, lambda: step(2, STEPS))
@@ -130,7 +132,7 @@ def _searched(
     """Calibration and search, over whole records as far as these can be predicted from their start."""
     found = calibrated(replace(evidence, segments=first_segments(evidence)), solver)
     nominal, evidence = found.nominal, found.evidence
-    noise = replace(noise, scatter=nominal.scatter)
+    noise = replace(noise, scatter=_scatter(nominal, evidence, solver))
     bench = Bench(evidence, noise, say, solver, noise, budget=budget, rough=found.rough)
     _tell(nominal, bench)
     is_calibrated()
@@ -144,10 +146,15 @@ def _searched(
     why = "the nominal model loses a record" if is_lost else "small errors grow"
     say(f"{why}: records are predicted in segments of {evidence.segments.seconds:.3g} s")
     nominal = recalibrated(nominal, evidence, solver)
-    noise = replace(noise, scatter=nominal.scatter)
+    noise = replace(noise, scatter=_scatter(nominal, evidence, solver))
     bench = replace(bench, evidence=evidence, noise=noise, floor=noise)
     _tell(nominal, bench)
     return search(nominal, bench, state.first_fits[:1])
+
+
+def _scatter(nominal: Outcome, evidence: Evidence, solver: Solver) -> Scatter:
+    """What errors of the calibration add to the residuals by which models are compared."""
+    return nominal.scatter if evidence.sealed else calibration_error(nominal, evidence, solver)
 
 
 def _judged(found: Confirmed, notes: Sequence[str], not_tried: tuple[str, ...]) -> Judged:

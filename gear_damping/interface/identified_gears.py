@@ -16,7 +16,6 @@ from gear_damping.explanation.evidence.records import Evidence, evidence_of, wit
 from gear_damping.explanation.explain import at_useful_rate, explain, fitting_solver, with_noise
 from gear_damping.explanation.model.hypothesis import Given, Hypothesis, Outcome, fit_hypothesis, natural_frequency_hz
 from gear_damping.explanation.model.nominal_gear_pair import angles_of, first_gear_pair
-from gear_damping.explanation.model.opened import opened
 from gear_damping.explanation.model.spread import spread_of
 from gear_damping.explanation.steps.too_short import too_short
 from gear_damping.identification.oscillator import linear_model
@@ -72,7 +71,7 @@ def own_fit(measurement: Measurement, model: Model, free: Sequence[str], say: Sa
     if not evidence.has_index:
         evidence = with_own_angles(evidence)
         own = angles_of(begun, evidence, evidence.duration, solver)
-    outcome = opened(fit_hypothesis(begun, evidence, own=own, iterations=ITERATIONS, solver=solver), evidence, solver)
+    outcome = fit_hypothesis(begun, evidence, own=own, iterations=ITERATIONS, solver=solver)
     return Fitted(evidence, noise, outcome)
 
 

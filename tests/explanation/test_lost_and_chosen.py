@@ -113,7 +113,7 @@ def test_too_little_to_bet_on_does_not_tell_two_apart(difference, correlation, e
     other = best * math.sqrt(1 + difference / SAMPLES)
     held = [SimpleNamespace(duration=SAMPLES / 100.0, sampling_rate=100.0)]
     noise = SimpleNamespace(value=NOISE, correlation=correlation)
-    evidence = SimpleNamespace(settings=SearchSettings(), fitted=held)
+    evidence = SimpleNamespace(settings=SearchSettings(), judged=held)
     bench = Bench(evidence, noise, None, None, noise)
     outcomes = [SimpleNamespace(left_out=[residual]) for residual in (other, best)]
     with pytest.MonkeyPatch.context() as patch:

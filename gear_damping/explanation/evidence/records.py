@@ -22,6 +22,7 @@ from gear_damping.physics.catalogue import builtin_effects
 from gear_damping.physics.terms import Effect
 
 HELD_OUT = 4  # every so many operating conditions one is held out where the file does not say
+FEWEST_CONDITIONS = 3  # of the fitted records, for each to be left out in turn
 SPLIT = 2 / 3  # of a single record: fitted before, held out behind
 
 
@@ -32,7 +33,7 @@ class Evidence:
     Args:
         system: `gear_pair` or `oscillator`.
         fit: Records to fit.
-        holdout: Records that decide what is accepted.
+        holdout: Records that are held out; none while they are sealed and not yet opened.
         known: What the file states of the rig, by its names.
         channel: The first response channel of the first record, for units.
         one_record: Whether there was but one record, cut in two.
@@ -46,6 +47,7 @@ class Evidence:
         silent_s: Seconds at the ends of records that were left out, because the motion had died away.
         settings: Thresholds of the search.
         is_over: Whether the time for fits is over.
+        sealed: Whether held-out records take no part in any choice.
     """
 
     system: str
@@ -64,6 +66,7 @@ class Evidence:
     silent_s: float = 0.0
     settings: SearchSettings = field(default_factory=SearchSettings)
     is_over: Callable[[], bool] = lambda: False
+    sealed: bool = False
 
     @property
     def parameters(self) -> Mapping[str, float]:
@@ -89,6 +92,20 @@ class Evidence:
     def held(self) -> list[FitRecord]:
         """Held-out records as far as segments cover them."""
         return covered(self.holdout, self.segments)
+
+    @property
+    def judged(self) -> list[FitRecord]:
+        """Records by which models are compared: those held out, or where these are sealed the fitted ones in turn."""
+        return self.fitted if self.sealed else self.held
+
+    @property
+    def can_be_sealed(self) -> bool:
+        """Whether the fitted records hold conditions enough for models to be compared on each by the others.
+
+        Stretches of one record, and records of one free decay, tell a law too little from another that bends to it.
+        """
+        conditions = {condition_of(record) for record in self.fit}
+        return self.system == "gear_pair" and len(conditions) >= FEWEST_CONDITIONS
 
     @property
     def fitted(self) -> list[FitRecord]:

@@ -12,9 +12,6 @@ from gear_damping.identification.output_error.least_squares import Fitted
 from gear_damping.identification.output_error.normal_equations import own_basis, without_own
 from gear_damping.identification.output_error.problem import OutputErrorProblem
 
-FEWEST = 3  # conditions or records that are left out whole; of fewer, stretches of time are
-STRETCHES = 8  # of a record
-
 
 @dataclass(frozen=True)
 class CrossFit:
@@ -47,21 +44,7 @@ def cross_fitted(problem: OutputErrorProblem, fitted: Fitted) -> CrossFit:
 
 
 def folds_of(problem: OutputErrorProblem) -> Tensor:
-    """Fold of every sample, (records, time): operating conditions, records, or stretches of records."""
-    records = problem.records
-    shape = (len(records), problem.response.length)
-    for keys in ([condition_of(record) for record in records], [record.record for record in records]):
-        names = list(dict.fromkeys(keys))
-        if len(names) >= FEWEST:
-            return torch.tensor([names.index(key) for key in keys]).unsqueeze(1).expand(shape)
-    names, ends = [record.record for record in records], {}
-    for record in records:
-        ends[record.record] = max(ends.get(record.record, 0.0), record.begins + record.duration)
-    begins = {name: min(r.begins for r in records if r.record == name) for name in ends}
-    folds = torch.zeros(shape, dtype=torch.long)
-    for place, record in enumerate(records):
-        name = record.record
-        time = record.begins - begins[name] + torch.arange(shape[1], dtype=torch.float64) / record.sampling_rate
-        stretch = (STRETCHES * time / (ends[name] - begins[name])).long().clamp(max=STRETCHES - 1)
-        folds[place] = STRETCHES * sorted(set(names)).index(name) + stretch
-    return folds
+    """Fold of every sample, (records, time): that of its operating condition."""
+    keys = [condition_of(record) for record in problem.records]
+    names = list(dict.fromkeys(keys))
+    return torch.tensor([names.index(key) for key in keys]).unsqueeze(1).expand(-1, problem.response.length)

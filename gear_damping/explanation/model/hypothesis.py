@@ -83,7 +83,8 @@ class Outcome:
         fitted: The fit.
         values: Fitted values by flat name.
         left_out: Residuals of fitted records, each operating condition by parameters fitted to the others, the channels
-            of a record one after another: by these, models are compared.
+            of a record one after another: by these, models are compared. Where held-out records are not sealed they
+            are those of these.
         fit_residuals: Residuals of fitted records.
         scatter: What errors of the parameters add to the residuals that are left out.
         growth: How much an error of the initial state grows over a record, in the one where it grows most.
@@ -175,7 +176,13 @@ def fit_hypothesis(
     free = tuple(_settled(p, values.get(p.name, p.start)) for p in hypothesis.free)
     gains = {name: value for name, value in values.items() if name.startswith(f"{GAIN}.")}
     settled = replace(hypothesis, free=free, given=given, gains=gains)
-    return _outcome(settled, Fit(problem, fitted, values), evidence)
+    found = _outcome(settled, Fit(problem, fitted, values), evidence)
+    if evidence.sealed or not evidence.holdout:
+        return found
+    from gear_damping.explanation.model.opened import opened  # it needs what is declared here
+
+    found = opened(found, evidence, solver, None if after is None else after.own)
+    return replace(found, left_out=found.holdout, scatter=Scatter())
 
 
 def _begin(
@@ -210,7 +217,7 @@ class Fit:
 def _outcome(settled: Hypothesis, found: Fit, evidence: Evidence) -> Outcome:
     """The fit with what it leaves of its records, as they are and with operating conditions left out."""
     problem, fitted = found.problem, found.fitted
-    crossed = cross_fitted(problem, fitted)
+    crossed = cross_fitted(problem, fitted)  # of no use beside held-out records, and of no cost
     left = [
         [part / record.weight for part, record in zip(whole, evidence.fit, strict=True)]
         for series in (crossed.residuals, fitted.prediction.residual[0])

@@ -44,9 +44,12 @@ def confirmed(state: State, sealed: Sequence[FitRecord], measurement: Measuremen
 
     Args:
         state: Where the search ended.
-        sealed: The held-out records.
+        sealed: The held-out records; none where they took part in the choice.
         measurement: Where they are from.
     """
+    if not sealed:
+        t = _t(state.nominal, state.outcome, state) if state.accepted else 0.0
+        return Confirmed(state, state.noise, state.first, state.current, t)
     evidence, noise = _with_sealed(state, sealed, measurement)
     bench = replace(state.bench, evidence=evidence)
     nominal = opened(state.nominal, evidence, bench.solver)

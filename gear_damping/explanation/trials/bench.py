@@ -59,7 +59,7 @@ class Bench:
 
     def excess(self, outcome: Outcome) -> Excess:
         """What a model leaves of operating conditions that are left out of its fit."""
-        return excess(outcome.left_out, self.evidence.fitted, self.noise, self.settings)
+        return excess(outcome.left_out, self.evidence.judged, self.noise, self.settings)
 
     def assessed(self, outcome: Outcome, ranked: Sequence[Score], families: bool = True) -> Assessment | None:
         """What the residuals of a model hold that is not random, and what is; beside families without a name or not."""
@@ -175,7 +175,7 @@ class Bench:
         return confirmation(before.left_out, after.left_out, self._blocks(after))
 
     def _blocks(self, outcome: Outcome) -> list[int]:
-        return block_samples(outcome, self.evidence, self.evidence.fitted)
+        return block_samples(outcome, self.evidence, self.evidence.judged)
 
     def simplest(self, best: Refit, fits: Sequence[Refit]) -> tuple[Refit, tuple[str, ...]]:
         """The explanation with its rivals, the effects whose full fit is not worse by the paired test.
@@ -194,7 +194,7 @@ class Bench:
 
     def _not_encompassed(self, best: Refit, alike: Sequence[Refit]) -> list[Refit]:
         """Those that the best explanation does not beat by what the other leaves."""
-        if len(alike) < 2 or not any(fit is best for fit in alike):
+        if not self.evidence.sealed or len(alike) < 2 or not any(fit is best for fit in alike):
             return list(alike)
         return [f for f in alike if f is best or not self.encompasses(best, f) or self.encompasses(f, best)]
 
@@ -243,8 +243,8 @@ class Bench:
 
 
 def smallest(fits: Sequence[Refit]) -> Refit:
-    """The fit with the fewest parameters; of several the one that fits best."""
-    return min(fits, key=lambda fit: (len(fit.outcome.hypothesis.free), fit.outcome.fitted.cost))
+    """The fit with the fewest parameters; of several the one that leaves least."""
+    return min(fits, key=lambda fit: (len(fit.outcome.hypothesis.free), fit.outcome.left_out_cost))
 
 
 def _without(hypothesis: Hypothesis, name: str) -> Hypothesis:

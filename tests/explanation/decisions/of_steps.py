@@ -46,7 +46,7 @@ def confirmed(settings: SearchSettings):
         found = fit(cost=0.5)
         found.outcome.left_out = [old - 0.1 * signs.repeat_interleave(BLOCK)]
         with patch.object(benches, "block_samples", lambda *_: [BLOCK]):
-            worth.append(faint._is_worth(found, before, SimpleNamespace(taken=0.1), bench(settings, fitted=[])))
+            worth.append(faint._is_worth(found, before, SimpleNamespace(taken=0.1), bench(settings, judged=[])))
     return tuple(worth)
 
 

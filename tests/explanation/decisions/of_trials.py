@@ -44,7 +44,7 @@ def worth_a_full_fit_beside_causes(settings: SearchSettings):
 @decides("seen_in_fit", (True, False))
 def seen_in_fit(settings: SearchSettings):
     """Falls of the fitted cost by 60 and by 10 noise variances."""
-    evidence = SimpleNamespace(settings=settings, noise=0.1, fitted=[])
+    evidence = SimpleNamespace(settings=settings, noise=0.1, judged=[])
     with (
         patch("gear_damping.explanation.trials.refit.paired_gain", lambda *_: (1.0, 50.0)),
         patch("gear_damping.explanation.trials.refit.block_samples", lambda *_: [BLOCK]),
@@ -63,7 +63,7 @@ def of_conditions_left_out(gains: torch.Tensor) -> list[SimpleNamespace]:
 
 def as_good(gains: torch.Tensor, settings: SearchSettings) -> bool:
     with patch.object(benches, "block_samples", lambda *_: [BLOCK]):
-        return bench(settings, fitted=[HELD]).is_as_good(*of_conditions_left_out(gains))
+        return bench(settings, judged=[HELD]).is_as_good(*of_conditions_left_out(gains))
 
 
 @decides("rival_t", (True, False))
