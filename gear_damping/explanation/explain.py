@@ -204,7 +204,7 @@ def is_lost_by(nominal: Outcome, evidence: Evidence) -> bool:
 def best_is_lost(found: State) -> bool:
     """Whether what fits by far best loses conditions that are left out, as a softening spring near its edge does.
 
-    There a small error of a parameter leads to another motion, and cross-fitting would choose a worse model.
+    There a small error of a parameter leads to another motion, and left-out records would choose a worse model.
     """
     seen = [fit.outcome for fit in found.first_fits if fit.is_seen_in_fit]
     best = min(seen, key=lambda outcome: outcome.fitted.cost, default=found.nominal)

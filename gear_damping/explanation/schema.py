@@ -78,7 +78,7 @@ class Cause(Part):
 
     name: str = said("the effect, see docs/effects.md")
     parameters: dict[str, Parameter] = said("its fitted parameters by own name")
-    excess_explained: float = said("share of the excess that it takes, cross-fitted over operating conditions", "1")
+    excess_explained: float = said("share of the excess that it takes on records left out of the fit", "1")
     confusable_with: list[str] = said("effects that these data do not tell from it")
     status: Literal["established", "suggested"] = said("established: held-out records bear it out")
     fixed: dict[str, float] | None = may_be_left_out(
@@ -204,7 +204,7 @@ class Candidate(Part):
 
     name: str = said("the effect")
     promised: float = said("share of the fitted residual that it would take, linearised", "1")
-    share: float | None = said("of the squared residual that its full fit takes, cross-fitted; null: it had none", "1")
+    share: float | None = said("of the squared residual of left-out records that its full fit takes; null: none was made", "1")
     status: Literal["established", "suggested", "confusable", "rejected"] = said("what became of it")
     at_bound: bool = said("whether its full fit ran into a bound")
     failed: str | None = said("why it could not be fitted")

@@ -1,4 +1,4 @@
-"""The order of a search: causes are added one after another as cross-fitting bears them out, then doubted."""
+"""The order of a search: causes are added one after another as left-out records bear them out, then doubted."""
 
 from collections.abc import Sequence
 from dataclasses import replace

@@ -17,7 +17,7 @@ class SearchSettings:
     """Thresholds of a search.
 
     Sizes are shares of what stands behind them; a misfit is a mean squared residual in noise variances, an excess what
-    cross-fitted residuals hold beyond the noise, in % of the channel's variance.
+    residuals of left-out records hold beyond the noise, in % of the channel's variance.
 
     Args:
         level: Chance at which anything at all would be called visible in noise (evidence: family-wise test).
@@ -27,7 +27,7 @@ class SearchSettings:
         settled_misfit: What may then be left at most.
         named_share: Of the first excess; more, if noise alone would not leave it, is a part without a name.
         small_misfit: What may be left without a name where nothing in it is visible.
-        accepted_t: t of the cross-fitted gain that a cause needs (paired test over blocks).
+        accepted_t: t of the gain on left-out records that a cause needs (paired test over blocks).
         confirmed_t: t of what a cause adds to held-out predictions, one-sided (Clark & West 2007).
         rival_t: t below which two explanations are not told apart.
         rival_evidence: Twice the logarithm of the odds below which they are not told apart either: 100 to 1.

@@ -17,12 +17,12 @@ FREELY_NAMED = 2  # causes whose size may be anybody's guess when they are accep
 
 @dataclass(frozen=True)
 class Accepted:
-    """A cause that cross-fitting bears out.
+    """A cause that left-out records bear out.
 
     Args:
         name: The effect.
         refit: Its full fit when it was accepted.
-        share: Share of the excess that it took, cross-fitted.
+        share: Share of the excess that it took on left-out records.
         confusable: Other effects that fit no worse.
     """
 
@@ -134,7 +134,7 @@ class State:
         """The same with a further cause."""
         outcome = self.bench.at_rest(best.outcome)
         share = min(self.share_taken(outcome), 1.0)
-        self.bench.say(f"{best.name} takes {100 * share:.1f} % of the excess, cross-fitted")
+        self.bench.say(f"{best.name} takes {100 * share:.1f} % of the excess on left-out records")
         return replace(self, outcome=outcome, accepted=(*self.accepted, Accepted(best.name, best, share, rivals)))
 
     def share_taken(self, outcome: Outcome) -> float:
@@ -142,7 +142,7 @@ class State:
         return self.share_between(self.outcome, outcome)
 
     def share_between(self, before: Outcome, after: Outcome) -> float:
-        """The fall of the cross-fitted excess as a share of the first one; of all residuals where there was none."""
+        """The fall of the excess on left-out records as a share of the first one; of all residuals if there was none."""
         if self.first.percent > 0:
             return (self.bench.excess(before).percent - self.bench.excess(after).percent) / self.first.percent
         return (before.left_out_cost - after.left_out_cost) / max(self.nominal.left_out_cost, 1e-300)

@@ -217,7 +217,7 @@ def _fixed(outcome: Outcome, cause: str) -> dict[str, float]:
 
 
 def _share(outcome: Outcome, nominal: Outcome) -> float:
-    """Share of the cross-fitted squared residual that an outcome takes."""
+    """Share of the squared residual of left-out records that an outcome takes."""
     return 1 - outcome.left_out_cost / max(nominal.left_out_cost, 1e-300)
 
 
@@ -257,7 +257,7 @@ def _confirmed(judged: Judged) -> dict[str, Any]:
 
 
 def _candidates(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
-    """Every effect that was tried: what it promised on fitted records, and what a full fit took, cross-fitted."""
+    """Every effect that was tried: what it promised on fitted records, and what a full fit took of left-out ones."""
     found = judged.found
     best_last = reversed(found.first_fits)  # of several forms of an effect the best one counts
     taken = {refit.name: _share(refit.outcome, found.nominal) for refit in best_last}

@@ -12,7 +12,7 @@ from gear_damping.identification.output_error.records import FitRecord
 
 @dataclass(frozen=True)
 class Excess:
-    """Mean squared residual, cross-fitted or held out, beyond the noise, in % of the channel's AC variance.
+    """Mean squared residual of records left out of the fit, beyond the noise, in % of the channel's AC variance.
 
     Args:
         percent: D.

@@ -1,7 +1,7 @@
-"""Step 6b: causes that cross-fitted power is too blunt for, but the score of the residuals shows.
+"""Step 6b: causes that the power of left-out residuals is too blunt for, but the score of the residuals shows.
 
-Cross-fitted residuals are compared by the whole of their power; what an effect would add to a prediction is compared
-with the residual itself here (Clark & West 2007), which needs a tenth of that power.
+Residuals of left-out records are compared by the whole of their power; what an effect would add to a prediction is
+compared with the residual itself here (Clark & West 2007), which needs a tenth of that power.
 """
 
 from dataclasses import replace
@@ -45,7 +45,7 @@ def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
 
 
 def _is_worth(fit: Refit, before: Outcome, seen: Assessment, bench: Bench) -> bool:
-    """Whether cross-fitting confirms a cause that takes its part of what is not random, and lose nothing by it."""
+    """Whether left-out records confirm a cause that takes its part of what is not random, and lose nothing by it."""
     if fit.gain <= 0:
         return False
     taken = 1 - fit.outcome.fitted.cost / max(before.fitted.cost, 1e-300)
@@ -55,7 +55,7 @@ def _is_worth(fit: Refit, before: Outcome, seen: Assessment, bench: Bench) -> bo
 
 
 def _is_borne_out(fit: Refit, state: State) -> bool:
-    """Whether cross-fitting bears a cause out by its power after all, though it is less than chance may leave.
+    """Whether left-out records bear a cause out by their power after all, though it is less than chance may leave.
 
     Where the other records hardly show what one does, as one at resonance, that chance is large.
     """

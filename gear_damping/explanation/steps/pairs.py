@@ -79,7 +79,7 @@ def _with(pair: Pair, state: State) -> State:
     outcome = bench.at_rest(pair.second.outcome)
     share = state.share_taken(outcome)
     causes = [Accepted(fit.name, pair.second, share / PAIR, ()) for fit in (pair.first, pair.second)]
-    bench.say(f"{pair.first.name} and {pair.second.name} take {100 * share:.1f} % of the excess, cross-fitted")
+    bench.say(f"{pair.first.name} and {pair.second.name} take {100 * share:.1f} % of the excess on left-out records")
     return replace(state, outcome=outcome, accepted=(*state.accepted, *causes))
 
 

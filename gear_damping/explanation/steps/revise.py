@@ -59,7 +59,7 @@ def _simplified_at(state: State, place: int) -> State:
 
 
 def pruned(state: State) -> State:
-    """Without causes whose removal costs nothing that cross-fitting shows, or leaves nothing that is visible."""
+    """Without causes whose removal costs nothing that left-out records show, or leaves nothing that is visible."""
     bench = state.bench
     for cause in state.accepted:
         if len(state.accepted) == 1:

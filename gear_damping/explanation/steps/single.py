@@ -1,4 +1,4 @@
-"""A further cause: the effect that takes most of what is left, where cross-fitting bears it out."""
+"""A further cause: the effect that takes most of what is left, where left-out records bear it out."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -79,7 +79,7 @@ def _rivals_at_rest(fits: Sequence[Refit], state: State) -> tuple[Refit, ...]:
 
 
 def _best(fits: Sequence[Refit], state: State) -> Refit | None:
-    """The best full fit, where cross-fitting bears it out."""
+    """The best full fit, where left-out records bear it out."""
     best = next((fit for fit in fits if fit.is_seen_in_fit), None)
     if best is None:
         return None

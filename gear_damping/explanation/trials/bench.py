@@ -1,4 +1,4 @@
-"""What the search and its second thoughts both do: score, fit in full, compare by cross-fitting."""
+"""What the search and its second thoughts both do: score, fit in full, compare on left-out records."""
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field, replace
@@ -167,7 +167,7 @@ class Bench:
         return t < self.settings.rival_t or gain < SAME * self.noise.value**2
 
     def paired_gain(self, before: Outcome, after: Outcome) -> tuple[float, float]:
-        """Gain of the second over the first, cross-fitted, with its t."""
+        """Gain of the second over the first on left-out records, with its t."""
         return paired_gain(before.left_out, after.left_out, self._blocks(after))
 
     def confirmation(self, before: Outcome, after: Outcome) -> float:

@@ -1,4 +1,4 @@
-"""Step 6: the full fit of a candidate, and whether cross-fitting bears it out."""
+"""Step 6: the full fit of a candidate, and whether left-out records bear it out."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -38,7 +38,7 @@ class Refit:
     Args:
         score: What it promised.
         outcome: What came of it.
-        gain: Mean fall of cross-fitted squared residuals.
+        gain: Mean fall of squared residuals of left-out records.
         t: Its t statistic over blocks.
         fit_gain: Fall of the fitted records' squared residuals, in noise variances.
         is_seen_in_fit: Whether the records to which it was fitted show it: what shows only in conditions that are left
@@ -159,7 +159,7 @@ def again(refit: Refit, against: Outcome, evidence: Evidence, solver: Solver | N
 
 
 def compared(score: Score, found: Outcome, against: Outcome, evidence: Evidence) -> Refit:
-    """A fit held against another model by cross-fitting."""
+    """A fit held against another model on left-out records."""
     gain, t = paired_gain(against.left_out, found.left_out, block_samples(against, evidence, evidence.judged))
     fit_gain = (against.fitted.cost - found.fitted.cost) / max(evidence.noise, 1e-300) ** 2
     return Refit(score, found, gain, t, fit_gain, fit_gain > evidence.settings.seen_in_fit)

@@ -40,7 +40,7 @@ def candidates_figure(candidates: Sequence[Mapping[str, Any]], *, needed_share: 
         figure = new_figure(1.2 + 0.31 * max(len(shown), 3))
         axes = figure.subplots()
         rest = f"      ({len(left_out)} smaller ones not shown)" if left_out else ""
-        axes.set_xlabel(f"share of the cross-fitted excess explained / %{rest}")
+        axes.set_xlabel(f"share of the excess explained on left-out records / %{rest}")
         if not shown:
             say_empty(axes, "no candidates were tried")
             return figure
