@@ -142,7 +142,7 @@ class State:
         return self.share_between(self.outcome, outcome)
 
     def share_between(self, before: Outcome, after: Outcome) -> float:
-        """The fall of the excess on left-out records as a share of the first one; of all residuals if there was none."""
+        """The fall of the excess on left-out records over the first one; that of all residuals if there was none."""
         if self.first.percent > 0:
             return (self.bench.excess(before).percent - self.bench.excess(after).percent) / self.first.percent
         return (before.left_out_cost - after.left_out_cost) / max(self.nominal.left_out_cost, 1e-300)
