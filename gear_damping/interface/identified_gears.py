@@ -4,7 +4,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 from torch import Tensor
 
 from gear_damping.errors import InputError, Problem, nearest
@@ -20,13 +19,13 @@ from gear_damping.explanation.model.spread import spread_of
 from gear_damping.explanation.steps.too_short import too_short
 from gear_damping.identification.oscillator import linear_model
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
+from gear_damping.interface.identified_page import MOST_PANELS, estimate_rows, panel, residual_rows
 from gear_damping.measurement.record import Measurement
 from gear_damping.physics.model import Model
 from gear_damping.physics.terms import DampingLaw
 from gear_damping.reporting import figures, tables
 from gear_damping.simulation.solver_settings import Solver
 
-MOST_PANELS = 3  # records of each role shown in the figure
 SHOWN = ("mesh_stiffness_shape",)  # what is fitted in many numbers stands in the JSON alone
 DAMPING_RATIO = "damping_ratio"  # stands for the coefficient of a model's one damping law
 ITERATIONS = 40  # at most, of a fit of one's own model
@@ -155,15 +154,10 @@ def content_of(measurement: Measurement, found: Fitted) -> dict[str, Any]:
 
 def table_of(content: dict[str, Any]) -> str:
     """The parameters with their intervals, and what is missing."""
-    rows = []
     shown = {k: v for k, v in content["parameters"].items() if not k.startswith(SHOWN)}
-    for name, found in {"damping_ratio_percent": content["damping_ratio_percent"], **shown}.items():
-        if found is not None:
-            low, high = found["interval95"]
-            rows.append((name, f"{found['value']:.6g}", f"{low:.6g} … {high:.6g}", found["unit"]))
+    rows = estimate_rows({"damping_ratio_percent": content["damping_ratio_percent"], **shown})
     rows.append(("natural_frequency_hz", f"{content['natural_frequency_hz']['value']:.6g}", "", "Hz"))
-    for name, found in content["records"].items():
-        rows.append((f"residual of {name} ({found['role']})", f"{found['rmse']:.4g}", "", found["unit"]))
+    rows += residual_rows(content["records"])
     text = tables.parameter_table(f"identified by output error from {', '.join(content['channels'])}", rows)
     lacking = content["lack_of_fit"]
     if lacking["significant"]:
@@ -193,18 +187,12 @@ def figure_of(found: Fitted, content: dict[str, Any]) -> figures.Figure:
 def _panels(
     role: str, records: Sequence[FitRecord], residuals: Sequence[Tensor], factor: float
 ) -> list[dict[str, Any]]:
-    """The first channel of records beside what the simulation makes of it."""
-    found = []
-    for record, residual in zip(records, residuals, strict=True):
-        samples = len(residual) // len(record.channels)
-        measured = record.response[:samples]
-        found.append(
-            {
-                "name": record.name,
-                "role": role,
-                "time": np.arange(samples) / record.sampling_rate,
-                "measured": measured.numpy() / factor,
-                "simulated": (measured - residual[:samples]).numpy() / factor,
-            }
-        )
-    return found
+    """Some records of one role."""
+    pairs = zip(records, residuals, strict=True)
+    return [panel(one, role, _measured(one, len(left)) - left, factor) for one, left in pairs]
+
+
+def _measured(record: FitRecord, length: int) -> Tensor:
+    """The channels of a record one after another, as far as they were compared, (length,)."""
+    channels = record.stacked.unflatten(0, (len(record.channels), -1))
+    return channels[:, : length // len(record.channels)].flatten()

@@ -4,19 +4,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-import numpy as np
-
 from gear_damping.identification.observation import fit_record, known_of, require_alike, require_fitted
 from gear_damping.identification.oscillator import Estimate, OscillatorFit, fit_oscillator
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import Segments
+from gear_damping.interface.identified_page import MOST_PANELS, estimate_rows, panel, residual_rows
 from gear_damping.interface.lack_of_fit import lack_of_fit, sentence
 from gear_damping.measurement.record import Channel, Measurement, Record
 from gear_damping.reporting import figures, tables
 from gear_damping.simulation.integrate import Progress
 from gear_damping.simulation.solver_settings import Solver
-
-MOST_PANELS = 3  # records of each role shown in the figure
 
 
 @dataclass(frozen=True)
@@ -65,7 +62,7 @@ def table_of(content: dict[str, Any]) -> str:
     """The parameters with their intervals, and what is missing."""
     text, lacking = _table(content), content["lack_of_fit"]
     if lacking and lacking["significant"]:
-        text = f"{text.rstrip()}\n\n{sentence(lacking, lacking['source'])}\n"
+        text = f"{text.rstrip()}\n\n{sentence(lacking)}\n"
     return text
 
 
@@ -106,14 +103,8 @@ def _identification(
 
 
 def _table(content: dict[str, Any]) -> str:
-    rows = []
     named = {key: content[key] for key in ("damping_ratio_percent", "natural_frequency_hz", "log_decrement")}
-    for name, found in {**named, **content["parameters"]}.items():
-        if found is not None:
-            low, high = found["interval95"]
-            rows.append((name, f"{found['value']:.6g}", f"{low:.6g} … {high:.6g}", found["unit"]))
-    for name, found in content["records"].items():
-        rows.append((f"residual of {name} ({found['role']})", f"{found['rmse']:.4g}", "", found["unit"]))
+    rows = estimate_rows({**named, **content["parameters"]}) + residual_rows(content["records"])
     title = "identified by output error, per unit of mass"
     if content["segment_s"]:
         title += f", in segments of {content['segment_s']:.3g} s"
@@ -123,19 +114,9 @@ def _table(content: dict[str, Any]) -> str:
 def figure_of(fitted: Fitted, content: dict[str, Any]) -> figures.Figure:
     """Measured and simulated records, with what was found."""
     found, roles, channel = fitted.found, fitted.roles, fitted.channel
-    factor, panels = channel.declared_factor, []
-    for record in (*roles["fit"][:MOST_PANELS], *roles["holdout"][-MOST_PANELS:]):
-        simulated = found.predictions[record.name]
-        samples = len(simulated) // len(record.channels)
-        panels.append(
-            {
-                "name": record.name,
-                "role": content["records"][record.name]["role"],
-                "time": np.arange(samples) / record.sampling_rate,
-                "measured": record.response[:samples].numpy() / factor,
-                "simulated": simulated[:samples].numpy() / factor,
-            }
-        )
+    shown = (*roles["fit"][:MOST_PANELS], *roles["holdout"][-MOST_PANELS:])
+    known, factor = content["records"], channel.declared_factor
+    panels = [panel(one, known[one.name]["role"], found.predictions[one.name], factor) for one in shown]
     stated = content["parameters"].items()
     text = [f"{key.replace('_', ' ')} {entry['value']:.4g} {entry['unit']}" for key, entry in stated]
     if zeta := content["damping_ratio_percent"]:

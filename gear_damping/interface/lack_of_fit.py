@@ -46,11 +46,11 @@ def lack_of_fit(
     }
 
 
-def sentence(found: Mapping[str, Any], source: str) -> str:
+def sentence(found: Mapping[str, Any]) -> str:
     """What a significant lack of fit means for the figures, and what to do about it."""
     return (
         f"lack of fit: the linear oscillator leaves {found['residual']:.3g} {found['unit']}, "
         f"{found['percent_of_signal']:.3g} % of the signal, where the noise is {found['noise']:.3g} {found['unit']} "
         f"({found['noise_method']}). Stiffness and damping are those of the nearest linear motion, and their "
-        f"intervals do not cover what is missing; task=explain measurement.path={source} looks for its name"
+        f"intervals do not cover what is missing; task=explain measurement.path={found['source']} looks for its name"
     )
