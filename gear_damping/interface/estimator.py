@@ -9,8 +9,7 @@ from gear_damping.errors import InputError, Problem
 from gear_damping.identification.lightning_module import DampingModule, RecordPrediction
 from gear_damping.identification.lightning_module import load_estimator as load_module
 from gear_damping.measurement.record import Measurement, Record
-
-RESPONSES = {"gear_pair": "transmission_error", "oscillator": "displacement"}
+from gear_damping.physics.catalogue import SYSTEMS
 
 
 class Estimator:
@@ -30,7 +29,7 @@ class Estimator:
         Raises:
             InputError: a record has no such channel, another rate than the network was trained at, or is too short.
         """
-        wanted = channel or RESPONSES[measurement.system]
+        wanted = channel or SYSTEMS[measurement.system].response
         problems = [
             Problem(
                 f"{record.name}.{wanted}",
