@@ -29,7 +29,15 @@ def offered(answer: dict[str, Any]) -> list[str]:
 
 def judged(case: Case) -> dict[str, bool | None]:
     """The claims about one case by the names of `rates.TARGETS`."""
-    return JUDGES[case["stratum"]](case, case["answer"]) | {"did not crash": _sound(case)}
+    everywhere = {"any case: a wrong name established": _wrong(case), "did not crash": _sound(case)}
+    return JUDGES[case["stratum"]](case, case["answer"]) | everywhere
+
+
+def _wrong(case: Case) -> bool:
+    """Whether a cause is established that was not hidden, and that is in no set with one that was."""
+    truth = names(case)
+    sets = [(c["name"], *c["confusable_with"]) for c in case["answer"]["causes"] if c["status"] == "established"]
+    return any(not any(same_class(name, true) for name in one for true in truth) for one in sets)
 
 
 def _sound(case: Case) -> bool:
@@ -37,7 +45,8 @@ def _sound(case: Case) -> bool:
 
 
 def _null(case: Case, answer: dict) -> dict[str, bool | None]:
-    return {"null names a cause": bool(answer["causes"])}
+    return {"null names a cause": bool(answer["causes"]), "null consistent": answer["verdict"] == "consistent",
+            "damping of a null in its interval": damping_held(case, answer)}  # fmt: skip
 
 
 def _single(case: Case, answer: dict) -> dict[str, bool | None]:

@@ -18,7 +18,9 @@ TARGETS = {
     "effect named or in the set": (0.95, "at least"),
     "wrong name established": (0.05, "at most"),
     "faint effect named, suggested or in the set": (0.80, "at least"),
-    "null names a cause": (0.05, "at most"),
+    "null names a cause": (0.02, "at most"),
+    "null consistent": (0.95, "at least"),
+    "damping of a null in its interval": (0.90, "at least"),
     "below the limit, a wrong name": (0.05, "at most"),
     "outside, called explained": (0.05, "at most"),
     "outside, unexplained": (0.90, "at least"),
@@ -51,6 +53,7 @@ TARGETS = {
         for what, target in (("consistent", 0.95), ("damping in its interval", 0.90))
     },
     "outside or removed, a name established": (0.02, "at most"),
+    "any case: a wrong name established": (0.01, "at most"),
     "did not crash": (1.0, "at least"),
 }
 
