@@ -10,7 +10,7 @@ from torch import Tensor
 
 from gear_damping.explanation.evidence.noise import Scatter
 from gear_damping.explanation.evidence.records import Evidence
-from gear_damping.explanation.model.cross_fit import cross_fitted
+from gear_damping.explanation.model.cross_fit import CrossFit, cross_fitted
 from gear_damping.identification.output_error.descent import Lent
 from gear_damping.identification.output_error.least_squares import Fitted, fit
 from gear_damping.identification.output_error.problem import OutputErrorProblem, growth
@@ -217,7 +217,7 @@ class Fit:
 def _outcome(settled: Hypothesis, found: Fit, evidence: Evidence) -> Outcome:
     """The fit with what it leaves of its records, as they are and with operating conditions left out."""
     problem, fitted = found.problem, found.fitted
-    crossed = cross_fitted(problem, fitted)  # of no use beside held-out records, and of no cost
+    crossed = cross_fitted(problem, fitted) if evidence.sealed else CrossFit(fitted.prediction.residual[0], Scatter())
     left = [
         [part / record.weight for part, record in zip(whole, evidence.fit, strict=True)]
         for series in (crossed.residuals, fitted.prediction.residual[0])

@@ -109,12 +109,6 @@ def load_noise(residual: Array, motion: Recurrence) -> LoadNoise:
     return LoadNoise(motion, ratio, sensor, value)
 
 
-def without_load(residual: Array) -> float:
-    """The same of a residual that is white noise of a sensor alone."""
-    kept = residual[2:]
-    return len(kept) * log(max(float(kept @ kept) / len(kept), 1e-300))
-
-
 def _deviance(left: Array, motion: Recurrence, ratio: float) -> tuple[float, float]:
     """Minus twice the logarithm of the likelihood at the best level, and that level."""
     factor = _factor(motion, ratio)

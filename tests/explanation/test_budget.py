@@ -1,0 +1,16 @@
+"""The time of a search: a part of it is kept for what is under way and for the records that are opened at the end."""
+
+from unittest.mock import patch
+
+from gear_damping.explanation import budget
+
+
+def test_the_search_is_over_before_the_time_is():
+    with patch.object(budget, "monotonic", lambda: 0.0):
+        made = budget.Budget(5.0)
+    for second, is_over in ((240.0, False), (260.0, True)):
+        with patch.object(budget, "monotonic", lambda now=second: now):
+            assert made.spent is is_over
+            assert made.refuses("pairs of effects") is is_over
+    assert "5 minutes" in made.sentence
+    assert made.not_tried == ["pairs of effects"]
