@@ -6,8 +6,7 @@ from gear_damping.explanation import budget
 
 
 def test_the_search_is_over_before_the_time_is():
-    with patch.object(budget, "monotonic", lambda: 0.0):
-        made = budget.Budget(5.0)
+    made = budget.Budget(5.0, [], 0.0)
     for second, is_over in ((240.0, False), (260.0, True)):
         with patch.object(budget, "monotonic", lambda now=second: now):
             assert made.spent is is_over
