@@ -112,7 +112,7 @@ class GearChannels(c.Timed):
     gear_torque: Annotated[c.GearTorque, Word(*GEAR_TORQUE_MODES)] = key(
         "Load, positive where it resists; or `balanced` (it follows the pinion's torque) or `held`.", "load"
     )
-    pinion_angle: c.Angle = key("Angle of the pinion; may wrap.", "angle of the shafts")
+    pinion_angle: c.Angle = key("Angle of the pinion; may wrap. Coarse steps are smoothed.", "angle of the shafts")
     pinion_speed: c.Speed = key(
         "Speed of the pinion.", "angle of the shafts; response where no transmission error is declared"
     )
