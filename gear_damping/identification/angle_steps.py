@@ -21,14 +21,13 @@ def between_steps(angle: Array) -> Array:
     The window of the local cubic (Savitzky & Golay 1964, Analytical Chemistry 36) is the longest that leaves no more
     than rounding does.
     """
-    step = _step(angle)
-    found = angle
+    step, found = _step(angle), angle
     window = SHORTEST
     while step > 0 and window <= WIDEST * len(angle):
         smooth = savgol_filter(angle, window, ORDER)
-        if float(np.std(angle - smooth)) > ROUNDING * step / 12**0.5:
-            break
-        found, window = smooth, 2 * window - 1
+        if float(np.std(angle - smooth)) <= ROUNDING * step / 12**0.5:
+            found = smooth  # a short window may turn round what beats with the samples, a longer one does not
+        window = 2 * window - 1
     return found
 
 

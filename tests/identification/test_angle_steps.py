@@ -22,7 +22,7 @@ def test_the_rounding_is_taken_out_and_the_turning_is_not(rpm, counts):
     recorded = step * np.floor(angle / step)
     found = between_steps(recorded)
     error = found - angle
-    assert np.std(error) < 0.7 * np.std(recorded - angle)  # rounding that beats slowly with the samples stays
+    assert np.std(error) < 0.4 * np.std(recorded - angle)
     assert abs(error.mean() + step / 2) < 0.1 * step
 
 
