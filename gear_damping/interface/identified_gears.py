@@ -8,6 +8,7 @@ from torch import Tensor
 
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.explanation.answer.gain import damping_ratio, final_parameters, rmse
+from gear_damping.explanation.answer.unexplained import first_channel
 from gear_damping.explanation.casing.heard import is_casing
 from gear_damping.explanation.evidence.excess import excess
 from gear_damping.explanation.evidence.noise import NoiseLevel
@@ -188,11 +189,5 @@ def _panels(
     role: str, records: Sequence[FitRecord], residuals: Sequence[Tensor], factor: float
 ) -> list[dict[str, Any]]:
     """Some records of one role."""
-    pairs = zip(records, residuals, strict=True)
-    return [panel(one, role, _measured(one, len(left)) - left, factor) for one, left in pairs]
-
-
-def _measured(record: FitRecord, length: int) -> Tensor:
-    """The channels of a record one after another, as far as they were compared, (length,)."""
-    channels = record.stacked.unflatten(0, (len(record.channels), -1))
-    return channels[:, : length // len(record.channels)].flatten()
+    pairs = zip(records, first_channel(residuals, records), strict=True)
+    return [panel(one, role, one.response.numpy() - left, factor) for one, left in pairs]

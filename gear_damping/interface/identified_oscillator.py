@@ -116,7 +116,8 @@ def figure_of(fitted: Fitted, content: dict[str, Any]) -> figures.Figure:
     found, roles, channel = fitted.found, fitted.roles, fitted.channel
     shown = (*roles["fit"][:MOST_PANELS], *roles["holdout"][-MOST_PANELS:])
     known, factor = content["records"], channel.declared_factor
-    panels = [panel(one, known[one.name]["role"], found.predictions[one.name], factor) for one in shown]
+    first = {one.name: found.predictions[one.name].chunk(len(one.channels))[0].numpy() for one in shown}
+    panels = [panel(one, known[one.name]["role"], first[one.name], factor) for one in shown]
     stated = content["parameters"].items()
     text = [f"{key.replace('_', ' ')} {entry['value']:.4g} {entry['unit']}" for key, entry in stated]
     if zeta := content["damping_ratio_percent"]:

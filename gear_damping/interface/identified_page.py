@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from torch import Tensor
+from numpy.typing import NDArray
 
 from gear_damping.identification.output_error.records import FitRecord
 
@@ -30,20 +30,20 @@ def residual_rows(records: Mapping[str, Mapping[str, Any]]) -> list[Row]:
     ]
 
 
-def panel(record: FitRecord, role: str, simulated: Tensor, factor: float) -> dict[str, Any]:
+def panel(record: FitRecord, role: str, simulated: NDArray[np.float64], factor: float) -> dict[str, Any]:
     """The first channel of a record beside what the simulation makes of it.
 
     Args:
         record: As it was measured.
         role: Of the record.
-        simulated: Its channels one after another, (channels * time,).
+        simulated: Its first channel, as far as it was compared, (time,).
         factor: From the declared unit to that of the record.
     """
-    samples = len(simulated) // len(record.channels)
+    samples = len(simulated)
     return {
         "name": record.name,
         "role": role,
         "time": np.arange(samples) / record.sampling_rate,
         "measured": record.response[:samples].numpy() / factor,
-        "simulated": simulated[:samples].numpy() / factor,
+        "simulated": simulated / factor,
     }

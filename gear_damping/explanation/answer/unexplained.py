@@ -10,6 +10,7 @@ from torch import Tensor
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.evidence.shaft import Shaft, shaft_of
 from gear_damping.explanation.model.hypothesis import Outcome
+from gear_damping.explanation.model.linear import linear_of
 from gear_damping.identification.output_error.records import FitRecord
 
 Array = NDArray[np.float64]
@@ -142,10 +143,7 @@ def _contact_phase(residuals: Sequence[Array], shafts: Sequence[Shaft | None]) -
 
 def residual_force(outcome: Outcome, residual: Tensor, rate: float) -> Tensor:
     """The force per sample that would have closed the gap: m r'' + c r' + k r of the smoothed residual, (time,)."""
-    model, given = outcome.hypothesis.model, outcome.flat_given()
-    derived = model.prepare(model.values(1, **given)).derived
-    mass, stiffness = float(derived["equivalent_mass"][0]), float(derived["mean_stiffness"][0])
-    damping = float(given.get("viscous_damping.damping_coefficient", 0.0))
+    mass, damping, stiffness = linear_of(outcome)
     spectrum = torch.fft.rfft(residual)
     turn = 2j * torch.pi * torch.fft.rfftfreq(len(residual), 1 / rate, dtype=torch.float64)
     limit = 3 * (stiffness / mass) ** 0.5

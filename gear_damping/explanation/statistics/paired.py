@@ -31,7 +31,7 @@ def paired_gain(before: Sequence[Tensor], after: Sequence[Tensor], blocks: Seque
         sizes.append(means[:, 2])
     found, size = torch.cat(gains), torch.cat(sizes)
     tested = [_t(found), _t(torch.cat(shares))]
-    if float(size.sum() ** 2) < FEW_BLOCKS * float(size.square().sum()):
+    if _are_few(size):
         tested.append(_t_of_events(before, after, blocks))
     return float(found.mean()), max(tested, key=abs)
 
@@ -50,7 +50,7 @@ def confirmation(before: Sequence[Tensor], after: Sequence[Tensor], blocks: Sequ
         sums += [part.sum() for part in (added * old)[: count * block].chunk(count)]
         sizes += [part.sum() for part in added.square()[: count * block].chunk(count)]
     total, size = torch.stack(sums), torch.stack(sizes)
-    if float(size.sum() ** 2) < FEW_BLOCKS * float(size.square().sum()):
+    if _are_few(size):
         return float(total.sum()) / max(_deviation(before, after, blocks), 1e-300)
     return float(total.sum() / total.square().sum().sqrt().clamp(min=1e-300))
 
@@ -80,6 +80,11 @@ def share_taken(before: Sequence[Tensor], after: Sequence[Tensor], blocks: Seque
     missed = (taken - value * left).square().sum() * count / max(count - 1, 1)
     half = float(student.ppf(UPPER, max(count - 1, 1)) * missed.sqrt()) / total
     return Share(value, (value - half, min(value + half, 1.0)))
+
+
+def _are_few(sizes: Tensor) -> bool:
+    """Whether what two predictions differ by, (blocks,), lies in a few blocks."""
+    return float(sizes.sum() ** 2) < FEW_BLOCKS * float(sizes.square().sum())
 
 
 def _t(values: Tensor) -> float:

@@ -4,6 +4,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency_hz
+from gear_damping.explanation.model.linear import linear_of
 from gear_damping.explanation.statistics.load_noise import Recurrence, drive_correlation, recurrence
 from gear_damping.identification.output_error.problem import OutputErrorProblem
 from gear_damping.identification.output_error.records import FitRecord
@@ -34,14 +35,6 @@ def recurrences(outcome: Outcome) -> list[Recurrence] | None:
         first, second = (torch.cat([torch.as_tensor(pair[k]) for pair in pairs]).numpy() for k in (0, 1))
         found.append(Recurrence(first, second, correlation))
     return found
-
-
-def linear_of(outcome: Outcome) -> tuple[float, float, float]:
-    """Mass, damping coefficient and stiffness of the model on average."""
-    model, given = outcome.hypothesis.model, outcome.flat_given()
-    derived = model.prepare(model.values(1, **given)).derived
-    damping = float(given.get("viscous_damping.damping_coefficient", 0.0))
-    return float(derived["equivalent_mass"][0]), damping, float(derived["mean_stiffness"][0])
 
 
 def _free_motion(outcome: Outcome) -> list[list[Tensor]]:

@@ -13,7 +13,7 @@ from torch import Tensor
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.evidence.shaft import Shaft, shaft_of
 from gear_damping.explanation.model.hypothesis import Outcome
-from gear_damping.explanation.trials.innovations import linear_of
+from gear_damping.explanation.model.linear import linear_of
 from gear_damping.identification.output_error.records import FitRecord
 
 Array = NDArray[np.float64]
