@@ -18,11 +18,12 @@ from gear_damping.explanation.evidence.noise import NoiseLevel, Scatter, noise_o
 from gear_damping.explanation.evidence.records import Evidence, evidence_of
 from gear_damping.explanation.model.calibration_error import calibration_error
 from gear_damping.explanation.model.hypothesis import SEGMENT_TIMES, Outcome, segments_of
-from gear_damping.explanation.search import search
+from gear_damping.explanation.search import looked, search
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import State
 from gear_damping.explanation.steps.calibrate import calibrated, recalibrated
 from gear_damping.explanation.steps.confirm import Confirmed, confirmed
+from gear_damping.explanation.steps.estimate import estimated
 from gear_damping.explanation.steps.judge import Judged, verdict
 from gear_damping.explanation.steps.too_short import died_away, too_short
 from gear_damping.explanation.trials.bench import Bench
@@ -107,6 +108,9 @@ def explain(
     state = _searched(evidence, noise, say, fitting_solver(solver), budget, lambda: step(2, STEPS))
     step(3, STEPS)
     found = confirmed(state, sealed, measurement)
+    if found.state.names != state.names:
+        found = replace(found, state=replace(found.state, left=looked(found.state).left))
+    found = replace(found, state=estimated(found.state))
     judged = _judged(found, (*notes, budget.sentence), tuple(budget.not_tried))
     step(4, STEPS)
     evidence, noise = found.state.bench.evidence, found.noise

@@ -14,7 +14,8 @@ from gear_damping.explanation.evidence.excess import excess
 from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.evidence.records import Evidence, evidence_of, with_own_angles
 from gear_damping.explanation.explain import at_useful_rate, explain, fitting_solver, with_noise
-from gear_damping.explanation.model.hypothesis import Given, Hypothesis, Outcome, fit_hypothesis, natural_frequency_hz
+from gear_damping.explanation.model.fitting import fit_hypothesis
+from gear_damping.explanation.model.hypothesis import Given, Hypothesis, Outcome, natural_frequency_hz
 from gear_damping.explanation.model.nominal_gear_pair import angles_of, first_gear_pair
 from gear_damping.explanation.model.spread import spread_of
 from gear_damping.explanation.steps.too_short import too_short

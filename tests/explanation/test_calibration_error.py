@@ -9,7 +9,8 @@ from gear_damping.explanation.evidence.excess import excess
 from gear_damping.explanation.evidence.noise import NoiseLevel, Scatter
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.calibration_error import calibration_error
-from gear_damping.explanation.model.hypothesis import Hypothesis, fit_hypothesis
+from gear_damping.explanation.model.fitting import fit_hypothesis
+from gear_damping.explanation.model.hypothesis import Hypothesis
 from gear_damping.explanation.model.opened import opened
 from gear_damping.identification.observation import Known
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter

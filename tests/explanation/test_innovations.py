@@ -7,7 +7,8 @@ import pytest
 import torch
 
 from gear_damping.explanation.evidence.records import Evidence
-from gear_damping.explanation.model.hypothesis import Hypothesis, fit_hypothesis
+from gear_damping.explanation.model.fitting import fit_hypothesis
+from gear_damping.explanation.model.hypothesis import Hypothesis
 from gear_damping.explanation.trials.assess import assessed
 from gear_damping.explanation.trials.innovations import recurrences
 from gear_damping.identification.observation import Known

@@ -6,7 +6,8 @@ import torch
 
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.candidates import candidates_for
-from gear_damping.explanation.model.hypothesis import Hypothesis, fit_hypothesis
+from gear_damping.explanation.model.fitting import fit_hypothesis
+from gear_damping.explanation.model.hypothesis import Hypothesis
 from gear_damping.explanation.trials import score as ranking
 from gear_damping.identification.observation import Known
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter, Observed

@@ -6,7 +6,8 @@ import pytest
 import torch
 
 from gear_damping.explanation.evidence.records import Evidence
-from gear_damping.explanation.model.hypothesis import Hypothesis, fit_hypothesis
+from gear_damping.explanation.model.fitting import fit_hypothesis
+from gear_damping.explanation.model.hypothesis import Hypothesis
 from gear_damping.explanation.steps.told import is_told
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.physics.catalogue import effect_class

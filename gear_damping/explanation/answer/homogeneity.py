@@ -54,7 +54,7 @@ class Homogeneity:
 def homogeneity(outcome: Outcome, cause: str, evidence: Evidence) -> Homogeneity:
     """Estimates of the first strength of a cause by record, beside every other parameter."""
     place = next(i for i, p in enumerate(outcome.problem.free) if p.name.startswith(cause + "."))
-    prediction, problem = outcome.fitted.prediction, outcome.problem
+    prediction, problem = outcome.linearisation, outcome.problem
     groups, names = _groups(outcome)
     columns, residual = _beside(prediction.sensitivity[0], prediction.residual[0], place, problem.n_shared, groups)
     energy = columns.square().sum(0)

@@ -1,5 +1,7 @@
 """How well a fit knows what it moved."""
 
+from dataclasses import replace
+
 from torch import Tensor
 
 from gear_damping.explanation.evidence.records import Evidence
@@ -13,4 +15,5 @@ SILENT = 0.1  # noise levels that a step of order one moves the records by, in a
 def spread_of(outcome: Outcome, evidence: Evidence) -> Tensor:
     """Covariance of the fitted coordinates; residuals may be coloured."""
     scale = time_scale(outcome.hypothesis, evidence)
-    return covariance(outcome.problem, outcome.fitted, CORRELATED_PERIODS * scale)
+    fitted = replace(outcome.fitted, prediction=outcome.linearisation)
+    return covariance(outcome.problem, fitted, CORRELATED_PERIODS * scale)

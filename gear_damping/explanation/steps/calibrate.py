@@ -9,7 +9,8 @@ import torch
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.explanation.evidence.records import Evidence, with_own_angles
-from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, fit_hypothesis, natural_frequency_hz
+from gear_damping.explanation.model.fitting import fit_hypothesis
+from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, natural_frequency_hz
 from gear_damping.explanation.model.nominal_gear_pair import (
     SCANNED,
     angles_of,

@@ -11,7 +11,8 @@ from gear_damping.explanation.evidence.excess import Excess, excess
 from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.candidates import candidates_for, restored
-from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, fit_hypothesis
+from gear_damping.explanation.model.fitting import fit_hypothesis
+from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome
 from gear_damping.explanation.model.spread import spread_of
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.statistics.paired import confirmation, paired_gain

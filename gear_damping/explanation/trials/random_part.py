@@ -100,8 +100,12 @@ class _Regressed:
         return tuple(found)
 
     def deviance(self, laws: Sequence[Autoregression]) -> float:
-        """Minus twice the logarithm of their likelihood, with what their coefficients cost."""
-        samples = [float(self.counts[self.groups == number].sum()) for number in range(self.count)]
+        """Minus twice the logarithm of their likelihood, with what their coefficients cost.
+
+        Of as many samples of each row as a load's part has innovations of.
+        """
+        rows = (self.counts.sum(-1) - MEMORY).clamp(min=0)
+        samples = [float(rows[self.groups == number].sum()) for number in range(self.count)]
         pairs = zip(laws, samples, strict=True)
         return sum(n * log(max(law.innovation, 1e-300)) + law.order * log(max(n, 2.0)) for law, n in pairs)
 

@@ -9,7 +9,8 @@ from torch import Tensor
 
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.candidates import Candidate
-from gear_damping.explanation.model.hypothesis import Outcome, fit_hypothesis, time_scale
+from gear_damping.explanation.model.fitting import fit_hypothesis
+from gear_damping.explanation.model.hypothesis import Outcome, time_scale
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.statistics.paired import paired_gain
 from gear_damping.explanation.trials.score import Score, best_by_effect, collinearity

@@ -7,7 +7,8 @@ import torch
 from torch import Tensor
 
 from gear_damping.explanation.model.candidates import Candidate
-from gear_damping.explanation.model.hypothesis import Outcome, begun_from, own_from
+from gear_damping.explanation.model.fitting import begun_from, own_from
+from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.own_phases import (
     by_record,
     start_by_record,

@@ -139,7 +139,7 @@ class Descent:
     def _advance(self, left: Tensor) -> None:
         """One trial of some starts."""
         points, now, fresh = self.points.pick(left), self.now.pick(left), self.carried[left] == 0
-        trial = _step(self.problem, points, now, self.damping[left])
+        trial = newton_step(self.problem, points, now, self.damping[left])
         seen = self._looked_at(trial)
         old, cost = self.cost[left], self._cost(trial, seen.residual)
         if not self.at_once and not self.lent and self.reach < inf:
@@ -153,11 +153,11 @@ class Descent:
             self.now.sensitivity[taken] = seen.sensitivity[better]
             self.made[left] += 1
             return
-        moves = self._moves(points, trial)
-        linear = (now.sensitivity @ moves.unsqueeze(-1)).squeeze(-1)
+        changes = moves(self.problem, points, trial)
+        linear = (now.sensitivity @ changes.unsqueeze(-1)).squeeze(-1)
         foretold = old - self._cost(trial, now.residual - linear)
         self.carried[taken] += 1
-        self._carry(taken, (now.residual - seen.residual - linear)[better], moves[better])
+        self._carry(taken, (now.residual - seen.residual - linear)[better], changes[better])
         astray = torch.where(better, ~(gain >= FORETOLD * foretold) & ~flat, ~fresh)
         due = astray | (self.carried[left] >= CARRIED) | (self.calm[left] >= CALM_STEPS - 1)
         self._linearise(left[due & (self.carried[left] > 0) & ~self.converged[left]])
@@ -187,20 +187,15 @@ class Descent:
         """Count in how many linearisations in a row the undamped step would not get below what is to be reached."""
         self.looked_at[fresh] = self.made[fresh]
         points, now = self.points.pick(fresh), self.now.pick(fresh)
-        end = _step(self.problem, points, now, torch.full((len(fresh),), SMALLEST_DAMPING, dtype=torch.float64))
-        linear = (now.sensitivity @ self._moves(points, end).unsqueeze(-1)).squeeze(-1)
+        end = newton_step(self.problem, points, now, torch.full((len(fresh),), SMALLEST_DAMPING, dtype=torch.float64))
+        linear = (now.sensitivity @ moves(self.problem, points, end).unsqueeze(-1)).squeeze(-1)
         falls_short = self._cost(end, now.residual - linear) > self.reach
         self.short[fresh] = torch.where(falls_short, self.short[fresh] + 1, 0)
 
-    def _moves(self, old: Points, new: Points) -> Tensor:
-        """Change of every column's coordinate, by record, (starts, records, columns)."""
-        shared = (new.shared - old.shared).unsqueeze(1) * self.problem.unknowns.reach
-        return torch.cat([shared, new.states - old.states], -1)
-
-    def _carry(self, places: Tensor, missed: Tensor, moves: Tensor) -> None:
+    def _carry(self, places: Tensor, missed: Tensor, changes: Tensor) -> None:
         """Broyden's update of the sensitivities, for what the linear model missed of the response's change."""
-        weighed = moves * self.now.sensitivity[places].square().sum(2)
-        length = (weighed * moves).sum(-1, keepdim=True).clamp(min=1e-300)
+        weighed = changes * self.now.sensitivity[places].square().sum(2)
+        length = (weighed * changes).sum(-1, keepdim=True).clamp(min=1e-300)
         self.now.sensitivity[places] += missed.unsqueeze(-1) * (weighed / length).unsqueeze(2)
 
     def _linearise(self, places: Tensor) -> None:
@@ -220,7 +215,13 @@ class Descent:
         return torch.where(total.isfinite(), total, torch.full_like(total, float("inf")))
 
 
-def _step(problem: OutputErrorProblem, points: Points, now: Prediction, damping: Tensor) -> Points:
+def moves(problem: OutputErrorProblem, old: Points, new: Points) -> Tensor:
+    """Change of every column's coordinate, by record, (starts, records, columns)."""
+    shared = (new.shared - old.shared).unsqueeze(1) * problem.unknowns.reach
+    return torch.cat([shared, new.states - old.states], -1)
+
+
+def newton_step(problem: OutputErrorProblem, points: Points, now: Prediction, damping: Tensor) -> Points:
     """The damped step within the bounds; a parameter that is pulled beyond its bound stays there."""
     equations = normal_equations(now, problem.n_shared)
     expected, slope = problem.expectation(points.shared)

@@ -1,0 +1,48 @@
+"""Parameters weighed by what is random in the records.
+
+Least squares takes samples for independent. Where a random load or a coloured sensor makes them hang together, one
+Gauss-Newton step on whitened residuals from there is as good as their whole likelihood (Le Cam 1956), and what is left
+is white, so that its interval holds.
+"""
+
+from dataclasses import replace
+
+from gear_damping.explanation.model.hypothesis import Outcome, settled_at
+from gear_damping.explanation.trials.random_part import Random, Whitener
+from gear_damping.identification.output_error.descent import SMALLEST_DAMPING, Points, moves, newton_step
+from gear_damping.identification.output_error.problem import Prediction
+
+
+def efficient(outcome: Outcome, random: Random) -> Outcome:
+    """The outcome one step on, with its linearisation made white; itself where what is random is white.
+
+    Args:
+        outcome: A fit that leaves nothing but what is random.
+        random: What that is.
+    """
+    if not random.loads and not any(law.order for law in random.laws):
+        return outcome
+    problem, fitted = outcome.problem, outcome.fitted
+    white = _whitened(outcome, random)
+    begun = Points(fitted.shared.unsqueeze(0), fitted.states.unsqueeze(0))
+    end = newton_step(problem, begun, white, fitted.shared.new_full((1,), SMALLEST_DAMPING))
+    if not bool(end.shared.isfinite().all()):
+        return outcome
+    shared, states = end.shared[0], end.states[0]
+    values = {name: float(value) for name, value in problem.unknowns.parameters(shared).items()}
+    moved = replace(fitted, shared=shared, states=states)
+    foretold = (white.sensitivity @ moves(problem, begun, end).unsqueeze(-1)).squeeze(-1)
+    return replace(
+        outcome,
+        hypothesis=settled_at(outcome.hypothesis, values),
+        fitted=moved,
+        values=values,
+        whitened=replace(white, residual=white.residual - foretold),
+    )
+
+
+def _whitened(outcome: Outcome, random: Random) -> Prediction:
+    found, white = outcome.fitted.prediction, Whitener(random, outcome)
+    sensitivity, residual = found.sensitivity, found.residual
+    columns = white(sensitivity[0].flatten(0, 1)).reshape(sensitivity.shape)
+    return replace(found, sensitivity=columns, residual=white(residual.reshape(-1, 1)).reshape(residual.shape))
