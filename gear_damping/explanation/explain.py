@@ -40,6 +40,7 @@ Say = Callable[[str], None]
 STEPS = 4
 STRETCHES, CLEAR = 8, 10.0  # of a record; noise variances that a stretch must hold to tell anything
 MOST_SUBSTEPS = 24  # of an output interval: only forces far beyond the load would need more
+INPUT_NOISE = "The measured load has noise of its own, which was filtered out before the simulation was driven by it."
 FIT_ACCURACY = 1e-4  # of the deflection: far below the noise of any record that is explained
 
 
@@ -111,6 +112,7 @@ def explain(
     if found.state.names != state.names:
         found = replace(found, state=replace(found.state, left=looked(found.state).left))
     found = replace(found, state=estimated(found.state))
+    notes += [INPUT_NOISE] if found.state.bench.evidence.input_noise else []
     judged = _judged(found, (*notes, budget.sentence), tuple(budget.not_tried))
     step(4, STEPS)
     evidence, noise = found.state.bench.evidence, found.noise

@@ -11,7 +11,7 @@ ORDER = 3  # of the polynomial in a window: speed and its change are followed
 SHORTEST = 5  # samples of a window
 WIDEST = 0.5  # of the record
 FEW = 8  # advances from sample to sample that a shaft of nearly constant speed takes between steps
-DIGITS = 9  # of an advance in rad: far below any encoder's step, far above the rounding of numbers
+SAME = 1e-8  # rad between advances that are one: far below any encoder's step, far above the rounding of numbers
 ROUNDING = 1.03  # times what rounding leaves, step / sqrt(12): from there on a window blurs how the shaft turns
 
 
@@ -33,8 +33,8 @@ def between_steps(angle: Array) -> Array:
 
 def _step(angle: Array) -> float:
     """The step of an angle; 0 where it has none."""
-    advances = np.unique(np.round(np.diff(angle), DIGITS))
-    gaps = np.diff(advances)
+    every = np.sort(np.diff(angle))
+    gaps = np.diff(every[np.concatenate([[True], np.diff(every) > SAME])])
     if 0 < len(gaps) < FEW:  # of a shaft that turns fast most levels are left out, but not of its advance
         shares = gaps / gaps.min()
         return float(gaps.min()) if np.allclose(shares, np.round(shares), atol=1e-3) else 0.0

@@ -26,6 +26,12 @@ def test_the_rounding_is_taken_out_and_the_turning_is_not(rpm, counts):
     assert abs(error.mean() + step / 2) < 0.1 * step
 
 
+def test_advances_between_two_roundings_of_their_digits_are_one_advance():
+    angle, step = turned(900), 1e-3 + 0.5e-9
+    recorded = 7.3 + step * np.floor(angle / step)
+    assert np.std(between_steps(recorded) - 7.3 - angle) < 0.4 * np.std(recorded - 7.3 - angle)
+
+
 def test_an_angle_without_steps_stays_as_it_is():
     angle = turned(3100) + 5e-6 * np.random.default_rng(1).standard_normal(SAMPLES)
     assert between_steps(angle) is angle

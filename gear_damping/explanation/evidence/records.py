@@ -47,6 +47,7 @@ class Evidence:
         silent_s: Seconds at the ends of records that were left out, because the motion had died away.
         settings: Thresholds of the search.
         is_over: Whether the time for fits is over.
+        input_noise: Whether the noise of measured loads was taken out.
         sealed: Whether held-out records take no part in any choice.
     """
 
@@ -66,6 +67,7 @@ class Evidence:
     silent_s: float = 0.0
     settings: SearchSettings = field(default_factory=SearchSettings)
     is_over: Callable[[], bool] = lambda: False
+    input_noise: bool = False
     sealed: bool = False
 
     @property

@@ -8,6 +8,7 @@ from math import log, pi
 import torch
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.explanation.evidence.input_noise import without_input_noise
 from gear_damping.explanation.evidence.records import Evidence, with_own_angles
 from gear_damping.explanation.model.fitting import fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, natural_frequency_hz
@@ -62,7 +63,7 @@ def calibrated(evidence: Evidence, solver: Solver | None = None) -> Calibration:
         if evidence.system == "gear_pair":
             found = _gear_pair(evidence, solver)
         else:
-            found = Calibration(evidence, _oscillator(evidence, solver))
+            found = _oscillator_calibrated(evidence, solver)
     if not bool(found.nominal.fitted.prediction.sensitivity.isfinite().all()):
         raise InputError(NOT_FINITE)
     return found
@@ -75,6 +76,18 @@ def _simulable() -> Iterator[None]:
         yield
     except torch.linalg.LinAlgError as error:
         raise InputError(NOT_FINITE) from error
+
+
+def _oscillator_calibrated(evidence: Evidence, solver: Solver | None) -> Calibration:
+    """With loads as they were measured, or without their noise where that is followed better."""
+    found = Calibration(evidence, _oscillator(evidence, solver))
+    cleaned = without_input_noise(evidence.records)
+    if cleaned is None:
+        return found
+    count = len(evidence.fit)
+    evidence = replace(evidence, fit=cleaned[:count], holdout=cleaned[count:], input_noise=True)
+    quiet = Calibration(evidence, _oscillator(evidence, solver))
+    return quiet if quiet.nominal.fitted.cost < found.nominal.fitted.cost else found
 
 
 def _oscillator(evidence: Evidence, solver: Solver | None) -> Outcome:

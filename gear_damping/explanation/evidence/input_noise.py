@@ -1,0 +1,68 @@
+"""A measured load without the noise of its own sensor.
+
+A simulation that is driven by a noisy load moves with that noise, and its fit then leans towards it (errors in
+variables: Fuller 1987). Taking the load by its expectation given what was measured, the Wiener filter, leaves an error
+that is independent of what drives the simulation (regression calibration: Carroll & Stefanski 1990).
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from scipy.interpolate import make_interp_spline
+
+from gear_damping.explanation.evidence.noise import floor_variance
+from gear_damping.identification.output_error.records import FitRecord
+
+Array = NDArray[np.float64]
+FLOOR_SHARE = 0.1  # of a load's variance: a floor that is more of it may be the load itself
+LINES = 5  # of the spectrum that its power is averaged over
+DEGREE = 5  # of the spline between uneven samples
+LEAST = 1e-6  # of a load's variance: a floor below is rounding
+FEWEST_SAMPLES = 64
+
+
+def without_input_noise(records: Sequence[FitRecord]) -> tuple[FitRecord, ...] | None:
+    """Records whose measured loads are freed of the noise above their content; None where none has any.
+
+    A load that stays at each sample's value was commanded, not measured.
+    """
+    cleaned = tuple(_cleaned(record) for record in records)
+    return cleaned if any(one is not record for one, record in zip(cleaned, records, strict=True)) else None
+
+
+def _cleaned(record: FitRecord) -> FitRecord:
+    if len(record.response) < FEWEST_SAMPLES:
+        return record
+    found = {}
+    for name, series in record.inputs.items():
+        variance, floor = float(series.var()), floor_variance(replace(record, response=series))
+        if name not in record.held and LEAST * variance < floor < FLOOR_SHARE * variance:
+            stamps = None if record.stamps is None else record.stamps.numpy()
+            found[name] = torch.as_tensor(expected_load(series.numpy(), floor, stamps))
+    return replace(record, inputs={**record.inputs, **found}) if found else record
+
+
+def expected_load(series: Array, floor: float, stamps: Array | None = None) -> Array:
+    """A load (time,) as it is to be expected where white noise of variance `floor` was measured with it.
+
+    Args:
+        series: As measured.
+        floor: Variance of the noise.
+        stamps: Instants in sampling intervals, where they are not evenly spaced.
+    """
+    if stamps is None:
+        return _filtered(series, floor)
+    even = np.linspace(stamps[0], stamps[-1], len(series))
+    between = make_interp_spline(stamps, series, DEGREE)(even)
+    return make_interp_spline(even, _filtered(between, floor), DEGREE)(stamps)
+
+
+def _filtered(series: Array, floor: float) -> Array:
+    ramp = np.linspace(series[0], series[-1], len(series))  # without it the jump from end to start would spread
+    lines = np.fft.rfft(series - ramp)
+    power = np.convolve(np.pad(np.abs(lines) ** 2, LINES // 2, mode="edge"), np.full(LINES, 1 / LINES), mode="valid")
+    share = np.clip(1 - floor * len(series) / np.maximum(power, 1e-300), 0.0, 1.0)
+    return ramp + np.fft.irfft(share * lines, len(series))

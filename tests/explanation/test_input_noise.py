@@ -1,0 +1,60 @@
+"""Noise of a measured load: taken out where it stands above the load's content, and nothing else with it."""
+
+import numpy as np
+import pytest
+import torch
+
+from gear_damping.explanation.evidence.input_noise import expected_load, without_input_noise
+from gear_damping.identification.output_error.records import FitRecord
+
+SAMPLES, RATE, NOISE = 2000, 200.0, 0.1
+RANDOM = np.random.default_rng(5)
+
+
+def load(stamps):
+    """Twelve lines below 12 Hz that do not fit the record, of variance 6."""
+    lines = np.linspace(1.03, 11.7, 12)
+    phases = np.linspace(0, 50, 12)
+    return np.cos(2 * np.pi * np.multiply.outer(stamps / RATE, lines) + phases).sum(1)
+
+
+def record(series, held=(), stamps=None):
+    response = torch.as_tensor(RANDOM.normal(size=SAMPLES))
+    return FitRecord("run", response, RATE, {"force": torch.as_tensor(series)}, held=held, stamps=stamps)
+
+
+@pytest.mark.parametrize("jitter", [0.0, 0.07])
+def test_most_of_the_noise_goes_and_the_load_stays(jitter):
+    stamps = np.arange(SAMPLES) + jitter * RANDOM.uniform(-1, 1, SAMPLES)
+    true = load(stamps)
+    measured = true + NOISE * RANDOM.normal(size=SAMPLES)
+    (found,) = without_input_noise([record(measured, stamps=torch.as_tensor(stamps) if jitter else None)])
+    error = found.inputs["force"].numpy() - true
+    assert np.std(error) < 0.55 * NOISE  # 12 lines of 5 each and their feet, of 1000
+    assert abs(np.dot(error, true)) / np.dot(true, true) < 0.005  # and no share of the load is lost
+
+
+def test_every_line_is_weighed_by_its_signal_over_all_of_it():
+    rows = np.arange(SAMPLES)
+    true = load(rows)
+    lines, floor = np.fft.rfft(true - np.linspace(true[0], true[-1], SAMPLES)), 0.25
+    slow = np.zeros(len(lines), dtype=complex)
+    for k in range(len(lines)):
+        near = [min(max(k + d, 0), len(lines) - 1) for d in (-2, -1, 0, 1, 2)]
+        power = np.mean([abs(lines[n]) ** 2 for n in near])
+        slow[k] = lines[k] * max(0.0, 1 - floor * SAMPLES / power)
+    expected = np.linspace(true[0], true[-1], SAMPLES) + np.fft.irfft(slow, SAMPLES)
+    np.testing.assert_allclose(expected_load(true, floor), expected, atol=1e-9)
+
+
+def test_a_load_that_is_white_itself_is_left_alone():
+    assert without_input_noise([record(RANDOM.normal(size=SAMPLES))]) is None
+
+
+def test_a_load_that_is_held_was_commanded():
+    measured = load(np.arange(SAMPLES)) + NOISE * RANDOM.normal(size=SAMPLES)
+    assert without_input_noise([record(measured, held=("force",))]) is None
+
+
+def test_a_load_without_noise_is_left_alone():
+    assert without_input_noise([record(load(np.arange(SAMPLES)))]) is None
