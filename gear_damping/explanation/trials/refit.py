@@ -147,7 +147,7 @@ def refitted(
         freed = replace(
             freed, free=tuple(replace(p, start=float(found.hypothesis.given.get(p.name, p.start))) for p in freed.free)
         )
-        found = fit_hypothesis(freed, evidence, None, found, **(options | {"own": None}))
+        found = fit_hypothesis(freed, evidence, None, found, reach=reach, **(options | {"own": None}))
     if not torch.isfinite(torch.tensor(found.left_out_cost)):
         return None
     return compared(score, found, against or outcome, evidence)

@@ -86,6 +86,9 @@ class Descent:
         self.problem, self.horizon, self.enough, self.reach = problem, horizon, enough, reach
         self.points = Points(points.shared.clone(), points.states.clone())
         samples = problem.response.samples_within(horizon) * len(problem.response.channels)
+        noise_cost = problem.noise**2 * samples * len(problem.records)
+        # beside more than noise, what is enough counts in what is left instead
+        self.smallest_gain = max(SMALLEST_GAIN, enough / noise_cost if noise_cost > 0 else 0.0)
         self.at_once = samples * len(problem.records) * (problem.n_shared + len(problem.local)) < AT_ONCE
         self.lent = None if self.at_once else lent
         self.now = problem.linearise(points.shared, points.states, horizon, self._own())
@@ -175,7 +178,7 @@ class Descent:
         A step that stale sensitivities led astray says nothing.
         """
         enough = torch.full_like(gain, self.enough)
-        flat = gain.abs() <= torch.maximum(SMALLEST_GAIN * self.cost[left], enough)
+        flat = gain.abs() <= torch.maximum(self.smallest_gain * self.cost[left], enough)
         self.calm[left] = torch.where(better | fresh, torch.where(flat, self.calm[left] + 1, 0), self.calm[left])
         softer, harder = self.damping[left] / 5, self.damping[left] * torch.where(fresh, 6.0, 1.0)
         self.damping[left] = torch.where(better, softer, harder).clamp(SMALLEST_DAMPING, LARGEST_DAMPING)

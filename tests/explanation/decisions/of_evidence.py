@@ -107,7 +107,7 @@ def of_one_size(shifts: list[float], error: float, settings: SearchSettings) -> 
         residual[rows] = shift + error * length**0.5 / 2**0.5 * noise.double()
     parameter = SimpleNamespace(name="a.strength", logarithmic=True)
     model = outcome(problem=SimpleNamespace(free=[parameter], n_shared=1), hypothesis=None)
-    model.fitted.prediction = SimpleNamespace(sensitivity=[None], residual=[None])
+    model.linearisation = SimpleNamespace(sensitivity=[None], residual=[None])
     evidence = SimpleNamespace(settings=settings, sampling_rate=1.0)
     with (
         patch.object(homogeneity, "_groups", lambda _: (None, [str(k) for k in range(count)])),
