@@ -24,7 +24,7 @@ from gear_damping.identification.output_error.uncertainty import QUANTILE
 from gear_damping.simulation.solver_settings import Solver
 
 LEAST_TAKEN = 0.25  # of what another takes of the fitted records, for a fit to be carried to its end,
-RIVALS_TAKE = 0.75  # and where that is nearly all that is missing: only its rivals (`rival_share`) count then
+RIVALS_LEAVE = 1.25  # and where that is nearly all that is missing, of what it leaves: only rivals count then
 LAST_ITERATIONS = 60  # of a cause that is accepted before its fit has come to rest
 SAME = 1e-3  # of the noise variance: a mean difference below it is none
 Say = Callable[[str], None]
@@ -128,17 +128,18 @@ class Bench:
             if self.budget.refuses(score.candidate.name):
                 continue
             most = max((base - fit.outcome.fitted.cost for fit in fits), default=0.0)
-            reach = base - self._least_taken(most, base, against) * most if most > 0 else inf
+            reach = self._reach(most, base, against) if most > 0 else inf
             fit = self.full_fit(score, outcome, against, reach) if score.gain > 0 else None
             if fit is None and score.gain > 0:
                 self.failed[score.candidate.name] = "its full fit ran away"
             fits += [] if fit is None else [fit]
         return tuple(sorted(fits, key=lambda fit: fit.outcome.left_out_cost))
 
-    def _least_taken(self, most: float, base: float, against: Outcome) -> float:
-        """Share of the `most` that a fit took of a cost, which another one has to take."""
-        is_all = most >= self.settings.taken_by_all * (base - self.noise_cost(against))
-        return RIVALS_TAKE if is_all else LEAST_TAKEN
+    def _reach(self, most: float, base: float, against: Outcome) -> float:
+        """The cost that another fit has to get below, where one took the `most` of it."""
+        if most >= self.settings.taken_by_all * (base - self.noise_cost(against)):
+            return RIVALS_LEAVE * (base - most)
+        return base - LEAST_TAKEN * most
 
     def without(self, outcome: Outcome, name: str) -> Outcome:
         """A model without one of its causes, fitted from where it was."""
