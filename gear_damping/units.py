@@ -81,6 +81,8 @@ _ALSO = {
     "HZ": "Hz", "Deg": "deg", "degree": "deg", "degrees": "deg", "radian": "rad", "radians": "rad",
 }  # fmt: skip
 # a power may stand without its sign: m/s2
+_NUMBER = re.compile(r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*$")
+_SPOKEN = re.compile(r"^\s*(?P<number>[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?)\s*(?P<unit>[A-Za-zµμ°%].*?)\s*$")
 _FACTOR = re.compile(r"^(?P<atom>[A-Za-z%]+|1)((\^(?P<power>-?\d+(\.\d+)?))|(?P<raised>[23]))?$")
 
 
@@ -110,6 +112,12 @@ def parse_unit(text: str, key: str = "unit", source: str = "") -> Unit:
             exponent = sign * power
             unit = Unit(unit.factor * atom.factor**exponent, unit.dimension * atom.dimension**exponent)
     return unit
+
+
+def spoken(value: object) -> tuple[float, str] | None:
+    """The number and the unit of a text such as `80 um` or `4600rpm`; None for anything else, as a bare number."""
+    match = _SPOKEN.match(value) if isinstance(value, str) and not _NUMBER.match(value) else None
+    return (float(match["number"]), match["unit"]) if match else None
 
 
 def _parse_factor(piece: str, text: str, key: str, source: str) -> tuple[Unit, float]:

@@ -6,7 +6,7 @@ from typing import Any
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.physics.parameter import Parameter
-from gear_damping.units import to_si
+from gear_damping.units import spoken, to_si
 
 SUFFIXES = {"rpm": "rpm", "deg": "deg", "um": "um", "mm": "mm", "ms": "ms", "khz": "kHz", "hz": "Hz", "percent": "%"}
 
@@ -22,11 +22,13 @@ def split_suffix(key: str, known: Mapping[str, Any]) -> tuple[str, str | None]:
 
 
 def quantity(value: Any, expected: str, key: str, source: str, unit: str | None = None) -> float:
-    """A number in SI from a plain number (SI, or in `unit`) or {value, unit}.
+    """A number in SI from a plain number (SI, or in `unit`), {value, unit} or a text such as `80um`.
 
     Raises:
         InputError: it is neither, not finite, or in a unit of another kind.
     """
+    if said := spoken(value):
+        value, unit = said
     if isinstance(value, Mapping):
         extra = set(value) - {"value", "unit"}
         if extra or "value" not in value:

@@ -12,6 +12,7 @@ from torch import Tensor
 from gear_damping.errors import InputError, Problem
 from gear_damping.identification.features import FrontEnd, WaveletFrontEnd
 from gear_damping.identification.networks import DampingLSTM
+from gear_damping.identification.trained_on import TrainedOn
 from gear_damping.identification.windows import gather_windows, window_starts, windows_of_runs
 
 # A rate that is wrong by this fraction moves every frequency, and with it the damping, by the same.
@@ -80,6 +81,7 @@ class DampingModule(L.LightningModule):
         hidden_size: Units of the LSTM.
         dropout: Part of the state that is dropped in training.
         learning_rate: Step of Adam.
+        trained_on: What it is trained on, as plain values (`TrainedOn.plain`).
     """
 
     def __init__(
@@ -93,6 +95,7 @@ class DampingModule(L.LightningModule):
         hidden_size: int = 60,
         dropout: float = 0.2,
         learning_rate: float = 1e-3,
+        trained_on: dict[str, Any] | None = None,
     ) -> None:
         super().__init__()
         self.save_hyperparameters(logger=False)
@@ -100,6 +103,11 @@ class DampingModule(L.LightningModule):
         self.network = DampingLSTM(self.front_end.n_features, hidden_size, dropout)
         self.history: list[dict[str, float]] = []
         self._squares = {"train": _Squares(), "val": _Squares()}
+
+    @property
+    def trained_on(self) -> TrainedOn:
+        """The kind of record that it is for, and the ranges that it has seen."""
+        return TrainedOn.from_plain(self.hparams["trained_on"])
 
     def forward(self, inputs: Tensor) -> Tensor:
         """Damping ratio (%) of windows (batch, window), or of columns (batch, window, feature)."""

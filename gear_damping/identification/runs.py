@@ -17,6 +17,9 @@ class RunSet:
         sampling_rate: Samples per second (Hz).
         id: What the data set is called; a checkpoint remembers it.
         quantities: Further numbers of each run, name -> (runs,), for example the speed.
+        system: `gear_pair` or `oscillator`; "" where it is not known.
+        channel: Which response the signals are.
+        unit: Of the signals.
 
     Raises:
         ValueError: shapes, type or values break one of these rules.
@@ -27,6 +30,9 @@ class RunSet:
     sampling_rate: float
     id: str
     quantities: Mapping[str, Tensor] = field(default_factory=dict)
+    system: str = ""
+    channel: str = ""
+    unit: str = ""
 
     def __post_init__(self) -> None:
         _require_signals(self.signals)

@@ -30,6 +30,7 @@ from gear_damping.identification.lightning_support import (
 )
 from gear_damping.identification.metrics import epochs_to_convergence
 from gear_damping.identification.seeding import derived_seed
+from gear_damping.identification.trained_on import TrainedOn
 
 _MONITOR = "val_rmse_percent"
 
@@ -148,6 +149,7 @@ def build_estimator(config: EstimatorConfig, data: WindowDataModule, learning_ra
         hidden_size=int(config.hidden_size),
         dropout=float(config.dropout),
         learning_rate=float(learning_rate),
+        trained_on=TrainedOn.of(data.run_set, data.split.train[:, 0]).plain(),
     )
     module.network.start_at(mean_predictor(data.training_labels))
     return module

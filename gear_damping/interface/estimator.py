@@ -1,15 +1,31 @@
 """A trained network that tells the damping of records."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 import torch
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.identification.lightning_module import DampingModule, RecordPrediction
+from gear_damping.identification.lightning_module import DampingModule
 from gear_damping.identification.lightning_module import load_estimator as load_module
 from gear_damping.measurement.record import Measurement, Record
 from gear_damping.physics.catalogue import SYSTEMS
+
+
+class Prediction(NamedTuple):
+    """What a network says of a record.
+
+    Args:
+        damping_ratio_percent: In % of critical, the mean over its windows.
+        spread_percent: Standard deviation over its windows, which is no interval of confidence.
+        outside: Sentences about what lies outside the ranges that it was trained on; then it is a guess.
+    """
+
+    damping_ratio_percent: float
+    spread_percent: float
+    outside: tuple[str, ...]
 
 
 class Estimator:
@@ -17,9 +33,9 @@ class Estimator:
 
     def __init__(self, module: DampingModule) -> None:
         """Hold a trained network."""
-        self.module = module
+        self.module, self.trained_on = module, module.trained_on
 
-    def predict(self, measurement: Measurement, channel: str | None = None) -> Mapping[str, RecordPrediction]:
+    def predict(self, measurement: Measurement, channel: str | None = None) -> Mapping[str, Prediction]:
         """The damping ratio of every record in %, by name, with its spread over windows, which is no interval.
 
         Args:
@@ -27,7 +43,8 @@ class Estimator:
             channel: Which channel of the records; the response of the system where absent.
 
         Raises:
-            InputError: a record has no such channel, another rate than the network was trained at, or is too short.
+            InputError: the records are of another system, channel, unit or rate than the network was trained on, a
+                record has no such channel, or is too short.
         """
         wanted = channel or SYSTEMS[measurement.system].response
         problems = [
@@ -40,12 +57,22 @@ class Estimator:
             for record in measurement.records
             if wanted not in record.channels
         ]
+        problems = problems or self._unlike(measurement, wanted)
         if problems:
             raise InputError(problems)
         return {record.name: self._of_record(record, wanted) for record in measurement.records}
 
-    def _of_record(self, record: Record, channel: str) -> RecordPrediction:
-        return self.module.predict_record(torch.as_tensor(record.channels[channel].values), record.sampling_rate)
+    def _unlike(self, measurement: Measurement, channel: str) -> list[Problem]:
+        """Why these are no records for this network."""
+        units = dict.fromkeys(record.channels[channel].unit for record in measurement.records)
+        found = [problem for unit in units for problem in self.trained_on.problems(measurement.system, channel, unit)]
+        return [replace(problem, source=str(measurement.source)) for problem in dict.fromkeys(found)]
+
+    def _of_record(self, record: Record, channel: str) -> Prediction:
+        values = torch.as_tensor(record.channels[channel].values)
+        found = self.module.predict_record(values, record.sampling_rate)
+        conditions = {name: quantity.value for name, quantity in record.conditions.items()}
+        return Prediction(*found[:2], self.trained_on.outside(values, found.damping_ratio_percent, conditions))
 
 
 def load_estimator(path: Path | str) -> Estimator:

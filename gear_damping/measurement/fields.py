@@ -15,7 +15,7 @@ from pydantic_core import CoreSchema, core_schema
 
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.measurement.record import Quantity
-from gear_damping.units import parse_unit, to_si
+from gear_damping.units import parse_unit, spoken, to_si
 
 ORDERS = (1, 2, 4)  # of a Butterworth filter
 NOT_UNCERTAIN = "has no meaning here: only parameters, conditions and the gain of a channel may be uncertain"
@@ -207,10 +207,12 @@ class Measured(Value):
 
     def read(self, value: Any, name: str) -> Any:
         """The quantity in SI, or as declared."""
+        if said := spoken(value):
+            value = {"value": said[0], "unit": said[1]}
         if self.unit == "1" and not isinstance(value, dict):
             value = {"value": Number().read(value, name)}
         if not isinstance(value, dict):
-            remedy = f"write {name}: {{value: 1.0, unit: {self._example}}}"
+            remedy = f"write {name}: {{value: 1.0, unit: {self._example}}}, or {name}: 1.0 {self._example}"
             refuse("needs a value and a unit", value, remedy)
         problems = self._unknown(value)
         number = self._part(value, "value", Number(), None, problems)

@@ -66,11 +66,15 @@ def _by_network(settings: Settings, measurement: Measurement, folder: RunFolder)
             name: {
                 "damping_ratio_percent": one.damping_ratio_percent,
                 "spread_over_windows_percent": one.spread_percent,
+                "outside_training": list(one.outside),
             }
             for name, one in found.items()
         },
     }
     folder.write_json("identification.json", content)
+    for name, one in found.items():
+        if one.outside:
+            statements.say(f"warning: {name} lies outside what the network was trained on: {'; '.join(one.outside)}")
     statements.say(f"damping ratio {mean:.4f} % of critical, the mean over {len(found)} records")
     statements.say("a network of windows gives no interval, and holds only for gears like those it was trained on")
     return {"damping_ratio_percent": mean}

@@ -13,6 +13,8 @@ from gear_damping.simulation.plan import SimulationPlan, run_plan
 from gear_damping.simulation.runs import Runs
 from gear_damping.tasks.progress import progress_bar
 
+CONDITIONS = ("pinion_torque", "pinion_speed")  # of a run, that its record may state
+RESPONSE_UNIT = "m"  # of a displacement, as the simulator gives it
 TEST_SEED = 7919  # added to the seed for runs that are only tested on
 
 
@@ -60,11 +62,14 @@ def simulated(plan: SimulationPlan, settings: Settings, title: str = "simulating
 
 def run_set_of(runs: Runs, plan: SimulationPlan) -> RunSet:
     """What a learner sees: the response behind every sensor but its noise, which is added fresh each batch."""
-    generator = torch.Generator().manual_seed(plan.seed + 2)
+    generator, system = torch.Generator().manual_seed(plan.seed + 2), plan.model.system
     return RunSet(
         signals=runs.record(generator, skip=(SENSOR_NOISE,)).float(),
         damping_ratio_percent=runs.damping_ratio_percent.float(),
         sampling_rate=plan.sampling_rate,
         id=plan.hash[:16],
-        quantities={"pinion_torque": runs.values["pinion_torque"]} if "pinion_torque" in runs.values else {},
+        quantities={name: runs.values[name] for name in CONDITIONS if name in runs.values},
+        system=system.name,
+        channel=system.response,
+        unit=RESPONSE_UNIT,
     )

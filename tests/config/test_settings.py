@@ -47,3 +47,9 @@ def test_sensor_noise_is_known_to_the_learner():
     assert settings().simulator.sensor_noise_db is None
     assert settings("++simulator.sensor_noise.snr_db=10").simulator.sensor_noise_db == 10
     assert settings("++simulator.sensor_noise={}").simulator.sensor_noise_db == 30
+
+
+@pytest.mark.parametrize(("override", "value"), [("80um", 8e-5), ("'0.08 mm'", 8e-5), ("{value:80,unit:um}", 8e-5)])
+def test_a_quantity_may_be_written_as_it_is_said(override, value):
+    found = settings("experiment=backlash", f"++simulator.backlash.gap={override}").simulator
+    assert found.given["backlash.gap"] == pytest.approx(value)

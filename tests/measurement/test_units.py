@@ -3,7 +3,7 @@
 import pytest
 
 from gear_damping.errors import InputError
-from gear_damping.units import parse_unit, unit_names
+from gear_damping.units import parse_unit, spoken, unit_names
 
 STANDARD_GRAVITY = 9.80665
 
@@ -41,3 +41,25 @@ def test_a_pound_may_be_either():
 def test_an_unknown_unit_is_refused(text):
     with pytest.raises(InputError, match="unit"):
         parse_unit(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("80um", (80.0, "um")),
+        ("3 kHz", (3.0, "kHz")),
+        ("4600rpm", (4600.0, "rpm")),
+        ("-1.5e-3 m/s^2", (-1.5e-3, "m/s^2")),
+        (" .3 µm ", (0.3, "µm")),
+        ("7 %", (7.0, "%")),
+        ("1e3 Hz", (1000.0, "Hz")),
+        ("150 N m", (150.0, "N m")),
+    ],
+)
+def test_a_number_is_told_from_its_unit(text, found):
+    assert spoken(text) == found
+
+
+@pytest.mark.parametrize("value", ["5", "1e3", "kg", "1,5 mm", "12:30", "2020-01-01", "", 4.0, None, {"value": 3}])
+def test_anything_else_is_no_number_with_a_unit(value):
+    assert spoken(value) is None

@@ -108,6 +108,41 @@ def test_simulated_runs_come_back_as_a_measurement_and_are_identified(trained, t
     found = json.loads((tmp_path / "again" / "identification.json").read_text())
     assert found["damping_ratio_percent"]["value"] > 0
     assert str(path) in record_of(tmp_path / "again")["inputs"]
+    assert all("outside_training" in one for one in found["records"].values())
+
+
+def a_measurement(folder, system, channel, unit, values, conditions=""):
+    """One record of a channel at the rate that the networks here are trained at."""
+    folder.mkdir()
+    (folder / "run.csv").write_text("\n".join([channel, *(f"{value:.9g}" for value in values)]) + "\n")
+    path = folder / "measurement.yaml"
+    path.write_text(
+        f"system: {system}\nrecords:\n  - file: run.csv\n    sampling_rate: {{value: 40, unit: kHz}}\n{conditions}"
+        f"    channels:\n      {channel}: {{column: {channel}, unit: {unit}}}\n"
+    )
+    return path
+
+
+def test_a_network_refuses_records_of_another_system(trained, tmp_path, said):
+    path = a_measurement(tmp_path / "other", "oscillator", "displacement", "m", np.sin(np.arange(200.0)) * 1e-5)
+    checkpoint = trained / "raw_lstm" / "seed_0" / "best.ckpt"
+    asked = ["task=identify", f"measurement.path={path}", f"checkpoint={checkpoint}", "progress=false"]
+    assert main([*asked, f"hydra.run.dir={tmp_path / 'run'}"]) == 1
+    words = said()
+    assert "the estimator was trained on gear_pair, not on oscillator" in words
+    assert "train one on that system" in words
+
+
+def test_a_network_warns_of_records_outside_its_training(trained, tmp_path, said):
+    conditions = "    conditions: {pinion_torque: {value: 900, unit: N*m}, pinion_speed: {value: 9000, unit: rpm}}\n"
+    wide = 1e-3 * np.sin(np.arange(200.0))
+    path = a_measurement(tmp_path / "far", "gear_pair", "transmission_error", "m", wide, conditions)
+    checkpoint = trained / "raw_lstm" / "seed_0" / "best.ckpt"
+    asked = ["task=identify", f"measurement.path={path}", f"checkpoint={checkpoint}", "progress=false"]
+    assert main([*asked, f"hydra.run.dir={tmp_path / 'run'}"]) == 0
+    assert "lies outside what the network was trained on" in said()
+    (record,) = json.loads((tmp_path / "run" / "identification.json").read_text())["records"].values()
+    assert {sentence.split()[0] for sentence in record["outside_training"]} >= {"ac_rms", "pinion_torque"}
 
 
 def test_an_interrupted_run_says_so_and_can_go_on(tmp_path, monkeypatch, said):

@@ -136,8 +136,12 @@ class Bench:
         return tuple(sorted(fits, key=lambda fit: fit.outcome.left_out_cost))
 
     def _reach(self, most: float, base: float, against: Outcome) -> float:
-        """The cost that another fit has to get below, where one took the `most` of it."""
-        if most >= self.settings.taken_by_all * (base - self.noise_cost(against)):
+        """The cost that another fit has to get below, where one took the `most` of it.
+
+        Laws of an oscillator are far from linear, and what they would come to is not foretold.
+        """
+        is_gear_pair = self.evidence.system == "gear_pair"
+        if is_gear_pair and most >= self.settings.taken_by_all * (base - self.noise_cost(against)):
             return RIVALS_LEAVE * (base - most)
         return base - LEAST_TAKEN * most
 
