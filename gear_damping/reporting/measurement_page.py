@@ -46,7 +46,8 @@ def reference() -> str:
 def _lines() -> Iterator[str]:
     yield "## Every key\n"
     yield "A key acts as its row says, or is refused with the reason. `{value, unit}` stands for a value in a unit of"
-    yield "the kind that is named; a relative `uncertainty` beside them is a Gaussian prior.\n"
+    yield "the kind that is named, which may also be written as it is said: `3 kHz`, `80um`, `4600rpm`. A relative"
+    yield "`uncertainty` beside them is a Gaussian prior.\n"
     named = ", ".join(f"`{name}`" for name in unit_names())
     yield f"Units are {named}, and products and quotients of them with powers, such as `km/h`, `N*m`, `m/s^2` or"
     yield "`kg*m^2`; `g` by itself is standard gravity. A response of an oscillator may be in any of them, volts and"

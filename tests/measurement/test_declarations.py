@@ -61,7 +61,7 @@ BASE = "base_acceleration: {column: b, unit: m/s^2}"
         _oscillator(DRIVEN, top="parameters: {force_gain: {value: 2}, damping_ratio: {value: 2, unit: '%'}}"),
         _oscillator(f"{TIME}, {BASE}, acceleration: {{column: x, unit: gn, frame: relative}}"),
         _oscillator(DRIVEN, f"{TIME}, {MOTION}, force: {{column: F, unit: mN}}"),
-        _gear(ERROR.replace("{value: 1, unit: kHz}", "1 kHz"), "conditions: {pinion_torque: 9 N*m, pinion_speed: 9rpm}"),
+        _gear(ERROR.replace("{value: 1, unit: kHz}", "1 kHz"), "conditions: {pinion_torque: 9 Nm, pinion_speed: 9rpm}"),
     ],
 )  # fmt: skip
 def test_what_holds_together_is_accepted(tmp_path, text):
