@@ -10,7 +10,7 @@ from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.scales import Scales
 from gear_damping.physics.systems.base import System
-from gear_damping.physics.terms import Contact, ContactChange, Effect, MeshStiffness, SystemChange
+from gear_damping.physics.terms import Contact, ContactChange, Effect, LoadPath, MeshStiffness, SystemChange
 from gear_damping.units import parse_unit
 
 Named = dict[str, Tensor]
@@ -121,6 +121,14 @@ class Model:
         return derived, {"contact_ratio": mesh["contact_ratio"], "contact_lead": lead}
 
 
+# of which a model takes one: the quantity is theirs alone
+ALONE: dict[type[Effect], str] = {
+    Contact: "define the contact",
+    LoadPath: "stand between the torques and the mesh",
+    ContactChange: "change the zone of double contact",
+}
+
+
 def _composition_problems(system: System, effects: Sequence[Effect]) -> list[Problem]:
     problems = []
     names = [effect.name for effect in effects]
@@ -140,8 +148,11 @@ def _composition_problems(system: System, effects: Sequence[Effect]) -> list[Pro
     if meshes != wanted:
         rule = f"a {system.name} has {wanted} mesh stiffness, here there are {meshes}"
         problems.append(Problem("simulator.mesh_stiffness", rule, remedy="choose one form of mesh stiffness"))
-    if sum(isinstance(effect, Contact) for effect in effects) > 1:
-        problems.append(Problem("simulator", "two effects define the contact", remedy="keep one of them"))
+    for kind, does in ALONE.items():
+        found = [effect.name for effect in effects if isinstance(effect, kind)]
+        if len(found) > 1:
+            rule = f"{' and '.join(found)} each {does}, and one would silently undo the other"
+            problems.append(Problem("simulator", rule, remedy="keep one of them"))
     return problems
 
 

@@ -19,9 +19,6 @@ from gear_damping.simulation.stepper import Stepper
 
 Progress = Callable[[int, int], None]
 
-torchdiffeq_method.register()
-
-
 def integrate(
     model: Model,
     prepared: Prepared,
@@ -71,6 +68,7 @@ def solve(stepper: Stepper, start: Tensor, n_samples: int, substeps: int, progre
     """Walk a batch from its initial states, (n_state, batch), through `odeint`; (n_state, batch, time)."""
     times = torch.arange(n_samples, dtype=start.dtype, device=start.device)
     options = {"stepper": stepper, "substeps": substeps, "progress": progress}
+    torchdiffeq_method.register()
     with torch.no_grad():
         found = odeint(stepper.rates, start, times, method=torchdiffeq_method.METHOD, options=options)
     return found.permute(1, 2, 0)

@@ -20,6 +20,7 @@ from gear_damping.simulation.simulate import simulate
 from gear_damping.simulation.solver_settings import Solver
 
 SOURCES = Path(__file__).resolve().parents[1]
+PARTS = ("physics/**/*.py", "simulation/**/*.py", "simulation/native/*.cpp", "simulation/native/*.h")  # make the runs
 
 
 @dataclass(frozen=True)
@@ -69,7 +70,7 @@ class SimulationPlan:
             "damping_ratio_percent": self.damping_ratio_percent,
             "solver": {"accuracy": self.solver.accuracy, "substeps": self.solver.substeps},
             "version": version("gear-damping"),
-            "sources": _digest([*SOURCES.glob("physics/**/*.py"), *SOURCES.glob("simulation/*.py")]),
+            "sources": _digest([path for part in PARTS for path in SOURCES.glob(part)]),
             "plugins": _digest([Path(path) for path in self.plugins]),
         }
 

@@ -6,6 +6,7 @@ is known to have it.
 
 import importlib
 from collections.abc import Callable
+from functools import cache
 
 import torch
 import torchdiffeq
@@ -53,8 +54,9 @@ class RegionLockedTsit5(FixedGridODESolver):
         raise NotImplementedError(f"{METHOD} walks output intervals in integrate()")
 
 
+@cache
 def register() -> None:
-    """Make the method known to `odeint`.
+    """Make the method known to `odeint`, the first time that it is wanted.
 
     Raises:
         RuntimeError: this version of torchdiffeq is not one that was tested.

@@ -14,6 +14,7 @@ from gear_damping.errors import InputError
 from gear_damping.physics.catalogue import GearPair, Oscillator, catalogue, effect_class
 from gear_damping.physics.equation import EquationOfMotion
 from gear_damping.physics.model import Model
+from gear_damping.physics.terms import LoadPath
 
 
 def model(*names: str) -> Model:
@@ -43,6 +44,23 @@ def test_a_model_refuses_two_of_a_kind():
         model("rectangular_mesh_stiffness")
     with pytest.raises(InputError, match="1 mesh stiffness, here there are 0"):
         Model(GearPair(), [])
+
+
+class Clutch(LoadPath):
+    """A part between torques and mesh of one's own."""
+
+    name = "clutch"
+    systems = ("gear_pair",)
+    parameters = ()
+
+    def transmitted_load(self, now, p):
+        return now.drive_load / 2
+
+
+def test_two_effects_that_would_undo_each_other_are_refused():
+    effects = [EFFECTS["fourier_mesh_stiffness"](), EFFECTS["shaft_torsion"](), Clutch()]
+    with pytest.raises(InputError, match="shaft_torsion and clutch each stand between the torques and the mesh"):
+        Model(GearPair(), effects)
 
 
 def test_an_unknown_effect_or_option_or_parameter_names_the_nearest():

@@ -1,5 +1,8 @@
 """Our method behind torchdiffeq's front door."""
 
+import subprocess
+import sys
+
 import pytest
 import torch
 import torchdiffeq
@@ -12,6 +15,11 @@ from gear_damping.simulation.series import Series, SharedSeries
 from gear_damping.simulation.simulate import simulate
 from gear_damping.simulation.solver_settings import Solver
 from gear_damping.simulation.stepper import Stepper
+
+
+@pytest.fixture(autouse=True)
+def _registered():
+    torchdiffeq_method.register()
 
 
 @pytest.fixture
@@ -53,5 +61,11 @@ def test_times_must_be_output_intervals(stepper):
 
 def test_an_untested_torchdiffeq_is_refused(monkeypatch):
     monkeypatch.setattr(torchdiffeq, "__version__", "9.9.9")
+    torchdiffeq_method.register.cache_clear()
     with pytest.raises(RuntimeError, match=r"9\.9\.9"):
         torchdiffeq_method.register()
+
+
+def test_it_is_refused_when_it_is_used_and_not_before(monkeypatch):
+    code = "import torchdiffeq; torchdiffeq.__version__ = '9.9.9'; import gear_damping.simulation.integrate"
+    subprocess.run([sys.executable, "-c", code], check=True)
