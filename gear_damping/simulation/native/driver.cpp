@@ -1,7 +1,7 @@
 // Walks members over output intervals with the region-locked method of Tsitouras (see stepper.py, which
 // does the same in PyTorch). Above this text stand: WIDTH, VECTORS, N_STATE, N_FIXED, N_SERIES, N_SWITCH, N_KEPT,
-// the vector types and functions, the method's NODES, STAGES and WEIGHTS, and the traced functions setup, rates and
-// switches.
+// the vector types and functions, the method's NODES, STAGES and WEIGHTS, what crossings are searched with (WATCHED,
+// SAME_INSTANT, ROOT_STEPS, MOST_SPLITS), and the traced functions setup, rates and switches.
 
 struct Block {
   vd P[N_FIXED + 1], S[N_SERIES + 1], L[N_SWITCH + 1], Q[N_KEPT + 1], factor[N_SERIES + 1];
@@ -9,9 +9,6 @@ struct Block {
   double index;
 };
 
-static const double WATCHED[2] = {1.0 / 3.0, 2.0 / 3.0};
-static const double SAME_INSTANT = 1e-5;
-static const int ROOT_STEPS = 6, MOST_SPLITS = 8;
 static const int TILE = 8;  // outputs that are kept until they fill a line of the cache
 
 static inline void rates_at(vd u, const vd* y, const Block& b, const vd* L, vd* out) {

@@ -8,10 +8,11 @@ import torch
 from torch import Tensor
 
 from gear_damping.simulation import tsit5
-from gear_damping.simulation.kernel import Kernel, Members
+from gear_damping.simulation.kernel import ROOT_STEPS, SAME_INSTANT, WATCHED, Kernel, Members
 from gear_damping.simulation.native.emit import Written
 from gear_damping.simulation.native.expressions import Program
 from gear_damping.simulation.native.trace import LANES, trace
+from gear_damping.simulation.stepper import MOST_SPLITS
 
 HERE = Path(__file__).resolve().parent
 MOST_STATES_OF_TWO = 6  # of members of which two vectors at once still fit the processor's registers
@@ -54,7 +55,7 @@ def kernel_source(kernel: Kernel, members: Members, state: Tensor, width: int) -
     numbers = (width, vectors_of(sizes[0]), *sizes, len(written.kept))
     defined = [f"#define {n} {v}" for n, v in zip(names, numbers, strict=True)]
     driver = (HERE / "driver.cpp").read_text()
-    return "\n".join([*defined, (HERE / "vectors.h").read_text(), tableau(), *parts, driver])
+    return "\n".join([*defined, (HERE / "vectors.h").read_text(), tableau(), crossings(), *parts, driver])
 
 
 def tableau() -> str:
@@ -66,6 +67,17 @@ def tableau() -> str:
             f"static const double NODES[{count}] = {_listed(tsit5.NODES)};",
             f"static const double STAGES[{count}][{count - 1}] = {{{rows}}};",
             f"static const double WEIGHTS[{count}] = {_listed(tsit5.WEIGHTS)};",
+        ]
+    )
+
+
+def crossings() -> str:
+    """What crossings of a branch are searched with, as C++."""
+    return "\n".join(
+        [
+            f"static const double WATCHED[{len(WATCHED)}] = {_listed(WATCHED)};",
+            f"static const double SAME_INSTANT = {SAME_INSTANT!r};",
+            f"static const int ROOT_STEPS = {ROOT_STEPS}, MOST_SPLITS = {MOST_SPLITS};",
         ]
     )
 
