@@ -10,7 +10,6 @@ from gear_damping.errors import Problem, nearest
 from gear_damping.explanation.settings import SearchSettings
 
 TASKS = ("train", "simulate", "evaluate", "identify", "explain", "inspect")
-MODELS = ("raw_lstm", "cwt_lstm")
 
 
 @dataclass(frozen=True)
@@ -73,11 +72,6 @@ SCHEMA: dict[str, Any] = {
         "omega0": Key("float", 1, 100, optional=True),
         "magnitude": Key("bool", optional=True),
     },
-    "model": {
-        "names": Key("names", choices=MODELS),
-        "hidden_size": Key("int", 1, 4096),
-        "dropout": Key("float", 0, 0.99),
-    },
     "training": {
         "max_epochs": Key("int", 1, 1_000_000),
         "batch_size": Key("int", 1, 1_000_000),
@@ -86,18 +80,27 @@ SCHEMA: dict[str, Any] = {
     },
     "measurement": {"path": Key("text", optional=True), "channel": Key("text", optional=True)},
 }
-ELSEWHERE = ("simulator", "family")  # groups with a check of their own
+ELSEWHERE = ("simulator", "family", "model")  # groups with a check of their own
 NOT_REQUIRED = ("omega0", "magnitude")
 
 
 def check(config: Mapping[str, Any], origin: Origin) -> list[Problem]:
     """Every problem with the keys outside simulator and family."""
-    return _check(config, SCHEMA, "", origin, ELSEWHERE)
+    return problems_with(config, SCHEMA, "", origin, ELSEWHERE)
 
 
-def _check(
+def problems_with(
     values: Mapping[str, Any], schema: Mapping[str, Any], prefix: str, origin: Origin, skip: tuple[str, ...] = ()
 ) -> list[Problem]:
+    """Every problem with a group of keys.
+
+    Args:
+        values: The group.
+        schema: What each key may hold, groups within it as mappings.
+        prefix: What stands before each key, `model.` for example.
+        origin: Where values come from.
+        skip: Keys that are checked elsewhere.
+    """
     problems = [
         Problem(prefix + name, "no such key", remedy=nearest(name, [*schema, *skip]), source=origin.of(prefix + name))
         for name in values
@@ -112,7 +115,7 @@ def _check(
             found = problem_with(values[name], rule, key, origin)
             problems += [found] if found else []
         elif isinstance(values[name], Mapping):
-            problems += _check(values[name], rule, key + ".", origin)
+            problems += problems_with(values[name], rule, key + ".", origin)
         else:
             remedy = f"give {key}.<key>, or choose {name}=<choice>"
             problems.append(Problem(key, "is a group of keys", values[name], remedy, origin.of(key)))

@@ -8,6 +8,7 @@ from typing import Any
 from gear_damping.config import schema
 from gear_damping.config.combinations import Whole, combination_problems
 from gear_damping.config.measured import measurement_file
+from gear_damping.config.models import ModelSettings, read_models
 from gear_damping.config.simulator import SimulatorSettings, read_simulator
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
@@ -16,7 +17,7 @@ from gear_damping.explanation.settings import SearchSettings
 
 @dataclass(frozen=True)
 class Settings:
-    """A checked configuration; the groups `protocol`, `wavelet`, `model` and `training` as plain values."""
+    """A checked configuration; the groups `protocol`, `wavelet` and `training` as plain values."""
 
     task: str
     name: str
@@ -33,7 +34,7 @@ class Settings:
     simulator: SimulatorSettings
     protocol: dict[str, Any]
     wavelet: dict[str, Any]
-    model: dict[str, Any]
+    model: ModelSettings
     training: dict[str, Any]
     measurement_path: Path | None
     measurement_channel: str | None
@@ -52,12 +53,17 @@ def read_settings(config: Mapping[str, Any], origin: Origin) -> Settings:
     """
     config = {key: value for key, value in config.items() if key != "hydra"}
     problems = schema.check(config, origin)
-    simulator = None
+    simulator = models = None
     nodes = {group: config.get(group) for group in schema.ELSEWHERE}
     for group, node in nodes.items():
         if not isinstance(node, Mapping):
             problems.append(Problem(group, "is a group of keys", node, f"choose {group}=<choice>", origin.of(group)))
-    if all(isinstance(node, Mapping) for node in nodes.values()):
+    if isinstance(nodes["model"], Mapping):
+        try:
+            models = read_models(nodes["model"], origin)
+        except InputError as error:
+            problems += error.problems
+    if all(isinstance(nodes[group], Mapping) for group in ("simulator", "family")):
         try:
             simulator = read_simulator(nodes["simulator"], nodes["family"], origin)
         except InputError as error:
@@ -83,7 +89,7 @@ def read_settings(config: Mapping[str, Any], origin: Origin) -> Settings:
         simulator=simulator,
         protocol=dict(config["protocol"]),
         wavelet={key: value for key, value in config["wavelet"].items() if value is not None},
-        model=dict(config["model"]),
+        model=models,
         training=dict(config["training"]),
         measurement_path=measurement_file(path) if path else None,
         measurement_channel=config["measurement"]["channel"],

@@ -1,6 +1,6 @@
 """The learned estimator: front-end, network, loss and what a checkpoint needs in order to predict."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -10,8 +10,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.identification.features import FrontEnd, WaveletFrontEnd
-from gear_damping.identification.networks import DampingLSTM
+from gear_damping.identification.estimators.catalogue import kind_of
 from gear_damping.identification.trained_on import TrainedOn
 from gear_damping.identification.windows import gather_windows, window_starts, windows_of_runs
 
@@ -26,35 +25,34 @@ class EstimatorConfig:
     """The estimator that is to be trained.
 
     Args:
-        features: "raw" (the window) or "cwt" (its wavelet transform).
-        wavelet: Kind and plain arguments of the transform (`features.make_wavelet`); for "cwt" only.
-        hidden_size: Units of the LSTM.
-        dropout: Part of the state that is dropped in training.
+        estimator: Its name in the catalogue.
+        settings: The numbers that it is built by; its own defaults where absent.
+        wavelet: Kind and plain arguments of the transform (`features.make_wavelet`), for those that transform.
+        plugins: The user's own estimator files.
         whole_run_columns: Where the protocol allows it, transform whole runs, as the paper does; False
             transforms each window by itself under every protocol.
     """
 
-    features: str = "raw"
+    estimator: str = "raw_lstm"
+    settings: Mapping[str, float | int] = field(default_factory=dict)
     wavelet: Mapping[str, Any] = field(
         default_factory=lambda: {
             "kind": "ricker", "frequency_min_hz": 500.0, "frequency_max_hz": 10000.0, "n_scales": 32
         }
     )  # fmt: skip
-    hidden_size: int = 60
-    dropout: float = 0.2
+    plugins: tuple[str, ...] = ()
     whole_run_columns: bool = True
 
     def __post_init__(self) -> None:
-        if self.features not in ("raw", "cwt"):
-            raise ValueError(f"features must be 'raw' or 'cwt', got {self.features!r}")
+        kind_of(self.estimator, self.plugins)(self.settings)
         # Of subclasses too: a numpy float is a float, and a checkpoint that holds one is refused on loading.
         odd = {name: value for name, value in self.wavelet.items() if type(value) not in _PLAIN}
         if odd:
             raise ValueError(f"wavelet must hold plain numbers, texts and lists, got {odd!r}: convert them")
 
 
-RAW_LSTM = EstimatorConfig("raw")
-CWT_LSTM = EstimatorConfig("cwt")
+RAW_LSTM = EstimatorConfig("raw_lstm")
+CWT_LSTM = EstimatorConfig("cwt_lstm")
 
 
 class RecordPrediction(NamedTuple):
@@ -66,41 +64,43 @@ class RecordPrediction(NamedTuple):
 
 
 class DampingModule(L.LightningModule):
-    """LSTM on raw windows or on wavelet columns, trained on the RMSE of the damping ratio in %.
+    """An estimator of the catalogue, trained on the RMSE of the damping ratio in %.
 
     All arguments are plain values and are stored in the checkpoint with the weights, the normalisation
     buffers and the learning curve (`history`): a checkpoint is all that a prediction needs.
 
     Args:
-        features: "raw" or "cwt".
+        estimator: Its name.
         sampling_rate: Rate of the signals that it is trained on (Hz).
         window: Samples that it sees at once.
         data_set: Id of the runs that it is trained on.
-        wavelet: Settings of the transform for "cwt"; None for "raw".
+        settings: The numbers that it is built by.
+        wavelet: Settings of the transform, for those that transform.
         whole_run: Columns are of the whole run (the paper's protocol), not of the window.
-        hidden_size: Units of the LSTM.
-        dropout: Part of the state that is dropped in training.
         learning_rate: Step of Adam.
         trained_on: What it is trained on, as plain values (`TrainedOn.plain`).
+        plugins: Files of the user that may declare the estimator. A checkpoint does not hold them: it runs no code.
     """
 
     def __init__(
         self,
-        features: str,
+        estimator: str,
         sampling_rate: float,
         window: int,
         data_set: str,
+        settings: dict[str, float | int] | None = None,
         wavelet: dict[str, Any] | None = None,
         whole_run: bool = False,
-        hidden_size: int = 60,
-        dropout: float = 0.2,
         learning_rate: float = 1e-3,
         trained_on: dict[str, Any] | None = None,
+        plugins: Sequence[str] = (),
     ) -> None:
         super().__init__()
-        self.save_hyperparameters(logger=False)
-        self.front_end = WaveletFrontEnd(wavelet, sampling_rate) if features == "cwt" else FrontEnd()
-        self.network = DampingLSTM(self.front_end.n_features, hidden_size, dropout)
+        self.save_hyperparameters(logger=False, ignore=["plugins"])
+        self.plugins = tuple(plugins)
+        made = kind_of(estimator, plugins)(settings or {})
+        self.front_end = made.front_end(sampling_rate, wavelet or {})
+        self.network = made.network(self.front_end.n_features)
         self.history: list[dict[str, float]] = []
         self._squares = {"train": _Squares(), "val": _Squares()}
 
@@ -196,15 +196,22 @@ class DampingModule(L.LightningModule):
             raise InputError(problems)
 
 
-def load_estimator(path: Path | str) -> DampingModule:
+def load_estimator(path: Path | str, plugins: Sequence[str] = ()) -> DampingModule:
     """The estimator in a checkpoint, ready to predict on the CPU.
 
+    Args:
+        path: The checkpoint.
+        plugins: The user's own estimator files.
+
     Raises:
-        InputError: the file is missing or is not a checkpoint of an estimator.
+        InputError: the file is missing or is not a checkpoint of an estimator, or of one that no file declares.
     """
+    options = {"map_location": "cpu", "weights_only": True, "plugins": tuple(plugins)}
     try:
         with torch.random.fork_rng(devices=[]):  # a new network draws weights, which the file then replaces
-            module = DampingModule.load_from_checkpoint(path, map_location="cpu", weights_only=True)
+            module = DampingModule.load_from_checkpoint(path, **options)
+    except InputError:
+        raise
     except Exception as error:  # a damaged file fails in as many ways as there are readers
         rule = f"must be a checkpoint of a trained estimator ({type(error).__name__}: {error})"
         remedy = "give the best.ckpt of a training run"

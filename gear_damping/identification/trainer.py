@@ -16,6 +16,7 @@ from torch import Tensor
 
 from gear_damping.identification.controls import mean_predictor
 from gear_damping.identification.datamodule import WindowDataModule
+from gear_damping.identification.estimators.catalogue import kind_of
 from gear_damping.identification.lightning_module import DampingModule, EstimatorConfig, load_estimator
 from gear_damping.identification.lightning_support import (
     EpochSeeds,
@@ -138,18 +139,18 @@ def fit_estimator(
 
 def build_estimator(config: EstimatorConfig, data: WindowDataModule, learning_rate: float) -> DampingModule:
     """The untrained estimator of a configuration for these windows; it starts at the mean label."""
-    wavelet = config.features == "cwt"
+    transforms = kind_of(config.estimator, config.plugins).transforms
     module = DampingModule(
-        features=config.features,
+        estimator=config.estimator,
         sampling_rate=float(data.run_set.sampling_rate),
         window=int(data.protocol.window),
         data_set=str(data.run_set.id),
-        wavelet=dict(config.wavelet) if wavelet else None,
-        whole_run=wavelet and config.whole_run_columns and data.protocol.chronological,
-        hidden_size=int(config.hidden_size),
-        dropout=float(config.dropout),
+        settings=dict(config.settings),
+        wavelet=dict(config.wavelet) if transforms else None,
+        whole_run=transforms and config.whole_run_columns and data.protocol.chronological,
         learning_rate=float(learning_rate),
         trained_on=TrainedOn.of(data.run_set, data.split.train[:, 0]).plain(),
+        plugins=config.plugins,
     )
     module.network.start_at(mean_predictor(data.training_labels))
     return module
@@ -167,7 +168,7 @@ def fit_front_end(module: DampingModule, data: WindowDataModule) -> None:
 
 def _take_over(resume: Path, folder: Path, module: DampingModule, training: Training) -> bool:
     """Bring the files of the fit to go on with into the folder; whether it had already come to its end."""
-    earlier = load_estimator(resume)
+    earlier = load_estimator(resume, module.plugins)
     ours, theirs = module.hparams["data_set"], earlier.hparams["data_set"]
     if ours != theirs:
         raise ValueError(f"resume is of data set {theirs!r}, not of {ours!r}: train anew, or use that set")
@@ -218,11 +219,11 @@ def _fit(trainer: L.Trainer, module: DampingModule, data: WindowDataModule, chec
 
 def _result(module: DampingModule, folder: Path) -> FitResult:
     best, last = folder / "best.ckpt", folder / "last.ckpt"
-    history = module.history or load_estimator(last).history
+    history = module.history or load_estimator(last, module.plugins).history
     # Lightning keeps a first epoch that ended in nan as the best one.
     if not any(isfinite(epoch[_MONITOR]) for epoch in history):
         raise RuntimeError("no epoch had a finite validation error: lower learning_rate, or check the runs")
-    return FitResult(load_estimator(best), history, best, last)
+    return FitResult(load_estimator(best, module.plugins), history, best, last)
 
 
 def predict_windows(module: DampingModule, batches: Any) -> tuple[Tensor, Tensor]:

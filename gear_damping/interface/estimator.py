@@ -1,6 +1,6 @@
 """A trained network that tells the damping of records."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
@@ -75,10 +75,14 @@ class Estimator:
         return Prediction(*found[:2], self.trained_on.outside(values, found.damping_ratio_percent, conditions))
 
 
-def load_estimator(path: Path | str) -> Estimator:
+def load_estimator(path: Path | str, plugins: Sequence[str] = ()) -> Estimator:
     """The estimator of a checkpoint.
 
+    Args:
+        path: The checkpoint.
+        plugins: Files of one's own that declare estimators: a checkpoint holds numbers and runs no code.
+
     Raises:
-        InputError: the file is missing, or is no checkpoint of such a network.
+        InputError: the file is missing, is no checkpoint of such a network, or of one that no file declares.
     """
-    return Estimator(load_module(path))
+    return Estimator(load_module(path, plugins))

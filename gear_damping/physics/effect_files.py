@@ -1,17 +1,15 @@
 """A user's own effect file: loaded, and checked before any of it is used."""
 
-import importlib.util
 import inspect
-import traceback
 from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
-from types import ModuleType
 from typing import get_args
 
 import torch
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.own_files import REMEDY, classes_of, load_module
 from gear_damping.physics import terms
 from gear_damping.physics.cause import Cause, Experiment, Recipe, Rig
 from gear_damping.physics.parameter import Option, Parameter
@@ -22,7 +20,6 @@ from gear_damping.physics.terms import Effect, ExtraStates, MeshStiffness
 from gear_damping.units import parse_unit
 
 KEY = "simulator.plugins"
-REMEDY = "correct the file"
 _SLOTS = tuple(c for c in vars(terms).values() if inspect.isclass(c) and issubclass(c, Effect) and c is not Effect)
 _TEXTS = {
     "name": "its key in the configuration",
@@ -37,7 +34,7 @@ def load_effects(path: Path) -> dict[str, type[Effect]]:
     Raises:
         InputError: the file is missing, cannot be loaded, declares no effect or one that is not complete.
     """
-    kinds = _classes(_load(path))
+    kinds = classes_of(load_module(path, KEY), Effect)
     faults = [f"the class {kind.__name__} {fault}" for kind in kinds for fault in _faults(kind)]
     if not kinds:
         faults = ["declares no effect: no class in it derives from a slot of gear_damping.physics.terms"]
@@ -48,38 +45,6 @@ def load_effects(path: Path) -> dict[str, type[Effect]]:
         rule = f"declares {len(kinds)} effects under the names {sorted(found)}"
         raise InputError(Problem(KEY, rule, str(path), "give each effect a name of its own"))
     return found
-
-
-def _load(path: Path) -> ModuleType:
-    if path.suffix != ".py":
-        raise InputError(Problem(KEY, "is no Python file", str(path), "give the path of a .py file"))
-    if not path.is_file():
-        raise InputError(Problem(KEY, "no such file", str(path), "give the path of a .py file"))
-    spec = importlib.util.spec_from_file_location(f"gear_damping_plugin_{path.stem}", path)
-    module = importlib.util.module_from_spec(spec)
-    try:
-        spec.loader.exec_module(module)
-    except (Exception, SystemExit) as error:  # the user's own code can fail in any way
-        rule = f"cannot be loaded: {_place(error, path)}{type(error).__name__}: {' '.join(str(error).split())}"
-        raise InputError(Problem(KEY, rule, str(path), REMEDY)) from error
-    return module
-
-
-def _place(error: BaseException, path: Path) -> str:
-    """The line of the file that fails; empty where the error names none or names it itself."""
-    if isinstance(error, SyntaxError):
-        return ""
-    frames = traceback.extract_tb(error.__traceback__)
-    lines = [frame.lineno for frame in frames if Path(frame.filename).resolve() == path.resolve()]
-    return f"line {lines[-1]}: " if lines else ""
-
-
-def _classes(module: ModuleType) -> list[type[Effect]]:
-    """The classes of a file that are meant as effects; a base without a name that others derive from is none."""
-    own = [c for c in vars(module).values() if inspect.isclass(c) and issubclass(c, Effect)]
-    own = [c for c in dict.fromkeys(own) if c.__module__ == module.__name__]
-    bases = {base for c in own for base in c.__mro__[1:]}
-    return [c for c in own if c not in bases or ("name" in vars(c) and not inspect.isabstract(c))]
 
 
 def _faults(kind: type[Effect]) -> Iterator[str]:

@@ -53,7 +53,8 @@ def _written(found: Identification, folder: RunFolder) -> dict[str, Any]:
 
 def _by_network(settings: Settings, measurement: Measurement, folder: RunFolder) -> dict[str, Any]:
     folder.add_input(settings.checkpoint)
-    found = load_estimator(settings.checkpoint).predict(measurement, settings.measurement_channel)
+    estimator = load_estimator(settings.checkpoint, settings.model.plugins)
+    found = estimator.predict(measurement, settings.measurement_channel)
     mean = sum(one.damping_ratio_percent for one in found.values()) / len(found)
     content = {
         "system": measurement.system,

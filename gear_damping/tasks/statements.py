@@ -34,7 +34,7 @@ def say_budget(settings: Settings, training: Training) -> None:
     """What the run is about to spend."""
     s = settings.simulator
     seeds = f"{settings.seeds} seed" + ("s" if settings.seeds > 1 else "")
-    names = ", ".join([*settings.model["names"], "white_noise"])
+    names = ", ".join([*settings.model.names, "white_noise"])
     say(
         f"{settings.name}: {s.n_runs} runs of {s.n_samples} samples, family {s.family.name}, protocol "
         f"{settings.protocol['name']}; {names}, {seeds} from {settings.seed}, at most {training.max_epochs} "

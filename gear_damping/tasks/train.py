@@ -18,8 +18,6 @@ from gear_damping.tasks.experiment_figures import experiment_figures
 from gear_damping.tasks.run_folder import RunFolder
 from gear_damping.tasks.simulated import plan_of, run_set_of, simulated, test_plan_of
 
-FEATURES = {"raw_lstm": "raw", "cwt_lstm": "cwt"}
-
 
 def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     """Train and compare; returns the metrics for run.json."""
@@ -57,10 +55,10 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
 
 def estimators(settings: Settings) -> dict[str, EstimatorConfig]:
     """The networks to train, by name."""
-    model = settings.model
+    plugins = settings.model.plugins
     return {
-        name: EstimatorConfig(FEATURES[name], settings.wavelet, model["hidden_size"], model["dropout"])
-        for name in model["names"]
+        name: EstimatorConfig(name, values, settings.wavelet, plugins=plugins)
+        for name, values in settings.model.settings.items()
     }
 
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 import torch
 
+from gear_damping.errors import InputError
 from gear_damping.identification.datamodule import WindowDataModule
 from gear_damping.identification.features import FrontEnd, WaveletFrontEnd, make_wavelet
 from gear_damping.identification.lightning_module import CWT_LSTM, RAW_LSTM, DampingModule, EstimatorConfig
@@ -16,8 +17,8 @@ from gear_damping.identification.windows import gather_windows
 
 RATE = 1000.0
 RICKER = {"kind": "ricker", "frequency_min_hz": 20.0, "frequency_max_hz": 240.0, "n_scales": 5}
-CWT = replace(CWT_LSTM, wavelet=RICKER, hidden_size=4)
-RAW = replace(RAW_LSTM, hidden_size=4)
+CWT = replace(CWT_LSTM, wavelet=RICKER, settings={"hidden_size": 4})
+RAW = replace(RAW_LSTM, settings={"hidden_size": 4})
 
 
 def noise(*shape, seed=1):
@@ -178,7 +179,14 @@ def test_training_starts_at_the_mean_label():
 
 def test_wavelets_that_a_checkpoint_could_not_hold_are_refused():
     with pytest.raises(ValueError, match="plain"):
-        EstimatorConfig("cwt", wavelet=RICKER | {"frequency_min_hz": torch.tensor(20.0)})
-    with pytest.raises(ValueError, match="'raw' or 'cwt'"):
-        EstimatorConfig("wavelet")
-    assert DampingModule("raw", RATE, 30, "x").hparams["wavelet"] is None
+        EstimatorConfig("cwt_lstm", wavelet=RICKER | {"frequency_min_hz": torch.tensor(20.0)})
+    assert DampingModule("raw_lstm", RATE, 30, "x").hparams["wavelet"] is None
+
+
+def test_an_estimator_or_a_setting_that_does_not_exist_is_refused():
+    with pytest.raises(InputError, match=r"'raw_lstn': no such estimator; remedy: did you mean 'raw_lstm'\?.*its file"):
+        EstimatorConfig("raw_lstn")
+    with pytest.raises(ValueError, match=r"no setting \['layers'\]; it has hidden_size, dropout"):
+        EstimatorConfig("raw_lstm", {"layers": 2})
+    with pytest.raises(ValueError, match="dropout must lie within"):
+        EstimatorConfig("raw_lstm", {"dropout": 1.0})

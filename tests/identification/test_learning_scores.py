@@ -27,8 +27,8 @@ TRUE = torch.tensor([1.0, 2.0, 4.0, 5.0])
 PREDICTED = torch.tensor([1.0, 3.0, 2.0, 4.0])
 RICKER = {"kind": "ricker", "frequency_min_hz": 20.0, "frequency_max_hz": 240.0, "n_scales": 4}
 MODELS = {
-    "raw_lstm": replace(RAW_LSTM, hidden_size=6),
-    "cwt_lstm": replace(CWT_LSTM, hidden_size=6, wavelet=RICKER),
+    "raw_lstm": replace(RAW_LSTM, settings={"hidden_size": 6}),
+    "cwt_lstm": replace(CWT_LSTM, settings={"hidden_size": 6}, wavelet=RICKER),
 }
 TRAINING = Training(max_epochs=6, batch_size=64, learning_rate=0.02)
 SMALL = replace(BY_RUN, windows_per_epoch=640)
@@ -136,7 +136,7 @@ def test_controls_know_nothing_and_models_learn(comparison):
 
 def test_checkpoints_of_a_comparison_can_be_loaded_by_name(comparison):
     folder, _, _ = comparison
-    assert load_estimator(folder / "cwt_lstm" / "seed_2" / "best.ckpt").hparams["features"] == "cwt"
+    assert load_estimator(folder / "cwt_lstm" / "seed_2" / "best.ckpt").hparams["estimator"] == "cwt_lstm"
 
 
 def test_an_interrupted_comparison_trains_only_what_is_missing(comparison, tmp_path):

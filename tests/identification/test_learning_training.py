@@ -21,8 +21,8 @@ from gear_damping.identification.trainer import Training, fit_estimator, predict
 from gear_damping.identification.windows import gather_windows
 
 RICKER = {"kind": "ricker", "frequency_min_hz": 20.0, "frequency_max_hz": 240.0, "n_scales": 4}
-RAW = replace(RAW_LSTM, hidden_size=8)
-CWT = replace(CWT_LSTM, hidden_size=8, wavelet=RICKER)
+RAW = replace(RAW_LSTM, settings={"hidden_size": 8})
+CWT = replace(CWT_LSTM, settings={"hidden_size": 8}, wavelet=RICKER)
 TRAINING = Training(max_epochs=4, batch_size=64, learning_rate=0.02)
 SMALL = replace(BY_RUN, windows_per_epoch=640)
 

@@ -1,0 +1,1 @@
+"""The learned estimators, one file each."""

@@ -1,0 +1,27 @@
+"""The network on raw windows."""
+
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+from gear_damping.identification.estimators.base import Setting, WindowEstimator
+from gear_damping.identification.features import FrontEnd
+from gear_damping.identification.networks import DampingLSTM
+
+
+class RawLSTM(WindowEstimator):
+    """An LSTM that reads the samples of a window one after another."""
+
+    name = "raw_lstm"
+    reference = "Yousfi et al. (2026), section 2.3"
+    settings: ClassVar = (
+        Setting("hidden_size", 60, "units of the LSTM", 1, 4096),
+        Setting("dropout", 0.2, "part of the state that is dropped in training", 0.0, 0.99),
+    )
+
+    def front_end(self, sampling_rate: float, wavelet: Mapping[str, Any]) -> FrontEnd:
+        """The window itself."""
+        return FrontEnd()
+
+    def network(self, n_features: int) -> DampingLSTM:
+        """LSTM, dropout, dense, softplus."""
+        return DampingLSTM(n_features, **self.values)

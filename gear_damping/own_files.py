@@ -1,0 +1,48 @@
+"""Python files of a user: loaded, with one clear message where that fails."""
+
+import importlib.util
+import inspect
+import traceback
+from pathlib import Path
+from types import ModuleType
+
+from gear_damping.errors import InputError, Problem
+
+REMEDY = "correct the file"
+
+
+def load_module(path: Path, key: str) -> ModuleType:
+    """The module of a file that the user named under `key`.
+
+    Raises:
+        InputError: it is missing, is no Python file, or cannot be run.
+    """
+    if path.suffix != ".py":
+        raise InputError(Problem(key, "is no Python file", str(path), "give the path of a .py file"))
+    if not path.is_file():
+        raise InputError(Problem(key, "no such file", str(path), "give the path of a .py file"))
+    spec = importlib.util.spec_from_file_location(f"gear_damping_plugin_{path.stem}", path)
+    module = importlib.util.module_from_spec(spec)
+    try:
+        spec.loader.exec_module(module)
+    except (Exception, SystemExit) as error:  # the user's own code can fail in any way
+        rule = f"cannot be loaded: {_place(error, path)}{type(error).__name__}: {' '.join(str(error).split())}"
+        raise InputError(Problem(key, rule, str(path), REMEDY)) from error
+    return module
+
+
+def classes_of(module: ModuleType, base: type) -> list[type]:
+    """The classes of a module that are meant for use; one without a name that others derive from is not."""
+    own = [c for c in vars(module).values() if inspect.isclass(c) and issubclass(c, base)]
+    own = [c for c in dict.fromkeys(own) if c.__module__ == module.__name__]
+    bases = {parent for c in own for parent in c.__mro__[1:]}
+    return [c for c in own if c not in bases or ("name" in vars(c) and not inspect.isabstract(c))]
+
+
+def _place(error: BaseException, path: Path) -> str:
+    """The line of the file that fails; empty where the error names none or names it itself."""
+    if isinstance(error, SyntaxError):
+        return ""
+    frames = traceback.extract_tb(error.__traceback__)
+    lines = [frame.lineno for frame in frames if Path(frame.filename).resolve() == path.resolve()]
+    return f"line {lines[-1]}: " if lines else ""
