@@ -1,14 +1,15 @@
 """An estimator of one's own: convolutions that halve the rate, and the mean of what they find."""
 
-from collections.abc import Mapping
 from itertools import pairwise
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from torch import Tensor, nn
 
-from gear_damping.identification.estimators.base import Setting, WindowEstimator
+from gear_damping.identification.estimators.base import WindowEstimator
 from gear_damping.identification.features import FrontEnd
 from gear_damping.identification.networks import DampingNetwork
+from gear_damping.setting import Setting
+from gear_damping.signals.wavelets import ContinuousWavelet
 
 
 class Convolutions(DampingNetwork):
@@ -37,7 +38,7 @@ class RawConvolution(WindowEstimator):
         Setting("dropout", 0.1, "part of the state that is dropped in training", 0.0, 0.99),
     )
 
-    def front_end(self, sampling_rate: float, wavelet: Mapping[str, Any]) -> FrontEnd:
+    def front_end(self, transform: ContinuousWavelet | None) -> FrontEnd:
         """The window itself."""
         return FrontEnd()
 

@@ -133,9 +133,6 @@ def _wavelet(whole: Whole) -> Found:
     wavelet = whole["wavelet"]
     if wavelet["frequency_min_hz"] >= wavelet["frequency_max_hz"]:
         yield "wavelet.frequency_min_hz", "must lie below frequency_max_hz", wavelet["frequency_min_hz"], "lower it"
-    for key in ("omega0", "magnitude"):
-        if wavelet["kind"] != "morlet" and wavelet.get(key) is not None:
-            yield f"wavelet.{key}", "belongs to the Morlet wavelet", wavelet[key], "choose wavelet=morlet"
 
 
 def _nyquist(whole: Whole) -> Found:

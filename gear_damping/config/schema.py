@@ -64,14 +64,6 @@ SCHEMA: dict[str, Any] = {
         "windows_per_epoch": Key("int", 1, 10**9, optional=True),
         "run": Key("int", 0, 10**9),
     },
-    "wavelet": {
-        "kind": Key("text", choices=("ricker", "morlet")),
-        "frequency_min_hz": Key("float", 0, 1e12, exclusive=True),
-        "frequency_max_hz": Key("float", 0, 1e12, exclusive=True),
-        "n_scales": Key("int", 2, 4096),
-        "omega0": Key("float", 1, 100, optional=True),
-        "magnitude": Key("bool", optional=True),
-    },
     "training": {
         "max_epochs": Key("int", 1, 1_000_000),
         "batch_size": Key("int", 1, 1_000_000),
@@ -80,8 +72,7 @@ SCHEMA: dict[str, Any] = {
     },
     "measurement": {"path": Key("text", optional=True), "channel": Key("text", optional=True)},
 }
-ELSEWHERE = ("simulator", "family", "model")  # groups with a check of their own
-NOT_REQUIRED = ("omega0", "magnitude")
+ELSEWHERE = ("simulator", "family", "model", "wavelet")  # groups with a check of their own
 
 
 def check(config: Mapping[str, Any], origin: Origin) -> list[Problem]:
@@ -109,8 +100,7 @@ def problems_with(
     for name, rule in schema.items():
         key = prefix + name
         if name not in values:
-            if name not in NOT_REQUIRED:
-                problems.append(Problem(key, "is missing", remedy="leave the group as it is", source=origin.of(key)))
+            problems.append(Problem(key, "is missing", remedy="leave the group as it is", source=origin.of(key)))
         elif isinstance(rule, Key):
             found = problem_with(values[name], rule, key, origin)
             problems += [found] if found else []

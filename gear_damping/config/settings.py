@@ -7,8 +7,8 @@ from typing import Any
 
 from gear_damping.config import schema
 from gear_damping.config.combinations import Whole, combination_problems
+from gear_damping.config.learners import ModelSettings, read_models, read_wavelet
 from gear_damping.config.measured import measurement_file
-from gear_damping.config.models import ModelSettings, read_models
 from gear_damping.config.simulator import SimulatorSettings, read_simulator
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
@@ -53,7 +53,7 @@ def read_settings(config: Mapping[str, Any], origin: Origin) -> Settings:
     """
     config = {key: value for key, value in config.items() if key != "hydra"}
     problems = schema.check(config, origin)
-    simulator = models = None
+    simulator = models = wavelet = None
     nodes = {group: config.get(group) for group in schema.ELSEWHERE}
     for group, node in nodes.items():
         if not isinstance(node, Mapping):
@@ -61,6 +61,11 @@ def read_settings(config: Mapping[str, Any], origin: Origin) -> Settings:
     if isinstance(nodes["model"], Mapping):
         try:
             models = read_models(nodes["model"], origin)
+        except InputError as error:
+            problems += error.problems
+    if isinstance(nodes["wavelet"], Mapping):
+        try:
+            wavelet = read_wavelet(nodes["wavelet"], models.plugins if models else (), origin)
         except InputError as error:
             problems += error.problems
     if all(isinstance(nodes[group], Mapping) for group in ("simulator", "family")):
@@ -88,7 +93,7 @@ def read_settings(config: Mapping[str, Any], origin: Origin) -> Settings:
         write_measurement=config["write_measurement"],
         simulator=simulator,
         protocol=dict(config["protocol"]),
-        wavelet={key: value for key, value in config["wavelet"].items() if value is not None},
+        wavelet=wavelet,
         model=models,
         training=dict(config["training"]),
         measurement_path=measurement_file(path) if path else None,

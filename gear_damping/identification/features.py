@@ -1,30 +1,9 @@
 """What the network is fed: the raw window, or its wavelet transform, with normalisation stored inside."""
 
-from collections.abc import Mapping
-from typing import Any
-
 import torch
 from torch import Tensor, nn
 
-from gear_damping.errors import nearest
-from gear_damping.signals.wavelets import ContinuousWavelet, MorletCWT, RickerCWT
-
-_WAVELETS: dict[str, type[ContinuousWavelet]] = {"ricker": RickerCWT, "morlet": MorletCWT}
-
-
-def make_wavelet(settings: Mapping[str, Any], sampling_rate: float) -> ContinuousWavelet:
-    """The transform named by settings["kind"] ("ricker" or "morlet") with its other plain arguments.
-
-    Raises:
-        ValueError: the kind is unknown, or the transform refuses an argument.
-    """
-    arguments = dict(settings)
-    kind = arguments.pop("kind", None)
-    if kind not in _WAVELETS:
-        raise ValueError(
-            f"wavelet kind must be one of {', '.join(_WAVELETS)}, got {kind!r}: " + nearest(str(kind), list(_WAVELETS))
-        )
-    return _WAVELETS[kind](sampling_rate, **arguments)
+from gear_damping.signals.wavelets.base import ContinuousWavelet
 
 
 class FrontEnd(nn.Module):
@@ -77,12 +56,10 @@ class WaveletFrontEnd(FrontEnd):
     scale, complex ones two: all real parts, then all imaginary parts.
 
     Args:
-        wavelet: Settings of `make_wavelet`: kind and plain arguments.
-        sampling_rate: Samples per second (Hz).
+        transform: The wavelet transform.
     """
 
-    def __init__(self, wavelet: Mapping[str, Any], sampling_rate: float) -> None:
-        transform = make_wavelet(wavelet, sampling_rate)
+    def __init__(self, transform: ContinuousWavelet) -> None:
         complex_result = transform.output_dtype(torch.float32).is_complex
         self.n_features = len(transform.frequencies_hz) * (2 if complex_result else 1)
         super().__init__()

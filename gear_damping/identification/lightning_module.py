@@ -10,7 +10,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.identification.estimators.catalogue import kind_of
+from gear_damping.identification.catalogue import kind_of, make_wavelet
 from gear_damping.identification.trained_on import TrainedOn
 from gear_damping.identification.windows import gather_windows, window_starts, windows_of_runs
 
@@ -27,7 +27,7 @@ class EstimatorConfig:
     Args:
         estimator: Its name in the catalogue.
         settings: The numbers that it is built by; its own defaults where absent.
-        wavelet: Kind and plain arguments of the transform (`features.make_wavelet`), for those that transform.
+        wavelet: Kind and plain arguments of the transform (`catalogue.make_wavelet`), for those that transform.
         plugins: The user's own estimator files.
         whole_run_columns: Where the protocol allows it, transform whole runs, as the paper does; False
             transforms each window by itself under every protocol.
@@ -99,7 +99,8 @@ class DampingModule(L.LightningModule):
         self.save_hyperparameters(logger=False, ignore=["plugins"])
         self.plugins = tuple(plugins)
         made = kind_of(estimator, plugins)(settings or {})
-        self.front_end = made.front_end(sampling_rate, wavelet or {})
+        transform = None if wavelet is None else make_wavelet(wavelet, sampling_rate, plugins)
+        self.front_end = made.front_end(transform)
         self.network = made.network(self.front_end.n_features)
         self.history: list[dict[str, float]] = []
         self._squares = {"train": _Squares(), "val": _Squares()}

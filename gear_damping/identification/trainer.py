@@ -14,9 +14,9 @@ from lightning.pytorch.callbacks import Callback, RichProgressBar
 from lightning.pytorch.plugins.environments import LightningEnvironment
 from torch import Tensor
 
+from gear_damping.identification.catalogue import kind_of
 from gear_damping.identification.controls import mean_predictor
 from gear_damping.identification.datamodule import WindowDataModule
-from gear_damping.identification.estimators.catalogue import kind_of
 from gear_damping.identification.lightning_module import DampingModule, EstimatorConfig, load_estimator
 from gear_damping.identification.lightning_support import (
     EpochSeeds,

@@ -12,13 +12,13 @@ from numpy.typing import ArrayLike, NDArray
 from gear_damping.errors import InputError
 from gear_damping.physics.model import Model
 from gear_damping.reporting import figures
-from gear_damping.signals.wavelets import MorletCWT, RickerCWT
+from gear_damping.signals.wavelets.base import ContinuousWavelet
+from gear_damping.signals.wavelets.catalogue import builtin_wavelets
 from gear_damping.simulation.integrate import Progress
 from gear_damping.simulation.runs import Runs
 from gear_damping.simulation.simulate import simulate as integrate
 from gear_damping.simulation.solver_settings import Solver
 
-WAVELETS = {"ricker": RickerCWT, "morlet": MorletCWT}
 LOWEST, HIGHEST, SCALES = 4.0, 0.4, 32  # periods of the record; share of the sampling rate; frequencies between
 Array = NDArray[np.float64]
 
@@ -81,12 +81,16 @@ class Simulation:
         return self.runs.record(torch.Generator().manual_seed(seed)).numpy()
 
     def cwt(
-        self, wavelet: str = "ricker", frequencies_hz: Sequence[float] | None = None, channel: str | None = None
+        self,
+        wavelet: str | type[ContinuousWavelet] = "ricker",
+        frequencies_hz: Sequence[float] | None = None,
+        channel: str | None = None,
     ) -> tuple[Array, Array]:
         """Continuous wavelet transform of a channel.
 
         Args:
-            wavelet: `ricker` (real) or `morlet` (complex).
+            wavelet: `ricker` (real), `morlet` (complex), or a class of one's own that derives from
+                `signals.wavelets.ContinuousWavelet`.
             frequencies_hz: 32 in equal ratios from four periods of the record to 0.4 of the rate where absent.
             channel: The response where absent.
 
@@ -96,12 +100,14 @@ class Simulation:
         Raises:
             ValueError: there is no such wavelet, or a frequency is out of range.
         """
-        if wavelet not in WAVELETS:
-            raise ValueError(f"no wavelet '{wavelet}'; choose one of {', '.join(WAVELETS)}")
+        known = builtin_wavelets()
+        if isinstance(wavelet, str) and wavelet not in known:
+            raise ValueError(f"no wavelet '{wavelet}'; choose one of {', '.join(known)}")
+        kind = known[wavelet] if isinstance(wavelet, str) else wavelet
         if frequencies_hz is None:
             lowest = LOWEST * self.sampling_rate / len(self.runs.time)
             frequencies_hz = np.geomspace(lowest, HIGHEST * self.sampling_rate, SCALES).tolist()
-        transform = WAVELETS[wavelet](self.sampling_rate, frequencies_hz=frequencies_hz)
+        transform = kind(self.sampling_rate, frequencies_hz=frequencies_hz)
         signal = self.runs.channel(channel or self.model.system.response)
         return transform(signal).numpy(), np.asarray(frequencies_hz)
 

@@ -9,7 +9,7 @@ import torch
 from matplotlib.figure import Figure
 
 from gear_damping.config.settings import Settings
-from gear_damping.identification.features import make_wavelet
+from gear_damping.identification.catalogue import make_wavelet
 from gear_damping.reporting import figures
 from gear_damping.simulation.inspect import forces_of
 from gear_damping.simulation.runs import Runs
@@ -36,7 +36,7 @@ def experiment_figures(settings: Settings, runs: Runs, predictions: Mapping[str,
 
 def scalogram(settings: Settings, runs: Runs, signal: torch.Tensor) -> Figure:
     """The wavelet transform of a record, with the cone of influence and the mesh harmonics marked."""
-    wavelet = make_wavelet(settings.wavelet, runs.sampling_rate)
+    wavelet = make_wavelet(settings.wavelet, runs.sampling_rate, settings.model.plugins)
     with torch.no_grad():
         columns = wavelet(signal.float().unsqueeze(0) - signal.float().mean())[0]
     speed = runs.values.get("pinion_speed")

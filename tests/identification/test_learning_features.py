@@ -6,8 +6,9 @@ import pytest
 import torch
 
 from gear_damping.errors import InputError
+from gear_damping.identification.catalogue import make_wavelet
 from gear_damping.identification.datamodule import WindowDataModule
-from gear_damping.identification.features import FrontEnd, WaveletFrontEnd, make_wavelet
+from gear_damping.identification.features import FrontEnd, WaveletFrontEnd
 from gear_damping.identification.lightning_module import CWT_LSTM, RAW_LSTM, DampingModule, EstimatorConfig
 from gear_damping.identification.networks import DampingLSTM
 from gear_damping.identification.protocols import BY_RUN, PAPER, PAPER_MANY_RUNS
@@ -42,7 +43,7 @@ def test_raw_features_are_the_window():
 
 @pytest.mark.parametrize(("kind", "n_features"), [("ricker", 5), ("morlet", 10)])
 def test_wavelet_features_are_the_coefficients_at_each_sample(kind, n_features):
-    front_end = WaveletFrontEnd(RICKER | {"kind": kind}, RATE)
+    front_end = WaveletFrontEnd(make_wavelet(RICKER | {"kind": kind}, RATE))
     found = front_end(noise(3, 30))
     expected = make_wavelet(RICKER | {"kind": kind}, RATE)(noise(3, 30))
     assert found.shape == (3, 30, n_features)

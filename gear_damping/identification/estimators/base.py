@@ -2,35 +2,12 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from gear_damping.identification.features import FrontEnd
 from gear_damping.identification.networks import DampingNetwork
-
-
-@dataclass(frozen=True)
-class Setting:
-    """A number by which an estimator is built: its key under `model`.
-
-    Args:
-        name: The key.
-        default: Its value where none is given; a whole number asks for whole numbers.
-        meaning: For the reader.
-        lower: Smallest value.
-        upper: Largest value.
-    """
-
-    name: str
-    default: float | int
-    meaning: str
-    lower: float
-    upper: float
-
-    @property
-    def is_whole(self) -> bool:
-        """Whether it is a whole number."""
-        return isinstance(self.default, int)
+from gear_damping.setting import Setting
+from gear_damping.signals.wavelets.base import ContinuousWavelet
 
 
 class WindowEstimator(ABC):
@@ -46,7 +23,7 @@ class WindowEstimator(ABC):
     settings: ClassVar[tuple[Setting, ...]] = ()
     transforms: ClassVar[bool] = False
 
-    def __init__(self, given: Mapping[str, float | int]) -> None:
+    def __init__(self, given: Mapping[str, float | int | bool]) -> None:
         """Hold the settings.
 
         Raises:
@@ -58,17 +35,15 @@ class WindowEstimator(ABC):
             raise ValueError(f"{self.name} has no setting {unknown}; it has {', '.join(known) or 'none'}")
         self.values = {name: given.get(name, setting.default) for name, setting in known.items()}
         for name, value in self.values.items():
-            if not known[name].lower <= value <= known[name].upper:
-                ends = f"{known[name].lower:g} and {known[name].upper:g}"
-                raise ValueError(f"{self.name}: {name} must lie within {ends}, got {value!r}")
+            if problem := known[name].problem(value):
+                raise ValueError(f"{self.name}: {problem}")
 
     @abstractmethod
-    def front_end(self, sampling_rate: float, wavelet: Mapping[str, Any]) -> FrontEnd:
+    def front_end(self, transform: ContinuousWavelet | None) -> FrontEnd:
         """From windows (batch, window) to features (batch, window, feature).
 
         Args:
-            sampling_rate: Hz.
-            wavelet: Settings of `features.make_wavelet`, for those that transform.
+            transform: The wavelet transform that was chosen, for those that say that they transform.
         """
 
     @abstractmethod

@@ -1,12 +1,12 @@
 """The network on wavelet columns."""
 
-from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from gear_damping.identification.estimators.base import WindowEstimator
 from gear_damping.identification.estimators.raw_lstm import RawLSTM
 from gear_damping.identification.features import WaveletFrontEnd
 from gear_damping.identification.networks import DampingLSTM
+from gear_damping.signals.wavelets.base import ContinuousWavelet
 
 
 class CwtLSTM(WindowEstimator):
@@ -17,9 +17,9 @@ class CwtLSTM(WindowEstimator):
     settings: ClassVar = RawLSTM.settings
     transforms = True
 
-    def front_end(self, sampling_rate: float, wavelet: Mapping[str, Any]) -> WaveletFrontEnd:
+    def front_end(self, transform: ContinuousWavelet | None) -> WaveletFrontEnd:
         """The transform of the window."""
-        return WaveletFrontEnd(wavelet, sampling_rate)
+        return WaveletFrontEnd(transform)
 
     def network(self, n_features: int) -> DampingLSTM:
         """LSTM, dropout, dense, softplus."""

@@ -1,11 +1,12 @@
 """The network on raw windows."""
 
-from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import ClassVar
 
-from gear_damping.identification.estimators.base import Setting, WindowEstimator
+from gear_damping.identification.estimators.base import WindowEstimator
 from gear_damping.identification.features import FrontEnd
 from gear_damping.identification.networks import DampingLSTM
+from gear_damping.setting import Setting
+from gear_damping.signals.wavelets.base import ContinuousWavelet
 
 
 class RawLSTM(WindowEstimator):
@@ -18,7 +19,7 @@ class RawLSTM(WindowEstimator):
         Setting("dropout", 0.2, "part of the state that is dropped in training", 0.0, 0.99),
     )
 
-    def front_end(self, sampling_rate: float, wavelet: Mapping[str, Any]) -> FrontEnd:
+    def front_end(self, transform: ContinuousWavelet | None) -> FrontEnd:
         """The window itself."""
         return FrontEnd()
 

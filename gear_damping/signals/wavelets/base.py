@@ -3,10 +3,12 @@
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from math import exp, log, pi, sqrt
+from typing import ClassVar
 
 import torch
 from torch import Tensor, nn
 
+from gear_damping.setting import Setting
 from gear_damping.signals.checks import require_positive, require_records
 from gear_damping.signals.operators import dense_matrix, spectrum
 
@@ -44,6 +46,8 @@ class ContinuousWavelet(nn.Module, ABC):
         ValueError: an argument is out of range, or the frequencies are given both ways or neither.
     """
 
+    name: ClassVar[str]  # its key in `wavelet.kind`
+    own_settings: ClassVar[tuple[Setting, ...]] = ()  # arguments beside these, keys under `wavelet`
     complex_mother = False
 
     def __init__(

@@ -1,50 +1,13 @@
-"""Continuous wavelet transforms of sampled records: Ricker (real) and Morlet (complex).
-
-    W[s, n] = s^-1/2 sum_k x[k] conj(psi((k - n) / s)),      x = 0 outside the record
-
-with the scale s in samples: the L2 convention, in which every wavelet has the energy of its mother.
-The rule from scale to frequency belongs to the convention. A tone of angular frequency w (per sample)
-has |W| = A/2 s^1/2 psi^(s w) (A s^1/2 psi^(s w) for the real Ricker), and its ridge over the scales is
-where that is largest:
-
-    wavelet   ridge under L2 (used here)                    spectral peak = ridge under L1 (s^-1)
-    Ricker    f = sqrt(5/2) / (2 pi s) = 0.2516 / s         f = sqrt(2) / (2 pi s) = 0.2251 / s
-    Morlet    f = (w0 + sqrt(w0^2 + 2)) / (4 pi s)          f = w0 / (2 pi s)
-
-Mixing them puts a Ricker ridge 12 % off. Source of the L2 rules and of the cone of influence:
-Torrence and Compo, A practical guide to wavelet analysis, Bull. Amer. Meteor. Soc. 79 (1998), table 1.
-"""
+"""The Morlet wavelet: a tone under a Gaussian."""
 
 from math import exp, pi, sqrt
-from typing import Any
+from typing import Any, ClassVar
 
 import torch
 from torch import Tensor
 
-from gear_damping.signals.wavelet_base import ContinuousWavelet
-
-__all__ = ["ContinuousWavelet", "MorletCWT", "RickerCWT"]
-
-
-class RickerCWT(ContinuousWavelet):
-    """Transform by the Ricker wavelet psi(t) = 2 / (sqrt(3) pi^(1/4)) (1 - t^2) exp(-t^2 / 2): real.
-
-    The arguments are those of `ContinuousWavelet`.
-    """
-
-    def mother(self, t: Tensor) -> Tensor:
-        """The Ricker wavelet at times t (in scales)."""
-        return 2 / (sqrt(3) * pi**0.25) * (1 - t**2) * torch.exp(-(t**2) / 2)
-
-    @property
-    def ridge_number(self) -> float:
-        """sqrt(5/2): the maximum over s of s^1/2 (s w)^2 exp(-(s w)^2 / 2)."""
-        return sqrt(5 / 2)
-
-    @property
-    def peak_number(self) -> float:
-        """sqrt(2): the maximum over w of (s w)^2 exp(-(s w)^2 / 2)."""
-        return sqrt(2)
+from gear_damping.setting import Setting
+from gear_damping.signals.wavelets.base import ContinuousWavelet
 
 
 class MorletCWT(ContinuousWavelet):
@@ -63,7 +26,12 @@ class MorletCWT(ContinuousWavelet):
         ValueError: as `ContinuousWavelet`, or omega0 is below 5.
     """
 
+    name = "morlet"
     complex_mother = True
+    own_settings: ClassVar = (
+        Setting("omega0", 6.0, "oscillations of the wavelet", 5, 100),
+        Setting("magnitude", False, "its magnitude instead of real and imaginary part"),
+    )
 
     def __init__(
         self, sampling_rate: float, *, omega0: float = 6.0, magnitude: bool = False, **frequencies: Any

@@ -1,0 +1,115 @@
+"""The `model` and `wavelet` nodes: which estimators are trained, on what, and the numbers that they are built by."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from gear_damping.config.schema import Key, problem_with, problems_with
+from gear_damping.config.source import Origin
+from gear_damping.errors import InputError, Problem
+from gear_damping.identification.catalogue import KEY, estimator_catalogue, wavelet_catalogue
+from gear_damping.setting import Setting
+
+PLUGINS = Key("names", optional=True)
+FREQUENCIES = {
+    "frequency_min_hz": Key("float", 0, 1e12, exclusive=True),
+    "frequency_max_hz": Key("float", 0, 1e12, exclusive=True),
+    "n_scales": Key("int", 2, 4096),
+}
+
+
+@dataclass(frozen=True)
+class ModelSettings:
+    """The estimators of a run.
+
+    Args:
+        settings: The numbers that each is built by, by name of the estimator and of the setting.
+        plugins: The user's own files of estimators and wavelets.
+    """
+
+    settings: dict[str, dict[str, float | int | bool]]
+    plugins: tuple[str, ...] = ()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The estimators."""
+        return tuple(self.settings)
+
+
+def read_models(node: Mapping[str, Any], origin: Origin) -> ModelSettings:
+    """The checked `model` node. A setting counts for every estimator that has it.
+
+    Raises:
+        InputError: everything that is wrong with it.
+    """
+    plugins = _plugins(node, origin)
+    known = estimator_catalogue(plugins)
+    names = Key("names", choices=tuple(known))
+    _require(node, "names", names, "model.", origin)
+    chosen = {name: known[name] for name in node["names"]}
+    settings = {one.name: one for kind in chosen.values() for one in kind.settings}
+    given = {name: node.get(name, one.default) for name, one in settings.items()}
+    schema = {"names": names, "plugins": PLUGINS} | _schema_of(settings.values())
+    problems = problems_with({**node, **given, "plugins": list(plugins) or None}, schema, "model.", origin)
+    if problems:
+        raise InputError(problems)
+    own = {name: {one.name: given[one.name] for one in kind.settings} for name, kind in chosen.items()}
+    return ModelSettings(own, plugins)
+
+
+def read_wavelet(node: Mapping[str, Any], plugins: tuple[str, ...], origin: Origin) -> dict[str, Any]:
+    """The checked `wavelet` node as the plain arguments of `make_wavelet`.
+
+    Raises:
+        InputError: everything that is wrong with it.
+    """
+    known = wavelet_catalogue(plugins)
+    kinds = Key("text", choices=tuple(known))
+    _require(node, "kind", kinds, "wavelet.", origin)
+    chosen = known[node["kind"]]
+    settings = {one.name: one for one in chosen.own_settings}
+    own = {name: one.default if node.get(name) is None else node[name] for name, one in settings.items()}
+    others = {one.name: name for name, kind in known.items() for one in kind.own_settings if one.name not in settings}
+    foreign = {name: value for name, value in node.items() if name in others}
+    problems = [
+        Problem(
+            f"wavelet.{name}",
+            f"belongs to the {others[name].capitalize()} wavelet",
+            value,
+            f"choose wavelet={others[name]}",
+            origin.of(f"wavelet.{name}"),
+        )
+        for name, value in foreign.items()
+        if value is not None
+    ]
+    left = {name: value for name, value in node.items() if name not in foreign}
+    schema = {"kind": kinds} | FREQUENCIES | _schema_of(settings.values())
+    problems += problems_with({**left, **own}, schema, "wavelet.", origin)
+    if problems:
+        raise InputError(problems)
+    return {**left, **own}
+
+
+def _plugins(node: Mapping[str, Any], origin: Origin) -> tuple[str, ...]:
+    """The user's own files, every one of which can be used."""
+    plugins = node.get("plugins") or []
+    wrong = problem_with(plugins, PLUGINS, KEY, origin) if plugins else None
+    if wrong:
+        raise InputError(wrong)
+    try:
+        estimator_catalogue(plugins)
+    except InputError as error:
+        raise InputError([Problem(p.key, p.rule, p.value, p.remedy, origin.of(KEY)) for p in error.problems]) from error
+    return tuple(plugins)
+
+
+def _require(node: Mapping[str, Any], name: str, rule: Key, prefix: str, origin: Origin) -> None:
+    """Refuse a node in which a key is missing or wrong, on which all others hang."""
+    part = {name: node[name]} if name in node else {}
+    problems = problems_with(part, {name: rule}, prefix, origin)
+    if problems:
+        raise InputError(problems)
+
+
+def _schema_of(settings: Iterable[Setting]) -> dict[str, Key]:
+    return {one.name: Key(one.kind, one.lower, one.upper) for one in settings}

@@ -1,0 +1,114 @@
+"""Every estimator and every wavelet by name: those of the package, and the user's own."""
+
+import importlib
+import pkgutil
+from collections.abc import Mapping, Sequence
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from gear_damping.errors import InputError, Problem, nearest
+from gear_damping.identification import estimators as room
+from gear_damping.identification.estimators.base import WindowEstimator
+from gear_damping.own_files import REMEDY, classes_of, load_module
+from gear_damping.setting import Setting
+from gear_damping.signals.wavelets.base import ContinuousWavelet
+from gear_damping.signals.wavelets.catalogue import builtin_wavelets
+
+KEY = "model.plugins"
+TAKEN = ("mean", "white_noise", "names", "plugins", "kind", "frequency_min_hz", "frequency_max_hz", "n_scales")
+Part = type[WindowEstimator] | type[ContinuousWavelet]
+
+
+@cache
+def builtin_estimators() -> dict[str, type[WindowEstimator]]:
+    """The estimators that come with the package."""
+    found = {}
+    for module in pkgutil.iter_modules(room.__path__):
+        if module.name != "base":
+            loaded = importlib.import_module(f"{room.__name__}.{module.name}")
+            found |= {kind.name: kind for kind in classes_of(loaded, WindowEstimator)}
+    return dict(sorted(found.items()))
+
+
+def estimator_catalogue(plugins: Sequence[str | Path] = ()) -> dict[str, type[WindowEstimator]]:
+    """Every known estimator, with those of the user's own files added.
+
+    Raises:
+        InputError: a file is missing, cannot be loaded, declares nothing complete, or repeats a name.
+    """
+    return {**builtin_estimators(), **_own(plugins, WindowEstimator)}
+
+
+def wavelet_catalogue(plugins: Sequence[str | Path] = ()) -> dict[str, type[ContinuousWavelet]]:
+    """The same of wavelets."""
+    return {**builtin_wavelets(), **_own(plugins, ContinuousWavelet)}
+
+
+def kind_of(name: str, plugins: Sequence[str] = ()) -> type[WindowEstimator]:
+    """The estimator of this name.
+
+    Raises:
+        InputError: there is none, or a file cannot be used.
+    """
+    return _named("estimator", name, estimator_catalogue(plugins))
+
+
+def make_wavelet(settings: Mapping[str, Any], sampling_rate: float, plugins: Sequence[str] = ()) -> ContinuousWavelet:
+    """The transform named by settings["kind"] with its other plain arguments.
+
+    Raises:
+        InputError: the kind is unknown, or a file cannot be used.
+        ValueError: the transform refuses an argument.
+    """
+    arguments = dict(settings)
+    kind = _named("wavelet.kind", str(arguments.pop("kind", None)), wavelet_catalogue(plugins))
+    return kind(sampling_rate, **arguments)
+
+
+def _named(key: str, name: str, known: Mapping[str, Any]) -> Any:
+    if name not in known:
+        what = key.partition(".")[0]
+        remedy = f"{nearest(name, list(known))}; one of your own needs {KEY}=[its file]"
+        raise InputError(Problem(key, f"no such {what}", name, remedy))
+    return known[name]
+
+
+def _own(plugins: Sequence[str | Path], base: type) -> dict[str, Any]:
+    """What the user's own files declare of one kind of part."""
+    found: dict[str, Any] = {}
+    for path in map(Path, plugins):
+        module = load_module(path, KEY)
+        parts = _parts(module)
+        faults = [f"the class {kind.__name__} {fault}" for kind in parts for fault in _faults(kind)]
+        if not parts:
+            faults = ["declares no estimator and no wavelet: derive it from WindowEstimator or ContinuousWavelet"]
+        taken = {*builtin_estimators(), *builtin_wavelets(), *found, *TAKEN}
+        repeated = sorted({kind.name for kind in parts if not faults} & taken)
+        if repeated:
+            faults = [f"repeats the name {repeated}"]
+        if faults:
+            raise InputError([Problem(KEY, fault, str(path), REMEDY) for fault in faults])
+        found |= {kind.name: kind for kind in parts}
+    return {name: kind for name, kind in found.items() if issubclass(kind, base)}
+
+
+def _parts(module: ModuleType) -> list[Part]:
+    return [kind for base in (WindowEstimator, ContinuousWavelet) for kind in classes_of(module, base)]
+
+
+def _faults(kind: Part) -> list[str]:
+    """What is missing or wrong in a class."""
+    is_estimator = issubclass(kind, WindowEstimator)
+    found = [f"lacks {method}" for method in sorted(kind.__abstractmethods__)]
+    texts = ("name", "reference") if is_estimator else ("name",)
+    found += [f"lacks {one}, a text" for one in texts if not isinstance(getattr(kind, one, None), str)]
+    if not found and not kind.name.isidentifier():
+        found.append(f"has the name {kind.name!r}: letters, digits and '_' make a key")
+    settings = kind.settings if is_estimator else kind.own_settings
+    if not isinstance(settings, tuple) or not all(isinstance(one, Setting) for one in settings):
+        return [*found, "lacks settings, a tuple of Setting(…); () where it has none"]
+    found += [f"gives {one.name} a default outside its bounds" for one in settings if one.problem(one.default)]
+    taken = [one.name for one in settings if one.name in TAKEN]
+    return found + [f"has a setting called {name}, which is a key of its own" for name in taken]
