@@ -23,11 +23,13 @@ class InspectSettings:
         task: `inspect`.
         name: Of the experiment.
         measurement_path: A measurement.yaml or a file of data.
+        measurement_plugins: The user's own files of formats.
     """
 
     task: str
     name: str
     measurement_path: Path
+    measurement_plugins: tuple[str, ...] = ()
 
 
 def read_inspect_settings(config: Mapping[str, Any], origin: Origin) -> InspectSettings:
@@ -39,7 +41,9 @@ def read_inspect_settings(config: Mapping[str, Any], origin: Origin) -> InspectS
     problems = light_problems(config, origin)
     if problems:
         raise InputError(problems)
-    return InspectSettings(config["task"], config["name"], measurement_file(config["measurement"]["path"]))
+    measurement = config["measurement"]
+    plugins = tuple(measurement["plugins"] or ())
+    return InspectSettings(config["task"], config["name"], measurement_file(measurement["path"]), plugins)
 
 
 def light_problems(config: Mapping[str, Any], origin: Origin) -> list[Problem]:

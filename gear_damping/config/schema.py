@@ -70,7 +70,11 @@ SCHEMA: dict[str, Any] = {
         "patience": Key("int", 1, 1_000_000),
         "learning_rate": Key("float", 0, 10, exclusive=True),
     },
-    "measurement": {"path": Key("text", optional=True), "channel": Key("text", optional=True)},
+    "measurement": {
+        "path": Key("text", optional=True),
+        "channel": Key("text", optional=True),
+        "plugins": Key("names", optional=True),
+    },
 }
 ELSEWHERE = ("simulator", "family", "model", "wavelet")  # groups with a check of their own
 

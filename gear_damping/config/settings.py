@@ -38,6 +38,7 @@ class Settings:
     training: dict[str, Any]
     measurement_path: Path | None
     measurement_channel: str | None
+    measurement_plugins: tuple[str, ...]
 
     @property
     def all_seeds(self) -> list[int]:
@@ -98,6 +99,7 @@ def read_settings(config: Mapping[str, Any], origin: Origin) -> Settings:
         training=dict(config["training"]),
         measurement_path=measurement_file(path) if path else None,
         measurement_channel=config["measurement"]["channel"],
+        measurement_plugins=tuple(config["measurement"]["plugins"] or ()),
     )
 
 

@@ -4,7 +4,7 @@ What reads and assembles data is imported where data is read, so that a YAML alo
 """
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from math import pi
 from pathlib import Path
@@ -19,7 +19,7 @@ from gear_damping.measurement.record import Finding, Measurement, Quantity, Reco
 from gear_damping.measurement.yaml_file import read_yaml
 
 if TYPE_CHECKING:
-    from gear_damping.measurement.raw import RawRecord
+    from gear_damping.measurement.raw import Files, RawRecord
 
 ONE_RATE = 1e-6  # rates that differ by less are one, written with other digits
 OTHER_RATE = 0.01  # rates that differ by more are said
@@ -50,12 +50,15 @@ def check_declaration(path: str | Path) -> Plan:
     return plan
 
 
-def load_measurement(path: str | Path, max_bytes: int | None = None) -> Measurement:
+def load_measurement(
+    path: str | Path, max_bytes: int | None = None, plugins: Sequence[str | Path] = ()
+) -> Measurement:
     """Read a measurement.yaml and the files that it names.
 
     Args:
         path: The YAML file; the files in it are relative to its folder.
         max_bytes: Larger files are refused before they are read; the readers' own limit where None.
+        plugins: Files of one's own that read further formats.
 
     Returns:
         The measurement; what is suspicious in it stands in `findings`.
@@ -71,7 +74,7 @@ def load_measurement(path: str | Path, max_bytes: int | None = None) -> Measurem
     plan = declared_plan(content, problems, source)
     if plan is None:
         problems.raise_any()
-    raw = _read(plan, path.parent, max_bytes, problems, source)
+    raw = _read(plan, _files(path.parent, max_bytes, plugins), problems, source)
     declared = [(channel.plan.name, channel.unit) for record in raw for channel in record.channels]
     declared += [(name, quantity.unit) for record in raw for name, quantity in record.plan.conditions.items()]
     units = UnitSystem(plan.system, declared)
@@ -110,11 +113,16 @@ def _compare_units(plan: Plan, units: UnitSystem, problems: Problems, source: st
     return own
 
 
-def _read(plan: Plan, folder: Path, max_bytes: int | None, problems: Problems, source: str) -> "list[RawRecord]":
-    from gear_damping.measurement.formats.registry import MAX_BYTES
-    from gear_damping.measurement.raw import Files, RawReader
+def _files(folder: Path, max_bytes: int | None, plugins: Sequence[str | Path]) -> "Files":
+    from gear_damping.measurement.formats.registry import MAX_BYTES, readers
+    from gear_damping.measurement.raw import Files
 
-    files = Files(folder, MAX_BYTES if max_bytes is None else max_bytes)
+    return Files(folder, MAX_BYTES if max_bytes is None else max_bytes, readers(plugins))
+
+
+def _read(plan: Plan, files: "Files", problems: Problems, source: str) -> "list[RawRecord]":
+    from gear_damping.measurement.raw import RawReader
+
     records = []
     for record in plan.records:
         with problems.collecting():

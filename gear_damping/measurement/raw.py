@@ -1,6 +1,7 @@
 """Reading what a record's plan asks for out of its file, before units are compared."""
 
 import hashlib
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,7 +13,7 @@ from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.checks import refuse_not_finite
 from gear_damping.measurement.cutting import slower, window_rows
 from gear_damping.measurement.fields import Problems
-from gear_damping.measurement.formats.registry import read_table
+from gear_damping.measurement.formats.registry import Reader, read_table
 from gear_damping.measurement.formats.table import Table
 from gear_damping.measurement.paths import resolve_file
 from gear_damping.measurement.plan import ChannelPlan, EncoderPlan, RecordPlan, TimePlan
@@ -29,8 +30,8 @@ _SAME_UNIT = 1e-9  # the same of units
 class Files:
     """Files that are read and digested once, however many records lie in them."""
 
-    def __init__(self, folder: Path, max_bytes: int) -> None:
-        self._folder, self._max_bytes = folder, max_bytes
+    def __init__(self, folder: Path, max_bytes: int, known: Mapping[str, Reader] | None = None) -> None:
+        self._folder, self._max_bytes, self._known = folder, max_bytes, known
         self._tables: dict[Path, Table] = {}
         self._digests: dict[Path, str] = {}
 
@@ -38,7 +39,7 @@ class Files:
         """The table of a file named in the YAML; raises InputError where it cannot be read."""
         path = resolve_file(file, self._folder, key, source)
         if path not in self._tables:
-            self._tables[path] = read_table(path, self._max_bytes)
+            self._tables[path] = read_table(path, self._max_bytes, self._known)
         return self._tables[path]
 
     def sha256(self, path: Path) -> str:

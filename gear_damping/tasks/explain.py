@@ -20,7 +20,7 @@ EXTENDED = EDITED["explain"]
 
 def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     """Explain; returns the metrics for run.json."""
-    measurement = load_measurement(settings.measurement_path)
+    measurement = load_measurement(settings.measurement_path, plugins=settings.measurement_plugins)
     _note_inputs(measurement, folder)
     with progress_bar("explaining", settings.progress) as progress:
         limits = {"library": _library(settings), "minutes": settings.explain_minutes, "settings": settings.search}

@@ -15,7 +15,7 @@ from gear_damping.tasks.run_folder import RunFolder
 
 def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     """Identify; returns the metrics for run.json."""
-    measurement = load_measurement(settings.measurement_path)
+    measurement = load_measurement(settings.measurement_path, plugins=settings.measurement_plugins)
     _note_inputs(measurement, folder)
     refuse_faults(measurement)
     for finding in measurement.findings:

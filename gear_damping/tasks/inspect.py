@@ -13,7 +13,7 @@ import numpy as np
 from gear_damping.config.light import InspectSettings
 from gear_damping.config.measured import YAML_SUFFIXES
 from gear_damping.measurement.column_kinds import CONSTANT
-from gear_damping.measurement.formats.registry import read_table
+from gear_damping.measurement.formats.registry import read_table, readers
 from gear_damping.measurement.guessing import UNKNOWN, Guess, guesses, system_of
 from gear_damping.measurement.inspection import Column, Inspection, inspect_table
 from gear_damping.measurement.load import load_measurement
@@ -33,13 +33,13 @@ def run(settings: InspectSettings, folder: RunFolder) -> dict[str, Any]:
     """Inspect; returns the metrics for run.json."""
     path = settings.measurement_path
     if path.suffix.lower() in YAML_SUFFIXES:
-        return _declared(load_measurement(path), folder)
-    return _bare(path, folder)
+        return _declared(load_measurement(path, plugins=settings.measurement_plugins), folder)
+    return _bare(path, settings.measurement_plugins, folder)
 
 
-def _bare(path: Path, folder: RunFolder) -> dict[str, Any]:
+def _bare(path: Path, plugins: Sequence[str], folder: RunFolder) -> dict[str, Any]:
     start = folder.path / YAML_NAME
-    found = inspect_table(read_table(path))
+    found = inspect_table(read_table(path, known=readers(plugins)))
     folder.add_input(path)
     system = system_of(found)
     listed = guesses(found, system[0])

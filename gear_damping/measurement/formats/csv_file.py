@@ -17,6 +17,8 @@ from gear_damping.measurement.formats.cells import SHOWN, Cells, CellTable, deci
 from gear_damping.measurement.formats.header import Header, find_header, is_number
 from gear_damping.measurement.formats.table import Table, is_real, refuse_size, unreadable
 
+SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".gz")
+
 _HEAD = 100  # rows among which the header is looked for
 _PREAMBLE, _BELOW = 20, 20  # rows that may be settings; rows of the table below them, at least
 _NAN = ("nan", "NaN", "NAN", "Nan", "-nan", "+nan")
@@ -25,7 +27,7 @@ _END_OF_HEADER = re.compile(r"^\*+ ?end[_ ]of[_ ]header", re.IGNORECASE)
 _COMMENT = re.compile(rb"^[ \t]*#", re.MULTILINE)
 
 
-def read_csv(path: Path, max_bytes: int) -> Table:
+def read(path: Path, max_bytes: int) -> Table:
     """The columns of a text table; of a file in gzip after it is unpacked.
 
     Raises:

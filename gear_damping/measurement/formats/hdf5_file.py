@@ -19,10 +19,12 @@ from gear_damping.measurement.formats.table import (
     unreadable,
 )
 
+SUFFIXES = (".h5", ".hdf5", ".hdf")
+
 _UNIT_ATTRIBUTES = ("unit", "units", "Unit", "Units", "unit_string")
 
 
-def read_hdf5(path: Path, max_bytes: int) -> Table:
+def read(path: Path, max_bytes: int) -> Table:
     """The datasets of an HDF5 file as columns.
 
     Raises:

@@ -23,12 +23,14 @@ from gear_damping.measurement.formats.table import (
     unreadable,
 )
 
+SUFFIXES = (".mat",)
+
 _HDF5_MAGIC = b"\x89HDF"
 _COMPRESSED = 15  # the type of an element that is deflated
 _OBJECT = "MATLAB object; in MATLAB save its arrays, as t = ts.Time; y = ts.Data"
 
 
-def read_mat(path: Path, max_bytes: int) -> Table:
+def read(path: Path, max_bytes: int) -> Table:
     """The real arrays of a MAT file as columns, those in structures and cells too.
 
     Raises:

@@ -7,8 +7,10 @@ import numpy as np
 
 from gear_damping.measurement.formats.table import ArrayTable, Table, held_arrays, refuse_size, unreadable
 
+SUFFIXES = (".npz",)
 
-def read_npz(path: Path, max_bytes: int) -> Table:
+
+def read(path: Path, max_bytes: int) -> Table:
     """The arrays of an NPZ file as columns.
 
     Raises:

@@ -1,53 +1,78 @@
-"""From the suffix of a file to its reader."""
+"""From the suffix of a file to its reader: every `*_file.py` of this room, and the user's own.
 
-from collections.abc import Callable
-from importlib import import_module
+A file of a format says its `SUFFIXES`, and has `read(path, max_bytes)`, which gives a `Table`.
+"""
+
+import importlib
+import pkgutil
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
 from pathlib import Path
-from types import MappingProxyType
+from types import ModuleType
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.measurement import formats as room
 from gear_damping.measurement.formats.table import Table, refuse_size
+from gear_damping.own_files import REMEDY, load_module
 
 MAX_BYTES = 512 * 1024**2
+KEY = "measurement.plugins"
 Reader = Callable[[Path, int], Table]
 
 
-def _reader(name: str) -> Reader:
-    """The reader `read_<name>` of the file `<name>_file`, imported when it is first needed: its library takes long."""
-
-    def read(path: Path, max_bytes: int) -> Table:
-        module = import_module(f"gear_damping.measurement.formats.{name}_file")
-        return getattr(module, f"read_{name}")(path, max_bytes)
-
-    return read
+@cache
+def builtin_readers() -> dict[str, Reader]:
+    """The readers that come with the package, by suffix."""
+    names = [module.name for module in pkgutil.iter_modules(room.__path__) if module.name.endswith("_file")]
+    modules = [importlib.import_module(f"{room.__name__}.{name}") for name in names]
+    return {suffix: module.read for module in modules for suffix in module.SUFFIXES}
 
 
-READERS: MappingProxyType[str, Reader] = MappingProxyType(
-    {
-        **dict.fromkeys((".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".gz"), _reader("csv")),
-        **dict.fromkeys((".h5", ".hdf5", ".hdf"), _reader("hdf5")),
-        **dict.fromkeys((".uff", ".unv", ".uff58"), _reader("uff")),
-        **{f".{name}": _reader(name) for name in ("mat", "npz", "tdms", "wav", "xlsx")},
-    }
-)  # fmt: skip
+def readers(plugins: Sequence[str | Path] = ()) -> dict[str, Reader]:
+    """Every reader by suffix; a user's own file may read a known suffix in another way.
+
+    Raises:
+        InputError: a file is missing, cannot be loaded, or is no reader.
+    """
+    found = dict(builtin_readers())
+    for path in map(Path, plugins):
+        module = load_module(path, KEY)
+        faults = _faults(module)
+        if faults:
+            raise InputError([Problem(KEY, fault, str(path), REMEDY) for fault in faults])
+        found |= dict.fromkeys(module.SUFFIXES, module.read)
+    return found
 
 
-def read_table(path: Path, max_bytes: int = MAX_BYTES) -> Table:
+def _faults(module: ModuleType) -> list[str]:
+    """What is missing or wrong in a file."""
+    suffixes = getattr(module, "SUFFIXES", None)
+    found = []
+    texts = isinstance(suffixes, tuple) and suffixes and all(isinstance(one, str) for one in suffixes)
+    if not texts or not all(one.startswith(".") and one == one.lower() for one in suffixes):
+        found.append("lacks SUFFIXES, a tuple of suffixes in lower case such as ('.xyz',)")
+    if not callable(getattr(module, "read", None)):
+        found.append("lacks read(path, max_bytes), which gives a Table")
+    return found
+
+
+def read_table(path: Path, max_bytes: int = MAX_BYTES, known: Mapping[str, Reader] | None = None) -> Table:
     """The columns of a file.
 
     Args:
         path: An existing file.
         max_bytes: Larger files are refused before they are read.
+        known: Readers by suffix; those of the package where absent.
 
     Raises:
         InputError: an unknown, missing or unreadable format, an empty or a too large file.
     """
-    suffix = path.suffix.lower()
-    if suffix not in READERS:
-        known = ", ".join(sorted(READERS))
-        raise InputError(Problem("file", f"unknown format '{suffix}'", str(path), f"known are {known}"))
+    suffix, known = path.suffix.lower(), builtin_readers() if known is None else known
+    if suffix not in known:
+        remedy = f"known are {', '.join(sorted(known))}; a format of your own: {KEY}=[its file]"
+        raise InputError(Problem("file", f"unknown format '{suffix}'", str(path), remedy))
     size = path.stat().st_size
     if size == 0:
         raise InputError(Problem("file", "the file is empty", str(path), "export it again"))
     refuse_size(path, size, max_bytes)
-    return READERS[suffix](path, max_bytes)
+    return known[suffix](path, max_bytes)

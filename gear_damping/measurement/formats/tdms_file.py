@@ -21,10 +21,12 @@ from gear_damping.measurement.formats.table import (
     unreadable,
 )
 
+SUFFIXES = (".tdms",)
+
 _UNIT_PROPERTIES = ("unit_string", "NI_UnitDescription", "unit", "Unit")
 
 
-def read_tdms(path: Path, max_bytes: int) -> Table:
+def read(path: Path, max_bytes: int) -> Table:
     """The channels of a TDMS file as columns; time stamps are seconds since the first one of their channel.
 
     Raises:

@@ -8,13 +8,15 @@ import numpy as np
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.formats.table import ArrayTable, Held, Table, extra_library, unreadable
 
+SUFFIXES = (".uff", ".unv", ".uff58")
+
 _TIME = 17  # the specific data type of an abscissa in seconds
 _FREQUENCY = 18
 _TAIL = 1024  # bytes in which the mark of the last set's end stands
 _WRITTEN = 5e-6  # the increment stands in the file with six digits
 
 
-def read_uff(path: Path, max_bytes: int) -> Table:
+def read(path: Path, max_bytes: int) -> Table:
     """The functions of a UFF file as columns; those of an even abscissa in time bring their rate.
 
     Raises:

@@ -9,8 +9,10 @@ from scipy.io import wavfile
 
 from gear_damping.measurement.formats.table import ArrayTable, Held, Table, unreadable
 
+SUFFIXES = (".wav",)
 
-def read_wav(path: Path, max_bytes: int) -> Table:
+
+def read(path: Path, max_bytes: int) -> Table:
     """The channels of a WAV file by index, integers divided by full scale, with its sampling rate.
 
     Raises:

@@ -13,10 +13,12 @@ from gear_damping.measurement.formats.cells import Cells, CellTable
 from gear_damping.measurement.formats.header import find_header
 from gear_damping.measurement.formats.table import Table, extra_library, refuse_size, unreadable
 
+SUFFIXES = (".xlsx",)
+
 _HEAD = 100  # rows among which the header is looked for
 
 
-def read_xlsx(path: Path, max_bytes: int) -> Table:
+def read(path: Path, max_bytes: int) -> Table:
     """The columns of a workbook, formulas by the values that Excel stored; times are seconds from the first.
 
     Raises:
