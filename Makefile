@@ -37,10 +37,18 @@ check: setup  ## everything `make test` runs and the slow tests
 	$(BIN)/lint-imports
 	$(PYTEST) $(ARGS)
 
-docs: setup  ## write docs/effects.md with its figures, docs/explanation.md and the reference of docs/measurement.md
+# The site has an environment of its own: it reads the package and runs nothing of it.
+DOCS_VENV := .venv-docs
+$(DOCS_VENV)/.installed: docs/requirements.txt
+	$(PYTHON) -m venv $(DOCS_VENV)
+	$(DOCS_VENV)/bin/pip install --quiet --disable-pip-version-check $(PIP_OPTIONS) -r docs/requirements.txt
+	@touch $@
+
+docs: setup $(DOCS_VENV)/.installed  ## write the pages that follow from the code, and build the site (outputs/site)
 	$(BIN)/python -m gear_damping.reporting.effects_page $(ARGS)
 	$(BIN)/python -m gear_damping.reporting.measurement_page
 	$(BIN)/python -m gear_damping.reporting.explanation_page
+	NO_MKDOCS_2_WARNING=1 $(DOCS_VENV)/bin/mkdocs build --quiet --strict
 
 # The peers have an environment of their own; the package needs none of them.
 BENCH_VENV := .venv-bench

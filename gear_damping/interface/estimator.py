@@ -1,9 +1,8 @@
 """A trained network that tells the damping of records."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import NamedTuple
 
 import torch
 
@@ -14,7 +13,8 @@ from gear_damping.measurement.record import Measurement, Record
 from gear_damping.physics.catalogue import SYSTEMS
 
 
-class Prediction(NamedTuple):
+@dataclass(frozen=True)
+class Prediction:
     """What a network says of a record.
 
     Args:
