@@ -1,8 +1,9 @@
 """A linear oscillator from measured records: mass-normalised parameters with intervals."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import isfinite, pi
+from typing import Any
 
 import numpy as np
 import torch
@@ -60,6 +61,9 @@ class OscillatorFit:
         converged: Whether the search came to rest.
         given: Every parameter of the fitted model by flat name.
         own: What single records have of their own, such as offsets, by name.
+        problem: The fit's statement.
+        fitted: The fit.
+        scale: Characteristic time in s.
         segments: How the records were cut.
     """
 
@@ -73,7 +77,14 @@ class OscillatorFit:
     converged: bool
     given: dict[str, float]
     own: dict[str, float]
+    problem: OutputErrorProblem = field(repr=False)
+    fitted: Fitted = field(repr=False)
+    scale: float
     segments: Segments = WHOLE
+
+    def weighed(self, fitted: Fitted) -> "OscillatorFit":
+        """The same with the quantities and intervals of another solution of its problem."""
+        return replace(self, **_quantities(estimates(self.problem, fitted, self.scale)))
 
 
 def fit_oscillator(
@@ -104,7 +115,7 @@ def fit_oscillator(
     if any(isfinite(parameter.deviation) for parameter in problem.free):
         fitted = _with_expectations(problem, fitted)
     values = {name: float(value) for name, value in problem.unknowns.parameters(fitted.shared).items()}
-    found = _estimates(problem, fitted, scale)
+    found = estimates(problem, fitted, scale)
     given = problem.given | {p.name: values[p.name] for p in free}
     residuals = _fit_residuals(problem, fitted, fit_records, segments)
     own = {name: value for name, value in values.items() if name not in given}
@@ -114,18 +125,25 @@ def fit_oscillator(
         own |= held.own
     records = [*covered(fit_records, segments), *covered(holdout_records, segments)]
     return OscillatorFit(
-        parameters={k: v for k, v in found.items() if k in (STIFFNESS, GAIN, "damping_coefficient")},
-        damping_ratio_percent=found.get("damping_ratio_percent"),
-        natural_frequency_hz=found.get("natural_frequency_hz"),
-        log_decrement=found.get("log_decrement"),
+        **_quantities(found),
         predictions={record.name: record.stacked - residuals[record.name] for record in records},
         residuals=residuals,
         rmse={"fit": _rmse(fit_records, residuals), "holdout": _rmse(holdout_records, residuals)},
         converged=fitted.converged,
         given=given,
         own=own,
+        problem=problem,
+        fitted=fitted,
+        scale=scale,
         segments=segments,
     )
+
+
+def _quantities(found: Mapping[str, Estimate]) -> dict[str, Any]:
+    """Estimates where an `OscillatorFit` has them."""
+    named = ("damping_ratio_percent", "natural_frequency_hz", "log_decrement")
+    parameters = {k: v for k, v in found.items() if k in (STIFFNESS, GAIN, "damping_coefficient")}
+    return {"parameters": parameters} | {name: found.get(name) for name in named}
 
 
 def _with_expectations(problem: OutputErrorProblem, fitted: Fitted) -> Fitted:
@@ -268,7 +286,8 @@ def _horizons(problem: OutputErrorProblem, scale: float) -> list[float | None]:
     return [p * scale for p in HORIZON_PERIODS if FEWEST_SAMPLES / rate <= p * scale < whole] + [None]
 
 
-def _estimates(problem: OutputErrorProblem, fitted: Fitted, scale: float) -> dict[str, Estimate]:
+def estimates(problem: OutputErrorProblem, fitted: Fitted, scale: float) -> dict[str, Estimate]:
+    """What a solution says, with 95 % intervals: parameters, damping ratio, frequency, decrement."""
     spread = covariance(problem, fitted, CORRELATED_PERIODS * scale)
     place = {parameter.name: i for i, parameter in enumerate(problem.free)}
 

@@ -19,6 +19,7 @@ from gear_damping.explanation.model.hypothesis import Given, Hypothesis, Outcome
 from gear_damping.explanation.model.nominal_gear_pair import angles_of, first_gear_pair
 from gear_damping.explanation.model.spread import spread_of
 from gear_damping.explanation.steps.too_short import too_short
+from gear_damping.explanation.trials.efficient import weighed
 from gear_damping.identification.oscillator import linear_model
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.interface.identified_page import MOST_PANELS, estimate_rows, panel, residual_rows
@@ -73,7 +74,7 @@ def own_fit(measurement: Measurement, model: Model, free: Sequence[str], say: Sa
         evidence = with_own_angles(evidence)
         own = angles_of(begun, evidence, evidence.duration, solver)
     outcome = fit_hypothesis(begun, evidence, own=own, iterations=ITERATIONS, solver=solver)
-    return Fitted(evidence, noise, outcome)
+    return Fitted(evidence, noise, weighed(outcome, evidence))
 
 
 def _refuse_casing(measurement: Measurement) -> None:

@@ -1,10 +1,13 @@
 """Oscillators, fitted by the linear model, with what it lacks."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
-from gear_damping.identification.observation import fit_record, known_of, require_alike, require_fitted
+from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome
+from gear_damping.explanation.trials.efficient import weighed
+from gear_damping.identification.observation import Known, fit_record, known_of, require_alike, require_fitted
 from gear_damping.identification.oscillator import Estimate, OscillatorFit, fit_oscillator
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import Segments
@@ -14,6 +17,8 @@ from gear_damping.measurement.record import Channel, Measurement, Record
 from gear_damping.reporting import figures, tables
 from gear_damping.simulation.integrate import Progress
 from gear_damping.simulation.solver_settings import Solver
+
+MOST_SAMPLES = 200_000  # beyond which the test of what is random takes longer than the fit
 
 
 @dataclass(frozen=True)
@@ -43,7 +48,25 @@ def linear_fit(measurement: Measurement, progress: Progress | None, solver: Solv
     channel = channels[roles["fit"][0].observed.name]
     stated = Segments(measurement.segment_s, exact=True) if measurement.segment_s else None
     found = fit_oscillator(roles["fit"], roles["holdout"], progress, solver, known, stated)
-    return Fitted(found, roles, channel)
+    return Fitted(_weighed(found, roles["fit"], known, channel), roles, channel)
+
+
+def _weighed(found: OscillatorFit, fit: Sequence[FitRecord], known: Known, channel: Channel) -> OscillatorFit:
+    """The figures weighed by what is random in the residual, where nothing else is: only then its interval holds."""
+    problem, left = found.problem, found.fitted.prediction.residual
+    if left.numel() > MOST_SAMPLES:
+        return found
+    if not problem.noise:
+        problem.noise = float(left.square().sum() / (problem.response.weights > 0).sum().clamp(min=1)) ** 0.5
+    model = problem.model
+    hypothesis = Hypothesis(model.system, tuple(model.effects), found.given, tuple(problem.free))
+    values = {name: float(value) for name, value in problem.unknowns.parameters(found.fitted.shared).items()}
+    outcome = Outcome(hypothesis, problem, found.fitted, values, [], [])
+    evidence = Evidence("oscillator", tuple(fit), (), known, channel, False, noise=problem.noise)
+    better = weighed(outcome, replace(evidence, segments=found.segments))
+    if better.whitened is None:
+        return found
+    return found.weighed(replace(better.fitted, prediction=better.whitened))
 
 
 def _fit_on(measurement: Measurement) -> Sequence[Record]:

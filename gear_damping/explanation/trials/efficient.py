@@ -7,7 +7,9 @@ is white, so that its interval holds.
 
 from dataclasses import replace
 
+from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.hypothesis import Outcome, settled_at
+from gear_damping.explanation.trials.assess import assessed
 from gear_damping.explanation.trials.random_part import Random, Whitener
 from gear_damping.identification.output_error.descent import SMALLEST_DAMPING, Points, moves, newton_step
 from gear_damping.identification.output_error.problem import Prediction
@@ -39,6 +41,12 @@ def efficient(outcome: Outcome, random: Random) -> Outcome:
         values=values,
         whitened=replace(white, residual=white.residual - foretold),
     )
+
+
+def weighed(outcome: Outcome, evidence: Evidence) -> Outcome:
+    """The same by what is random in what a fit leaves; the fit as it is where more than that is visible."""
+    seen = assessed(outcome, [], evidence)
+    return outcome if seen is None or seen.visible else efficient(outcome, seen.random)
 
 
 def _whitened(outcome: Outcome, random: Random) -> Prediction:
