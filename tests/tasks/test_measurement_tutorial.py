@@ -83,7 +83,7 @@ def test_the_commands_of_the_tutorial_run_and_give_what_it_says(reader):
     assert metrics(swing / "declared") == {"system": "oscillator", "records": 2, "data_problems": 0}
     found = metrics(swing / "identified")
     frequency = f"{found['natural_frequency_hz']:.3f}".lstrip("0")
-    assert f"{found['damping_ratio_percent']:.1f} % (9.9 … 10.9) at {frequency} Hz" in TUTORIAL
+    assert f"{found['damping_ratio_percent']:.1f} % (9.8 … 10.8) at {frequency} Hz" in TUTORIAL
     for part in ("fit", "holdout"):
         assert f"{1000 * found[f'rmse_{part}']:.1f} mV" in TUTORIAL
 
