@@ -1,5 +1,7 @@
 """Whether the size of a cause is told from none: of one that is there, of one that is not, of one that stands in."""
 
+import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
@@ -8,7 +10,9 @@ import torch
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.fitting import fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Hypothesis
+from gear_damping.explanation.state import Accepted, State
 from gear_damping.explanation.steps.told import is_told
+from gear_damping.explanation.steps.told import told as told_of
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.physics.catalogue import effect_class
 from gear_damping.physics.model import Model
@@ -87,3 +91,16 @@ def test_what_took_the_place_of_a_spring_needs_a_shape_of_its_own(moved, half, e
     )
     refit = SimpleNamespace(score=SimpleNamespace(candidate=candidate), name="sine_restoring")
     assert is_told(outcome, refit, SimpleNamespace(noise=NOISE)) is expected
+
+
+def test_a_cause_beside_which_small_changes_run_away_is_dropped():
+    outcome, _, evidence = fitted(4.0, ("cubic_stiffness.coefficient",))
+    broken = replace(outcome.fitted.prediction, sensitivity=outcome.fitted.prediction.sensitivity * math.nan)
+    astray = replace(outcome, fitted=replace(outcome.fitted, prediction=broken))
+    assert outcome.is_finite
+    assert not astray.is_finite
+    said, refit = [], SimpleNamespace(name="cubic_stiffness")
+    bench = SimpleNamespace(evidence=evidence, say=said.append, without=lambda *_: outcome)
+    state = State(bench, outcome, astray, accepted=(Accepted("cubic_stiffness", refit, 0.5, ()),))
+    assert told_of(state).accepted == ()
+    assert "its size is not told from none" in said[0]

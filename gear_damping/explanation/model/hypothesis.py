@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from math import isfinite
 
 import torch
 from torch import Tensor
@@ -103,6 +104,11 @@ class Outcome:
     def linearisation(self) -> Prediction:
         """Residuals and sensitivities that its parameters are known by."""
         return self.fitted.prediction if self.whitened is None else self.whitened
+
+    @property
+    def is_finite(self) -> bool:
+        """Whether its motion, and that of every small change of its parameters, stays finite."""
+        return bool(self.fitted.prediction.sensitivity.isfinite().all()) and isfinite(self.left_out_cost)
 
     @property
     def left_out_cost(self) -> float:

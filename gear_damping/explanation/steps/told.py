@@ -25,7 +25,8 @@ def told(state: State) -> State:
     """Without causes whose size the records do not tell from none."""
     bench = state.bench
     for cause in state.accepted:
-        if is_told(state.outcome, cause.refit, bench.evidence):
+        runs_away = not state.outcome.is_finite  # with a small change: then it tells nothing
+        if not runs_away and is_told(state.outcome, cause.refit, bench.evidence):
             continue
         bench.say(f"{cause.name} lowers the cost, but its size is not told from none")
         kept = tuple(other for other in state.accepted if other is not cause)

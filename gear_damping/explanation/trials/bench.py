@@ -154,7 +154,8 @@ class Bench:
         if outcome.fitted.converged:
             return outcome
         hypothesis, solver = outcome.hypothesis, self.solver
-        return fit_hypothesis(hypothesis, self.evidence, None, outcome, iterations=LAST_ITERATIONS, solver=solver)
+        further = fit_hypothesis(hypothesis, self.evidence, None, outcome, iterations=LAST_ITERATIONS, solver=solver)
+        return further if further.is_finite else outcome
 
     def converged(self, fit: Refit, against: Outcome) -> Refit:
         """A full fit carried on where it had not converged, and held against a model."""

@@ -148,7 +148,7 @@ def refitted(
             freed, free=tuple(replace(p, start=float(found.hypothesis.given.get(p.name, p.start))) for p in freed.free)
         )
         found = fit_hypothesis(freed, evidence, None, found, reach=reach, **(options | {"own": None}))
-    if not torch.isfinite(torch.tensor(found.left_out_cost)):
+    if not found.is_finite:
         return None
     return compared(score, found, against or outcome, evidence)
 
