@@ -236,11 +236,11 @@ def _taken_of_all(state: State) -> float:
 
 
 def _is_one(state: State) -> bool | None:
-    """Whether every cause has one size over all records; None where too few records tell of one."""
+    """Whether every cause has one size over all records; None where none is refuted and too few tell of one."""
     tests = [homogeneity(state.outcome, cause.name, state.bench.evidence) for cause in state.accepted]
-    if not all(test.testable for test in tests):
-        return None
-    return all(test.holds for test in tests)
+    if not all(test.holds for test in tests):
+        return False
+    return True if all(test.testable for test in tests) else None
 
 
 def _tell(nominal: Outcome, bench: Bench) -> None:

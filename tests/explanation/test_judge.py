@@ -103,3 +103,14 @@ def test_a_share_is_one_of_residuals_where_nothing_was_left_beyond_noise(first, 
     outcomes = [SimpleNamespace(percent=p, left_out_cost=c) for p, c in ((first, 10.0), (first - 6.0, 6.0))]
     bench = SimpleNamespace(excess=lambda outcome: excess_of(outcome.percent, 1.0))
     assert State(bench, outcomes[0], outcomes[0]).share_taken(outcomes[1]) == pytest.approx(share)
+
+
+@pytest.mark.parametrize(("is_one", "word"), [(True, PARTLY), (None, PARTLY), (False, UNEXPLAINED)])
+@pytest.mark.parametrize("causes", [1, 2])
+def test_a_cause_of_several_sizes_beside_a_rest_stands_in_for_something_else(is_one, word, causes):
+    """However small the rest, and however much of the gap it takes."""
+    names = ("coulomb_friction", "cubic_stiffness")[:causes]
+    found = search(accepted=tuple(cause(name) for name in names), left=True)
+    said = verdict(found, MUCH, excess_of(0.5, 2.4), is_one=is_one)
+    assert said.word == word
+    assert ("another size in other records" in said.sentences[0]) is (is_one is False)

@@ -62,7 +62,8 @@ def verdict(
         before: Excess of the calibrated nominal model.
         after: Excess of the extended one.
         converged: Whether the calibration converged.
-        is_one: Whether every cause has one size over all records; None where too few records tell of one.
+        is_one: Whether every cause has one size over all records; False where one has not, None where too few records
+            tell of one.
         whole: Share that causes take of everything beyond the sensor's noise, what looks random included.
         fitted: What the nominal model leaves of the fitted records beyond the noise, in % of their variance.
         untried: What there was no time for.
@@ -77,6 +78,12 @@ def verdict(
     classes = [cause for cause in found.accepted if cause.effect.cause.one_class]
     rest = is_all(after, before, settings) or (not is_visible(found.left) and after.misfit <= settings.small_misfit)
     beside = (taken.sentence, *_not_told_apart(confused), *unsettled)
+    if not rest and is_one is False:
+        text = (
+            f"{missing}. {said[0].upper()}{said[1:]} would take part of it, but with another size in other records: "
+            "it stands in for something that has no name here."
+        )
+        return Verdict(UNEXPLAINED, (text, *unsettled))
     if not rest:
         nobody_knows = is_one is None and of_fit >= settings.taken_by_all  # one size: but nearly all of one record
         is_small = after.misfit <= settings.small_misfit
