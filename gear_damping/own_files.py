@@ -1,7 +1,8 @@
-"""Python files of a user: loaded, with one clear message where that fails."""
+"""Python files that each declare a part: those of a room of the package, and a user's own."""
 
 import importlib.util
 import inspect
+import pkgutil
 import traceback
 from pathlib import Path
 from types import ModuleType
@@ -9,6 +10,11 @@ from types import ModuleType
 from gear_damping.errors import InputError, Problem
 
 REMEDY = "correct the file"
+
+
+def modules_of(room: ModuleType) -> list[ModuleType]:
+    """The modules of a package that each declare parts, in the order of their names."""
+    return [importlib.import_module(f"{room.__name__}.{one.name}") for one in pkgutil.iter_modules(room.__path__)]
 
 
 def load_module(path: Path, key: str) -> ModuleType:

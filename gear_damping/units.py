@@ -80,9 +80,9 @@ _ALSO = {
     "RPM": "rpm", "U/min": "rpm", "Volt": "V", "Volts": "V", "volt": "V", "volts": "V", "Newton": "N", "hz": "Hz",
     "HZ": "Hz", "Deg": "deg", "degree": "deg", "degrees": "deg", "radian": "rad", "radians": "rad",
 }  # fmt: skip
+_DIGITS = r"\s*(?P<number>[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?)\s*"
+_NUMBER, _SPOKEN = re.compile(f"^{_DIGITS}$"), re.compile(rf"^{_DIGITS}(?P<unit>[A-Za-zµμ°%].*?)\s*$")
 # a power may stand without its sign: m/s2
-_NUMBER = re.compile(r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*$")
-_SPOKEN = re.compile(r"^\s*(?P<number>[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?)\s*(?P<unit>[A-Za-zµμ°%].*?)\s*$")
 _FACTOR = re.compile(r"^(?P<atom>[A-Za-z%]+|1)((\^(?P<power>-?\d+(\.\d+)?))|(?P<raised>[23]))?$")
 
 

@@ -1,13 +1,14 @@
 """The `model` and `wavelet` nodes: which estimators are trained, on what, and the numbers that they are built by."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from gear_damping.config.schema import Key, problem_with, problems_with
-from gear_damping.config.source import Origin
+from gear_damping.config.source import COMMAND_LINE, Origin
 from gear_damping.errors import InputError, Problem
 from gear_damping.identification.catalogue import KEY, estimator_catalogue, wavelet_catalogue
+from gear_damping.identification.estimators.base import WindowEstimator
 from gear_damping.setting import Setting
 
 PLUGINS = Key("names", optional=True)
@@ -42,11 +43,11 @@ def read_models(node: Mapping[str, Any], origin: Origin) -> ModelSettings:
     Raises:
         InputError: everything that is wrong with it.
     """
-    plugins = _plugins(node, origin)
-    known = estimator_catalogue(plugins)
+    plugins, known = _own(node, origin)
     names = Key("names", choices=tuple(known))
     _require(node, "names", names, "model.", origin)
     chosen = {name: known[name] for name in node["names"]}
+    node = _without_others(node, chosen, known, origin)
     settings = {one.name: one for kind in chosen.values() for one in kind.settings}
     given = {name: node.get(name, one.default) for name, one in settings.items()}
     schema = {"names": names, "plugins": PLUGINS} | _schema_of(settings.values())
@@ -90,17 +91,25 @@ def read_wavelet(node: Mapping[str, Any], plugins: tuple[str, ...], origin: Orig
     return {**left, **own}
 
 
-def _plugins(node: Mapping[str, Any], origin: Origin) -> tuple[str, ...]:
-    """The user's own files, every one of which can be used."""
+def _without_others(
+    node: Mapping[str, Any], chosen: Iterable[str], known: Mapping[str, type[WindowEstimator]], origin: Origin
+) -> dict[str, Any]:
+    """The node without what a file of `conf/model` sets for estimators that are not trained; typed, it is refused."""
+    used = {one.name for name in chosen for one in known[name].settings}
+    others = {one.name for kind in known.values() for one in kind.settings} - used
+    return {key: v for key, v in node.items() if key not in others or origin.place(f"model.{key}") == COMMAND_LINE}
+
+
+def _own(node: Mapping[str, Any], origin: Origin) -> tuple[tuple[str, ...], dict[str, type[WindowEstimator]]]:
+    """The user's own files, every one of which can be used, and the estimators that there are with them."""
     plugins = node.get("plugins") or []
     wrong = problem_with(plugins, PLUGINS, KEY, origin) if plugins else None
     if wrong:
         raise InputError(wrong)
     try:
-        estimator_catalogue(plugins)
+        return tuple(plugins), estimator_catalogue(plugins)
     except InputError as error:
-        raise InputError([Problem(p.key, p.rule, p.value, p.remedy, origin.of(KEY)) for p in error.problems]) from error
-    return tuple(plugins)
+        raise InputError([replace(problem, source=origin.of(KEY)) for problem in error.problems]) from error
 
 
 def _require(node: Mapping[str, Any], name: str, rule: Key, prefix: str, origin: Origin) -> None:

@@ -1,9 +1,9 @@
 """The settings of one run: what every task receives."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from gear_damping.config import schema
 from gear_damping.config.combinations import Whole, combination_problems
@@ -13,6 +13,8 @@ from gear_damping.config.simulator import SimulatorSettings, read_simulator
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
 from gear_damping.explanation.settings import SearchSettings
+
+Read = TypeVar("Read")
 
 
 @dataclass(frozen=True)
@@ -54,26 +56,24 @@ def read_settings(config: Mapping[str, Any], origin: Origin) -> Settings:
     """
     config = {key: value for key, value in config.items() if key != "hydra"}
     problems = schema.check(config, origin)
-    simulator = models = wavelet = None
     nodes = {group: config.get(group) for group in schema.ELSEWHERE}
     for group, node in nodes.items():
         if not isinstance(node, Mapping):
             problems.append(Problem(group, "is a group of keys", node, f"choose {group}=<choice>", origin.of(group)))
-    if isinstance(nodes["model"], Mapping):
+
+    def tried(read: Callable[..., Read], groups: Sequence[str], *more: Any) -> Read | None:
+        """What a reader makes of groups; None where one of them cannot be read."""
+        if not all(isinstance(nodes[group], Mapping) for group in groups):
+            return None
         try:
-            models = read_models(nodes["model"], origin)
+            return read(*(nodes[group] for group in groups), *more, origin)
         except InputError as error:
-            problems += error.problems
-    if isinstance(nodes["wavelet"], Mapping):
-        try:
-            wavelet = read_wavelet(nodes["wavelet"], models.plugins if models else (), origin)
-        except InputError as error:
-            problems += error.problems
-    if all(isinstance(nodes[group], Mapping) for group in ("simulator", "family")):
-        try:
-            simulator = read_simulator(nodes["simulator"], nodes["family"], origin)
-        except InputError as error:
-            problems += error.problems
+            problems.extend(error.problems)
+            return None
+
+    models = tried(read_models, ["model"])
+    wavelet = tried(read_wavelet, ["wavelet"], models.plugins if models else ())
+    simulator = tried(read_simulator, ["simulator", "family"])
     path = (config.get("measurement") or {}).get("path")
     whole = Whole(config, simulator, origin)
     problems += combination_problems(whole, {problem.key for problem in problems})

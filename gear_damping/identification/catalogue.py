@@ -1,17 +1,15 @@
 """Every estimator and every wavelet by name: those of the package, and the user's own."""
 
-import importlib
-import pkgutil
 from collections.abc import Mapping, Sequence
 from functools import cache
+from inspect import isabstract
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.identification import estimators as room
 from gear_damping.identification.estimators.base import WindowEstimator
-from gear_damping.own_files import REMEDY, classes_of, load_module
+from gear_damping.own_files import REMEDY, classes_of, load_module, modules_of
 from gear_damping.setting import Setting
 from gear_damping.signals.wavelets.base import ContinuousWavelet
 from gear_damping.signals.wavelets.catalogue import builtin_wavelets
@@ -24,12 +22,8 @@ Part = type[WindowEstimator] | type[ContinuousWavelet]
 @cache
 def builtin_estimators() -> dict[str, type[WindowEstimator]]:
     """The estimators that come with the package."""
-    found = {}
-    for module in pkgutil.iter_modules(room.__path__):
-        if module.name != "base":
-            loaded = importlib.import_module(f"{room.__name__}.{module.name}")
-            found |= {kind.name: kind for kind in classes_of(loaded, WindowEstimator)}
-    return dict(sorted(found.items()))
+    kinds = (kind for module in modules_of(room) for kind in classes_of(module, WindowEstimator))
+    return {kind.name: kind for kind in kinds if not isabstract(kind)}
 
 
 def estimator_catalogue(plugins: Sequence[str | Path] = ()) -> dict[str, type[WindowEstimator]]:
@@ -79,8 +73,7 @@ def _own(plugins: Sequence[str | Path], base: type) -> dict[str, Any]:
     """What the user's own files declare of one kind of part."""
     found: dict[str, Any] = {}
     for path in map(Path, plugins):
-        module = load_module(path, KEY)
-        parts = _parts(module)
+        parts = _parts_of(path, path.stat().st_mtime_ns if path.is_file() else 0)
         faults = [f"the class {kind.__name__} {fault}" for kind in parts for fault in _faults(kind)]
         if not parts:
             faults = ["declares no estimator and no wavelet: derive it from WindowEstimator or ContinuousWavelet"]
@@ -94,7 +87,10 @@ def _own(plugins: Sequence[str | Path], base: type) -> dict[str, Any]:
     return {name: kind for name, kind in found.items() if issubclass(kind, base)}
 
 
-def _parts(module: ModuleType) -> list[Part]:
+@cache
+def _parts_of(path: Path, changed: int) -> list[Part]:
+    """The parts that a file declares; it is run once, until it has changed."""
+    module = load_module(path, KEY)
     return [kind for base in (WindowEstimator, ContinuousWavelet) for kind in classes_of(module, base)]
 
 

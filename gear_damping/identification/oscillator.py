@@ -112,8 +112,10 @@ def fit_oscillator(
     pieces = in_segments(fit_records, segments)
     problem = OutputErrorProblem(linear_oscillator(fit_records), given, free, pieces, solver)
     fitted = _fitted(problem, spring, scale, report)
-    if any(isfinite(parameter.deviation) for parameter in problem.free):
-        fitted = _with_expectations(problem, fitted)
+    samples = max(float((problem.response.weights > 0).sum()), 1.0)
+    problem.noise = float(fitted.prediction.residual.square().sum() / samples) ** 0.5
+    if any(isfinite(parameter.deviation) for parameter in problem.free):  # weighed by the noise that is left
+        fitted = fit(problem, fitted.shared.unsqueeze(0), states=fitted.states.unsqueeze(0))
     values = {name: float(value) for name, value in problem.unknowns.parameters(fitted.shared).items()}
     found = estimates(problem, fitted, scale)
     given = problem.given | {p.name: values[p.name] for p in free}
@@ -144,13 +146,6 @@ def _quantities(found: Mapping[str, Estimate]) -> dict[str, Any]:
     named = ("damping_ratio_percent", "natural_frequency_hz", "log_decrement")
     parameters = {k: v for k, v in found.items() if k in (STIFFNESS, GAIN, "damping_coefficient")}
     return {"parameters": parameters} | {name: found.get(name) for name in named}
-
-
-def _with_expectations(problem: OutputErrorProblem, fitted: Fitted) -> Fitted:
-    """The fit carried on with what is expected of parameters, weighed by the noise that the first one left."""
-    samples = max(float((problem.response.weights > 0).sum()), 1.0)
-    problem.noise = float(fitted.prediction.residual.square().sum() / samples) ** 0.5
-    return fit(problem, fitted.shared.unsqueeze(0), states=fitted.states.unsqueeze(0))
 
 
 def linear_oscillator(records: Sequence[FitRecord]) -> Model:

@@ -53,12 +53,9 @@ def linear_fit(measurement: Measurement, progress: Progress | None, solver: Solv
 
 def _weighed(found: OscillatorFit, fit: Sequence[FitRecord], known: Known, channel: Channel) -> OscillatorFit:
     """The figures weighed by what is random in the residual, where nothing else is: only then its interval holds."""
-    problem, left = found.problem, found.fitted.prediction.residual
-    if left.numel() > MOST_SAMPLES:
+    problem, model = found.problem, found.problem.model
+    if found.fitted.prediction.residual.numel() > MOST_SAMPLES:
         return found
-    if not problem.noise:
-        problem.noise = float(left.square().sum() / (problem.response.weights > 0).sum().clamp(min=1)) ** 0.5
-    model = problem.model
     hypothesis = Hypothesis(model.system, tuple(model.effects), found.given, tuple(problem.free))
     values = {name: float(value) for name, value in problem.unknowns.parameters(found.fitted.shared).items()}
     outcome = Outcome(hypothesis, problem, found.fitted, values, [], [])

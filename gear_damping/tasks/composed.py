@@ -23,7 +23,7 @@ from gear_damping.config.schema import ELSEWHERE
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.load import check_declaration
-from gear_damping.tasks.own_effects import errors_in, plugins_of
+from gear_damping.tasks.own_parts import errors_in, plugins_of
 from gear_damping.tasks.wrong_declaration import PATH, placed
 
 
@@ -58,7 +58,7 @@ def problems_of(overrides: Sequence[str], declared: bool = True) -> list[Problem
             return problems
         from gear_damping.config.settings import read_settings
 
-        with errors_in(plugins_of(config), origin.of("simulator.plugins")):
+        with errors_in(plugins_of(config), origin.of):
             read_settings(config, origin)
     except InputError as error:
         return error.problems

@@ -14,7 +14,7 @@ from gear_damping.config.light import InspectSettings, read_inspect_settings
 from gear_damping.config.measured import INSPECT
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
-from gear_damping.tasks.own_effects import errors_in, plugins_of
+from gear_damping.tasks.own_parts import errors_in, plugins_of
 from gear_damping.tasks.run_folder import FAILED, FINISHED, INTERRUPTED, RunFolder, problem_with_used
 from gear_damping.tasks.wrong_declaration import WRONG_INPUT, say_problems
 
@@ -38,8 +38,10 @@ def run_job(config: Mapping[str, Any], origin: Origin, folder: Path) -> int:
         say_problems(InputError(_not_written(error, folder)))
         return WRONG_INPUT
     try:
-        with errors_in(plugins_of(config), origin.of("simulator.plugins")):
+        with errors_in(plugins_of(config), origin.of):
             settings = _settings(config, origin)
+            for path in plugins_of(config):
+                run_folder.add_input(Path(path))
             metrics = task_of(settings)(settings, run_folder)
         run_folder.close(FINISHED, metrics)
     except InputError as error:
@@ -67,12 +69,13 @@ def _settings(config: Mapping[str, Any], origin: Origin) -> "Settings | InspectS
     return read_settings(config, origin)
 
 
-def _whose(plugins: list[str]) -> str:
+def _whose(plugins: Mapping[str, str]) -> str:
     """Where to look for the cause of an error that no line of the user's own files raised."""
     if not plugins:
         return "This is a defect of gear_damping, not of your input."
     files = ", ".join(plugins)
-    return f"This is a defect of what {files} returns, or of gear_damping: try it with simulator.plugins=[]."
+    without = " ".join(f"{key}=[]" for key in dict.fromkeys(plugins.values()))
+    return f"This is a defect of what {files} returns, or of gear_damping: try it with {without}."
 
 
 def _placed(problem: Problem, config: Mapping[str, Any], origin: Origin) -> Problem:

@@ -73,6 +73,7 @@ def test_it_is_asked_again_from_the_command_line(trained, measured, tmp_path):
     [
         (["model.names=[raw_convolution]"], "model.names = ['raw_convolution']: must be one of cwt_lstm, raw_lstm"),
         ([*OWN, "model.layers=99"], "model.layers = 99: must lie within 1 and 10"),
+        ([*OWN, "model.hidden_size=9"], "model.hidden_size: no such key"),
         ([*OWN, "model.chanels=3"], "did you mean 'channels'?"),
         (["model.plugins=[nowhere.py]"], "model.plugins = 'nowhere.py': no such file"),
         (["model.plugins=[README.md]"], "is no Python file"),
@@ -82,6 +83,20 @@ def test_it_is_asked_again_from_the_command_line(trained, measured, tmp_path):
 def test_what_is_wrong_is_said_before_anything_runs(more, said, tmp_path, caplog):
     assert main([*SMALL, *more, f"hydra.run.dir={tmp_path / 'run'}"]) == 1
     assert said in caplog.text
+
+
+def test_a_line_of_it_that_fails_is_named(tmp_path, capfd):
+    copy = tmp_path / "broken.py"
+    copy.write_text(EXAMPLE.read_text().replace("self.body(features.transpose(1, 2)).mean(-1)", "features.nothing"))
+    own = [f"model.plugins=[{copy}]", "model.names=[raw_convolution]", f"data_folder={tmp_path / 'data'}"]
+    assert main([*SMALL, *own, f"hydra.run.dir={tmp_path / 'run'}"]) == 1
+    said = capfd.readouterr().err
+    assert f"model.plugins = '{copy}': line " in said
+    assert "in state, fails with AttributeError" in said
+
+
+def test_the_run_remembers_the_file(trained):
+    assert str(EXAMPLE) in json.loads((trained / "run.json").read_text())["inputs"]
 
 
 def test_a_name_that_is_taken_is_refused(tmp_path, caplog):

@@ -15,7 +15,7 @@ from gear_damping.physics.effect_files import load_effects
 from gear_damping.reporting.effects_page.__main__ import main as write_effects_page
 from gear_damping.reporting.effects_page.declarations import parameter_row
 from gear_damping.tasks.command import main
-from gear_damping.tasks.own_effects import errors_in
+from gear_damping.tasks.own_parts import errors_in
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 EXAMPLE = DOCS / "examples" / "my_effect.py"
@@ -217,5 +217,5 @@ def test_a_base_that_effects_of_the_file_share_is_none_itself(tmp_path):
 
 
 def test_errors_of_the_package_itself_are_not_blamed_on_the_file():
-    with pytest.raises(ZeroDivisionError), errors_in([str(EXAMPLE)]):
+    with pytest.raises(ZeroDivisionError), errors_in({str(EXAMPLE): "simulator.plugins"}):
         raise ZeroDivisionError

@@ -161,5 +161,3 @@ def lent_from(problem: OutputErrorProblem, after: Outcome) -> Lent | None:
 def own_from(problem: OutputErrorProblem, after: Outcome) -> Tensor:
     """Coordinates of a problem, (n_shared,): gains and what single records have of their own as a fit found them."""
     return problem.unknowns.own_of(after.problem.unknowns, after.fitted.shared)
-
-

@@ -11,6 +11,7 @@ from gear_damping.physics.catalogue import builtin_effects
 CONSISTENT, EXPLAINED, AMBIGUOUS = "consistent", "explained", "ambiguous"
 PARTLY, UNEXPLAINED, DATA_PROBLEM = "partly_explained", "unexplained", "data_problem"
 LARGEST_SET = 4  # names in a set
+OTHER_SIZES = "but with another size in other records: it stands in for something that has no name here."
 
 
 @dataclass(frozen=True)
@@ -78,20 +79,13 @@ def verdict(
     classes = [cause for cause in found.accepted if cause.effect.cause.one_class]
     rest = is_all(after, before, settings) or (not is_visible(found.left) and after.misfit <= settings.small_misfit)
     beside = (taken.sentence, *_not_told_apart(confused), *unsettled)
-    if not rest and is_one is False:
-        text = (
-            f"{missing}. {said[0].upper()}{said[1:]} would take part of it, but with another size in other records: "
-            "it stands in for something that has no name here."
-        )
-        return Verdict(UNEXPLAINED, (text, *unsettled))
     if not rest:
-        nobody_knows = is_one is None and of_fit >= settings.taken_by_all  # one size: but nearly all of one record
-        is_small = after.misfit <= settings.small_misfit
-        is_alone = len(found.accepted) == 1 and (is_small or bool(is_one) or nobody_knows)
-        if taken.share >= (settings.taken_by_one if is_alone else settings.taken_by_all):
+        size = {"is_one": is_one, "of_fit": of_fit, "misfit": after.misfit}
+        if _is_part_named(found, taken.share, **size):
             text = f"{missing}. Part of it has a name: {said}. A rest of {after.percent:.3g} % has none."
             return Verdict(PARTLY, (text, *beside))
-        text = f"{missing}. {said[0].upper()}{said[1:]} would take part of it, but too much is left to name a cause."
+        why = OTHER_SIZES if is_one is False else "but too much is left to name a cause."
+        text = f"{missing}. {said[0].upper()}{said[1:]} would take part of it, {why}"
         return Verdict(UNEXPLAINED, (text, *unsettled))
     is_part, is_unsteady = whole < settings.taken_by_one, before.misfit < settings.random_misfit  # held-out: less noise
     if is_part and is_unsteady:
@@ -106,6 +100,19 @@ def verdict(
         return Verdict(AMBIGUOUS, (f"{missing}.", *beside, *_small_rest(found, after)))
     same = _same_record(found.accepted)
     return Verdict(EXPLAINED, (f"{missing}: {said}.", *beside, *same, *_small_rest(found, after)))
+
+
+def _is_part_named(found: State, share: float, *, is_one: bool | None, of_fit: float, misfit: float) -> bool:
+    """Whether causes that take a share of what was missing are established although a rest is left.
+
+    What has another size in other records stands in for something else, however much it takes.
+    """
+    if is_one is False:
+        return False
+    settings = found.bench.settings
+    nobody_knows = is_one is None and of_fit >= settings.taken_by_all  # one size: but nearly all of one record
+    is_alone = len(found.accepted) == 1 and (misfit <= settings.small_misfit or bool(is_one) or nobody_knows)
+    return share >= (settings.taken_by_one if is_alone else settings.taken_by_all)
 
 
 def _without_name(

@@ -32,14 +32,13 @@ def efficient(outcome: Outcome, random: Random) -> Outcome:
         return outcome
     shared, states = end.shared[0], end.states[0]
     values = {name: float(value) for name, value in problem.unknowns.parameters(shared).items()}
-    moved = replace(fitted, shared=shared, states=states)
-    foretold = (white.sensitivity @ moves(problem, begun, end).unsqueeze(-1)).squeeze(-1)
+    left = white.residual - white.along(moves(problem, begun, end))
     return replace(
         outcome,
         hypothesis=settled_at(outcome.hypothesis, values),
-        fitted=moved,
+        fitted=replace(fitted, shared=shared, states=states),
         values=values,
-        whitened=replace(white, residual=white.residual - foretold),
+        whitened=replace(white, residual=left),
     )
 
 

@@ -157,7 +157,7 @@ class Descent:
             self.made[left] += 1
             return
         changes = moves(self.problem, points, trial)
-        linear = (now.sensitivity @ changes.unsqueeze(-1)).squeeze(-1)
+        linear = now.along(changes)
         foretold = old - self._cost(trial, now.residual - linear)
         self.carried[taken] += 1
         self._carry(taken, (now.residual - seen.residual - linear)[better], changes[better])
@@ -191,7 +191,7 @@ class Descent:
         self.looked_at[fresh] = self.made[fresh]
         points, now = self.points.pick(fresh), self.now.pick(fresh)
         end = newton_step(self.problem, points, now, torch.full((len(fresh),), SMALLEST_DAMPING, dtype=torch.float64))
-        linear = (now.sensitivity @ moves(self.problem, points, end).unsqueeze(-1)).squeeze(-1)
+        linear = now.along(moves(self.problem, points, end))
         falls_short = self._cost(end, now.residual - linear) > self.reach
         self.short[fresh] = torch.where(falls_short, self.short[fresh] + 1, 0)
 

@@ -42,6 +42,10 @@ class Prediction:
     sensitivity: Tensor
     channels: int = 1
 
+    def along(self, changes: Tensor) -> Tensor:
+        """What changes of the columns' coordinates (starts, records, columns) do to the response, linearised."""
+        return (self.sensitivity @ changes.unsqueeze(-1)).squeeze(-1)
+
     def pick(self, index: Tensor) -> "Prediction":
         """Some of the starts."""
         return replace(self, residual=self.residual[index], sensitivity=self.sensitivity[index])

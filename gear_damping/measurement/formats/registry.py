@@ -3,8 +3,6 @@
 A file of a format says its `SUFFIXES`, and has `read(path, max_bytes)`, which gives a `Table`.
 """
 
-import importlib
-import pkgutil
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from pathlib import Path
@@ -13,7 +11,7 @@ from types import ModuleType
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement import formats as room
 from gear_damping.measurement.formats.table import Table, refuse_size
-from gear_damping.own_files import REMEDY, load_module
+from gear_damping.own_files import REMEDY, load_module, modules_of
 
 MAX_BYTES = 512 * 1024**2
 KEY = "measurement.plugins"
@@ -23,8 +21,7 @@ Reader = Callable[[Path, int], Table]
 @cache
 def builtin_readers() -> dict[str, Reader]:
     """The readers that come with the package, by suffix."""
-    names = [module.name for module in pkgutil.iter_modules(room.__path__) if module.name.endswith("_file")]
-    modules = [importlib.import_module(f"{room.__name__}.{name}") for name in names]
+    modules = [module for module in modules_of(room) if hasattr(module, "SUFFIXES")]
     return {suffix: module.read for module in modules for suffix in module.SUFFIXES}
 
 
