@@ -229,6 +229,15 @@ class NextExperiment(Part):
     predicted_separation: float | None = may_be_left_out("how far it would part them", "standard deviations")
 
 
+class StrongestLine(Part):
+    """The force at one order or frequency that would take most of the rest; its phase is free in every record."""
+
+    place: float = said("its order, cycles per turn of the pinion, or its frequency", "1 or Hz")
+    unit: Literal["order", "Hz"] = said("which of the two: order of a gear pair, Hz of an oscillator")
+    hertz: float = said("its frequency in the first fitted record", "Hz")
+    share: float = said("of the residuals of the fitted records, that it would take", "1")
+
+
 class Leftover(Part):
     """Where what nobody named lies."""
 
@@ -238,6 +247,7 @@ class Leftover(Part):
     orders: dict[str, float] | None = may_be_left_out(
         "shares of its energy by order of pinion s1, gear s2, mesh M", "1"
     )
+    line: StrongestLine | None = may_be_left_out("the strongest line; null: records in many segments")
     contact_phase: list[float] | None = may_be_left_out("mean square over the phase of the mesh, over its mean", "1")
 
 

@@ -63,9 +63,9 @@ def homogeneity(outcome: Outcome, cause: str, evidence: Evidence) -> Homogeneity
     if len(kept) < FEWEST or not strength:
         return Homogeneity((), (), (), None, evidence.settings.homogeneity_level)
     shift = torch.linalg.lstsq(columns[:, kept], residual.unsqueeze(1), driver="gelsd").solution[:, 0]
-    block = max(4, round(BLOCK_TIMES * time_scale(outcome.hypothesis, evidence) * evidence.sampling_rate))
+    block = block_of(outcome, evidence)
     left = residual - columns[:, kept] @ shift  # a size that differs between records is no noise
-    errors = torch.stack([_error(columns[:, k], left, block) for k in kept])
+    errors = torch.stack([error_of(columns[:, k], left, block) for k in kept])
     estimates, errors = 1 + shift / strength, errors / abs(strength)
     found = tuple(estimates.tolist()), tuple(errors.tolist())
     p = float(chi2.sf(statistic(*found, evidence.settings.homogeneity_tolerance), len(kept) - 1))
@@ -123,7 +123,12 @@ def _beside(sensitivity: Tensor, residual: Tensor, place: int, n_shared: int, gr
     return columns - basis @ (basis.T @ columns), (left - basis @ (basis.T @ left))[:, 0]
 
 
-def _error(column: Tensor, residual: Tensor, block: int) -> Tensor:
+def block_of(outcome: Outcome, evidence: Evidence) -> int:
+    """Samples of a block, over which residuals may be correlated."""
+    return max(4, round(BLOCK_TIMES * time_scale(outcome.hypothesis, evidence) * evidence.sampling_rate))
+
+
+def error_of(column: Tensor, residual: Tensor, block: int) -> Tensor:
     """Standard error of a coefficient whose residuals are correlated within blocks."""
     scores = (column * residual)[: len(column) // block * block].reshape(-1, block).sum(1)
     return scores.square().sum().sqrt() / column.square().sum()

@@ -11,6 +11,7 @@ from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.evidence.shaft import Shaft, shaft_of
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.linear import linear_of
+from gear_damping.explanation.trials.line import strongest_line
 from gear_damping.identification.output_error.records import FitRecord
 
 Array = NDArray[np.float64]
@@ -30,7 +31,7 @@ def leftover(outcome: Outcome, evidence: Evidence) -> dict[str, object]:
 
     Returns:
         `shares` of the residual's energy by family of features (held out: fitted on the other records'
-        residuals), `orders` (gear pairs only), `contact_phase` and `kurtosis`.
+        residuals), the strongest `line`, `orders` (gear pairs only), `contact_phase` and `kurtosis`.
     """
     trained = [_features(record, outcome, evidence) for record in evidence.fitted]
     tested = [_features(record, outcome, evidence) for record in evidence.held]
@@ -41,8 +42,10 @@ def leftover(outcome: Outcome, evidence: Evidence) -> dict[str, object]:
         family: _share([f[family] for f in trained], residual_fit, [f[family] for f in tested], residual_test)
         for family in families
     }
+    line = strongest_line(outcome, evidence)
     found: dict[str, object] = {
         "shares": shares,
+        "line": line and {"place": line.place, "unit": line.unit, "hertz": line.hertz, "share": line.share},
         "kurtosis": _kurtosis(residual_test),
         "bursts": _kurtosis(residual_test) > BURST_KURTOSIS,
     }

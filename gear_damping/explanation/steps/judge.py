@@ -55,6 +55,7 @@ def verdict(
     fitted: float = 0.0,
     untried: Sequence[str] = (),
     of_fit: float = 0.0,
+    stands_in: str = "",
 ) -> Verdict:
     """What the search amounts to.
 
@@ -69,6 +70,7 @@ def verdict(
         fitted: What the nominal model leaves of the fitted records beyond the noise, in % of their variance.
         untried: What there was no time for.
         of_fit: Share that causes take of the squared residuals of the fitted records.
+        stands_in: Why one of the causes is none, in words; empty where all may be.
     """
     unsettled = () if converged else ("The calibration did not converge: take the figures with care.",)
     if not found.accepted:
@@ -79,6 +81,9 @@ def verdict(
     classes = [cause for cause in found.accepted if cause.effect.cause.one_class]
     rest = is_all(after, before, settings) or (not is_visible(found.left) and after.misfit <= settings.small_misfit)
     beside = (taken.sentence, *_not_told_apart(confused), *unsettled)
+    if stands_in:
+        text = f"{missing}. {said[0].upper()}{said[1:]} would take part of it, {stands_in}"
+        return Verdict(UNEXPLAINED, (text, *unsettled))
     if not rest:
         size = {"is_one": is_one, "of_fit": of_fit, "misfit": after.misfit}
         if _is_part_named(found, taken.share, **size):

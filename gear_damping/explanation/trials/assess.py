@@ -13,7 +13,7 @@ from gear_damping.explanation.statistics.family_wise import Effect, Lines, Visib
 from gear_damping.explanation.statistics.projector import Projector
 from gear_damping.explanation.trials.innovations import recurrences
 from gear_damping.explanation.trials.random_part import Random, Whitener, random_part
-from gear_damping.explanation.trials.score import Score
+from gear_damping.explanation.trials.score import Score, projected
 from gear_damping.explanation.trials.unnamed import unnamed_columns
 
 COLUMNS_PER_SAMPLE = 0.2  # at most so many columns are taken out of white noise, whose variance then stays known,
@@ -56,13 +56,10 @@ def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, fami
         evidence: The records.
         families: Whether families without a name stand in the same test.
     """
-    problem, prediction = outcome.problem, outcome.fitted.prediction
-    sensitivity = prediction.sensitivity[0]
+    problem, sensitivity = outcome.problem, outcome.fitted.prediction.sensitivity[0]
     if not bool(sensitivity.isfinite().all()):
         return None
-    expected = problem.expectation(outcome.fitted.shared)
-    project = Projector(sensitivity, *expected)
-    residual = _with_expected(prediction.residual[0].reshape(-1, 1), project)
+    project, residual = projected(outcome)
     shapes = unnamed_columns(outcome, evidence) if families else {}
     unnamed = {UNNAMED + name: _padded(columns, project) for name, columns in shapes.items()}
     named = {score.candidate.name: score.columns for score in reversed(scores) if score.columns.shape[1]}
@@ -71,7 +68,8 @@ def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, fami
 
     def looked_at(random: Random) -> Assessment:
         white = Whitener(random, outcome)
-        whitened = Projector(white(sensitivity.flatten(0, 1)).reshape(sensitivity.shape), *expected)
+        slopes = white(sensitivity.flatten(0, 1)).reshape(sensitivity.shape)
+        whitened = Projector(slopes, project.expected, project.slope)
         seen = whitened(white.padded(residual))[:, 0]
         effects = [
             Effect(s.candidate.name, _orthonormal(whitened(white.padded(s.columns))), bool(s.candidate.presence))
@@ -156,10 +154,6 @@ def _lines(rows: Tensor, used: Tensor, variance: float, outcome: Outcome) -> lis
     inside = (frequency > 0) & (frequency < limit)
     degrees = 2.0 * int((used.sum(1) > 0.5 * used.shape[1]).sum())
     return [Lines(LINE_FAMILY, kept[inside], degrees)] if bool(inside.any()) and degrees else []
-
-
-def _with_expected(residual: Tensor, project: Projector) -> Tensor:
-    return torch.cat([residual, project.expected.unsqueeze(1)])
 
 
 def _padded(columns: Tensor, project: Projector) -> Tensor:

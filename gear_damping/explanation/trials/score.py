@@ -64,8 +64,14 @@ def best_by_effect(scores: Iterable[Score]) -> dict[str, Score]:
     return best
 
 
-def _projector(outcome: Outcome) -> Projector:
-    return Projector(outcome.fitted.prediction.sensitivity[0], *outcome.problem.expectation(outcome.fitted.shared))
+def projected(outcome: Outcome) -> tuple[Projector, Tensor]:
+    """What takes out all that a model's free parameters could do, and its residual with what is expected of these.
+
+    The residual, (samples + n, 1), is as the fit left it.
+    """
+    prediction = outcome.fitted.prediction
+    project = Projector(prediction.sensitivity[0], *outcome.problem.expectation(outcome.fitted.shared))
+    return project, torch.cat([prediction.residual[0].reshape(-1, 1), project.expected.unsqueeze(1)])
 
 
 @dataclass(frozen=True)
@@ -101,9 +107,8 @@ def scores(
     """Every candidate's score, the most promising first."""
     if not bool(outcome.fitted.prediction.sensitivity.isfinite().all()):
         return []  # beside a model that runs away nothing can be told
-    project = _projector(outcome)
-    residual = torch.cat([outcome.fitted.prediction.residual[0].reshape(-1), project.expected])
-    beside = project(residual.unsqueeze(1))[:, 0]
+    project, residual = projected(outcome)
+    beside, residual = project(residual)[:, 0], residual[:, 0]
     base = Base(outcome, project, residual, beside, _predicted(outcome), noise, solver)
     found: list[Score] = []
     groups = _alike(candidates, len(residual))

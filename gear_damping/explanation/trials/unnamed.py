@@ -61,7 +61,7 @@ def _of_row(
     place, rate = _motion(shown, order)
 
     def moved(forces: Sequence[Array]) -> Array:
-        return _through(np.stack(forces, 1), record.sampling_rate, linear, order)
+        return through(np.stack(forces, 1), record.sampling_rate, linear, order)
 
     powers = [place**i * rate**j for i in range(STATE_POWERS + 1) for j in range(STATE_POWERS + 1 - i) if i + j > 1]
     found = {
@@ -115,7 +115,7 @@ def _summed(values: Array) -> Array:
     return total - np.polynomial.polynomial.polyval(np.linspace(-1, 1, len(total)), slope)
 
 
-def _through(forces: Array, rate: float, linear: tuple[float, float, float], order: int) -> Array:
+def through(forces: Array, rate: float, linear: tuple[float, float, float], order: int) -> Array:
     """What the linear oscillator makes of forces (time, n), differentiated `order` times; starts are not minded."""
     mass, damping, stiffness = linear
     count = len(forces)

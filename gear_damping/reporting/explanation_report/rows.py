@@ -77,6 +77,10 @@ def unexplained(report: ReportInput) -> list[Row]:
     rest = report.explanation.get("unexplained") or {}
     rows = [(f"explained by {words(name)}", percent(share, 2)) for name, share in _falling(rest.get("shares"))]
     rows += [(f"at the order of: {FAMILIES.get(n, words(n))}", percent(s, 2)) for n, s in _falling(rest.get("orders"))]
+    line = rest.get("line")
+    if line:
+        order = f", order {number(line['place'], 3)} of the pinion" if line["unit"] == "order" else ""
+        rows.append((f"explained by a line at {number(line['hertz'], 3)} Hz{order}", percent(line["share"], 2)))
     phase = rest.get("contact_phase") or ()
     if phase and max(phase) > 0:
         place = (max(range(len(phase)), key=phase.__getitem__) + 0.5) / len(phase)

@@ -1,0 +1,92 @@
+"""A cause that stands in for a force at some frequency, and one that is there beside it; motions by scipy."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import torch
+from scipy.integrate import solve_ivp
+
+from gear_damping.explanation.answer.stand_in import stand_ins
+from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.fitting import fit_hypothesis
+from gear_damping.explanation.model.hypothesis import Hypothesis
+from gear_damping.explanation.settings import SearchSettings
+from gear_damping.explanation.state import Accepted, State
+from gear_damping.explanation.trials.line import strongest_line
+from gear_damping.identification.output_error.records import FitRecord, FreeParameter
+from gear_damping.physics.catalogue import effect_class
+from gear_damping.physics.systems.oscillator import Oscillator
+
+RATE, SAMPLES, NOISE = 50.0, 400, 0.003
+STIFFNESS, DAMPING, FREQUENCY = 40.0, 0.3, 1.37
+COEFFICIENT, CUBIC = "viscous_damping.damping_coefficient", "cubic_stiffness.coefficient"
+
+
+def moved(start, cubic, force, phase):
+    """Displacement of a decay under a force that no channel shows."""
+
+    def rates(t, y):
+        pushed = force * math.cos(2 * math.pi * FREQUENCY * t + phase)
+        return [y[1], pushed - DAMPING * y[1] - STIFFNESS * y[0] - cubic * y[0] ** 3]
+
+    time = np.arange(SAMPLES) / RATE
+    return solve_ivp(rates, (0, time[-1]), [start, 0.0], t_eval=time, rtol=1e-9, atol=1e-11).y[0]
+
+
+def searched(cubic, force):
+    """The state of a search that has accepted a cubic stiffness."""
+    random = np.random.default_rng(5)
+    runs = [moved(start, cubic, force, phase) for start, phase in ((1.0, 0.3), (0.7, 2.0), (1.2, 4.0))]
+    noisy = [torch.as_tensor(run + NOISE * random.normal(size=SAMPLES)) for run in runs]
+    records = tuple(FitRecord(name, one, RATE) for name, one in zip("abc", noisy, strict=True))
+    evidence = Evidence(
+        "oscillator", records, records[:1], {"stiffness": STIFFNESS}, None, one_record=False, noise=NOISE
+    )
+    linear = [
+        FreeParameter("stiffness", STIFFNESS, logarithmic=True),
+        FreeParameter(COEFFICIENT, 0.3, logarithmic=True),
+    ]
+    known = {"stiffness": STIFFNESS, COEFFICIENT: DAMPING}
+    laws = [effect_class(name)() for name in ("viscous_damping", "cubic_stiffness")]
+    nominal = fit_hypothesis(Hypothesis(Oscillator(), (laws[0],), known, tuple(linear)), evidence)
+    extended = Hypothesis(Oscillator(), tuple(laws), known | {CUBIC: 0.0}, (*linear, FreeParameter(CUBIC, 0.0, 1.0)))
+    outcome = fit_hypothesis(extended, evidence)
+    budget = SimpleNamespace(refuses=lambda name: False)
+    bench = SimpleNamespace(evidence=evidence, settings=SearchSettings(), budget=budget)
+    accepted = (Accepted("cubic_stiffness", SimpleNamespace(outcome=outcome), 0.5, ()),)
+    return State(bench, nominal, outcome, accepted, left=SimpleNamespace(visible=True))
+
+
+@pytest.fixture(scope="module")
+def forced():
+    return searched(cubic=0.0, force=1.5)
+
+
+def test_a_law_in_the_place_of_a_force_stands_in_for_it(forced):
+    (found,) = stand_ins(forced)
+    assert found.cause == "cubic_stiffness"
+    assert found.family.startswith("a line at 1.3") or found.family.startswith("a line at 1.4")
+    assert found.takes > 0.9 > found.cause_takes
+    assert abs(found.size) < 0.5
+    assert found.family in found.sentence
+
+
+def test_where_nothing_is_left_nobody_asks(forced):
+    seen = SimpleNamespace(visible=False)
+    assert not stand_ins(State(forced.bench, forced.nominal, forced.outcome, forced.accepted, left=seen))
+
+
+@pytest.mark.parametrize(("cubic", "force"), [(4.0, 0.02), (4.0, 0.1), (1.0, 1.5), (0.5, 1.5)])
+def test_a_law_that_is_there_keeps_its_size_beside_a_force(cubic, force):
+    """Whether this takes less than the law or more."""
+    assert not stand_ins(searched(cubic, force))
+
+
+def test_the_line_is_the_one_that_was_hidden(forced):
+    line = strongest_line(forced.nominal, forced.bench.evidence)
+    assert line.unit == "Hz"
+    assert line.hertz == pytest.approx(line.place)
+    assert line.place == pytest.approx(FREQUENCY, abs=0.25 * RATE / SAMPLES)
+    assert line.share > 0.9
