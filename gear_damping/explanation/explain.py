@@ -9,7 +9,7 @@ from torch import Tensor
 
 from gear_damping.explanation.answer import content
 from gear_damping.explanation.answer.homogeneity import homogeneity
-from gear_damping.explanation.answer.stand_in import stand_ins
+from gear_damping.explanation.answer.stand_in import shape_without_name, stand_ins
 from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.casing.content import CasingStudy, explain_casing
 from gear_damping.explanation.casing.heard import is_casing
@@ -173,7 +173,7 @@ def _judged(found: Confirmed, notes: Sequence[str], not_tried: tuple[str, ...]) 
     converged = state.outcome.fitted.converged
     of_fit = 1 - state.outcome.fitted.cost / max(state.nominal.fitted.cost, 1e-300)
     known = {"is_one": one, "whole": whole, "fitted": fitted.percent, "untried": not_tried, "of_fit": of_fit}
-    known["stands_in"] = " ".join(one.sentence for one in stand_ins(state)[:1])
+    known |= {"stands_in": " ".join(one.sentence for one in stand_ins(state)[:1]), "shape": shape_without_name(state)}
     said = verdict(state, before, after, converged, **known).saying(*notes)
     return Judged(state, before, after, said, not_tried, found.t)
 

@@ -22,9 +22,10 @@ def search(visible=True, accepted=(), left=False, sensor=100.0):
     return found
 
 
-def cause(name="coulomb_friction"):
+def cause(name="coulomb_friction", at_bound=False):
     declared = SimpleNamespace(sentence="a law", one_class=(), looks_like=())
-    return SimpleNamespace(name=name, confusable=(), effect=SimpleNamespace(cause=declared))
+    refit = SimpleNamespace(is_at_bound=at_bound)
+    return SimpleNamespace(name=name, confusable=(), effect=SimpleNamespace(cause=declared), refit=refit)
 
 
 NOTHING, MUCH = excess_of(0.0, 1.0), excess_of(8.0, 40.0)
@@ -43,6 +44,27 @@ NOTHING, MUCH = excess_of(0.0, 1.0), excess_of(8.0, 40.0)
 )
 def test_without_a_name(visible, before, fitted, word):
     assert verdict(search(visible), before, before, fitted=fitted).word == word
+
+
+def test_a_shape_without_a_name_is_no_consistency_and_is_told():
+    said = verdict(search(), NOTHING, NOTHING, shape="a line at 50 Hz")
+    assert said.word == UNEXPLAINED
+    assert "a line at 50 Hz" in said.sentences[0]
+    missing = verdict(search(), MUCH, MUCH, shape="a line at 50 Hz")
+    assert "What is missing looks like a line at 50 Hz." in missing.sentences
+
+
+def test_what_has_run_into_a_bound_is_no_part_of_an_answer_beside_a_rest():
+    left = excess_of(3.0, 10.0)
+    assert verdict(search(accepted=(cause(at_bound=True),), left=True), MUCH, left, is_one=True).word == UNEXPLAINED
+    assert verdict(search(accepted=(cause(at_bound=True),)), MUCH, NOTHING, is_one=True).word == EXPLAINED
+
+
+def test_what_stands_in_for_something_else_is_no_answer():
+    found = search(accepted=(cause(),), left=True)
+    said = verdict(found, MUCH, excess_of(0.5, 2.4), stands_in="but a line takes more.")
+    assert said.word == UNEXPLAINED
+    assert said.sentences[0].endswith("but a line takes more.")
 
 
 def test_noise_that_is_the_sensor_s_own_hides_nothing():

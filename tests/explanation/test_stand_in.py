@@ -8,12 +8,13 @@ import pytest
 import torch
 from scipy.integrate import solve_ivp
 
-from gear_damping.explanation.answer.stand_in import stand_ins
+from gear_damping.explanation.answer.stand_in import shape_without_name, stand_ins
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.fitting import fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Hypothesis
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import Accepted, State
+from gear_damping.explanation.trials.assess import assessed
 from gear_damping.explanation.trials.line import strongest_line
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.physics.catalogue import effect_class
@@ -22,6 +23,8 @@ from gear_damping.physics.systems.oscillator import Oscillator
 RATE, SAMPLES, NOISE = 50.0, 400, 0.003
 STIFFNESS, DAMPING, FREQUENCY = 40.0, 0.3, 1.37
 COEFFICIENT, CUBIC = "viscous_damping.damping_coefficient", "cubic_stiffness.coefficient"
+KINDS, WAYS = ("force", "damping"), ("forward", "backward")
+FRICTION = tuple(f"asymmetric_friction.{kind}_{way}" for kind in KINDS for way in WAYS)
 
 
 def moved(start, cubic, force, phase):
@@ -35,12 +38,12 @@ def moved(start, cubic, force, phase):
     return solve_ivp(rates, (0, time[-1]), [start, 0.0], t_eval=time, rtol=1e-9, atol=1e-11).y[0]
 
 
-def searched(cubic, force):
-    """The state of a search that has accepted a cubic stiffness."""
+def searched(cubic, force, count=3, law=(CUBIC,), settings=None):
+    """The state of a search that has accepted a law with these parameters."""
     random = np.random.default_rng(5)
     runs = [moved(start, cubic, force, phase) for start, phase in ((1.0, 0.3), (0.7, 2.0), (1.2, 4.0))]
     noisy = [torch.as_tensor(run + NOISE * random.normal(size=SAMPLES)) for run in runs]
-    records = tuple(FitRecord(name, one, RATE) for name, one in zip("abc", noisy, strict=True))
+    records = tuple(FitRecord(name, one, RATE) for name, one in zip("abc", noisy[:count], strict=False))
     evidence = Evidence(
         "oscillator", records, records[:1], {"stiffness": STIFFNESS}, None, one_record=False, noise=NOISE
     )
@@ -49,13 +52,15 @@ def searched(cubic, force):
         FreeParameter(COEFFICIENT, 0.3, logarithmic=True),
     ]
     known = {"stiffness": STIFFNESS, COEFFICIENT: DAMPING}
-    laws = [effect_class(name)() for name in ("viscous_damping", "cubic_stiffness")]
+    name = law[0].partition(".")[0]
+    laws = [effect_class(one)() for one in ("viscous_damping", name)]
+    free = [FreeParameter(one, 0.0, 1.0) for one in law]
     nominal = fit_hypothesis(Hypothesis(Oscillator(), (laws[0],), known, tuple(linear)), evidence)
-    extended = Hypothesis(Oscillator(), tuple(laws), known | {CUBIC: 0.0}, (*linear, FreeParameter(CUBIC, 0.0, 1.0)))
+    extended = Hypothesis(Oscillator(), tuple(laws), known | dict.fromkeys(law, 0.0), (*linear, *free))
     outcome = fit_hypothesis(extended, evidence)
     budget = SimpleNamespace(refuses=lambda name: False)
-    bench = SimpleNamespace(evidence=evidence, settings=SearchSettings(), budget=budget)
-    accepted = (Accepted("cubic_stiffness", SimpleNamespace(outcome=outcome), 0.5, ()),)
+    bench = SimpleNamespace(evidence=evidence, settings=settings or SearchSettings(), budget=budget)
+    accepted = (Accepted(name, SimpleNamespace(outcome=outcome), 0.5, ()),)
     return State(bench, nominal, outcome, accepted, left=SimpleNamespace(visible=True))
 
 
@@ -69,8 +74,15 @@ def test_a_law_in_the_place_of_a_force_stands_in_for_it(forced):
     assert found.cause == "cubic_stiffness"
     assert found.family.startswith("a line at 1.3") or found.family.startswith("a line at 1.4")
     assert found.takes > 0.9 > found.cause_takes
-    assert abs(found.size) < 0.5
+    assert "times the size" in found.why
     assert found.family in found.sentence
+
+
+@pytest.mark.parametrize(("records", "numbers"), [(1, 3), (3, 7)])
+def test_what_takes_less_with_more_numbers_explains_nothing(records, numbers):
+    """Four numbers of a friction against two of a line for each record and its place; whatever the sizes say."""
+    found = stand_ins(searched(0.0, 1.5, records, FRICTION, SearchSettings(homogeneity_level=1e-300)))
+    assert [one.why for one in found] == (["with 3 numbers in the place of 4"] if numbers < 4 else [])
 
 
 def test_where_nothing_is_left_nobody_asks(forced):
@@ -90,3 +102,17 @@ def test_the_line_is_the_one_that_was_hidden(forced):
     assert line.hertz == pytest.approx(line.place)
     assert line.place == pytest.approx(FREQUENCY, abs=0.25 * RATE / SAMPLES)
     assert line.share > 0.9
+
+
+def test_what_is_visible_without_a_name_is_told_by_its_place(forced):
+    seen = assessed(forced.nominal, [], forced.bench.evidence)
+    found = State(forced.bench, forced.nominal, forced.nominal, seen=seen)
+    assert shape_without_name(found).startswith("a line at 1.3")
+    assert not shape_without_name(State(forced.bench, forced.nominal, forced.outcome, forced.accepted, seen=seen))
+
+
+def test_nothing_is_told_of_noise():
+    quiet = searched(cubic=0.0, force=0.0)
+    seen = assessed(quiet.nominal, [], quiet.bench.evidence)
+    assert not seen.visible
+    assert not shape_without_name(State(quiet.bench, quiet.nominal, quiet.nominal, seen=seen))

@@ -3,7 +3,7 @@
 The parameter-encompassing test (Mizon & Richard 1986, Econometrica 54): beside a family of forces or lines that by
 itself takes more of what the model without the cause leaves, what really is there keeps its size. Where the family
 can do most of what the cause does, a law in another form may lose its size too, and the test says nothing. One-sided:
-what grows beside the family is no less there.
+what grows beside the family is no less there. And what takes less with more numbers explains nothing.
 """
 
 from collections.abc import Callable, Iterator
@@ -16,13 +16,30 @@ from torch import Tensor
 
 from gear_damping.explanation.answer.homogeneity import block_of, error_of
 from gear_damping.explanation.model.hypothesis import Outcome
+from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import Accepted, State
 from gear_damping.explanation.statistics.projector import Projector
+from gear_damping.explanation.trials.assess import LINE_FAMILY, UNNAMED
 from gear_damping.explanation.trials.line import strongest_line
 from gear_damping.explanation.trials.score import projected
 from gear_damping.explanation.trials.unnamed import unnamed_columns
 
 INDEPENDENT = 1e-6  # of the largest singular value: a direction of a family that counts
+
+
+@dataclass(frozen=True)
+class Family:
+    """Forces or lines without a name.
+
+    Args:
+        name: What they are called.
+        numbers: How many they take.
+        beside: What they leave of a signal that is beside the model's parameters already.
+    """
+
+    name: str
+    numbers: int
+    beside: Callable[[Tensor], Tensor]
 
 
 @dataclass(frozen=True)
@@ -34,22 +51,21 @@ class StandIn:
         family: What takes more than it.
         takes: Share that this takes of what the model without the cause leaves.
         cause_takes: Share that the cause takes of it.
-        size: Of the cause beside it, relative to that which was found.
+        why: What gives it away.
     """
 
     cause: str
     family: str
     takes: float
     cause_takes: float
-    size: float
+    why: str
 
     @property
     def sentence(self) -> str:
         """What is said of it."""
         return (
             f"but {self.family} takes more ({100 * self.takes:.3g} % of the residuals, `{self.cause}` "
-            f"{100 * self.cause_takes:.3g} %), and beside it `{self.cause}` has {self.size:.2g} times the size: it "
-            "stands in for something that has no name here."
+            f"{100 * self.cause_takes:.3g} %), {self.why}: it stands in for something that has no name here."
         )
 
 
@@ -59,6 +75,19 @@ def stand_ins(state: State) -> list[StandIn]:
         return []
     found = (_stand_in(cause, state) for cause in state.accepted)
     return [one for one in found if one is not None]
+
+
+def shape_without_name(state: State) -> str:
+    """The family without a name that is most visible beside the nominal model, in words; empty where none is."""
+    if state.accepted or state.seen is None or not state.seen.visible:
+        return ""
+    seen = state.seen.visible
+    shown = {name: value for name, value in seen.by_name.items() if name.startswith(UNNAMED) and seen.shows(name)}
+    if not shown:
+        return ""
+    largest = max(shown, key=shown.get)
+    line = strongest_line(state.nominal, state.bench.evidence) if largest == LINE_FAMILY else None
+    return line.name if line else f"some {largest.removeprefix(UNNAMED)}"
 
 
 def _stand_in(cause: Accepted, state: State) -> StandIn | None:
@@ -76,30 +105,54 @@ def _stand_in(cause: Accepted, state: State) -> StandIn | None:
     if energy <= 0:
         return None
     cause_takes = float((change * residual).sum()) ** 2 / energy / total
-    settings, found = bench.settings, []
-    for name, beside in _families(without, project, state):
-        one, other = beside(residual), beside(change)
-        takes, share = 1 - float(one.square().sum()) / total, float(other.square().sum()) / energy
-        if takes <= cause_takes or share <= INDEPENDENT:
+    free = sum(parameter.name.startswith(cause.name + ".") for parameter in state.outcome.problem.free)
+    block, found = block_of(without, bench.evidence), []
+    for family in _families(without, project, state):
+        left, other = family.beside(residual), family.beside(change)
+        takes = 1 - float(left.square().sum()) / total
+        if takes <= cause_takes:
             continue
-        size = float((other * one).sum() / other.square().sum())
-        column, rest = (signal[: len(added), 0] for signal in (other, one - size * other))
-        error = float(error_of(column, rest, block_of(without, bench.evidence)))
-        tolerance = settings.homogeneity_tolerance / share**0.5
-        if norm.sf((1 - size) / hypot(error, tolerance)) < settings.homogeneity_level:
-            found.append(StandIn(cause.name, name, takes, cause_takes, size))
+        share = float(other.square().sum()) / energy
+        why = f"with {family.numbers} numbers in the place of {free}" if family.numbers < free else ""
+        size = _size_beside(other, left, len(added), share, block, bench.settings)
+        if size is not None:
+            why = f"and beside it `{cause.name}` has {size:.2g} times the size"
+        if why:
+            found.append(StandIn(cause.name, family.name, takes, cause_takes, why))
     return max(found, key=lambda one: one.takes, default=None)
 
 
-def _families(without: Outcome, project: Projector, state: State) -> Iterator[tuple[str, Callable[[Tensor], Tensor]]]:
-    """Families without a name, with what each leaves of a signal that is beside the model's parameters already."""
+def _size_beside(
+    change: Tensor, residual: Tensor, samples: int, share: float, block: int, settings: SearchSettings
+) -> float | None:
+    """The size of a cause beside a family, relative to that which was found; None where it may well be the same.
+
+    Args:
+        change: What the cause adds beside the family, (samples + n, 1).
+        residual: What the family leaves, (samples + n, 1).
+        samples: Those of the records.
+        share: Of what the cause adds, that is left beside the family.
+        block: Samples over which residuals may be correlated.
+        settings: Thresholds.
+    """
+    if share <= INDEPENDENT:
+        return None
+    size = float((change * residual).sum() / change.square().sum())
+    column, rest = (signal[:samples, 0] for signal in (change, residual - size * change))
+    tolerance = settings.homogeneity_tolerance / share**0.5
+    chance = norm.sf((1 - size) / hypot(float(error_of(column, rest, block)), tolerance))
+    return size if chance < settings.homogeneity_level else None
+
+
+def _families(without: Outcome, project: Projector, state: State) -> Iterator[Family]:
+    """All of them beside a model."""
     evidence = state.bench.evidence
     for name, columns in unnamed_columns(without, evidence).items():
         basis = _basis(project(torch.nn.functional.pad(columns, (0, 0, 0, len(project.expected)))))
-        yield f"some {name}", lambda signal, basis=basis: signal - basis @ (basis.T @ signal)
+        yield Family(f"some {name}", basis.shape[1], lambda signal, basis=basis: signal - basis @ (basis.T @ signal))
     line = strongest_line(without, evidence)
     if line is not None:
-        yield line.name, project.beside_own(line.columns)
+        yield Family(line.name, line.degrees, project.beside_own(line.columns))
 
 
 def _basis(columns: Tensor) -> Tensor:

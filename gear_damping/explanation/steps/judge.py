@@ -56,6 +56,7 @@ def verdict(
     untried: Sequence[str] = (),
     of_fit: float = 0.0,
     stands_in: str = "",
+    shape: str = "",
 ) -> Verdict:
     """What the search amounts to.
 
@@ -71,10 +72,11 @@ def verdict(
         untried: What there was no time for.
         of_fit: Share that causes take of the squared residuals of the fitted records.
         stands_in: Why one of the causes is none, in words; empty where all may be.
+        shape: What is visible and has no name, in words; empty where nothing of that kind is.
     """
     unsettled = () if converged else ("The calibration did not converge: take the figures with care.",)
     if not found.accepted:
-        return _without_name(found, before, fitted, unsettled, untried)
+        return _without_name(found, before, fitted, unsettled, untried, shape)
     settings, missing = found.bench.settings, _missing(before)
     taken, said = _taken(found, before, after), _named(found.accepted)
     confused = [cause for cause in found.accepted if cause.confusable]
@@ -89,7 +91,7 @@ def verdict(
         if _is_part_named(found, taken.share, **size):
             text = f"{missing}. Part of it has a name: {said}. A rest of {after.percent:.3g} % has none."
             return Verdict(PARTLY, (text, *beside))
-        why = OTHER_SIZES if is_one is False else "but too much is left to name a cause."
+        why = OTHER_SIZES if is_one is False else "but too much is left for it to be the cause."
         text = f"{missing}. {said[0].upper()}{said[1:]} would take part of it, {why}"
         return Verdict(UNEXPLAINED, (text, *unsettled))
     is_part, is_unsteady = whole < settings.taken_by_one, before.misfit < settings.random_misfit  # held-out: less noise
@@ -110,9 +112,10 @@ def verdict(
 def _is_part_named(found: State, share: float, *, is_one: bool | None, of_fit: float, misfit: float) -> bool:
     """Whether causes that take a share of what was missing are established although a rest is left.
 
-    What has another size in other records stands in for something else, however much it takes.
+    What has another size in other records, or has run into the end of what it can be, stands in for something else,
+    however much it takes.
     """
-    if is_one is False:
+    if is_one is False or any(cause.refit.is_at_bound for cause in found.accepted):
         return False
     settings = found.bench.settings
     nobody_knows = is_one is None and of_fit >= settings.taken_by_all  # one size: but nearly all of one record
@@ -121,7 +124,7 @@ def _is_part_named(found: State, share: float, *, is_one: bool | None, of_fit: f
 
 
 def _without_name(
-    found: State, before: Excess, fitted: float, unsettled: tuple[str, ...], untried: Sequence[str]
+    found: State, before: Excess, fitted: float, unsettled: tuple[str, ...], untried: Sequence[str], shape: str
 ) -> Verdict:
     """Nothing is missing, or no name was found for it."""
     settings, visible = found.bench.settings, is_visible(found.seen)
@@ -129,7 +132,8 @@ def _without_name(
     missing = (before.significant and (visible or is_more)) or (visible and is_more and fitted > settings.gross_percent)
     if missing:
         text = f"{_missing(before)}, and no effect of the catalogue is borne out by held-out records."
-        return Verdict(UNEXPLAINED, (text, *unsettled))
+        looks = (f"What is missing looks like {shape}.",) if shape else ()
+        return Verdict(UNEXPLAINED, (text, *looks, *unsettled))
     raised = found.beyond_sensor(found.nominal).misfit > settings.small_misfit  # more looks random than a sensor makes
     if visible and raised and before.threshold > settings.gross_percent:
         text = (
@@ -139,6 +143,9 @@ def _without_name(
         return Verdict(UNEXPLAINED, (text, *unsettled))
     if visible and found.seen is not None and any(found.seen.visible.shows(name) for name in untried):
         text = "Something is visible that is not random, and there was no time to try what it could be."
+        return Verdict(UNEXPLAINED, (text, *unsettled))
+    if shape:
+        text = f"Something is visible that is not random: {shape}. No effect of the catalogue is borne out."
         return Verdict(UNEXPLAINED, (text, *unsettled))
     text = f"No evidence of an effect that takes more than {before.threshold:.2g} % of the signal's variance."
     return Verdict(CONSISTENT, (text,))

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from math import log
 
 import torch
 from torch import Tensor
@@ -12,6 +13,7 @@ from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency
 from gear_damping.explanation.statistics.family_wise import Effect, Lines, Visible, block_numbers, family_wise
 from gear_damping.explanation.statistics.projector import Projector
 from gear_damping.explanation.trials.innovations import recurrences
+from gear_damping.explanation.trials.line import strongest_line
 from gear_damping.explanation.trials.random_part import Random, Whitener, random_part
 from gear_damping.explanation.trials.score import Score, projected
 from gear_damping.explanation.trials.unnamed import unnamed_columns
@@ -47,7 +49,8 @@ def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, fami
     """What the residuals of the fitted records hold; None beside a model that runs away.
 
     The random part is what is left beside the nuisance and beside what would take a large part of it, and where
-    something is visible in that, what is left beside all that is. Taking out every effect that could be there would
+    something is visible in that, what is left beside all that is; and beside the strongest line where that tells more
+    (Schwarz 1978), which a narrow colour would swallow. Taking out every effect that could be there would
     take the colour of the noise with them, and noise alone would then look like something in short records.
 
     Args:
@@ -64,7 +67,7 @@ def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, fami
     unnamed = {UNNAMED + name: _padded(columns, project) for name, columns in shapes.items()}
     named = {score.candidate.name: score.columns for score in reversed(scores) if score.columns.shape[1]}
     beside, count = project(residual), problem.response.weights.numel()
-    motions = cache(lambda: recurrences(outcome))
+    motions, line = cache(lambda: recurrences(outcome)), cache(lambda: strongest_line(outcome, evidence))
 
     def looked_at(random: Random) -> Assessment:
         white = Whitener(random, outcome)
@@ -80,7 +83,11 @@ def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, fami
         return _tested(seen, effects, whitened, white, random, outcome, evidence.settings.level)
 
     def random_in(left: Tensor, taken: float) -> Random:
-        return random_part(left[:count, 0], taken, outcome, motions)
+        found = random_part(left[:count, 0], taken, outcome, motions)
+        if not found.is_coloured or (strongest := line()) is None:
+            return found
+        apart = random_part(strongest.taken_out_of(left[:count, 0]), taken + strongest.degrees, outcome, motions)
+        return apart if apart.deviance + strongest.degrees * log(count) < found.deviance else found
 
     large = {s.candidate.name for s in scores if s.gain > evidence.settings.random_share}
     taken_out = [columns for name, columns in named.items() if name in large]

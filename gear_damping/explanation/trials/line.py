@@ -1,4 +1,4 @@
-"""The strongest line in residuals: a force at any order of the pinion's shaft, or at any frequency of an oscillator.
+"""The strongest line in residuals: a steady force at any order of the pinion, or at any frequency of an oscillator.
 
 A belt, a bearing, another machine turn at orders that belong to neither shaft. Their phase is another one in every
 record.
@@ -10,6 +10,7 @@ from math import pi
 import numpy as np
 import torch
 from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
 from torch import Tensor
 
 from gear_damping.explanation.evidence.records import Evidence
@@ -17,12 +18,13 @@ from gear_damping.explanation.evidence.shaft import shaft_of
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.linear import linear_of
 from gear_damping.explanation.trials.score import projected
-from gear_damping.explanation.trials.unnamed import through
+from gear_damping.identification.output_error.normal_equations import without_own
 from gear_damping.identification.output_error.records import FitRecord
 
 Array = NDArray[np.float64]
 FINE = 4  # places over the width of a line, one turn or cycle in the longest record
 LOW = 12  # turns or cycles in a record, up to which every place is tried
+EXACT = 1e-3  # of that width, to which the place is found: a wave of 40 dB is then taken out to its noise
 PEAKS = 8  # of the periodogram, that are tried beyond
 HIGHEST = 4.0  # natural frequencies up to which peaks are looked for
 MOST_ROWS = 16  # records or segments; each has a phase of its own, and of many segments none holds a line
@@ -53,6 +55,16 @@ class Line:
             return f"a line at {self.place:.4g} Hz"
         return f"a line at order {self.place:.3g} of the pinion's shaft ({self.hertz:.3g} Hz)"
 
+    @property
+    def degrees(self) -> int:
+        """Numbers that it takes: two of every record, and its place."""
+        return 2 * len(self.columns) + 1
+
+    def taken_out_of(self, signal: Tensor) -> Tensor:
+        """A signal of all records, (samples,), beside it."""
+        rows = signal.reshape(len(self.columns), -1, 1)
+        return without_own(rows, torch.linalg.qr(self.columns).Q).reshape(-1)
+
 
 def strongest_line(outcome: Outcome, evidence: Evidence) -> Line | None:
     """The line that takes most of what a model leaves beside its own parameters; None of many segments."""
@@ -73,13 +85,13 @@ def strongest_line(outcome: Outcome, evidence: Evidence) -> Line | None:
 
     width = 2 * pi / span
     places = [width * k / FINE for k in range(1, FINE * LOW)] + _peaks(residual, angles, outcome)
-    best = max((taken(place), place) for place in places)
-    for step in (width / FINE / 2, width / FINE / 4):
-        best = max([best, *((taken(place), place) for place in (best[1] - step, best[1] + step))])
-    (share, place), first = best, rows[0]
+    near = max(places, key=taken)
+    ends = (max(near - width / FINE, width / FINE / 2), near + width / FINE)
+    settled = minimize_scalar(lambda at: -taken(at), bounds=ends, method="bounded", options={"xatol": EXACT * width})
+    place, first = max(near, float(settled.x), key=taken), rows[0]
     hertz = place * float(angles[0][-1] - angles[0][0]) / (2 * pi) / (len(angles[0]) - 1) * first.sampling_rate
     unit = "order" if shaft_of(first, evidence) else "Hz"
-    return Line(place, unit, hertz, share, _columns(place, angles, outcome))
+    return Line(place, unit, hertz, taken(place), _columns(place, angles, outcome))
 
 
 def _angle(record: FitRecord, evidence: Evidence) -> Array:
@@ -89,14 +101,15 @@ def _angle(record: FitRecord, evidence: Evidence) -> Array:
 
 
 def _columns(place: float, angles: list[Array], outcome: Outcome) -> Tensor:
-    """What a force at one place makes of the first channel of every record, (records, samples, 2), weighted."""
-    problem, linear = outcome.problem, linear_of(outcome)
-    response = problem.response
+    """A wave at one place in the first channel of every record, (records, samples, 2), weighted.
+
+    What a steady force makes of the motion is that too, but for its beginning, which is the initial state's.
+    """
+    response = outcome.problem.response
     found = torch.zeros(len(angles), len(response.channels), response.length, 2, dtype=torch.float64)
-    for row, (record, angle) in enumerate(zip(problem.records, angles, strict=True)):
+    for row, (record, angle) in enumerate(zip(outcome.problem.records, angles, strict=True)):
         waves = np.stack([np.cos(place * angle), np.sin(place * angle)], 1)
-        moved = through(waves, record.sampling_rate, linear, record.observed.derivatives)
-        found[row, response.channels.index(record.observed.name), : len(angle)] = torch.as_tensor(moved)
+        found[row, response.channels.index(record.observed.name), : len(angle)] = torch.as_tensor(waves)
     return found.flatten(1, 2) * response.weights.unsqueeze(-1)
 
 

@@ -27,6 +27,7 @@ class Random:
         variance: Of the random part of the fitted records, in the unit of the first channel, unweighted.
         correlation: Sum of its squared autocorrelations.
         by_record: Variance by record.
+        deviance: Minus twice the logarithm of its likelihood, with what its numbers cost.
     """
 
     laws: tuple[Autoregression, ...]
@@ -35,6 +36,12 @@ class Random:
     correlation: float
     by_record: dict[str, float]
     loads: tuple[LoadNoise, ...] = ()
+    deviance: float = 0.0
+
+    @property
+    def is_coloured(self) -> bool:
+        """Whether it is more than white noise."""
+        return bool(self.loads) or any(law.order for law in self.laws)
 
     def joined(self, noise: NoiseLevel) -> NoiseLevel:
         """The noise of every record, where the random part is larger than what was known of it."""
@@ -65,18 +72,18 @@ def random_part(left: Tensor, taken: float, outcome: Outcome, motions: Callable[
     total = float((weights > 0).sum())
     regressed = _Regressed(groups.reshape(-1), count, weights > 0, (taken + problem.n_shared) / max(total, 1.0))
     laws, loads = regressed.of(rows), ()
-    kept = laws
+    kept, least = laws, regressed.deviance(laws)
     if any(law.order for law in laws) and (known := motions()) is not None:
         parts = [load_noise(row[: len(m.first) + MEMORY].numpy(), m) for row, m in zip(rows, known, strict=True)]
         beside = regressed.of(innovations(rows.unsqueeze(-1), parts).squeeze(-1))
         deviance = sum(part.deviance + PER_LOAD * log(total) for part in parts) + regressed.deviance(beside)
-        if deviance < regressed.deviance(laws):
-            kept, loads = beside, tuple(parts)
+        if deviance < least:
+            kept, loads, least = beside, tuple(parts), deviance
     scale = total / max(total - taken - problem.n_shared, 1.0)
     correlation = [laws[int(g)].correlation for g in groups.reshape(-1) if g >= 0]
     by_record = _by_record(rows, weights, outcome, scale)
     mean = sum(by_record.values()) / len(by_record)
-    return Random(kept, groups, mean, sum(correlation) / len(correlation), by_record, loads)
+    return Random(kept, groups, mean, sum(correlation) / len(correlation), by_record, loads, least)
 
 
 @dataclass(frozen=True)

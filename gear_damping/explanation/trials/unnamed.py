@@ -21,6 +21,7 @@ SHAFT_ORDERS = 4  # harmonics of either shaft
 MESH_ORDERS = 6  # harmonics of the mesh
 STATE_POWERS = 3  # of displacement and rate
 TOOTH_WAVES = 2  # harmonics of the mesh that modulate the displacement
+SIDE_ORDERS = 2  # of either shaft beside each of these
 
 
 def unnamed_columns(outcome: Outcome, evidence: Evidence) -> dict[str, Tensor]:
@@ -61,7 +62,7 @@ def _of_row(
     place, rate = _motion(shown, order)
 
     def moved(forces: Sequence[Array]) -> Array:
-        return through(np.stack(forces, 1), record.sampling_rate, linear, order)
+        return _through(np.stack(forces, 1), record.sampling_rate, linear, order)
 
     powers = [place**i * rate**j for i in range(STATE_POWERS + 1) for j in range(STATE_POWERS + 1 - i) if i + j > 1]
     found = {
@@ -90,6 +91,8 @@ def _at_shafts(shaft: Shaft, place: Array, rate: Array, moved: object) -> dict[s
         "force at the pinion's order": moved(pinion),
         "force at the gear's order": moved(gear),
         "force at the mesh order": moved(teeth),
+        "force at sidebands of the pinion": moved(_beside(tooth, pinion[: 2 * SIDE_ORDERS])),
+        "force at sidebands of the gear": moved(_beside(tooth, gear[: 2 * SIDE_ORDERS])),
         "stiffness over the turn": moved([w * place for w in (*pinion[:4], *gear[:4])]),
         "force over mesh phase and motion": moved([w * x for w in tooth for x in (place, rate)]),
     }
@@ -115,7 +118,7 @@ def _summed(values: Array) -> Array:
     return total - np.polynomial.polynomial.polyval(np.linspace(-1, 1, len(total)), slope)
 
 
-def through(forces: Array, rate: float, linear: tuple[float, float, float], order: int) -> Array:
+def _through(forces: Array, rate: float, linear: tuple[float, float, float], order: int) -> Array:
     """What the linear oscillator makes of forces (time, n), differentiated `order` times; starts are not minded."""
     mass, damping, stiffness = linear
     count = len(forces)
@@ -126,6 +129,11 @@ def through(forces: Array, rate: float, linear: tuple[float, float, float], orde
     found = np.fft.irfft(spectrum, n=2 * count, axis=0)[:count]
     size = found.std(0)
     return found / np.where(size > 0, size, 1.0)
+
+
+def _beside(carriers: Sequence[Array], waves: Sequence[Array]) -> list[Array]:
+    """Every carrier modulated by every wave: sidebands of it."""
+    return [carrier * wave for carrier in carriers for wave in waves]
 
 
 def _waves(angle: Array, count: int) -> list[Array]:
