@@ -177,6 +177,11 @@ class Measurement:
     segment_s: float | None = None
 
     @property
+    def files(self) -> tuple[Path, ...]:
+        """The declaration and the files of the records, each once."""
+        return tuple(dict.fromkeys([self.source, *(record.file for record in self.records)]))
+
+    @property
     def findings(self) -> tuple[Finding, ...]:
         """Everything suspicious, over all records."""
         return tuple(finding for record in self.records for finding in record.findings)

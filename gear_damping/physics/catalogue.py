@@ -1,15 +1,14 @@
 """The catalogue: every effect file of `effects/`, and the user's own, by name."""
 
-import importlib
-import inspect
-import pkgutil
 from collections.abc import Sequence
 from functools import cache
+from inspect import isabstract
 from pathlib import Path
 from types import ModuleType
 
 from gear_damping.errors import InputError, Problem, nearest
-from gear_damping.physics import effects as effects_package
+from gear_damping.own_files import classes_of, modules_of
+from gear_damping.physics import effects as room
 from gear_damping.physics.effect_files import KEY, load_effects
 from gear_damping.physics.systems.base import System
 from gear_damping.physics.systems.gear_pair import GearPair
@@ -22,11 +21,7 @@ SYSTEMS: dict[str, type[System]] = {GearPair.name: GearPair, Oscillator.name: Os
 @cache
 def builtin_effects() -> dict[str, type[Effect]]:
     """The effects that come with the package, by name."""
-    found = {}
-    for module in pkgutil.iter_modules(effects_package.__path__):
-        loaded = importlib.import_module(f"{effects_package.__name__}.{module.name}")
-        found |= effects_in(loaded)
-    return dict(sorted(found.items()))
+    return {name: kind for module in modules_of(room) for name, kind in effects_in(module).items()}
 
 
 def catalogue(plugins: Sequence[str | Path] = ()) -> dict[str, type[Effect]]:
@@ -55,9 +50,7 @@ def _keys_of_systems() -> set[str]:
 
 def effects_in(module: ModuleType) -> dict[str, type[Effect]]:
     """The final effect classes that a module defines itself, by name."""
-    classes = (c for c in vars(module).values() if inspect.isclass(c) and issubclass(c, Effect))
-    own = (c for c in classes if c.__module__ == module.__name__ and not inspect.isabstract(c))
-    return {c.name: c for c in own}
+    return {kind.name: kind for kind in classes_of(module, Effect) if not isabstract(kind)}
 
 
 def effect_class(name: str, plugins: Sequence[str | Path] = ()) -> type[Effect]:

@@ -40,8 +40,7 @@ def run_job(config: Mapping[str, Any], origin: Origin, folder: Path) -> int:
     try:
         with errors_in(plugins_of(config), origin.of):
             settings = _settings(config, origin)
-            for path in plugins_of(config):
-                run_folder.add_input(Path(path))
+            run_folder.add_inputs(map(Path, plugins_of(config)))
             metrics = task_of(settings)(settings, run_folder)
         run_folder.close(FINISHED, metrics)
     except InputError as error:

@@ -17,7 +17,7 @@ from gear_damping.tasks.simulated import TEST_SEED, plan_of, run_set_of, simulat
 
 def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     """Score a checkpoint on runs that it never met; returns the metrics for run.json."""
-    folder.add_input(settings.checkpoint)
+    folder.add_inputs([settings.checkpoint])
     estimator = load_estimator(settings.checkpoint, settings.model.plugins)
     plan = plan_of(settings)
     ratio = settings.simulator.damping_ratio_percent

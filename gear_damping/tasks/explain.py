@@ -21,7 +21,7 @@ EXTENDED = EDITED["explain"]
 def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     """Explain; returns the metrics for run.json."""
     measurement = load_measurement(settings.measurement_path, plugins=settings.measurement_plugins)
-    _note_inputs(measurement, folder)
+    folder.add_inputs(measurement.files)
     with progress_bar("explaining", settings.progress) as progress:
         limits = {"library": _library(settings), "minutes": settings.explain_minutes, "settings": settings.search}
         found = explain(measurement, statements.say, progress, settings.simulator.solver, **limits)
@@ -39,11 +39,6 @@ def _library(settings: Settings) -> dict[str, type[Effect]]:
     """The catalogue with the user's own effects, without those that are ruled out."""
     known = catalogue(settings.simulator.plugins)
     return {name: kind for name, kind in known.items() if name not in settings.ruled_out}
-
-
-def _note_inputs(measurement: Measurement, folder: RunFolder) -> None:
-    for path in dict.fromkeys([measurement.source, *(record.file for record in measurement.records)]):
-        folder.add_input(path)
 
 
 def _write_extended(path: Path, found: Explanation, measurement: Measurement) -> None:

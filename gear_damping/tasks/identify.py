@@ -16,7 +16,7 @@ from gear_damping.tasks.run_folder import RunFolder
 def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     """Identify; returns the metrics for run.json."""
     measurement = load_measurement(settings.measurement_path, plugins=settings.measurement_plugins)
-    _note_inputs(measurement, folder)
+    folder.add_inputs(measurement.files)
     refuse_faults(measurement)
     for finding in measurement.findings:
         statements.say(f"note: {finding.record} {finding.channel}: {finding.message}")
@@ -25,11 +25,6 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     with progress_bar("fitting", settings.progress) as progress:
         found = identify(measurement, say=statements.say, progress=progress, solver=settings.simulator.solver)
     return _written(found, folder)
-
-
-def _note_inputs(measurement: Measurement, folder: RunFolder) -> None:
-    for path in dict.fromkeys([measurement.source, *(record.file for record in measurement.records)]):
-        folder.add_input(path)
 
 
 def _written(found: Identification, folder: RunFolder) -> dict[str, Any]:
@@ -52,7 +47,7 @@ def _written(found: Identification, folder: RunFolder) -> dict[str, Any]:
 
 
 def _by_network(settings: Settings, measurement: Measurement, folder: RunFolder) -> dict[str, Any]:
-    folder.add_input(settings.checkpoint)
+    folder.add_inputs([settings.checkpoint])
     estimator = load_estimator(settings.checkpoint, settings.model.plugins)
     found = estimator.predict(measurement, settings.measurement_channel)
     mean = sum(one.damping_ratio_percent for one in found.values()) / len(found)

@@ -40,7 +40,7 @@ def run(settings: InspectSettings, folder: RunFolder) -> dict[str, Any]:
 def _bare(path: Path, plugins: Sequence[str], folder: RunFolder) -> dict[str, Any]:
     start = folder.path / YAML_NAME
     found = inspect_table(read_table(path, known=readers(plugins)))
-    folder.add_input(path)
+    folder.add_inputs([path])
     system = system_of(found)
     listed = guesses(found, system[0])
     text = starting_yaml(found, system, listed)
@@ -147,8 +147,7 @@ def _curve(label: str, time: np.ndarray, values: np.ndarray, spectrum: Spectrum 
 
 
 def _declared(measurement: Measurement, folder: RunFolder) -> dict[str, Any]:
-    for path in dict.fromkeys([measurement.source, *(record.file for record in measurement.records)]):
-        folder.add_input(path)
+    folder.add_inputs(measurement.files)
     lines = list(_measurement_lines(measurement))
     curves: dict[tuple[str, str], list[Curve]] = {}
     for record in measurement.records:

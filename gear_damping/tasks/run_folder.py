@@ -7,7 +7,7 @@ import os
 import subprocess
 import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -51,9 +51,9 @@ class RunFolder:
         }
         self._write()
 
-    def add_input(self, path: Path) -> None:
-        """Note the digest of a file that the run reads."""
-        self.record["inputs"][str(path)] = hashlib.sha256(path.read_bytes()).hexdigest()
+    def add_inputs(self, paths: Iterable[Path]) -> None:
+        """Note the digests of files that the run reads."""
+        self.record["inputs"] |= {str(path): hashlib.sha256(path.read_bytes()).hexdigest() for path in paths}
         self._write()
 
     def close(self, status: str, metrics: Mapping[str, Any] | None = None, error: str | None = None) -> None:
