@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 import torch
+from closed_forms import pushed_decay
 
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.fitting import fit_hypothesis
@@ -21,16 +22,10 @@ COEFFICIENT = "viscous_damping.damping_coefficient"
 
 
 def pushed(load, seed):
-    """A decay from .05 that is pushed at random, by exact steps of a linear oscillator, behind the sensor's noise."""
-    random, finer = np.random.default_rng(seed), 10
-    rates = np.array([[0.0, 1.0], [-STIFFNESS, -DAMPING]]) / (RATE * finer)
-    step = np.eye(2) + rates @ (np.eye(2) + rates / 2 @ (np.eye(2) + rates / 3 @ (np.eye(2) + rates / 4)))
-    state, seen = np.array([0.05, 0.0]), []
-    for _ in range(SAMPLES):
-        seen.append(state[0])
-        for _ in range(finer):
-            state = step @ (state + np.array([0.0, load / (RATE * finer) ** 0.5 * random.normal()]))
-    return torch.as_tensor(np.array(seen) + NOISE * random.normal(size=SAMPLES))
+    """A decay from .05 that is pushed at random, behind the sensor's noise."""
+    random = np.random.default_rng(seed)
+    moved = pushed_decay(random, load, 1.0, DAMPING, STIFFNESS, RATE, SAMPLES)
+    return torch.as_tensor(moved + NOISE * random.normal(size=SAMPLES))
 
 
 def fitted(load):

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from closed_forms import pushed_decay
 
 import gear_damping as gd
 
@@ -12,16 +13,8 @@ RUNS = 24
 
 
 def pushed(random, load):
-    """A decay from .05 under a white load, by exact steps of ten to a sample."""
-    interval = 1 / (RATE * 10)
-    rates = np.array([[0.0, 1.0], [-STIFFNESS, -DAMPING]]) * interval
-    step = np.eye(2) + rates @ (np.eye(2) + rates / 2 @ (np.eye(2) + rates / 3 @ (np.eye(2) + rates / 4)))
-    state, seen = np.array([0.05, 0.0]), []
-    for _ in range(SAMPLES):
-        seen.append(state[0])
-        for kick in load * interval**0.5 * random.normal(size=10):
-            state = step @ state + np.array([0.0, kick])
-    return np.array(seen) + NOISE * random.normal(size=SAMPLES)
+    """A decay from .05 under a white load, behind the sensor's noise."""
+    return pushed_decay(random, load, 1.0, DAMPING, STIFFNESS, RATE, SAMPLES) + NOISE * random.normal(size=SAMPLES)
 
 
 def identified(folder, values):

@@ -154,3 +154,27 @@ def bouncing_times(mass: float, stiffness: float, load: float, exit_speed: float
     omega = natural_frequency(mass, stiffness)
     contact = 2.0 * (math.pi - math.atan(omega * exit_speed * mass / load)) / omega
     return contact, 2.0 * mass * exit_speed / load
+
+
+def pushed_decay(
+    random: np.random.Generator,
+    load: float,
+    mass: float,
+    damping: float,
+    stiffness: float,
+    rate: float,
+    samples: int,
+    x0: float = 0.05,
+    finer: int = 10,
+) -> np.ndarray:
+    """A decay from x0 at rest under a white load of intensity `load` / (N s^1/2), by `finer` exact steps to a sample."""
+    interval = 1.0 / (rate * finer)
+    rates = np.array([[0.0, 1.0], [-stiffness / mass, -damping / mass]])
+    values, vectors = np.linalg.eig(rates)
+    step = (vectors @ np.diag(np.exp(values * interval)) @ np.linalg.inv(vectors)).real
+    state, seen = np.array([x0, 0.0]), []
+    for _ in range(samples):
+        seen.append(state[0])
+        for kick in load / mass * interval**0.5 * random.normal(size=finer):
+            state = step @ state + np.array([0.0, kick])
+    return np.array(seen)
