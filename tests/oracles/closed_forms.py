@@ -167,7 +167,7 @@ def pushed_decay(
     x0: float = 0.05,
     finer: int = 10,
 ) -> np.ndarray:
-    """A decay from x0 at rest under a white load of intensity `load` / (N s^1/2), by `finer` exact steps to a sample."""
+    """A decay from x0 at rest under a white load of intensity `load` / (N s^1/2), by `finer` steps a sample."""
     interval = 1.0 / (rate * finer)
     rates = np.array([[0.0, 1.0], [-stiffness / mass, -damping / mass]])
     values, vectors = np.linalg.eig(rates)
