@@ -1,6 +1,7 @@
 """A cause that stands in for a force at some frequency, and one that is there beside it; motions by scipy."""
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -17,6 +18,7 @@ from gear_damping.explanation.state import Accepted, State
 from gear_damping.explanation.trials.assess import assessed
 from gear_damping.explanation.trials.line import strongest_line
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
+from gear_damping.identification.output_error.segments import Segments
 from gear_damping.physics.catalogue import effect_class
 from gear_damping.physics.systems.oscillator import Oscillator
 
@@ -116,3 +118,19 @@ def test_nothing_is_told_of_noise():
     seen = assessed(quiet.nominal, [], quiet.bench.evidence)
     assert not seen.visible
     assert not shape_without_name(State(quiet.bench, quiet.nominal, quiet.nominal, seen=seen))
+
+
+def test_a_record_that_is_too_short_for_a_line_has_none(forced):
+    evidence = forced.bench.evidence
+    short = tuple(replace(record, response=record.response[:250]) for record in evidence.fit)  # 6.9 cycles of 1.37 Hz
+    hypothesis = forced.nominal.hypothesis
+    evidence = replace(evidence, fit=short, holdout=short[:1])
+    assert fit_hypothesis(hypothesis, evidence).problem.records[0].response.numel() == 250
+    line = strongest_line(fit_hypothesis(hypothesis, evidence), evidence)
+    assert line.place > 8 * RATE / 250 * 0.99
+    assert line.share < 0.5
+
+
+def test_segments_have_no_line_of_their_own(forced):
+    cut = replace(forced.bench.evidence, segments=Segments(2.0))
+    assert strongest_line(fit_hypothesis(forced.nominal.hypothesis, cut), cut) is None

@@ -27,7 +27,7 @@ LOW = 12  # turns or cycles in a record, up to which every place is tried
 EXACT = 1e-3  # of that width, to which the place is found: a wave of 40 dB is then taken out to its noise
 PEAKS = 8  # of the periodogram, that are tried beyond
 HIGHEST = 4.0  # natural frequencies up to which peaks are looked for
-MOST_ROWS = 16  # records or segments; each has a phase of its own, and of many segments none holds a line
+FEWEST_CYCLES = 8.0  # of a line in an oscillator's record: fewer are not told from a bend of its motion
 
 
 @dataclass(frozen=True)
@@ -67,9 +67,12 @@ class Line:
 
 
 def strongest_line(outcome: Outcome, evidence: Evidence) -> Line | None:
-    """The line that takes most of what a model leaves beside its own parameters; None of many segments."""
+    """The line that takes most of what a model leaves beside its own parameters.
+
+    None in segments, of which none holds a line of its own, and in records that are too short for one.
+    """
     rows = outcome.problem.records
-    if len(rows) > MOST_ROWS:
+    if evidence.segments:
         return None
     angles = [_angle(row, evidence) for row in rows]
     span = max(float(angle[-1] - angle[0]) for angle in angles)
@@ -84,9 +87,13 @@ def strongest_line(outcome: Outcome, evidence: Evidence) -> Line | None:
         return 1 - float(left.square().sum()) / total
 
     width = 2 * pi / span
+    lowest = width / FINE if evidence.system == "gear_pair" else width * FEWEST_CYCLES
     places = [width * k / FINE for k in range(1, FINE * LOW)] + _peaks(residual, angles, outcome)
+    places = [place for place in places if place >= lowest]
+    if not places:
+        return None
     near = max(places, key=taken)
-    ends = (max(near - width / FINE, width / FINE / 2), near + width / FINE)
+    ends = (max(near - width / FINE, lowest / 2), near + width / FINE)
     settled = minimize_scalar(lambda at: -taken(at), bounds=ends, method="bounded", options={"xatol": EXACT * width})
     place, first = max(near, float(settled.x), key=taken), rows[0]
     hertz = place * float(angles[0][-1] - angles[0][0]) / (2 * pi) / (len(angles[0]) - 1) * first.sampling_rate
