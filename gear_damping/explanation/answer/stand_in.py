@@ -15,6 +15,7 @@ from scipy.stats import norm
 from torch import Tensor
 
 from gear_damping.explanation.answer.homogeneity import block_of, error_of
+from gear_damping.explanation.evidence.excess import ac_energy
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import Accepted, State
@@ -78,7 +79,10 @@ def stand_ins(state: State) -> list[StandIn]:
 
 
 def shape_without_name(state: State) -> str:
-    """The family without a name that is most visible beside the nominal model, in words; empty where none is."""
+    """The family without a name that is most visible beside the nominal model, in words.
+
+    Empty where none is, or where it is too small a part of the signal to matter.
+    """
     if state.accepted or state.seen is None or not state.seen.visible:
         return ""
     seen = state.seen.visible
@@ -86,7 +90,12 @@ def shape_without_name(state: State) -> str:
     if not shown:
         return ""
     largest = max(shown, key=shown.get)
-    line = strongest_line(state.nominal, state.bench.evidence) if largest == LINE_FAMILY else None
+    evidence, nominal = state.bench.evidence, state.nominal
+    line = strongest_line(nominal, evidence) if largest == LINE_FAMILY else None
+    left = sum(float(residual.square().sum()) for residual in nominal.fit_residuals)
+    percent = 100 * (line.share if line else state.seen.taken) * left / sum(map(ac_energy, evidence.fitted))
+    if percent < state.bench.settings.least_excess:
+        return ""
     return line.name if line else f"some {largest.removeprefix(UNNAMED)}"
 
 

@@ -1,7 +1,7 @@
 """The strongest line in residuals: a steady force at any order of the pinion, or at any frequency of an oscillator.
 
-A belt, a bearing, another machine turn at orders that belong to neither shaft. Their phase is another one in every
-record.
+A belt or a bearing turns at orders that belong to neither shaft, the mains and other machines at a frequency of their
+own. Their phase is another one in every record.
 """
 
 from dataclasses import dataclass
@@ -17,9 +17,9 @@ from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.evidence.shaft import shaft_of
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.linear import linear_of
+from gear_damping.explanation.statistics.projector import Projector
 from gear_damping.explanation.trials.score import projected
 from gear_damping.identification.output_error.normal_equations import without_own
-from gear_damping.identification.output_error.records import FitRecord
 
 Array = NDArray[np.float64]
 FINE = 4  # places over the width of a line, one turn or cycle in the longest record
@@ -71,40 +71,66 @@ def strongest_line(outcome: Outcome, evidence: Evidence) -> Line | None:
 
     None in segments, of which none holds a line of its own, and in records that are too short for one.
     """
-    rows = outcome.problem.records
     if evidence.segments:
         return None
-    angles = [_angle(row, evidence) for row in rows]
-    span = max(float(angle[-1] - angle[0]) for angle in angles)
     project, residual = projected(outcome)
     residual = project(residual)
-    total = float(residual.square().sum())
-    if span <= 0 or total <= 0:
+    clocks = [clock for clock in _clocks(outcome, evidence) if clock.span > 0]
+    if not clocks or float(residual.square().sum()) <= 0:
         return None
+    found = [_strongest(clock, residual, project, outcome) for clock in clocks]
+    return max((line for line in found if line), key=lambda line: line.share, default=None)
+
+
+@dataclass(frozen=True)
+class _Clock:
+    """What a line goes with.
+
+    Args:
+        unit: Of its place.
+        angles: By record, in rad at place 1, (time,).
+        fewest: Turns or cycles of a line in the longest record.
+    """
+
+    unit: str
+    angles: list[Array]
+    fewest: float
+
+    @property
+    def span(self) -> float:
+        """Of the longest record, rad."""
+        return max(float(angle[-1] - angle[0]) for angle in self.angles)
+
+
+def _clocks(outcome: Outcome, evidence: Evidence) -> list[_Clock]:
+    """The pinion of a gear pair, and the time."""
+    rows = outcome.problem.records
+    time = [2 * pi * np.arange(len(row.response)) / row.sampling_rate for row in rows]
+    shafts = [shaft_of(row, evidence) for row in rows]
+    if not all(shafts):
+        return [_Clock("Hz", time, FEWEST_CYCLES)]
+    return [_Clock("order", [shaft.angle for shaft in shafts], 1 / FINE), _Clock("Hz", time, 1 / FINE)]
+
+
+def _strongest(clock: _Clock, residual: Tensor, project: Projector, outcome: Outcome) -> Line | None:
+    """The strongest line on one clock."""
+    total, width = float(residual.square().sum()), 2 * pi / clock.span
 
     def taken(place: float) -> float:
-        left = project.beside_own(_columns(place, angles, outcome))(residual)
+        left = project.beside_own(_columns(place, clock.angles, outcome))(residual)
         return 1 - float(left.square().sum()) / total
 
-    width = 2 * pi / span
-    lowest = width / FINE if evidence.system == "gear_pair" else width * FEWEST_CYCLES
-    places = [width * k / FINE for k in range(1, FINE * LOW)] + _peaks(residual, angles, outcome)
-    places = [place for place in places if place >= lowest]
+    places = [width * k / FINE for k in range(1, FINE * LOW)] + _peaks(residual, clock, outcome)
+    places = [place for place in places if place >= clock.fewest * width]
     if not places:
         return None
     near = max(places, key=taken)
-    ends = (max(near - width / FINE, lowest / 2), near + width / FINE)
+    ends = (max(near - width / FINE, width / FINE / 2), near + width / FINE)
     settled = minimize_scalar(lambda at: -taken(at), bounds=ends, method="bounded", options={"xatol": EXACT * width})
-    place, first = max(near, float(settled.x), key=taken), rows[0]
-    hertz = place * float(angles[0][-1] - angles[0][0]) / (2 * pi) / (len(angles[0]) - 1) * first.sampling_rate
-    unit = "order" if shaft_of(first, evidence) else "Hz"
-    return Line(place, unit, hertz, taken(place), _columns(place, angles, outcome))
-
-
-def _angle(record: FitRecord, evidence: Evidence) -> Array:
-    """Angle of the pinion in rad, or of a line of 1 Hz."""
-    shaft = shaft_of(record, evidence)
-    return 2 * pi * np.arange(len(record.response)) / record.sampling_rate if shaft is None else shaft.angle
+    place, angle = max(near, float(settled.x), key=taken), clock.angles[0]
+    turns = float(angle[-1] - angle[0]) / (2 * pi)
+    hertz = place * turns / (len(angle) - 1) * outcome.problem.records[0].sampling_rate
+    return Line(place, clock.unit, hertz, taken(place), _columns(place, clock.angles, outcome))
 
 
 def _columns(place: float, angles: list[Array], outcome: Outcome) -> Tensor:
@@ -120,12 +146,12 @@ def _columns(place: float, angles: list[Array], outcome: Outcome) -> Tensor:
     return found.flatten(1, 2) * response.weights.unsqueeze(-1)
 
 
-def _peaks(residual: Tensor, angles: list[Array], outcome: Outcome) -> list[float]:
+def _peaks(residual: Tensor, clock: _Clock, outcome: Outcome) -> list[float]:
     """Places at which the first channel of the records, read over the angle at even steps, has most power."""
     problem = outcome.problem
-    length, count = problem.response.length, max(len(angle) for angle in angles)
+    angles, span, length = clock.angles, clock.span, problem.response.length
     rows = residual[: problem.response.weights.numel(), 0].reshape(len(angles), -1, length)
-    span = max(float(angle[-1] - angle[0]) for angle in angles)
+    count = max(len(angle) for angle in angles)
     even, power = np.linspace(0, span, count), np.zeros(count // 2 + 1)
     for row, (record, angle) in enumerate(zip(problem.records, angles, strict=True)):
         own = rows[row, problem.response.channels.index(record.observed.name), : len(angle)].numpy()
