@@ -5,12 +5,24 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
-from gear_damping.physics.cause import Cause, Recipe
+from gear_damping.physics.cause import Cause, Recipe, Rig
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import ExtraStates, TransmissionErrorSource, Values
 
 PLACE, RATE = "bearing_flexibility.displacement", "bearing_flexibility.velocity"
+STIFFNESSES = (1.5, 6.0, 30.0, 120.0)  # of the mean mesh stiffness
+MASSES = (5.5, 15.0)  # of the equivalent mass; a disc alone has twice it
+HEAVIEST = 100.0  # of it: no pinion with its shaft weighs more
+
+
+def _beside_the_mesh(rig: Rig) -> tuple[Recipe, ...]:
+    within = {"bearing_flexibility.mass": (0.0, HEAVIEST * rig.values["equivalent_mass"])}
+    return tuple(
+        Recipe({"stiffness": k}, presence=True, scanned={"mass": m, "damping_ratio": 0.02}, within=within)
+        for k in STIFFNESSES
+        for m in MASSES
+    )
 
 
 class BearingFlexibility(ExtraStates, TransmissionErrorSource):
@@ -28,11 +40,7 @@ class BearingFlexibility(ExtraStates, TransmissionErrorSource):
     states: ClassVar = {"displacement": "m", "velocity": "m/s"}
     cause: ClassVar = Cause(
         "the flexibility of a bearing",
-        tuple(
-            Recipe({"stiffness": k}, presence=True, scanned={"mass": m, "damping_ratio": 0.02})
-            for k in (1.5, 6.0, 30.0, 120.0)  # of the mean mesh stiffness
-            for m in (5.5, 15.0)  # of the equivalent mass
-        ),
+        _beside_the_mesh,
         separated_by="bearing",
     )
 

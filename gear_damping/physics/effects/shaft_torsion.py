@@ -1,5 +1,6 @@
 """Torsion of the shaft or coupling between a gear and the machine on its shaft."""
 
+from math import inf
 from typing import ClassVar
 
 import torch
@@ -12,6 +13,7 @@ from gear_damping.physics.terms import ExtraStates, LoadPath, Values
 
 TWIST, RATE = "shaft_torsion.twist", "shaft_torsion.twist_rate"
 SOFTNESS = (0.012, 0.04, 0.12, 0.4)  # of the mesh as the shaft feels it
+SOFTEST = 1e-4  # of it: what twists by a radian under its load is no shaft but a slow change of the torque
 INERTIAS = (2.9, 10.8)  # of both gears as the shaft feels them
 
 
@@ -23,6 +25,7 @@ def _on_either_shaft(rig: Rig) -> tuple[Recipe, ...]:
             scanned={"motor_inertia": j * _inertia(rig, shaft), "damping_ratio": 0.02},
             in_si=True,
             options={"shaft": shaft},
+            within={"shaft_torsion.stiffness": (SOFTEST * _mesh_stiffness(rig, shaft), inf)},
         )
         for shaft in SHAFTS
         for k in SOFTNESS
