@@ -233,7 +233,7 @@ class StrongestLine(Part):
     """The force at one order or frequency that would take most of the rest; its phase is free in every record."""
 
     place: float = said("its order, cycles per turn of the pinion, or its frequency", "1 or Hz")
-    unit: Literal["order", "Hz"] = said("which of the two: order of a gear pair, Hz of an oscillator")
+    unit: Literal["order", "Hz"] = said("which of the two it keeps in all records: order of the pinion, or Hz")
     hertz: float = said("its frequency in the first fitted record", "Hz")
     share: float = said("of the residuals of the fitted records, that it would take", "1")
 

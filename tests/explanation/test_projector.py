@@ -55,5 +55,7 @@ def test_more_columns_of_the_records_own_are_taken_out_too(drawn, count):
     columns = np.concatenate([whole(sensitivity, torch.zeros(SHARED)), np.pad(own, ((0, SHARED), (0, 0)))], 1)
     expected = signal.numpy() - columns @ np.linalg.lstsq(columns, signal.numpy(), rcond=None)[0]
     np.testing.assert_allclose(found, expected, atol=1e-12)
+    taken = project.taken_by_own(more, project(signal))
+    assert taken == pytest.approx(float(project(signal).square().sum()) - float((expected**2).sum()))
     assert float(project.beside_own(more)(alone).norm()) < 1e-12 < float(project(alone).norm())
     assert project.beside_own(more[..., :0]) is project

@@ -44,6 +44,21 @@ class Projector:
         rows = rows[:, rows.norm(dim=0) > 0]
         return torch.cat([torch.nn.functional.pad(rows, (0, 0, 0, len(self.slope))), self.basis], 1)
 
+    def taken_by_own(self, columns: Tensor, signal: Tensor) -> float:
+        """Sum of squares that columns (records, time, l) of every record take of a signal (samples + n, 1) beside it.
+
+        By the normal equations: the columns of different records meet only through what is shared.
+        """
+        records, width = len(columns), columns.shape[-1]
+        own = without_own(columns, self.own)
+        samples = records * columns.shape[1]
+        rows = signal[:samples].reshape(records, -1, 1)
+        pull = (own.transpose(1, 2) @ rows).reshape(-1)
+        shared = self.basis[:samples].reshape(records, -1, self.basis.shape[1])
+        between = (shared.transpose(1, 2) @ own).permute(1, 0, 2).reshape(-1, records * width)
+        gram = torch.block_diag(*(own.transpose(1, 2) @ own)) - between.T @ between
+        return float(pull @ (torch.linalg.pinv(gram, rtol=INDEPENDENT, hermitian=True) @ pull))
+
     def beside_own(self, columns: Tensor) -> "Projector":
         """With columns (records, time, l) more that every record has of its own.
 

@@ -117,8 +117,7 @@ def _strongest(clock: _Clock, residual: Tensor, project: Projector, outcome: Out
     total, width = float(residual.square().sum()), 2 * pi / clock.span
 
     def taken(place: float) -> float:
-        left = project.beside_own(_columns(place, clock.angles, outcome))(residual)
-        return 1 - float(left.square().sum()) / total
+        return project.taken_by_own(_columns(place, clock.angles, outcome), residual) / total
 
     places = [width * k / FINE for k in range(1, FINE * LOW)] + _peaks(residual, clock, outcome)
     places = [place for place in places if place >= clock.fewest * width]
