@@ -120,15 +120,17 @@ def test_nothing_is_told_of_noise():
     assert not shape_without_name(State(quiet.bench, quiet.nominal, quiet.nominal, seen=seen))
 
 
-def test_a_record_that_is_too_short_for_a_line_has_none(forced):
+@pytest.mark.parametrize("samples", [50, 80])
+def test_a_record_that_is_too_short_for_a_line_has_none_there(forced, samples):
+    """One and two cycles of 1.37 Hz, and of 1.01 Hz, the motion's own."""
     evidence = forced.bench.evidence
-    short = tuple(replace(record, response=record.response[:250]) for record in evidence.fit)  # 6.9 cycles of 1.37 Hz
-    hypothesis = forced.nominal.hypothesis
+    short = tuple(replace(record, response=record.response[:samples]) for record in evidence.fit)
     evidence = replace(evidence, fit=short, holdout=short[:1])
-    assert fit_hypothesis(hypothesis, evidence).problem.records[0].response.numel() == 250
-    line = strongest_line(fit_hypothesis(hypothesis, evidence), evidence)
-    assert line.place > 8 * RATE / 250 * 0.99
-    assert line.share < 0.5
+    outcome = fit_hypothesis(forced.nominal.hypothesis, evidence)
+    assert outcome.problem.records[0].response.numel() == samples
+    line, width = strongest_line(outcome, evidence), RATE / samples
+    assert line.place > 1.7 * width
+    assert abs(line.place - STIFFNESS**0.5 / (2 * math.pi)) > 1.2 * width
 
 
 def test_segments_have_no_line_of_their_own(forced):

@@ -15,7 +15,7 @@ from torch import Tensor
 
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.evidence.shaft import shaft_of
-from gear_damping.explanation.model.hypothesis import Outcome
+from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency_hz
 from gear_damping.explanation.model.linear import linear_of
 from gear_damping.explanation.statistics.projector import Projector
 from gear_damping.explanation.trials.score import projected
@@ -27,7 +27,8 @@ LOW = 12  # turns or cycles in a record, up to which every place is tried
 EXACT = 1e-3  # of that width, to which the place is found: a wave of 40 dB is then taken out to its noise
 PEAKS = 8  # of the periodogram, that are tried beyond
 HIGHEST = 4.0  # natural frequencies up to which peaks are looked for
-FEWEST_CYCLES = 8.0  # of a line in an oscillator's record: fewer are not told from a bend of its motion
+FEWEST_CYCLES = 2.0  # of a line in an oscillator's record: fewer are a drift,
+OWN = 1.5  # and so many widths about the natural frequency are its own motion where this bends
 
 
 @dataclass(frozen=True)
@@ -90,11 +91,13 @@ class _Clock:
         unit: Of its place.
         angles: By record, in rad at place 1, (time,).
         fewest: Turns or cycles of a line in the longest record.
+        own: Place of the motion itself; None where a steady mesh drives it.
     """
 
     unit: str
     angles: list[Array]
     fewest: float
+    own: float | None = None
 
     @property
     def span(self) -> float:
@@ -108,7 +111,8 @@ def _clocks(outcome: Outcome, evidence: Evidence) -> list[_Clock]:
     time = [2 * pi * np.arange(len(row.response)) / row.sampling_rate for row in rows]
     shafts = [shaft_of(row, evidence) for row in rows]
     if not all(shafts):
-        return [_Clock("Hz", time, FEWEST_CYCLES)]
+        natural = natural_frequency_hz(outcome.hypothesis.model, outcome.flat_given())
+        return [_Clock("Hz", time, FEWEST_CYCLES, natural)]
     return [_Clock("order", [shaft.angle for shaft in shafts], 1 / FINE), _Clock("Hz", time, 1 / FINE)]
 
 
@@ -121,6 +125,7 @@ def _strongest(clock: _Clock, residual: Tensor, project: Projector, outcome: Out
 
     places = [width * k / FINE for k in range(1, FINE * LOW)] + _peaks(residual, clock, outcome)
     places = [place for place in places if place >= clock.fewest * width]
+    places = [place for place in places if clock.own is None or abs(place - clock.own) >= OWN * width]
     if not places:
         return None
     near = max(places, key=taken)
