@@ -27,8 +27,9 @@ LOW = 12  # turns or cycles in a record, up to which every place is tried
 EXACT = 1e-3  # of that width, to which the place is found: a wave of 40 dB is then taken out to its noise
 PEAKS = 8  # of the periodogram, that are tried beyond
 HIGHEST = 4.0  # natural frequencies up to which peaks are looked for
-FEWEST_CYCLES = 2.0  # of a line in an oscillator's record: fewer are a drift,
-OWN = 1.5  # and so many widths about the natural frequency are its own motion where this bends
+FEWEST_TURNS = 1.0  # of a line in a record of a gear pair: less is a drift,
+FEWEST_CYCLES = 2.0  # and in an oscillator's, whose motion dies away
+OWN = 1.5  # widths about the natural frequency of an oscillator, which are its own motion where this bends
 
 
 @dataclass(frozen=True)
@@ -113,7 +114,8 @@ def _clocks(outcome: Outcome, evidence: Evidence) -> list[_Clock]:
     if not all(shafts):
         natural = natural_frequency_hz(outcome.hypothesis.model, outcome.flat_given())
         return [_Clock("Hz", time, FEWEST_CYCLES, natural)]
-    return [_Clock("order", [shaft.angle for shaft in shafts], 1 / FINE), _Clock("Hz", time, 1 / FINE)]
+    turned = [shaft.angle for shaft in shafts]
+    return [_Clock("order", turned, FEWEST_TURNS), _Clock("Hz", time, FEWEST_TURNS)]
 
 
 def _strongest(clock: _Clock, residual: Tensor, project: Projector, outcome: Outcome) -> Line | None:
@@ -129,7 +131,7 @@ def _strongest(clock: _Clock, residual: Tensor, project: Projector, outcome: Out
     if not places:
         return None
     near = max(places, key=taken)
-    ends = (max(near - width / FINE, width / FINE / 2), near + width / FINE)
+    ends = (max(near - width / FINE, clock.fewest * width), near + width / FINE)
     settled = minimize_scalar(lambda at: -taken(at), bounds=ends, method="bounded", options={"xatol": EXACT * width})
     place, angle = max(near, float(settled.x), key=taken), clock.angles[0]
     turns = float(angle[-1] - angle[0]) / (2 * pi)

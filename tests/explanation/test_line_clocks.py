@@ -1,0 +1,68 @@
+"""A line keeps its order of the pinion at every speed, or its frequency: a belt, or the mains."""
+
+import numpy as np
+import pytest
+import torch
+
+from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.fitting import fit_hypothesis
+from gear_damping.explanation.model.hypothesis import Hypothesis
+from gear_damping.explanation.trials.line import strongest_line
+from gear_damping.identification.observation import Known
+from gear_damping.identification.output_error.records import FitRecord, FreeParameter, Observed
+from gear_damping.measurement.record import Channel
+from gear_damping.physics.effects.fourier_mesh_stiffness import FourierMeshStiffness
+from gear_damping.physics.effects.viscous_damping import ViscousDamping
+from gear_damping.physics.systems.gear_pair import GearPair
+
+RATE, SAMPLES, SPEEDS = 20_000.0, 1500, (300.0, 420.0, 530.0)
+TIME = np.arange(SAMPLES) / RATE
+EVEN = {"fourier_mesh_stiffness.minimum": 3e8, "fourier_mesh_stiffness.maximum": 3e8}  # no mesh in what is left
+DAMPING = "viscous_damping.damping_coefficient"
+
+
+def fitted(responses):
+    """A gear pair of even stiffness, fitted to records at three speeds; and its evidence."""
+    records = []
+    for speed, values in zip(SPEEDS, responses, strict=True):
+        inputs = {"pinion_angle": torch.as_tensor(speed * TIME)}
+        seen = Observed("transmission_error")
+        records.append(FitRecord(f"{speed}", torch.as_tensor(values), RATE, inputs, observed=seen))
+    channel, records = Channel("transmission_error", np.zeros(1), "m"), tuple(records)
+    evidence = Evidence("gear_pair", records, records[:1], Known({}, {}), channel, False, noise=1e-7)
+    free = (FreeParameter(DAMPING, 100.0, logarithmic=True),)
+    base = Hypothesis(GearPair(), (FourierMeshStiffness(), ViscousDamping()), EVEN, free)
+    return fit_hypothesis(base, evidence, iterations=1), evidence
+
+
+@pytest.fixture(scope="module")
+def calm():
+    """What the pair shows without any line, (records, time)."""
+    outcome, _ = fitted(np.full((3, SAMPLES), 1.6e-5))
+    problem = outcome.problem
+    shown = problem.response.values - outcome.fitted.prediction.residual[0] / problem.response.weights
+    return shown.reshape(3, SAMPLES).numpy()
+
+
+def found(calm, wave):
+    """The line in what the pair shows with a wave (angle of it by record) and a little noise."""
+    random, phases = np.random.default_rng(2), np.array([[0.4], [2.1], [5.0]])
+    angle = np.stack([speed * TIME for speed in SPEEDS])
+    noise = 1e-7 * random.normal(size=calm.shape)
+    return strongest_line(*fitted(calm + 1e-6 * np.cos(wave(TIME, angle) + phases) + noise))
+
+
+@pytest.mark.parametrize("order", [0.71, 6.3])
+def test_a_belt_keeps_its_order(calm, order):
+    line = found(calm, lambda time, angle: order * angle)
+    assert line.unit == "order"
+    assert line.place == pytest.approx(order, rel=0.03)
+    assert line.hertz == pytest.approx(order * SPEEDS[0] / (2 * np.pi), rel=0.03)
+
+
+@pytest.mark.parametrize("hertz", [50.0, 417.0])
+def test_the_mains_keep_their_frequency(calm, hertz):
+    line = found(calm, lambda time, angle: 2 * np.pi * hertz * time)
+    assert line.unit == "Hz"
+    assert line.hertz == pytest.approx(line.place)
+    assert line.place == pytest.approx(hertz, rel=0.03)
