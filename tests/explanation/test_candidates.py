@@ -151,6 +151,23 @@ def test_what_has_a_shaft_is_tried_on_both():
         assert {dict(c.options)["shaft"] for c in found if c.name == effect} == {"pinion", "gear"}
 
 
+@pytest.mark.parametrize("teeth", RIGS)
+def test_what_no_machine_has_is_not_tried(teeth):
+    """A shaft that twists by a radian and more under any load, a pinion of a hundred masses of the mesh."""
+    base, evidence = gear_pair(teeth)
+    values = base.model.prepare(base.model.values(1, **base.given))
+    stiffness, mass = float(values.derived["mean_stiffness"][0]), float(values.derived["equivalent_mass"][0])
+    for candidate in of("shaft_torsion", base, evidence):
+        own = next(p for p in candidate.hypothesis.free if p.name == "shaft_torsion.stiffness")
+        radius = float(values.derived[f"base_radius_{dict(candidate.options)['shaft']}"][0])
+        assert own.lower == pytest.approx(1e-4 * stiffness * radius**2)
+        assert own.lower < own.start / 100
+    for candidate in of("bearing_flexibility", base, evidence):
+        own = next(p for p in candidate.hypothesis.free if p.name == "bearing_flexibility.mass")
+        assert own.upper == pytest.approx(100 * mass)
+        assert own.start < own.upper / 6
+
+
 def test_sizes_follow_the_rig():
     """What is tried of a shaft, a bearing or a gap is a share of this rig's own stiffness, inertia and teeth."""
 
