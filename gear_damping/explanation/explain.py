@@ -38,7 +38,7 @@ from gear_damping.physics.terms import Effect
 from gear_damping.simulation.solver_settings import Solver
 
 Say = Callable[[str], None]
-STEPS = 4
+STEPS = 4  # that are reported: evidence, calibration, search, verdict
 STRETCHES, CLEAR = 8, 10.0  # of a record; noise variances that a stretch must hold to tell anything
 MOST_SUBSTEPS = 24  # of an output interval: only forces far beyond the load would need more
 INPUT_NOISE = "The measured load has noise of its own, which was filtered out before the simulation was driven by it."

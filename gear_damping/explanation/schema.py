@@ -7,7 +7,7 @@ from typing import Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Field
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 1  # of explanation.json; raised when a key changes its meaning
 Word = Literal["consistent", "explained", "ambiguous", "partly_explained", "unexplained", "data_problem"]
 VERDICTS: tuple[str, ...] = get_args(Word)
 Interval95 = tuple[float, float]

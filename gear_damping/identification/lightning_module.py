@@ -16,7 +16,7 @@ from gear_damping.identification.windows import gather_windows, window_starts, w
 
 # A rate that is wrong by this fraction moves every frequency, and with it the damping, by the same.
 _RATE_TOLERANCE = 1e-3
-_WINDOWS_AT_ONCE = 4096
+_WINDOWS_AT_ONCE = 4096  # that are evaluated together, so that memory stays bounded
 _PLAIN = (bool, int, float, str, list, tuple)
 
 

@@ -25,7 +25,7 @@ THREADS_PAY_FROM = 128
 # Of glibc's mallopt: up to which size of the free memory at the end, and from which size of a block on, memory
 # goes back to the kernel.
 M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3
-KEPT_BYTES = 1 << 30
+KEPT_BYTES = 1 << 30  # that freed memory is kept up to, instead of being given back and asked for at every step
 LARGEST_OF_OLD_GLIBC = 32 << 20  # which refuses larger blocks
 
 

@@ -25,7 +25,7 @@ _WAVES = 0.36  # of the new rate; waves in the continuation, well within what th
 _SMALLEST_SINGULAR = 1e-3  # of the largest; smaller ones let noise grow beyond the ends
 _MEANS = 10  # means of recorded samples for one of the new rate, to which the continuation is fitted
 _SAME_RATE = 1e-3  # a rate this little above the recorded one is the recorded one
-_ROUNDING = 1e-9
+_ROUNDING = 1e-9  # of a rate: what its digits leave
 
 
 def window_rows(

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.splines import monotone_spline
 
-TURN = 2 * np.pi
+TURN = 2 * np.pi  # rad
 FEWEST_PULSES = 2  # in a record
 COUNTERS = (16, 24, 32)  # bits
 FROM_ENCODERS = "transmission_error: r_b1 theta_1 - r_b2 theta_2 from the encoders, without its mean"  # a note

@@ -22,7 +22,7 @@ from gear_damping.measurement.time_column import is_time
 from gear_damping.measurement.timebase import TimeBase, stamped_time, steady_time
 from gear_damping.units import to_si
 
-LEAST_SAMPLES = 8
+LEAST_SAMPLES = 8  # of a record, for a spectrum at all
 _SAME_RATE = 1e-3  # how far a declared rate may lie from the file's
 _SAME_UNIT = 1e-9  # the same of units
 

@@ -6,13 +6,13 @@ from numpy.typing import NDArray
 from gear_damping.measurement.record import Finding, Record
 
 LARGEST_TRANSMISSION_ERROR = 1e-3  # m; a gear pair deflects by micrometres
-SPEED_TOLERANCE = 0.02
+SPEED_TOLERANCE = 0.02  # of a stated speed: about the slip of an induction motor
 _COARSE = 50  # parts of a record in which a shaft is seen to advance
 _ONE_WAY = 0.9  # share of the parts that turn one way
 _REVERSALS = 3  # of a shaft that is turned back and forth by its drive
 _STILL = 0.01  # of the way that all parts make; a part below stands still
 _TEETH = range(5, 301)  # tooth counts that are tried
-_TURN = 2 * np.pi
+_TURN = 2 * np.pi  # rad
 
 
 def check_shafts(record: Record) -> list[Finding | None]:

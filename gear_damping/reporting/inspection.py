@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from gear_damping.reporting.style import CYCLE, INK, PALE, colour_of, legend_above, new_figure, say_empty, styled
 
-MOST_PANELS = 12
+MOST_PANELS = 12  # that can be read on one page
 _ROW, _MARGINS, _WIDTH = 1.7, (0.55, 0.35), 10.0  # inches; below and above the rows
 _DRAWN = 1000  # pairs of lowest and highest value that a long channel is drawn by
 _BELOW_FLOOR = 1e-4  # of the floor; what lies lower is no more shown

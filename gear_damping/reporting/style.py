@@ -21,7 +21,7 @@ MODEL_COLOURS = {"raw_lstm": BLUE, "cwt_lstm": RED, "record_cwt_lstm": GREEN, "w
 MODEL_MARKERS = {"raw_lstm": "o", "cwt_lstm": "s", "record_cwt_lstm": "D", "white_noise": "x", "mean": "+"}
 SEQUENTIAL, DIVERGING = "cividis", "RdBu_r"
 WIDTH = 8.0  # inches; 1200 pixels at the resolution of saved files
-SAVED_DPI = 150
+SAVED_DPI = 150  # sharp in print at half a page
 _STYLE = {
     "font.size": 10,
     "axes.titlesize": 10,

@@ -15,7 +15,7 @@ from gear_damping.reporting.numbers import NOTHING, number, percent, pretty_unit
 
 COLUMNS = ("estimator", "RMSE / %", "paper's form", "median rel. error", "skill", "epochs")
 QUANTITY_COLUMNS = ("quantity", "value", "95 % interval", "unit")
-WIDTH = 100
+WIDTH = 100  # columns of a terminal that does not wrap
 _SCALARS = {
     "damping_ratio_percent": "damping ratio",
     "natural_frequency_hz": "natural frequency",

@@ -11,6 +11,7 @@ from gear_damping.simulation.tsit5 import ORDER
 CONSTANT = 4e-5
 FORGETTING, GROWTH = 300.0, 0.25  # natural radians after which the error grows by this power only
 CORNER, CORNER_ORDER = 5.6e-4, 2.75  # the same where |v|^n bends at rest: error = CORNER * step^CORNER_ORDER
+# sub-steps of an output interval: few values, so that runs of one number go together
 ALLOWED = (1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 48, 64, 96, 128, 192, 256)
 
 

@@ -10,7 +10,7 @@ from gear_damping.physics.model import Model
 from gear_damping.physics.terms import DampingLaw, ExtraStates, Recording, Sensor
 from gear_damping.simulation.series import ANGLE, ANGLE_RATE
 
-FINE, DIVERGED = 0, 1
+FINE, DIVERGED = 0, 1  # what became of a run
 ACCELERATION = "acceleration"  # its name among the states
 
 

@@ -6,7 +6,9 @@ from torch import Tensor
 
 Rates = Callable[[Tensor, Tensor], Tensor]
 
+# when each slope is taken, of the step (Tsitouras 2011)
 NODES = (0.0, 0.161, 0.327, 0.9, 0.9800255409045097, 1.0)
+# of the slopes before it, that each is taken at
 STAGES = (
     (),
     (0.161,),
@@ -15,6 +17,7 @@ STAGES = (
     (5.325864828439257, -11.748883564062828, 7.4955393428898365, -0.09249506636175525),
     (5.86145544294642, -12.92096931784711, 8.159367898576159, -0.071584973281401, -0.028269050394068383),
 )
+# of all slopes, in the step
 WEIGHTS = (
     0.09646076681806523,
     0.01,
@@ -23,7 +26,7 @@ WEIGHTS = (
     -3.290069515436081,
     2.324710524099774,
 )
-ORDER = 5
+ORDER = 5  # of the error over a record; that of one step is one higher
 
 
 def step(rates: Rates, state: Tensor, start: Tensor, length: Tensor) -> tuple[Tensor, Tensor]:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from gear_damping.config.settings import Settings
 
 log = logging.getLogger("gear_damping")
-OK, INTERRUPTED_CODE = 0, 130
+OK, INTERRUPTED_CODE = 0, 130  # exit codes; 128 + SIGINT as shells have it
 
 
 def run_job(config: Mapping[str, Any], origin: Origin, folder: Path) -> int:

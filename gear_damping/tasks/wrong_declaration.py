@@ -15,7 +15,7 @@ from gear_damping.config.measured import MEASURED, declares, measurement_file
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.load import check_declaration
 
-WRONG_INPUT = 1
+WRONG_INPUT = 1  # exit code
 PATH, TASK, FOLDER = "measurement.path", "task", "hydra.run.dir"
 USUAL_FOLDER = "outputs"  # where runs go unless the command says otherwise
 _PLAIN = re.compile(r"[\w./~@:+-]+( [\w./~@:+-]+)*")  # a value that Hydra takes as it stands

@@ -13,8 +13,8 @@ from gear_damping.explanation.casing.cycles import Patterns, series
 from gear_damping.explanation.casing.localised import RUNOUT
 
 Array = NDArray[np.float64]
-FM4_DRAWS = 300
-LIMIT = 0.99
+FM4_DRAWS = 300  # surrogates of random phases: the 99 % quantile of them then rests on three
+LIMIT = 0.99  # quantile of these, 1 in 100 by chance
 
 
 @dataclass(frozen=True, eq=False)

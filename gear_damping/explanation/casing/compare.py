@@ -20,8 +20,8 @@ from gear_damping.explanation.casing.shafts import turns_of
 from gear_damping.explanation.casing.study import Study
 
 Array = NDArray[np.float64]
-BLOCKS = 8
-FACTOR = 2.0
+BLOCKS = 8  # stretches of a record, each long against what its turns have in common
+FACTOR = 2.0  # of an amplitude, 6 dB: less is what mounting and temperature do
 SAME_SPEED = 0.03  # relative; a path is another one at another speed
 AT_MESH, PINION, GEAR, ASYNCHRONOUS = (
     "at the mesh", "once per turn of the pinion", "once per turn of the gear", "asynchronous",

@@ -13,7 +13,7 @@ from gear_damping.explanation.steps.judge import CONSISTENT, UNEXPLAINED
 from gear_damping.measurement.record import Measurement
 
 REFERENCE = "reference"
-MOST_DRAWS = 20_000
+MOST_DRAWS = 20_000  # enough for a chance of 1 in 10 000, in a second
 UNSTEADY = 0.1  # relative range of the speed: beyond, mesh lines cross whole resonances of the path
 SENSOR = (
     "Measure the transmission error with an encoder on each shaft, or the acceleration tangentially on a shaft: "

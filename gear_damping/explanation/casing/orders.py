@@ -12,8 +12,8 @@ from gear_damping.explanation.casing.heard import TURN, Heard
 from gear_damping.signals.spectra import order_spectrum
 
 Array = NDArray[np.float64]
-MESH_HARMONICS = 6
-SHAFT_HARMONICS = 3
+MESH_HARMONICS = 6  # of the mesh that are looked at: higher ones are weak in a casing
+SHAFT_HARMONICS = 3  # sidebands on either side of each
 FLOOR = 50  # lines on either side that give the floor of a line
 BESIDE = 2.0  # orders over which the skirt of a synchronous line reaches
 

@@ -10,8 +10,8 @@ from gear_damping.explanation.casing.cycles import SHAFTS, Patterns, series
 from gear_damping.explanation.casing.localised import DRAWS, RUNOUT, Localised, localised
 
 Array = NDArray[np.float64]
-SUSPECT = 0.05
-FLIPS = 2000
+SUSPECT = 0.05  # chance below which a pattern of the gear is looked at again as one of the pinion
+FLIPS = 2000  # draws of signs: p down to 1 in 2000
 FEWEST_GEAR_TURNS = 2.5  # fewer do not tell the patterns of the two shafts apart
 
 

@@ -21,7 +21,7 @@ FLOOR_SHARE = 0.1  # of a load's variance: a floor that is more of it may be the
 LINES = 5  # of the spectrum that its power is averaged over
 DEGREE = 5  # of the spline between uneven samples
 LEAST = 1e-6  # of a load's variance: a floor below is rounding
-FEWEST_SAMPLES = 64
+FEWEST_SAMPLES = 64  # of a record: fewer tell no floor of its spectrum
 
 
 def without_input_noise(records: Sequence[FitRecord]) -> tuple[FitRecord, ...] | None:

@@ -15,7 +15,7 @@ CUT = 5.0  # times the floor: a line above it is signal
 BELOW_CUT = 1 - CUT * np.exp(-CUT) / (1 - np.exp(-CUT))  # mean of an exponential distribution below the cut
 ALIKE = 3.5  # standard errors within which records have one noise
 DEGREES = 2 / 1.94  # of freedom of a periodogram line: under a Hann window neighbours hang together
-WEIGHTS = (0.2, 5.0)
+WEIGHTS = (0.2, 5.0)  # of a record against the others: a noisier one counts less, none alone
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
-DRAWS = 2000
+DRAWS = 2000  # of signs: a p of .01 then has a standard error of .002
 FEWEST_BLOCKS = 13.0  # effective ones, below which signs are too few: 2^13 of them give p down to 1e-4
 MOST_CORRECTED = 250  # blocks: with more the leverage of the nuisance within one is negligible
 

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.stats import chi2
 
-CONFIDENCE = 0.95
+CONFIDENCE = 0.95  # of the interval of a spread
 WIDEST = 1e3  # times the largest difference of two estimates: no spread is sought beyond
 
 

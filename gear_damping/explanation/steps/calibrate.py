@@ -25,7 +25,7 @@ from gear_damping.identification.output_error.records import SEPARATOR, FreePara
 from gear_damping.simulation.solver_settings import Solver
 
 LESS_DAMPING = 0.05  # of what was found: what a local minimum takes for damping
-SHAPE_ITERATIONS = 30
+SHAPE_ITERATIONS = 30  # of the fit with a free shape of the stiffness; causes are tried from where it stands
 SHORT_PERIODS = 40.0  # natural periods of the first round
 MOST_SCANS = 8  # of the records' angles, each followed by a fit
 STIFFNESSES = (1.0, 0.85, 0.92, 1.08, 1.17)  # times where it begins: with a wrong one angles of records are wrong too

@@ -9,7 +9,7 @@ from gear_damping.explanation.state import Accepted, State
 from gear_damping.explanation.trials.refit import Refit
 from gear_damping.explanation.trials.score import best_by_effect
 
-PAIRS, PAIR = "pairs of effects", 2
+PAIRS, PAIR = "pairs of effects", 2  # what a budget refuses; effects in a pair
 
 
 @dataclass(frozen=True)

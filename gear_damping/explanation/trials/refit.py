@@ -17,7 +17,7 @@ from gear_damping.explanation.trials.score import Score, best_by_effect, colline
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.simulation.solver_settings import Solver
 
-NEARLY_COLLINEAR = 0.7
+NEARLY_COLLINEAR = 0.7  # cosine: half of what one explains the other would
 OTHER_FORM = 0.95  # of what the best form of an effect promises, for a full fit of another form
 LEAST_PROMISE = 0.3  # of the first one's, for a full fit of one that resembles it
 BLOCK_TIMES = 6.0  # characteristic times of a block of the paired test,
@@ -27,7 +27,7 @@ CAUTIOUS = 0.3  # of the linearised optimum: the second start, where the first o
 FIRST_PART = 0.25  # of the records, by which the better start is chosen
 ONE = 1e-9  # share of the starts that goes on: the best
 ENOUGH = 0.1  # noise variances: a tenth of what a parameter of no use gains from noise
-FIRST_ITERATIONS, LAST_ITERATIONS = 10, 30
+FIRST_ITERATIONS, LAST_ITERATIONS = 10, 30  # over a part of the record, and over all of it
 AT_BOUND = 0.05  # of a bound: a parameter as near to it as that has run into it
 VARIANTS_KEPT = 0.25  # of the sizes of an effect that is tried as a whole, after the first round
 

@@ -17,7 +17,7 @@ from torch import Tensor
 from gear_damping.identification.output_error.normal_equations import normal_equations
 from gear_damping.identification.output_error.problem import OutputErrorProblem, Prediction
 
-FIRST_DAMPING, LARGEST_DAMPING, SMALLEST_DAMPING = 1e-2, 1e10, 1e-12
+FIRST_DAMPING, LARGEST_DAMPING, SMALLEST_DAMPING = 1e-2, 1e10, 1e-12  # of Levenberg and Marquardt, relative to J'J
 SMALLEST_GAIN = 1e-7  # relative fall of the cost below which a start has converged
 CALM_STEPS = 3  # steps in a row that change the cost by little: one alone may be short
 LONGEST_STEP = 2.0  # of any coordinate in one iteration; far out, that many times the way from the start

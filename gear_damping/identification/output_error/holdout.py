@@ -16,7 +16,7 @@ from gear_damping.physics.model import Model
 from gear_damping.simulation.solver_settings import Solver
 
 FIRST_PERIODS = 1.25  # characteristic times at the start of a record that its initial state is first sought in
-FIRST_ITERATIONS, LAST_ITERATIONS = 20, 20
+FIRST_ITERATIONS, LAST_ITERATIONS = 20, 20  # over a part of the record, and over all of it
 FIRST_PART, MOST_OF_IT = 0.25, 0.75  # of a record; share of what is left in it that a wrong start would leave there
 
 

@@ -13,7 +13,7 @@ from gear_damping.identification.output_error.least_squares import Fitted
 from gear_damping.identification.output_error.normal_equations import own_basis, without_own
 from gear_damping.identification.output_error.problem import OutputErrorProblem
 
-QUANTILE = 1.959964
+QUANTILE = 1.959964  # of a normal variable: 95 % lie within as many standard deviations
 ROUNDING = 1e-15  # of an eigenvalue beside the largest, of products in double precision
 LEAST_INFORMATION = 1e-30  # beside 1: products of two of them are still numbers
 WIDEST = 1e6  # times the variance of coloured residuals: more is no matter of colour

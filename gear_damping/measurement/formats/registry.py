@@ -13,7 +13,7 @@ from gear_damping.measurement import formats as room
 from gear_damping.measurement.formats.table import Table, refuse_size
 from gear_damping.own_files import REMEDY, load_module, modules_of
 
-MAX_BYTES = 512 * 1024**2
+MAX_BYTES = 512 * 1024**2  # of a file: as text and as floats it is several times that in memory
 KEY = "measurement.plugins"
 Reader = Callable[[Path, int], Table]
 

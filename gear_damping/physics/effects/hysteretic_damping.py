@@ -12,7 +12,7 @@ from gear_damping.physics.shapes import power_of_size
 from gear_damping.physics.terms import DampingForce, ExtraStates, Values
 
 YIELDS = (0.05, 0.2, 0.6)  # amplitudes of the motion
-PRELOADED = (0.2,)
+PRELOADED = (0.2,)  # in natural units: a loaded mesh moves about its deflection
 EXPONENTS = (0.5, 4.0)  # of the sharpness that is fitted
 
 

@@ -8,7 +8,7 @@ Values = Mapping[str, float | tuple[float, ...]]
 
 SETTLING = 8  # turns of the pinion before anything is looked at
 TURNS = 8  # turns of the pinion that are looked at: whole turns of pinion and gear
-SAMPLES_PER_TURN = 2048
+SAMPLES_PER_TURN = 2048  # of the pinion: about 100 a tooth
 SPEED_RPM = 2500.0  # the natural frequency lies between the sixth and the seventh mesh harmonic: no resonance
 DAMPING = 184.4  # N s/m, 1 % of critical
 MEAN_STIFFNESS = 3.2e8  # N/m, of the default mesh
@@ -44,7 +44,7 @@ NOMINAL: dict[str, Values] = {
 OSCILLATOR_NOMINAL: dict[str, Values] = {"viscous_damping": {"damping_coefficient": 1.2}}
 OSCILLATOR_GIVEN: Values = {"stiffness": OSCILLATOR_STIFFNESS, "initial_displacement": 1.0}
 
-_TURN = 60 / SPEED_RPM
+_TURN = 60 / SPEED_RPM  # s
 CASES: dict[str, Case] = {
     "viscous_damping": Case({"damping_coefficient": DAMPING + 64.5}, note="0.35 % of critical on top of the 1 %."),
     "fourier_mesh_stiffness": Case(

@@ -42,8 +42,8 @@ ACTS_ON = {
     ContactChange: "the zone of double contact",
     Sensor: "the record",
 }
-MOST_CHOICES = 8
-MOST_VALUES = 6
+MOST_CHOICES = 8  # that are listed in a row of the page
+MOST_VALUES = 6  # likewise of a list of defaults
 PARAMETER_HEAD = ("| parameter | meaning | unit | default | bounds |", "|---|---|---|---|---|")
 OPTION_HEAD = ("| option | meaning | choices | default |", "|---|---|---|---|")
 

@@ -16,14 +16,14 @@ from gear_damping.reporting.figures.marks import GEAR, MESH, PINION
 from gear_damping.reporting.style import BLUE, FAINT, INK, PALE, RED, new_figure, styled
 
 WIDTH, HEIGHT = 9.6, 2.35  # inches
-DPI = 110
+DPI = 110  # legible on a page, some 40 kB each
 SHADES = 7  # of each colour: few, so that the files are small
 RESPONSE_LIMITS = (-5.0, 50.0)  # µm; one scale for all, widened only where a response leaves it
 AMPLITUDE_LIMITS = (1e-4, 60.0)  # µm; one scale for all
-ORDER_LIMITS = (0.35, 220.0)
-MESH_HARMONICS = 6
-SHOWN_MESH_PERIODS = 6
-SHOWN_SECONDS = 1.6
+ORDER_LIMITS = (0.35, 220.0)  # from below the shaft to ten meshes of 20 teeth
+MESH_HARMONICS = 6  # that are marked
+SHOWN_MESH_PERIODS = 6  # in which single teeth are still seen
+SHOWN_SECONDS = 1.6  # in which single cycles are seen
 REPEATING = 0.99  # share of the residual's energy on the harmonics and half harmonics of the mesh
 NATURAL = {"color": INK, "linewidth": 0.9, "linestyle": (0, (1, 1))}
 

@@ -20,7 +20,7 @@ from gear_damping.simulation.simulate import simulate
 
 Array = NDArray[np.float64]
 Kinds = Mapping[str, type[Effect]]
-MICRO = 1e6
+MICRO = 1e6  # um in a m
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from gear_damping.reporting.style import SAVED_DPI, styled
 
 LARGEST_SVG = 1_500_000  # bytes; a drawing with more is shown as a picture
-PICTURE_DPI = 200
+PICTURE_DPI = 200  # sharp on a screen of twice the density
 
 
 def figure_uri(figure: Figure) -> str:

@@ -18,7 +18,7 @@ from gear_damping.reporting.explanation_report.residual_arrays import force_map,
 from gear_damping.reporting.explanation_report.vocabulary import words
 from gear_damping.reporting.numbers import pretty_unit
 
-MOST_OVERLAYS = 2
+MOST_OVERLAYS = 2  # records that are drawn in full, the worst first
 REPORT = "report.html"
 
 

@@ -15,11 +15,11 @@ from gear_damping.explanation.state import State
 from gear_damping.reporting.explanation_report.report_input import ForceMap, ForceSurface, ResidualSpectrum
 from gear_damping.signals.spectra import amplitude_spectrum, order_spectrum
 
-PHASE_BINS = 16
+PHASE_BINS = 16  # of a mesh period
 STATE_BINS = (30, 24)  # of displacement and velocity
-LEAST_VISITS = 3
+LEAST_VISITS = 3  # of a cell, for a mean to be drawn
 END_SAMPLES = 16  # at either end, where the smoothed force knows only one side
-WHOLE_TURNS = 1.05
+WHOLE_TURNS = 1.05  # of the shaft: more than one, or its orders are no lines
 
 Array = NDArray[np.float64]
 

@@ -11,7 +11,7 @@ from matplotlib.patches import Patch
 
 from gear_damping.reporting.style import BLUE, INK, ORANGE, PALE, SKY, new_figure, say_empty, styled
 
-MOST_BARS = 14
+MOST_BARS = 14  # that can be read on one page
 STATUSES = {
     "established": (BLUE, "", "established"),
     "confusable": (SKY, "///", "confusable with an established one"),

@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 
 from gear_damping.reporting.style import BLUE, INK, RED, legend_above, new_figure, say_empty, styled
 
-MOST_ROWS = 24
-MARKER, WIDE = 6, 2.0
+MOST_ROWS = 24  # that can be read on one page
+MARKER, WIDE = 6, 2.0  # points, of a marker and of a line
 
 
 def forest_figure(rows: Sequence[Mapping[str, Any]], joint: Mapping[str, Any], *, quantity: str) -> Figure:

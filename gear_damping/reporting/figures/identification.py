@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from gear_damping.reporting.figures.arrays import Array, any_finite, extent, series
 from gear_damping.reporting.style import BLUE, FAINT, INK, RED, legend_above, new_figure, say_empty, styled
 
-PIECE_SAMPLES = 120
+PIECE_SAMPLES = 120  # in which single cycles are seen
 
 
 def identification_figure(

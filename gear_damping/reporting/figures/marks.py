@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 
 from gear_damping.reporting.style import GREEN, INK, ORANGE, PURPLE
 
-MOST_MESH_HARMONICS = 40
+MOST_MESH_HARMONICS = 40  # beyond which marks are a grey band
 MESH = {"color": ORANGE, "linewidth": 0.9, "linestyle": (0, (4, 2))}
 PINION = {"color": GREEN, "linewidth": 1.1, "linestyle": "-."}
 GEAR = {"color": PURPLE, "linewidth": 1.1, "linestyle": ":"}

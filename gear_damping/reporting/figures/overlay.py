@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from gear_damping.reporting.figures.arrays import Array, any_finite, extent, series, time_axis
 from gear_damping.reporting.style import BLUE, INK, PALE, RED, SKY, legend_above, new_figure, say_empty, styled
 
-SHOWN_SAMPLES = 240
+SHOWN_SAMPLES = 240  # in which two curves can be told apart
 LEAD = 0.1  # share of the stretch before the first of it
 NOISE_BAND = 2.0  # standard deviations
 MEASURED = {"color": INK, "marker": ".", "markersize": 3.5, "linestyle": "none", "label": "measured"}

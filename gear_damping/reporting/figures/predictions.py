@@ -13,7 +13,7 @@ from gear_damping.reporting.figures.arrays import Array, any_finite, extent, ser
 from gear_damping.reporting.style import INK, colour_of, marker_of, new_figure, say_empty, styled
 
 MEAN = "mean"  # the control that always says one value: a line in every panel instead of a panel
-MOST_COLUMNS = 3
+MOST_COLUMNS = 3  # of panels on one page
 RIGHT_LINE = {"color": INK, "linewidth": 0.9, "linestyle": ":", "label": "predicted = true"}
 MEAN_LINE = {"color": INK, "linewidth": 0.9, "linestyle": "--", "label": "mean of the training labels (control)"}
 

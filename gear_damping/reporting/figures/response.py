@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 from gear_damping.reporting.figures.arrays import any_finite, extent, series, time_axis
 from gear_damping.reporting.style import BLUE, SKY, new_figure, say_empty, styled
 
-READABLE_SAMPLES = 300
+READABLE_SAMPLES = 300  # in which single cycles are seen
 
 
 def response_figure(

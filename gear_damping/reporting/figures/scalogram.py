@@ -10,7 +10,7 @@ from gear_damping.reporting.figures.marks import harmonics, name_on_right
 from gear_damping.reporting.style import INK, SEQUENTIAL, new_figure, say_empty, styled
 
 DECIBELS = 50  # shown below the peak
-MOST_HARMONICS = 6
+MOST_HARMONICS = 6  # that are marked
 
 
 def scalogram_figure(

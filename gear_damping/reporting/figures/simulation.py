@@ -20,8 +20,8 @@ from gear_damping.reporting.style import BLUE, new_figure, say_empty, styled
 from gear_damping.signals.envelope import upsample
 from gear_damping.signals.spectra import amplitude_spectrum
 
-LEAST_SAMPLES = 32
-REFINEMENT = 8
+LEAST_SAMPLES = 32  # for an orbit to be drawn
+REFINEMENT = 8  # points of a smooth curve between two samples
 
 
 def simulation_figure(

@@ -14,8 +14,8 @@ from gear_damping.reporting.style import BLUE, CYCLE, INK, PALE, RED, new_figure
 ORDER_LABEL = "order of the pinion shaft"
 FREQUENCY_LABEL = "frequency / Hz"
 DECADES = 6  # shown below the highest amplitude
-SHOWN_MESH_HARMONICS = 6.4
-MOST_LEGEND_COLUMNS = 6
+SHOWN_MESH_HARMONICS = 6.4  # six, and a little beyond the last
+MOST_LEGEND_COLUMNS = 6  # beside each other on one page
 LOW_ORDERS = 4.4  # pinion orders of the panel for the shafts
 LOOKS = {
     "reference": {"color": PALE, "linewidth": 0.8, "zorder": 2},

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from gear_damping.reporting.figures.arrays import Array, any_finite, series
 from gear_damping.reporting.style import BLUE, INK, SKY, legend_above, new_figure, say_empty, styled
 
-SHOWN_MESH_PERIODS = 3
+SHOWN_MESH_PERIODS = 3  # in which the edges of a period are seen
 
 
 def mesh_stiffness_figure(

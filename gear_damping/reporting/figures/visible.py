@@ -8,7 +8,7 @@ from matplotlib.patches import Patch
 
 from gear_damping.reporting.style import BLUE, INK, PALE, new_figure, say_empty, styled
 
-MOST_BARS = 16
+MOST_BARS = 16  # that can be read on one page
 UNNAMED = "unnamed: "  # as explanation.json writes it; what explains is not imported to draw
 LIMIT = {"color": INK, "linewidth": 1.0, "linestyle": "--"}
 

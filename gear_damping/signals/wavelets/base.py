@@ -12,7 +12,7 @@ from gear_damping.setting import Setting
 from gear_damping.signals.checks import require_positive, require_records
 from gear_damping.signals.operators import dense_matrix, spectrum
 
-_OPERATORS_KEPT = 4
+_OPERATORS_KEPT = 4  # lengths of records whose operators stay in memory
 
 
 class ContinuousWavelet(nn.Module, ABC):

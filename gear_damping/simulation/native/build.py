@@ -14,7 +14,7 @@ from pathlib import Path
 log = logging.getLogger(__name__)
 HERE = Path(__file__).resolve().parent
 FLAGS = ("-O3", "-march=native", "-ffp-contract=fast", "-fno-math-errno", "-std=c++17", "-shared", "-fPIC", "-w")
-COMPILE_SECONDS = 300
+COMPILE_SECONDS = 300  # s; a kernel takes some seconds
 _said: list[Path] = []
 
 

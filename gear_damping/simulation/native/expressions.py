@@ -39,7 +39,7 @@ FOLDED = {
     "exp": math.exp, "log": math.log, "atan": math.atan, "pow": math.pow, "maximum": max, "minimum": min,
     "sign": lambda a: float((a > 0) - (a < 0)), "floor": math.floor,
 }  # fmt: skip
-LARGEST_UNROLLED_POWER = 8
+LARGEST_UNROLLED_POWER = 8  # products that are faster than pow()
 SMALLEST_BASE = 1e-100  # of a power that is divided by its base
 
 
