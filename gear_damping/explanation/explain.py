@@ -25,7 +25,7 @@ from gear_damping.explanation.state import State
 from gear_damping.explanation.steps.calibrate import calibrated, recalibrated
 from gear_damping.explanation.steps.confirm import Confirmed, confirmed
 from gear_damping.explanation.steps.estimate import estimated
-from gear_damping.explanation.steps.judge import Judged, verdict
+from gear_damping.explanation.steps.judge import Judged, Known, verdict
 from gear_damping.explanation.steps.too_short import died_away, too_short
 from gear_damping.explanation.trials.bench import Bench
 from gear_damping.identification.decimation import decimated
@@ -169,12 +169,17 @@ def _judged(found: Confirmed, notes: Sequence[str], not_tried: tuple[str, ...]) 
     state, before, after = found.state, found.before, found.after
     evidence, settings = state.bench.evidence, state.bench.settings
     fitted = excess(state.nominal.fit_residuals, evidence.fitted, state.noise, settings)
-    one, whole = _is_one(state), _taken_of_all(state)
-    converged = state.outcome.fitted.converged
-    of_fit = 1 - state.outcome.fitted.cost / max(state.nominal.fitted.cost, 1e-300)
-    known = {"is_one": one, "whole": whole, "fitted": fitted.percent, "untried": not_tried, "of_fit": of_fit}
-    known |= {"stands_in": " ".join(one.sentence for one in stand_ins(state)[:1]), "shape": shape_without_name(state)}
-    said = verdict(state, before, after, converged, **known).saying(*notes)
+    known = Known(
+        converged=state.outcome.fitted.converged,
+        is_one=_is_one(state),
+        whole=_taken_of_all(state),
+        fitted=fitted.percent,
+        untried=not_tried,
+        of_fit=1 - state.outcome.fitted.cost / max(state.nominal.fitted.cost, 1e-300),
+        stands_in=" ".join(one.sentence for one in stand_ins(state)[:1]),
+        shape=shape_without_name(state),
+    )
+    said = verdict(state, before, after, known).saying(*notes)
     return Judged(state, before, after, said, not_tried, found.t)
 
 

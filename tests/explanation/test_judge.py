@@ -7,7 +7,12 @@ import pytest
 from gear_damping.explanation.evidence.excess import Excess
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import State
-from gear_damping.explanation.steps.judge import CONSISTENT, EXPLAINED, PARTLY, UNEXPLAINED, verdict
+from gear_damping.explanation.steps.judge import CONSISTENT, EXPLAINED, PARTLY, UNEXPLAINED, Known
+from gear_damping.explanation.steps.judge import verdict as verdict_of
+
+
+def verdict(found, before, after, **known):
+    return verdict_of(found, before, after, Known(**known))
 
 
 def excess_of(percent, misfit, threshold=0.1):

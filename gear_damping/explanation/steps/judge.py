@@ -45,25 +45,11 @@ class Judged:
     confirmed_t: float = 0.0
 
 
-def verdict(
-    found: State,
-    before: Excess,
-    after: Excess,
-    converged: bool = True,
-    is_one: bool | None = None,
-    whole: float = 1.0,
-    fitted: float = 0.0,
-    untried: Sequence[str] = (),
-    of_fit: float = 0.0,
-    stands_in: str = "",
-    shape: str = "",
-) -> Verdict:
-    """What the search amounts to.
+@dataclass(frozen=True)
+class Known:
+    """What is known of a search beside its excess.
 
     Args:
-        found: The search.
-        before: Excess of the calibrated nominal model.
-        after: Excess of the extended one.
         converged: Whether the calibration converged.
         is_one: Whether every cause has one size over all records; False where one has not, None where too few records
             tell of one.
@@ -74,30 +60,55 @@ def verdict(
         stands_in: Why one of the causes is none, in words; empty where all may be.
         shape: What is visible and has no name, in words; empty where nothing of that kind is.
     """
-    unsettled = () if converged else ("The calibration did not converge: take the figures with care.",)
+
+    converged: bool = True
+    is_one: bool | None = None
+    whole: float = 1.0
+    fitted: float = 0.0
+    untried: Sequence[str] = ()
+    of_fit: float = 0.0
+    stands_in: str = ""
+    shape: str = ""
+
+    @property
+    def unsettled(self) -> tuple[str, ...]:
+        """What is said where the calibration did not converge."""
+        return () if self.converged else ("The calibration did not converge: take the figures with care.",)
+
+
+def verdict(found: State, before: Excess, after: Excess, known: Known | None = None) -> Verdict:
+    """What the search amounts to.
+
+    Args:
+        found: The search.
+        before: Excess of the calibrated nominal model.
+        after: Excess of the extended one.
+        known: What else is known.
+    """
+    known = known or Known()
     if not found.accepted:
-        return _without_name(found, before, fitted, unsettled, untried, shape)
+        return _without_name(found, before, known)
     settings, missing = found.bench.settings, _missing(before)
     taken, said = _taken(found, before, after), _named(found.accepted)
     confused = [cause for cause in found.accepted if cause.confusable]
     classes = [cause for cause in found.accepted if cause.effect.cause.one_class]
     rest = is_all(after, before, settings) or (not is_visible(found.left) and after.misfit <= settings.small_misfit)
-    beside = (taken.sentence, *_not_told_apart(confused), *unsettled)
-    if stands_in:
-        text = f"{missing}. {said[0].upper()}{said[1:]} would take part of it, {stands_in}"
-        return Verdict(UNEXPLAINED, (text, *unsettled))
+    beside = (taken.sentence, *_not_told_apart(confused), *known.unsettled)
+    if known.stands_in:
+        text = f"{missing}. {said[0].upper()}{said[1:]} would take part of it, {known.stands_in}"
+        return Verdict(UNEXPLAINED, (text, *known.unsettled))
     if not rest:
-        size = {"is_one": is_one, "of_fit": of_fit, "misfit": after.misfit}
-        if _is_part_named(found, taken.share, **size):
+        if _is_part_named(found, taken.share, after, known):
             text = f"{missing}. Part of it has a name: {said}. A rest of {after.percent:.3g} % has none."
             return Verdict(PARTLY, (text, *beside))
-        why = OTHER_SIZES if is_one is False else "but too much is left for it to be the cause."
+        why = OTHER_SIZES if known.is_one is False else "but too much is left for it to be the cause."
         text = f"{missing}. {said[0].upper()}{said[1:]} would take part of it, {why}"
-        return Verdict(UNEXPLAINED, (text, *unsettled))
-    is_part, is_unsteady = whole < settings.taken_by_one, before.misfit < settings.random_misfit  # held-out: less noise
+        return Verdict(UNEXPLAINED, (text, *known.unsettled))
+    is_part = known.whole < settings.taken_by_one
+    is_unsteady = before.misfit < settings.random_misfit  # held-out: less noise
     if is_part and is_unsteady:
         text = f"{missing}. {said[0].upper()}{said[1:]} would take part of it; most of it looks random, and is not."
-        return Verdict(UNEXPLAINED, (text, *unsettled))
+        return Verdict(UNEXPLAINED, (text, *known.unsettled))
     if is_part or is_unsteady:  # most of the gap is still there
         text = f"{missing}. Part of it has a name: {said}. What is left looks random, and is more than that."
         return Verdict(PARTLY, (text, *beside))
@@ -109,44 +120,44 @@ def verdict(
     return Verdict(EXPLAINED, (f"{missing}: {said}.", *beside, *same, *_small_rest(found, after)))
 
 
-def _is_part_named(found: State, share: float, *, is_one: bool | None, of_fit: float, misfit: float) -> bool:
+def _is_part_named(found: State, share: float, after: Excess, known: Known) -> bool:
     """Whether causes that take a share of what was missing are established although a rest is left.
 
     What has another size in other records, or has run into the end of what it can be, stands in for something else,
     however much it takes.
     """
-    if is_one is False or any(cause.refit.is_at_bound for cause in found.accepted):
+    if known.is_one is False or any(cause.refit.is_at_bound for cause in found.accepted):
         return False
     settings = found.bench.settings
-    nobody_knows = is_one is None and of_fit >= settings.taken_by_all  # one size: but nearly all of one record
-    is_alone = len(found.accepted) == 1 and (misfit <= settings.small_misfit or bool(is_one) or nobody_knows)
+    nobody_knows = known.is_one is None and known.of_fit >= settings.taken_by_all  # but nearly all of one record
+    is_small = after.misfit <= settings.small_misfit
+    is_alone = len(found.accepted) == 1 and (is_small or bool(known.is_one) or nobody_knows)
     return share >= (settings.taken_by_one if is_alone else settings.taken_by_all)
 
 
-def _without_name(
-    found: State, before: Excess, fitted: float, unsettled: tuple[str, ...], untried: Sequence[str], shape: str
-) -> Verdict:
+def _without_name(found: State, before: Excess, known: Known) -> Verdict:
     """Nothing is missing, or no name was found for it."""
     settings, visible = found.bench.settings, is_visible(found.seen)
     is_more = before.misfit > settings.small_misfit
-    missing = (before.significant and (visible or is_more)) or (visible and is_more and fitted > settings.gross_percent)
+    is_gross = visible and is_more and known.fitted > settings.gross_percent
+    missing = (before.significant and (visible or is_more)) or is_gross
     if missing:
         text = f"{_missing(before)}, and no effect of the catalogue is borne out by held-out records."
-        looks = (f"What is missing looks like {shape}.",) if shape else ()
-        return Verdict(UNEXPLAINED, (text, *looks, *unsettled))
+        looks = (f"What is missing looks like {known.shape}.",) if known.shape else ()
+        return Verdict(UNEXPLAINED, (text, *looks, *known.unsettled))
     raised = found.beyond_sensor(found.nominal).misfit > settings.small_misfit  # more looks random than a sensor makes
     if visible and raised and before.threshold > settings.gross_percent:
         text = (
             "Something is visible that is not random, and no effect of the catalogue is borne out; these records would "
             f"not show one of less than {before.threshold:.2g} % of the signal's variance."
         )
-        return Verdict(UNEXPLAINED, (text, *unsettled))
-    if visible and found.seen is not None and any(found.seen.visible.shows(name) for name in untried):
+        return Verdict(UNEXPLAINED, (text, *known.unsettled))
+    if visible and found.seen is not None and any(found.seen.visible.shows(name) for name in known.untried):
         text = "Something is visible that is not random, and there was no time to try what it could be."
-        return Verdict(UNEXPLAINED, (text, *unsettled))
-    if shape:
-        text = f"Something is visible that is not random: {shape}. No effect of the catalogue is borne out."
-        return Verdict(UNEXPLAINED, (text, *unsettled))
+        return Verdict(UNEXPLAINED, (text, *known.unsettled))
+    if known.shape:
+        text = f"Something is visible that is not random: {known.shape}. No effect of the catalogue is borne out."
+        return Verdict(UNEXPLAINED, (text, *known.unsettled))
     text = f"No evidence of an effect that takes more than {before.threshold:.2g} % of the signal's variance."
     return Verdict(CONSISTENT, (text,))
 

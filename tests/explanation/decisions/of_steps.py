@@ -10,7 +10,7 @@ from gear_damping.explanation import search
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import State
 from gear_damping.explanation.steps import faint, pairs, single, told
-from gear_damping.explanation.steps.judge import CONSISTENT, EXPLAINED, PARTLY, UNEXPLAINED, verdict
+from gear_damping.explanation.steps.judge import CONSISTENT, EXPLAINED, PARTLY, UNEXPLAINED, Known, verdict
 from gear_damping.explanation.trials import bench as benches
 from tests.explanation.decisions.declared import decides
 from tests.explanation.decisions.made_up import NAMES, bench, fit, left, outcome, scored
@@ -162,15 +162,14 @@ def told_alone(settings: SearchSettings):
 def said(settings: SearchSettings, before, after, *, count=1, seen=True, rest=True, **known) -> str:
     """The word for a search that ended with so many causes."""
     declared = SimpleNamespace(sentence="a law", one_class=(), looks_like=())
-    causes = tuple(
-        SimpleNamespace(name=name, confusable=(), effect=SimpleNamespace(cause=declared)) for name in NAMES[:count]
-    )
+    own = {"confusable": (), "effect": SimpleNamespace(cause=declared), "refit": SimpleNamespace(is_at_bound=False)}
+    causes = tuple(SimpleNamespace(name=name, **own) for name in NAMES[:count])
     looked = [SimpleNamespace(visible=one, taken=0.5) for one in (seen, rest)]
     found = SimpleNamespace(
         bench=SimpleNamespace(settings=settings), accepted=causes, seen=looked[0], left=looked[1], nominal=None,
         beyond_sensor=lambda _: left(0.0, 1.0),
     )  # fmt: skip
-    return verdict(found, before, after, **known).word
+    return verdict(found, before, after, Known(**known)).word
 
 
 @decides("small_misfit", (UNEXPLAINED, CONSISTENT))
