@@ -25,7 +25,7 @@ from gear_damping.explanation.state import State
 from gear_damping.explanation.steps.calibrate import calibrated, recalibrated
 from gear_damping.explanation.steps.confirm import Confirmed, confirmed
 from gear_damping.explanation.steps.estimate import estimated
-from gear_damping.explanation.steps.judge import Judged, Known, verdict
+from gear_damping.explanation.steps.judge import CONSISTENT, Judged, Known, verdict
 from gear_damping.explanation.steps.too_short import died_away, too_short
 from gear_damping.explanation.trials.bench import Bench
 from gear_damping.identification.decimation import decimated
@@ -180,6 +180,8 @@ def _judged(found: Confirmed, notes: Sequence[str], not_tried: tuple[str, ...]) 
         shape=shape_without_name(state),
     )
     said = verdict(state, before, after, known).saying(*notes)
+    if said.word == CONSISTENT:  # what would take part of so little is no cause
+        state, after = replace(state, accepted=(), outcome=state.nominal, left=state.seen), before
     return Judged(state, before, after, said, not_tried, found.t)
 
 

@@ -110,7 +110,6 @@ def test_what_is_visible_without_a_name_is_told_by_its_place(forced):
     seen = assessed(forced.nominal, [], forced.bench.evidence)
     found = State(forced.bench, forced.nominal, forced.nominal, seen=seen)
     assert shape_without_name(found).startswith("a line at 1.3")
-    assert not shape_without_name(State(forced.bench, forced.nominal, forced.outcome, forced.accepted, seen=seen))
 
 
 def test_nothing_is_told_of_noise():

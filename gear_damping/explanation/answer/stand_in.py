@@ -83,7 +83,7 @@ def shape_without_name(state: State) -> str:
 
     Empty where none is, or where it is too small a part of the signal to matter.
     """
-    if state.accepted or state.seen is None or not state.seen.visible:
+    if state.seen is None or not state.seen.visible:
         return ""
     seen = state.seen.visible
     shown = {name: value for name, value in seen.by_name.items() if name.startswith(UNNAMED) and seen.shows(name)}

@@ -95,15 +95,13 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
     rest = is_all(after, before, settings) or (not is_visible(found.left) and after.misfit <= settings.small_misfit)
     beside = (taken.sentence, *_not_told_apart(confused), *known.unsettled)
     if known.stands_in:
-        text = f"{missing}. {said[0].upper()}{said[1:]} would take part of it, {known.stands_in}"
-        return Verdict(UNEXPLAINED, (text, *known.unsettled))
+        return _not_established(found, before, known, known.stands_in)
     if not rest:
         if _is_part_named(found, taken.share, after, known):
             text = f"{missing}. Part of it has a name: {said}. A rest of {after.percent:.3g} % has none."
             return Verdict(PARTLY, (text, *beside))
         why = OTHER_SIZES if known.is_one is False else "but too much is left for it to be the cause."
-        text = f"{missing}. {said[0].upper()}{said[1:]} would take part of it, {why}"
-        return Verdict(UNEXPLAINED, (text, *known.unsettled))
+        return _not_established(found, before, known, why)
     is_part = known.whole < settings.taken_by_one
     is_unsteady = before.misfit < settings.random_misfit  # held-out: less noise
     if is_part and is_unsteady:
@@ -118,6 +116,16 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
         return Verdict(AMBIGUOUS, (f"{missing}.", *beside, *_small_rest(found, after)))
     same = _same_record(found.accepted)
     return Verdict(EXPLAINED, (f"{missing}: {said}.", *beside, *same, *_small_rest(found, after)))
+
+
+def _not_established(found: State, before: Excess, known: Known, why: str) -> Verdict:
+    """Causes that are none: something is missing, unless without them nothing would have been said to be."""
+    without = _without_name(found, before, known)
+    if without.word == CONSISTENT:
+        return without
+    said = _named(found.accepted)
+    text = f"{_missing(before)}. {said[0].upper()}{said[1:]} would take part of it, {why}"
+    return Verdict(UNEXPLAINED, (text, *known.unsettled))
 
 
 def _is_part_named(found: State, share: float, after: Excess, known: Known) -> bool:

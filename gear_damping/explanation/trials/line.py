@@ -29,7 +29,8 @@ PEAKS = 8  # of the periodogram, that are tried beyond
 HIGHEST = 4.0  # natural frequencies up to which peaks are looked for
 FEWEST_TURNS = 1.0  # of a line in a record of a gear pair: less is a drift,
 FEWEST_CYCLES = 2.0  # and in an oscillator's, whose motion dies away
-OWN = 1.5  # widths about the natural frequency of an oscillator, which are its own motion where this bends
+OWN = 1.5  # widths about the natural frequency of an oscillator, which are its own motion where this bends,
+HARMONICS = 5  # and about so many multiples of it, which a law that is not linear makes
 
 
 @dataclass(frozen=True)
@@ -127,7 +128,8 @@ def _strongest(clock: _Clock, residual: Tensor, project: Projector, outcome: Out
 
     places = [width * k / FINE for k in range(1, FINE * LOW)] + _peaks(residual, clock, outcome)
     places = [place for place in places if place >= clock.fewest * width]
-    places = [place for place in places if clock.own is None or abs(place - clock.own) >= OWN * width]
+    own = [k * clock.own for k in range(1, HARMONICS + 1)] if clock.own else []
+    places = [place for place in places if all(abs(place - one) >= OWN * width for one in own)]
     if not places:
         return None
     near = max(places, key=taken)
