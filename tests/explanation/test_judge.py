@@ -65,7 +65,7 @@ def test_what_has_run_into_a_bound_is_no_part_of_an_answer_beside_a_rest():
     assert verdict(search(accepted=(cause(at_bound=True),)), MUCH, NOTHING, is_one=True).word == EXPLAINED
 
 
-@pytest.mark.parametrize("known", [{"stands_in": "but a line takes more."}, {"is_one": False}, {"is_one": None}])
+@pytest.mark.parametrize("known", [{"stands_in": "but a line takes more."}, {"is_one": False}])
 def test_a_cause_that_is_none_makes_no_gap_of_what_would_be_none_without_it(known):
     little, less = (Excess(percent, 0.1, 0.0, 1.3, {}) for percent in (0.004, 0.003))
     assert verdict(search(), little, little).word == CONSISTENT
