@@ -79,9 +79,10 @@ def stand_ins(state: State) -> list[StandIn]:
 
 
 def shape_without_name(state: State) -> str:
-    """The family without a name that is most visible beside the nominal model, in words.
+    """The family without a name that is most visible beside the nominal model, in words; a line before all others.
 
-    Empty where none is, or where it is too small a part of the signal to matter.
+    A line takes few numbers, and others may follow it. Empty where none is visible, or where it is too small a part of
+    the signal to matter.
     """
     if state.seen is None or not state.seen.visible:
         return ""
@@ -89,7 +90,7 @@ def shape_without_name(state: State) -> str:
     shown = {name: value for name, value in seen.by_name.items() if name.startswith(UNNAMED) and seen.shows(name)}
     if not shown:
         return ""
-    largest = max(shown, key=shown.get)
+    largest = LINE_FAMILY if LINE_FAMILY in shown else max(shown, key=shown.get)
     evidence, nominal = state.bench.evidence, state.nominal
     line = strongest_line(nominal, evidence) if largest == LINE_FAMILY else None
     left = sum(float(residual.square().sum()) for residual in nominal.fit_residuals)
