@@ -176,7 +176,7 @@ def _judged(found: Confirmed, notes: Sequence[str], not_tried: tuple[str, ...]) 
         fitted=fitted.percent,
         untried=not_tried,
         of_fit=1 - state.outcome.fitted.cost / max(state.nominal.fitted.cost, 1e-300),
-        stands_in=" ".join(one.sentence for one in stand_ins(state)[:1]),
+        stands_in=next((one.sentence for one in stand_ins(state)), ""),
         shape=shape_without_name(state),
     )
     said = verdict(state, before, after, known).saying(*notes)

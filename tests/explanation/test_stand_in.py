@@ -89,13 +89,13 @@ def test_what_takes_less_with_more_numbers_explains_nothing(records, numbers):
 
 def test_where_nothing_is_left_nobody_asks(forced):
     seen = SimpleNamespace(visible=False)
-    assert not stand_ins(State(forced.bench, forced.nominal, forced.outcome, forced.accepted, left=seen))
+    assert not list(stand_ins(State(forced.bench, forced.nominal, forced.outcome, forced.accepted, left=seen)))
 
 
 @pytest.mark.parametrize(("cubic", "force"), [(4.0, 0.02), (4.0, 0.1), (1.0, 1.5), (0.5, 1.5)])
 def test_a_law_that_is_there_keeps_its_size_beside_a_force(cubic, force):
     """Whether this takes less than the law or more."""
-    assert not stand_ins(searched(cubic, force))
+    assert not list(stand_ins(searched(cubic, force)))
 
 
 def test_the_line_is_the_one_that_was_hidden(forced):

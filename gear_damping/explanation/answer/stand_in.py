@@ -20,12 +20,12 @@ from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import Accepted, State
 from gear_damping.explanation.statistics.projector import Projector
-from gear_damping.explanation.trials.assess import LINE_FAMILY, UNNAMED
+from gear_damping.explanation.trials.assess import LINE_FAMILY, UNNAMED, orthonormal
 from gear_damping.explanation.trials.line import strongest_line
 from gear_damping.explanation.trials.score import projected
 from gear_damping.explanation.trials.unnamed import unnamed_columns
 
-INDEPENDENT = 1e-6  # of the largest singular value: a direction of a family that counts
+INDEPENDENT = 1e-6  # of what a cause adds: less is left of it beside a family that can do the same
 
 
 @dataclass(frozen=True)
@@ -70,12 +70,15 @@ class StandIn:
         )
 
 
-def stand_ins(state: State) -> list[StandIn]:
-    """The causes that stand in for something else; none where nothing is visible beside all of them."""
+def stand_ins(state: State) -> Iterator[StandIn]:
+    """The causes that stand in for something else, one by one, since each takes a fit to tell.
+
+    None where nothing is visible beside all of them.
+    """
     if state.left is None or not state.left.visible or not state.outcome.is_finite:
-        return []
+        return
     found = (_stand_in(cause, state) for cause in state.accepted)
-    return [one for one in found if one is not None]
+    yield from (one for one in found if one is not None)
 
 
 def shape_without_name(state: State) -> str:
@@ -158,15 +161,8 @@ def _families(without: Outcome, project: Projector, state: State) -> Iterator[Fa
     """All of them beside a model."""
     evidence = state.bench.evidence
     for name, columns in unnamed_columns(without, evidence).items():
-        basis = _basis(project(torch.nn.functional.pad(columns, (0, 0, 0, len(project.expected)))))
+        basis = orthonormal(project(torch.nn.functional.pad(columns, (0, 0, 0, len(project.expected)))))
         yield Family(f"some {name}", basis.shape[1], lambda signal, basis=basis: signal - basis @ (basis.T @ signal))
     line = strongest_line(without, evidence)
     if line is not None:
         yield Family(line.name, line.degrees, project.beside_own(line.columns))
-
-
-def _basis(columns: Tensor) -> Tensor:
-    """Orthonormal columns that span the same."""
-    columns = columns[:, columns.norm(dim=0) > 0]
-    basis, sizes, _ = torch.linalg.svd(columns / columns.norm(dim=0), full_matrices=False)
-    return basis[:, sizes > INDEPENDENT * sizes.amax()] if len(sizes) else basis

@@ -75,11 +75,11 @@ def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, fami
         whitened = Projector(slopes, project.expected, project.slope)
         seen = whitened(white.padded(residual))[:, 0]
         effects = [
-            Effect(s.candidate.name, _orthonormal(whitened(white.padded(s.columns))), bool(s.candidate.presence))
+            Effect(s.candidate.name, orthonormal(whitened(white.padded(s.columns))), bool(s.candidate.presence))
             for s in scores
             if s.columns.shape[1]
         ]
-        effects += [Effect(name, _orthonormal(whitened(white.padded(c)))) for name, c in unnamed.items()]
+        effects += [Effect(name, orthonormal(whitened(white.padded(c)))) for name, c in unnamed.items()]
         return _tested(seen, effects, whitened, white, random, outcome, evidence.settings.level)
 
     def random_in(left: Tensor, taken: float) -> Random:
@@ -95,7 +95,7 @@ def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, fami
     if not found.visible:
         return replace(found, random=random_in(beside, 0.0)) if taken_out else found
     shown = [columns for name, columns in named.items() if found.visible.shows(name)]
-    shown += [_orthonormal(project(columns)) for name, columns in unnamed.items() if found.visible.shows(name)]
+    shown += [orthonormal(project(columns)) for name, columns in unnamed.items() if found.visible.shows(name)]
     left, taken = _without(beside, shown, SHOWN_PER_SAMPLE)
     again = looked_at(random_in(left, taken))
     if not again.visible:
@@ -167,7 +167,7 @@ def _padded(columns: Tensor, project: Projector) -> Tensor:
     return torch.nn.functional.pad(columns, (0, 0, 0, len(project.expected)))
 
 
-def _orthonormal(columns: Tensor) -> Tensor:
+def orthonormal(columns: Tensor) -> Tensor:
     """Columns that span the same; the sign of a single one is kept."""
     if columns.shape[1] == 1:
         size = columns.norm()

@@ -38,7 +38,7 @@ class Line:
     """A line.
 
     Args:
-        place: Order of the pinion's shaft, or frequency in Hz of an oscillator.
+        place: Order of the pinion's shaft, or frequency in Hz: what it keeps in all records.
         unit: Which of the two.
         hertz: Its frequency in the first record.
         share: Of the residuals beside their model's parameters, that it takes.
