@@ -4,10 +4,12 @@ Where one of them is visible and no effect of the catalogue takes it, something 
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
+from scipy.signal import fftconvolve
 from torch import Tensor
 
 from gear_damping.explanation.evidence.records import Evidence
@@ -22,6 +24,9 @@ MESH_ORDERS = 6  # harmonics of the mesh
 STATE_POWERS = 3  # of displacement and rate
 TOOTH_WAVES = 2  # harmonics of the mesh that modulate the displacement
 SIDE_ORDERS = 2  # of either shaft beside each of these
+POLES = tuple(0.1 * 1.4**k for k in range(13))  # natural frequencies at which the motion is remembered, 0.1 to 5.7
+MEMORY_DAMPING = 0.1  # damping ratio of a memory: half as wide as they lie apart
+BANDWIDTH = 2.0  # rad in a sample, a third of the rate: what is faster is not seen
 
 
 def unnamed_columns(outcome: Outcome, evidence: Evidence) -> dict[str, Tensor]:
@@ -38,7 +43,9 @@ def unnamed_columns(outcome: Outcome, evidence: Evidence) -> dict[str, Tensor]:
         one.unflatten(0, (len(channels), -1))[channels.index(row.observed.name), : len(row.response)]
         for row, one in zip(problem.records, shown, strict=True)
     ]
-    by_row = [_of_row(row, one.numpy(), evidence, linear) for row, one in zip(problem.records, first, strict=True)]
+    motions = _motions(problem.records, first)
+    common = _Common(linear, _means(problem.records, evidence))
+    by_row = [_of_row(row, *motion, evidence, common) for row, motion in zip(problem.records, motions, strict=True)]
     families = dict.fromkeys(name for row in by_row for name in row)
     found = {}
     for family in families:
@@ -54,29 +61,71 @@ def unnamed_columns(outcome: Outcome, evidence: Evidence) -> dict[str, Tensor]:
     return found
 
 
-def _of_row(
-    record: FitRecord, shown: Array, evidence: Evidence, linear: tuple[float, float, float]
-) -> Mapping[str, Array]:
-    """Columns of one record or segment by family, (time, n), from what its first channel is predicted to show."""
-    order = record.observed.derivatives
-    place, rate = _motion(shown, order)
+@dataclass(frozen=True)
+class _Common:
+    """What families need of all records.
+
+    Args:
+        linear: Mass, damping coefficient and stiffness of the model on average.
+        means: Of the speed of the shaft, the load and the force, over the records; the spread of the force.
+    """
+
+    linear: tuple[float, float, float]
+    means: Mapping[str, float]
+
+
+def _of_row(record: FitRecord, place: Array, rate: Array, evidence: Evidence, common: _Common) -> Mapping[str, Array]:
+    """Columns of one record or segment by family, (time, n), from what it is predicted to do."""
 
     def moved(forces: Sequence[Array]) -> Array:
-        return _through(np.stack(forces, 1), record.sampling_rate, linear, order)
+        return _through(np.stack(forces, 1), record.sampling_rate, common.linear, record.observed.derivatives)
 
     powers = [place**i * rate**j for i in range(STATE_POWERS + 1) for j in range(STATE_POWERS + 1 - i) if i + j > 1]
     found = {
         "force over the state": moved([*powers, np.sign(rate), np.abs(rate) * rate]),
+        "force that follows earlier motion": moved(_remembered(place, record.sampling_rate, common.linear)),
         "drift": np.linspace(-1, 1, len(place))[:, None],
     }
     shaft = shaft_of(record, evidence)
     if shaft is not None:
         found |= _at_shafts(shaft, place, rate, moved)
+        found["force over speed and load"] = moved(_operated(record, shaft, place, rate, common.means))
     if "force" in record.inputs:
-        force = record.inputs["force"].numpy()
-        force = force / (force.std() or 1.0)
+        force = record.inputs["force"].numpy() / (common.means["force"] or 1.0)
         found["force over the input"] = moved([force**2, force**3, np.gradient(force)])
     return found
+
+
+def _operated(record: FitRecord, shaft: Shaft, place: Array, rate: Array, means: Mapping[str, float]) -> list[Array]:
+    """Forces, and parts of stiffness and damping, that change with the speed of the shaft or with the load."""
+    speed = _relative(_speed(record, shaft), means["speed"])
+    load = _relative(_load(record), means["load"])
+    return [level * part for level in (speed, speed**2, load) for part in (np.ones_like(place), place, rate)]
+
+
+def _relative(values: Array, mean: float) -> Array:
+    return values / (mean or 1.0) - (1.0 if mean else 0.0)
+
+
+def _speed(record: FitRecord, shaft: Shaft) -> Array:
+    return np.gradient(shaft.angle) * record.sampling_rate
+
+
+def _load(record: FitRecord) -> Array:
+    known = record.inputs.get("pinion_torque", record.conditions.get("pinion_torque", 0.0))
+    return np.broadcast_to(np.asarray(known, dtype=float), len(record.response))
+
+
+def _means(records: Sequence[FitRecord], evidence: Evidence) -> dict[str, float]:
+    """Mean speed and load of gear pairs, spread of the force on oscillators."""
+    shafts = [shaft_of(record, evidence) for record in records]
+    speeds = [_speed(r, shaft).mean() for r, shaft in zip(records, shafts, strict=True) if shaft]
+    forces = [record.inputs["force"].std(unbiased=False) for record in records if "force" in record.inputs]
+    return {
+        "speed": float(np.mean(speeds)) if speeds else 0.0,
+        "load": float(np.mean([_load(record).mean() for record in records])),
+        "force": float(np.sqrt(np.mean(np.square(forces)))) if forces else 0.0,
+    }
 
 
 def _at_shafts(shaft: Shaft, place: Array, rate: Array, moved: object) -> dict[str, Array]:
@@ -98,17 +147,27 @@ def _at_shafts(shaft: Shaft, place: Array, rate: Array, moved: object) -> dict[s
     }
 
 
+def _motions(records: Sequence[FitRecord], shown: Sequence[Tensor]) -> list[tuple[Array, Array]]:
+    """Displacement and rate by record, in units of their spread over all of them: a law is one in all records.
+
+    About the mean of all records, or of each where its channel does not tell that.
+    """
+    found = [_motion(one.numpy(), row.observed.derivatives) for row, one in zip(records, shown, strict=True)]
+    tells = all(row.observed.derivatives == 0 and not row.observed.offset for row in records)
+    mean = np.mean([place.mean() for place, _ in found]) if tells else None
+    found = [(place - (place.mean() if mean is None else mean), rate) for place, rate in found]
+    spreads = [float(np.sqrt(np.mean([np.mean(one[part] ** 2) for one in found]))) or 1.0 for part in (0, 1)]
+    return [(place / spreads[0], rate / spreads[1]) for place, rate in found]
+
+
 def _motion(shown: Array, order: int) -> tuple[Array, Array]:
-    """Displacement and rate about their means, each of unit spread, from a derivative of the displacement."""
-    values = shown - shown.mean()
+    """Displacement, but for an offset, and rate, from a derivative of the displacement."""
     if order == 0:
-        place, rate = values, np.gradient(values)
-    elif order == 1:
-        place, rate = _summed(values), values
-    else:
-        rate = _summed(values)
-        place = _summed(rate)
-    return place / (place.std() or 1.0), rate / (rate.std() or 1.0)
+        return shown, np.gradient(shown)
+    if order == 1:
+        return _summed(shown - shown.mean()), shown - shown.mean()
+    rate = _summed(shown - shown.mean())
+    return _summed(rate), rate
 
 
 def _summed(values: Array) -> Array:
@@ -125,10 +184,26 @@ def _through(forces: Array, rate: float, linear: tuple[float, float, float], ord
     turn = 2j * np.pi * np.fft.rfftfreq(2 * count, 1 / rate)
     dynamic = mass * turn**2 + damping * turn + stiffness
     dynamic[np.abs(dynamic) == 0] = np.inf  # without a spring a steady force has no steady answer
-    spectrum = np.fft.rfft(forces - forces.mean(0), n=2 * count, axis=0) * (turn**order / dynamic)[:, None]
-    found = np.fft.irfft(spectrum, n=2 * count, axis=0)[:count]
-    size = found.std(0)
-    return found / np.where(size > 0, size, 1.0)
+    mean = forces.mean(0)
+    spectrum = np.fft.rfft(forces - mean, n=2 * count, axis=0) * (turn**order / dynamic)[:, None]
+    steady = mean / stiffness if stiffness > 0 and order == 0 else 0.0
+    return np.fft.irfft(spectrum, n=2 * count, axis=0)[:count] + steady
+
+
+def _remembered(place: Array, rate: float, linear: tuple[float, float, float]) -> list[Array]:
+    """The motion as modes of many frequencies remember it: what any force that is linear in its past is made of.
+
+    A basis of exponentials (Kautz 1954; Heuberger, Van den Hof & Bosgra 1995, IEEE Trans. Automatic Control 40): the
+    motion of a hidden mode, a delayed force, a relaxation.
+    """
+    mass, _, stiffness = linear
+    time, found = np.arange(len(place)) / rate, []
+    for pole in POLES:
+        angular = pole * (stiffness / mass) ** 0.5
+        kept = np.exp((-MEMORY_DAMPING + 1j) * angular * time) * (angular < BANDWIDTH * rate)
+        both = fftconvolve(place, kept)[: len(place)]
+        found += [both.real, both.imag]
+    return found
 
 
 def _beside(carriers: Sequence[Array], waves: Sequence[Array]) -> list[Array]:
