@@ -25,7 +25,7 @@ STATE_POWERS = 3  # of displacement and rate
 TOOTH_WAVES = 2  # harmonics of the mesh that modulate the displacement
 SIDE_ORDERS = 2  # of either shaft beside each of these
 POLES = tuple(0.1 * 1.4**k for k in range(13))  # natural frequencies at which the motion is remembered, 0.1 to 5.7
-MEMORY_DAMPING = 0.1  # damping ratio of a memory: half as wide as they lie apart
+MEMORY_DAMPING = 0.17  # damping ratio of a memory: neighbours meet at half their power
 BANDWIDTH = 2.0  # rad in a sample, a third of the rate: what is faster is not seen
 
 
@@ -44,7 +44,7 @@ def unnamed_columns(outcome: Outcome, evidence: Evidence) -> dict[str, Tensor]:
         for row, one in zip(problem.records, shown, strict=True)
     ]
     motions = _motions(problem.records, first)
-    common = _Common(linear, _means(problem.records, evidence))
+    common = _common(problem.records, evidence, linear)
     by_row = [_of_row(row, *motion, evidence, common) for row, motion in zip(problem.records, motions, strict=True)]
     families = dict.fromkeys(name for row in by_row for name in row)
     found = {}
@@ -67,11 +67,23 @@ class _Common:
 
     Args:
         linear: Mass, damping coefficient and stiffness of the model on average.
-        means: Of the speed of the shaft, the load and the force, over the records; the spread of the force.
+        speed: Mean speed of the pinion; 0 of an oscillator.
+        load: Mean torque on it.
+        force: Spread of a measured force.
     """
 
     linear: tuple[float, float, float]
-    means: Mapping[str, float]
+    speed: float
+    load: float
+    force: float
+
+
+def _common(records: Sequence[FitRecord], evidence: Evidence, linear: tuple[float, float, float]) -> _Common:
+    shafts = [shaft_of(record, evidence) for record in records]
+    speeds = [_speed(record, shaft).mean() for record, shaft in zip(records, shafts, strict=True) if shaft]
+    forces = [float(record.inputs["force"].var(unbiased=False)) for record in records if "force" in record.inputs]
+    load = float(np.mean([_load(record).mean() for record in records]))
+    return _Common(linear, float(np.mean(speeds or [0.0])), load, float(np.mean(forces or [0.0])) ** 0.5)
 
 
 def _of_row(record: FitRecord, place: Array, rate: Array, evidence: Evidence, common: _Common) -> Mapping[str, Array]:
@@ -89,22 +101,21 @@ def _of_row(record: FitRecord, place: Array, rate: Array, evidence: Evidence, co
     shaft = shaft_of(record, evidence)
     if shaft is not None:
         found |= _at_shafts(shaft, place, rate, moved)
-        found["force over speed and load"] = moved(_operated(record, shaft, place, rate, common.means))
+        found["force over speed and load"] = moved(_operated(record, shaft, place, rate, common))
     if "force" in record.inputs:
-        force = record.inputs["force"].numpy() / (common.means["force"] or 1.0)
-        found["force over the input"] = moved([force**2, force**3, np.gradient(force)])
+        force = record.inputs["force"].numpy() / (common.force or 1.0)
+        found["force over the input"] = moved([force**2, force**3, np.gradient(force) * record.sampling_rate])
     return found
 
 
-def _operated(record: FitRecord, shaft: Shaft, place: Array, rate: Array, means: Mapping[str, float]) -> list[Array]:
+def _operated(record: FitRecord, shaft: Shaft, place: Array, rate: Array, common: _Common) -> list[Array]:
     """Forces, and parts of stiffness and damping, that change with the speed of the shaft or with the load."""
-    speed = _relative(_speed(record, shaft), means["speed"])
-    load = _relative(_load(record), means["load"])
+    speed, load = _relative(_speed(record, shaft), common.speed), _relative(_load(record), common.load)
     return [level * part for level in (speed, speed**2, load) for part in (np.ones_like(place), place, rate)]
 
 
 def _relative(values: Array, mean: float) -> Array:
-    return values / (mean or 1.0) - (1.0 if mean else 0.0)
+    return values / mean - 1 if mean else values
 
 
 def _speed(record: FitRecord, shaft: Shaft) -> Array:
@@ -114,18 +125,6 @@ def _speed(record: FitRecord, shaft: Shaft) -> Array:
 def _load(record: FitRecord) -> Array:
     known = record.inputs.get("pinion_torque", record.conditions.get("pinion_torque", 0.0))
     return np.broadcast_to(np.asarray(known, dtype=float), len(record.response))
-
-
-def _means(records: Sequence[FitRecord], evidence: Evidence) -> dict[str, float]:
-    """Mean speed and load of gear pairs, spread of the force on oscillators."""
-    shafts = [shaft_of(record, evidence) for record in records]
-    speeds = [_speed(r, shaft).mean() for r, shaft in zip(records, shafts, strict=True) if shaft]
-    forces = [record.inputs["force"].std(unbiased=False) for record in records if "force" in record.inputs]
-    return {
-        "speed": float(np.mean(speeds)) if speeds else 0.0,
-        "load": float(np.mean([_load(record).mean() for record in records])),
-        "force": float(np.sqrt(np.mean(np.square(forces)))) if forces else 0.0,
-    }
 
 
 def _at_shafts(shaft: Shaft, place: Array, rate: Array, moved: object) -> dict[str, Array]:
@@ -152,7 +151,7 @@ def _motions(records: Sequence[FitRecord], shown: Sequence[Tensor]) -> list[tupl
 
     About the mean of all records, or of each where its channel does not tell that.
     """
-    found = [_motion(one.numpy(), row.observed.derivatives) for row, one in zip(records, shown, strict=True)]
+    found = [_motion(one.numpy(), row) for row, one in zip(records, shown, strict=True)]
     tells = all(row.observed.derivatives == 0 and not row.observed.offset for row in records)
     mean = np.mean([place.mean() for place, _ in found]) if tells else None
     found = [(place - (place.mean() if mean is None else mean), rate) for place, rate in found]
@@ -160,14 +159,15 @@ def _motions(records: Sequence[FitRecord], shown: Sequence[Tensor]) -> list[tupl
     return [(place / spreads[0], rate / spreads[1]) for place, rate in found]
 
 
-def _motion(shown: Array, order: int) -> tuple[Array, Array]:
+def _motion(shown: Array, record: FitRecord) -> tuple[Array, Array]:
     """Displacement, but for an offset, and rate, from a derivative of the displacement."""
+    order, step = record.observed.derivatives, 1 / record.sampling_rate
     if order == 0:
-        return shown, np.gradient(shown)
+        return shown, np.gradient(shown) / step
     if order == 1:
-        return _summed(shown - shown.mean()), shown - shown.mean()
-    rate = _summed(shown - shown.mean())
-    return _summed(rate), rate
+        return step * _summed(shown - shown.mean()), shown - shown.mean()
+    rate = step * _summed(shown - shown.mean())
+    return step * _summed(rate), rate
 
 
 def _summed(values: Array) -> Array:
