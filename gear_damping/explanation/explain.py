@@ -114,7 +114,7 @@ def explain(
         found = replace(found, state=replace(found.state, left=looked(found.state).left))
     found = replace(found, state=estimated(found.state))
     notes += [INPUT_NOISE] if found.state.bench.evidence.input_noise else []
-    judged = _judged(found, (*notes, budget.sentence), tuple(budget.not_tried))
+    judged = _judged(found, notes)
     step(4, STEPS)
     evidence, noise = found.state.bench.evidence, found.noise
     return Explanation(content.of_search(measurement, evidence, noise, judged), evidence, noise, found.state)
@@ -164,10 +164,12 @@ def _scatter(nominal: Outcome, evidence: Evidence, solver: Solver) -> Scatter:
     return nominal.scatter if evidence.sealed else calibration_error(nominal, evidence, solver)
 
 
-def _judged(found: Confirmed, notes: Sequence[str], not_tried: tuple[str, ...]) -> Judged:
+def _judged(found: Confirmed, notes: Sequence[str]) -> Judged:
     """The state with its verdict."""
     state, before, after = found.state, found.before, found.after
-    evidence, settings = state.bench.evidence, state.bench.settings
+    evidence, settings, budget = state.bench.evidence, state.bench.settings, state.bench.budget
+    stands_in = next((one.sentence for one in stand_ins(state)), "")  # which may be refused too
+    not_tried = tuple(budget.not_tried)
     fitted = excess(state.nominal.fit_residuals, evidence.fitted, state.noise, settings)
     known = Known(
         converged=state.outcome.fitted.converged,
@@ -176,10 +178,10 @@ def _judged(found: Confirmed, notes: Sequence[str], not_tried: tuple[str, ...]) 
         fitted=fitted.percent,
         untried=not_tried,
         of_fit=1 - state.outcome.fitted.cost / max(state.nominal.fitted.cost, 1e-300),
-        stands_in=next((one.sentence for one in stand_ins(state)), ""),
+        stands_in=stands_in,
         shape=shape_without_name(state),
     )
-    said = verdict(state, before, after, known).saying(*notes)
+    said = verdict(state, before, after, known).saying(*notes, budget.sentence)
     if said.word == CONSISTENT:  # what would take part of so little is no cause
         state, after = replace(state, accepted=(), outcome=state.nominal, left=state.seen), before
     return Judged(state, before, after, said, not_tried, found.t)

@@ -7,9 +7,11 @@ from types import SimpleNamespace
 import pytest
 import torch
 
+from gear_damping.explanation.evidence.excess import Excess
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.fitting import fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Hypothesis
+from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import Accepted, State
 from gear_damping.explanation.steps.told import is_told
 from gear_damping.explanation.steps.told import told as told_of
@@ -104,3 +106,26 @@ def test_a_cause_beside_which_small_changes_run_away_is_dropped():
     state = State(bench, outcome, astray, accepted=(Accepted("cubic_stiffness", refit, 0.5, ()),))
     assert told_of(state).accepted == ()
     assert "its size is not told from none" in said[0]
+
+
+def excess_of(percent):
+    return Excess(percent, threshold=0.01, chance=0.002, misfit=1 + percent, per_record={})
+
+
+@pytest.mark.parametrize(("left", "as_good", "kept"), [(0.001, False, True), (0.5, False, False), (0.001, True, False)])
+def test_what_explains_all_and_is_missed_is_there_whatever_its_size(left, as_good, kept, monkeypatch):
+    """A strength that trades against another parameter has no size of its own. left: of an excess of 1 %."""
+    monkeypatch.setattr("gear_damping.explanation.steps.told.is_told", lambda *_: False)
+    nominal, outcome, without = (SimpleNamespace(is_finite=True) for _ in range(3))
+    bench = SimpleNamespace(
+        evidence=None,
+        settings=SearchSettings(),
+        say=lambda text: None,
+        without=lambda *_: without,
+        is_as_good=lambda *_: as_good,
+        excess=lambda one: excess_of(1.0 if one is nominal else left),
+    )
+    state = State(bench, nominal, outcome, (Accepted("a", SimpleNamespace(), 0.5, ()),))
+    found = told_of(state)
+    assert bool(found.accepted) is kept
+    assert found.outcome is (outcome if kept else without)

@@ -9,6 +9,7 @@ import torch
 from scipy.stats import chi2
 from torch import Tensor
 
+from gear_damping.explanation.evidence.excess import is_all
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.hypothesis import Outcome, time_scale
 from gear_damping.explanation.model.spread import CORRELATED_PERIODS, SILENT, spread_of
@@ -22,18 +23,29 @@ INDEPENDENT = 1e-3  # of the largest singular value: less is a direction in whic
 
 
 def told(state: State) -> State:
-    """Without causes whose size the records do not tell from none."""
+    """Without causes whose size the records do not tell from none.
+
+    A strength may trade against another parameter however far (the growth of a contact ratio against the height of
+    its edges): what explains all, and is missed when it is taken out, is there whatever its size.
+    """
     bench = state.bench
     for cause in state.accepted:
         runs_away = not state.outcome.is_finite  # with a small change: then it tells nothing
         if not runs_away and is_told(state.outcome, cause.refit, bench.evidence):
             continue
+        outcome = bench.without(state.outcome, cause.name)
+        if not runs_away and _explain_all(state) and not bench.is_as_good(outcome, state.outcome):
+            continue
         bench.say(f"{cause.name} lowers the cost, but its size is not told from none")
         kept = tuple(other for other in state.accepted if other is not cause)
-        outcome = bench.without(state.outcome, cause.name)
         rejected, unsized = (cause.refit, *state.rejected), state.unsized | {cause.name}
         state = replace(state, outcome=outcome, accepted=kept, rejected=rejected, unsized=unsized)
     return state
+
+
+def _explain_all(state: State) -> bool:
+    """Whether causes leave nothing that is worth another."""
+    return is_all(state.current, state.first, state.bench.settings)
 
 
 def is_told(outcome: Outcome, refit: Refit, evidence: Evidence) -> bool:
