@@ -21,8 +21,8 @@ EVEN = {"fourier_mesh_stiffness.minimum": 3e8, "fourier_mesh_stiffness.maximum":
 DAMPING = "viscous_damping.damping_coefficient"
 
 
-def fitted(responses):
-    """A gear pair of even stiffness, fitted to records at three speeds; and its evidence."""
+def fitted(responses, stiffness=None):
+    """A gear pair, of even stiffness unless another is given, fitted to records at three speeds; and its evidence."""
     records = []
     for speed, values in zip(SPEEDS, responses, strict=True):
         inputs = {"pinion_angle": torch.as_tensor(speed * TIME)}
@@ -31,17 +31,36 @@ def fitted(responses):
     channel, records = Channel("transmission_error", np.zeros(1), "m"), tuple(records)
     evidence = Evidence("gear_pair", records, records[:1], Known({}, {}), channel, False, noise=1e-7)
     free = (FreeParameter(DAMPING, 100.0, logarithmic=True),)
-    base = Hypothesis(GearPair(), (FourierMeshStiffness(), ViscousDamping()), EVEN, free)
+    base = Hypothesis(GearPair(), (FourierMeshStiffness(), ViscousDamping()), stiffness or EVEN, free)
     return fit_hypothesis(base, evidence, iterations=1), evidence
+
+
+def shown(stiffness=None):
+    """What the pair shows without any line, (records, time)."""
+    outcome, _ = fitted(np.full((3, SAMPLES), 1.6e-5), stiffness)
+    problem = outcome.problem
+    predicted = problem.response.values - outcome.fitted.prediction.residual[0] / problem.response.weights
+    return predicted.reshape(3, SAMPLES).numpy()
 
 
 @pytest.fixture(scope="module")
 def calm():
-    """What the pair shows without any line, (records, time)."""
-    outcome, _ = fitted(np.full((3, SAMPLES), 1.6e-5))
-    problem = outcome.problem
-    shown = problem.response.values - outcome.fitted.prediction.residual[0] / problem.response.weights
-    return shown.reshape(3, SAMPLES).numpy()
+    """The same of even stiffness."""
+    return shown()
+
+
+@pytest.mark.parametrize("is_force", [True, False])
+def test_a_slow_force_changes_the_deflection_in_proportion_and_a_pickup_does_not(is_force):
+    """The teeth are softer where one pair is in contact, and give more under the same force."""
+    uneven = {"fourier_mesh_stiffness.minimum": 2e8, "fourier_mesh_stiffness.maximum": 3.5e8}
+    clean, phases = shown(uneven), np.array([[0.4], [2.1], [5.0]])
+    wave = 0.05 * np.cos(2 * np.pi * 43.0 * TIME + phases)
+    noise = 1e-8 * np.random.default_rng(4).normal(size=clean.shape)
+    line = strongest_line(*fitted(clean + wave * (clean if is_force else clean.mean()) + noise, uneven))
+    assert line.is_force is is_force
+    assert line.place == pytest.approx(43.0, rel=0.01)
+    assert line.name.startswith("a force at 43" if is_force else "a line at 43")
+    assert line.share > 0.98
 
 
 def found(calm, wave):

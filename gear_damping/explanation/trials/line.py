@@ -4,7 +4,7 @@ A belt or a bearing turns at orders that belong to neither shaft, the mains and 
 own. Their phase is another one in every record.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 
 import numpy as np
@@ -18,6 +18,7 @@ from gear_damping.explanation.evidence.shaft import shaft_of
 from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency_hz
 from gear_damping.explanation.model.linear import linear_of
 from gear_damping.explanation.statistics.projector import Projector
+from gear_damping.explanation.trials.motion import motions
 from gear_damping.explanation.trials.score import projected
 from gear_damping.identification.output_error.normal_equations import without_own
 
@@ -41,6 +42,7 @@ class Line:
         place: Order of the pinion's shaft, or frequency in Hz: what it keeps in all records.
         unit: Which of the two.
         hertz: Its frequency in the first record.
+        is_force: Whether it changes the deflection of a gear pair in proportion, as a force does.
         share: Of the residuals beside their model's parameters, that it takes.
         columns: What it would do to every record, (records, samples, 2).
     """
@@ -48,15 +50,17 @@ class Line:
     place: float
     unit: str
     hertz: float
+    is_force: bool
     share: float
     columns: Tensor
 
     @property
     def name(self) -> str:
         """What it is called."""
+        kind = "a force" if self.is_force else "a line"
         if self.unit == "Hz":
-            return f"a line at {self.place:.4g} Hz"
-        return f"a line at order {self.place:.3g} of the pinion's shaft ({self.hertz:.3g} Hz)"
+            return f"{kind} at {self.place:.4g} Hz"
+        return f"{kind} at order {self.place:.3g} of the pinion's shaft ({self.hertz:.3g} Hz)"
 
     @property
     def degrees(self) -> int:
@@ -94,12 +98,14 @@ class _Clock:
         angles: By record, in rad at place 1, (time,).
         fewest: Turns or cycles of a line in the longest record.
         own: Place of the motion itself; None where a steady mesh drives it.
+        carried: By record, what the wave changes in proportion, (time,); None where it is seen as it is.
     """
 
     unit: str
     angles: list[Array]
     fewest: float
     own: float | None = None
+    carried: list[Array] | None = None
 
     @property
     def span(self) -> float:
@@ -108,7 +114,7 @@ class _Clock:
 
 
 def _clocks(outcome: Outcome, evidence: Evidence) -> list[_Clock]:
-    """The pinion of a gear pair, and the time."""
+    """The pinion of a gear pair, and the time; a slow force changes its deflection in proportion, mesh and all."""
     rows = outcome.problem.records
     time = [2 * pi * np.arange(len(row.response)) / row.sampling_rate for row in rows]
     shafts = [shaft_of(row, evidence) for row in rows]
@@ -116,7 +122,11 @@ def _clocks(outcome: Outcome, evidence: Evidence) -> list[_Clock]:
         natural = natural_frequency_hz(outcome.hypothesis.model, outcome.flat_given())
         return [_Clock("Hz", time, FEWEST_CYCLES, natural)]
     turned = [shaft.angle for shaft in shafts]
-    return [_Clock("order", turned, FEWEST_TURNS), _Clock("Hz", time, FEWEST_TURNS)]
+    clocks = [_Clock("order", turned, FEWEST_TURNS), _Clock("Hz", time, FEWEST_TURNS)]
+    if any(row.observed.derivatives for row in rows):
+        return clocks
+    deflections = [place / np.abs(place).mean() for place, _ in motions(outcome)]
+    return clocks + [replace(clock, carried=deflections) for clock in clocks]
 
 
 def _strongest(clock: _Clock, residual: Tensor, project: Projector, outcome: Outcome) -> Line | None:
@@ -124,7 +134,7 @@ def _strongest(clock: _Clock, residual: Tensor, project: Projector, outcome: Out
     total, width = float(residual.square().sum()), 2 * pi / clock.span
 
     def taken(place: float) -> float:
-        return project.taken_by_own(_columns(place, clock.angles, outcome), residual) / total
+        return project.taken_by_own(_columns(place, clock, outcome), residual) / total
 
     places = [width * k / FINE for k in range(1, FINE * LOW)] + _peaks(residual, clock, outcome)
     places = [place for place in places if place >= clock.fewest * width]
@@ -138,18 +148,20 @@ def _strongest(clock: _Clock, residual: Tensor, project: Projector, outcome: Out
     place, angle = max(near, float(settled.x), key=taken), clock.angles[0]
     turns = float(angle[-1] - angle[0]) / (2 * pi)
     hertz = place * turns / (len(angle) - 1) * outcome.problem.records[0].sampling_rate
-    return Line(place, clock.unit, hertz, taken(place), _columns(place, clock.angles, outcome))
+    return Line(place, clock.unit, hertz, clock.carried is not None, taken(place), _columns(place, clock, outcome))
 
 
-def _columns(place: float, angles: list[Array], outcome: Outcome) -> Tensor:
+def _columns(place: float, clock: _Clock, outcome: Outcome) -> Tensor:
     """A wave at one place in the first channel of every record, (records, samples, 2), weighted.
 
     What a steady force makes of the motion is that too, but for its beginning, which is the initial state's.
     """
-    response = outcome.problem.response
+    response, angles = outcome.problem.response, clock.angles
     found = torch.zeros(len(angles), len(response.channels), response.length, 2, dtype=torch.float64)
     for row, (record, angle) in enumerate(zip(outcome.problem.records, angles, strict=True)):
         waves = np.stack([np.cos(place * angle), np.sin(place * angle)], 1)
+        if clock.carried is not None:
+            waves = waves * clock.carried[row][:, None]
         found[row, response.channels.index(record.observed.name), : len(angle)] = torch.as_tensor(waves)
     return found.flatten(1, 2) * response.weights.unsqueeze(-1)
 

@@ -16,6 +16,7 @@ from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.evidence.shaft import Shaft, shaft_of
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.linear import linear_of
+from gear_damping.explanation.trials.motion import motions
 from gear_damping.identification.output_error.records import FitRecord
 
 Array = NDArray[np.float64]
@@ -37,15 +38,10 @@ def unnamed_columns(outcome: Outcome, evidence: Evidence) -> dict[str, Tensor]:
     """
     problem = outcome.problem
     linear = linear_of(outcome)
-    shown = problem.response.values - outcome.fitted.prediction.residual[0] / problem.response.weights.clamp(min=1e-300)
-    channels = problem.response.channels
-    first = [
-        one.unflatten(0, (len(channels), -1))[channels.index(row.observed.name), : len(row.response)]
-        for row, one in zip(problem.records, shown, strict=True)
-    ]
-    motions = _motions(problem.records, first)
     common = _common(problem.records, evidence, linear)
-    by_row = [_of_row(row, *motion, evidence, common) for row, motion in zip(problem.records, motions, strict=True)]
+    by_row = [
+        _of_row(row, *motion, evidence, common) for row, motion in zip(problem.records, motions(outcome), strict=True)
+    ]
     families = dict.fromkeys(name for row in by_row for name in row)
     found = {}
     for family in families:
@@ -92,11 +88,13 @@ def _of_row(record: FitRecord, place: Array, rate: Array, evidence: Evidence, co
     def moved(forces: Sequence[Array]) -> Array:
         return _through(np.stack(forces, 1), record.sampling_rate, common.linear, record.observed.derivatives)
 
+    time = np.linspace(-1, 1, len(place))
     powers = [place**i * rate**j for i in range(STATE_POWERS + 1) for j in range(STATE_POWERS + 1 - i) if i + j > 1]
     found = {
         "force over the state": moved([*powers, np.sign(rate), np.abs(rate) * rate]),
         "force that follows earlier motion": moved(_remembered(place, record.sampling_rate, common.linear)),
-        "drift": np.linspace(-1, 1, len(place))[:, None],
+        "drift": time[:, None],
+        "stiffness or damping that drifts": moved([time * place, time * rate]),
     }
     shaft = shaft_of(record, evidence)
     if shaft is not None:
@@ -144,37 +142,6 @@ def _at_shafts(shaft: Shaft, place: Array, rate: Array, moved: object) -> dict[s
         "stiffness over the turn": moved([w * place for w in (*pinion[:4], *gear[:4])]),
         "force over mesh phase and motion": moved([w * x for w in tooth for x in (place, rate)]),
     }
-
-
-def _motions(records: Sequence[FitRecord], shown: Sequence[Tensor]) -> list[tuple[Array, Array]]:
-    """Displacement and rate by record, in units of their spread over all of them: a law is one in all records.
-
-    About the mean of all records, or of each where its channel does not tell that.
-    """
-    found = [_motion(one.numpy(), row) for row, one in zip(records, shown, strict=True)]
-    tells = all(row.observed.derivatives == 0 and not row.observed.offset for row in records)
-    mean = np.mean([place.mean() for place, _ in found]) if tells else None
-    found = [(place - (place.mean() if mean is None else mean), rate) for place, rate in found]
-    spreads = [float(np.sqrt(np.mean([np.mean(one[part] ** 2) for one in found]))) or 1.0 for part in (0, 1)]
-    return [(place / spreads[0], rate / spreads[1]) for place, rate in found]
-
-
-def _motion(shown: Array, record: FitRecord) -> tuple[Array, Array]:
-    """Displacement, but for an offset, and rate, from a derivative of the displacement."""
-    order, step = record.observed.derivatives, 1 / record.sampling_rate
-    if order == 0:
-        return shown, np.gradient(shown) / step
-    if order == 1:
-        return step * _summed(shown - shown.mean()), shown - shown.mean()
-    rate = step * _summed(shown - shown.mean())
-    return step * _summed(rate), rate
-
-
-def _summed(values: Array) -> Array:
-    """The integral without the drift that an offset leaves."""
-    total = np.cumsum(values)
-    slope = np.polynomial.polynomial.polyfit(np.linspace(-1, 1, len(total)), total, 1)
-    return total - np.polynomial.polynomial.polyval(np.linspace(-1, 1, len(total)), slope)
 
 
 def _through(forces: Array, rate: float, linear: tuple[float, float, float], order: int) -> Array:

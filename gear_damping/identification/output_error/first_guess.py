@@ -42,7 +42,7 @@ def first_motion(
     """
     shown = record.response.to(torch.float64) - offset
     step = 1 / record.sampling_rate
-    factor = _participation(record.observed, model, given)
+    factor = participation(record.observed, model, given)
     for _ in range(record.observed.derivatives):
         shown = _integrated(shown - shown.mean(), step)
     place = shown / factor + (static if record.observed.derivatives else 0.0)
@@ -58,8 +58,14 @@ def _integrated(values: Tensor, step: float) -> Tensor:
     return total - total.mean() - time * (time @ total) / (time @ time)
 
 
-def _participation(channel: Observed, model: Model, given: Mapping[str, object]) -> float:
-    """What a channel shows of the motion, as a factor on it: of a shaft, its share of the relative motion."""
+def participation(channel: Observed, model: Model, given: Mapping[str, object]) -> float:
+    """What a channel shows of the motion, as a factor on it: of a shaft, its share of the relative motion.
+
+    Args:
+        channel: The channel.
+        model: The simulator.
+        given: Its known values by flat name, in SI.
+    """
     if model.system.name != "gear_pair" or not channel.derivatives:
         return 1.0
     values = model.values(1, **given)
