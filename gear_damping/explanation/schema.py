@@ -235,6 +235,7 @@ class StrongestLine(Part):
     place: float = said("its order, cycles per turn of the pinion, or its frequency", "1 or Hz")
     unit: Literal["order", "Hz"] = said("which of the two it keeps in all records: order of the pinion, or Hz")
     hertz: float = said("its frequency in the first fitted record", "Hz")
+    is_force: bool = said("whether it changes a gear pair's deflection in proportion, as a slow force does")
     share: float = said("of the residuals of the fitted records, that it would take", "1")
 
 

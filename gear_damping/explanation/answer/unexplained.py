@@ -42,10 +42,10 @@ def leftover(outcome: Outcome, evidence: Evidence) -> dict[str, object]:
         family: _share([f[family] for f in trained], residual_fit, [f[family] for f in tested], residual_test)
         for family in families
     }
-    line = strongest_line(outcome, evidence)
+    line, said = strongest_line(outcome, evidence), ("place", "unit", "hertz", "is_force", "share")
     found: dict[str, object] = {
         "shares": shares,
-        "line": line and {"place": line.place, "unit": line.unit, "hertz": line.hertz, "share": line.share},
+        "line": line and {name: getattr(line, name) for name in said},
         "kurtosis": _kurtosis(residual_test),
         "bursts": _kurtosis(residual_test) > BURST_KURTOSIS,
     }

@@ -80,7 +80,8 @@ def unexplained(report: ReportInput) -> list[Row]:
     line = rest.get("line")
     if line:
         order = f", order {number(line['place'], 3)} of the pinion" if line["unit"] == "order" else ""
-        rows.append((f"explained by a line at {number(line['hertz'], 3)} Hz{order}", percent(line["share"], 2)))
+        kind = "a force" if line["is_force"] else "a line"
+        rows.append((f"explained by {kind} at {number(line['hertz'], 3)} Hz{order}", percent(line["share"], 2)))
     phase = rest.get("contact_phase") or ()
     if phase and max(phase) > 0:
         place = (max(range(len(phase)), key=phase.__getitem__) + 0.5) / len(phase)
