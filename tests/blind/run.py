@@ -44,6 +44,13 @@ def done_cases(path: Path) -> list[Case]:
     return list(found.values())
 
 
+def begin_from(kept: Path, path: Path) -> None:
+    """On a fresh clone, go on from the cases that are kept with a page."""
+    if kept.exists() and not path.exists():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(kept.read_text(encoding="utf-8"), encoding="utf-8")
+
+
 def ask(
     questions: Sequence[Question], folder: Path, processes: int, say: Say, minutes: float | None = None,
     solve: Callable[[Question], dict[str, Any]] = answer, redo: bool = False,

@@ -5,8 +5,8 @@ import json
 import numpy as np
 import pytest
 
-from tests.blind.power.__main__ import main
-from tests.blind.power.cases import EFFECTS, MULTIPLES, is_established, is_visible, is_wrong, power_questions
+from tests.blind.power.__main__ import KEPT, main
+from tests.blind.power.cases import EFFECTS, MULTIPLES, is_established, is_visible, is_wrong, keep, power_questions
 from tests.blind.power.curve import size_at_power
 
 
@@ -59,6 +59,7 @@ def made_up(name, seed, multiple):
         "stratum": name, "seed": seed, "multiple": multiple, "engine": "1234abcd", "size": 0.01 * multiple,
         "limit": {"seen": 0.004, "named": 0.01, "nearest": "hertz_stiffness", "cosine": 0.9, "degrees": 1},
         "largest": 200.0, "unit": "N", "power": 1.0, "visible": True, "established": multiple > 1.5, "wrong": False,
+        "answer": {"verdict": "explained", "causes": [cause("coulomb_friction") | {"parameters": {"force": 1.0}}]},
     }  # fmt: skip
 
 
@@ -77,3 +78,17 @@ def test_what_is_written_follows_the_cases(tmp_path):
     page = (tmp_path / "power.md").read_text()
     assert f"| `{EFFECTS[0]}` | N | 0.8 | 2 | `hertz_stiffness` |" in page
     assert (tmp_path / "figures" / "power.png").stat().st_size > 5000
+
+
+def test_a_fresh_clone_goes_on_from_the_cases_that_are_kept(tmp_path, monkeypatch):
+    rows = [made_up(EFFECTS[0], 40000 + i, MULTIPLES[i % 4]) for i in range(4)]
+    keep(rows, tmp_path / KEPT)
+    assert "parameters" not in (tmp_path / KEPT).read_text()
+    monkeypatch.setattr("tests.blind.power.__main__.DOCS", tmp_path)
+    for folder in ("fresh", "again"):
+        asked = ["--effect", EFFECTS[0], "--cases", "4", "--page", "--out", str(tmp_path / folder)]
+        assert main(asked) == 0  # all are done: nothing runs
+        assert json.loads((tmp_path / "power.json").read_text())["effects"][EFFECTS[0]]["cases"] == 4
+    assert [json.loads(line)["seed"] for line in (tmp_path / KEPT).read_text().splitlines()] == [
+        40000 + i for i in range(4)
+    ]

@@ -11,6 +11,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[3]
 DOCS = ROOT / "docs"
+KEPT = "power_cases.jsonl"  # beside the page: what its figures are worked out from, and where a fresh clone goes on
 
 
 def main(given: list[str] | None = None) -> int:
@@ -18,8 +19,8 @@ def main(given: list[str] | None = None) -> int:
     os.environ["OMP_NUM_THREADS"] = "1"
     sys.path.insert(0, str(ROOT / "tests" / "oracles"))
     os.environ["PYTHONPATH"] = os.pathsep.join([str(ROOT / "tests" / "oracles"), str(ROOT)])  # of the workers
-    from ..run import CASES, ask, done_cases
-    from .cases import EFFECTS, answered, power_questions
+    from ..run import CASES, ask, begin_from, done_cases
+    from .cases import EFFECTS, answered, keep, power_questions
     from .page import FIGURE, draw, markdown, summary
 
     parser = argparse.ArgumentParser(prog="make power ARGS=...", description=__doc__)
@@ -33,6 +34,7 @@ def main(given: list[str] | None = None) -> int:
     options = parser.parse_args(given)
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.default_int_handler)
+    begin_from(DOCS / KEPT, options.out / CASES)
     asked = power_questions(options.effect or EFFECTS, options.cases, options.seed)
     stopped = False
     try:
@@ -48,6 +50,8 @@ def main(given: list[str] | None = None) -> int:
         (folder / "power.md").write_text(markdown(found), encoding="utf-8")
         draw(found, folder / FIGURE)
         _say(f"wrote {folder / 'power.json'}, power.md and {FIGURE}")
+    if options.page:
+        keep(rows, DOCS / KEPT)
     return 130 if stopped else 0
 
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import time
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import Any
 
 from hidden import amplitude_of, draw_case, limits, power_of_size
@@ -81,3 +83,12 @@ def is_wrong(said: dict[str, Any], name: str) -> bool:
     """Whether something is established that is not the effect, nor confused with it."""
     sets = ([c["name"], *c["confusable_with"]] for c in said["causes"] if c["status"] == "established")
     return any(not any(same_class(name, other) for other in one) for one in sets)
+
+
+def keep(rows: Sequence[dict[str, Any]], path: Path) -> None:
+    """Write all that the figures are worked out from, a case a line, and of the answer its word and its names."""
+    kept, named = [], ("name", "status", "confusable_with")
+    for row in sorted(rows, key=lambda row: (row["seed"], row["stratum"])):
+        causes = [{key: cause[key] for key in named} for cause in row["answer"]["causes"]]
+        kept.append(row | {"answer": {"verdict": row["answer"]["verdict"], "causes": causes}})
+    path.write_text("".join(json.dumps(row) + "\n" for row in kept), encoding="utf-8")
