@@ -40,6 +40,11 @@ def simulation(signal, **more):
     return figures.simulation_figure(TIME, signal, VELOCITY, "µm", RATE, **{**shaft, **more})
 
 
+def residual_spectrum(signal, mesh_order=None):
+    before = SPECTRUM + 0 * signal[: len(ORDERS)]
+    return figures.ResidualSpectrum(ORDERS, before, SPECTRUM / 3, SPECTRUM, None, mesh_order, 0.5, 20.0)
+
+
 def record(signal, role="fit"):
     return {"name": "run_1", "role": role, "time": TIME, "measured": signal, "simulated": SIGNAL}
 
@@ -52,17 +57,20 @@ SHOWN = {
     "simulation": lambda s: simulation(s),
     "simulation_without_shaft": lambda s: simulation(s, shaft_frequency_hz=None),
     "response": lambda s: figures.response_figure(TIME, s, "µm"),
-    "overlay": lambda s: figures.overlay_figure(TIME, s, SIGNAL, SIGNAL + 0.1, unit="µm", noise=0.1),
+    "overlay": lambda s: figures.overlay_figure(figures.Overlay("a", TIME, s, SIGNAL, SIGNAL + 0.1, 0.1), "µm"),
     "identification": lambda s: figures.identification_figure([record(s), record(s, "holdout")], "m", ["ζ = 1 %"]),
-    "order_spectrum": lambda s: figures.order_spectrum_figure(
-        ORDERS, SPECTRUM + 0 * s[: len(ORDERS)], SPECTRUM / 3, unit="µm", gear_order=0.5, mesh_order=TEETH
-    ),
+    "residual_orders": lambda s: figures.residual_spectrum_figure(residual_spectrum(s, TEETH), "µm"),
+    "residual_frequencies": lambda s: figures.residual_spectrum_figure(residual_spectrum(s), "µm"),
     "mesh_stiffness": lambda s: figures.mesh_stiffness_figure(ANGLE, 3e8 + 1e6 * s, contact_ratio=1.6),
     "scalogram": lambda s: figures.scalogram_figure(
         TIME[:300], FREQUENCIES, s[:300] * np.ones((20, 1)), np.zeros((20, 300), bool), mesh_frequency_hz=400
     ),
-    "force_map": lambda s: figures.residual_force_map_figure(np.linspace(0.02, 0.98, 30), FORCE + s[:20]),
-    "force_surface": lambda s: figures.residual_force_surface_figure(np.arange(20.0), np.arange(30.0), FORCE + s[:20]),
+    "force_map": lambda s: figures.residual_force_map_figure(
+        figures.ForceMap(np.linspace(0.02, 0.98, 30), FORCE + s[:20])
+    ),
+    "force_surface": lambda s: figures.residual_force_surface_figure(
+        figures.ForceSurface(np.arange(20.0), np.arange(30.0), FORCE + s[:20])
+    ),
     "casing_orders": lambda s: figures.casing_orders_figure(
         ORDERS, SPECTRUM + 0 * s[: len(ORDERS)], SPECTRUM / 3, unit="m/s²", gear_order=0.5, mesh_order=TEETH
     ),
@@ -146,8 +154,8 @@ def test_tables_can_be_drawn(name):
     [
         lambda: figures.response_figure(TIME, SIGNAL[:-1], "µm"),
         lambda: figures.simulation_figure(TIME, SIGNAL, VELOCITY[1:], "µm", RATE),
-        lambda: figures.overlay_figure(TIME, SIGNAL, SIGNAL[1:], unit="µm"),
-        lambda: figures.residual_force_map_figure(np.arange(3.0), FORCE),
+        lambda: figures.overlay_figure(figures.Overlay("a", TIME, SIGNAL, SIGNAL[1:]), "µm"),
+        lambda: figures.residual_force_map_figure(figures.ForceMap(np.arange(3.0), FORCE)),
         lambda: figures.candidates_figure([{"name": "x", "share": 1.0, "status": "sure"}]),
         lambda: figures.predicted_against_true_figure({"a": ([0.1], [0.2, 0.3])}),
     ],

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from gear_damping.reporting import figures
 from gear_damping.reporting.explanation_report.data_uri import figure_uri
-from gear_damping.reporting.explanation_report.report_input import ReportInput, ResidualSpectrum
+from gear_damping.reporting.explanation_report.report_input import ReportInput
 from gear_damping.reporting.numbers import pretty_unit
 
 
@@ -29,8 +29,7 @@ def overlays(report: ReportInput) -> list[Shown]:
     """Measured, nominal and extended of each record."""
     shown = []
     for one in report.overlays:
-        look = {"unit": report.unit, "quantity": report.quantity, "noise": one.noise}
-        figure = figures.overlay_figure(one.time, one.measured, one.nominal, one.extended, **look)
+        figure = figures.overlay_figure(one, report.unit, report.quantity)
         caption = (
             f"{one.record}: the stretch where the nominal simulation is worst, the residuals there, and all of them."
         )
@@ -52,19 +51,10 @@ def spectrum(report: ReportInput) -> Shown | None:
     found = report.spectrum
     if found is None:
         return None
-    given = {"after": found.after, "unit": report.unit, "measured": found.measured, "floor": found.floor}
     caption = f"{found.record or 'Spectrum'}: what the simulation leaves, before and after."
-    if found.mesh_order is None:
-        return _shown(_over_frequencies(found, given), caption)
-    orders = {"mesh_order": found.mesh_order, "gear_order": found.gear_order}
-    figure = figures.residual_orders_figure(found.places, found.before, **given, **orders)
-    reading = "A line at a shaft's order turns with that shaft, one at a mesh harmonic repeats with every tooth."
-    return _shown(figure, f"{caption} {reading}")
-
-
-def _over_frequencies(found: ResidualSpectrum, given: dict) -> Figure:
-    natural = {"natural_frequency_hz": found.natural_frequency_hz}
-    return figures.residual_frequencies_figure(found.places, found.before, **given, **natural)
+    if found.mesh_order is not None:
+        caption += " A line at a shaft's order turns with that shaft, one at a mesh harmonic repeats with every tooth."
+    return _shown(figures.residual_spectrum_figure(found, report.unit), caption)
 
 
 def candidates(report: ReportInput) -> Shown | None:
@@ -121,18 +111,13 @@ def excess_share(share: float | None, misfit: dict) -> float | None:
 def residual_forces(report: ReportInput) -> Iterator[Shown]:
     """The force that the simulation misses, as far as it was estimated."""
     if report.force_map is not None:
-        one = report.force_map
-        figure = figures.residual_force_map_figure(one.mesh_phase, one.force, unit=one.unit)
+        figure = figures.residual_force_map_figure(report.force_map)
         caption = (
             "The force that the nominal simulation misses, by pinion tooth and mesh phase: a column is one tooth's, "
         )
         yield _shown(figure, caption + "a row is common to all teeth.")
     if report.force_surface is not None:
-        two = report.force_surface
-        units = {"displacement_unit": two.displacement_unit, "velocity_unit": two.velocity_unit}
-        figure = figures.residual_force_surface_figure(
-            two.displacement, two.velocity, two.force, force_unit=two.force_unit, visits=two.visits, **units
-        )
+        figure = figures.residual_force_surface_figure(report.force_surface)
         caption = "The force that the nominal simulation misses, over displacement and velocity: what depends on "
         yield _shown(figure, caption + "displacement is a missing stiffness, what depends on velocity missing damping.")
 

@@ -13,9 +13,10 @@ from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.spread import spread_of
 from gear_damping.explanation.state import State
 from gear_damping.reporting.explanation_report.render import render
-from gear_damping.reporting.explanation_report.report_input import Overlay, ReportInput
+from gear_damping.reporting.explanation_report.report_input import ReportInput
 from gear_damping.reporting.explanation_report.residual_arrays import force_map, force_surface, spectrum
 from gear_damping.reporting.explanation_report.vocabulary import words
+from gear_damping.reporting.figures import Overlay
 from gear_damping.reporting.numbers import pretty_unit
 
 MOST_OVERLAYS = 2  # records that are drawn in full, the worst first

@@ -10,80 +10,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from numpy.typing import ArrayLike
-
 from gear_damping.explanation.casing.content import CasingStudy
 from gear_damping.explanation.schema import VERDICTS
-
-
-@dataclass(frozen=True, eq=False)
-class Overlay:
-    """A record with its simulations, for `overlay_figure`; arrays of shape (time,) in the channel's unit.
-
-    Args:
-        record: Its name, with the operating condition.
-        time: In s.
-        measured: The record.
-        nominal: The calibrated nominal simulation.
-        extended: The simulation with its causes; None: nothing was added.
-        noise: Standard deviation of the noise; None: unknown.
-    """
-
-    record: str
-    time: ArrayLike
-    measured: ArrayLike
-    nominal: ArrayLike
-    extended: ArrayLike | None = None
-    noise: float | None = None
-
-
-@dataclass(frozen=True, eq=False)
-class ResidualSpectrum:
-    """Spectrum of the residual, for `residual_orders_figure` or, of a rig without shafts, over Hz.
-
-    Args:
-        places: Orders of the pinion, or frequencies (Hz) where `mesh_order` is None; shape (place,).
-        before: Amplitudes of the nominal simulation's residual.
-        after: Those of the extended simulation; None: nothing was added.
-        measured: Amplitudes of the record.
-        floor: Amplitudes of the noise alone.
-        mesh_order: Teeth of the pinion; None: no gears, or no whole turn.
-        gear_order: Turns of the gear per turn of the pinion.
-        natural_frequency_hz: Marked over frequencies.
-        record: Whose spectrum it is.
-    """
-
-    places: ArrayLike
-    before: ArrayLike
-    after: ArrayLike | None = None
-    measured: ArrayLike | None = None
-    floor: ArrayLike | None = None
-    mesh_order: float | None = None
-    gear_order: float | None = None
-    natural_frequency_hz: float | None = None
-    record: str = ""
-
-
-@dataclass(frozen=True, eq=False)
-class ForceMap:
-    """Residual force (phase, tooth) by mesh phase (phase,) in mesh periods, for `residual_force_map_figure`."""
-
-    mesh_phase: ArrayLike
-    force: ArrayLike
-    unit: str = "N"
-
-
-@dataclass(frozen=True, eq=False)
-class ForceSurface:
-    """Residual force (velocity, displacement) over the state, for `residual_force_surface_figure`."""
-
-    displacement: ArrayLike
-    velocity: ArrayLike
-    force: ArrayLike
-    displacement_unit: str = "µm"
-    velocity_unit: str = "m/s"
-    force_unit: str = "N"
-    visits: ArrayLike | None = None
+from gear_damping.reporting.figures import ForceMap, ForceSurface, Overlay, ResidualSpectrum
 
 
 @dataclass(frozen=True, eq=False)

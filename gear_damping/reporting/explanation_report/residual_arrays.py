@@ -12,7 +12,7 @@ from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.evidence.shaft import Shaft, shaft_of
 from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency_hz
 from gear_damping.explanation.state import State
-from gear_damping.reporting.explanation_report.report_input import ForceMap, ForceSurface, ResidualSpectrum
+from gear_damping.reporting.figures import ForceMap, ForceSurface, ResidualSpectrum
 from gear_damping.signals.spectra import amplitude_spectrum, order_spectrum
 
 PHASE_BINS = 16  # of a mesh period

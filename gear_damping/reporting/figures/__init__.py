@@ -1,4 +1,4 @@
-"""Every figure of the project by one name; each takes plain arrays and returns a matplotlib Figure."""
+"""Every figure of the project by one name, from plain arrays or a few that belong together; a matplotlib Figure."""
 
 from matplotlib.figure import Figure
 
@@ -12,14 +12,18 @@ from gear_damping.reporting.figures.casing import (
 from gear_damping.reporting.figures.forest import forest_figure
 from gear_damping.reporting.figures.identification import identification_figure
 from gear_damping.reporting.figures.misfit import misfit_figure
-from gear_damping.reporting.figures.overlay import overlay_figure
+from gear_damping.reporting.figures.overlay import Overlay, overlay_figure
 from gear_damping.reporting.figures.predictions import predicted_against_true_figure
-from gear_damping.reporting.figures.residual_force import residual_force_map_figure, residual_force_surface_figure
-from gear_damping.reporting.figures.residual_orders import residual_frequencies_figure, residual_orders_figure
+from gear_damping.reporting.figures.residual_force import (
+    ForceMap,
+    ForceSurface,
+    residual_force_map_figure,
+    residual_force_surface_figure,
+)
+from gear_damping.reporting.figures.residual_spectrum import ResidualSpectrum, residual_spectrum_figure
 from gear_damping.reporting.figures.response import response_figure
 from gear_damping.reporting.figures.scalogram import scalogram_figure
 from gear_damping.reporting.figures.simulation import simulation_figure
-from gear_damping.reporting.figures.spectra import order_spectrum_figure
 from gear_damping.reporting.figures.stiffness import mesh_stiffness_figure
 from gear_damping.reporting.figures.sweep import sweep_figure
 from gear_damping.reporting.figures.training import training_figure
@@ -28,6 +32,10 @@ from gear_damping.reporting.style import save
 
 __all__ = [
     "Figure",
+    "ForceMap",
+    "ForceSurface",
+    "Overlay",
+    "ResidualSpectrum",
     "Turn",
     "candidates_figure",
     "casing_kurtosis_figure",
@@ -37,13 +45,11 @@ __all__ = [
     "identification_figure",
     "mesh_stiffness_figure",
     "misfit_figure",
-    "order_spectrum_figure",
     "overlay_figure",
     "predicted_against_true_figure",
     "residual_force_map_figure",
     "residual_force_surface_figure",
-    "residual_frequencies_figure",
-    "residual_orders_figure",
+    "residual_spectrum_figure",
     "response_figure",
     "save",
     "scalogram_figure",

@@ -1,5 +1,7 @@
 """Measured, nominal and extended simulation on one record."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -16,34 +18,44 @@ NOMINAL = {"color": RED, "linewidth": 1.0, "label": "nominal simulation"}
 EXTENDED = {"color": BLUE, "linewidth": 1.0, "label": "extended simulation"}
 
 
+@dataclass(frozen=True, eq=False)
+class Overlay:
+    """A record with its simulations; arrays of shape (time,) in the channel's unit.
+
+    Args:
+        record: Its name, with the operating condition.
+        time: In s.
+        measured: The record.
+        nominal: The calibrated nominal simulation.
+        extended: The simulation with its causes; None: nothing was added.
+        noise: Standard deviation of the noise, of which a band of two is shaded; None: unknown.
+    """
+
+    record: str
+    time: ArrayLike
+    measured: ArrayLike
+    nominal: ArrayLike
+    extended: ArrayLike | None = None
+    noise: float | None = None
+
+
 def overlay_figure(
-    time: ArrayLike,
-    measured: ArrayLike,
-    nominal: ArrayLike,
-    extended: ArrayLike | None = None,
-    *,
-    unit: str,
-    quantity: str = "transmission error",
-    noise: float | None = None,
-    samples: int = SHOWN_SAMPLES,
+    shown: Overlay, unit: str, quantity: str = "transmission error", samples: int = SHOWN_SAMPLES
 ) -> Figure:
     """Measured, nominal and extended: the stretch where the nominal is worst, its residuals, all residuals.
 
     Args:
-        time: In s, shape (time,).
-        measured: In `unit`, shape (time,).
-        nominal: The calibrated nominal simulation, shape (time,).
-        extended: The simulation with its causes, shape (time,); None: nothing was added.
+        shown: The record.
         unit: Unit of the channel.
         quantity: What the channel is.
-        noise: Standard deviation of the noise in `unit`; its band of two is shaded. None: unknown.
         samples: Length of the stretch.
 
     Raises:
         ValueError: the arrays have different shapes.
     """
-    given = {"time": time, "measured": measured, "nominal": nominal}
-    time, measured, *simulated = series(**given, **({} if extended is None else {"extended": extended}))
+    given = {"time": shown.time, "measured": shown.measured, "nominal": shown.nominal}
+    more = {} if shown.extended is None else {"extended": shown.extended}
+    time, measured, *simulated = series(**given, **more)
     residuals = [measured - values for values in simulated]
     looks = (NOMINAL, EXTENDED)[: len(simulated)]
     time, time_label = time_axis(time)
@@ -57,7 +69,7 @@ def overlay_figure(
         upper.set(ylabel=f"{quantity} / {unit}")
         upper.tick_params(labelbottom=False)
         for axes, piece in ((middle, part), (lower, slice(None))):
-            _residuals(axes, time[piece], [r[piece] for r in residuals], looks, noise)
+            _residuals(axes, time[piece], [r[piece] for r in residuals], looks, shown.noise)
             axes.set_ylabel(f"residual / {unit}")
         _limits(upper, time[part])
         for axes in (middle, lower):
@@ -65,7 +77,7 @@ def overlay_figure(
         if any_finite(time[part]):
             lower.axvspan(np.nanmin(time[part]), np.nanmax(time[part]), color=SKY, alpha=0.3, linewidth=0, zorder=0)
             lower.set_title("the whole record; the stretch above is shaded", fontsize=9)
-        if noise:
+        if shown.noise:
             middle.set_title(f"grey: the noise, ±{NOISE_BAND:g} standard deviations", fontsize=9)
         if not any_finite(*residuals):
             say_empty(upper)

@@ -1,6 +1,7 @@
 """The force that the simulation misses, over the teeth and over the state."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,44 +15,24 @@ ROBUST_PERCENTILE = 99.0  # of the sizes; a few outliers may saturate
 NOT_VISITED = "#D9D9D9"
 
 
-def residual_force_map_figure(mesh_phase: ArrayLike, force: ArrayLike, *, unit: str = "N") -> Figure:
-    """The residual force by pinion tooth and mesh phase: a fault of one tooth is a column, of all teeth a row.
+@dataclass(frozen=True, eq=False)
+class ForceMap:
+    """The residual force by pinion tooth and mesh phase.
 
     Args:
         mesh_phase: Centres of the bins in mesh periods, 0 … 1, ascending, shape (phase,), at least 2.
         force: Mean force that the simulation misses, shape (phase, tooth), tooth 1 first; NaN: not visited.
         unit: Unit of the force.
-
-    Raises:
-        ValueError: the shapes do not fit.
     """
-    (phase,) = series(mesh_phase=mesh_phase)
-    teeth = np.arange(1.0, np.asarray(force).shape[-1] + 1)
-    force = grid(force, phase, teeth, "force")
-    with styled():
-        figure = new_figure(3.9)
-        axes = figure.subplots()
-        axes.set(xlabel="pinion tooth", ylabel="mesh phase / mesh periods")
-        if _picture(axes, teeth, phase, force, f"residual force / {unit}"):
-            axes.set_xticks(teeth[:: max(1, len(teeth) // 20)])
-            axes.set_title(_grey(force), fontsize=9)
-        return figure
+
+    mesh_phase: ArrayLike
+    force: ArrayLike
+    unit: str = "N"
 
 
-def residual_force_surface_figure(
-    displacement: ArrayLike,
-    velocity: ArrayLike,
-    force: ArrayLike,
-    *,
-    displacement_unit: str = "µm",
-    velocity_unit: str = "m/s",
-    force_unit: str = "N",
-    visits: ArrayLike | None = None,
-) -> Figure:
-    """The residual force over displacement and velocity, with its means along either.
-
-    The mean over velocities shows a missing stiffness, the mean over displacements a missing damping force
-    (restoring-force surface; Masri & Caughey 1979, J. Appl. Mech. 46(2)).
+@dataclass(frozen=True, eq=False)
+class ForceSurface:
+    """The residual force over displacement and velocity.
 
     Args:
         displacement: Centres of the bins in `displacement_unit`, ascending, shape (displacement,), at least 2.
@@ -61,15 +42,50 @@ def residual_force_surface_figure(
         velocity_unit: Unit of the velocity.
         force_unit: Unit of the force.
         visits: How many samples each bin holds, the shape of `force`: weights of the means; None: equal.
+    """
+
+    displacement: ArrayLike
+    velocity: ArrayLike
+    force: ArrayLike
+    displacement_unit: str = "µm"
+    velocity_unit: str = "m/s"
+    force_unit: str = "N"
+    visits: ArrayLike | None = None
+
+
+def residual_force_map_figure(shown: ForceMap) -> Figure:
+    """The residual force by pinion tooth and mesh phase: a fault of one tooth is a column, of all teeth a row.
 
     Raises:
         ValueError: the shapes do not fit.
     """
-    (x,), (v,) = series(displacement=displacement), series(velocity=velocity)
-    force = grid(force, v, x, "force")
-    weights = np.ones_like(force) if visits is None else grid(visits, v, x, "visits")
-    name = f"residual force / {force_unit}"
-    x_name, v_name = f"displacement / {displacement_unit}", f"velocity / ({velocity_unit})"
+    (phase,) = series(mesh_phase=shown.mesh_phase)
+    teeth = np.arange(1.0, np.asarray(shown.force).shape[-1] + 1)
+    force = grid(shown.force, phase, teeth, "force")
+    with styled():
+        figure = new_figure(3.9)
+        axes = figure.subplots()
+        axes.set(xlabel="pinion tooth", ylabel="mesh phase / mesh periods")
+        if _picture(axes, teeth, phase, force, f"residual force / {shown.unit}"):
+            axes.set_xticks(teeth[:: max(1, len(teeth) // 20)])
+            axes.set_title(_grey(force), fontsize=9)
+        return figure
+
+
+def residual_force_surface_figure(shown: ForceSurface) -> Figure:
+    """The residual force over displacement and velocity, with its means along either.
+
+    The mean over velocities shows a missing stiffness, the mean over displacements a missing damping force
+    (restoring-force surface; Masri & Caughey 1979, J. Appl. Mech. 46(2)).
+
+    Raises:
+        ValueError: the shapes do not fit.
+    """
+    (x,), (v,) = series(displacement=shown.displacement), series(velocity=shown.velocity)
+    force = grid(shown.force, v, x, "force")
+    weights = np.ones_like(force) if shown.visits is None else grid(shown.visits, v, x, "visits")
+    name = f"residual force / {shown.force_unit}"
+    x_name, v_name = f"displacement / {shown.displacement_unit}", f"velocity / ({shown.velocity_unit})"
     with styled():
         figure = new_figure(5.6)
         layout = figure.add_gridspec(2, 2, width_ratios=(2.6, 1), height_ratios=(1, 2.2))

@@ -29,37 +29,6 @@ LOOKS = {
 Spectra = Mapping[str, ArrayLike]
 
 
-def order_spectrum_figure(
-    orders: ArrayLike,
-    before: ArrayLike,
-    after: ArrayLike | None = None,
-    *,
-    unit: str,
-    quantity: str = "amplitude",
-    pinion_order: float = 1.0,
-    gear_order: float | None = None,
-    mesh_order: float | None = None,
-) -> Figure:
-    """An order spectrum before and after something was done; the low orders of the shafts have their own panel.
-
-    Args:
-        orders: Cycles per turn of the pinion, ascending, shape (order,).
-        before: Amplitudes in `unit`, shape (order,).
-        after: The same afterwards; None: there is only one.
-        unit: Unit of the amplitudes.
-        quantity: What the amplitudes are of.
-        pinion_order: Order of the pinion shaft.
-        gear_order: Order of the gear shaft.
-        mesh_order: Order of the mesh (teeth of the pinion), marked with its harmonics.
-
-    Raises:
-        ValueError: the arrays have different shapes.
-    """
-    spectra = {"before": before} if after is None else {"before": before, "after": after}
-    marks = {"pinion_order": pinion_order, "gear_order": gear_order, "mesh_order": mesh_order}
-    return spectra_over_orders(orders, spectra, f"{quantity} / {unit}", marks)
-
-
 def spectra_over_orders(orders: ArrayLike, spectra: Spectra, name: str, marks: Mapping[str, float | None]) -> Figure:
     """A panel of low orders and one of all orders, both with `marks` (see `mark_orders`)."""
     with styled():
