@@ -195,12 +195,11 @@ def run_figure(runs: Runs, response: torch.Tensor, run: int = 0) -> Figure:
     """
     signal, velocity = response[run].numpy(), runs.states["velocity"][run].numpy()
     name = runs.model.system.response
+    time, rate = runs.time.numpy(), runs.sampling_rate
     words: dict[str, Any] = {"label": name.replace("_", " "), "title": f"run {run + 1} of {len(runs.status)}"}
     if "pinion_speed" not in runs.values:
-        return figures.simulation_figure(runs.time.numpy(), signal, velocity, "m", runs.sampling_rate, **words)
+        return figures.simulation_figure(figures.ShownRun(time, signal, velocity, "m", rate, **words))
     speed, teeth = (float(runs.values[key][run]) for key in ("pinion_speed", "n_teeth_pinion"))
-    return figures.simulation_figure(
-        runs.time.numpy(), 1e6 * signal, velocity, "µm", runs.sampling_rate, **words,
-        shaft_frequency_hz=abs(speed) / (2 * pi) or None, n_teeth_pinion=teeth,
-        gear_order=teeth / float(runs.values["n_teeth_gear"][run]),
-    )  # fmt: skip
+    shafts = {"shaft_frequency_hz": abs(speed) / (2 * pi) or None, "n_teeth_pinion": teeth}
+    shafts["gear_order"] = teeth / float(runs.values["n_teeth_gear"][run])
+    return figures.simulation_figure(figures.ShownRun(time, 1e6 * signal, velocity, "µm", rate, **words, **shafts))

@@ -37,7 +37,7 @@ ROWS = [
 
 def simulation(signal, **more):
     shaft = {"shaft_frequency_hz": SHAFT, "n_teeth_pinion": TEETH, "gear_order": 0.5}
-    return figures.simulation_figure(TIME, signal, VELOCITY, "µm", RATE, **{**shaft, **more})
+    return figures.simulation_figure(figures.ShownRun(TIME, signal, VELOCITY, "µm", RATE, **{**shaft, **more}))
 
 
 def residual_spectrum(signal, mesh_order=None):
@@ -153,7 +153,7 @@ def test_tables_can_be_drawn(name):
     "make",
     [
         lambda: figures.response_figure(TIME, SIGNAL[:-1], "µm"),
-        lambda: figures.simulation_figure(TIME, SIGNAL, VELOCITY[1:], "µm", RATE),
+        lambda: figures.simulation_figure(figures.ShownRun(TIME, SIGNAL, VELOCITY[1:], "µm", RATE)),
         lambda: figures.overlay_figure(figures.Overlay("a", TIME, SIGNAL, SIGNAL[1:]), "µm"),
         lambda: figures.residual_force_map_figure(figures.ForceMap(np.arange(3.0), FORCE)),
         lambda: figures.candidates_figure([{"name": "x", "share": 1.0, "status": "sure"}]),
@@ -197,7 +197,9 @@ def test_without_a_shaft_the_spectrum_is_over_the_frequencies_that_have_content(
 
 @pytest.mark.parametrize("length", [8, 31])
 def test_a_run_too_short_for_a_spectrum_says_so(length):
-    figure = figures.simulation_figure(TIME[:length], SIGNAL[:length], VELOCITY[:length], "µm", RATE)
+    figure = figures.simulation_figure(
+        figures.ShownRun(TIME[:length], SIGNAL[:length], VELOCITY[:length], "µm", RATE)
+    )
     assert "no spectrum to show" in said(drawn(figure))
     assert "no orbit" in said(figure)
 

@@ -23,7 +23,7 @@ from gear_damping.reporting.figures.residual_force import (
 from gear_damping.reporting.figures.residual_spectrum import ResidualSpectrum, residual_spectrum_figure
 from gear_damping.reporting.figures.response import response_figure
 from gear_damping.reporting.figures.scalogram import scalogram_figure
-from gear_damping.reporting.figures.simulation import simulation_figure
+from gear_damping.reporting.figures.simulation import ShownRun, simulation_figure
 from gear_damping.reporting.figures.stiffness import mesh_stiffness_figure
 from gear_damping.reporting.figures.sweep import sweep_figure
 from gear_damping.reporting.figures.training import training_figure
@@ -36,6 +36,7 @@ __all__ = [
     "ForceSurface",
     "Overlay",
     "ResidualSpectrum",
+    "ShownRun",
     "Turn",
     "candidates_figure",
     "casing_kurtosis_figure",

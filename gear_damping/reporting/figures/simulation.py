@@ -1,5 +1,7 @@
 """A simulated run: time, spectrum and phase plane."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import torch
 from matplotlib.axes import Axes
@@ -24,20 +26,9 @@ LEAST_SAMPLES = 32  # for an orbit to be drawn
 REFINEMENT = 8  # points of a smooth curve between two samples
 
 
-def simulation_figure(
-    time: ArrayLike,
-    signal: ArrayLike,
-    velocity: ArrayLike,
-    unit: str,
-    sampling_rate: float,
-    *,
-    label: str = "response",
-    title: str = "",
-    shaft_frequency_hz: float | None = None,
-    n_teeth_pinion: float | None = None,
-    gear_order: float | None = None,
-) -> Figure:
-    """A simulated run over time, its spectrum (in orders of the pinion shaft where there is one), phase plane.
+@dataclass(frozen=True, eq=False)
+class ShownRun:
+    """A simulated run.
 
     Args:
         time: In s, shape (time,).
@@ -50,34 +41,51 @@ def simulation_figure(
         shaft_frequency_hz: Turns of the pinion per second; None: no shaft, the spectrum is over Hz.
         n_teeth_pinion: Order of the mesh.
         gear_order: Turns of the gear per turn of the pinion.
+    """
+
+    time: ArrayLike
+    signal: ArrayLike
+    velocity: ArrayLike
+    unit: str
+    sampling_rate: float
+    label: str = "response"
+    title: str = ""
+    shaft_frequency_hz: float | None = None
+    n_teeth_pinion: float | None = None
+    gear_order: float | None = None
+
+
+def simulation_figure(run: ShownRun) -> Figure:
+    """A run over time, its spectrum (in orders of the pinion shaft where there is one), phase plane.
 
     Raises:
         ValueError: the arrays have different shapes.
     """
-    time, signal, velocity = series(time=time, signal=signal, velocity=velocity)
+    time, signal, velocity = series(time=run.time, signal=run.signal, velocity=run.velocity)
+    shaft, teeth = run.shaft_frequency_hz, run.n_teeth_pinion
     with styled():
         figure = new_figure(6.8)
         grid = figure.add_gridspec(2, 3, width_ratios=(0.5, 1.5, 1.1), height_ratios=(1, 1.15))
-        wide = np.s_[1, 1] if shaft_frequency_hz else np.s_[1, :2]  # without a shaft there are no low orders
+        wide = np.s_[1, 1] if shaft else np.s_[1, :2]  # without a shaft there are no low orders
         over_time, spectrum, phase = (figure.add_subplot(grid[place]) for place in (np.s_[0, :], wide, np.s_[1, 2]))
-        over_time.set_title(title)
-        _over_time(over_time, time, signal, f"{label} / {unit}")
-        orders, amplitudes = _spectrum(signal, sampling_rate, shaft_frequency_hz)
-        highest = SHOWN_MESH_HARMONICS * n_teeth_pinion if shaft_frequency_hz and n_teeth_pinion else None
+        over_time.set_title(run.title)
+        _over_time(over_time, time, signal, f"{run.label} / {run.unit}")
+        orders, amplitudes = _spectrum(signal, run.sampling_rate, shaft)
+        highest = SHOWN_MESH_HARMONICS * teeth if shaft and teeth else None
         top = draw_spectra(spectrum, orders, {"response": amplitudes}, highest or _content(orders, amplitudes))
-        spectrum.set_xlabel(ORDER_LABEL if shaft_frequency_hz else FREQUENCY_LABEL)
-        marks = {"pinion_order": 1.0, "gear_order": gear_order}
+        spectrum.set_xlabel(ORDER_LABEL if shaft else FREQUENCY_LABEL)
+        marks = {"pinion_order": 1.0, "gear_order": run.gear_order}
         first = spectrum
-        if top and shaft_frequency_hz:
+        if top and shaft:
             first = figure.add_subplot(grid[1, 0], sharey=spectrum)
             spectrum.tick_params(labelleft=False)
             _shaft_orders(first, orders, amplitudes, spectrum.get_ylim())
             mark_orders(first, LOW_ORDERS, **marks)
-            mark_orders(spectrum, top, mesh_order=n_teeth_pinion, **marks)
+            mark_orders(spectrum, top, mesh_order=teeth, **marks)
             figure.legend(handles=spectrum.get_legend_handles_labels()[0][1:], loc="outside lower center", ncols=3)
-        first.set_ylabel(f"amplitude / {unit}")
+        first.set_ylabel(f"amplitude / {run.unit}")
         _phase_plane(phase, signal, velocity)
-        phase.set(xlabel=f"{label} / {unit}", ylabel="velocity / (m/s)")
+        phase.set(xlabel=f"{run.label} / {run.unit}", ylabel="velocity / (m/s)")
         phase.locator_params(axis="x", nbins=4)
         return figure
 
