@@ -27,12 +27,13 @@ class LoadDependentContact(ContactChange):
     cause: ClassVar = Cause(
         "a contact ratio that grows with the load",
         (
-            Recipe(  # what it changes are the edges, which the free shape of the stiffness hid so far
+            # What it changes are the edges, which the free shape of the stiffness hid so far. Their height stays as
+            # calibrated: twice the height and half the growth change the stiffness alike.
+            Recipe(
                 {"growth": None},
                 beside={
                     "mesh_phase": None,
                     "fourier_mesh_stiffness.contact_ratio": None,
-                    "fourier_mesh_stiffness.minimum": None,
                     "fourier_mesh_stiffness.edge": 0.1,
                 },
                 within={"fourier_mesh_stiffness.edge": (0.02, 0.3)},
