@@ -252,6 +252,24 @@ def test_asymmetric_friction_has_its_own_values_in_each_direction():
         close(bench.effect.damping_force(now, bench.p) * bench.unit("N"), force + damping * v.numpy())
 
 
+@pytest.mark.parametrize("rest", [0.0, 0.4, 1.0])
+def test_asymmetric_friction_at_rest_is_a_share_of_the_mean_of_both_forces(rest):
+    """With all of it the two forces change over by a convex combination (Filippov 1988)."""
+    width, force = 0.05, {"forward": 20.0, "backward": 50.0}
+    given = {f"asymmetric_friction.force_{way}": size for way, size in force.items()}
+    given |= {"asymmetric_friction.width": width, "asymmetric_friction.rest_share": rest}
+    bench = Bench("asymmetric_friction", {}, given)
+    v = torch.linspace(-0.3, 0.3, bench.batch, dtype=torch.float64)
+    now = bench.moment(bench.times(), (torch.full_like(v, 1e-5), v))
+    bench.equation.rates(now, bench.prepared.base, bench.prepared.terms)
+    found = bench.effect.damping_force(now, bench.p) * bench.unit("N")
+    scale = CASE.natural_frequency * replace(CASE, torque=150.0).static_deflection
+    ahead = 1 / (1 + np.exp(-2 * v.numpy() / (width * scale)))
+    convex = force["forward"] * ahead - force["backward"] * (1 - ahead)
+    still = (force["forward"] - force["backward"]) / 2 * 4 * ahead * (1 - ahead)  # of that, what is there at rest
+    close(found, convex - (1 - rest) * still)
+
+
 def test_squeeze_film_damping_acts_across_the_gap():
     given = {"backlash.gap": 1e-4, "squeeze_film_damping.film_thickness": 8e-6}
     bench = Bench("squeeze_film_damping", {}, given)
