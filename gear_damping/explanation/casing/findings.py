@@ -4,6 +4,7 @@ Tests that can raise a flag share one family-wise error: each is held to `ALPHA`
 """
 
 from collections.abc import Sequence
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from gear_damping.explanation.casing.compare import (
@@ -49,10 +50,10 @@ def _of_shaft(study: Study, shaft: str, limit: float) -> list[Entry]:
         said += (
             "beside the mesh; sound gears have one too, of runout and pitch errors." if repeats else "beside the mesh."
         )
-        found.append(_entry(common, "pattern_of_the_turn", there.ratio, there.p, limit, False, said))
+        found.append(_Tested("pattern_of_the_turn", there.ratio, there.p, limit).said(common, said))
     said = f"FM4 of the {shaft}'s average is {average.fm4:.3g}; "
     said += f"99 % of sound gears with this spectrum stay below {average.fm4_limit:.3g}."
-    found.append(_entry(common, "fm4", average.fm4, None, average.fm4_limit, False, said))
+    found.append(_Tested("fm4", average.fm4, None, average.fm4_limit).said(common, said))
     return found
 
 
@@ -61,21 +62,37 @@ def _one_tooth(study: Study, shaft: str, common: Entry, limit: float) -> Entry:
     if one is None:
         said = f"The record holds too few turns of the {shaft}, or its turns repeat with the other shaft: one tooth "
         said += "cannot be told from the others."
-        return _entry(common, "one_tooth_stands_out", None, None, limit, False, said)
+        return _Tested("one_tooth_stands_out", limit=limit).said(common, said)
     flagged = one.p <= limit
     said = f"A window of {one.window:g} mesh periods holds {100 * one.share:.2g} % of the energy of the {shaft}'s "
     said += f"pattern ({100 * one.usual:.2g} % is usual in sound gears)"
     burst = f": a burst once per turn of the {shaft}, {one.tooth:.3g} teeth after the zero of its angle."
-    found = _entry(common, "one_tooth_stands_out", one.share, one.p, limit, flagged, said + (burst if flagged else "."))
+    tested = _Tested("one_tooth_stands_out", one.share, one.p, limit, flagged)
+    found = tested.said(common, said + (burst if flagged else "."))
     return found | {"usual": one.usual, "tooth": one.tooth, "window_mesh_periods": one.window}
 
 
-def _entry(
-    common: Entry, statistic: str, value: float | None, p: float | None, limit: float | None, flagged: bool, said: str
-) -> Entry:
-    return common | {
-        "statistic": statistic, "value": value, "p": p, "limit": limit, "flagged": flagged, "sentence": said,
-    }  # fmt: skip
+@dataclass(frozen=True)
+class _Tested:
+    """A statistic with what is held against it.
+
+    Args:
+        statistic: Its name.
+        value: Its value; None: it could not be worked out.
+        p: Its probability in a sound gear; None where only a limit is known.
+        limit: Of the probability, or of the value.
+        flagged: Whether it raises a flag.
+    """
+
+    statistic: str
+    value: float | None = None
+    p: float | None = None
+    limit: float | None = None
+    flagged: bool = False
+
+    def said(self, common: Entry, sentence: str) -> Entry:
+        """The entry of it."""
+        return common | asdict(self) | {"sentence": sentence}
 
 
 def _at_the_mesh(study: Study) -> Entry:
@@ -84,7 +101,7 @@ def _at_the_mesh(study: Study) -> Entry:
     order = study.heard.orders["mesh"]
     common = {"record": study.heard.name, "family": AT_MESH, "shaft": None, "order": order}
     said = f"The mesh (order {order:g} and its harmonics) holds {100 * share:.3g} % of the signal; every pair has it."
-    return _entry(common, "share_of_energy", share, None, None, False, said)
+    return _Tested("share_of_energy", share).said(common, said)
 
 
 def _asynchronous(study: Study, limit: float) -> Entry:
@@ -92,12 +109,13 @@ def _asynchronous(study: Study, limit: float) -> Entry:
     common = {"record": study.heard.name, "family": ASYNCHRONOUS, "shaft": None}
     if line is None:
         said = "No line stands out that belongs to neither shaft."
-        return _entry(common | {"order": None}, "line_over_floor", None, None, limit, False, said)
+        return _Tested("line_over_floor", limit=limit).said(common | {"order": None}, said)
     flagged = line.p <= limit
     hertz = line.order * study.heard.speed
     said = f"A line at order {line.order:.4g} ({hertz:.4g} Hz), which is no order of either shaft, "
     said += "stands out: a bearing, a belt, another machine or the mains." if flagged else "is no more than chance."
-    return _entry(common | {"order": line.order}, "line_over_floor", line.ratio, line.p, limit, flagged, said)
+    tested = _Tested("line_over_floor", line.ratio, line.p, limit, flagged)
+    return tested.said(common | {"order": line.order}, said)
 
 
 def what_changed(study: Study, references: Sequence[Study], limit: float) -> list[Entry]:

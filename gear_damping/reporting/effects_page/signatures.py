@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import pi
+from typing import NamedTuple
 
 import numpy as np
 import torch
@@ -78,12 +79,14 @@ def _of_a_gear_pair(kind: type[Effect], known: Kinds, case: Case, seed: int) -> 
     samples = (cases.SETTLING + cases.TURNS) * cases.SAMPLES_PER_TURN
     shown = slice(cases.SETTLING * cases.SAMPLES_PER_TURN, None)
     names = dict(cases.NOMINAL)
-    true = _run("gear_pair", _with(kind, names, case), known, given, rate, samples, seed)
-    nominal = _run("gear_pair", _without(kind, names, case), known, given, rate, samples, seed)
+    grid = _Grid(rate, samples, seed)
+    true = _run("gear_pair", _effects(known, _with(kind, names, case)), given, grid)
+    plain = _effects(known, _without(kind, names, case))
+    nominal = _run("gear_pair", plain, given, grid)
     if issubclass(kind, Sensor) and kind.channel == "pinion_angle":
         angle = true.measured("pinion_angle", _generator(seed))
         # The record is that of the true motion; what differs is the simulation that follows the false angle.
-        misled = _run("gear_pair", _without(kind, names, case), known, given, rate, samples, seed, angle)
+        misled = _run("gear_pair", plain, given, grid, angle)
         records = (nominal.record(_generator(seed)), misled.record(_generator(seed)))
     else:
         records = (true.record(_generator(seed)), nominal.record(_generator(seed)))
@@ -99,8 +102,9 @@ def _of_a_gear_pair(kind: type[Effect], known: Kinds, case: Case, seed: int) -> 
 def _of_an_oscillator(kind: type[Effect], known: Kinds, case: Case, seed: int) -> Signature:
     rate, samples = cases.OSCILLATOR_RATE, cases.OSCILLATOR_SAMPLES
     names, given = dict(cases.OSCILLATOR_NOMINAL), dict(cases.OSCILLATOR_GIVEN)
-    true = _run("oscillator", _with(kind, names, case), known, given | dict(case.given), rate, samples, seed)
-    nominal = _run("oscillator", _without(kind, names, case), known, given, rate, samples, seed)
+    grid = _Grid(rate, samples, seed)
+    true = _run("oscillator", _effects(known, _with(kind, names, case)), given | dict(case.given), grid)
+    nominal = _run("oscillator", _effects(known, _without(kind, names, case)), given, grid)
     measured, without = (run.record(_generator(seed))[0].numpy() for run in (true, nominal))
     natural = float(nominal.derived["natural_frequency"][0]) / (2 * pi)
     return _signature(np.arange(samples) / rate, measured, without, "rad", rate, (None, None, natural))
@@ -133,25 +137,28 @@ def _without(kind: type[Effect], nominal: dict[str, Values], case: Case) -> dict
     return {**nominal, **case.also, **case.without}
 
 
-def _run(
-    system: str,
-    effects: Mapping[str, Values],
-    known: Kinds,
-    given: Values,
-    rate: float,
-    samples: int,
-    seed: int,
-    angle: Tensor | None = None,
-) -> Runs:
-    model = Model(SYSTEMS[system](), [known[name]() for name in effects])
-    flat = {f"{name}.{key}": value for name, values in effects.items() for key, value in values.items()}
-    values = model.values(1, **{**given, **flat})
+class _Grid(NamedTuple):
+    """When a run is looked at: samples per second, how many of them, and the seed of what is drawn."""
+
+    rate: float
+    samples: int
+    seed: int
+
+
+def _effects(known: Kinds, chosen: Mapping[str, Values]) -> list[Effect]:
+    """Effects with their parameters."""
+    return [known[name](**values) for name, values in chosen.items()]
+
+
+def _run(system: str, effects: list[Effect], given: Values, grid: _Grid, angle: Tensor | None = None) -> Runs:
+    model = Model(SYSTEMS[system](), effects)
+    values = model.values(1, **given)
     if system == "gear_pair":
         derived = model.prepare(values).derived
         start = derived["mean_load"] / derived["mean_stiffness"]
         values = values | {"initial_displacement": start}
     inputs = None if angle is None else {"pinion_angle": angle}
-    return simulate(model, values, sampling_rate=rate, n_samples=samples, inputs=inputs, seed=seed)
+    return simulate(model, values, sampling_rate=grid.rate, n_samples=grid.samples, inputs=inputs, seed=grid.seed)
 
 
 def _generator(seed: int) -> torch.Generator:
