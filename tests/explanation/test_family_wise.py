@@ -5,7 +5,14 @@ import pytest
 import torch
 from scipy import signal, stats
 
-from gear_damping.explanation.statistics.family_wise import Effect, Lines, block_numbers, cube_root, family_wise
+from gear_damping.explanation.statistics.family_wise import (
+    Effect,
+    Lines,
+    Residual,
+    block_numbers,
+    cube_root,
+    family_wise,
+)
 from gear_damping.explanation.statistics.whitening import autoregression
 
 SAMPLES, BLOCK = 1200, 6
@@ -17,7 +24,8 @@ def orthonormal(rng, samples, count):
 
 def found_in(rng, effects, residual, **more):
     blocks = block_numbers([SAMPLES], [BLOCK])
-    return family_wise(torch.as_tensor(residual), effects, blocks, 1.0, **more)
+    nuisance = more.pop("nuisance", None)
+    return family_wise(Residual(torch.as_tensor(residual), blocks, 1.0, nuisance), effects, **more)
 
 
 def ar(rng, coefficients, samples):
@@ -94,7 +102,9 @@ def test_what_the_nuisance_took_widens_a_score():
         residual = rng.normal(size=samples)
         residual -= nuisance @ (nuisance.T @ residual)
         blocks = block_numbers([samples], [block // 2])
-        found = family_wise(torch.as_tensor(residual), [effect], blocks, 1.0, torch.as_tensor(nuisance), draws=400)
+        found = family_wise(
+            Residual(torch.as_tensor(residual), blocks, 1.0, torch.as_tensor(nuisance)), [effect], draws=400
+        )
         p.append(found.p)
     assert abs((np.array(p) < 0.1).mean() - 0.1) < 3.5 * (0.09 / 300) ** 0.5
 

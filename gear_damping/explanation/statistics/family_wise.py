@@ -34,6 +34,23 @@ class Effect:
 
 
 @dataclass(frozen=True)
+class Residual:
+    """What is looked at.
+
+    Args:
+        values: White, beside the nuisance, (samples,).
+        blocks: Number of the block of every sample, (samples,).
+        variance: Of one sample.
+        nuisance: Orthonormal columns that were projected out, (samples, m); None: none.
+    """
+
+    values: Tensor
+    blocks: Tensor
+    variance: float
+    nuisance: Tensor | None = None
+
+
+@dataclass(frozen=True)
 class Lines:
     """Independent squared sums that were not flipped, such as a spectrum's: each is chi-squared under the null.
 
@@ -84,27 +101,18 @@ class Visible:
 
 
 def family_wise(
-    residual: Tensor,
-    effects: Sequence[Effect],
-    blocks: Tensor,
-    variance: float,
-    nuisance: Tensor | None = None,
-    lines: Sequence[Lines] = (),
-    draws: int = DRAWS,
-    level: float = 0.01,
+    residual: Residual, effects: Sequence[Effect], lines: Sequence[Lines] = (), draws: int = DRAWS, level: float = 0.01
 ) -> Visible:
     """Test all effects at once.
 
     Args:
-        residual: White, beside the nuisance, (samples,).
+        residual: What is looked at.
         effects: What may be in it.
-        blocks: Number of the block of every sample, (samples,).
-        variance: Of one sample of the residual.
-        nuisance: Orthonormal columns that were projected out, (samples, m).
         lines: Further statistics that stand in the same maximum.
         draws: Of signs.
         level: Chance at which anything at all would be called visible under the null.
     """
+    blocks, variance, nuisance = residual.blocks, residual.variance, residual.nuisance
     generator = torch.Generator().manual_seed(0)
     count = int(blocks.max()) + 1
     signs = torch.randint(0, 2, (draws, count), generator=generator).double() * 2 - 1
@@ -114,7 +122,7 @@ def family_wise(
             continue
         size, effective = _spread(effect.columns, blocks, count)
         most = max(most, effective)
-        sums = _by_block(effect.columns * residual.unsqueeze(1), blocks, count)
+        sums = _by_block(effect.columns * residual.values.unsqueeze(1), blocks, count)
         if effective < FEWEST_BLOCKS:
             value = _against_chi_squared(sums.sum(0), variance, effect.one_sided)
             under = torch.randn(draws, generator=generator, dtype=torch.float64)

@@ -10,7 +10,7 @@ from torch import Tensor
 
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency_hz
-from gear_damping.explanation.statistics.family_wise import Effect, Lines, Visible, block_numbers, family_wise
+from gear_damping.explanation.statistics.family_wise import Effect, Lines, Residual, Visible, block_numbers, family_wise
 from gear_damping.explanation.statistics.projector import Projector
 from gear_damping.explanation.trials.innovations import recurrences
 from gear_damping.explanation.trials.line import strongest_line
@@ -80,7 +80,7 @@ def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, fami
             if s.columns.shape[1]
         ]
         effects += [Effect(name, orthonormal(whitened(white.padded(c)))) for name, c in unnamed.items()]
-        return _tested(seen, effects, whitened, white, random, outcome, evidence.settings.level)
+        return _tested(seen, effects, whitened, white, outcome, evidence.settings.level)
 
     def random_in(left: Tensor, taken: float) -> Random:
         found = random_part(left[:count, 0], taken, outcome, motions)
@@ -105,13 +105,7 @@ def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, fami
 
 
 def _tested(
-    seen: Tensor,
-    effects: list[Effect],
-    project: Projector,
-    white: "Whitener",
-    random: Random,
-    outcome: Outcome,
-    level: float,
+    seen: Tensor, effects: list[Effect], project: Projector, white: Whitener, outcome: Outcome, level: float
 ) -> Assessment:
     """The test on whitened signals, (samples + n,)."""
     problem, count = outcome.problem, outcome.problem.response.weights.numel()
@@ -126,10 +120,10 @@ def _tested(
     blocks = block_numbers([problem.response.length] * len(rows), length)
     blocks = torch.cat([blocks, torch.full((len(seen) - count,), int(blocks.max()) + 1)])
     lines = _lines(seen[:count].reshape(rows.shape), white.used, variance, outcome)
-    visible = family_wise(seen, effects, blocks, variance, nuisance, lines, level=level)
+    visible = family_wise(Residual(seen, blocks, variance, nuisance), effects, lines, level=level)
     total = float(seen.square().sum())
     share = (total - float(left.square().sum()) - taken * variance) / max(total, 1e-300)
-    return Assessment(visible, random, max(share, 0.0))
+    return Assessment(visible, white.random, max(share, 0.0))
 
 
 def _block_length(rows: Tensor, outcome: Outcome) -> list[int]:

@@ -11,7 +11,7 @@ from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.explain import is_lost_by
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import State
-from gear_damping.explanation.statistics.family_wise import Effect, family_wise
+from gear_damping.explanation.statistics.family_wise import Effect, Residual, family_wise
 from gear_damping.identification.output_error.records import FitRecord
 from tests.explanation.decisions.declared import decides
 from tests.explanation.decisions.made_up import bench, left, outcome
@@ -32,7 +32,7 @@ def visible(settings: SearchSettings):
     noise -= column[:, 0] * float(column.T @ noise)
     blocks = torch.arange(SAMPLES) // 20
     seen = (noise + size * column[:, 0] for size in (3.0, 2.0))
-    return tuple(bool(family_wise(r, [Effect("a", column)], blocks, 1.0, level=settings.level)) for r in seen)
+    return tuple(bool(family_wise(Residual(r, blocks, 1.0), [Effect("a", column)], level=settings.level)) for r in seen)
 
 
 def significant(residual: float, settings: SearchSettings, samples: int = SAMPLES) -> bool:
