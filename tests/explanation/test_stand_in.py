@@ -61,7 +61,10 @@ def searched(cubic, force, count=3, law=(CUBIC,), settings=None):
     extended = Hypothesis(Oscillator(), tuple(laws), known | dict.fromkeys(law, 0.0), (*linear, *free))
     outcome = fit_hypothesis(extended, evidence)
     budget = SimpleNamespace(refuses=lambda name: False)
-    bench = SimpleNamespace(evidence=evidence, settings=settings or SearchSettings(), budget=budget)
+    noise_cost = lambda outcome: NOISE**2 * float(outcome.problem.response.weights.numel())  # noqa: E731
+    bench = SimpleNamespace(
+        evidence=evidence, settings=settings or SearchSettings(), budget=budget, noise_cost=noise_cost
+    )
     accepted = (Accepted(name, SimpleNamespace(outcome=outcome), 0.5, ()),)
     return State(bench, nominal, outcome, accepted, left=SimpleNamespace(visible=True))
 

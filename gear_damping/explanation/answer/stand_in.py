@@ -3,7 +3,8 @@
 The parameter-encompassing test (Mizon & Richard 1986, Econometrica 54): beside a family of forces or lines that by
 itself takes more of what the model without the cause leaves, what really is there keeps its size. Where the family
 can do most of what the cause does, a law in another form may lose its size too, and the test says nothing. One-sided:
-what grows beside the family is no less there. And what takes less with more numbers explains nothing.
+what grows beside the family is no less there. And what takes less with more numbers explains nothing. A family that
+takes less than a cause must to be one, of what is left beyond noise, is not what is missing either.
 """
 
 from collections.abc import Callable, Iterator
@@ -120,10 +121,12 @@ def _stand_in(cause: Accepted, state: State) -> StandIn | None:
     cause_takes = float((change * residual).sum()) ** 2 / energy / total
     free = sum(parameter.name.startswith(cause.name + ".") for parameter in state.outcome.problem.free)
     block, found = block_of(without, bench.evidence), []
+    beyond_noise = 1 - min(bench.noise_cost(without) / total, 1.0)
+    least = max(cause_takes, bench.settings.taken_by_one * beyond_noise)
     for family in _families(without, project, state):
         left, other = family.beside(residual), family.beside(change)
         takes = 1 - float(left.square().sum()) / total
-        if takes <= cause_takes:
+        if takes <= least:
             continue
         share = float(other.square().sum()) / energy
         why = f"with {family.numbers} numbers in the place of {free}" if family.numbers < free else ""

@@ -3,11 +3,14 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from gear_damping.explanation.model.hypothesis import Outcome
+from gear_damping.explanation.model.fitting import fit_hypothesis
+from gear_damping.explanation.model.hypothesis import Outcome, settled_at
 from gear_damping.explanation.model.nominal_gear_pair import shaped
 from gear_damping.explanation.state import State
 from gear_damping.explanation.trials.refit import Refit, again
-from gear_damping.explanation.trials.score import Score
+from gear_damping.explanation.trials.score import Score, best_by_effect
+
+FAR = 10.0  # times the cost of the best fit: a law that leaves so much more has not come to rest where it could
 
 
 def single_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
@@ -43,10 +46,33 @@ def _first_fits(state: State) -> tuple[Refit, ...]:
         if begun is None:
             continue
         fits += bench.full_fits(begun[1], begun[0], state.nominal)
+        fits = _from_the_best(fits, state)
         fits.sort(key=lambda fit: fit.outcome.left_out_cost)
         if _best(fits, state):
             break
     return tuple(fits)
+
+
+def _from_the_best(fits: Sequence[Refit], state: State) -> list[Refit]:
+    """The fits, of an oscillator's laws those that leave far more than the best one tried again from where that lies.
+
+    The nominal model may be a long way off in all that it shares with them, a gain of the force or a damping, and its
+    own spring another one: from there some laws come to a place where no step is better.
+    """
+    bench, nominal = state.bench, state.nominal
+    best = min(fits, key=lambda fit: fit.outcome.fitted.cost, default=None)
+    if bench.evidence.system != "oscillator" or best is None:
+        return list(fits)
+    far = {fit.name for fit in fits if fit.outcome.fitted.cost > FAR * best.outcome.fitted.cost}
+    if not far or bench.budget.refuses("laws once more, from the best one"):
+        return list(fits)
+    shared = {p.name: best.outcome.values[p.name] for p in nominal.problem.free if p.name in best.outcome.values}
+    settled = settled_at(nominal.hypothesis, shared)
+    place = fit_hypothesis(settled, bench.evidence, after=best.outcome, iterations=0, solver=bench.solver)
+    scores = best_by_effect(bench.ranked(place, far)) if place.is_finite else {}
+    found = [bench.full_fit(score, place, nominal) for score in scores.values() if score.candidate.presence]
+    again = {fit.name: fit for fit in found if fit is not None}
+    return [min([fit, again.get(fit.name, fit)], key=lambda one: one.outcome.fitted.cost) for fit in fits]
 
 
 def _shaped(state: State) -> tuple[Outcome, Sequence[Score]] | None:
