@@ -90,6 +90,13 @@ def test_what_takes_less_with_more_numbers_explains_nothing(records, numbers):
     assert [one.why for one in found] == (["with 3 numbers in the place of 4"] if numbers < 4 else [])
 
 
+def test_what_takes_less_than_a_cause_must_is_stood_in_for_by_none(forced):
+    """The force takes nearly all, and is not what is missing where a cause has to take all but noise."""
+    state = searched(0.0, 1.5, settings=SearchSettings(taken_by_one=1.0))
+    state.bench.noise_cost = lambda outcome: 0.0
+    assert not list(stand_ins(state))
+
+
 def test_where_nothing_is_left_nobody_asks(forced):
     seen = SimpleNamespace(visible=False)
     assert not list(stand_ins(State(forced.bench, forced.nominal, forced.outcome, forced.accepted, left=seen)))
