@@ -26,7 +26,7 @@ def sign_change_rate(force: Tensor, width: Tensor, mass: Tensor) -> Tensor:
     Natural units. The slope alone would allow steps that jump over the turn; the share of the width that
     a step may cover was measured by step halving.
     """
-    return torch.maximum(force / (width * mass), 0.12 / width)
+    return torch.maximum(force / (width * mass), 0.09 / width)
 
 
 def padded(parts: Mapping[str, Tensor]) -> dict[str, Tensor]:

@@ -1,4 +1,4 @@
-"""Power, sine and cosine of the native kernels against the C library, inside and outside their own range."""
+"""Power, sine, cosine and the tangents of the native kernels against the C library, inside their range and outside."""
 
 import ctypes
 import math
@@ -12,14 +12,14 @@ MAIN = """
 extern "C" void call(const double* a, const double* b, double* out) {
   vd x, y;
   for (int l = 0; l < WIDTH; ++l) { x[l] = a[l]; y[l] = b[l]; }
-  const vd r[3] = {v_pow(x, y), v_sin(x), v_cos(x)};
-  for (int i = 0; i < 3; ++i) for (int l = 0; l < WIDTH; ++l) out[i * WIDTH + l] = r[i][l];
+  const vd r[5] = {v_pow(x, y), v_sin(x), v_cos(x), v_tanh(x), v_atan(x)};
+  for (int i = 0; i < 5; ++i) for (int l = 0; l < WIDTH; ++l) out[i * WIDTH + l] = r[i][l];
 }"""
 
 
 @pytest.fixture(scope="module")
 def evaluate():
-    """(3, n): power, sine and cosine of n pairs of numbers."""
+    """(5, n): power, sine, cosine, hyperbolic and inverse tangent of n pairs of numbers."""
     if build.compiler() is None:
         pytest.skip("no C++ compiler on this machine: native kernels cannot be built")
     width, _ = build.width_and_options()
@@ -29,7 +29,7 @@ def evaluate():
     def call(a, b):
         parts = []
         for x, y in zip(a.split(width), b.split(width), strict=True):
-            out = torch.empty(3, width, dtype=torch.float64)
+            out = torch.empty(5, width, dtype=torch.float64)
             library.call(*(ctypes.c_void_p(t.contiguous().data_ptr()) for t in (x, y)), ctypes.c_void_p(out.data_ptr()))
             parts.append(out)
         return torch.cat(parts, dim=1)
@@ -58,6 +58,27 @@ def test_sine_and_cosine_of_long_runs(evaluate):
     found = evaluate(angle, angle)
     torch.testing.assert_close(found[1], angle.sin(), rtol=0, atol=3e-16)
     torch.testing.assert_close(found[2], angle.cos(), rtol=0, atol=3e-16)
+
+
+def signed(low, high):
+    """4096 numbers of either sign, sizes of 10^low to 10^high."""
+    size = 10 ** numbers(2048, low, high)
+    return torch.cat([-size.flip(0), size])
+
+
+@pytest.mark.parametrize(("row", "function"), [(3, math.tanh), (4, math.atan)])
+def test_tangents_of_every_size(evaluate, row, function):
+    near, far = signed(-12, 1.5), torch.cat([numbers(4088, -3, 3), signed(2, 300)[::512]])
+    value = torch.cat([near, far, torch.tensor([0.0, math.inf, -math.inf, 20.0, 0.66, -2.5, 5e-324, 1.0] * 2)])
+    expected = torch.tensor([function(x) for x in value.tolist()], dtype=torch.float64)
+    torch.testing.assert_close(evaluate(value, value)[row], expected, rtol=5e-16, atol=0)
+
+
+def test_a_tangent_of_nothing_is_nothing(evaluate):
+    value = torch.tensor([math.nan, 1.0] * 8, dtype=torch.float64)
+    found = evaluate(value, value)[3:]
+    assert found[:, ::2].isnan().all()
+    assert found[:, 1::2].isfinite().all()
 
 
 def test_what_lies_outside_is_the_librarys(evaluate):

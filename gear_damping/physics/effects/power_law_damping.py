@@ -53,10 +53,15 @@ class PowerLawDamping(DampingLaw):
         return torch.where(p["exponent"] < 1, p["coefficient"] * rounded, torch.where(now.delta_rate < 0, -size, size))
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
-        """With an exponent below 1 the slope at rest is steep: a rate that follows its turn, as of a dry friction."""
-        steep = values["coefficient"] * ROUNDED ** (values["exponent"] - 1)
-        turning = sign_change_rate(steep * ROUNDED, torch.full_like(steep, ROUNDED), base["equivalent_mass"])
-        return dict(values) | {"fastest_rate": torch.where(values["exponent"] < 1, turning, 0.0)}
+        """With an exponent below 1 the slope at rest is steep: a rate that follows its turn, as of a dry friction.
+
+        It bends the less, the nearer the exponent is to 1 (measured by step halving, exponents of 0.2 to 0.97).
+        """
+        exponent = values["exponent"]
+        steep = values["coefficient"] * ROUNDED ** (exponent - 1)
+        width = ROUNDED / (1 - exponent).clamp(min=ROUNDED)
+        turning = sign_change_rate(steep * width, width, base["equivalent_mass"])
+        return dict(values) | {"fastest_rate": torch.where(exponent < 1, turning, 0.0)}
 
     def damping_ratio(self, values: Values, mass: Tensor, stiffness: Tensor, velocity: Tensor) -> Tensor:
         """The ratio that dissipates as much per cycle at this velocity amplitude."""

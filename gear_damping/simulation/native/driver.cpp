@@ -163,25 +163,26 @@ static inline void split(vd start, vd length, Block& b, Ends& e, vm crossed) {
 }
 #endif
 
+template <int M>
 static inline void substep(vd (*y)[N_STATE], vd start, vd length, Block* b) {
-  Task tasks[VECTORS];
+  Task tasks[M];
 #if N_SWITCH > 0
-  Ends e[VECTORS];
-  for (int m = 0; m < VECTORS; ++m) {
+  Ends e[M];
+  for (int m = 0; m < M; ++m) {
     for (int i = 0; i < N_STATE; ++i) e[m].start[i] = y[m][i];
     tasks[m] = Task{e[m].start, &b[m], b[m].L, e[m].end, e[m].first};
   }
-  step<VECTORS>(tasks, start, length);
-  for (int m = 0; m < VECTORS; ++m) {
+  step<M>(tasks, start, length);
+  for (int m = 0; m < M; ++m) {
     const vm crossed = margin_of_step(start, length, b[m], b[m].L, e[m]) < 0.0;
     if (any(crossed)) split(start, length, b[m], e[m], crossed);
     for (int i = 0; i < N_STATE; ++i) y[m][i] = e[m].end[i];
   }
 #else
-  vd end[VECTORS][N_STATE], first[N_STATE];
-  for (int m = 0; m < VECTORS; ++m) tasks[m] = Task{y[m], &b[m], b[m].L, end[m], first};
-  step<VECTORS>(tasks, start, length);
-  for (int m = 0; m < VECTORS; ++m)
+  vd end[M][N_STATE], first[N_STATE];
+  for (int m = 0; m < M; ++m) tasks[m] = Task{y[m], &b[m], b[m].L, end[m], first};
+  step<M>(tasks, start, length);
+  for (int m = 0; m < M; ++m)
     for (int i = 0; i < N_STATE; ++i) y[m][i] = end[m][i];
 #endif
 }
@@ -228,6 +229,47 @@ __attribute__((noinline)) static vd acceleration_of(const vd* y, const Block& b)
   return out[1] / b.P[0];
 }
 
+// Walks the M vectors of lanes from `group` on; arguments as for `walk`.
+template <int M>
+static void walk_group(long lanes, long group, long first, long count, long substeps, long length, long sources,
+                       const double* fixed, const double* series, const long* source, const double* factor,
+                       double* state, double* branch, double* out, double* acceleration) {
+  const double part = 1.0 / double(substeps);
+  Block b[M];
+  vd y[M][N_STATE], kept[M][TILE][N_STATE];
+  for (int m = 0; m < M; ++m) {
+    const long lane = group + m * WIDTH;
+    for (int i = 0; i < N_FIXED; ++i) b[m].P[i] = load(fixed, lanes, i, lane);
+    for (int i = 0; i < N_STATE; ++i) y[m][i] = load(state, lanes, i, lane);
+    for (int w = 0; w < N_SWITCH; ++w) b[m].L[w] = load(branch, lanes, w, lane);
+    setup(b[m].P, b[m].Q);
+    choose_series(b[m], source, factor, lanes, lane);
+  }
+  for (long n = 0; n < count; ++n) {
+    for (int m = 0; m < M; ++m) {
+      b[m].index = double(first + n);
+      drive(b[m], series + (first + n) * N_SERIES * sources, sources);
+    }
+    for (long s = 0; s < substeps; ++s) substep<M>(y, vd{} + double(s) * part, vd{} + part, b);
+    const int place = n % TILE;
+    for (int m = 0; m < M; ++m) {
+      for (int i = 0; i < N_STATE; ++i) kept[m][place][i] = y[m][i];
+      if (place == TILE - 1 || n == count - 1)
+        flush(out, length, lanes, group + m * WIDTH, n - place, place + 1, kept[m]);
+      if (acceleration) {
+        const long lane = group + m * WIDTH;
+        const vd now = acceleration_of(y[m], b[m]);
+        for (int l = 0; l < WIDTH && lane + l < lanes; ++l) acceleration[(lane + l) * length + n] = now[l];
+      }
+    }
+  }
+  for (int m = 0; m < M; ++m) {
+    const long lane = group + m * WIDTH;
+    for (int i = 0; i < N_STATE; ++i) store(state, lanes, i, lane, y[m][i]);
+    for (int w = 0; w < N_SWITCH; ++w) store(branch, lanes, w, lane, b[m].L[w]);
+  }
+}
+
 // fixed (N_FIXED, lanes); series (intervals, N_SERIES, sources), of which source (lanes) drives each lane times factor
 // (N_SERIES, lanes); state (N_STATE, lanes) and branch (N_SWITCH, lanes) are read and left at the last interval; out (N_STATE, lanes, length) gets `count` outputs.
 // acceleration (lanes, length), where not null, gets the rate of the velocity at the same outputs.
@@ -235,40 +277,10 @@ __attribute__((noinline)) static vd acceleration_of(const vd* y, const Block& b)
 extern "C" void walk(long lanes, long from, long to, long first, long count, long substeps, long length, long sources,
                      const double* fixed, const double* series, const long* source, const double* factor,
                      double* state, double* branch, double* out, double* acceleration) {
-  const double part = 1.0 / double(substeps);
   for (long group = from; group < to; group += WIDTH * VECTORS) {
-    Block b[VECTORS];
-    vd y[VECTORS][N_STATE], kept[VECTORS][TILE][N_STATE];
-    for (int m = 0; m < VECTORS; ++m) {
-      const long lane = group + m * WIDTH;
-      for (int i = 0; i < N_FIXED; ++i) b[m].P[i] = load(fixed, lanes, i, lane);
-      for (int i = 0; i < N_STATE; ++i) y[m][i] = load(state, lanes, i, lane);
-      for (int w = 0; w < N_SWITCH; ++w) b[m].L[w] = load(branch, lanes, w, lane);
-      setup(b[m].P, b[m].Q);
-      choose_series(b[m], source, factor, lanes, lane);
-    }
-    for (long n = 0; n < count; ++n) {
-      for (int m = 0; m < VECTORS; ++m) {
-        b[m].index = double(first + n);
-        drive(b[m], series + (first + n) * N_SERIES * sources, sources);
-      }
-      for (long s = 0; s < substeps; ++s) substep(y, vd{} + double(s) * part, vd{} + part, b);
-      const int place = n % TILE;
-      for (int m = 0; m < VECTORS; ++m) {
-        for (int i = 0; i < N_STATE; ++i) kept[m][place][i] = y[m][i];
-        if (place == TILE - 1 || n == count - 1)
-          flush(out, length, lanes, group + m * WIDTH, n - place, place + 1, kept[m]);
-        if (acceleration) {
-          const long lane = group + m * WIDTH;
-          const vd now = acceleration_of(y[m], b[m]);
-          for (int l = 0; l < WIDTH && lane + l < lanes; ++l) acceleration[(lane + l) * length + n] = now[l];
-        }
-      }
-    }
-    for (int m = 0; m < VECTORS; ++m) {
-      const long lane = group + m * WIDTH;
-      for (int i = 0; i < N_STATE; ++i) store(state, lanes, i, lane, y[m][i]);
-      for (int w = 0; w < N_SWITCH; ++w) store(branch, lanes, w, lane, b[m].L[w]);
-    }
+    // a second vector of nothing but repeated lanes would cost as much as the first
+    const auto walked = VECTORS > 1 && lanes - group <= WIDTH ? walk_group<1> : walk_group<VECTORS>;
+    walked(lanes, group, first, count, substeps, length, sources, fixed, series, source, factor, state, branch, out,
+           acceleration);
   }
 }
