@@ -9,7 +9,7 @@ from torch import Tensor
 
 from gear_damping.simulation.kernel import Kernel, Members, holds_weights
 from gear_damping.simulation.native import build
-from gear_damping.simulation.native.source import kernel_source, vectors_of
+from gear_damping.simulation.native.source import MOST_VECTORS, kernel_source
 from gear_damping.simulation.native.stepper import NativeStepper
 from gear_damping.simulation.native.structure import structure_of
 from gear_damping.simulation.native.trace import UntraceableError
@@ -50,18 +50,18 @@ def choose(wish: Engine, kernel: Kernel, members: Members, state: Tensor) -> Cho
         library = None if state.is_cuda else _native(kernel, members, state)
         if state.is_cuda:
             return Choice(wish)
-        return Choice("native" if library else "eager", library, _lanes(library, state))
+        return Choice("native" if library else "eager", library, _lanes(library))
     if wish == "native":
         library = _native(kernel, members, state)
         if library is None:
             raise RuntimeError("simulator.solver.engine=native needs a C++ compiler and terms with a native form")
-        return Choice("native", library, _lanes(library, state))
+        return Choice("native", library, _lanes(library))
     return Choice(wish)
 
 
-def _lanes(library: ctypes.CDLL | None, state: Tensor) -> int:
-    """Members that a kernel steps together."""
-    return 1 if library is None else build.width_and_options()[0] * vectors_of(len(state))
+def _lanes(library: ctypes.CDLL | None) -> int:
+    """Members that a kernel steps together at most."""
+    return 1 if library is None else build.width_and_options()[0] * MOST_VECTORS
 
 
 def _native(kernel: Kernel, members: Members, state: Tensor) -> ctypes.CDLL | None:

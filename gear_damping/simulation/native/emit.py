@@ -23,6 +23,10 @@ class Written:
         arguments = "vd u, const vd* y, const vd* P, const vd* S, double index, const vd* L, const vd* Q, vd* out"
         return "\n".join([f"{CALLED} void {name}({arguments}) {{", *lines, "}"])
 
+    def operations(self, results: Sequence[Expression]) -> int:
+        """Operations of a function that writes these."""
+        return len(self._needed(results, stage=True))
+
     def setup(self) -> str:
         """The function that fills `Q`; call it after every `function` was written."""
         needed = self._needed(list(self.kept), stage=False)

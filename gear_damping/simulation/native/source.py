@@ -15,12 +15,14 @@ from gear_damping.simulation.native.trace import LANES, trace
 from gear_damping.simulation.stepper import MOST_SPLITS
 
 HERE = Path(__file__).resolve().parent
-MOST_STATES_OF_TWO = 6  # of members of which two vectors at once still fit the processor's registers
+MOST_VECTORS = 2  # that are stepped together
+MOST_STATES_OF_TWO = 6  # of members of which two vectors at once still fit the processor's registers,
+MOST_OPERATIONS_OF_TWO = 64  # and of their stages: a longer one keeps the processor busy by itself (measured)
 
 
-def vectors_of(n_state: int) -> int:
-    """Vectors of lanes that are stepped together, to hide the latency of each."""
-    return 2 if n_state <= MOST_STATES_OF_TWO else 1
+def vectors_of(n_state: int, operations: int) -> int:
+    """Vectors of lanes that are stepped together, to hide the latency of each; two take twice as long to compile."""
+    return MOST_VECTORS if n_state <= MOST_STATES_OF_TWO and operations <= MOST_OPERATIONS_OF_TWO else 1
 
 
 def kernel_source(kernel: Kernel, members: Members, state: Tensor, width: int) -> str:
@@ -47,12 +49,13 @@ def kernel_source(kernel: Kernel, members: Members, state: Tensor, width: int) -
         return kernel.switches(u, y, Members(fixed, series, index))
 
     written = Written(program)
-    parts = [written.function("rates", _flat(trace(rates, examples, inputs, program)))]
+    stage = _flat(trace(rates, examples, inputs, program))
+    parts = [written.function("rates", stage)]
     if kernel.switch_names:
         parts.append(written.function("switches", _flat(trace(switches, examples, inputs, program))))
     parts.append(written.setup())
     names = ("WIDTH", "VECTORS", "N_STATE", "N_FIXED", "N_SERIES", "N_SWITCH", "N_KEPT")
-    numbers = (width, vectors_of(sizes[0]), *sizes, len(written.kept))
+    numbers = (width, vectors_of(sizes[0], written.operations(stage)), *sizes, len(written.kept))
     defined = [f"#define {n} {v}" for n, v in zip(names, numbers, strict=True)]
     driver = (HERE / "driver.cpp").read_text()
     return "\n".join([*defined, (HERE / "vectors.h").read_text(), tableau(), crossings(), *parts, driver])
