@@ -2,7 +2,6 @@
 
 import tempfile
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 
@@ -19,7 +18,7 @@ def records() -> tuple[np.ndarray, np.ndarray]:
 def _data(batch_size: int, windows: int):
     import torch
 
-    from gear_damping.identification.datamodule import WindowDataModule
+    from gear_damping.identification.datamodule import Material, WindowDataModule
     from gear_damping.identification.protocols import Protocol
     from gear_damping.identification.runs import RunSet
 
@@ -27,7 +26,7 @@ def _data(batch_size: int, windows: int):
     signals, labels = (torch.as_tensor(a) for a in records())
     runs = RunSet(signals=signals, damping_ratio_percent=labels, sampling_rate=40e3, id="benchmark")
     protocol = Protocol("by_run", window=WINDOW, windows_per_epoch=windows)
-    return WindowDataModule(runs, protocol, batch_size=batch_size)
+    return WindowDataModule(Material(runs, protocol), batch_size=batch_size)
 
 
 def validation_windows() -> int:
@@ -38,14 +37,14 @@ def validation_windows() -> int:
 def ours(batch_size: int, windows: int, epochs: int, validation: int) -> Run:
     """`fit_estimator` whole: files, validation and all."""
     from gear_damping.identification.lightning_module import RAW_LSTM
-    from gear_damping.identification.trainer import Training, fit_estimator
+    from gear_damping.identification.trainer import Place, Shown, Training, fit_estimator
 
     data = _data(batch_size, windows)
 
     def run() -> None:
         with tempfile.TemporaryDirectory() as folder:
             training = Training(max_epochs=epochs, batch_size=batch_size)
-            fit_estimator(RAW_LSTM, data, training, Path(folder), progress=False)
+            fit_estimator(RAW_LSTM, data, training, Place(folder), shown=Shown(progress=False))
 
     return run
 

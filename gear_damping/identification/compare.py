@@ -1,7 +1,7 @@
 """Train several estimators and their controls on the same windows, with several seeds, and score them."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite
 from pathlib import Path
 from statistics import fmean, stdev
@@ -11,15 +11,11 @@ import torch
 from torch import Tensor
 
 from gear_damping.identification.controls import mean_predictor, white_noise_runs
-from gear_damping.identification.datamodule import WindowDataModule
+from gear_damping.identification.datamodule import Material, WindowDataModule
 from gear_damping.identification.lightning_module import EstimatorConfig
 from gear_damping.identification.metrics import means_over_runs, scores
-from gear_damping.identification.noise import SensorNoise
-from gear_damping.identification.protocols import Protocol
-from gear_damping.identification.runs import RunSet
-from gear_damping.identification.trainer import Training, fit_estimator, predict_windows
+from gear_damping.identification.trainer import SHOWN, Place, Shown, Training, fit_estimator, predict_windows
 
-_CLEAN = SensorNoise(None)
 MEAN, WHITE_NOISE = "mean", "white_noise"
 
 Scores = dict[str, float | None]
@@ -30,27 +26,39 @@ class _Seed:
     """What is the same for every fit of one seed."""
 
     seed: int
-    folder: Path
     training: Training
     data: WindowDataModule
     noise_data: WindowDataModule
-    options: Mapping[str, Any]
-    resume_from: Path | None
+    place: Place
+    shown: Shown
+
+    def place_of(self, name: str) -> Place:
+        """Where an estimator's files go, and its part of the comparison to go on with."""
+        own = Path(name) / f"seed_{self.seed}"
+        earlier = None if self.place.resume is None else Path(self.place.resume) / own / "last.ckpt"
+        return Place(Path(self.place.folder) / own, earlier if earlier is not None and earlier.exists() else None)
+
+
+@dataclass(frozen=True)
+class Repeats:
+    """How each estimator is fitted.
+
+    Args:
+        training: The budget of each fit.
+        seeds: At least one.
+    """
+
+    training: Training
+    seeds: Sequence[int]
 
 
 def compare_models(
-    run_set: RunSet,
-    protocol: Protocol,
+    material: Material,
     models: Mapping[str, EstimatorConfig],
-    training: Training,
-    seeds: Sequence[int],
-    folder: Path | str,
+    repeats: Repeats,
+    place: Place,
     *,
-    test_runs: RunSet | None = None,
-    noise: SensorNoise = _CLEAN,
-    resume_from: Path | str | None = None,
-    progress: bool = True,
-    hparams: Mapping[str, Any] | None = None,
+    shown: Shown = SHOWN,
     announce: Callable[[str], None] = lambda line: None,
 ) -> dict[str, Any]:
     """Train and score every model and the controls, once for each seed.
@@ -59,17 +67,12 @@ def compare_models(
     control `white_noise` is the network of the first model, trained in the same way on white noise.
 
     Args:
-        run_set: The runs.
-        protocol: How they are split.
-        models: Name -> estimator. The names become folders: `folder`/<name>/seed_<seed>/.
-        training: The budget of each fit.
-        seeds: At least one.
-        folder: Where checkpoints and TensorBoard events go.
-        test_runs: Runs to test on instead of a part of `run_set` (by_run).
-        noise: The sensor.
-        resume_from: Folder of an interrupted comparison; what it finished is not trained again.
-        progress: Show progress bars on stderr, if that is a terminal.
-        hparams: What TensorBoard's HParams table shows beside model and seed.
+        material: Runs, their split, the sensor.
+        models: Name -> estimator. The names become folders: <name>/seed_<seed>/.
+        repeats: Budget and seeds.
+        place: Where checkpoints and TensorBoard events go, and the folder of an interrupted comparison to go on with;
+            what that finished is not trained again.
+        shown: What is seen of the fits; the HParams table shows model and seed too.
         announce: Called with a line of text after each fit.
 
     Returns:
@@ -80,33 +83,32 @@ def compare_models(
 
     Raises:
         ValueError: no models, no seeds, a model named like a control, or what protocol and fits refuse.
-        KeyboardInterrupt: as the user sent it; `resume_from` takes it up again.
+        KeyboardInterrupt: as the user sent it; `place.resume` takes it up again.
     """
+    seeds = repeats.seeds
     _require_names(models, seeds)
-    source = None if resume_from is None else Path(resume_from)
     per_seed: dict[str, list[Scores]] = {name: [] for name in (*models, MEAN, WHITE_NOISE)}
     predictions: dict[str, Any] = {}
     for seed in seeds:
-        data = WindowDataModule(run_set, protocol, seed=seed, noise=noise, test_runs=test_runs)
-        options = {"progress": progress, "hparams": dict(hparams or {})}
-        shared = _Seed(seed, Path(folder), training, data, _white_noise_data(data), options, source)
+        data = WindowDataModule(material, seed=seed)
+        shared = _Seed(seed, repeats.training, data, _white_noise_data(data), place, shown)
         for name, (found, true, predicted) in _one_seed(shared, models, announce):
             per_seed[name].append(found)
             if seed == seeds[0]:
                 predictions[name] = _plain_predictions(true, predicted, data.test_window_runs)
     summaries = {name: _summary(found) for name, found in per_seed.items()}
     controls = {name: summaries.pop(name) for name in (MEAN, WHITE_NOISE)}
-    results = {"protocol": protocol.name, "seeds": list(seeds), "models": summaries, "controls": controls}
+    results = {"protocol": material.protocol.name, "seeds": list(seeds), "models": summaries, "controls": controls}
     return results | {"predictions": predictions}
 
 
 def _white_noise_data(data: WindowDataModule) -> WindowDataModule:
     """The same windows of white noise."""
-    test_runs = None
-    if data.test_runs is not data.run_set:
-        test_runs = white_noise_runs(data.test_runs, data.seed, "test_runs")
-    runs = white_noise_runs(data.run_set, data.seed)
-    return WindowDataModule(runs, data.protocol, seed=data.seed, noise=data.noise, test_runs=test_runs)
+    material = data.material
+    runs, test_runs = white_noise_runs(material.run_set, data.seed), None
+    if material.test_runs is not None:
+        test_runs = white_noise_runs(material.test_runs, data.seed, "test_runs")
+    return WindowDataModule(replace(material, run_set=runs, test_runs=test_runs), seed=data.seed)
 
 
 def _one_seed(
@@ -131,19 +133,8 @@ def _fit_and_score(
     data: WindowDataModule,
     announce: Callable[[str], None],
 ) -> tuple[Scores, Tensor, Tensor]:
-    place = Path(name) / f"seed_{shared.seed}"
-    earlier = None if shared.resume_from is None else shared.resume_from / place / "last.ckpt"
-    hparams = {"model": name, **shared.options["hparams"]}
-    fit = fit_estimator(
-        config,
-        data,
-        shared.training,
-        shared.folder / place,
-        seed=shared.seed,
-        resume=earlier if earlier is not None and earlier.exists() else None,
-        progress=shared.options["progress"],
-        hparams=hparams,
-    )
+    shown = replace(shared.shown, hparams={"model": name, **shared.shown.hparams})
+    fit = fit_estimator(config, data, shared.training, shared.place_of(name), seed=shared.seed, shown=shown)
     true, predicted = predict_windows(fit.estimator, data.test_dataloader())
     found = scores(true, predicted, data.test_window_runs, mean_predictor(data.training_labels))
     announce(

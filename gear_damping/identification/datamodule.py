@@ -86,6 +86,33 @@ class WindowBatches:
         return torch.randperm(len(self.source.index), generator=order)[: self.draw]
 
 
+@dataclass(frozen=True)
+class Material:
+    """What is learned from.
+
+    Args:
+        run_set: The runs.
+        protocol: How they are split.
+        noise: The sensor.
+        test_runs: Runs to test on instead of a part of `run_set` (by_run).
+
+    Raises:
+        ValueError: the test runs have another sampling rate.
+    """
+
+    run_set: RunSet
+    protocol: Protocol
+    noise: SensorNoise = _CLEAN
+    test_runs: RunSet | None = None
+
+    def __post_init__(self) -> None:
+        if self.test_runs is not None and self.test_runs.sampling_rate != self.run_set.sampling_rate:
+            raise ValueError(
+                f"test_runs have {self.test_runs.sampling_rate:g} Hz and run_set {self.run_set.sampling_rate:g} Hz: "
+                "simulate both at one sampling_rate"
+            )
+
+
 class WindowDataModule(L.LightningDataModule):
     """Training, validation and test windows of a set of runs under a protocol.
 
@@ -95,32 +122,21 @@ class WindowDataModule(L.LightningDataModule):
     has to be there before a whole run is transformed.
 
     Args:
-        run_set: The runs.
-        protocol: How they are split.
+        material: Runs, their split, the sensor.
+        seed: Seed of split, order and noise.
         batch_size: Windows of a training batch.
         evaluation_batch_size: Windows of a validation or test batch.
-        seed: Seed of split, order and noise.
-        noise: The sensor.
-        test_runs: Runs to test on instead of a part of `run_set` (by_run).
     """
 
     def __init__(
-        self,
-        run_set: RunSet,
-        protocol: Protocol,
-        *,
-        batch_size: int = 256,
-        evaluation_batch_size: int = 4096,
-        seed: int = 0,
-        noise: SensorNoise = _CLEAN,
-        test_runs: RunSet | None = None,
+        self, material: Material, *, seed: int = 0, batch_size: int = 256, evaluation_batch_size: int = 4096
     ) -> None:
         super().__init__()
-        _require_same_rate(run_set, test_runs)
-        self.run_set, self.test_runs = run_set, run_set if test_runs is None else test_runs
-        self.protocol, self.noise, self.seed = protocol, noise, seed
+        self.material, self.seed = material, seed
+        self.run_set, self.test_runs = material.run_set, material.test_runs or material.run_set
+        self.protocol, self.noise = material.protocol, material.noise
         self.batch_size, self.evaluation_batch_size = batch_size, evaluation_batch_size
-        self.split = protocol.split(run_set, seed, test_runs)
+        self.split = self.protocol.split(self.run_set, seed, material.test_runs)
         self._sources: dict[tuple[str, torch.device], WindowSource] = {}
         self.use_signals()
 
@@ -197,11 +213,3 @@ class WindowDataModule(L.LightningDataModule):
         rms = torch.zeros(len(values)) if noise.is_clean else ac_rms_of_runs(values)
         moved = (tensor.to(device) for tensor in (values, labels, rms, index))
         return WindowSource(*moved, self.protocol.window, noise)
-
-
-def _require_same_rate(run_set: RunSet, test_runs: RunSet | None) -> None:
-    if test_runs is not None and test_runs.sampling_rate != run_set.sampling_rate:
-        raise ValueError(
-            f"test_runs have {test_runs.sampling_rate:g} Hz and run_set {run_set.sampling_rate:g} Hz: "
-            "simulate both at one sampling_rate"
-        )

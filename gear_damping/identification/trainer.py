@@ -3,7 +3,7 @@
 import shutil
 import sys
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -63,6 +63,35 @@ PAPER_TRAINING = Training(max_epochs=200, batch_size=32, patience=20)
 
 
 @dataclass(frozen=True)
+class Place:
+    """Where the files of a fit go, and what it goes on from.
+
+    Args:
+        folder: Made if missing; holds `best.ckpt`, `last.ckpt` and the TensorBoard events.
+        resume: `last.ckpt` of a fit to go on with, in this folder or another.
+    """
+
+    folder: Path | str
+    resume: Path | str | None = None
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What is seen of a fit while it runs and afterwards.
+
+    Args:
+        progress: Whether a progress bar stands on stderr, if that is a terminal.
+        hparams: What TensorBoard's HParams table shows beside the seed (swept keys).
+    """
+
+    progress: bool = True
+    hparams: Mapping[str, Any] = field(default_factory=dict)
+
+
+SHOWN = Shown()
+
+
+@dataclass(frozen=True)
 class FitResult:
     """What a fit leaves: the best estimator, its learning curve and its files."""
 
@@ -86,36 +115,31 @@ def fit_estimator(
     config: EstimatorConfig,
     data: WindowDataModule,
     training: Training,
-    folder: Path | str,
+    place: Place,
     *,
     seed: int = 0,
-    resume: Path | str | None = None,
-    progress: bool = True,
-    hparams: Mapping[str, Any] | None = None,
+    shown: Shown = SHOWN,
 ) -> FitResult:
     """Train an estimator and return the best one.
 
-    The folder holds `best.ckpt`, `last.ckpt` (written at the start and after each epoch) and the TensorBoard
-    events. The result depends on the arguments and not on the state of torch's generator, which is left
-    as it was; a resumed fit repeats an interrupted epoch from its start and ends where an uninterrupted one
-    would.
+    `last.ckpt` is written at the start and after each epoch. The result depends on the arguments and not on the state
+    of torch's generator, which is left as it was; a resumed fit repeats an interrupted epoch from its start and ends
+    where an uninterrupted one would.
 
     Args:
         config: The estimator.
         data: The windows.
         training: The budget; its batch size and rate count, not those of `data`.
-        folder: Where files go; made if missing.
+        place: Where files go.
         seed: Seed of the weights and of dropout.
-        resume: `last.ckpt` of a fit to go on with, in this folder or another.
-        progress: Show a progress bar on stderr, if that is a terminal.
-        hparams: What TensorBoard's HParams table shows of this fit beside the seed (swept keys).
+        shown: What is seen of it.
 
     Raises:
         KeyboardInterrupt: as the user sent it, after the files were closed; `last.ckpt` can be resumed.
         ValueError: `resume` is of another data set.
         RuntimeError: no epoch ended with a finite validation error.
     """
-    folder = Path(folder)
+    folder, resume = Path(place.folder), place.resume
     folder.mkdir(parents=True, exist_ok=True)
     data.batch_size = training.batch_size
     keep_memory()
@@ -128,10 +152,10 @@ def fit_estimator(
         finished = resume is not None and _take_over(Path(resume), folder, module, training)
         logger = EventsLogger(folder)
         if not finished:
-            trainer = _trainer(training, folder, logger, seed, progress)
+            trainer = _trainer(training, folder, logger, seed, shown.progress)
             _fit(trainer, module, data, None if resume is None else folder / "last.ckpt")
         result = _result(module, folder)
-        table = {"seed": seed, **(hparams or {})}
+        table = {"seed": seed, **shown.hparams}
         logger.log_hyperparams(table, {"hp/val_rmse_percent": result.best_validation_rmse})
         logger.finalize("success")
     return result

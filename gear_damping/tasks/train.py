@@ -6,11 +6,12 @@ from typing import Any
 from torch.utils.tensorboard import SummaryWriter
 
 from gear_damping.config.settings import Settings
-from gear_damping.identification.compare import compare_models
+from gear_damping.identification.compare import Repeats, compare_models
+from gear_damping.identification.datamodule import Material
 from gear_damping.identification.lightning_module import EstimatorConfig
 from gear_damping.identification.noise import SensorNoise
 from gear_damping.identification.protocols import Protocol
-from gear_damping.identification.trainer import Training
+from gear_damping.identification.trainer import Place, Shown, Training
 from gear_damping.reporting import figures, tables
 from gear_damping.simulation.runs import Runs
 from gear_damping.tasks import statements
@@ -27,18 +28,14 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     runs = simulated(plan, settings)
     test_runs = simulated(other, settings, "simulating test runs") if other else None
     statements.say_runs(settings, runs)
+    noise = SensorNoise(settings.simulator.sensor_noise_db)
+    material = Material(run_set_of(runs, plan), protocol, noise, run_set_of(test_runs, other) if other else None)
     results = compare_models(
-        run_set_of(runs, plan),
-        protocol,
+        material,
         estimators(settings),
-        training,
-        settings.all_seeds,
-        folder.path,
-        test_runs=run_set_of(test_runs, other) if other else None,
-        noise=SensorNoise(settings.simulator.sensor_noise_db),
-        resume_from=settings.resume,
-        progress=settings.progress,
-        hparams=_hparams(settings),
+        Repeats(training, settings.all_seeds),
+        Place(folder.path, settings.resume),
+        shown=Shown(settings.progress, _hparams(settings)),
         announce=statements.say,
     )
     predictions = results.pop("predictions")

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 import torch
 
-from gear_damping.identification.datamodule import WindowDataModule
+from gear_damping.identification.datamodule import Material, WindowDataModule
 from gear_damping.identification.noise import SensorNoise, ac_rms_of_runs, noisy_records
 from gear_damping.identification.protocols import BY_RUN, PAPER, PAPER_MANY_RUNS, Protocol
 from gear_damping.identification.runs import RunSet
@@ -214,9 +214,10 @@ def epoch_of(data, epoch):
     return list(data.train_dataloader())
 
 
-def module(noise=None, seed=1, protocol=BY_RUN, runs=None, **arguments):
+def module(noise=None, seed=1, protocol=BY_RUN, runs=None, test_runs=None, **arguments):
     protocol = replace(protocol, windows_per_epoch=100)
-    return WindowDataModule(runs or ramps(), protocol, seed=seed, noise=SensorNoise(noise), **arguments)
+    material = Material(runs or ramps(), protocol, SensorNoise(noise), test_runs)
+    return WindowDataModule(material, seed=seed, **arguments)
 
 
 def test_a_training_batch_is_windows_of_training_runs_with_their_labels():
@@ -269,7 +270,7 @@ def test_noise_of_evaluation_stays_whatever_the_batches(protocol, part):
 
 
 def test_overlapping_evaluation_windows_share_the_noise_of_their_record():
-    data = WindowDataModule(ramps(), replace(BY_RUN, evaluation_stride=1), seed=1, noise=SensorNoise(20.0))
+    data = WindowDataModule(Material(ramps(), replace(BY_RUN, evaluation_stride=1), SensorNoise(20.0)), seed=1)
     windows = next(iter(data.test_dataloader()))[0]
     assert torch.equal(windows[0, 1:], windows[1, :-1])
     assert not torch.equal(windows[0], windows[0].round())

@@ -7,7 +7,7 @@ import torch
 
 from gear_damping.errors import InputError
 from gear_damping.identification.catalogue import make_wavelet
-from gear_damping.identification.datamodule import WindowDataModule
+from gear_damping.identification.datamodule import Material, WindowDataModule
 from gear_damping.identification.features import FrontEnd, WaveletFrontEnd
 from gear_damping.identification.lightning_module import CWT_LSTM, RAW_LSTM, DampingModule, EstimatorConfig
 from gear_damping.identification.networks import DampingLSTM
@@ -31,7 +31,7 @@ def runs(signals):
 
 
 def fitted(config, signals, protocol=BY_RUN):
-    data = WindowDataModule(runs(signals), protocol, seed=1)
+    data = WindowDataModule(Material(runs(signals), protocol), seed=1)
     estimator = build_estimator(config, data, 1e-3)
     fit_front_end(estimator, data)
     return estimator, data
@@ -141,7 +141,7 @@ def test_columns_of_whole_runs_see_beyond_the_window_and_beyond_the_cut():
 
 
 def test_by_run_refuses_columns_of_whole_runs():
-    data = WindowDataModule(runs(noise(20, 100)), BY_RUN)
+    data = WindowDataModule(Material(runs(noise(20, 100)), BY_RUN))
     with pytest.raises(ValueError, match="by_run must transform windows"):
         data.use_columns(FrontEnd().columns)
 
@@ -170,7 +170,7 @@ def test_the_network_is_an_lstm_of_60_units_that_says_positive_values():
 
 
 def test_training_starts_at_the_mean_label():
-    data = WindowDataModule(runs(noise(20, 200)), BY_RUN, seed=1)
+    data = WindowDataModule(Material(runs(noise(20, 200)), BY_RUN), seed=1)
     estimator = build_estimator(RAW, data, 1e-3)
     with torch.no_grad():
         estimator.network.dense.weight.zero_()

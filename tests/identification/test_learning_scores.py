@@ -6,8 +6,9 @@ from dataclasses import replace
 import pytest
 import torch
 
-from gear_damping.identification.compare import compare_models
+from gear_damping.identification.compare import Repeats, compare_models
 from gear_damping.identification.controls import mean_predictor, white_noise_runs
+from gear_damping.identification.datamodule import Material
 from gear_damping.identification.lightning_module import CWT_LSTM, RAW_LSTM, load_estimator
 from gear_damping.identification.metrics import (
     epochs_to_convergence,
@@ -21,7 +22,7 @@ from gear_damping.identification.metrics import (
 from gear_damping.identification.noise import SensorNoise
 from gear_damping.identification.protocols import BY_RUN, PAPER
 from gear_damping.identification.runs import RunSet
-from gear_damping.identification.trainer import Training
+from gear_damping.identification.trainer import Place, Training
 
 TRUE = torch.tensor([1.0, 2.0, 4.0, 5.0])
 PREDICTED = torch.tensor([1.0, 3.0, 2.0, 4.0])
@@ -44,6 +45,10 @@ def decays(n_runs=60, n_samples=60, seed=1):
     angle = 2 * torch.pi * 50 * torch.arange(n_samples) / 1000
     signals = torch.exp(-ratio[:, None] / 100 * angle) * torch.cos(angle + phase)
     return RunSet(1e-5 * signals, ratio, 1000.0, "decays")
+
+
+CLEAN = Material(decays(), SMALL)
+NOISY = replace(CLEAN, noise=MIXTURE)
 
 
 def test_errors_by_hand():
@@ -97,9 +102,7 @@ def test_white_noise_keeps_labels_and_nothing_of_the_signals():
 def comparison(tmp_path_factory):
     folder = tmp_path_factory.mktemp("comparison")
     lines = []
-    found = compare_models(
-        decays(), SMALL, MODELS, TRAINING, [1, 2], folder, noise=MIXTURE, announce=lines.append
-    )
+    found = compare_models(NOISY, MODELS, Repeats(TRAINING, [1, 2]), Place(folder), announce=lines.append)
     return folder, found, lines
 
 
@@ -141,9 +144,7 @@ def test_checkpoints_of_a_comparison_can_be_loaded_by_name(comparison):
 
 def test_an_interrupted_comparison_trains_only_what_is_missing(comparison, tmp_path):
     folder, found, _ = comparison
-    resumed = compare_models(
-        decays(), SMALL, MODELS, TRAINING, [1, 2], tmp_path, noise=MIXTURE, resume_from=folder
-    )
+    resumed = compare_models(NOISY, MODELS, Repeats(TRAINING, [1, 2]), Place(tmp_path, folder))
     assert resumed == found
 
 
@@ -151,7 +152,7 @@ def test_test_runs_are_scored_instead(tmp_path):
     test_runs = decays(5, seed=9)
     models = {"raw_lstm": MODELS["raw_lstm"]}
     training = replace(TRAINING, max_epochs=1)
-    found = compare_models(decays(), SMALL, models, training, [1], tmp_path, test_runs=test_runs)
+    found = compare_models(replace(CLEAN, test_runs=test_runs), models, Repeats(training, [1]), Place(tmp_path))
     for name in ("raw_lstm", "white_noise", "mean"):
         per_run = found["predictions"][name]["per_run"]
         assert per_run["true"] == pytest.approx(test_runs.damping_ratio_percent.tolist())
@@ -160,7 +161,8 @@ def test_test_runs_are_scored_instead(tmp_path):
 
 def test_with_one_label_there_is_no_skill_and_white_noise_scores_like_the_signal(tmp_path):
     """The paper's protocol as printed: every estimator finds the one label, with no signal at all."""
-    found = compare_models(decays(2, 600), PAPER, MODELS, replace(TRAINING, max_epochs=5), [1], tmp_path)
+    repeats = Repeats(replace(TRAINING, max_epochs=5), [1])
+    found = compare_models(Material(decays(2, 600), PAPER), MODELS, repeats, Place(tmp_path))
     errors = found["models"] | found["controls"]
     assert all(summary["skill"] is None for summary in errors.values())
     label = float(decays(2, 600).damping_ratio_percent[0])
@@ -174,4 +176,4 @@ def test_with_one_label_there_is_no_skill_and_white_noise_scores_like_the_signal
 )
 def test_comparisons_of_nothing_are_refused(models, seeds, message, tmp_path):
     with pytest.raises(ValueError, match=message):
-        compare_models(decays(), SMALL, models, TRAINING, seeds, tmp_path)
+        compare_models(CLEAN, models, Repeats(TRAINING, seeds), Place(tmp_path))

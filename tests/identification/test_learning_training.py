@@ -11,13 +11,13 @@ from tensorboard.backend.event_processing.event_accumulator import EventAccumula
 from gear_damping.errors import InputError
 from gear_damping.identification import datamodule as datamodule_file
 from gear_damping.identification.controls import mean_predictor
-from gear_damping.identification.datamodule import WindowDataModule
+from gear_damping.identification.datamodule import Material, WindowDataModule
 from gear_damping.identification.lightning_module import CWT_LSTM, RAW_LSTM, load_estimator
 from gear_damping.identification.metrics import rmse_percent
 from gear_damping.identification.noise import SensorNoise
 from gear_damping.identification.protocols import BY_RUN, PAPER_MANY_RUNS
 from gear_damping.identification.runs import RunSet
-from gear_damping.identification.trainer import Training, fit_estimator, predict_windows
+from gear_damping.identification.trainer import Place, Shown, Training, fit_estimator, predict_windows
 from gear_damping.identification.windows import gather_windows
 
 RICKER = {"kind": "ricker", "frequency_min_hz": 20.0, "frequency_max_hz": 240.0, "n_scales": 4}
@@ -38,11 +38,12 @@ def decays(n_runs=60, n_samples=150):
 
 
 def windows(protocol=SMALL, noise=40.0):
-    return WindowDataModule(decays(), protocol, seed=1, noise=SensorNoise(noise))
+    return WindowDataModule(Material(decays(), protocol, SensorNoise(noise)), seed=1)
 
 
-def fit(folder, config=RAW, training=TRAINING, protocol=SMALL, **arguments):
-    return fit_estimator(config, windows(protocol), training, folder, seed=1, **arguments)
+def fit(folder, config=RAW, training=TRAINING, protocol=SMALL, resume=None, hparams=()):
+    shown = Shown(hparams=dict(hparams))
+    return fit_estimator(config, windows(protocol), training, Place(folder, resume), seed=1, shown=shown)
 
 
 @pytest.fixture(scope="module")
@@ -57,8 +58,8 @@ def errors(result):
 
 @pytest.mark.parametrize("config", [RAW, CWT], ids=["raw", "cwt"])
 def test_a_tiny_network_beats_the_mean_predictor_by_half(config, tmp_path):
-    data = WindowDataModule(decays(200, 60), replace(SMALL, windows_per_epoch=3000), seed=1)
-    result = fit_estimator(config, data, replace(TRAINING, max_epochs=20), tmp_path, seed=1)
+    data = WindowDataModule(Material(decays(200, 60), replace(SMALL, windows_per_epoch=3000)), seed=1)
+    result = fit_estimator(config, data, replace(TRAINING, max_epochs=20), Place(tmp_path), seed=1)
     true, predicted = predict_windows(result.estimator, data.test_dataloader())
     reference = rmse_percent(true, torch.full_like(true, mean_predictor(data.training_labels)))
     assert rmse_percent(true, predicted) < 0.5 * reference
@@ -70,7 +71,7 @@ def test_a_fit_depends_on_its_seed_and_not_on_torchs(trained, tmp_path):
         torch.manual_seed(99)
         again = fit(tmp_path / "again")
     assert errors(again) == errors(trained[1])
-    other = fit_estimator(RAW, windows(), replace(TRAINING, max_epochs=1), tmp_path / "other", seed=2)
+    other = fit_estimator(RAW, windows(), replace(TRAINING, max_epochs=1), Place(tmp_path / "other"), seed=2)
     assert errors(other)[0] != errors(again)[0]
     assert torch.equal(torch.random.get_rng_state(), state)
 
@@ -166,9 +167,9 @@ def test_a_finished_fit_is_not_trained_again(trained, tmp_path):
 
 
 def test_resuming_from_another_data_set_is_refused(trained, tmp_path):
-    data = WindowDataModule(replace(decays(), id="others"), SMALL, seed=1)
+    data = WindowDataModule(Material(replace(decays(), id="others"), SMALL), seed=1)
     with pytest.raises(ValueError, match="'decays', not of 'others'"):
-        fit_estimator(RAW, data, TRAINING, tmp_path, resume=trained[0] / "last.ckpt")
+        fit_estimator(RAW, data, TRAINING, Place(tmp_path, trained[0] / "last.ckpt"))
 
 
 def test_training_stops_when_the_error_stops_falling_and_stays_stopped(tmp_path):
