@@ -4,7 +4,8 @@ from dataclasses import dataclass, field
 from math import inf
 from time import monotonic
 
-SEARCH_SHARE = 0.85  # of the time; the rest is for what is under way, and for opening held-out records
+SEARCH_SHARE = 0.85  # of the time; the rest is for what is under way, for opening held-out records,
+LAST_SHARE = 0.97  # and for seeing whether what was found is what it seems
 
 
 @dataclass
@@ -23,7 +24,10 @@ class Budget:
     @property
     def spent(self) -> bool:
         """Whether the time for the search is over."""
-        return monotonic() - self._begun > 60 * SEARCH_SHARE * self.minutes
+        return self._is_over(SEARCH_SHARE)
+
+    def _is_over(self, share: float) -> bool:
+        return monotonic() - self._begun > 60 * share * self.minutes
 
     @property
     def sentence(self) -> str:
@@ -32,8 +36,9 @@ class Budget:
         said = f"The {self.minutes:g} minutes of the search were over before these were tried: {missing}."
         return said if missing else ""
 
-    def refuses(self, what: str) -> bool:
-        """Whether there is no time for it, which is then noted."""
-        if self.spent and what not in self.not_tried:
+    def refuses(self, what: str, is_last: bool = False) -> bool:
+        """Whether there is no time for it, which is then noted; for what comes last there is more."""
+        refused = self._is_over(LAST_SHARE) if is_last else self.spent
+        if refused and what not in self.not_tried:
             self.not_tried.append(what)
-        return self.spent
+        return refused

@@ -9,7 +9,7 @@ from torch import Tensor
 
 from gear_damping.explanation.answer import content
 from gear_damping.explanation.answer.homogeneity import homogeneity
-from gear_damping.explanation.answer.stand_in import shape_without_name, stand_ins
+from gear_damping.explanation.answer.stand_in import is_untold, shape_without_name, stand_ins
 from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.casing.content import CasingStudy, explain_casing
 from gear_damping.explanation.casing.heard import is_casing
@@ -179,6 +179,7 @@ def _judged(found: Confirmed, notes: Sequence[str]) -> Judged:
         untried=not_tried,
         of_fit=1 - state.outcome.fitted.cost / max(state.nominal.fitted.cost, 1e-300),
         stands_in=stands_in,
+        is_untold=is_untold(state),
         shape=shape_without_name(state),
     )
     said = verdict(state, before, after, known).saying(*notes, budget.sentence)

@@ -13,3 +13,10 @@ def test_the_search_is_over_before_the_time_is():
             assert made.refuses("pairs of effects") is is_over
     assert "5 minutes" in made.sentence
     assert made.not_tried == ["pairs of effects"]
+
+
+def test_what_comes_last_has_time_when_the_search_is_over():
+    made = budget.Budget(5.0, [], 0.0)
+    for second, is_over in ((260.0, False), (289.0, False), (293.0, True)):
+        with patch.object(budget, "monotonic", lambda now=second: now):
+            assert made.refuses("what it stands in for", is_last=True) is is_over

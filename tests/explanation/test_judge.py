@@ -79,6 +79,16 @@ def test_what_stands_in_for_something_else_is_no_answer():
     assert said.sentences[0].endswith("but a line takes more.")
 
 
+@pytest.mark.parametrize(("left", "word"), [(0.5, UNEXPLAINED), (0.0, EXPLAINED)])
+def test_of_what_nobody_could_ask_what_it_stands_in_for_nothing_is_established_beside_a_rest(left, word):
+    found = search(accepted=(cause(), cause("cubic_stiffness")), left=left > 0)
+    after = excess_of(left, 2.4 if left else 1.0)
+    assert verdict(found, MUCH, after).word == (PARTLY if left else EXPLAINED)
+    said = verdict(found, MUCH, after, is_untold=True)
+    assert said.word == word
+    assert ("no time to see" in said.sentences[0]) is (left > 0)
+
+
 def test_noise_that_is_the_sensor_s_own_hides_nothing():
     """A short null: its held-out record could hide much, but no more is left than its sensor makes."""
     before = excess_of(-8.0, 0.7, threshold=18.0)

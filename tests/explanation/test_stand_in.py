@@ -9,7 +9,8 @@ import pytest
 import torch
 from scipy.integrate import solve_ivp
 
-from gear_damping.explanation.answer.stand_in import shape_without_name, stand_ins
+from gear_damping.explanation.answer.stand_in import is_untold, shape_without_name, stand_ins
+from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.fitting import fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Hypothesis
@@ -95,6 +96,17 @@ def test_what_takes_less_than_a_cause_must_is_stood_in_for_by_none(forced):
     state = searched(0.0, 1.5, settings=SearchSettings(taken_by_one=1.0))
     state.bench.noise_cost = lambda outcome: 0.0
     assert not list(stand_ins(state))
+
+
+def test_what_there_is_no_time_to_ask_is_noted(forced):
+    state, budget = forced, Budget(1.0, [], -1e9)
+    friction = replace(state.accepted[0], name="coulomb_friction")
+    late = replace(state, bench=SimpleNamespace(**vars(state.bench) | {"budget": budget}))
+    assert list(stand_ins(late))  # of a single cause it takes no fit
+    assert not is_untold(late)
+    late = replace(late, accepted=(*state.accepted, friction))
+    assert not list(stand_ins(late))
+    assert is_untold(late)
 
 
 def test_where_nothing_is_left_nobody_asks(forced):

@@ -82,6 +82,15 @@ def stand_ins(state: State) -> Iterator[StandIn]:
     yield from (one for one in found if one is not None)
 
 
+def is_untold(state: State) -> bool:
+    """Whether there was no time to ask of some cause what it stands in for."""
+    return any(_asked_of(cause) in state.bench.budget.not_tried for cause in state.accepted)
+
+
+def _asked_of(cause: Accepted) -> str:
+    return f"whether {cause.name} stands in for something else"
+
+
 def shape_without_name(state: State) -> str:
     """The family without a name that is most visible beside the nominal model, in words; a line before all others.
 
@@ -107,7 +116,7 @@ def shape_without_name(state: State) -> str:
 def _stand_in(cause: Accepted, state: State) -> StandIn | None:
     """What a cause stands in for; of several families the one that takes most."""
     alone, bench = len(state.accepted) == 1, state.bench
-    if not alone and bench.budget.refuses(f"whether {cause.name} stands in for something else"):
+    if not alone and bench.budget.refuses(_asked_of(cause), is_last=True):
         return None
     without = state.nominal if alone else bench.without(state.outcome, cause.name)
     if not without.is_finite:

@@ -11,6 +11,7 @@ from gear_damping.physics.catalogue import builtin_effects
 CONSISTENT, EXPLAINED, AMBIGUOUS = "consistent", "explained", "ambiguous"
 PARTLY, UNEXPLAINED, DATA_PROBLEM = "partly_explained", "unexplained", "data_problem"
 LARGEST_SET = 4  # names in a set
+UNTOLD = "but there was no time to see whether it stands in for something else."
 OTHER_SIZES = "but with another size in other records: it stands in for something that has no name here."
 
 
@@ -58,6 +59,7 @@ class Known:
         untried: What there was no time for.
         of_fit: Share that causes take of the squared residuals of the fitted records.
         stands_in: Why one of the causes is none, in words; empty where all may be.
+        is_untold: Whether there was no time to see what some cause stands in for.
         shape: What is visible and has no name, in words; empty where nothing of that kind is.
     """
 
@@ -68,6 +70,7 @@ class Known:
     untried: Sequence[str] = ()
     of_fit: float = 0.0
     stands_in: str = ""
+    is_untold: bool = False
     shape: str = ""
 
     @property
@@ -96,6 +99,8 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
     beside = (taken.sentence, *_not_told_apart(confused), *known.unsettled)
     if known.stands_in:
         return _not_established(found, before, known, known.stands_in)
+    if not rest and known.is_untold:
+        return _not_established(found, before, known, UNTOLD)
     if not rest:
         if _is_part_named(found, taken.share, after, known):
             text = f"{missing}. Part of it has a name: {said}. A rest of {after.percent:.3g} % has none."
