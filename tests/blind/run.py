@@ -19,6 +19,7 @@ from .work import answer, quiet_worker
 
 PACKAGE = Path(__file__).resolve().parents[2] / "gear_damping"
 PARTS = ("explanation", "identification", "measurement", "physics", "signals", "simulation")
+KINDS = ("*.py", "*.cpp", "*.h")
 CASES, RATES, TABLE = "cases.jsonl", "rates.json", "table.md"
 Say = Callable[[str], None]
 
@@ -27,7 +28,7 @@ def engine() -> str:
     """A fingerprint of the code that explains."""
     digest = hashlib.sha256()
     for part in PARTS:
-        for path in sorted((PACKAGE / part).rglob("*.py")):
+        for path in sorted(path for kind in KINDS for path in (PACKAGE / part).rglob(kind)):
             digest.update(path.read_bytes())
     return digest.hexdigest()[:8]
 
