@@ -10,6 +10,7 @@ import torch
 from gear_damping.errors import InputError, Problem
 from gear_damping.explanation.evidence.input_noise import without_input_noise
 from gear_damping.explanation.evidence.records import Evidence, with_own_angles
+from gear_damping.explanation.evidence.unsteady import has_unsteady_shafts, with_unsteady_shafts
 from gear_damping.explanation.model.fitting import fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, natural_frequency_hz
 from gear_damping.explanation.model.nominal_gear_pair import (
@@ -19,6 +20,7 @@ from gear_damping.explanation.model.nominal_gear_pair import (
     shaped,
     with_stiffness,
 )
+from gear_damping.identification.observation import MESH_PHASE
 from gear_damping.identification.oscillator import DAMPING, GAIN, fit_oscillator, linear_model, linear_oscillator
 from gear_damping.identification.output_error.angles import STARTS
 from gear_damping.identification.output_error.records import SEPARATOR, FreeParameter
@@ -123,10 +125,14 @@ def recalibrated(nominal: Outcome, evidence: Evidence, solver: Solver | None = N
 
 
 def _gear_pair(evidence: Evidence, solver: Solver | None) -> Calibration:
-    """Mesh phase by a scan, then damping and stiffness, then free harmonics of the stiffness."""
+    """Mesh phase by a scan, damping and stiffness, free harmonics of the stiffness, then speeds that vary a little."""
     evidence, rough = _angles_counted(evidence, solver)
     rough = rough or _rough_gear_pair(evidence, solver)
-    return Calibration(evidence, shaped(rough, evidence, SHAPE_ITERATIONS, solver), rough)
+    nominal = shaped(rough, evidence, SHAPE_ITERATIONS, solver)
+    unsteady = with_unsteady_shafts(evidence)
+    if has_unsteady_shafts(unsteady.fit):  # only now: before the teeth have their shape, speeds would bend to it
+        nominal = fit_hypothesis(nominal.hypothesis, unsteady, after=nominal, iterations=SHAPE_ITERATIONS, solver=solver)
+    return Calibration(unsteady, nominal, rough)
 
 
 def _rough_gear_pair(evidence: Evidence, solver: Solver | None) -> Outcome:
@@ -177,7 +183,8 @@ def _are_in_line(many: Outcome, evidence: Evidence) -> bool:
 
     Phases of angles that begin anywhere do so by chance alone.
     """
-    found = {name.partition(SEPARATOR)[2]: value for name, value in many.values.items() if SEPARATOR in name}
+    begins = f"{MESH_PHASE.name}{SEPARATOR}"
+    found = {name.removeprefix(begins): value for name, value in many.values.items() if name.startswith(begins)}
     told = [record for record in evidence.fit if record.name in found and "pinion_speed" in record.conditions]
     if len(told) < FEWEST_PHASES:
         return False

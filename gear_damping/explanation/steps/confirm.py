@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from gear_damping.explanation.evidence.excess import Excess, excess
 from gear_damping.explanation.evidence.noise import NoiseLevel, noise_of, weighted
 from gear_damping.explanation.evidence.records import Evidence, with_own_angles
+from gear_damping.explanation.evidence.unsteady import has_unsteady_shafts, with_unsteady_shafts
 from gear_damping.explanation.model.calibration_error import calibration_error
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.opened import opened
@@ -66,6 +67,8 @@ def _with_sealed(state: State, sealed: Sequence[FitRecord], measurement: Measure
     evidence, known = state.bench.evidence, state.noise
     if any(MESH_PHASE in record.own for record in evidence.fit):
         sealed = with_own_angles(replace(evidence, holdout=tuple(sealed))).holdout
+    if has_unsteady_shafts(evidence.fit):
+        sealed = with_unsteady_shafts(replace(evidence, holdout=tuple(sealed))).holdout
     _, scaled, found = noise_of(evidence.fit, sealed, measurement)
     least = known.value if known.by_record != state.bench.floor.by_record else 0.0  # much more looks random
     levels = {record.name: max(found.by_record[record.name], least) for record in sealed}

@@ -252,10 +252,8 @@ class OutputErrorProblem:
         for name, value in values.items():
             if is_of_simulator(name):
                 _place(chosen, name, value[:, rows].reshape(-1))
-        if "pinion_angle" in chosen:
-            begins = torch.tensor([record.begins for record in records], dtype=torch.float64).repeat(points)
-            chosen["pinion_angle"] = chosen["pinion_angle"] + chosen["pinion_speed"] * begins
-        return chosen
+        begins = torch.tensor([record.begins for record in records], dtype=torch.float64).repeat(points)
+        return chosen | self.model.system.begun_later(chosen, begins)
 
     def _inputs(self, rows: tuple[int, ...], samples: int) -> dict[str, Tensor]:
         """Input series of some records at one length, made once."""

@@ -42,3 +42,7 @@ class System(Declared, ABC):
     def rotations(self, time: Tensor, inputs: Values, p: Values) -> dict[str, Rotation]:
         """Pinion, gear and mesh rotation; empty for a base that does not turn."""
         return {}
+
+    def begun_later(self, values: Values, seconds: Tensor) -> dict[str, Tensor]:
+        """Values of a run that begins so many seconds (batch,) after the instant they hold for; those that change."""
+        return {}

@@ -36,7 +36,9 @@ class GearPair(System):
         Parameter("torque_gain", "1", 1.0, "true pinion torque over the stated one", -1e3, 1e3),
         Parameter("torque_offset", "N*m", 0.0, "true pinion torque beside that", -1e6, 1e6),
         Parameter("gear_torque", "N*m", 0.0, "torque on the gear, where it is `held`", -1e6, 1e6),
-        Parameter("pinion_speed", "rad/s", 4600 * pi / 30, "mean speed of the pinion", -1e4, 1e4),
+        Parameter("pinion_speed", "rad/s", 4600 * pi / 30, "speed of the pinion, at the start", -1e4, 1e4),
+        Parameter("pinion_acceleration", "rad/s^2", 0.0, "rate of the pinion's speed at the start", -1e8, 1e8),
+        Parameter("pinion_jerk", "rad/s^3", 0.0, "rate of its acceleration", -1e12, 1e12),
         Parameter("pinion_angle", "rad", 0.0, "pinion angle at the start"),
         Parameter("mesh_phase", "rad", 0.0, "mesh angle at pinion angle zero"),
         Parameter("gear_phase", "rad", 0.0, "gear angle at pinion angle zero"),
@@ -104,16 +106,27 @@ class GearPair(System):
         return p["load_per_pinion_torque"] * pinion + p["load_per_gear_torque"] * gear
 
     def rotations(self, time: Tensor, inputs: Values, p: Values) -> dict[str, Rotation]:
-        """The shafts and the mesh at this time; a measured pinion angle replaces the constant speed."""
+        """The shafts and the mesh at this time; a measured pinion angle replaces the stated speed."""
         if "pinion_angle" in inputs:
             angle, speed = inputs["pinion_angle"], inputs["pinion_angle_rate"]
         else:
-            angle, speed = p["pinion_angle"] + p["pinion_speed"] * time, p["pinion_speed"]
+            first, second = p["pinion_acceleration"], p["pinion_jerk"]
+            speed = p["pinion_speed"] + time * (first + time * second / 2)
+            angle = p["pinion_angle"] + time * (p["pinion_speed"] + time * (first / 2 + time * second / 6))
         ratio = p["n_teeth_pinion"] / p["n_teeth_gear"]
         return {
             "pinion": Rotation(angle, speed),
             "gear": Rotation(ratio * angle + p["gear_phase"], ratio * speed),
             "mesh": Rotation(p["n_teeth_pinion"] * angle + p["mesh_phase"], p["n_teeth_pinion"] * speed),
+        }
+
+    def begun_later(self, values: Values, seconds: Tensor) -> dict[str, Tensor]:
+        """Where the shaft is by then, and how fast it turns."""
+        speed, first, second = (values[name] for name in ("pinion_speed", "pinion_acceleration", "pinion_jerk"))
+        return {
+            "pinion_angle": values["pinion_angle"] + seconds * (speed + seconds * (first / 2 + seconds * second / 6)),
+            "pinion_speed": speed + seconds * (first + seconds * second / 2),
+            "pinion_acceleration": first + seconds * second,
         }
 
 
