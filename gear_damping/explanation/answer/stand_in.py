@@ -110,7 +110,9 @@ def shape_without_name(state: State) -> str:
     percent = 100 * (line.share if line else state.seen.taken) * left / sum(map(ac_energy, evidence.fitted))
     if percent < state.bench.settings.least_excess:
         return ""
-    return line.name if line else f"some {largest.removeprefix(UNNAMED)}"
+    if largest == LINE_FAMILY:
+        return line.name if line else largest.removeprefix(UNNAMED)
+    return f"some {largest.removeprefix(UNNAMED)}"
 
 
 def _stand_in(cause: Accepted, state: State) -> StandIn | None:

@@ -67,10 +67,15 @@ def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, fami
     unnamed = {UNNAMED + name: _padded(columns, project) for name, columns in shapes.items()}
     named = {score.candidate.name: score.columns for score in reversed(scores) if score.columns.shape[1]}
     beside, count = project(residual), problem.response.weights.numel()
+    nameless = cache(lambda: {name: orthonormal(project(columns)) for name, columns in unnamed.items()})
     motions, line = cache(lambda: recurrences(outcome)), cache(lambda: strongest_line(outcome, evidence))
 
     def looked_at(random: Random) -> Assessment:
         white = Whitener(random, outcome)
+        if random.is_white:  # all are beside the nuisance as they are
+            effects = [Effect(s.candidate.name, s.columns, bool(s.candidate.presence)) for s in scores]
+            effects += [Effect(name, columns) for name, columns in nameless().items()]
+            return _tested(white.padded(beside)[:, 0], effects, project, white, outcome, evidence.settings.level)
         slopes = white(sensitivity.flatten(0, 1)).reshape(sensitivity.shape)
         whitened = Projector(slopes, project.expected, project.slope)
         seen = whitened(white.padded(residual))[:, 0]
@@ -95,7 +100,7 @@ def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, fami
     if not found.visible:
         return replace(found, random=random_in(beside, 0.0)) if taken_out else found
     shown = [columns for name, columns in named.items() if found.visible.shows(name)]
-    shown += [orthonormal(project(columns)) for name, columns in unnamed.items() if found.visible.shows(name)]
+    shown += [columns for name, columns in nameless().items() if found.visible.shows(name)]
     left, taken = _without(beside, shown, SHOWN_PER_SAMPLE)
     again = looked_at(random_in(left, taken))
     if not again.visible:
@@ -190,5 +195,6 @@ def _without(signal: Tensor, bases: Sequence[Tensor], share: float = COLUMNS_PER
     joined = torch.cat(chosen, 1)
     sizes, turned = torch.linalg.eigh(joined.T @ joined)
     kept = sizes > ALIKE * sizes[-1]
-    basis = joined @ (turned[:, kept] / sizes[kept].sqrt())
-    return signal - basis @ (basis.T @ signal), float(basis.shape[1])
+    sizes, turned = sizes[kept], turned[:, kept]
+    pull = turned.T @ (joined.T @ signal)
+    return signal - joined @ (turned @ (pull / sizes.unsqueeze(1))), float(len(sizes))

@@ -43,6 +43,11 @@ class Random:
         """Whether it is more than white noise."""
         return bool(self.loads) or any(law.order for law in self.laws)
 
+    @property
+    def is_white(self) -> bool:
+        """Whether it is white, of one level in all channels."""
+        return len(self.laws) == 1 and not self.is_coloured
+
     def joined(self, noise: NoiseLevel) -> NoiseLevel:
         """The noise of every record, where the random part is larger than what was known of it."""
         typical = self.variance
