@@ -141,6 +141,8 @@ def _searched(
     nominal, evidence = found.nominal, found.evidence
     noise = replace(noise, scatter=_scatter(nominal, evidence, solver))
     bench = Bench(evidence, noise, say, solver, noise, budget=budget, rough=found.rough)
+    if found.followed:
+        say(f"one model follows {found.followed} of {len(evidence.fit)} records and is calibrated by these")
     _tell(nominal, bench)
     is_calibrated()
     state, is_lost = State(bench, nominal, nominal), is_lost_by(nominal, evidence)
@@ -152,7 +154,7 @@ def _searched(
     evidence = replace(evidence, segments=segments_of(nominal.hypothesis, evidence))
     why = "the nominal model loses a record" if is_lost else "small errors grow"
     say(f"{why}: records are predicted in segments of {evidence.segments.seconds:.3g} s")
-    nominal = recalibrated(nominal, evidence, solver)
+    nominal = recalibrated(found, evidence, solver)
     noise = replace(noise, scatter=_scatter(nominal, evidence, solver))
     bench = replace(bench, evidence=evidence, noise=noise, floor=noise)
     _tell(nominal, bench)

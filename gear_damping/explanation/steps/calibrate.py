@@ -12,6 +12,7 @@ from gear_damping.explanation.evidence.input_noise import without_input_noise
 from gear_damping.explanation.evidence.records import Evidence, with_own_angles
 from gear_damping.explanation.evidence.unsteady import has_unsteady_shafts, with_unsteady_shafts
 from gear_damping.explanation.model.fitting import fit_hypothesis
+from gear_damping.explanation.model.followed import followed_alone
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, natural_frequency_hz
 from gear_damping.explanation.model.nominal_gear_pair import (
     SCANNED,
@@ -51,11 +52,13 @@ class Calibration:
         evidence: The records, with phases of their own where their angles do not count from one mark.
         nominal: The nominal model fitted to them.
         rough: A gear pair's fit before the shape of its stiffness was freed; None for an oscillator.
+        followed: How many of the records the nominal model was fitted to, where it does not follow the others; else 0.
     """
 
     evidence: Evidence
     nominal: Outcome
     rough: Outcome | None = None
+    followed: int = 0
 
 
 def calibrated(evidence: Evidence, solver: Solver | None = None) -> Calibration:
@@ -115,13 +118,19 @@ def _from_here(parameter: FreeParameter, value: float) -> FreeParameter:
     return replace(parameter, start=value, logarithmic=logarithmic, expected=expected, deviation=deviation)
 
 
-def recalibrated(nominal: Outcome, evidence: Evidence, solver: Solver | None = None) -> Outcome:
-    """The nominal model fitted to the evidence in segments, from where it was and from little damping."""
-    hypothesis = nominal.hypothesis
+def recalibrated(calibration: Calibration, evidence: Evidence, solver: Solver | None = None) -> Outcome:
+    """The nominal model fitted to the evidence in segments, from where it was and from little damping.
+
+    One that only some of the records follow stays as it is.
+    """
+    hypothesis = calibration.nominal.hypothesis
+    own = {name: value for name, value in calibration.nominal.values.items() if SEPARATOR in name}
+    if calibration.followed:
+        return fit_hypothesis(hypothesis, evidence, own=own, iterations=0, solver=solver)
     starts = torch.zeros(2, len(hypothesis.common), dtype=torch.float64)
     places = [i for i, parameter in enumerate(hypothesis.free) if parameter.name == DAMPING]
     starts[1, places] = log(LESS_DAMPING)
-    return fit_hypothesis(hypothesis, evidence, starts, iterations=SHAPE_ITERATIONS, solver=solver)
+    return fit_hypothesis(hypothesis, evidence, starts, own=own, iterations=SHAPE_ITERATIONS, solver=solver)
 
 
 def _gear_pair(evidence: Evidence, solver: Solver | None) -> Calibration:
@@ -129,10 +138,27 @@ def _gear_pair(evidence: Evidence, solver: Solver | None) -> Calibration:
     evidence, rough = _angles_counted(evidence, solver)
     rough = rough or _rough_gear_pair(evidence, solver)
     nominal = shaped(rough, evidence, SHAPE_ITERATIONS, solver)
+    followed = followed_alone(nominal, evidence, lambda some: _shaped(some, solver))
     unsteady = with_unsteady_shafts(evidence)
+    if followed is not None:
+        return Calibration(unsteady, _of_others(*followed, unsteady, solver), rough, len(followed[1].fit))
     if has_unsteady_shafts(unsteady.fit):  # only now: before the teeth have their shape, speeds would bend to it
         nominal = fit_hypothesis(nominal.hypothesis, unsteady, after=nominal, iterations=SHAPE_ITERATIONS, solver=solver)
     return Calibration(unsteady, nominal, rough)
+
+
+def _shaped(evidence: Evidence, solver: Solver | None) -> Outcome:
+    """The nominal model of some of the records."""
+    return shaped(_rough_gear_pair(evidence, solver), evidence, SHAPE_ITERATIONS, solver)
+
+
+def _of_others(found: Outcome, followed: Evidence, evidence: Evidence, solver: Solver | None) -> Outcome:
+    """The nominal model of the records that it follows on all of them, none of its parameters moved."""
+    names = {record.name for record in followed.fit}
+    others = replace(evidence, fit=tuple(record for record in evidence.fit if record.name not in names))
+    own = {} if evidence.has_index else dict(angles_of(found.hypothesis, others, evidence.duration, solver))
+    own |= {name: value for name, value in found.values.items() if SEPARATOR in name}
+    return fit_hypothesis(found.hypothesis, evidence, own=own, iterations=0, solver=solver)
 
 
 def _rough_gear_pair(evidence: Evidence, solver: Solver | None) -> Outcome:

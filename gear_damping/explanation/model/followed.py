@@ -1,0 +1,53 @@
+"""A nominal model from the records that it follows, where one of them is of another kind.
+
+Where flanks part in one record of six, no parameters follow it, and those that come nearest follow none of the others.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from gear_damping.explanation.evidence.excess import ac_energy
+from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.hypothesis import Outcome
+
+BEYOND_NOISE = 3.0  # times the noise: what is left at least of a record that a model has lost
+HELPED = 0.1  # of the mean square that is left: what the other records leave at most once they are followed
+MOST_LOST = 3  # of so many records one may be lost
+
+
+def followed_alone(
+    nominal: Outcome, evidence: Evidence, calibrated: Callable[[Evidence], Outcome]
+) -> tuple[Outcome, Evidence] | None:
+    """The nominal model of the records that it follows without the others, and these; None where there are no such.
+
+    The worst record is left out, one after another, as long as the rest is followed far better for it.
+
+    Args:
+        nominal: Fitted to all records.
+        evidence: All records.
+        calibrated: Fits the nominal model to records.
+    """
+    found, kept = nominal, evidence
+    while any(losses := _losses(found, kept)):
+        if MOST_LOST * (len(evidence.fit) - len(kept.fit) + 1) > len(evidence.fit):
+            return None
+        worst = max(range(len(losses)), key=losses.__getitem__)
+        kept = replace(kept, fit=tuple(record for i, record in enumerate(kept.fit) if i != worst))
+        again = calibrated(kept)
+        if _mean_square(again) > HELPED * _mean_square(found):
+            return None
+        found = again
+    return None if kept is evidence else (found, kept)
+
+
+def _losses(found: Outcome, evidence: Evidence) -> list[float]:
+    """What is left of every record that the model has lost; 0 of the others."""
+    least = (BEYOND_NOISE * evidence.noise) ** 2
+    left = [(float(r.square().sum()), float(r.square().mean())) for r in found.fit_residuals]
+    shares = [evidence.settings.lost_share * ac_energy(record) for record in evidence.fitted]
+    return [total if total > share and mean > least else 0.0 for (total, mean), share in zip(left, shares, strict=True)]
+
+
+def _mean_square(found: Outcome) -> float:
+    count = sum(len(residual) for residual in found.fit_residuals)
+    return sum(float(residual.square().sum()) for residual in found.fit_residuals) / count

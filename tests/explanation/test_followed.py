@@ -1,0 +1,67 @@
+"""A nominal model of the records that it follows, where one is of another kind."""
+
+from dataclasses import dataclass, field, replace
+from types import SimpleNamespace
+
+import pytest
+import torch
+
+from gear_damping.explanation.model.followed import followed_alone
+
+NOISE, SAMPLES = 0.01, 400
+
+
+@dataclass(frozen=True)
+class Records:
+    """What the function asks of its evidence."""
+
+    fit: tuple
+    noise: float = NOISE
+    settings: SimpleNamespace = field(default_factory=lambda: SimpleNamespace(lost_share=0.5))
+
+    @property
+    def fitted(self):
+        return self.fit
+
+
+def record(name, kind=0):
+    wave = torch.sin(torch.linspace(0, 40, SAMPLES, dtype=torch.float64))
+    return SimpleNamespace(name=name, kind=kind, stacked=wave, observed=SimpleNamespace(name="x"), channels=["x"])
+
+
+def calibrated(evidence):
+    """One model for all: it leaves everything as soon as a record of another kind is among them."""
+    generator = torch.Generator().manual_seed(len(evidence.fit))
+    kinds = {one.kind for one in evidence.fit}
+    scales = [NOISE if len(kinds) == 1 else 1.0 + one.kind for one in evidence.fit]
+    left = [s * torch.randn(SAMPLES, generator=generator, dtype=torch.float64) for s in scales]
+    return SimpleNamespace(fit_residuals=left)
+
+
+def followed(*kinds):
+    evidence = Records(tuple(record(f"run_{i}", kind) for i, kind in enumerate(kinds)))
+    return followed_alone(calibrated(evidence), evidence, calibrated)
+
+
+def test_one_record_of_another_kind_is_left_out():
+    found, kept = followed(0, 0, 0, 1, 0, 0)
+    assert [one.name for one in kept.fit] == ["run_0", "run_1", "run_2", "run_4", "run_5"]
+    assert max(float(r.square().mean()) for r in found.fit_residuals) < 2 * NOISE**2
+
+
+def test_records_of_one_kind_stay_together():
+    assert followed(0, 0, 0, 0) is None
+
+
+def test_no_more_than_a_third_is_left_out():
+    assert followed(0, 0, 0, 0, 1, 2) is None  # not one, of six, but two kinds: the first helps too little
+    assert followed(0, 1) is None
+
+
+@pytest.mark.parametrize("level", [2.0, 4.0])
+def test_noise_alone_is_no_loss(level):
+    evidence = Records((record("run_0"), record("run_1"), record("run_2", 1)))
+    quiet = replace(evidence, noise=1.0)  # the waves themselves are below it
+    levels = (level, level, 1.2 * level)
+    left = SimpleNamespace(fit_residuals=[torch.full((SAMPLES,), one, dtype=torch.float64) for one in levels])
+    assert (followed_alone(left, quiet, calibrated) is None) == (level < 3)
