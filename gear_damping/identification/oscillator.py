@@ -11,8 +11,8 @@ from torch import Tensor
 
 from gear_damping.identification.observation import Known
 from gear_damping.identification.output_error.first_guess import first_motion
-from gear_damping.identification.output_error.holdout import predict_holdout, rmse
-from gear_damping.identification.output_error.least_squares import Fitted, fit
+from gear_damping.identification.output_error.holdout import Frozen, predict_holdout, rmse
+from gear_damping.identification.output_error.least_squares import Fitted, Rounds, fit
 from gear_damping.identification.output_error.problem import OutputErrorProblem
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.identification.output_error.segments import WHOLE, Segments, covered, in_segments, joined
@@ -122,7 +122,7 @@ def fit_oscillator(
     residuals = _fit_residuals(problem, fitted, fit_records, segments)
     own = {name: value for name, value in values.items() if name not in given}
     if holdout_records:
-        held = predict_holdout(problem.model, given, holdout_records, scale, solver, segments)
+        held = predict_holdout(Frozen(problem.model, given, solver=solver), holdout_records, scale, segments)
         residuals |= {record.name: left for record, left in zip(holdout_records, held.residuals, strict=True)}
         own |= held.own
     records = [*covered(fit_records, segments), *covered(holdout_records, segments)]
@@ -244,7 +244,7 @@ def _fitted(
     Beside the peak per unit of force the response has one of its own. Where the force is short, as a stroke, that may
     be the better guess; and a stretch that ends in the stroke leads astray, so that it is tried over all at once.
     """
-    found = fit(problem, _starts(problem, spring), _horizons(problem, scale), report=report)
+    found = fit(problem, _starts(problem, spring), Rounds(horizons=_horizons(problem, scale), report=report))
     stiffness = next((p.start for p in problem.free if p.name == STIFFNESS), 0.0)
     own = 2 * pi * first_frequency(problem.records[0], driven=False) / stiffness**0.5 if stiffness > 0 else 0.0
     is_new = not min(FIRST_SHIFTS) <= own <= max(FIRST_SHIFTS) or _is_stroke(problem.records[0])

@@ -14,13 +14,14 @@ from gear_damping.explanation.evidence.excess import excess
 from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.evidence.records import Evidence, evidence_of, with_own_angles
 from gear_damping.explanation.explain import at_useful_rate, explain, fitting_solver, with_noise
-from gear_damping.explanation.model.fitting import fit_hypothesis
+from gear_damping.explanation.model.fitting import Begun, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Given, Hypothesis, Outcome, natural_frequency_hz
 from gear_damping.explanation.model.nominal_gear_pair import angles_of, first_gear_pair
 from gear_damping.explanation.model.spread import spread_of
 from gear_damping.explanation.steps.too_short import too_short
 from gear_damping.explanation.trials.efficient import weighed
 from gear_damping.identification.oscillator import linear_model
+from gear_damping.identification.output_error.least_squares import Rounds
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.interface.identified_page import MOST_PANELS, estimate_rows, panel, residual_rows
 from gear_damping.measurement.record import Measurement
@@ -69,11 +70,11 @@ def own_fit(measurement: Measurement, model: Model, free: Sequence[str], say: Sa
     evidence, noise = with_noise(evidence, measurement, say)
     given = {k: v for k, v in _stated(evidence).items() if k in model.parameters()} | model.given
     begun = Hypothesis(model.system, model.effects, given, _free(model, given, free))
-    solver, own = fitting_solver(solver), None
+    solver, own = fitting_solver(solver), {}
     if not evidence.has_index:
         evidence = with_own_angles(evidence)
         own = angles_of(begun, evidence, evidence.duration, solver)
-    outcome = fit_hypothesis(begun, evidence, own=own, iterations=ITERATIONS, solver=solver)
+    outcome = fit_hypothesis(begun, evidence, Begun(own=own), Rounds(ITERATIONS), solver=solver)
     return Fitted(evidence, noise, weighed(outcome, evidence))
 
 

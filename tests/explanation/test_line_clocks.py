@@ -9,6 +9,7 @@ from gear_damping.explanation.model.fitting import fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Hypothesis
 from gear_damping.explanation.trials.line import strongest_line
 from gear_damping.identification.observation import Known
+from gear_damping.identification.output_error.least_squares import Rounds
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter, Observed
 from gear_damping.measurement.record import Channel
 from gear_damping.physics.effects.fourier_mesh_stiffness import FourierMeshStiffness
@@ -32,7 +33,7 @@ def fitted(responses, stiffness=None):
     evidence = Evidence("gear_pair", records, records[:1], Known({}, {}), channel, False, noise=1e-7)
     free = (FreeParameter(DAMPING, 100.0, logarithmic=True),)
     base = Hypothesis(GearPair(), (FourierMeshStiffness(), ViscousDamping()), stiffness or EVEN, free)
-    return fit_hypothesis(base, evidence, iterations=1), evidence
+    return fit_hypothesis(base, evidence, rounds=Rounds(1)), evidence
 
 
 def shown(stiffness=None):

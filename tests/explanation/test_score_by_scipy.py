@@ -15,6 +15,7 @@ from gear_damping.explanation.model.fitting import fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Hypothesis
 from gear_damping.explanation.trials.score import scores
 from gear_damping.identification.observation import Known
+from gear_damping.identification.output_error.least_squares import Rounds
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.measurement.record import Channel
 from gear_damping.physics.effects.cubic_stiffness import CubicStiffness
@@ -56,7 +57,7 @@ def fitted(with_cubic):
         free.append(FreeParameter("cubic_stiffness.coefficient", CUBICS[0], scale=CUBICS[0]))
         given["cubic_stiffness.coefficient"] = CUBICS[0]
     hypothesis = Hypothesis(Oscillator(), tuple(effects), given, tuple(free))
-    return fit_hypothesis(hypothesis, evidence, iterations=60), evidence
+    return fit_hypothesis(hypothesis, evidence, rounds=Rounds(60)), evidence
 
 
 def slopes(outcome, cubic):

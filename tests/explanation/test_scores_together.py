@@ -10,6 +10,7 @@ from gear_damping.explanation.model.fitting import fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Hypothesis
 from gear_damping.explanation.trials import score as ranking
 from gear_damping.identification.observation import Known
+from gear_damping.identification.output_error.least_squares import Rounds
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter, Observed
 from gear_damping.measurement.record import Channel
 from gear_damping.physics.effects.fourier_mesh_stiffness import FourierMeshStiffness
@@ -30,7 +31,7 @@ def nominal():
     evidence = Evidence("gear_pair", (record,), (record,), Known({}, {}), channel, False, noise=1e-7)
     free = (FreeParameter(DAMPING, 100.0, logarithmic=True),)
     base = Hypothesis(GearPair(), (FourierMeshStiffness(), ViscousDamping()), {}, free)
-    return fit_hypothesis(base, evidence, iterations=2), evidence
+    return fit_hypothesis(base, evidence, rounds=Rounds(2)), evidence
 
 
 def test_together_they_score_as_alone(nominal, monkeypatch):

@@ -27,7 +27,8 @@ def unsteady(one):
 def test_a_shaft_without_an_angle_has_a_speed_near_the_stated_one():
     found = {parameter.name: parameter for parameter in unsteady(record())[0].own}
     assert {*found} == {"pinion_speed", "pinion_acceleration", "pinion_jerk"}
-    assert found["pinion_speed"].start == SPEED and found["pinion_speed"].deviation == pytest.approx(1e-3 * SPEED)
+    assert found["pinion_speed"].start == SPEED
+    assert found["pinion_speed"].deviation == pytest.approx(1e-3 * SPEED)
     rate = 2 * np.pi * RATE / SAMPLES
     assert found["pinion_acceleration"].deviation == pytest.approx(1e-3 * SPEED * rate)
     assert found["pinion_jerk"].deviation == pytest.approx(1e-3 * SPEED * rate**2)
@@ -37,12 +38,15 @@ def test_a_shaft_without_an_angle_has_a_speed_near_the_stated_one():
 def test_what_the_file_says_of_the_speed_stays():
     said = FreeParameter("pinion_speed", SPEED, 3.0, deviation=3.0, expected=SPEED)
     own = unsteady(record((said,)))[0].own
-    assert own[0] is said and [p.name for p in own].count("pinion_speed") == 1 and len(own) == 3
+    assert own[0] is said
+    assert [p.name for p in own].count("pinion_speed") == 1
+    assert len(own) == 3
 
 
 def test_a_measured_angle_is_followed_as_it_is():
     found = unsteady(record(pinion_angle=torch.zeros(SAMPLES)))
-    assert found[0].own == () and not has_unsteady_shafts(found)
+    assert found[0].own == ()
+    assert not has_unsteady_shafts(found)
     assert has_unsteady_shafts(unsteady(record()))
 
 

@@ -5,7 +5,7 @@ import math
 import pytest
 import torch
 
-from gear_damping.identification.output_error.least_squares import fit
+from gear_damping.identification.output_error.least_squares import Ends, Rounds, fit
 from gear_damping.identification.output_error.problem import OutputErrorProblem
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.physics.catalogue import effect_class
@@ -39,7 +39,7 @@ def decay(stiffness=STIFFNESS, damping=DAMPING, cubic=0.0):
 def fitted(record, free, start=None, iterations=20, **given):
     problem = OutputErrorProblem(MODEL, {"stiffness": STIFFNESS, "amplitude": 0.05} | given, free, [record])
     first = torch.zeros(1, len(free), dtype=torch.float64) if start is None else torch.tensor([start]).double()
-    found = fit(problem, first, iterations=iterations, enough=1e-12)
+    found = fit(problem, first, Rounds(iterations), ends=Ends(enough=1e-12))
     return found, {name: float(value) for name, value in problem.unknowns.parameters(found.shared).items()}
 
 

@@ -6,8 +6,8 @@ from dataclasses import replace
 import pytest
 import torch
 
-from gear_damping.identification.output_error.holdout import _begun_anew, predict_holdout
-from gear_damping.identification.output_error.least_squares import fit
+from gear_damping.identification.output_error.holdout import Frozen, _begun_anew, predict_holdout
+from gear_damping.identification.output_error.least_squares import Rounds, fit
 from gear_damping.identification.output_error.problem import OutputErrorProblem
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.physics.catalogue import effect_class
@@ -30,7 +30,8 @@ def record(seed):
 
 def held_out(damping_ratio):
     given = {"stiffness": OMEGA**2, DAMPING: 2 * damping_ratio * OMEGA}
-    return torch.stack(predict_holdout(MODEL, given, [record(seed) for seed in range(8)], 1 / FREQUENCY).residuals)
+    found = predict_holdout(Frozen(MODEL, given), [record(seed) for seed in range(8)], 1 / FREQUENCY)
+    return torch.stack(found.residuals)
 
 
 def test_the_right_model_leaves_the_noise_but_for_what_two_states_take():
@@ -47,7 +48,7 @@ def test_what_is_wrong_with_the_model_stays():
 def test_a_prediction_that_runs_away_stays_what_it_is():
     with torch.no_grad():
         given = {"stiffness": -(OMEGA**2) * 1e4, "viscous_damping.damping_coefficient": -50.0}
-        found = predict_holdout(MODEL, given, [record(0)], 1 / FREQUENCY)
+        found = predict_holdout(Frozen(MODEL, given), [record(0)], 1 / FREQUENCY)
     assert len(found.residuals) == 1
     assert not bool(found.residuals[0].isfinite().all()) or float(found.residuals[0].abs().max()) > 1e3
 
@@ -75,10 +76,10 @@ def test_a_record_that_seems_to_have_begun_wrong_is_begun_from_rest():
     given = {"stiffness": OMEGA**2, DAMPING: 2 * ratio * OMEGA}
     problem = OutputErrorProblem(MODEL, given, (), records)
     shared, states = torch.zeros(1, problem.n_shared, dtype=torch.float64), problem.first_states()
-    right = fit(problem, shared, None, 20, states.unsqueeze(0))
+    right = fit(problem, shared, Rounds(20), states.unsqueeze(0))
     off = right.states.clone()
     off[1] += 40.0 * (off[1].abs() + 1)
-    wrong = fit(problem, shared, None, 0, off.unsqueeze(0))
+    wrong = fit(problem, shared, Rounds(0), off.unsqueeze(0))
     assert wrong.cost > 100 * right.cost
     assert _begun_anew(problem, wrong, 20).cost == pytest.approx(right.cost, rel=1e-6)
     assert _begun_anew(problem, right, 20) is right

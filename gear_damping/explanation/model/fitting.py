@@ -1,9 +1,7 @@
 """The fit of a hypothesis to the evidence."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from math import inf
-from typing import Any
+from dataclasses import dataclass, field, replace
 
 import torch
 from torch import Tensor
@@ -14,7 +12,7 @@ from gear_damping.explanation.model.cross_fit import CrossFit, cross_fitted
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, segments_of, settled_at
 from gear_damping.explanation.model.opened import opened
 from gear_damping.identification.output_error.descent import Lent
-from gear_damping.identification.output_error.least_squares import Fitted, fit
+from gear_damping.identification.output_error.least_squares import Ends, Fitted, Rounds, fit
 from gear_damping.identification.output_error.problem import OutputErrorProblem, growth
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import in_segments, joined
@@ -22,50 +20,55 @@ from gear_damping.physics.terms import Contact
 from gear_damping.simulation.solver_settings import Solver
 
 ITERATIONS_NEAR = 20  # to get near enough for the whole records
+ROUNDS = Rounds(30)  # linearisations of a fit that begins near its end
+TO_THE_END = Ends()  # of its rounds
+
+
+@dataclass(frozen=True)
+class Begun:
+    """Where a fit begins.
+
+    Args:
+        starts: Coordinates of several starts, (starts, n_free); at the parameters' own starts where absent.
+        after: A fit from whose initial states of the records to fit this one starts.
+        own: Where parameters of single records begin, by name.
+    """
+
+    starts: Tensor | None = None
+    after: Outcome | None = None
+    own: Mapping[str, float] = field(default_factory=dict)
 
 
 def fit_hypothesis(
     hypothesis: Hypothesis,
     evidence: Evidence,
-    starts: Tensor | None = None,
-    after: Outcome | None = None,
-    *,
-    iterations: int | Sequence[int] = 30,
-    horizons: Sequence[float | None] | None = None,
+    begun: Begun = Begun(),
+    rounds: Rounds = ROUNDS,
+    ends: Ends = TO_THE_END,
     solver: Solver | None = None,
-    kept: float = 0.5,
-    enough: float = 0.0,
-    reach: float = inf,
-    own: Mapping[str, float] | None = None,
 ) -> Outcome:
     """Fit to the records to fit.
 
     Args:
         hypothesis: What is fitted; its free parameters start where they say.
-        evidence: The records.
-        starts: Coordinates of several starts, (starts, n_free); at the parameters' own starts where absent.
-        after: A fit from whose initial states of the records to fit this one starts.
-        iterations: At most so many in each round, or in each of the rounds.
-        horizons: Seconds of growing rounds; None for all.
+        evidence: The records, which also say whether the time for fits is over.
+        begun: Where it begins.
+        rounds: How far it goes.
+        ends: When it stops before; what is enough, in noise variances.
         solver: Settings of the solver.
-        kept: Share of the starts that goes on from round to round.
-        enough: Fall of the cost, in noise variances, below which the fit has converged.
-        reach: Cost of the whole records; a fit that will not get below it is given up.
-        own: Where parameters of single records begin, by name.
     """
     if not evidence.segments and any(isinstance(effect, Contact) for effect in hypothesis.effects):
-        near = _fit_in_segments(hypothesis, evidence, starts, solver=solver, kept=kept, enough=enough)
+        near = _fit_in_segments(hypothesis, evidence, begun.starts, rounds.kept, ends.enough, solver)
         if near.growth > evidence.settings.most_growth:
             return near
-        hypothesis, starts, after = near.hypothesis, None, near
-    pieces = in_segments(evidence.fit, evidence.segments)
+        hypothesis, begun = near.hypothesis, replace(begun, starts=None, after=near)
+    pieces, after = in_segments(evidence.fit, evidence.segments), begun.after
     problem = OutputErrorProblem(hypothesis.model, hypothesis.given, hypothesis.free, pieces, solver, evidence.noise)
-    begun, shared = _begin(problem, hypothesis, starts, after, own or {})
+    states, shared = _begin(problem, hypothesis, begun)
     if evidence.segments:  # short already, and begun from what was measured: another model's states lead astray
-        begun, horizons = None, horizons and [None] * len(horizons)
-    ends = {"enough": enough * evidence.noise**2, "is_over": evidence.is_over, "reach": reach}
-    ends["lent"] = None if after is None else lent_from(problem, after)
-    fitted = fit(problem, shared, horizons, iterations, begun, kept=kept, **ends)
+        states, rounds = None, replace(rounds, horizons=[None] * len(rounds.horizons))
+    ends = replace(ends, enough=ends.enough * evidence.noise**2, is_over=evidence.is_over)
+    fitted = fit(problem, shared, rounds, states, ends, None if after is None else lent_from(problem, after))
     values = {name: float(value) for name, value in problem.unknowns.parameters(fitted.shared).items()}
     found = _outcome(settled_at(hypothesis, values), Fit(problem, fitted, values), evidence)
     if evidence.sealed or not evidence.holdout:
@@ -74,24 +77,19 @@ def fit_hypothesis(
     return replace(found, left_out=found.holdout, scatter=Scatter())
 
 
-def _begin(
-    problem: OutputErrorProblem,
-    hypothesis: Hypothesis,
-    starts: Tensor | None,
-    after: Outcome | None,
-    own: Mapping[str, float],
-) -> tuple[Tensor | None, Tensor]:
+def _begin(problem: OutputErrorProblem, hypothesis: Hypothesis, begun: Begun) -> tuple[Tensor | None, Tensor]:
     """Initial states (None: from the records) and coordinates, those of single records among them."""
+    starts, after = begun.starts, begun.after
     if starts is None:
         starts = torch.zeros(1, len(hypothesis.common), dtype=torch.float64)
-    begun = None if after is None else begun_from(problem, after, len(starts))
+    states = None if after is None else begun_from(problem, after, len(starts))
     shared = problem.unknowns.completed(starts)
     if after is not None:
         shared = shared + own_from(problem, after)
     for place, parameter in enumerate(problem.free):
-        if parameter.name in own:
-            shared[:, place] = parameter.coordinate(own[parameter.name])
-    return begun, shared
+        if parameter.name in begun.own:
+            shared[:, place] = parameter.coordinate(begun.own[parameter.name])
+    return states, shared
 
 
 @dataclass(frozen=True)
@@ -116,15 +114,22 @@ def _outcome(settled: Hypothesis, found: Fit, evidence: Evidence) -> Outcome:
     return Outcome(settled, problem, fitted, found.values, *left, crossed.scatter, grown)
 
 
-def _fit_in_segments(hypothesis: Hypothesis, evidence: Evidence, starts: Tensor | None, **options: Any) -> Outcome:
+def _fit_in_segments(
+    hypothesis: Hypothesis,
+    evidence: Evidence,
+    starts: Tensor | None,
+    kept: float,
+    enough: float,
+    solver: Solver | None,
+) -> Outcome:
     """A fit to segments of the records, with the growth over whole ones.
 
     Where flanks part, the cost over whole records has many minima; over short segments it has few.
     """
     short = replace(evidence, segments=segments_of(hypothesis, evidence))
-    rounds = {"horizons": [None] * 2, "iterations": (ITERATIONS_NEAR, ITERATIONS_NEAR)}
-    near = fit_hypothesis(hypothesis, short, starts, **rounds, **options)
-    return replace(near, growth=growth_over(near.hypothesis, evidence.fit, options["solver"]))
+    rounds = Rounds((ITERATIONS_NEAR, ITERATIONS_NEAR), (None, None), kept)
+    near = fit_hypothesis(hypothesis, short, Begun(starts), rounds, Ends(enough), solver)
+    return replace(near, growth=growth_over(near.hypothesis, evidence.fit, solver))
 
 
 def growth_over(hypothesis: Hypothesis, records: Sequence[FitRecord], solver: Solver | None) -> float:

@@ -7,10 +7,11 @@ from math import ceil, cos, floor, inf, pi, sin, sqrt
 import torch
 
 from gear_damping.explanation.evidence.records import Evidence
-from gear_damping.explanation.model.fitting import fit_hypothesis
+from gear_damping.explanation.model.fitting import Begun, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, natural_frequency_hz
 from gear_damping.identification.oscillator import DAMPING, expected_about
 from gear_damping.identification.output_error.angles import angle_bases, harmonics_to_resonance, scanned
+from gear_damping.identification.output_error.least_squares import NONE, Rounds
 from gear_damping.identification.output_error.problem import OutputErrorProblem
 from gear_damping.identification.output_error.records import FreeParameter
 from gear_damping.identification.output_error.segments import in_segments
@@ -90,14 +91,14 @@ def shaped(rough: Outcome, evidence: Evidence, iterations: int, solver: Solver |
         iterations: At most so many linearisations; with none, the harmonics are free and still zero.
         solver: Settings of the solver.
     """
-    options = {"iterations": iterations, "solver": solver}
+    rounds = Rounds(iterations)
     shaped = _with_shape(rough.hypothesis, _shape_harmonics(rough, evidence, solver))
-    found = fit_hypothesis(shaped, evidence, after=rough, **options)
+    found = fit_hypothesis(shaped, evidence, Begun(after=rough), rounds, solver=solver)
     samples = sum(len(record.stacked) for record in evidence.fitted)
     if evidence.has_index or not iterations or found.fitted.cost < SHAPED * samples * evidence.noise**2:
         return found
     angles = angles_of(found.hypothesis, evidence, evidence.duration, solver)
-    again = fit_hypothesis(found.hypothesis, evidence, own=angles, **options)
+    again = fit_hypothesis(found.hypothesis, evidence, Begun(own=angles), rounds, solver=solver)
     return again if again.fitted.cost < SCANNED * found.fitted.cost else found
 
 
@@ -143,7 +144,7 @@ def _shape_harmonics(rough: Outcome, evidence: Evidence, solver: Solver | None) 
 def _seen_harmonics(rough: Outcome, most: int, evidence: Evidence, solver: Solver | None) -> int:
     """The highest harmonic that the records would show if it had the size that real teeth may give it."""
     hypothesis = _with_shape(rough.hypothesis, most)
-    probe = fit_hypothesis(hypothesis, evidence, after=rough, iterations=0, solver=solver)
+    probe = fit_hypothesis(hypothesis, evidence, Begun(after=rough), NONE, solver=solver)
     moved = probe.fitted.prediction.sensitivity[0].square().sum((0, 1))
     seen = [
         _order(p.name)

@@ -7,7 +7,7 @@ from torch import Tensor
 
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.hypothesis import Outcome, slowest_time
-from gear_damping.identification.output_error.holdout import predict_holdout
+from gear_damping.identification.output_error.holdout import Frozen, predict_holdout
 from gear_damping.identification.output_error.least_squares import Fitted
 from gear_damping.identification.output_error.problem import OutputErrorProblem
 from gear_damping.simulation.solver_settings import Solver
@@ -30,11 +30,11 @@ def opened(
     scale = slowest_time(settled, evidence)
     own = [parameter for parameter in settled.free if parameter.per_record]
     given = {**settled.given, **settled.gains}
-    options = {"solver": solver, "segments": evidence.segments, "own": own, "noise": evidence.noise}
-    held = predict_holdout(settled.model, given, evidence.holdout, scale, begun=begun, **options)
+    frozen = Frozen(settled.model, given, own, evidence.noise, solver)
+    held = predict_holdout(frozen, evidence.holdout, scale, evidence.segments, begun)
     if begun and _is_astray(held.residuals, outcome.fitted, outcome.problem):
         # another model's angles may lie in another valley
-        anew = predict_holdout(settled.model, given, evidence.holdout, scale, **options)
+        anew = predict_holdout(frozen, evidence.holdout, scale, evidence.segments)
         held = min(held, anew, key=lambda one: sum(float(r.square().sum()) for r in one.residuals))
     return replace(outcome, holdout=held.residuals, own=held.own, growth=max(outcome.growth, held.growth))
 

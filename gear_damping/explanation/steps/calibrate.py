@@ -11,7 +11,7 @@ from gear_damping.errors import InputError, Problem
 from gear_damping.explanation.evidence.input_noise import without_input_noise
 from gear_damping.explanation.evidence.records import Evidence, with_own_angles
 from gear_damping.explanation.evidence.unsteady import has_unsteady_shafts, with_unsteady_shafts
-from gear_damping.explanation.model.fitting import fit_hypothesis
+from gear_damping.explanation.model.fitting import Begun, fit_hypothesis
 from gear_damping.explanation.model.followed import followed_alone
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, natural_frequency_hz
 from gear_damping.explanation.model.nominal_gear_pair import (
@@ -24,10 +24,13 @@ from gear_damping.explanation.model.nominal_gear_pair import (
 from gear_damping.identification.observation import MESH_PHASE
 from gear_damping.identification.oscillator import DAMPING, GAIN, fit_oscillator, linear_model, linear_oscillator
 from gear_damping.identification.output_error.angles import STARTS
+from gear_damping.identification.output_error.least_squares import NONE, Rounds
 from gear_damping.identification.output_error.records import SEPARATOR, FreeParameter
 from gear_damping.simulation.solver_settings import Solver
 
 LESS_DAMPING = 0.05  # of what was found: what a local minimum takes for damping
+ROUGH_ITERATIONS = 12  # of each round while the teeth have the contact ratio's shape
+ANGLES_KEPT = 0.12  # of those all around: after the first round one or two valleys are left
 SHAPE_ITERATIONS = 30  # of the fit with a free shape of the stiffness; causes are tried from where it stands
 SHORT_PERIODS = 40.0  # natural periods of the first round
 MOST_SCANS = 8  # of the records' angles, each followed by a fit
@@ -126,11 +129,11 @@ def recalibrated(calibration: Calibration, evidence: Evidence, solver: Solver | 
     hypothesis = calibration.nominal.hypothesis
     own = {name: value for name, value in calibration.nominal.values.items() if SEPARATOR in name}
     if calibration.followed:
-        return fit_hypothesis(hypothesis, evidence, own=own, iterations=0, solver=solver)
+        return fit_hypothesis(hypothesis, evidence, Begun(own=own), NONE, solver=solver)
     starts = torch.zeros(2, len(hypothesis.common), dtype=torch.float64)
     places = [i for i, parameter in enumerate(hypothesis.free) if parameter.name == DAMPING]
     starts[1, places] = log(LESS_DAMPING)
-    return fit_hypothesis(hypothesis, evidence, starts, own=own, iterations=SHAPE_ITERATIONS, solver=solver)
+    return fit_hypothesis(hypothesis, evidence, Begun(starts, own=own), Rounds(SHAPE_ITERATIONS), solver=solver)
 
 
 def _gear_pair(evidence: Evidence, solver: Solver | None) -> Calibration:
@@ -143,7 +146,8 @@ def _gear_pair(evidence: Evidence, solver: Solver | None) -> Calibration:
     if followed is not None:
         return Calibration(unsteady, _of_others(*followed, unsteady, solver), rough, len(followed[1].fit))
     if has_unsteady_shafts(unsteady.fit):  # only now: before the teeth have their shape, speeds would bend to it
-        nominal = fit_hypothesis(nominal.hypothesis, unsteady, after=nominal, iterations=SHAPE_ITERATIONS, solver=solver)
+        begun, rounds = Begun(after=nominal), Rounds(SHAPE_ITERATIONS)
+        nominal = fit_hypothesis(nominal.hypothesis, unsteady, begun, rounds, solver=solver)
     return Calibration(unsteady, nominal, rough)
 
 
@@ -158,20 +162,20 @@ def _of_others(found: Outcome, followed: Evidence, evidence: Evidence, solver: S
     others = replace(evidence, fit=tuple(record for record in evidence.fit if record.name not in names))
     own = {} if evidence.has_index else dict(angles_of(found.hypothesis, others, evidence.duration, solver))
     own |= {name: value for name, value in found.values.items() if SEPARATOR in name}
-    return fit_hypothesis(found.hypothesis, evidence, own=own, iterations=0, solver=solver)
+    return fit_hypothesis(found.hypothesis, evidence, Begun(own=own), NONE, solver=solver)
 
 
 def _rough_gear_pair(evidence: Evidence, solver: Solver | None) -> Outcome:
     """The contact ratio's wave, with the mesh phase tried all around: one phase, or one of every record."""
     first = first_gear_pair(evidence)
     short = SHORT_PERIODS / natural_frequency_hz(first.model, first.given)
-    horizons = [short, None] if short < evidence.duration else [None]
-    options = {"horizons": horizons, "iterations": 12, "solver": solver}
+    rounds = Rounds(ROUGH_ITERATIONS, [short, None] if short < evidence.duration else [None])
     if evidence.has_index:
         starts = torch.zeros(STARTS, len(first.common), dtype=torch.float64)
         places = [i for i, p in enumerate(first.free) if p.name == "mesh_phase"]
         starts[:, places] = torch.linspace(0, 2 * pi, STARTS + 1, dtype=torch.float64)[:-1, None]
-        return fit_hypothesis(first, evidence, starts if places else None, kept=0.12, **options)
+        begun, few = Begun(starts if places else None), replace(rounds, kept=ANGLES_KEPT)
+        return fit_hypothesis(first, evidence, begun, few, solver=solver)
     found: Outcome | None = None
     for _ in range(MOST_SCANS):  # a phase that is wrong makes stiffness and damping wrong, and they the next phase
         hypothesis = first if found is None else found.hypothesis
@@ -179,7 +183,7 @@ def _rough_gear_pair(evidence: Evidence, solver: Solver | None) -> Outcome:
         for factor in STIFFNESSES:
             begun = with_stiffness(hypothesis, factor)
             angles = angles_of(begun, evidence, short, solver)
-            tried.append(fit_hypothesis(begun, evidence, own=angles, **options))
+            tried.append(fit_hypothesis(begun, evidence, Begun(own=angles), rounds, solver=solver))
         again = min(tried, key=lambda outcome: outcome.fitted.cost)
         is_better = found is None or again.fitted.cost < SCANNED * found.fitted.cost
         found = again if found is None or again.fitted.cost < found.fitted.cost else found

@@ -3,12 +3,13 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from gear_damping.explanation.model.fitting import fit_hypothesis
+from gear_damping.explanation.model.fitting import Begun, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Outcome, settled_at
 from gear_damping.explanation.model.nominal_gear_pair import shaped
 from gear_damping.explanation.state import State
 from gear_damping.explanation.trials.refit import Refit, again
 from gear_damping.explanation.trials.score import Score, best_by_effect
+from gear_damping.identification.output_error.least_squares import NONE
 
 FAR = 10.0  # times the cost of the best fit: a law that leaves so much more has not come to rest where it could
 
@@ -68,7 +69,7 @@ def _from_the_best(fits: Sequence[Refit], state: State) -> list[Refit]:
         return list(fits)
     shared = {p.name: best.outcome.values[p.name] for p in nominal.problem.free if p.name in best.outcome.values}
     settled = settled_at(nominal.hypothesis, shared)
-    place = fit_hypothesis(settled, bench.evidence, after=best.outcome, iterations=0, solver=bench.solver)
+    place = fit_hypothesis(settled, bench.evidence, Begun(after=best.outcome), NONE, solver=bench.solver)
     scores = best_by_effect(bench.ranked(place, far)) if place.is_finite else {}
     found = [bench.full_fit(score, place, nominal) for score in scores.values() if score.candidate.presence]
     again = {fit.name: fit for fit in found if fit is not None}

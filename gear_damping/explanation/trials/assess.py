@@ -22,7 +22,9 @@ COLUMNS_PER_SAMPLE = 0.2  # at most so many columns are taken out of white noise
 SHOWN_PER_SAMPLE = 0.05  # and so many before the colour of the noise is fitted, which they take with them
 INDEPENDENT = 1e-6  # of the largest: a direction of an effect beside the nuisance that counts
 ALIKE = 1e-6  # of the largest eigenvalue: below it a direction repeats others
+MOST_COLUMNS = 400  # are taken out at once: those that take most, as the time goes with their square
 LONGEST_BLOCK = 2.0  # natural periods
+MOST_BLOCKS = 2000  # of all records: more only take time, where that makes none of them longer than that
 CORRELATION_TIMES = 3.0  # of the whitened residual in a block
 LARGEST_LAG = 50  # samples over which the correlation of the whitened residual is summed
 LINES_OVER = 4.0  # natural frequencies up to which lines are looked for
@@ -140,10 +142,11 @@ def _block_length(rows: Tensor, outcome: Outcome) -> list[int]:
     negative = (shares <= 0).nonzero().flatten()
     stop = int(negative[0]) if len(negative) else len(shares)
     correlated = 1 + 2 * float(shares[1:stop].sum())
+    least = max(CORRELATION_TIMES * correlated, rows.numel() / MOST_BLOCKS)
     frequency, found = natural_frequency_hz(outcome.hypothesis.model, outcome.flat_given()), []
     for record in problem.records:
         longest = LONGEST_BLOCK * record.sampling_rate / max(frequency, 1e-9)
-        found += [max(1, round(min(CORRELATION_TIMES * correlated, longest)))] * len(problem.response.channels)
+        found += [max(1, round(min(least, longest)))] * len(problem.response.channels)
     return found
 
 
@@ -184,7 +187,7 @@ def _without(signal: Tensor, bases: Sequence[Tensor], share: float = COLUMNS_PER
 
     At most a `share` of as many columns as there are samples is taken out.
     """
-    most = int(share * len(signal))
+    most = min(int(share * len(signal)), MOST_COLUMNS)
     gains = sorted(bases, key=lambda b: -float((b.T @ signal).square().sum()) / max(b.shape[1], 1))
     chosen, count = [], 0
     for basis in gains:

@@ -11,7 +11,7 @@ from gear_damping.explanation.evidence.excess import Excess, excess
 from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.candidates import candidates_for, restored
-from gear_damping.explanation.model.fitting import fit_hypothesis
+from gear_damping.explanation.model.fitting import Begun, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome
 from gear_damping.explanation.model.spread import spread_of
 from gear_damping.explanation.settings import SearchSettings
@@ -19,6 +19,7 @@ from gear_damping.explanation.statistics.paired import confirmation, paired_gain
 from gear_damping.explanation.trials.assess import Assessment, assessed
 from gear_damping.explanation.trials.refit import Refit, block_samples, chosen, compared, refitted
 from gear_damping.explanation.trials.score import Score, contains, scores
+from gear_damping.identification.output_error.least_squares import Rounds
 from gear_damping.identification.output_error.records import FreeParameter
 from gear_damping.identification.output_error.uncertainty import QUANTILE
 from gear_damping.simulation.solver_settings import Solver
@@ -147,14 +148,15 @@ class Bench:
 
     def without(self, outcome: Outcome, name: str) -> Outcome:
         """A model without one of its causes, fitted from where it was."""
-        return fit_hypothesis(_without(outcome.hypothesis, name), self.evidence, None, outcome, solver=self.solver)
+        hypothesis, begun = _without(outcome.hypothesis, name), Begun(after=outcome)
+        return fit_hypothesis(hypothesis, self.evidence, begun, solver=self.solver)
 
     def at_rest(self, outcome: Outcome) -> Outcome:
         """A model whose fit is carried on where it had not come to rest."""
         if outcome.fitted.converged:
             return outcome
-        hypothesis, solver = outcome.hypothesis, self.solver
-        further = fit_hypothesis(hypothesis, self.evidence, None, outcome, iterations=LAST_ITERATIONS, solver=solver)
+        begun, rounds = Begun(after=outcome), Rounds(LAST_ITERATIONS)
+        further = fit_hypothesis(outcome.hypothesis, self.evidence, begun, rounds, solver=self.solver)
         return further if further.is_finite else outcome
 
     def converged(self, fit: Refit, against: Outcome) -> Refit:

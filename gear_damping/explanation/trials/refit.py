@@ -9,11 +9,12 @@ from torch import Tensor
 
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.candidates import Candidate
-from gear_damping.explanation.model.fitting import fit_hypothesis
+from gear_damping.explanation.model.fitting import Begun, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Outcome, time_scale
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.statistics.paired import paired_gain
 from gear_damping.explanation.trials.score import Score, best_by_effect, collinearity
+from gear_damping.identification.output_error.least_squares import Ends, Rounds
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.simulation.solver_settings import Solver
 
@@ -128,26 +129,15 @@ def refitted(
     """
     candidate = score.candidate
     hypothesis = candidate.hypothesis
-    options = {"solver": solver, "enough": ENOUGH}
-    if score.own:
-        options["own"] = score.own
-    found = fit_hypothesis(
-        hypothesis,
-        evidence,
-        _starts(score),
-        outcome,
-        horizons=[FIRST_PART * evidence.duration, None],
-        iterations=(FIRST_ITERATIONS, LAST_ITERATIONS),
-        kept=VARIANTS_KEPT if candidate.presence else ONE,
-        reach=reach,
-        **options,
-    )
+    kept, ends = VARIANTS_KEPT if candidate.presence else ONE, Ends(ENOUGH, reach)
+    rounds = Rounds((FIRST_ITERATIONS, LAST_ITERATIONS), (FIRST_PART * evidence.duration, None), kept)
+    found = fit_hypothesis(hypothesis, evidence, Begun(_starts(score), outcome, score.own), rounds, ends, solver)
     if candidate.later and found.fitted.cost <= reach:
         freed = replace(found.hypothesis, free=(*found.hypothesis.free, *candidate.later))
         freed = replace(
             freed, free=tuple(replace(p, start=float(found.hypothesis.given.get(p.name, p.start))) for p in freed.free)
         )
-        found = fit_hypothesis(freed, evidence, None, found, reach=reach, **(options | {"own": None}))
+        found = fit_hypothesis(freed, evidence, Begun(after=found), ends=ends, solver=solver)
     if not found.is_finite:
         return None
     return compared(score, found, against or outcome, evidence)
@@ -155,7 +145,7 @@ def refitted(
 
 def again(refit: Refit, against: Outcome, evidence: Evidence, solver: Solver | None = None) -> Refit:
     """A full fit carried on with other evidence, as with the same records in pieces, and held against another model."""
-    found = fit_hypothesis(refit.outcome.hypothesis, evidence, solver=solver, enough=ENOUGH)
+    found = fit_hypothesis(refit.outcome.hypothesis, evidence, ends=Ends(ENOUGH), solver=solver)
     return compared(refit.score, found, against, evidence)
 
 

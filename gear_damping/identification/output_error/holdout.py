@@ -7,7 +7,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.identification.output_error.angles import angle_bases, scanned
-from gear_damping.identification.output_error.least_squares import Fitted, fit
+from gear_damping.identification.output_error.least_squares import Fitted, Rounds, fit
 from gear_damping.identification.output_error.normal_equations import own_basis, without_own
 from gear_damping.identification.output_error.problem import OutputErrorProblem, Prediction, growth
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
@@ -37,32 +37,43 @@ class HeldOut:
     own: dict[str, float]
 
 
-def predict_holdout(
-    model: Model,
-    given: Mapping[str, float],
-    records: Sequence[FitRecord],
-    characteristic_s: float,
-    solver: Solver | None = None,
-    segments: Segments = WHOLE,
-    own: Sequence[FreeParameter] = (),
-    begun: Mapping[str, float] | None = None,
-    noise: float = 0.0,
-) -> HeldOut:
-    """Predict records.
+@dataclass(frozen=True)
+class Frozen:
+    """A model whose parameters are known, but for what every record has of its own.
 
     Args:
         model: The simulator.
         given: Every parameter, by flat name.
+        own: Parameters that every record has of its own.
+        noise: Standard deviation of the records' noise, against which what is expected of these counts.
+        solver: Settings of the solver.
+    """
+
+    model: Model
+    given: Mapping[str, float]
+    own: Sequence[FreeParameter] = ()
+    noise: float = 0.0
+    solver: Solver | None = None
+
+
+def predict_holdout(
+    frozen: Frozen,
+    records: Sequence[FitRecord],
+    characteristic_s: float,
+    segments: Segments = WHOLE,
+    begun: Mapping[str, float] | None = None,
+) -> HeldOut:
+    """Predict records.
+
+    Args:
+        frozen: The model.
         records: The records.
         characteristic_s: Time scale of the motion in s: sets the first stretch that the initial state is sought in.
-        solver: Settings of the solver.
         segments: How they are cut; each segment has an initial state.
-        own: Parameters that every record has of its own.
-        begun: Where those of single records begin, by name; angles that are not among them are tried all around.
-        noise: Standard deviation of the records' noise, against which what is expected of their own parameters counts.
+        begun: Where parameters of single records begin, by name; angles that are not among them are tried all around.
     """
     pieces = in_segments(records, segments)
-    problem = OutputErrorProblem(model, given, list(own), pieces, solver, noise)
+    problem = OutputErrorProblem(frozen.model, frozen.given, list(frozen.own), pieces, frozen.solver, frozen.noise)
     starts = torch.zeros(1, problem.n_shared, dtype=torch.float64)
     known = dict(begun or {})
     for place, parameter in enumerate(problem.free):
@@ -75,7 +86,8 @@ def predict_holdout(
     # so short a stretch tells nothing of an angle, which would leave the valley that it was begun in
     horizons = [None] if angle_bases(problem) else [FIRST_PERIODS * characteristic_s, None]
     iterations = (FIRST_ITERATIONS, LAST_ITERATIONS)[-len(horizons) :]
-    found = _begun_anew(problem, fit(problem, starts, horizons, iterations, states.unsqueeze(0)), iterations[-1])
+    first = fit(problem, starts, Rounds(iterations, horizons), states.unsqueeze(0))
+    found = _begun_anew(problem, first, iterations[-1])
     prediction, weights = found.prediction, problem.response.weights.clamp(min=1e-300)
     left = prediction.residual[0] / weights
     beside = _beside_own(prediction, problem.n_shared) / weights
@@ -99,7 +111,7 @@ def _begun_anew(problem: OutputErrorProblem, found: Fitted, iterations: int) -> 
     rest, best = problem.states_at_rest(), found
     for share in (1.0, 0.5) if bool(wrong.any()) else ():
         states = torch.where(wrong.unsqueeze(1), found.states + share * (rest - found.states), found.states)
-        again = fit(problem, found.shared.unsqueeze(0), None, iterations, states.unsqueeze(0))
+        again = fit(problem, found.shared.unsqueeze(0), Rounds(iterations), states.unsqueeze(0))
         best = again if again.cost < best.cost else best
     return best
 

@@ -21,17 +21,47 @@ class Fitted:
     converged: bool
 
 
+@dataclass(frozen=True)
+class Rounds:
+    """How far a fit goes: in rounds over growing stretches of the records.
+
+    Args:
+        iterations: At most so many linearisations in each round, or in each of the rounds.
+        horizons: Seconds of each round, growing, None for all; a short first round keeps away from local minima.
+        kept: Share of the starts, the best ones, that goes on from round to round.
+        report: Told (done, total) rounds.
+    """
+
+    iterations: int | Sequence[int] = 40
+    horizons: Sequence[float | None] = (None,)
+    kept: float = 0.5
+    report: Callable[[int, int], None] | None = None
+
+
+NONE = Rounds(0)  # the point itself, linearised
+
+
+@dataclass(frozen=True)
+class Ends:
+    """When a fit stops before that.
+
+    Args:
+        enough: Fall of the cost below which a start has converged, whatever share of the cost it is.
+        reach: Cost in the last round; a start that will not get below it is given up.
+        is_over: Whether time is over: after a few steps of each round nothing more is tried then.
+    """
+
+    enough: float = 0.0
+    reach: float = inf
+    is_over: Callable[[], bool] = lambda: False
+
+
 def fit(
     problem: OutputErrorProblem,
     shared: Tensor,
-    horizons: Sequence[float | None] | None = None,
-    iterations: int | Sequence[int] = 40,
+    rounds: Rounds = Rounds(),
     states: Tensor | None = None,
-    report: Callable[[int, int], None] | None = None,
-    kept: float = 0.5,
-    enough: float = 0.0,
-    is_over: Callable[[], bool] = lambda: False,
-    reach: float = inf,
+    ends: Ends = Ends(),
     lent: Lent | None = None,
 ) -> Fitted:
     """The best of several starts.
@@ -39,29 +69,24 @@ def fit(
     Args:
         problem: What is fitted to what.
         shared: Coordinates of the starts, (starts, n); those that are left out at the end begin at 0.
-        horizons: Seconds of each round, growing, None for all; a short first round keeps away from local minima.
-        iterations: At most so many linearisations in each round, or in each of the rounds.
+        rounds: How far it goes.
         states: Initial states of the starts, (starts, records, local); from the records where absent.
-        report: Told (done, total) rounds.
-        kept: Share of the starts, the best ones, that goes on from round to round.
-        enough: Fall of the cost below which a start has converged, whatever share of the cost it is.
-        is_over: Whether time is over: after a few steps of each round nothing more is tried then.
-        reach: Cost in the last round; a start that will not get below it is given up.
+        ends: When it stops before.
         lent: Sensitivities to begin with, as another fit to the same records found them.
     """
     if states is None:
         states = problem.first_states().expand(shared.shape[0], -1, -1).clone()
     points = Points(problem.unknowns.within(problem.unknowns.completed(shared)), states)
-    rounds = list(horizons or [None])
-    most = [iterations] * len(rounds) if isinstance(iterations, int) else iterations
-    for number, horizon in enumerate(rounds):
-        is_last = number == len(rounds) - 1
-        descent = Descent(problem, points, horizon, enough, reach if is_last else inf, lent)
-        descent.run(most[number], is_over, is_last)
+    count = len(rounds.horizons)
+    most = [rounds.iterations] * count if isinstance(rounds.iterations, int) else rounds.iterations
+    for number, horizon in enumerate(rounds.horizons):
+        is_last = number == count - 1
+        descent = Descent(problem, points, horizon, ends.enough, ends.reach if is_last else inf, lent)
+        descent.run(most[number], ends.is_over, is_last)
         if not is_last:
-            points = descent.points.pick(descent.cost.argsort()[: max(1, round(kept * len(descent.cost)))])
-        if report:
-            report(number + 1, len(rounds))
+            points = descent.points.pick(descent.cost.argsort()[: max(1, round(rounds.kept * len(descent.cost)))])
+        if rounds.report:
+            rounds.report(number + 1, count)
     best = descent.cost.argmin().reshape(1)
     chosen = descent.points.pick(best)
     return Fitted(
