@@ -120,6 +120,7 @@ class DampingForce(Effect):
     """A force that opposes the rate of deflection; it acts only where the flanks touch."""
 
     acts_in_gap: ClassVar[bool] = False  # whether it acts where they do not touch as well
+    follows_the_rate: ClassVar[bool] = False  # and nothing else: then it has an equivalent damping coefficient
 
     @abstractmethod
     def damping_force(self, now: Moment, p: Values) -> Tensor:

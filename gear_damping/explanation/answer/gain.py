@@ -11,11 +11,15 @@ from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.evidence.rig_units import unit_of
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.spread import SILENT
+from gear_damping.identification.oscillator import STIFFNESS
 from gear_damping.identification.output_error.problem import set_value
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.uncertainty import QUANTILE
 from gear_damping.identification.output_error.unknowns import OFFSET, is_of_model
-from gear_damping.physics.terms import DampingLaw
+from gear_damping.physics.damping_ratio import harmonic_damping_coefficient
+from gear_damping.physics.model import Prepared
+from gear_damping.physics.moment import Moment
+from gear_damping.physics.terms import DampingForce, DampingLaw
 from gear_damping.simulation.runs import reference_velocity
 
 STEP = 1e-4  # of a coordinate, for the slope of the damping ratio
@@ -103,10 +107,13 @@ def _interval(outcome: Outcome, spread: Tensor, place: int, evidence: Evidence, 
 def damping_ratio(outcome: Outcome, spread: Tensor) -> dict[str, object] | None:
     """The equivalent damping ratio of every damping law together, in % of critical, at its reference velocity.
 
-    None where there is no linear stiffness, so that nothing is critical. Laws of damping take energy: the interval
+    Dry friction counts with what a harmonic motion of that velocity loses to it. None where there is no linear
+    stiffness, or none that is told from nothing: then nothing is critical. Laws of damping take energy: the interval
     ends at zero.
     """
     problem, shared = outcome.problem, outcome.fitted.shared
+    if _has_no_spring(outcome, spread):
+        return None
     points = shared.repeat(len(shared) + 1, 1)
     points[1:] += STEP * torch.eye(len(shared), dtype=torch.float64)
     ratios, velocity = _ratios(outcome, problem.unknowns.parameters(points), len(points))
@@ -119,6 +126,16 @@ def damping_ratio(outcome: Outcome, spread: Tensor) -> dict[str, object] | None:
     return Interval(value, ends, "%").plain() | {"reference_velocity": velocity}
 
 
+def _has_no_spring(outcome: Outcome, spread: Tensor) -> bool:
+    """Whether a stiffness that was fitted is not told from nothing."""
+    for place, parameter in enumerate(outcome.problem.free):
+        if parameter.name == STIFFNESS:
+            half = QUANTILE * float(spread[place, place].clamp(min=0).sqrt())
+            size = 1.0 if parameter.logarithmic else outcome.values[STIFFNESS] / parameter.scale
+            return half > abs(size)
+    return False
+
+
 def _ratios(outcome: Outcome, free: Mapping[str, Tensor], batch: int) -> tuple[Tensor, float]:
     """Damping ratios in % of a batch of points."""
     model = outcome.hypothesis.model
@@ -126,7 +143,8 @@ def _ratios(outcome: Outcome, free: Mapping[str, Tensor], batch: int) -> tuple[T
     for name, value in free.items():
         if is_of_model(name):
             set_value(values, name, value)
-    derived = model.prepare(values).derived
+    prepared = model.prepare(values)
+    derived = prepared.derived
     speed = reference_velocity(derived)
     speed = speed[:1].expand(batch)  # the same amplitude for every point
     total = torch.zeros(batch, dtype=torch.float64)
@@ -134,4 +152,17 @@ def _ratios(outcome: Outcome, free: Mapping[str, Tensor], batch: int) -> tuple[T
         if isinstance(effect, DampingLaw):
             own = {p.name: values[f"{effect.name}.{p.name}"] for p in effect.parameters}
             total = total + effect.damping_ratio(own, derived["equivalent_mass"], derived["mean_stiffness"], speed)
+        elif isinstance(effect, DampingForce) and effect.follows_the_rate:
+            critical = 2 * torch.sqrt(derived["mean_stiffness"] * derived["equivalent_mass"])
+            total = total + _coefficient(effect, prepared, speed) / critical
     return 100 * total, float(speed[0])
+
+
+def _coefficient(effect: DampingForce, prepared: Prepared, speed: Tensor) -> Tensor:
+    """Equivalent damping coefficient in N s/m of a force that follows the rate, at a velocity amplitude in m/s."""
+    none, scales = torch.zeros_like(speed), prepared.scales
+
+    def force(rate: Tensor) -> Tensor:
+        return effect.damping_force(Moment(none, none, rate, delta=none, delta_rate=rate), prepared.terms[effect.name])
+
+    return harmonic_damping_coefficient(force, speed / scales.velocity) * scales.mass / scales.time

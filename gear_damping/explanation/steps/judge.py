@@ -95,7 +95,7 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
     taken, said = _taken(found, before, after), _named(found.accepted)
     confused = [cause for cause in found.accepted if cause.confusable]
     classes = [cause for cause in found.accepted if cause.effect.cause.one_class]
-    rest = is_all(after, before, settings) or (not is_visible(found.left) and after.misfit <= settings.small_misfit)
+    rest = _is_all(found, before, after) or (not is_visible(found.left) and after.misfit <= settings.small_misfit)
     beside = (taken.sentence, *_not_told_apart(confused), *known.unsettled)
     if known.stands_in:
         return _not_established(found, before, known, known.stands_in)
@@ -121,6 +121,20 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
         return Verdict(AMBIGUOUS, (f"{missing}.", *beside, *_small_rest(found, after)))
     same = _same_record(found.accepted)
     return Verdict(EXPLAINED, (f"{missing}: {said}.", *beside, *same, *_small_rest(found, after)))
+
+
+def _is_all(found: State, before: Excess, after: Excess) -> bool:
+    """Whether causes explain all but noise or a small part.
+
+    Where something is visible beside them, what looks random beyond the noise of the sensor is no noise.
+    """
+    settings = found.bench.settings
+    if not is_all(after, before, settings):
+        return False
+    first, beyond = (found.beyond_sensor(outcome) for outcome in (found.nominal, found.outcome))
+    if not is_visible(found.left) or beyond.misfit <= settings.small_misfit:
+        return True
+    return beyond.percent <= max(settings.least_excess, settings.named_share * first.percent)
 
 
 def _not_established(found: State, before: Excess, known: Known, why: str) -> Verdict:
@@ -158,18 +172,19 @@ def _without_name(found: State, before: Excess, known: Known) -> Verdict:
         text = f"{_missing(before)}, and no effect of the catalogue is borne out by held-out records."
         looks = (f"What is missing looks like {known.shape}.",) if known.shape else ()
         return Verdict(UNEXPLAINED, (text, *looks, *known.unsettled))
-    raised = found.beyond_sensor(found.nominal).misfit > settings.small_misfit  # more looks random than a sensor makes
-    if visible and raised and before.threshold > settings.gross_percent:
-        text = (
-            "Something is visible that is not random, and no effect of the catalogue is borne out; these records would "
-            f"not show one of less than {before.threshold:.2g} % of the signal's variance."
-        )
-        return Verdict(UNEXPLAINED, (text, *known.unsettled))
     if visible and found.seen is not None and any(found.seen.visible.shows(name) for name in known.untried):
         text = "Something is visible that is not random, and there was no time to try what it could be."
         return Verdict(UNEXPLAINED, (text, *known.unsettled))
     if known.shape:
         text = f"Something is visible that is not random: {known.shape}. No effect of the catalogue is borne out."
+        return Verdict(UNEXPLAINED, (text, *known.unsettled))
+    beyond = found.beyond_sensor(found.nominal)
+    raised = beyond.misfit > settings.small_misfit and beyond.percent > settings.least_excess
+    if visible and raised:  # more than a sensor makes, and not all of it can be random
+        text = (
+            f"{beyond.percent:.3g} % of the signal's variance looks nearly random, is more than the noise of the "
+            "sensor, and something in it is visible that is not random; no effect of the catalogue is borne out."
+        )
         return Verdict(UNEXPLAINED, (text, *known.unsettled))
     text = f"No evidence of an effect that takes more than {before.threshold:.2g} % of the signal's variance."
     return Verdict(CONSISTENT, (text,))

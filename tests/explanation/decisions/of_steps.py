@@ -166,8 +166,8 @@ def said(settings: SearchSettings, before, after, *, count=1, seen=True, rest=Tr
     causes = tuple(SimpleNamespace(name=name, **own) for name in NAMES[:count])
     looked = [SimpleNamespace(visible=one, taken=0.5) for one in (seen, rest)]
     found = SimpleNamespace(
-        bench=SimpleNamespace(settings=settings), accepted=causes, seen=looked[0], left=looked[1], nominal=None,
-        beyond_sensor=lambda _: left(0.0, 1.0),
+        bench=SimpleNamespace(settings=settings), accepted=causes, seen=looked[0], left=looked[1],
+        nominal=None, outcome=None, beyond_sensor=lambda _: left(0.0, 1.0),
     )  # fmt: skip
     return verdict(found, before, after, Known(**known)).word
 
