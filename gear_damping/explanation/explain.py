@@ -9,7 +9,7 @@ from torch import Tensor
 
 from gear_damping.explanation.answer import content
 from gear_damping.explanation.answer.homogeneity import homogeneity
-from gear_damping.explanation.answer.stand_in import is_untold, shape_without_name, stand_ins
+from gear_damping.explanation.answer.stand_in import is_untold, shape_without_name, stand_ins, swings_on
 from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.casing.content import CasingStudy, explain_casing
 from gear_damping.explanation.casing.heard import is_casing
@@ -170,7 +170,7 @@ def _judged(found: Confirmed, notes: Sequence[str]) -> Judged:
     """The state with its verdict."""
     state, before, after = found.state, found.before, found.after
     evidence, settings, budget = state.bench.evidence, state.bench.settings, state.bench.budget
-    stands_in = next((one.sentence for one in stand_ins(state)), "")  # which may be refused too
+    stands_in = swings_on(state) or next((one.sentence for one in stand_ins(state)), "")  # which may be refused too
     not_tried = tuple(budget.not_tried)
     fitted = excess(state.nominal.fit_residuals, evidence.fitted, state.noise, settings)
     known = Known(

@@ -186,6 +186,10 @@ class ExtraStates(Effect):
 
     states: ClassVar[dict[str, str]]  # name -> SI unit; `now.extra` has them as `effect.state`
 
+    def decay_time(self, values: Mapping[str, float]) -> float:
+        """Seconds in which its free motion falls to 1/e, by own parameters; 0 where it does not swing by itself."""
+        return 0.0
+
     def initial(self, p: Values, base: Values) -> dict[str, Tensor]:
         """The states at the start in natural units, by own name; at rest unless said otherwise."""
         zero = torch.zeros_like(base["equivalent_mass"])

@@ -29,8 +29,11 @@ def state_space(mass_ratio):
     return matrix, np.array([[0.0], [1.0], [0.0], [0.0]]), np.eye(4)[:1], np.zeros((1, 1))
 
 
-def written(folder, mass_ratio):
-    """Three records under random forces, smooth between the samples, one of them held out."""
+def written(folder, mass_ratio, line=0.0):
+    """Three records under random forces, smooth between the samples, one of them held out.
+
+    `line`: size of a line in the response, over the spread of it, with another phase in every record.
+    """
     rng, time = np.random.default_rng(5), np.arange(round(SECONDS * RATE)) / RATE
     records = []
     for k in range(3):
@@ -39,6 +42,7 @@ def written(folder, mass_ratio):
         force = np.cos(2 * math.pi * fine[:, None] * waves[0] + waves[1]).sum(1)
         x = lsim(state_space(mass_ratio), force, fine)[1][::8]
         x = x + 0.01 * x.std() * rng.normal(size=len(x))
+        x = x + line * x.std() * np.cos(2 * math.pi * 8.2 * time + 2.0 * k)
         np.savetxt(folder / f"r{k}.csv", np.c_[time, x, force[::8]], delimiter=",", header="t,x,u", comments="")
         channels = {"time": {"column": "t", "unit": "s"}, "displacement": {"column": "x", "unit": "m"},
                     "force": {"column": "u", "unit": "N"}}  # fmt: skip
@@ -54,6 +58,14 @@ def test_a_second_mode_is_named_with_its_mass_and_frequency(tmp_path):
     found = content["causes"][0]["parameters"]
     assert found["mass_ratio"]["value"] == pytest.approx(0.05, rel=0.1)
     assert found["frequency"]["value"] == pytest.approx(8.2, rel=0.01)
+
+
+def test_a_line_that_somebody_else_drives_is_no_mode(tmp_path):
+    """A mode that does not die away, begun anew in every record, would look the same."""
+    content = explain(load_measurement(written(tmp_path, 0.0, line=0.1))).content
+    assert content["verdict"] == "unexplained"
+    assert not [cause for cause in content["causes"] if cause["status"] == "established"]
+    assert "a line" in " ".join(content["sentences"])
 
 
 def test_none_is_named_where_there_is_one_mass(tmp_path):

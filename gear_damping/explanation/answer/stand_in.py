@@ -25,7 +25,9 @@ from gear_damping.explanation.trials.assess import LINE_FAMILY, UNNAMED, orthono
 from gear_damping.explanation.trials.line import strongest_line
 from gear_damping.explanation.trials.score import projected
 from gear_damping.explanation.trials.unnamed import unnamed_columns
+from gear_damping.physics.terms import ExtraStates
 
+GOES_ON = 3.0  # times the longest record: what swings for so long has lost a quarter of its size at its end
 INDEPENDENT = 1e-6  # of what a cause adds: less is left of it beside a family that can do the same
 
 
@@ -80,6 +82,22 @@ def stand_ins(state: State) -> Iterator[StandIn]:
         return
     found = (_stand_in(cause, state) for cause in state.accepted)
     yield from (one for one in found if one is not None)
+
+
+def swings_on(state: State) -> str:
+    """Why a cause that swings by itself is none, in words; empty where none does, or where it dies away.
+
+    A motion that goes on all through the records with a start of its own in each is as well a line that somebody
+    else drives, and no mode is without damping.
+    """
+    longest = state.bench.evidence.duration
+    for cause in state.accepted:
+        effect, values = cause.effect, state.outcome.flat_given()
+        if isinstance(effect, ExtraStates):
+            own = {parameter.name: values[f"{effect.name}.{parameter.name}"] for parameter in effect.parameters}
+            if effect.decay_time(own) > GOES_ON * longest:
+                return f"but `{cause.name}` does not die away within the records: a line looks the same."
+    return ""
 
 
 def is_untold(state: State) -> bool:

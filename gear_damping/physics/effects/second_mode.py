@@ -1,6 +1,7 @@
 """A second mode of the structure."""
 
-from math import pi
+from collections.abc import Mapping
+from math import inf, pi
 from typing import ClassVar
 
 import torch
@@ -54,6 +55,11 @@ class SecondMode(ExtraStates, Load):
     systems: ClassVar = ("oscillator",)
     states: ClassVar = {"displacement": "m", "velocity": "m/s"}
     cause: ClassVar = Cause("a second mode of the structure", _at_the_lines, separated_by="amplitude")
+
+    def decay_time(self, values: Mapping[str, float]) -> float:
+        """1 / (zeta w), of the second mass alone."""
+        rate = 2 * pi * values["frequency"] * values["damping_ratio"]
+        return 1 / rate if rate > 0 else inf
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
         """Coefficients of spring and damper, and a bound on the fastest rate of both masses."""
