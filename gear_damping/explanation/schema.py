@@ -149,7 +149,7 @@ class Residuals(Part):
 
 
 class DampingRatio(Part):
-    """The equivalent damping ratio of every damping law together."""
+    """The equivalent damping ratio of every damping law and of dry friction together; none without a spring."""
 
     value: float = said("of critical", "%")
     unit: Literal["%"] = said("its unit")

@@ -1,14 +1,30 @@
 """Limited bandwidth of the sensor."""
 
-from math import pi
+from math import inf, pi
 from typing import ClassVar
 
 from torch import Tensor
 
-from gear_damping.physics.cause import Cause, Recipe
+from gear_damping.physics.cause import Cause, Recipe, Rig
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.record_filter import butterworth_modes, butterworth_response, filtered
 from gear_damping.physics.terms import Recording, Sensor, Values
+
+
+SIZES = (0.5, 1.5, 4.0)  # of the unit of frequency; a mode lies at 1 / (2 pi)
+COASTING = (2.0, 6.0)  # of a rig without a spring, whose motion has no frequency
+SLOWEST = 1.0  # of these: a sensor slower than the motion itself would show whatever its filter makes of it
+
+
+def _switched_on(rig: Rig) -> tuple[Recipe, ...]:
+    coasts = rig.values.get("natural_frequency", 1.0) == 0
+    slowest = SLOWEST / (rig.values.get("characteristic_time", 0.0) or 1.0)
+    within = {"sensor_lowpass.cutoff": (slowest, inf)} if coasts else {}
+    return tuple(
+        Recipe({"cutoff": size}, presence=True, options={"order": order}, within=within)
+        for order in (1, 2)
+        for size in (COASTING if coasts else SIZES)
+    )
 
 
 class SensorLowpass(Sensor):
@@ -20,15 +36,7 @@ class SensorLowpass(Sensor):
     parameters: ClassVar = (Parameter("cutoff", "Hz", 1e4, "f_c, where half the power is left", 1e-6, 1e12),)
     options: ClassVar = (Option("order", (1, 2, 4), 2, "number of poles"),)
     position = 40
-    cause: ClassVar = Cause(
-        "the low-pass of the sensor",
-        tuple(
-            Recipe({"cutoff": size}, presence=True, options={"order": order})
-            for order in (1, 2)
-            for size in (0.5, 1.5, 4.0)
-        ),
-        separated_by="speed",
-    )
+    cause: ClassVar = Cause("the low-pass of the sensor", _switched_on, separated_by="speed")
 
     def measure(self, signal: Tensor, values: Values, recording: Recording) -> Tensor:
         """The filtered record."""

@@ -1,0 +1,20 @@
+"""How a low-pass of the sensor is tried: of a rig without a spring none that is slower than the motion."""
+
+from gear_damping.physics.cause import Rig
+from gear_damping.physics.effects.sensor_lowpass import SensorLowpass
+
+CUTOFF = "sensor_lowpass.cutoff"
+
+
+def test_of_a_rig_that_coasts_no_sensor_is_slower_than_its_motion():
+    values = {"natural_frequency": 0.0, "characteristic_time": 8.0}
+    recipes = SensorLowpass.cause.recipes_for(Rig("oscillator", values=values))
+    assert {recipe.within[CUTOFF][0] for recipe in recipes} == {0.125}
+    assert min(recipe.strengths["cutoff"] for recipe in recipes) > 1.0
+
+
+def test_beside_a_mode_a_sensor_may_be_slower():
+    recipes = SensorLowpass.cause.recipes_for(Rig("oscillator", values={"natural_frequency": 30.0}))
+    assert {recipe.options["order"] for recipe in recipes} == {1, 2}
+    assert min(recipe.strengths["cutoff"] for recipe in recipes) < 1.0
+    assert not any(recipe.within for recipe in recipes)
