@@ -10,7 +10,7 @@ from pathlib import Path
 import torch
 
 from gear_damping.identification.oscillator import first_frequency
-from gear_damping.identification.output_error.least_squares import fit
+from gear_damping.identification.output_error.least_squares import Rounds, fit
 from gear_damping.identification.output_error.problem import OutputErrorProblem
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.identification.output_error.uncertainty import covariance, interval
@@ -40,7 +40,7 @@ def identify(measurement: Path) -> dict[str, tuple[float, tuple[float, float]]]:
     few_periods = round(4 * 2 * pi / rate * records[0].sampling_rate)
     # Logarithmic coordinates, 0 at the first guess; give several rows where one guess may be far off.
     starts = torch.zeros(1, len(free), dtype=torch.float64)
-    fitted = fit(problem, starts, [few_periods, len(records[0].response)])
+    fitted = fit(problem, starts, Rounds(horizons=[few_periods / records[0].sampling_rate, None]))
     spread = covariance(problem, fitted, few_periods)
     return {p.name: interval(lambda z, p=p, i=i: p.value(z[i]), fitted.shared, spread) for i, p in enumerate(free)}
 
