@@ -90,9 +90,9 @@ def swings_on(state: State) -> str:
     A motion that goes on all through the records with a start of its own in each is as well a line that somebody
     else drives, and no mode is without damping.
     """
-    longest = state.bench.evidence.duration
+    longest, values = state.bench.evidence.duration, state.outcome.flat_given()
     for cause in state.accepted:
-        effect, values = cause.effect, state.outcome.flat_given()
+        effect = cause.effect
         if isinstance(effect, ExtraStates):
             own = {parameter.name: values[f"{effect.name}.{parameter.name}"] for parameter in effect.parameters}
             if effect.decay_time(own) > GOES_ON * longest:

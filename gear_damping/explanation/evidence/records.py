@@ -15,7 +15,7 @@ from gear_damping.identification.observation import (
     require_fitted,
     response_names,
 )
-from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.identification.output_error.segments import WHOLE, Segments, covered, part, shortened
 from gear_damping.measurement.record import Channel, Measurement
 from gear_damping.physics.catalogue import builtin_effects
@@ -156,11 +156,15 @@ def evidence_of(measurement: Measurement) -> Evidence:
 
 def with_own_angles(evidence: Evidence) -> Evidence:
     """The same where every record has a mesh phase of its own."""
+    return replace(with_own(evidence, lambda record: (MESH_PHASE, *record.own)), has_index=False)
+
+
+def with_own(evidence: Evidence, own_of: Callable[[FitRecord], tuple[FreeParameter, ...]]) -> Evidence:
+    """The same where every record has these parameters of its own."""
     fit, holdout = (
-        tuple(replace(record, own=(MESH_PHASE, *record.own)) for record in records)
-        for records in (evidence.fit, evidence.holdout)
+        tuple(replace(record, own=own_of(record)) for record in records) for records in (evidence.fit, evidence.holdout)
     )
-    return replace(evidence, fit=fit, holdout=holdout, has_index=False)
+    return replace(evidence, fit=fit, holdout=holdout)
 
 
 def _roles(records: Sequence[tuple[FitRecord, str | None]]) -> tuple[list[FitRecord], list[FitRecord]]:

@@ -1,10 +1,9 @@
 """Shafts whose angle nobody recorded: the speed that is stated of a record is that of a drive, never quite steady."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from math import pi
 
-from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.evidence.records import Evidence, with_own
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 
 VARIES = 1e-3  # of the speed, standard deviation: what a drive lets it vary in waves about as long as a record
@@ -13,11 +12,7 @@ MOST = 3.0  # such deviations, at which the search of a model that lacks somethi
 
 def with_unsteady_shafts(evidence: Evidence) -> Evidence:
     """The same where the speed of every record whose shaft angle nobody recorded may vary a little."""
-    fit, holdout = (
-        tuple(replace(record, own=_unsteady(record)) for record in records)
-        for records in (evidence.fit, evidence.holdout)
-    )
-    return replace(evidence, fit=fit, holdout=holdout)
+    return with_own(evidence, _unsteady)
 
 
 def has_unsteady_shafts(records: Sequence[FitRecord]) -> bool:

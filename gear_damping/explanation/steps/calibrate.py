@@ -127,7 +127,7 @@ def recalibrated(calibration: Calibration, evidence: Evidence, solver: Solver | 
     One that only some of the records follow stays as it is.
     """
     hypothesis = calibration.nominal.hypothesis
-    own = {name: value for name, value in calibration.nominal.values.items() if SEPARATOR in name}
+    own = _own_of(calibration.nominal)
     if calibration.followed:
         return fit_hypothesis(hypothesis, evidence, Begun(own=own), NONE, solver=solver)
     starts = torch.zeros(2, len(hypothesis.common), dtype=torch.float64)
@@ -161,8 +161,13 @@ def _of_others(found: Outcome, followed: Evidence, evidence: Evidence, solver: S
     names = {record.name for record in followed.fit}
     others = replace(evidence, fit=tuple(record for record in evidence.fit if record.name not in names))
     own = {} if evidence.has_index else dict(angles_of(found.hypothesis, others, evidence.duration, solver))
-    own |= {name: value for name, value in found.values.items() if SEPARATOR in name}
+    own |= _own_of(found)
     return fit_hypothesis(found.hypothesis, evidence, Begun(own=own), NONE, solver=solver)
+
+
+def _own_of(found: Outcome) -> dict[str, float]:
+    """What single records have of their own, by name."""
+    return {name: value for name, value in found.values.items() if SEPARATOR in name}
 
 
 def _rough_gear_pair(evidence: Evidence, solver: Solver | None) -> Outcome:

@@ -65,11 +65,12 @@ def confirmed(state: State, sealed: Sequence[FitRecord], measurement: Measuremen
 def _with_sealed(state: State, sealed: Sequence[FitRecord], measurement: Measurement) -> tuple[Evidence, NoiseLevel]:
     """The evidence with its held-out records as the others are seen, and the noise of all of them."""
     evidence, known = state.bench.evidence, state.noise
+    seen = replace(evidence, holdout=tuple(sealed))
     if any(MESH_PHASE in record.own for record in evidence.fit):
-        sealed = with_own_angles(replace(evidence, holdout=tuple(sealed))).holdout
+        seen = with_own_angles(seen)
     if has_unsteady_shafts(evidence.fit):
-        sealed = with_unsteady_shafts(replace(evidence, holdout=tuple(sealed))).holdout
-    _, scaled, found = noise_of(evidence.fit, sealed, measurement)
+        seen = with_unsteady_shafts(seen)
+    _, scaled, found = noise_of(evidence.fit, seen.holdout, measurement)
     least = known.value if known.by_record != state.bench.floor.by_record else 0.0  # much more looks random
     levels = {record.name: max(found.by_record[record.name], least) for record in sealed}
     noise = replace(known, by_record={**known.by_record, **levels})

@@ -131,8 +131,10 @@ def _is_all(found: State, before: Excess, after: Excess) -> bool:
     settings = found.bench.settings
     if not is_all(after, before, settings):
         return False
+    if not is_visible(found.left):
+        return True
     first, beyond = (found.beyond_sensor(outcome) for outcome in (found.nominal, found.outcome))
-    if not is_visible(found.left) or beyond.misfit <= settings.small_misfit:
+    if beyond.misfit <= settings.small_misfit:
         return True
     return beyond.percent <= max(settings.least_excess, settings.named_share * first.percent)
 

@@ -1,6 +1,6 @@
 """Step 4: what is random in the residuals, and is anything in them that is not?"""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from math import log
@@ -75,18 +75,12 @@ def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, fami
     def looked_at(random: Random) -> Assessment:
         white = Whitener(random, outcome)
         if random.is_white:  # all are beside the nuisance as they are
-            effects = [Effect(s.candidate.name, s.columns, bool(s.candidate.presence)) for s in scores]
-            effects += [Effect(name, columns) for name, columns in nameless().items()]
+            effects = _effects(scores, nameless())
             return _tested(white.padded(beside)[:, 0], effects, project, white, outcome, evidence.settings.level)
         slopes = white(sensitivity.flatten(0, 1)).reshape(sensitivity.shape)
         whitened = Projector(slopes, project.expected, project.slope)
         seen = whitened(white.padded(residual))[:, 0]
-        effects = [
-            Effect(s.candidate.name, orthonormal(whitened(white.padded(s.columns))), bool(s.candidate.presence))
-            for s in scores
-            if s.columns.shape[1]
-        ]
-        effects += [Effect(name, orthonormal(whitened(white.padded(c)))) for name, c in unnamed.items()]
+        effects = _effects(scores, unnamed, lambda columns: orthonormal(whitened(white.padded(columns))))
         return _tested(seen, effects, whitened, white, outcome, evidence.settings.level)
 
     def random_in(left: Tensor, taken: float) -> Random:
@@ -109,6 +103,16 @@ def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, fami
         return replace(again, random=random_in(beside, 0.0))
     share = 1 - float(left.square().sum()) / max(float(beside.square().sum()), 1e-300) - taken / count
     return replace(again, taken=max(again.taken, share))  # a colour that is fitted to an effect hides its part
+
+
+def _effects(
+    scores: Sequence[Score], unnamed: Mapping[str, Tensor], form: Callable[[Tensor], Tensor] = lambda columns: columns
+) -> list[Effect]:
+    """Every candidate that does something, and the families without a name, with their columns brought to a form."""
+    found = [
+        Effect(s.candidate.name, form(s.columns), bool(s.candidate.presence)) for s in scores if s.columns.shape[1]
+    ]
+    return found + [Effect(name, form(columns)) for name, columns in unnamed.items()]
 
 
 def _tested(

@@ -12,7 +12,7 @@ from gear_damping.physics.terms import Recording, Sensor, Values
 
 SIZES = (0.5, 1.5, 4.0)  # of the unit of frequency; a mode lies at 1 / (2 pi)
 COASTING = (2.0, 6.0)  # of a rig without a spring, whose motion has no frequency
-SLOWEST = 1.0  # of these: a sensor slower than the motion itself would show whatever its filter makes of it
+SLOWEST = 1.0  # of that unit: a sensor slower than the motion itself would show whatever its filter makes of it
 
 
 def _switched_on(rig: Rig) -> tuple[Recipe, ...]:

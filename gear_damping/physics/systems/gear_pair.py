@@ -110,9 +110,7 @@ class GearPair(System):
         if "pinion_angle" in inputs:
             angle, speed = inputs["pinion_angle"], inputs["pinion_angle_rate"]
         else:
-            first, second = p["pinion_acceleration"], p["pinion_jerk"]
-            speed = p["pinion_speed"] + time * (first + time * second / 2)
-            angle = p["pinion_angle"] + time * (p["pinion_speed"] + time * (first / 2 + time * second / 6))
+            angle, speed = _turned(p, time)
         ratio = p["n_teeth_pinion"] / p["n_teeth_gear"]
         return {
             "pinion": Rotation(angle, speed),
@@ -122,12 +120,16 @@ class GearPair(System):
 
     def begun_later(self, values: Values, seconds: Tensor) -> dict[str, Tensor]:
         """Where the shaft is by then, and how fast it turns."""
-        speed, first, second = (values[name] for name in ("pinion_speed", "pinion_acceleration", "pinion_jerk"))
-        return {
-            "pinion_angle": values["pinion_angle"] + seconds * (speed + seconds * (first / 2 + seconds * second / 6)),
-            "pinion_speed": speed + seconds * (first + seconds * second / 2),
-            "pinion_acceleration": first + seconds * second,
-        }
+        angle, speed = _turned(values, seconds)
+        faster = values["pinion_acceleration"] + seconds * values["pinion_jerk"]
+        return {"pinion_angle": angle, "pinion_speed": speed, "pinion_acceleration": faster}
+
+
+def _turned(p: Values, time: Tensor) -> tuple[Tensor, Tensor]:
+    """Angle and speed of the pinion at a time, from what is stated of them at the start."""
+    first, second = p["pinion_acceleration"], p["pinion_jerk"]
+    speed = p["pinion_speed"] + time * (first + time * second / 2)
+    return p["pinion_angle"] + time * (p["pinion_speed"] + time * (first / 2 + time * second / 6)), speed
 
 
 def _true_torque(read: Tensor, values: Values) -> Tensor:
