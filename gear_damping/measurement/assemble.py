@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.checks import check_record
 from gear_damping.measurement.cutting import moved
-from gear_damping.measurement.encoders import FROM_ENCODERS, base_radius, transmission_error
+from gear_damping.measurement.encoders import FROM_ENCODERS, base_radius, mean_rotation, transmission_error
 from gear_damping.measurement.fields import Problems
 from gear_damping.measurement.own_units import Conversion, UnitSystem
 from gear_damping.measurement.plan import Plan
@@ -22,6 +22,7 @@ from gear_damping.units import parse_unit
 
 LOST = 0.1  # of a channel's variance, from which it is said that resampling took it
 _GEOMETRY = ("n_teeth_pinion", "n_teeth_gear", "module", "pressure_angle")
+_INERTIAS = ("inertia_pinion", "inertia_gear")
 
 
 class Assembler:
@@ -99,16 +100,20 @@ class Assembler:
     ) -> None:
         """The pinion angle, and the transmission error where both shafts are measured."""
         shaft = raw.angles.get("pinion", raw.angles.get("tacho"))
+        if {"pinion", "gear"} <= {*raw.angles} and "transmission_error" not in channels:
+            error, shaft = self._error(raw.angles, f"{raw.plan.key}.encoders", findings)
+            channels["transmission_error"] = Channel(
+                "transmission_error", raw.base.resample(error), "m", datum="arbitrary"
+            )
+            notes.append(FROM_ENCODERS)
         if shaft is not None and "pinion_angle" not in channels:
             datum = "absolute" if raw.plan.mesh_index else "arbitrary"
             channels["pinion_angle"] = Channel("pinion_angle", raw.base.resample(shaft), "rad", datum=datum)
-        if not {"pinion", "gear"} <= {*raw.angles} or "transmission_error" in channels:
-            return
-        key = f"{raw.plan.key}.encoders"
-        channels["transmission_error"] = self._error(raw.angles, raw, key, findings)
-        notes.append(FROM_ENCODERS)
 
-    def _error(self, angles: dict[str, NDArray], raw: RawRecord, key: str, findings: list[Finding]) -> Channel:
+    def _error(
+        self, angles: dict[str, NDArray], key: str, findings: list[Finding]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The transmission error, and the pinion's mean rotation where both inertias are known, else its angle."""
         missing = [name for name in _GEOMETRY if name not in self.plan.parameters]
         if missing:
             rule = "the transmission error from encoders needs the base radii"
@@ -119,7 +124,10 @@ class Assembler:
         values = transmission_error(angles["pinion"], angles["gear"], *radii)
         found = tooth_ratio(angles["pinion"], angles["gear"], (teeth_1, teeth_2), radii[0])
         findings += [replace(found, channel="transmission_error")] if found else []
-        return Channel("transmission_error", raw.base.resample(values), "m", datum="arbitrary")
+        known = [self.plan.parameters[name].value for name in _INERTIAS if name in self.plan.parameters]
+        if len(known) < len(_INERTIAS):
+            return values, angles["pinion"]
+        return values, mean_rotation(angles["pinion"], values, radii, (known[0], known[1]))
 
     def _give_mean(self, raw: RawRecord, channels: dict[str, Channel], notes: list[str]) -> None:
         """A speed that has lost its mean gets the one under conditions."""

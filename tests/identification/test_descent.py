@@ -8,9 +8,12 @@ import torch
 from scipy.integrate import solve_ivp
 from scipy.optimize import least_squares as scipy_least_squares
 
-from gear_damping.identification.output_error.descent import Descent, Lent, Points
-from gear_damping.identification.output_error.problem import OutputErrorProblem
-from gear_damping.identification.output_error.records import FitRecord, FreeParameter
+from gear_damping.identification.output_error.descent import Descent, Lent
+from gear_damping.identification.output_error.least_squares import Rounds, fit
+from gear_damping.identification.output_error.normal_equations import normal_equations
+from gear_damping.identification.output_error.problem import OutputErrorProblem, Prediction
+from gear_damping.identification.output_error.records import FitRecord, FreeParameter, Observed
+from gear_damping.identification.output_error.step import Points
 from gear_damping.physics.catalogue import effect_class
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.oscillator import Oscillator
@@ -206,3 +209,45 @@ def test_an_offset_of_one_record_is_left_alone_by_the_others():
     apart = OutputErrorProblem(MODEL, {}, [*FREE, own], problem.records)
     assert apart.unknowns.reach[:, -2:].tolist() == [[1.0, 0.0], [0.0, 1.0]]
     assert math.isclose(float(apart.unknowns.reach[:, :-2].min()), 1.0)
+
+
+def test_what_goes_only_so_far_lets_the_others_do_what_is_left():
+    draw = torch.Generator().manual_seed(3)
+    sensitivity = torch.randn(1, 2, 30, 5, generator=draw, dtype=torch.float64)
+    residual = torch.randn(1, 2, 30, generator=draw, dtype=torch.float64)
+    equations = normal_equations(Prediction(residual, sensitivity), 3)  # three shared, two of each record
+    held = torch.tensor([[0.7, 0.0, 0.0]], dtype=torch.float64)
+    free = torch.tensor([[False, True, True]])
+    shared, own = equations.beyond(held).only(free).step(torch.zeros(1, dtype=torch.float64))
+    dense = np.zeros((60, 7))
+    for record in range(2):
+        rows = slice(30 * record, 30 * record + 30)
+        dense[rows, :3] = sensitivity[0, record, :, :3]
+        dense[rows, 3 + 2 * record : 5 + 2 * record] = sensitivity[0, record, :, 3:]
+    left = residual.flatten().numpy() - 0.7 * dense[:, 0]
+    found = np.linalg.lstsq(dense[:, 1:], left, rcond=None)[0]
+    np.testing.assert_allclose(shared[0, 1:], found[:2], rtol=1e-9)
+    np.testing.assert_allclose(own.flatten(), found[2:], rtol=1e-9)
+
+
+def spin_down(friction, quadratic):
+    """Speed of a free wheel in rpm, by scipy."""
+    times = np.arange(400) / 10.0
+    found = solve_ivp(lambda _, v: -friction * v - quadratic * v**2, (0, 40), [2000.0], t_eval=times, rtol=1e-10)
+    return FitRecord("coast", torch.tensor(found.y[0]), 10.0, observed=Observed("velocity"))
+
+
+def test_along_a_bent_valley_a_power_law_in_small_units_is_found(monkeypatch):
+    monkeypatch.setattr("gear_damping.identification.output_error.descent.AT_ONCE", 1e9)
+    model = Model(Oscillator(), [effect_class("viscous_damping")(), effect_class("power_law_damping")()])
+    free = [
+        FreeParameter(COEFFICIENT, 0.03, logarithmic=True),
+        FreeParameter("power_law_damping.coefficient", 2e-9, logarithmic=True),
+        FreeParameter("power_law_damping.exponent", 3.2, lower=0.2, upper=5.0),
+    ]
+    given = {"stiffness": 0.0, "amplitude": 2000.0, "characteristic_time": 1.0}
+    problem = OutputErrorProblem(model, given, free, [spin_down(0.01, 2e-5)])
+    found = fit(problem, torch.zeros(1, 3, dtype=torch.float64), Rounds(25))
+    values = {name: float(value) for name, value in problem.unknowns.parameters(found.shared).items()}
+    assert values["power_law_damping.exponent"] == pytest.approx(2.0, rel=1e-3)
+    assert values["power_law_damping.coefficient"] == pytest.approx(2e-5, rel=1e-2)

@@ -86,6 +86,26 @@ def test_two_encoders_give_the_transmission_error(bench):
     assert "give module under parameters" in bench.only_problem(write=False)
 
 
+def test_beside_known_inertias_the_angle_is_the_mean_rotation(bench):
+    time = np.arange(2000) / 20000
+    error, rotation = 5e-6 * np.sin(2 * pi * 600 * time), 60 * pi * time
+    inertias = 3e-4, 2e-3
+    torques = RADIUS_PINION, -RADIUS_GEAR  # of one force along the line of action
+    swings = [arm / inertia for arm, inertia in zip(torques, inertias, strict=True)]
+    force = error / (RADIUS_PINION * swings[0] - RADIUS_GEAR * swings[1])
+    pinion = rotation + swings[0] * force
+    gear = RADIUS_PINION / RADIUS_GEAR * rotation + swings[1] * force
+    record = _rig(bench, t=time, p=pinion * 4096 / (2 * pi), g=gear * 5000 / (2 * pi))
+    counts = [{"column": "p", "counts_per_revolution": 4096}, {"column": "g", "counts_per_revolution": 5000}]
+    record["encoders"] = dict(zip(("pinion", "gear"), counts, strict=True))
+    assert np.ptp(bench.load_as_it_is().records[0].channels["pinion_angle"].values - pinion) < 1e-10
+    for shaft, inertia in zip(("pinion", "gear"), inertias, strict=True):
+        bench.content["parameters"][f"inertia_{shaft}"] = {"value": inertia, "unit": "kg*m^2"}
+    loaded = bench.load_as_it_is().records[0].channels
+    np.testing.assert_allclose(loaded["transmission_error"].values, error - error.mean(), atol=1e-13)
+    assert np.ptp(loaded["pinion_angle"].values - rotation) < 1e-10 < np.ptp(pinion - rotation)
+
+
 def test_the_index_pulse_is_the_zero_of_the_angle(bench):
     time = np.arange(2000) / 20000
     counts = 60 * pi * time * 4096 / (2 * pi)

@@ -15,7 +15,8 @@ from gear_damping.units import parse_unit
 
 UNSEEN = 50.0  # times smaller than where it begins, a parameter that has no size yet does nothing
 ANGLE_SCALE = 0.1  # rad, a step of order one of an angle that is freed
-SHOWN = ("exponent", "order", "phase", "sine_frequency", "ramp_start")  # of a variant, in its label
+EXPONENT = "exponent"  # the name of a parameter that is the power of a law
+SHOWN = (EXPONENT, "order", "phase", "sine_frequency", "ramp_start")  # of a variant, in its label
 COVERED_BY_NUISANCE = {"oscillator": {"sensor_offset", "sensor_gain"}, "gear_pair": set()}
 
 
@@ -167,12 +168,15 @@ def _declared(kind: type[Effect], recipe: Recipe) -> list[Parameter]:
 
 
 def _freed(declared: Parameter, flat: str, given: Given, within: Mapping[str, tuple[float, float]]) -> FreeParameter:
-    """A parameter that joins in the full fit, from its value there; an angle on its own scale."""
+    """A parameter that joins in the full fit, from its value there; an angle on its own scale.
+
+    The logarithm of a power is linear in its exponent.
+    """
     value, (low, high) = float(given[flat]), within.get(flat, (-inf, inf))
     if declared.lower < 0:
         return FreeParameter(flat, value, ANGLE_SCALE)
     lower, upper = max(declared.lower, low), min(declared.upper, high)
-    return FreeParameter(flat, value, logarithmic=True, lower=lower, upper=upper)
+    return FreeParameter(flat, value, logarithmic=declared.name != EXPONENT, lower=lower, upper=upper)
 
 
 def _label(kind: type[Effect], recipe: Recipe) -> str:

@@ -11,8 +11,9 @@ from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.hypothesis import Outcome, settled_at
 from gear_damping.explanation.trials.assess import assessed
 from gear_damping.explanation.trials.random_part import Random, Whitener
-from gear_damping.identification.output_error.descent import SMALLEST_DAMPING, Points, moves, newton_step
+from gear_damping.identification.output_error.descent import SMALLEST_DAMPING
 from gear_damping.identification.output_error.problem import Prediction
+from gear_damping.identification.output_error.step import Points, moves, newton_step
 
 
 def efficient(outcome: Outcome, random: Random) -> Outcome:

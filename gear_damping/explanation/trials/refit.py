@@ -8,9 +8,9 @@ import torch
 from torch import Tensor
 
 from gear_damping.explanation.evidence.records import Evidence
-from gear_damping.explanation.model.candidates import Candidate
+from gear_damping.explanation.model.candidates import EXPONENT, Candidate
 from gear_damping.explanation.model.fitting import Begun, fit_hypothesis
-from gear_damping.explanation.model.hypothesis import Outcome, time_scale
+from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, time_scale
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.statistics.paired import paired_gain
 from gear_damping.explanation.trials.score import Score, best_by_effect, collinearity
@@ -133,14 +133,28 @@ def refitted(
     rounds = Rounds((FIRST_ITERATIONS, LAST_ITERATIONS), (FIRST_PART * evidence.duration, None), kept)
     found = fit_hypothesis(hypothesis, evidence, Begun(_starts(score), outcome, score.own), rounds, ends, solver)
     if candidate.later and found.fitted.cost <= reach:
-        freed = replace(found.hypothesis, free=(*found.hypothesis.free, *candidate.later))
-        freed = replace(
-            freed, free=tuple(replace(p, start=float(found.hypothesis.given.get(p.name, p.start))) for p in freed.free)
-        )
-        found = fit_hypothesis(freed, evidence, Begun(after=found), ends=ends, solver=solver)
+        found = fit_hypothesis(_freed(found, candidate), evidence, Begun(after=found), ends=ends, solver=solver)
     if not found.is_finite:
         return None
     return compared(score, found, against or outcome, evidence)
+
+
+def _freed(found: Outcome, candidate: Candidate) -> Hypothesis:
+    """The model with what joins later free too, everything beginning where the fit stands.
+
+    Beside an exponent the logarithm of a strength is fitted, as far as it is a size: force = c |v|^n is a straight
+    valley in log(c) and n, and a bent one in c and n, along which a fit creeps where the unit of v is far from the
+    motion's.
+    """
+    hypothesis, at = found.hypothesis, found.hypothesis.given
+    steep = any(parameter.declared_name.endswith(f".{EXPONENT}") for parameter in candidate.later)
+    sizes = [candidate.hypothesis.common[place].name for place in candidate.strengths] if steep else []
+    free = []
+    for parameter in (*hypothesis.free, *candidate.later):
+        start = float(at.get(parameter.name, parameter.start))
+        is_size = parameter.name in sizes and parameter.lower == 0 < start
+        free.append(replace(parameter, start=start, logarithmic=parameter.logarithmic or is_size))
+    return replace(hypothesis, free=tuple(free))
 
 
 def again(refit: Refit, against: Outcome, evidence: Evidence, solver: Solver | None = None) -> Refit:

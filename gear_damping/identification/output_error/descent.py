@@ -8,19 +8,18 @@ has lent are worked out only where the others lead no further.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import inf
 
 import torch
 from torch import Tensor
 
-from gear_damping.identification.output_error.normal_equations import normal_equations
 from gear_damping.identification.output_error.problem import OutputErrorProblem, Prediction
+from gear_damping.identification.output_error.step import Points, accelerated, moves, newton_step
 
 FIRST_DAMPING, LARGEST_DAMPING, SMALLEST_DAMPING = 1e-2, 1e10, 1e-12  # of Levenberg and Marquardt, relative to J'J
 SMALLEST_GAIN = 1e-7  # relative fall of the cost below which a start has converged
 CALM_STEPS = 3  # steps in a row that change the cost by little: one alone may be short
-LONGEST_STEP = 2.0  # of any coordinate in one iteration; far out, that many times the way from the start
 FORETOLD = 0.5  # of the fall that the linear model promises: with less of it, it is made anew
 CARRIED = 4  # steps over which sensitivities are carried along at most
 AT_ONCE = 2e5  # values of the sensitivities: a linearisation of fewer costs hardly more than a trial
@@ -44,33 +43,13 @@ class Lent:
     columns: Tensor
 
 
-@dataclass
-class Points:
-    """Several starts on their way down.
-
-    Args:
-        shared: Coordinates of the shared parameters, (starts, n_shared).
-        states: Initial states, (starts, records, local).
-    """
-
-    shared: Tensor
-    states: Tensor
-
-    def pick(self, index: Tensor) -> "Points":
-        """Some of the starts."""
-        return Points(self.shared[index], self.states[index])
-
-    def put(self, index: Tensor, other: "Points") -> None:
-        """Other points in the place of some."""
-        self.shared[index], self.states[index] = other.shared, other.states
-
-
 class Descent:
     """Starts on their way down over one horizon.
 
     Every tensor has a row for each start: `points`, `now` (the linearisation at them), `cost`, `damping`, `calm` (steps
     in a row that changed little), `carried` (steps since the sensitivities were worked out), `made` (linearisations),
-    `short` (those in a row from which a start seemed not to get below `reach`).
+    `short` (those in a row from which a start seemed not to get below `reach`), `strayed` (whether a step has failed:
+    of small problems steps then follow the bend of the response).
     """
 
     def __init__(
@@ -99,7 +78,7 @@ class Descent:
         self.damping = torch.full_like(self.cost, FIRST_DAMPING)
         self.calm, self.made, self.carried, self.short = torch.zeros(4, len(self.cost), dtype=torch.long)
         self.looked_at = self.made - 1
-        self.converged = self.calm > 0
+        self.converged, self.strayed = self.calm > 0, self.calm > 0
 
     def run(self, iterations: int, is_over: Callable[[], bool] = lambda: False, is_last: bool = True) -> None:
         """Go down until every start has converged or has been linearised so many times, or time is over.
@@ -143,6 +122,8 @@ class Descent:
         """One trial of some starts."""
         points, now, fresh = self.points.pick(left), self.now.pick(left), self.carried[left] == 0
         trial = newton_step(self.problem, points, now, self.damping[left])
+        if self.at_once and self.strayed[left].any():  # where one more simulation costs little
+            trial = accelerated(self.problem, points, now, self.damping[left], trial, self.horizon)
         seen = self._looked_at(trial)
         old, cost = self.cost[left], self._cost(trial, seen.residual)
         if not self.at_once and not self.lent and self.reach < inf:
@@ -183,6 +164,7 @@ class Descent:
         softer, harder = self.damping[left] / 5, self.damping[left] * torch.where(fresh, 6.0, 1.0)
         self.damping[left] = torch.where(better, softer, harder).clamp(SMALLEST_DAMPING, LARGEST_DAMPING)
         is_stuck = self.damping[left] >= (LENT_DAMPING if self.lent else LARGEST_DAMPING)
+        self.strayed[left] |= ~better
         self.converged[left] = fresh & ((self.calm[left] >= CALM_STEPS) | is_stuck)
         return flat
 
@@ -216,22 +198,3 @@ class Descent:
     def _cost(self, points: Points, residual: Tensor) -> Tensor:
         total = residual.square().sum((1, 2)) + self.problem.expectation(points.shared)[0].square().sum(1)
         return torch.where(total.isfinite(), total, torch.full_like(total, float("inf")))
-
-
-def moves(problem: OutputErrorProblem, old: Points, new: Points) -> Tensor:
-    """Change of every column's coordinate, by record, (starts, records, columns)."""
-    shared = (new.shared - old.shared).unsqueeze(1) * problem.unknowns.reach
-    return torch.cat([shared, new.states - old.states], -1)
-
-
-def newton_step(problem: OutputErrorProblem, points: Points, now: Prediction, damping: Tensor) -> Points:
-    """The damped step within the bounds; a parameter that is pulled beyond its bound stays there."""
-    equations = normal_equations(now, problem.n_shared)
-    expected, slope = problem.expectation(points.shared)
-    matrix, pull = equations.shared + torch.diag(slope.square()), equations.pull + slope * expected
-    equations = replace(equations, shared=matrix, pull=pull)
-    free = problem.unknowns.at_bound(points.shared) * pull <= 0
-    shared, own = equations.only(free).step(damping)
-    longest = LONGEST_STEP * torch.where(problem.unknowns.logarithmic, 1.0, points.shared.abs().clamp(min=1))
-    shared, own = shared.clamp(-longest, longest), own.clamp(-LONGEST_STEP, LONGEST_STEP)
-    return Points(problem.unknowns.within(points.shared + shared), points.states + own)

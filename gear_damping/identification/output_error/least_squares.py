@@ -6,8 +6,9 @@ from math import inf
 
 from torch import Tensor
 
-from gear_damping.identification.output_error.descent import Descent, Lent, Points
+from gear_damping.identification.output_error.descent import Descent, Lent
 from gear_damping.identification.output_error.problem import OutputErrorProblem, Prediction
+from gear_damping.identification.output_error.step import Points
 
 
 @dataclass(frozen=True)

@@ -34,6 +34,12 @@ class NormalEquations:
         shared = self.shared * kept.unsqueeze(-1) * kept.unsqueeze(-2)
         return replace(self, shared=shared, between=self.between * kept[:, None, :, None], pull=self.pull * kept)
 
+    def beyond(self, held: Tensor) -> "NormalEquations":
+        """What is left to be done once the shared parameters have gone `held`, (starts, p)."""
+        pull = self.pull - (self.shared @ held.unsqueeze(-1)).squeeze(-1)
+        own_pull = self.own_pull - (self.between.transpose(-1, -2) @ held[:, None, :, None]).squeeze(-1)
+        return replace(self, pull=pull, own_pull=own_pull)
+
     def step(self, damping: Tensor) -> tuple[Tensor, Tensor]:
         """The damped step, (starts, p) and (starts, records, l), by elimination of what is the records' own."""
         diagonals = self.shared.diagonal(dim1=-2, dim2=-1), self.own.diagonal(dim1=-2, dim2=-1)
