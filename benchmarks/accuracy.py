@@ -12,7 +12,7 @@ from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.systems.gear_pair import GearPair
 from gear_damping.physics.systems.oscillator import Oscillator
 from gear_damping.physics.terms import MeshStiffness, Sensor
-from gear_damping.simulation.families import Family, Spread, draw_values
+from gear_damping.simulation.families import Family, Label, Spread, draw_values
 from gear_damping.simulation.simulate import simulate
 from gear_damping.simulation.solver_settings import Solver
 
@@ -49,7 +49,7 @@ def drawn(effect: str, batch: int, seed: int = 0) -> tuple[Model, dict[str, Tens
     mesh = [] if issubclass(added, MeshStiffness) else ["fourier_mesh_stiffness"]
     names = dict.fromkeys([*mesh, LAW, *NEEDED.get(effect, ()), effect])
     model = Model(GearPair(), [effect_class(name)() for name in names])
-    values, _ = draw_values(model, {}, Family("field", FIELD), batch, generator, damping_law=LAW)
+    values, _ = draw_values(model, {}, Family("field", FIELD), batch, generator, Label(LAW))
     return model, values | ({} if effect == LAW else _spread(effect, values, generator))
 
 

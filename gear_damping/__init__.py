@@ -20,6 +20,7 @@ __version__ = "0.1.0"
 
 if TYPE_CHECKING:
     from gear_damping.errors import InputError
+    from gear_damping.explanation.explain import Listener
     from gear_damping.interface.estimator import Estimator, load_estimator
     from gear_damping.interface.explained import Answer, explain
     from gear_damping.interface.identified import Identification, identify
@@ -29,18 +30,23 @@ if TYPE_CHECKING:
     from gear_damping.measurement.record import Measurement
     from gear_damping.physics.systems.gear_pair import GearPair
     from gear_damping.physics.systems.oscillator import Oscillator
+    from gear_damping.simulation.driven import Driven
+    from gear_damping.simulation.solver_settings import Solver
 
 # what is offered -> where it is, and what it is called there
 _PLACES = {
     "Answer": ("interface.explained", "Answer"),
+    "Driven": ("simulation.driven", "Driven"),
     "Estimator": ("interface.estimator", "Estimator"),
     "GearPair": ("physics.systems.gear_pair", "GearPair"),
     "Identification": ("interface.identified", "Identification"),
     "InputError": ("errors", "InputError"),
+    "Listener": ("explanation.explain", "Listener"),
     "Measurement": ("measurement.record", "Measurement"),
     "Model": ("interface.model", "Model"),
     "Oscillator": ("physics.systems.oscillator", "Oscillator"),
     "Simulation": ("interface.simulated", "Simulation"),
+    "Solver": ("simulation.solver_settings", "Solver"),
     "explain": ("interface.explained", "explain"),
     "identify": ("interface.identified", "identify"),
     "load": ("measurement.load", "load_measurement"),
@@ -53,8 +59,8 @@ _EFFECTS = {
 }
 
 __all__ = [
-    "Answer", "Estimator", "GearPair", "Identification", "InputError", "Measurement", "Model", "Oscillator",
-    "Simulation", "__version__", "explain", "identify", "load", "load_estimator", "simulate",
+    "Answer", "Driven", "Estimator", "GearPair", "Identification", "InputError", "Listener", "Measurement", "Model",
+    "Oscillator", "Simulation", "Solver", "__version__", "explain", "identify", "load", "load_estimator", "simulate",
 ]  # fmt: skip
 
 

@@ -52,7 +52,8 @@ def sensitivities(batch: int, n_samples: int, parameters: int) -> Run:
 
     def run() -> None:
         if parameters:
-            simulate_sensitivities(model, values, BY[:parameters], **options)
+            asked = {name: values[name].clone().requires_grad_() for name in BY[:parameters]}
+            simulate_sensitivities(model, values | asked, **options)
         else:
             _simulated(model, values, n_samples)
 

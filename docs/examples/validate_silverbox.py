@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 
 from gear_damping.config.locate import conf_folder
-from gear_damping.explanation.explain import explain
+from gear_damping.explanation.explain import Listener, explain
 from gear_damping.measurement.load import load_measurement
 from gear_damping.reporting import figures
 from gear_damping.reporting.explanation_report import report_input
@@ -14,7 +14,7 @@ RECORDS = conf_folder() / "measurement" / "records" / "silverbox.yaml"
 
 def main(folder: Path) -> None:
     """Explain the records and draw what the page shows."""
-    found = explain(load_measurement(RECORDS), print)
+    found = explain(load_measurement(RECORDS), Listener(print))
     shown = report_input(found)
     arrow = shown.overlays[0]
     look = {"unit": shown.unit, "quantity": shown.quantity, "noise": arrow.noise}

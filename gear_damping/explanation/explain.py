@@ -64,10 +64,25 @@ class Explanation:
     casing: CasingStudy | None = None
 
 
+@dataclass(frozen=True)
+class Listener:
+    """Who is told on the way.
+
+    Args:
+        say: What is found, in a line.
+        progress: (done, total) steps.
+    """
+
+    say: Say = lambda text: None
+    progress: Callable[[int, int], None] = lambda done, total: None
+
+
+NOBODY = Listener()
+
+
 def explain(
     measurement: Measurement,
-    say: Say = lambda text: None,
-    report: Callable[[int, int], None] | None = None,
+    listener: Listener = NOBODY,
     solver: Solver | None = None,
     library: Mapping[str, type[Effect]] | None = None,
     minutes: float = inf,
@@ -77,8 +92,7 @@ def explain(
 
     Args:
         measurement: What was recorded.
-        say: Told what is found on the way.
-        report: Told (done, total) steps.
+        listener: Who is told on the way.
         solver: Settings of the solver.
         library: Effects that may be causes, by name; the whole catalogue where absent.
         minutes: Time of the search; when it is over, the best verdict so far says what was not tried.
@@ -87,7 +101,7 @@ def explain(
     Raises:
         InputError: a record lacks the channel that its system is explained from.
     """
-    step, budget = report or (lambda done, total: None), Budget(minutes)
+    say, step, budget = listener.say, listener.progress, Budget(minutes)
     faults = data_faults(measurement)
     if faults:
         return Explanation(content.of_faults(measurement, faults))

@@ -71,44 +71,43 @@ class DampingModule(L.LightningModule):
 
     Args:
         estimator: Its name.
-        sampling_rate: Rate of the signals that it is trained on (Hz).
-        window: Samples that it sees at once.
-        data_set: Id of the runs that it is trained on.
+        data: What it is trained on, as plain values: the `id` of the runs, their `sampling_rate` (Hz), the `window`
+            that it sees at once (samples), `whole_run` (columns are of the whole run, the paper's protocol, not of the
+            window), and the ranges that it has seen (`trained_on`, of `TrainedOn.plain`; None: not known).
         settings: The numbers that it is built by.
         wavelet: Settings of the transform, for those that transform.
-        whole_run: Columns are of the whole run (the paper's protocol), not of the window.
         learning_rate: Step of Adam.
-        trained_on: What it is trained on, as plain values (`TrainedOn.plain`).
         plugins: Files of the user that may declare the estimator. A checkpoint does not hold them: it runs no code.
     """
 
     def __init__(
         self,
         estimator: str,
-        sampling_rate: float,
-        window: int,
-        data_set: str,
+        data: dict[str, Any],
         settings: dict[str, float | int] | None = None,
         wavelet: dict[str, Any] | None = None,
-        whole_run: bool = False,
         learning_rate: float = 1e-3,
-        trained_on: dict[str, Any] | None = None,
         plugins: Sequence[str] = (),
     ) -> None:
         super().__init__()
         self.save_hyperparameters(logger=False, ignore=["plugins"])
         self.plugins = tuple(plugins)
         made = kind_of(estimator, plugins)(settings or {})
-        transform = None if wavelet is None else make_wavelet(wavelet, sampling_rate, plugins)
+        transform = None if wavelet is None else make_wavelet(wavelet, data["sampling_rate"], plugins)
         self.front_end = made.front_end(transform)
         self.network = made.network(self.front_end.n_features)
         self.history: list[dict[str, float]] = []
         self._squares = {"train": _Squares(), "val": _Squares()}
 
     @property
+    def data(self) -> dict[str, Any]:
+        """What it is trained on, as plain values."""
+        return self.hparams["data"]
+
+    @property
     def trained_on(self) -> TrainedOn:
         """The kind of record that it is for, and the ranges that it has seen."""
-        return TrainedOn.from_plain(self.hparams["trained_on"])
+        return TrainedOn.from_plain(self.data["trained_on"])
 
     def forward(self, inputs: Tensor) -> Tensor:
         """Damping ratio (%) of windows (batch, window), or of columns (batch, window, feature)."""
@@ -173,16 +172,16 @@ class DampingModule(L.LightningModule):
         self._check_record(values, sampling_rate)
         was_training = self.training
         self.eval()
-        record = self.front_end.columns(values[None]) if self.hparams["whole_run"] else values[None]
-        starts = window_starts(0, len(values), self.hparams["window"], stride)
+        record = self.front_end.columns(values[None]) if self.data["whole_run"] else values[None]
+        starts = window_starts(0, len(values), self.data["window"], stride)
         index = windows_of_runs(torch.zeros(1, dtype=torch.long), starts).to(self.device)
         parts = index.split(_WINDOWS_AT_ONCE)
-        each = torch.cat([self(gather_windows(record, part, self.hparams["window"])) for part in parts]).cpu()
+        each = torch.cat([self(gather_windows(record, part, self.data["window"])) for part in parts]).cpu()
         self.train(was_training)
         return RecordPrediction(float(each.mean()), float(each.std(correction=0)), each)
 
     def _check_record(self, values: Tensor, sampling_rate: float) -> None:
-        trained, window = self.hparams["sampling_rate"], self.hparams["window"]
+        trained, window = self.data["sampling_rate"], self.data["window"]
         problems = []
         if values.ndim != 1 or len(values) < window:
             rule = f"must be one channel of at least {window} samples, got shape {tuple(values.shape)}"

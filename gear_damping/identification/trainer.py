@@ -166,14 +166,16 @@ def build_estimator(config: EstimatorConfig, data: WindowDataModule, learning_ra
     transforms = kind_of(config.estimator, config.plugins).transforms
     module = DampingModule(
         estimator=config.estimator,
-        sampling_rate=float(data.run_set.sampling_rate),
-        window=int(data.protocol.window),
-        data_set=str(data.run_set.id),
+        data={
+            "id": str(data.run_set.id),
+            "sampling_rate": float(data.run_set.sampling_rate),
+            "window": int(data.protocol.window),
+            "whole_run": transforms and config.whole_run_columns and data.protocol.chronological,
+            "trained_on": TrainedOn.of(data.run_set, data.split.train[:, 0]).plain(),
+        },
         settings=dict(config.settings),
         wavelet=dict(config.wavelet) if transforms else None,
-        whole_run=transforms and config.whole_run_columns and data.protocol.chronological,
         learning_rate=float(learning_rate),
-        trained_on=TrainedOn.of(data.run_set, data.split.train[:, 0]).plain(),
         plugins=config.plugins,
     )
     module.network.start_at(mean_predictor(data.training_labels))
@@ -185,7 +187,7 @@ def fit_front_end(module: DampingModule, data: WindowDataModule) -> None:
     with torch.no_grad():
         data.use_signals()
         module.front_end.fit_signal(data.training_inputs())
-        if module.hparams["whole_run"]:
+        if module.data["whole_run"]:
             data.use_columns(module.front_end.columns)
         module.front_end.fit_features(data.training_inputs())
 
@@ -193,7 +195,7 @@ def fit_front_end(module: DampingModule, data: WindowDataModule) -> None:
 def _take_over(resume: Path, folder: Path, module: DampingModule, training: Training) -> bool:
     """Bring the files of the fit to go on with into the folder; whether it had already come to its end."""
     earlier = load_estimator(resume, module.plugins)
-    ours, theirs = module.hparams["data_set"], earlier.hparams["data_set"]
+    ours, theirs = module.data["id"], earlier.data["id"]
     if ours != theirs:
         raise ValueError(f"resume is of data set {theirs!r}, not of {ours!r}: train anew, or use that set")
     for name, path in {"last.ckpt": resume, "best.ckpt": resume.with_name("best.ckpt")}.items():

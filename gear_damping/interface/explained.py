@@ -1,6 +1,6 @@
 """What a simulation gets wrong of a measurement, and its name."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from html import escape
 from math import inf
@@ -9,6 +9,7 @@ from typing import Any
 
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.explanation import explain as explaining
+from gear_damping.explanation.explain import NOBODY, Listener
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.interface.model import Model
 from gear_damping.measurement.record import Measurement
@@ -77,10 +78,9 @@ def explain(
     minutes: float = inf,
     ruled_out: Sequence[str] = (),
     plugins: Sequence[str | Path] = (),
-    settings: Mapping[str, Any] | None = None,
-    say: Callable[[str], None] = lambda text: None,
-    progress: Callable[[int, int], None] | None = None,
+    listener: Listener = NOBODY,
     solver: Solver | None = None,
+    **thresholds: float,
 ) -> Answer:
     """Find what the simulation of a measured rig misses.
 
@@ -89,31 +89,29 @@ def explain(
         minutes: Time of the search; when it is over, the best answer so far says what was not tried.
         ruled_out: Names of effects that are known not to be there.
         plugins: Files of one's own effects, which are tried as causes too.
-        settings: Thresholds of the search by name (conf/explain/default.yaml); the defaults where absent.
-        say: Told what is found on the way.
-        progress: Told (done, total) steps.
+        listener: Who is told on the way: `gd.Listener(print)`.
         solver: Settings of the solver.
+        thresholds: Of the search, by name (conf/explain/default.yaml: `accepted_t=3`).
 
     Raises:
         InputError: the measurement cannot be explained, or a name is unknown.
     """
     known = catalogue(plugins)
     wrong = [Problem("ruled_out", "no such effect", n, nearest(n, list(known))) for n in ruled_out if n not in known]
-    wrong += _wrong(settings or {})
+    wrong += _wrong(thresholds)
     if wrong:
         raise InputError(wrong)
     library = {name: kind for name, kind in known.items() if name not in ruled_out}
-    wanted = SearchSettings(**(settings or {}))
-    return Answer(explaining.explain(measurement, say, progress, solver, library, minutes, wanted))
+    return Answer(explaining.explain(measurement, listener, solver, library, minutes, SearchSettings(**thresholds)))
 
 
-def _wrong(settings: Mapping[str, Any]) -> list[Problem]:
+def _wrong(thresholds: Mapping[str, float]) -> list[Problem]:
     """What is wrong with thresholds: their names, and values out of range."""
     known, problems = {one.name: one.metadata for one in fields(SearchSettings)}, []
-    for name, value in settings.items():
+    for name, value in thresholds.items():
         if name not in known:
-            problems.append(Problem(f"settings.{name}", "no such threshold", remedy=nearest(name, list(known))))
+            problems.append(Problem(name, "no argument and no threshold", remedy=nearest(name, list(known))))
         elif not known[name]["lower"] <= value <= known[name]["upper"]:
             rule = f"must lie within {known[name]['lower']:g} … {known[name]['upper']:g}"
-            problems.append(Problem(f"settings.{name}", rule, value, "see conf/explain/default.yaml"))
+            problems.append(Problem(name, rule, value, "see conf/explain/default.yaml"))
     return problems

@@ -10,8 +10,7 @@ from gear_damping.errors import InputError, Problem
 from gear_damping.interface import identified_gears, identified_oscillator
 from gear_damping.interface.model import Model
 from gear_damping.measurement.record import Measurement
-from gear_damping.simulation.integrate import Progress
-from gear_damping.simulation.solver_settings import Solver
+from gear_damping.simulation.solver_settings import Progress, Solver
 
 Fitted = identified_gears.Fitted | identified_oscillator.Fitted
 

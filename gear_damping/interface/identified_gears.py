@@ -13,7 +13,7 @@ from gear_damping.explanation.casing.heard import is_casing
 from gear_damping.explanation.evidence.excess import excess
 from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.evidence.records import Evidence, evidence_of, with_own_angles
-from gear_damping.explanation.explain import at_useful_rate, explain, fitting_solver, with_noise
+from gear_damping.explanation.explain import Listener, at_useful_rate, explain, fitting_solver, with_noise
 from gear_damping.explanation.model.fitting import Begun, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Given, Hypothesis, Outcome, natural_frequency_hz
 from gear_damping.explanation.model.nominal_gear_pair import angles_of, first_gear_pair
@@ -52,7 +52,7 @@ def nominal_fit(measurement: Measurement, say: Say, solver: Solver | None) -> Fi
         InputError: nothing was measured that a simulation can be compared with.
     """
     _refuse_casing(measurement)
-    found = explain(measurement, say, solver=solver, library={})
+    found = explain(measurement, Listener(say), solver, library={})
     return Fitted(found.evidence, found.noise, found.found.outcome)
 
 

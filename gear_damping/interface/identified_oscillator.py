@@ -15,8 +15,7 @@ from gear_damping.interface.identified_page import MOST_PANELS, estimate_rows, p
 from gear_damping.interface.lack_of_fit import lack_of_fit, sentence
 from gear_damping.measurement.record import Channel, Measurement, Record
 from gear_damping.reporting import figures, tables
-from gear_damping.simulation.integrate import Progress
-from gear_damping.simulation.solver_settings import Solver
+from gear_damping.simulation.solver_settings import Progress, Solver
 
 MOST_SAMPLES = 200_000  # beyond which the test of what is random takes longer than the fit
 

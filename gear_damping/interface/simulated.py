@@ -1,6 +1,7 @@
 """Simulated runs with what one does with them: channels, wavelet transforms, pictures."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from math import pi
 from typing import Any
 
@@ -14,7 +15,7 @@ from gear_damping.physics.model import Model
 from gear_damping.reporting import figures
 from gear_damping.signals.wavelets.base import ContinuousWavelet
 from gear_damping.signals.wavelets.catalogue import builtin_wavelets
-from gear_damping.simulation.integrate import Progress
+from gear_damping.simulation.driven import Driven
 from gear_damping.simulation.runs import Runs
 from gear_damping.simulation.simulate import simulate as integrate
 from gear_damping.simulation.solver_settings import Solver
@@ -130,11 +131,8 @@ def simulate(
     sampling_rate: float,
     n_samples: int,
     batch: int = 1,
-    inputs: Mapping[str, ArrayLike] | None = None,
-    values: Mapping[str, ArrayLike] | None = None,
-    seed: int = 0,
+    inputs: Mapping[str, ArrayLike] | Driven | None = None,
     solver: Solver | None = None,
-    progress: Progress | None = None,
     **parameters: ArrayLike,
 ) -> Simulation:
     """Simulate a batch of runs.
@@ -145,27 +143,24 @@ def simulate(
         n_samples: Output samples of a run.
         batch: Runs.
         inputs: Measured series that drive it, (time,) or (batch, time), SI: `force`, `base_acceleration`;
-            `pinion_torque`, `gear_torque`, `pinion_angle`.
-        values: Parameters in the place of the model's, by flat name (`backlash.gap`) in SI: numbers, or (batch,).
-        seed: Of drawn loads.
-        solver: Settings of the solver.
-        progress: Told (done, total).
-        parameters: The same as `values` for parameters of the system (`pinion_speed=300`).
+            `pinion_torque`, `gear_torque`, `pinion_angle`. `gd.Driven` says which of them hold, and seeds drawn loads.
+        solver: Settings of the solver, and who is told of its progress: `gd.Solver`.
+        parameters: In the place of the model's, by name in SI: numbers, or (batch,); of an effect `**{"backlash.gap":
+            8e-5}`.
 
     Raises:
         InputError: a name is unknown, or a value out of range.
     """
-    given = _within_bounds(model, {**(values or {}), **parameters})
-    series = {name: _rows(value) for name, value in (inputs or {}).items()}
+    given = _within_bounds(model, parameters)
+    driven = inputs if isinstance(inputs, Driven) else Driven(inputs or {})
+    driven = replace(driven, series={name: _rows(value) for name, value in driven.series.items()})
     runs = integrate(
         model,
         model.values(batch, **given),
         sampling_rate=sampling_rate,
         n_samples=n_samples,
-        inputs=series,
+        inputs=driven,
         solver=solver,
-        seed=seed,
-        progress=progress,
     )
     return Simulation(runs)
 

@@ -12,11 +12,11 @@ from torch import Tensor
 from torch.utils.checkpoint import checkpoint
 
 from gear_damping.physics.model import Model
-from gear_damping.simulation.integrate import groups_of, initial_states
+from gear_damping.simulation.integrate import groups_of, initial_states, input_units
 from gear_damping.simulation.kernel import Kernel, Members
 from gear_damping.simulation.layout import Layout
 from gear_damping.simulation.series import Series, SharedSeries
-from gear_damping.simulation.simulate import input_units, true_inputs
+from gear_damping.simulation.simulate import true_inputs
 from gear_damping.simulation.solver_settings import Solver
 from gear_damping.simulation.stepper import Stepper
 
@@ -29,7 +29,6 @@ def simulate_with_gradient(
     n_samples: int,
     inputs: Mapping[str, Tensor] | None = None,
     solver: Solver | None = None,
-    block: int = 16,
 ) -> Tensor:
     """The system's response in SI, (batch, time), as part of the graph of all that it follows from.
 
@@ -43,9 +42,8 @@ def simulate_with_gradient(
         sampling_rate: Output samples per second.
         n_samples: Output samples of each run.
         inputs: Measured series as for `simulate`.
-        solver: Settings; the engine is always plain PyTorch.
-        block: Output intervals whose graph is kept together. Memory grows with block + n_samples / block,
-            so that it is least near the square root of n_samples; time is that of one walk more.
+        solver: Settings; the engine is always plain PyTorch. Memory grows with block + n_samples / block, so that it
+            is least near the square root of n_samples; time is that of one walk more.
     """
     solver, inputs = solver or Solver(), dict(inputs or {})
     prepared = model.prepare(values)
@@ -57,7 +55,7 @@ def simulate_with_gradient(
     with torch.no_grad():
         groups = groups_of(prepared, interval, n_samples - 1, solver)
         kernel = _GraphKernel(model, layout, series, Members(fixed, packed[0], fixed.new_zeros(())), start)
-    found = [_displacement(kernel, fixed[:, k], packed[:, :, k], start[:, k], n, block) for n, k in groups]
+    found = [_displacement(kernel, fixed[:, k], packed[:, :, k], start[:, k], n, solver.block) for n, k in groups]
     order = torch.cat([lanes for _, lanes in groups]).argsort()
     return torch.cat(found)[order] * prepared.scales.length.unsqueeze(1)
 

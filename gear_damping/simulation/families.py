@@ -50,15 +50,26 @@ class Family:
     perturbation: float = 0.1
 
 
+@dataclass(frozen=True)
+class Label:
+    """What networks learn: the equivalent damping ratio.
+
+    Args:
+        damping_law: The damping effect that carries it; None: as given.
+        damping_ratio_percent: Of every run in %; None: drawn from the family's spread.
+    """
+
+    damping_law: str | None = None
+    damping_ratio_percent: float | None = None
+
+
 def draw_values(
     model: Model,
     given: Mapping[str, float],
     family: Family,
     n_runs: int,
     generator: torch.Generator,
-    *,
-    damping_law: str | None = None,
-    damping_ratio_percent: float | None = None,
+    label: Label = Label(),
 ) -> tuple[Values, Tensor]:
     """Parameters of every run (SI, by flat name) and the nominal reference velocity (m/s, (batch,)).
 
@@ -68,24 +79,24 @@ def draw_values(
         family: What varies.
         n_runs: How many runs.
         generator: Source of randomness.
-        damping_law: The damping effect that carries the drawn damping ratio; None: as given.
-        damping_ratio_percent: The ratio of every run in %; None: drawn from the family's spread.
+        label: Which law carries which damping ratio.
 
     Raises:
         InputError: a spread or the damping law names something that the model does not have, or no
             coefficient of the law has a damping ratio.
     """
     values = model.values(n_runs, **given)
-    _check(model, family, damping_law, values)
+    _check(model, family, label.damping_law, values)
     velocity = reference_velocity(model.prepare(values).derived)
     for name in sorted(family.spreads):
         if name != DAMPING_RATIO:
             values[name] = family.spreads[name].draw(values[name], generator).clone()
     drawn = family.spreads.get(DAMPING_RATIO, Spread(0, 0)).draw(velocity, generator)
-    if damping_ratio_percent is not None:
-        drawn = torch.full_like(velocity, damping_ratio_percent)
-    if damping_law is not None and (DAMPING_RATIO in family.spreads or damping_ratio_percent is not None):
-        values |= coefficients_for(model, values, damping_law, drawn / 100, velocity)
+    if label.damping_ratio_percent is not None:
+        drawn = torch.full_like(velocity, label.damping_ratio_percent)
+    is_known = DAMPING_RATIO in family.spreads or label.damping_ratio_percent is not None
+    if label.damping_law is not None and is_known:
+        values |= coefficients_for(model, values, label.damping_law, drawn / 100, velocity)
     if family.start == "static":
         _start_static(model, given, values, family.perturbation, velocity, generator)
     return values, velocity

@@ -4,9 +4,9 @@ import torch
 from torch import Tensor
 
 from gear_damping.physics.equation import EquationOfMotion
+from gear_damping.simulation.integrate import input_units
 from gear_damping.simulation.runs import Runs, state_units
 from gear_damping.simulation.series import Series
-from gear_damping.simulation.simulate import input_units
 from gear_damping.units import parse_unit
 
 

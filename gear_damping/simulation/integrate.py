@@ -1,6 +1,6 @@
 """From prepared members to trajectories: packing, kernels, groups of equal sub-steps, `odeint`."""
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Mapping
 
 import torch
 from torch import Tensor
@@ -10,55 +10,52 @@ from gear_damping.physics.model import Model, Prepared
 from gear_damping.simulation import torchdiffeq_method
 from gear_damping.simulation.accuracy import substeps_for
 from gear_damping.simulation.compilation import choose
+from gear_damping.simulation.driven import Driven
 from gear_damping.simulation.families import extra_states
 from gear_damping.simulation.kernel import Kernel, Members, holds_weights
 from gear_damping.simulation.layout import Layout
 from gear_damping.simulation.series import Series
-from gear_damping.simulation.solver_settings import Solver
+from gear_damping.simulation.solver_settings import Progress, Solver
 from gear_damping.simulation.stepper import Stepper
+from gear_damping.units import parse_unit
 
-Progress = Callable[[int, int], None]
 
 def integrate(
     model: Model,
     prepared: Prepared,
-    inputs: Mapping[str, Tensor],
-    units: Mapping[str, Tensor],
+    driven: Driven,
     interval: Tensor,
     n_samples: int,
     solver: Solver,
-    progress: Progress | None = None,
-    departures: Mapping[str, Tensor] | None = None,
-    acceleration: bool = False,
-    held: Collection[str] = (),
 ) -> tuple[list[str], Tensor, Tensor | None]:
     """Names of the states, their values (n_state, batch, time), and the acceleration (batch, time) where it is asked.
 
-    In natural units. Members that need the same number of sub-steps go together, so that no member's answer depends on
-    its batch-mates.
+    In natural units, as the sampling interval, (batch,), the departures and a held load are. Members that need the same
+    number of sub-steps go together, so that no member's answer depends on its batch-mates.
     """
-    layout, series = Layout(prepared), Series(tuple(sorted(inputs)))
-    fixed, start = layout.pack(prepared, interval), initial_states(model, prepared, departures)
-    packed = series.shared(inputs, units, n_samples - 1, interval.shape[0], held).to(fixed.device)
+    layout, series = Layout(prepared), Series(tuple(sorted(driven.series)))
+    fixed, start = layout.pack(prepared, interval), initial_states(model, prepared, driven.departures)
+    units = input_units(model, driven.series, prepared)
+    packed = series.shared(driven.series, units, n_samples - 1, interval.shape[0], driven.held).to(fixed.device)
     example = Members(fixed, packed[0], fixed.new_zeros(()))
     kernel = kernel_of(model, layout, series, example, start)
     choice = choose(solver.engine, kernel, example, start)
     groups = groups_of(prepared, interval, n_samples - 1, solver)
     states = start.new_empty(*start.shape, n_samples)
-    accelerations = start.new_empty(start.shape[1], n_samples) if acceleration else None
+    accelerations = start.new_empty(start.shape[1], n_samples) if solver.acceleration else None
     names = ["displacement", "velocity", *kernel.equation.extra_names]
     work, done = sum(n * len(lanes) for n, lanes in groups), 0
     for n, lanes in groups:
         whole = len(groups) == 1
         some = (fixed, packed) if whole else (fixed[:, lanes].contiguous(), packed.of(lanes))
         stepper = choice.stepper(kernel, *some)
-        stepper.acceleration = start.new_empty(len(lanes), n_samples) if acceleration else None
-        share = _share(progress, done, n * len(lanes), work)
+        stepper.acceleration = start.new_empty(len(lanes), n_samples) if solver.acceleration else None
+        share = _share(solver.progress, done, n * len(lanes), work)
         found = solve(stepper, start if whole else start[:, lanes], n_samples, n, share)
         if whole:
             return names, found, stepper.acceleration
         states[:, lanes] = found
-        if acceleration:
+        if solver.acceleration:
             accelerations[lanes] = stepper.acceleration
         done += n * len(lanes)
     return names, states, accelerations
@@ -72,6 +69,12 @@ def solve(stepper: Stepper, start: Tensor, n_samples: int, substeps: int, progre
     with torch.no_grad():
         found = odeint(stepper.rates, start, times, method=torchdiffeq_method.METHOD, options=options)
     return found.permute(1, 2, 0)
+
+
+def input_units(model: Model, inputs: Mapping[str, Tensor], prepared: Prepared) -> dict[str, Tensor]:
+    """Natural unit of every input series of the system, (batch,)."""
+    known = {name: unit for name, unit in model.system.inputs.items() if name in inputs}
+    return {name: prepared.scales.unit_of(parse_unit(unit).dimension) for name, unit in known.items()}
 
 
 def groups_of(prepared: Prepared, interval: Tensor, intervals: int, solver: Solver) -> list[tuple[int, Tensor]]:

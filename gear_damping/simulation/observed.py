@@ -6,8 +6,9 @@ from torch import Tensor
 from gear_damping.physics.model import Prepared
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.terms import LoadPath
+from gear_damping.simulation.integrate import input_units
 from gear_damping.simulation.runs import ACCELERATION, Runs
-from gear_damping.simulation.simulate import input_units, natural_units
+from gear_damping.simulation.simulate import natural_units
 
 PINION_SPEED, GEAR_SPEED = "pinion_speed", "gear_speed"
 PINION_ACCELERATION, GEAR_ACCELERATION = "pinion_acceleration", "gear_acceleration"

@@ -13,11 +13,11 @@ import torch
 from gear_damping.errors import InputError, Problem
 from gear_damping.physics.model import Model
 from gear_damping.simulation.cache import load_runs, save_runs
-from gear_damping.simulation.families import Family, draw_values
-from gear_damping.simulation.integrate import Progress
+from gear_damping.simulation.driven import Driven
+from gear_damping.simulation.families import Family, Label, draw_values
 from gear_damping.simulation.runs import Runs
 from gear_damping.simulation.simulate import simulate
-from gear_damping.simulation.solver_settings import Solver
+from gear_damping.simulation.solver_settings import Progress, Solver
 
 SOURCES = Path(__file__).resolve().parents[1]
 PARTS = ("physics/**/*.py", "simulation/**/*.py", "simulation/native/*.cpp", "simulation/native/*.h")  # make the runs
@@ -89,15 +89,8 @@ def run_plan(plan: SimulationPlan, *, folder: Path | None = None, progress: Prog
         InputError: more runs diverged than the plan allows.
     """
     generator = torch.Generator().manual_seed(plan.seed)
-    values, velocity = draw_values(
-        plan.model,
-        plan.given,
-        plan.family,
-        plan.n_runs,
-        generator,
-        damping_law=plan.damping_law,
-        damping_ratio_percent=plan.damping_ratio_percent,
-    )
+    label = Label(plan.damping_law, plan.damping_ratio_percent)
+    values, velocity = draw_values(plan.model, plan.given, plan.family, plan.n_runs, generator, label)
     runs = load_runs(folder, plan.hash, plan.model, values) if folder else None
     if runs is None:
         runs = simulate(
@@ -105,9 +98,8 @@ def run_plan(plan: SimulationPlan, *, folder: Path | None = None, progress: Prog
             values,
             sampling_rate=plan.sampling_rate,
             n_samples=plan.n_samples,
-            solver=plan.solver,
-            seed=plan.seed + 1,
-            progress=progress,
+            inputs=Driven(seed=plan.seed + 1),
+            solver=replace(plan.solver, progress=progress),
         )
         if folder:
             save_runs(folder, plan.hash, plan.describe(), runs)

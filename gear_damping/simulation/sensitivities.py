@@ -14,11 +14,11 @@ from torch.func import jvp
 
 from gear_damping.physics.model import Model
 from gear_damping.simulation.compilation import choose
-from gear_damping.simulation.integrate import groups_of, initial_states, kernel_of, solve
+from gear_damping.simulation.integrate import groups_of, initial_states, input_units, kernel_of, solve
 from gear_damping.simulation.kernel import Kernel, Members
 from gear_damping.simulation.layout import Layout
 from gear_damping.simulation.series import Series, SharedSeries
-from gear_damping.simulation.simulate import input_units, true_inputs
+from gear_damping.simulation.simulate import true_inputs
 from gear_damping.simulation.solver_settings import Solver
 
 Natural = tuple[Tensor, Tensor, Tensor]  # packed parameters, initial states, packed inputs
@@ -99,14 +99,13 @@ def _unpacked(packed: Tensor, height: int, kept: Sequence[tuple[int, ...]]) -> l
 def simulate_sensitivities(
     model: Model,
     values: Mapping[str, Tensor],
-    parameters: Sequence[str],
     *,
     sampling_rate: float,
     n_samples: int,
     inputs: Mapping[str, Tensor] | None = None,
     solver: Solver | None = None,
 ) -> Sensitivities:
-    """The response of a batch and its derivatives by scalar parameters of the model.
+    """The response of a batch and its derivatives by those scalar parameters whose values ask for gradients.
 
     Exact for the discrete solution where the forces are continuous across switches, as those of a flank
     that touches are; a shift of the instant at which a force jumps (edges of a rectangular mesh stiffness,
@@ -114,22 +113,22 @@ def simulate_sensitivities(
 
     Args:
         model: Base system and effects, without drawn loads.
-        values: Parameters in SI by flat name, (batch,) or (n, batch).
-        parameters: Flat names of the scalar parameters to differentiate by, at least one.
+        values: Parameters in SI by flat name, (batch,) or (n, batch); at least one scalar one `requires_grad`, and no
+            list does.
         sampling_rate: Output samples per second.
         n_samples: Output samples of each run.
         inputs: Measured series as for `simulate`.
         solver: Settings of the solver.
 
     Raises:
-        ValueError: a parameter is unknown or a list.
+        ValueError: nothing asks for gradients, or a list or something unknown does.
     """
-    declared = model.parameters()
+    declared, parameters = model.parameters(), [name for name, value in values.items() if value.requires_grad]
     wrong = [name for name in parameters if name not in declared or declared[name].vector]
     if wrong or not parameters:
-        raise ValueError(f"parameters must name scalar parameters of the model, got {wrong or 'none'}")
+        raise ValueError(f"scalar parameters of the model must ask for gradients, got {wrong or 'none'}")
     solver, inputs = solver or Solver(), dict(inputs or {})
-    given = {name: value.to(torch.float64) for name, value in values.items()}
+    given = {name: value.detach().to(torch.float64) for name, value in values.items()}
     series = Series(tuple(sorted(inputs)))
     natural = _natural(model, given, inputs, sampling_rate, n_samples, series)
     parts = [jvp(lambda x, n=n: natural({n: x}), (given[n],), (torch.ones_like(given[n]),)) for n in parameters]

@@ -1,6 +1,6 @@
 """Simulate a batch of runs of one model: the front door of this room."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 
 import torch
@@ -10,7 +10,8 @@ from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.physics.equation import HELD_LOAD
 from gear_damping.physics.model import Model, Prepared
 from gear_damping.physics.terms import HeldLoad, Sensor
-from gear_damping.simulation.integrate import Progress, integrate
+from gear_damping.simulation.driven import Driven
+from gear_damping.simulation.integrate import integrate
 from gear_damping.simulation.runs import (
     ACCELERATION,
     DIVERGED,
@@ -32,13 +33,8 @@ def simulate(
     *,
     sampling_rate: float,
     n_samples: int,
-    inputs: Mapping[str, Tensor] | None = None,
+    inputs: Mapping[str, Tensor] | Driven | None = None,
     solver: Solver | None = None,
-    seed: int = 0,
-    progress: Progress | None = None,
-    departures: Mapping[str, Tensor] | None = None,
-    acceleration: bool = False,
-    held: Collection[str] = (),
 ) -> Runs:
     """Simulate every member of a batch, each with its own parameters, inputs and start.
 
@@ -47,45 +43,34 @@ def simulate(
         values: Parameters in SI by flat name, (batch,) or (n, batch) (see `Model.values`).
         sampling_rate: Output samples per second.
         n_samples: Output samples of each run, the first at time 0.
-        inputs: Measured series at the output instants, (batch, time), or fewer rows that the batch repeats:
-            `force`, `base_acceleration` in m/s^2 (oscillator), `pinion_torque`, `gear_torque` in N m, `pinion_angle`
-            in rad, unwrapped.
+        inputs: What drives it: measured series by name, or these with what else there is (`Driven`).
         solver: Settings; the defaults when None.
-        seed: Seed of drawn loads.
-        progress: Called with (done, total) as the work proceeds.
-        departures: How far states of effects depart at the start from where their effect puts them, (batch,) in SI
-            by flat name (`shaft_torsion.twist`).
-        acceleration: Whether `Runs.states` shall have the `acceleration` too: the right-hand side of the equation of
-            motion at the output instants. Where it jumps at an output (a tooth pair, a held load), it is the value
-            before the jump, but for the first one.
-        held: Names of inputs that stay at a sample's value until the next one, as a controller puts them out.
 
     Raises:
         InputError: an input is unknown to the system or has the wrong shape.
     """
+    driven = inputs if isinstance(inputs, Driven) else Driven(dict(inputs or {}))
     if _is_alone(model, values):
-        again = {"inputs": inputs, "solver": solver, "seed": seed, "progress": progress, "acceleration": acceleration}
-        again["held"] = held
-        twins = {name: value.repeat_interleave(2, -1) for name, value in values.items()}
-        moved = {name: value.repeat_interleave(2, -1) for name, value in (departures or {}).items()}
-        both = simulate(model, twins, sampling_rate=sampling_rate, n_samples=n_samples, departures=moved, **again)
+        twins, moved = (
+            {name: value.repeat_interleave(2, -1) for name, value in one.items()} for one in (values, driven.departures)
+        )
+        beside = replace(driven, departures=moved)
+        both = simulate(model, twins, sampling_rate=sampling_rate, n_samples=n_samples, inputs=beside, solver=solver)
         alone = both.keep(torch.tensor([True, False]))
         return replace(alone, n_diverged=int((alone.status == DIVERGED).sum()))
-    solver = solver or Solver()
     prepared = model.prepare(values)
     batch = prepared.base["equivalent_mass"].shape[0]
-    inputs = dict(inputs or {})
-    _check_inputs(model, inputs, (batch, n_samples))
-    _check_departures(model, departures or {})
-    inputs = true_inputs(model, values, inputs, batch)
-    series = inputs | _held_loads(model, values, prepared, n_samples - 1, seed)
-    units = input_units(model, inputs, prepared)
-    interval = 1 / (sampling_rate * prepared.scales.time)
+    _check_inputs(model, driven.series, (batch, n_samples))
+    _check_departures(model, driven.departures)
+    true = true_inputs(model, values, driven.series, batch)
     scale = natural_units(model, prepared)
-    moved = {name: value / scale[name] for name, value in (departures or {}).items()}
-    names, states, rates = integrate(
-        model, prepared, series, units, interval, n_samples, solver, progress, moved, acceleration, held
+    natural = replace(
+        driven,
+        series=true | _held_loads(model, values, prepared, n_samples - 1, driven.seed),
+        departures={name: value / scale[name] for name, value in driven.departures.items()},
     )
+    interval = 1 / (sampling_rate * prepared.scales.time)
+    names, states, rates = integrate(model, prepared, natural, interval, n_samples, solver or Solver())
     low, high = states.aminmax(dim=-1)  # nan, too, shows in the extremes
     fine = (low.isfinite() & high.isfinite()).all(0) & (low[0] > -FAR) & (high[0] < FAR)
     return Runs(
@@ -94,7 +79,7 @@ def simulate(
         derived=prepared.derived,
         sampling_rate=sampling_rate,
         states=_in_si(names, states, scale) | _acceleration_in_si(prepared, rates),
-        inputs={name: value.repeat(batch // len(value), 1) for name, value in inputs.items()},
+        inputs={name: value.repeat(batch // len(value), 1) for name, value in true.items()},
         status=torch.where(fine, FINE, DIVERGED),
         reference_velocity=reference_velocity(prepared.derived),
         n_diverged=int((~fine).sum()),
@@ -148,11 +133,6 @@ def true_inputs(
             recorded = found[effect.channel]
             found[effect.channel] = effect.undo(recorded.repeat(batch // len(recorded), 1), own)
     return found
-
-
-def input_units(model: Model, inputs: Mapping[str, Tensor], prepared: Prepared) -> dict[str, Tensor]:
-    """Natural unit of every input series, (batch,)."""
-    return {name: prepared.scales.unit_of(parse_unit(model.system.inputs[name]).dimension) for name in inputs}
 
 
 def natural_units(model: Model, prepared: Prepared) -> dict[str, Tensor]:

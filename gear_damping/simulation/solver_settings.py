@@ -1,8 +1,10 @@
 """What a user may say about the solver."""
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field
 from typing import Literal
 
+Progress = Callable[[int, int], None]  # told (done, total)
 Engine = Literal["auto", "native", "fused", "eager"]
 
 
@@ -17,6 +19,11 @@ class Solver:
         engine: `native`: the model's terms written as C++ and compiled once; `fused`: each sub-step one
             torch.compile kernel (what a GPU runs); `eager`: plain PyTorch; `auto`: the fastest there is.
         chunk: Members integrated together; bounds the memory.
+        block: Output intervals whose graph is kept together in backpropagation; bounds the memory.
+        acceleration: Whether it keeps the acceleration too: the right-hand side of the equation of motion at the output
+            instants. Where it jumps at an output (a tooth pair, a held load), it is the value before the jump, but for
+            the first one.
+        progress: Told (done, total) as the work proceeds.
     """
 
     accuracy: float = 1e-5
@@ -24,3 +31,6 @@ class Solver:
     most_substeps: int = 256
     engine: Engine = "auto"
     chunk: int = 4096
+    block: int = 16
+    acceleration: bool = False
+    progress: Progress | None = field(default=None, compare=False, repr=False)

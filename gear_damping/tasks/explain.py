@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from gear_damping.config.settings import Settings
-from gear_damping.explanation.explain import Explanation, explain
+from gear_damping.explanation.explain import Explanation, Listener, explain
 from gear_damping.explanation.model.extended_simulator import write_extended
 from gear_damping.measurement.load import load_measurement
 from gear_damping.measurement.record import Measurement
@@ -24,7 +24,7 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     folder.add_inputs(measurement.files)
     with progress_bar("explaining", settings.progress) as progress:
         limits = {"library": _library(settings), "minutes": settings.explain_minutes, "settings": settings.search}
-        found = explain(measurement, statements.say, progress, settings.simulator.solver, **limits)
+        found = explain(measurement, Listener(statements.say, progress), settings.simulator.solver, **limits)
     folder.write_json("explanation.json", found.content)
     if found.found is not None:
         _write_extended(folder.path / EXTENDED, found, measurement)

@@ -9,7 +9,7 @@ from hidden.oscillator.inputs import NONE
 from hidden.oscillator.laws import lanes
 from hidden.oscillator.motion import between, move
 
-from gear_damping.explanation.explain import explain
+from gear_damping.explanation.explain import Listener, explain
 from gear_damping.measurement.load import load_measurement
 
 FREQUENCY, RATIO, SAMPLES = 2.0, 0.02, 40  # Hz, of critical, a period
@@ -37,7 +37,7 @@ def explained(kind: str, periods: float, folder, library: tuple[str, ...] | None
     (path / "measurement.yaml").write_text(yaml.safe_dump(content))
     said: list[str] = []
     chosen = {} if library is not None else None
-    answer = explain(load_measurement(path / "measurement.yaml"), said.append, library=chosen).content
+    answer = explain(load_measurement(path / "measurement.yaml"), Listener(said.append), library=chosen).content
     return answer, said
 
 

@@ -156,7 +156,7 @@ def test_columns_of_whole_runs_are_those_of_the_run_at_the_window():
 
 def test_windows_can_be_transformed_one_by_one_under_the_papers_protocol():
     estimator, data = fitted(replace(CWT, whole_run_columns=False), noise(20, 300), PAPER)
-    assert estimator.hparams["whole_run"] is False
+    assert estimator.data["whole_run"] is False
     assert next(iter(data.test_dataloader()))[0].ndim == 2
 
 
@@ -181,7 +181,7 @@ def test_training_starts_at_the_mean_label():
 def test_wavelets_that_a_checkpoint_could_not_hold_are_refused():
     with pytest.raises(ValueError, match="plain"):
         EstimatorConfig("cwt_lstm", wavelet=RICKER | {"frequency_min_hz": torch.tensor(20.0)})
-    assert DampingModule("raw_lstm", RATE, 30, "x").hparams["wavelet"] is None
+    assert DampingModule("raw_lstm", {"sampling_rate": RATE, "window": 30}).hparams["wavelet"] is None
 
 
 def test_an_estimator_or_a_setting_that_does_not_exist_is_refused():

@@ -102,8 +102,8 @@ def test_a_checkpoint_alone_predicts(config, protocol, tmp_path):
     result = fit(tmp_path, config, replace(TRAINING, max_epochs=1), protocol)
     content = torch.load(tmp_path / "best.ckpt", weights_only=True)
     hparams = content["hyper_parameters"]
-    assert hparams["sampling_rate"] == 1000.0
-    assert (hparams["window"], hparams["data_set"]) == (30, "decays")
+    seen = hparams["data"]
+    assert (seen["sampling_rate"], seen["window"], seen["id"]) == (1000.0, 30, "decays")
     assert hparams["wavelet"] == (RICKER if config is CWT else None)
     assert content["state_dict"]["front_end.signal_scale"] == result.estimator.front_end.signal_scale
     assert not list(tmp_path.rglob("*.yaml"))
@@ -111,7 +111,7 @@ def test_a_checkpoint_alone_predicts(config, protocol, tmp_path):
     estimator = load_estimator(tmp_path / "best.ckpt")
     record = decays().signals[7]
     found = estimator.predict_record(record, 1000.0)
-    values = estimator.front_end.columns(record[None]) if hparams["whole_run"] else record[None]
+    values = estimator.front_end.columns(record[None]) if seen["whole_run"] else record[None]
     index = torch.stack([torch.zeros(121, dtype=torch.long), torch.arange(121)], dim=1)
     with torch.no_grad():
         each = estimator(gather_windows(values, index, 30))

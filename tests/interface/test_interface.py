@@ -137,7 +137,7 @@ def test_the_command_line_simulates_the_written_model(tmp_path):
 
 def test_a_simulation_is_that_of_the_engine():
     model = rig(gap=8e-5)
-    found = gd.simulate(model, sampling_rate=40e3, n_samples=300, batch=3, values={"backlash.gap": [5e-5, 8e-5, 9e-5]})
+    found = gd.simulate(model, sampling_rate=40e3, n_samples=300, batch=3, **{"backlash.gap": [5e-5, 8e-5, 9e-5]})
     values = model.values(3, **{"backlash.gap": torch.tensor([5e-5, 8e-5, 9e-5], dtype=torch.float64)})
     plain = integrate(model, values, sampling_rate=40e3, n_samples=300)
     np.testing.assert_array_equal(found.transmission_error, plain.response.numpy())
@@ -154,7 +154,7 @@ def test_a_simulation_is_that_of_the_engine():
     with pytest.raises(gd.InputError, match="pinion_sped: no such parameter"):
         gd.simulate(model, sampling_rate=40e3, n_samples=20, pinion_sped=300)
     with pytest.raises(gd.InputError, match=r"backlash.gap = -1.0: must lie within"):
-        gd.simulate(model, sampling_rate=40e3, n_samples=20, values={"backlash.gap": -1.0})
+        gd.simulate(model, sampling_rate=40e3, n_samples=20, **{"backlash.gap": -1.0})
     with pytest.raises(ValueError, match="no wavelet 'haar'"):
         found.cwt("haar")
 
@@ -248,8 +248,8 @@ def test_the_lines_of_the_readme_run(tmp_path, monkeypatch):
 
 def test_what_is_wrong_with_a_question_is_said(record):
     with pytest.raises(gd.InputError) as caught:
-        gd.explain(record, ruled_out=["cubic_stifness"], settings={"acepted_t": 3, "level": 2.0})
+        gd.explain(record, ruled_out=["cubic_stifness"], acepted_t=3, level=2.0)
     said = str(caught.value)
     assert "ruled_out = 'cubic_stifness': no such effect; remedy: did you mean 'cubic_stiffness'?" in said
-    assert "settings.acepted_t: no such threshold; remedy: did you mean 'accepted_t'?" in said
-    assert "settings.level = 2.0: must lie within" in said
+    assert "acepted_t: no argument and no threshold; remedy: did you mean 'accepted_t'?" in said
+    assert "level = 2.0: must lie within" in said

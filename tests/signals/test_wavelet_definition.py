@@ -56,9 +56,8 @@ def noise(batch, n_samples, seed=3):
 @pytest.mark.parametrize("dense_limit", [0, 1000])
 def test_both_routes_give_the_defining_sum(wavelet, options, n_samples, dense_limit):
     # From half a sample, where the wavelet is badly sampled, to scales longer than the record.
-    transform = wavelet(
-        RATE, frequencies_hz=[500.0, 250.0, 90.0, 11.0, 0.7], dense_limit=dense_limit, **options
-    )
+    transform = wavelet(RATE, frequencies_hz=[500.0, 250.0, 90.0, 11.0, 0.7], **options)
+    transform.dense_limit = dense_limit
     signal = noise(2, n_samples)
     psi, _ = formulas(wavelet, options)
     expected = np.stack([direct_sum(x, transform.scales, psi) for x in signal.numpy()])

@@ -1,5 +1,6 @@
 """Gradients by backpropagation: beside forward sensitivities, through a network, in bounded memory."""
 
+from dataclasses import replace
 from typing import ClassVar
 
 import pytest
@@ -54,7 +55,8 @@ def gear_pair(*effects):
 
 def gradients(model, values, run, weights):
     given = {**values, **{name: values[name].clone().requires_grad_() for name in NAMES}}
-    response = simulate_with_gradient(model, given, **run, block=7)
+    solver = replace(run.get("solver", Solver()), block=7)
+    response = simulate_with_gradient(model, given, **run | {"solver": solver})
     torch.testing.assert_close(response.detach(), simulate(model, values, **run).response, rtol=1e-8, atol=1e-15)
     found = torch.autograd.grad((response * weights).sum(), [given[name] for name in NAMES])
     return dict(zip(NAMES, found, strict=True))
@@ -64,7 +66,8 @@ def test_the_same_as_forward_sensitivities():
     model, values = gear_pair(effect_class("power_law_damping")())
     run = {"sampling_rate": 40e3, "n_samples": 40}
     weights = torch.cos(torch.arange(40, dtype=torch.float64))
-    expected = simulate_sensitivities(model, values, NAMES, **run).by_parameter
+    asked = {**values, **{name: values[name].clone().requires_grad_() for name in NAMES}}
+    expected = simulate_sensitivities(model, asked, **run).by_parameter
     for name, found in gradients(model, values, run, weights).items():
         torch.testing.assert_close(found, (expected[name] * weights).sum(1), rtol=1e-8, atol=0)
 
@@ -83,8 +86,8 @@ def test_contact_loss_against_central_differences():
 def test_weights_of_a_network_against_central_differences():
     force = NetworkForce(seed=3)
     model, values = oscillator(force)
-    run = {"sampling_rate": 2000, "n_samples": 90, "solver": Solver(substeps=2)}
-    response = simulate_with_gradient(model, values, **run, block=10)
+    run = {"sampling_rate": 2000, "n_samples": 90, "solver": Solver(substeps=2, block=10)}
+    response = simulate_with_gradient(model, values, **run)
     torch.testing.assert_close(response.detach(), simulate(model, values, **run).response, rtol=1e-10, atol=1e-16)
     weight = force.network[2].weight
     (found,) = torch.autograd.grad((1e3 * response).square().sum(), weight)
@@ -138,7 +141,7 @@ def test_a_block_bounds_what_the_graph_keeps():
             return tensor
 
         with torch.autograd.graph.saved_tensors_hooks(pack, lambda tensor: tensor):
-            simulate_with_gradient(model, values, sampling_rate=2000, n_samples=129, block=block)
+            simulate_with_gradient(model, values, sampling_rate=2000, n_samples=129, solver=Solver(block=block))
         return count
 
     assert kept(16) < 0.2 * kept(1)

@@ -14,6 +14,7 @@ from gear_damping.physics.effects.bearing_flexibility import BearingFlexibility
 from gear_damping.physics.effects.fourier_mesh_stiffness import FourierMeshStiffness
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.gear_pair import GearPair
+from gear_damping.simulation.driven import Driven
 from gear_damping.simulation.simulate import simulate
 
 CASE = GearCase()
@@ -37,7 +38,7 @@ def model():
 def simulated(**departures):
     values = model().values(1, initial_displacement=X0, **GIVEN)
     moved = {name: torch.tensor([value], dtype=torch.float64) for name, value in departures.items()}
-    return simulate(model(), values, sampling_rate=RATE, n_samples=SAMPLES, departures=moved)
+    return simulate(model(), values, sampling_rate=RATE, n_samples=SAMPLES, inputs=Driven(departures=moved))
 
 
 def two_masses():

@@ -191,7 +191,8 @@ def test_forces_under_measured_inputs_are_those_of_the_run(bench_model):
         "pinion_angle": uneven_angle(index, turns=0.012)[0].unsqueeze(0),
     }
     given = {**eccentric.values(2), **values(2)}
-    runs = simulate(eccentric, given, sampling_rate=40e3, n_samples=120, inputs=inputs, acceleration=True)
+    solver = Solver(acceleration=True)
+    runs = simulate(eccentric, given, sampling_rate=40e3, n_samples=120, inputs=inputs, solver=solver)
     forces = forces_of(runs, 1)
     expected = runs.derived["equivalent_mass"][1] * runs.states["acceleration"][1]
     torch.testing.assert_close(forces["load"] - forces["mesh_force"], expected, rtol=1e-6, atol=1e-3)

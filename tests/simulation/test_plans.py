@@ -11,7 +11,7 @@ from gear_damping.physics.catalogue import effect_class
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.gear_pair import GearPair
 from gear_damping.simulation import plan as plan_module
-from gear_damping.simulation.families import Family, Spread, draw_values
+from gear_damping.simulation.families import Family, Label, Spread, draw_values
 from gear_damping.simulation.plan import SimulationPlan, run_plan
 
 SPREADS = {"damping_ratio_percent": Spread(0.1, 0.6), "pinion_torque": Spread(0.8, 1.2, relative=True)}
@@ -45,7 +45,7 @@ def test_one_ratio_for_every_run(plan):
 
 def test_static_start_is_near_the_static_deflection_and_rest_is_at_zero(plan):
     generator = torch.Generator().manual_seed(0)
-    values, _ = draw_values(plan.model, plan.given, FAMILY, 400, generator, damping_law="power_law_damping")
+    values, _ = draw_values(plan.model, plan.given, FAMILY, 400, generator, Label("power_law_damping"))
     torque = values["pinion_torque"]
     share = values["initial_displacement"] / (torque / 0.0281907786 / 3.2e8)
     assert float(share.mean()) == pytest.approx(1, abs=0.02)
@@ -95,4 +95,4 @@ def test_spreads_and_laws_that_do_not_exist(plan):
     with pytest.raises(InputError, match="pinion_torque"):
         draw_values(plan.model, {}, Family("x", {"pinion_torqe": Spread(0, 1)}), 2, generator)
     with pytest.raises(InputError, match="viscous_damping"):
-        draw_values(plan.model, {}, FAMILY, 2, generator, damping_law="viscous_damping")
+        draw_values(plan.model, {}, FAMILY, 2, generator, Label("viscous_damping"))

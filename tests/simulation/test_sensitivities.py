@@ -22,15 +22,18 @@ NAMES = [
 ]
 
 
+def asking(values, names):
+    """The values, these of which ask for gradients."""
+    return {**values, **{name: values[name].clone().requires_grad_() for name in names}}
+
+
 def test_an_undamped_oscillator_in_closed_form():
     """x = x0 cos(w t): dx/dk = -x0 t sin(w t) / (2 w), dx/dx0 = cos(w t)."""
     rate = 2 * np.pi * 70
     model = Model(Oscillator(), [])
     values = model.values(2, stiffness=rate**2, amplitude=1e-3, initial_displacement=2e-3)
-    names = ["stiffness", "initial_displacement"]
-    found = simulate_sensitivities(
-        model, values, names, sampling_rate=2000, n_samples=400, solver=Solver(accuracy=1e-9)
-    )
+    asked = asking(values, ["stiffness", "initial_displacement"])
+    found = simulate_sensitivities(model, asked, sampling_rate=2000, n_samples=400, solver=Solver(accuracy=1e-9))
     times = torch.arange(400, dtype=torch.float64) / 2000
     by_stiffness = -2e-3 * times * torch.sin(rate * times) / (2 * rate)
     torch.testing.assert_close(found.by_parameter["stiffness"][1], by_stiffness, rtol=1e-6, atol=1e-7 * 2e-3 / rate**2)
@@ -50,7 +53,7 @@ def test_a_gear_pair_against_central_differences(engine, loose):
     start = 4.5e-5 if loose else 1.9e-5
     values = model.values(3, initial_displacement=start, pinion_torque=torch.tensor([140.0, 150.0, 160.0]))
     run = {"sampling_rate": 40e3, "n_samples": 40, "solver": Solver(substeps=8, engine=engine)}
-    found = simulate_sensitivities(model, values, names, **run)
+    found = simulate_sensitivities(model, asking(values, names), **run)
     torch.testing.assert_close(found.response, simulate(model, values, **run).response, rtol=1e-9, atol=1e-15)
     for name in names:
         step = 1e-5 * values[name].abs().clamp(min=1e-2 if name == "mesh_phase" else 0)
@@ -67,7 +70,7 @@ def test_measured_inputs_are_differentiated_with_their_units():
     values = model.values(1, stiffness=2e5, force_gain=3.0, amplitude=1e-3, **given)
     force = torch.sin(torch.arange(300, dtype=torch.float64) / 5).unsqueeze(0)
     run = {"sampling_rate": 1000, "n_samples": 300, "inputs": {"force": force}, "solver": Solver(substeps=8)}
-    found = simulate_sensitivities(model, values, ["stiffness", "force_gain"], **run)
+    found = simulate_sensitivities(model, asking(values, ["stiffness", "force_gain"]), **run)
     torch.testing.assert_close(found.by_parameter["force_gain"] * 3.0, found.response, rtol=1e-9, atol=1e-18)
     pair = [simulate(model, {**values, "stiffness": values["stiffness"] + s}, **run).response for s in (1.0, -1.0)]
     expected = (pair[0] - pair[1]) / 2
@@ -78,5 +81,8 @@ def test_measured_inputs_are_differentiated_with_their_units():
 
 def test_unknown_and_listed_parameters_are_refused(bench_model):
     model, values = bench_model
+    grid = {"sampling_rate": 40e3, "n_samples": 5}
     with pytest.raises(ValueError, match="nonsense"):
-        simulate_sensitivities(model, values(2), ["nonsense"], sampling_rate=40e3, n_samples=5)
+        simulate_sensitivities(model, asking(values(2) | {"nonsense": torch.zeros(2)}, ["nonsense"]), **grid)
+    with pytest.raises(ValueError, match="got none"):
+        simulate_sensitivities(model, values(2), **grid)

@@ -20,6 +20,7 @@ from gear_damping.identification.output_error.unknowns import (
     segments_of,
 )
 from gear_damping.physics.model import Model
+from gear_damping.simulation.driven import Driven
 from gear_damping.simulation.prepare import Planned, prepare_kernels
 from gear_damping.simulation.runs import Runs, effect_state_units
 from gear_damping.simulation.series import continued
@@ -75,7 +76,8 @@ class OutputErrorProblem:
         """
         self.model, self.records = model, list(records)
         self.given = {name: value for name, value in given.items() if is_of_simulator(name)}
-        self.solver, self.noise = solver or Solver(), noise
+        accelerates = any(channel.derivatives == 2 for record in records for channel in record.channels)
+        self.solver, self.noise = replace(solver or Solver(), acceleration=accelerates), noise
         gains = {name: value for name, value in given.items() if name.startswith(f"{GAIN}.")}
         self.response = Response(model, self.records, gains)
         self.static = static_deflection(model, self.given, self.records)
@@ -235,11 +237,12 @@ class OutputErrorProblem:
             chosen,
             sampling_rate=records[0].sampling_rate,
             n_samples=samples,
-            inputs=self._inputs(tuple(rows), samples),
+            inputs=Driven(
+                self._inputs(tuple(rows), samples),
+                records[0].held,
+                {name: start[:, 2 + i] for i, name in enumerate(self.extra)},
+            ),
             solver=self.solver,
-            departures={name: start[:, 2 + i] for i, name in enumerate(self.extra)},
-            acceleration=any(channel.derivatives == 2 for channel in records[0].channels),
-            held=records[0].held,
         )
 
     def _chosen(self, values: Mapping[str, Tensor], rows: list[int], batch: int) -> dict[str, Tensor]:

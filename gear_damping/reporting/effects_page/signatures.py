@@ -16,6 +16,7 @@ from gear_damping.physics.terms import Effect, MeshStiffness, Sensor
 from gear_damping.reporting.effects_page import cases
 from gear_damping.reporting.effects_page.cases import Case, Values
 from gear_damping.signals.spectra import amplitude_spectrum
+from gear_damping.simulation.driven import Driven
 from gear_damping.simulation.runs import Runs
 from gear_damping.simulation.simulate import simulate
 
@@ -157,8 +158,8 @@ def _run(system: str, effects: list[Effect], given: Values, grid: _Grid, angle: 
         derived = model.prepare(values).derived
         start = derived["mean_load"] / derived["mean_stiffness"]
         values = values | {"initial_displacement": start}
-    inputs = None if angle is None else {"pinion_angle": angle}
-    return simulate(model, values, sampling_rate=grid.rate, n_samples=grid.samples, inputs=inputs, seed=grid.seed)
+    driven = Driven({} if angle is None else {"pinion_angle": angle}, seed=grid.seed)
+    return simulate(model, values, sampling_rate=grid.rate, n_samples=grid.samples, inputs=driven)
 
 
 def _generator(seed: int) -> torch.Generator:

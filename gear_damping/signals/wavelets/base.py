@@ -37,10 +37,6 @@ class ContinuousWavelet(nn.Module, ABC):
         frequency_min_hz: Lowest of the log-spaced frequencies (Hz).
         frequency_max_hz: Highest of the log-spaced frequencies (Hz).
         n_scales: Number of log-spaced frequencies.
-        chunk: Records filtered at a time by FFT; bounds the memory beyond the result to
-            chunk * scale * padded time. 16 measured fastest for 2000 samples and 32 scales.
-        dense_limit: Longest record (samples) that is transformed by matrix; 64 is about where both
-            routes cost the same. The matrix has scale * time^2 elements.
 
     Raises:
         ValueError: an argument is out of range, or the frequencies are given both ways or neither.
@@ -49,6 +45,11 @@ class ContinuousWavelet(nn.Module, ABC):
     name: ClassVar[str]  # its key in `wavelet.kind`
     own_settings: ClassVar[tuple[Setting, ...]] = ()  # arguments beside these, keys under `wavelet`
     complex_mother = False
+    # records filtered at a time by FFT: bounds the memory to chunk * scale * padded time; 16 measured fastest for 2000
+    # samples and 32 scales
+    chunk = 16
+    # longest record (samples) that is transformed by matrix, of scale * time^2 elements: about where both cost the same
+    dense_limit = 64
 
     def __init__(
         self,
@@ -58,12 +59,9 @@ class ContinuousWavelet(nn.Module, ABC):
         frequency_min_hz: float | None = None,
         frequency_max_hz: float | None = None,
         n_scales: int | None = None,
-        chunk: int = 16,
-        dense_limit: int = 64,
     ) -> None:
         super().__init__()
         require_positive("sampling_rate", sampling_rate)
-        require_positive("chunk", chunk)
         spacing = (frequency_min_hz, frequency_max_hz, n_scales)
         if (frequencies_hz is None) == all(value is None for value in spacing):
             raise ValueError("give either frequencies_hz, or frequency_min_hz, frequency_max_hz and n_scales")
@@ -71,8 +69,6 @@ class ContinuousWavelet(nn.Module, ABC):
             frequencies_hz = log_spaced_frequencies(*spacing)
         self.sampling_rate = float(sampling_rate)
         self.frequencies_hz = _checked_frequencies(frequencies_hz, self.sampling_rate)
-        self.chunk = int(chunk)
-        self.dense_limit = int(dense_limit)
         self._operators: dict[tuple, tuple[Tensor, int]] = {}
 
     @abstractmethod
@@ -97,12 +93,7 @@ class ContinuousWavelet(nn.Module, ABC):
     @property
     def settings(self) -> dict[str, object]:
         """The constructor arguments as plain numbers, for a checkpoint or a file."""
-        return {
-            "sampling_rate": self.sampling_rate,
-            "frequencies_hz": list(self.frequencies_hz),
-            "chunk": self.chunk,
-            "dense_limit": self.dense_limit,
-        }
+        return {"sampling_rate": self.sampling_rate, "frequencies_hz": list(self.frequencies_hz)}
 
     def output_dtype(self, dtype: torch.dtype) -> torch.dtype:
         """The type of the coefficients of a signal of type `dtype`."""
