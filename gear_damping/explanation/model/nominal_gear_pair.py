@@ -35,6 +35,8 @@ SHAPE_BAND = 1.6  # harmonics of the stiffness count up to this many natural fre
 FEWEST_HARMONICS, MOST_OF_BAND = 6, 20  # least; within these
 MOST_HARMONICS = 40  # where sensors show them: an accelerometer weighs the highest as the lowest
 EXPECTED_SHAPE = 0.1  # of the mean stiffness over the harmonic: what real teeth add to the ideal wave
+EDGE = 0.1  # of a mesh period, over which a pair takes up its load: as of real teeth, whose corners are relieved
+SERIES = (8, 12, 16, MOST_OF_BAND)  # harmonics of the ideal wave: a kernel is compiled for each of few lengths
 FIRST_RATIO = 0.01  # damping ratio to begin with where none is stated
 INDEX_ERROR = 0.1  # rad of the mesh: how well a file that states an index knows where the mesh begins
 SHAPED = 3.0  # noise variances: what a fit with all its shapes may leave before angles are looked at again
@@ -92,7 +94,7 @@ def shaped(rough: Outcome, evidence: Evidence, iterations: int, solver: Solver |
         solver: Settings of the solver.
     """
     rounds = Rounds(iterations)
-    shaped = _with_shape(rough.hypothesis, _shape_harmonics(rough, evidence, solver))
+    shaped = _with_shape(rough, evidence, _shape_harmonics(rough, evidence, solver))
     found = fit_hypothesis(shaped, evidence, Begun(after=rough), rounds, solver=solver)
     samples = sum(len(record.stacked) for record in evidence.fitted)
     if evidence.has_index or not iterations or found.fitted.cost < SHAPED * samples * evidence.noise**2:
@@ -133,17 +135,22 @@ def _contact_ratio(stated: Mapping[str, float]) -> float:
 
 def _shape_harmonics(rough: Outcome, evidence: Evidence, solver: Solver | None) -> int:
     """Harmonics of the mesh that the natural frequency lets through, or more where the sensors would show them."""
-    model, given = rough.hypothesis.model, rough.flat_given()
+    model, given, count = rough.hypothesis.model, rough.flat_given(), _passed_harmonics(rough, evidence)
     resonance = harmonics_to_resonance(model, given, evidence.fit)
-    count = min(max(ceil(SHAPE_BAND * resonance), FEWEST_HARMONICS), MOST_OF_BAND)
     sampled = resonance * evidence.sampling_rate / 2 / natural_frequency_hz(model, given)
     most = min(MOST_HARMONICS, floor(sampled))
     return max(count, _seen_harmonics(rough, most, evidence, solver)) if most > count else count
 
 
+def _passed_harmonics(rough: Outcome, evidence: Evidence) -> int:
+    """Harmonics of the mesh that the natural frequency lets through."""
+    resonance = harmonics_to_resonance(rough.hypothesis.model, rough.flat_given(), evidence.fit)
+    return min(max(ceil(SHAPE_BAND * resonance), FEWEST_HARMONICS), MOST_OF_BAND)
+
+
 def _seen_harmonics(rough: Outcome, most: int, evidence: Evidence, solver: Solver | None) -> int:
     """The highest harmonic that the records would show if it had the size that real teeth may give it."""
-    hypothesis = _with_shape(rough.hypothesis, most)
+    hypothesis = _with_shape(rough, evidence, most)
     probe = fit_hypothesis(hypothesis, evidence, Begun(after=rough), NONE, solver=solver)
     moved = probe.fitted.prediction.sensitivity[0].square().sum((0, 1))
     seen = [
@@ -155,16 +162,22 @@ def _seen_harmonics(rough: Outcome, most: int, evidence: Evidence, solver: Solve
     return max(seen, default=0)
 
 
-def _with_shape(rough: Hypothesis, harmonics: int) -> Hypothesis:
-    """Free harmonics take over from the contact ratio, which they contain."""
+def _with_shape(fitted: Outcome, evidence: Evidence, harmonics: int) -> Hypothesis:
+    """Free harmonics take over from the contact ratio, which they contain.
+
+    The ideal wave gets edges, and every harmonic that the natural frequency lets through: a load may move the edges.
+    """
+    rough = fitted.hypothesis
     names = [f"{SHAPE}.{part}[{h}]" for part in ("in_phase", "quadrature") for h in range(harmonics)]
     taken_over = ("mesh_phase", f"{MESH}.minimum", f"{MESH}.contact_ratio")
     free = tuple(p for p in rough.free if p.name not in taken_over)
     zeros = (0.0,) * harmonics
-    given = rough.given | {f"{SHAPE}.in_phase": zeros, f"{SHAPE}.quadrature": zeros}
+    given = rough.given | {f"{SHAPE}.in_phase": zeros, f"{SHAPE}.quadrature": zeros, f"{MESH}.edge": EDGE}
+    passed = min(_passed_harmonics(fitted, evidence), harmonics)
+    mesh = FourierMeshStiffness(n_harmonics=min(length for length in SERIES if length >= passed))
     return Hypothesis(
         rough.system,
-        (*rough.effects, MeshStiffnessShape()),
+        (*(mesh if effect.name == MESH else effect for effect in rough.effects), MeshStiffnessShape()),
         given,
         (*free, *(_harmonic(name) for name in names)),
     )

@@ -34,7 +34,7 @@ class LoadDependentContact(ContactChange):
                 beside={
                     "mesh_phase": None,
                     "fourier_mesh_stiffness.contact_ratio": None,
-                    "fourier_mesh_stiffness.edge": 0.1,
+                    "fourier_mesh_stiffness.edge": None,
                 },
                 within={"fourier_mesh_stiffness.edge": (0.02, 0.3)},
             ),
