@@ -1,4 +1,4 @@
-"""The ideal wave of the calibrated stiffness has edges, and harmonics up to the natural frequency: a load moves them."""
+"""The ideal wave of the calibrated stiffness has edges and reaches the natural frequency: a load moves them."""
 
 from types import SimpleNamespace
 
