@@ -19,9 +19,9 @@ def excess_of(percent, misfit, threshold=0.1):
     return Excess(percent, threshold, threshold, misfit, {})
 
 
-def search(visible=True, accepted=(), left=False, sensor=1.0, rest=1.0):
+def search(visible=True, accepted=(), left=False, sensor=1.0, rest=1.0, not_random=0.05):
     """Made up: `sensor` and `rest` are the misfits beyond its noise of the nominal model and of the extended one."""
-    seen = [SimpleNamespace(visible=one, taken=share) for one, share in ((visible, 0.8), (left, 0.05))]
+    seen = [SimpleNamespace(visible=one, taken=share) for one, share in ((visible, 0.8), (left, not_random))]
     bench = SimpleNamespace(settings=SearchSettings())
     found = SimpleNamespace(bench=bench, accepted=accepted, seen=seen[0], left=seen[1], nominal=sensor, outcome=rest)
     found.beyond_sensor = lambda misfit: excess_of(0.1 * max(misfit - 1.0, 0.0), misfit)
@@ -178,3 +178,10 @@ def test_a_cause_of_several_sizes_beside_a_rest_stands_in_for_something_else(is_
     said = verdict(found, MUCH, excess_of(0.5, 2.4), is_one=is_one)
     assert said.word == word
     assert ("another size in other records" in said.sentences[0]) is (is_one is False)
+
+
+@pytest.mark.parametrize(("left", "word"), [(0.59, EXPLAINED), (0.61, CONSISTENT), (0.9, CONSISTENT)])
+def test_a_faint_cause_takes_a_quarter_of_what_is_not_random(left, word):
+    faint = excess_of(-0.05, 0.99)
+    assert verdict(search(accepted=(cause(),), not_random=left), faint, faint).word == word
+    assert verdict(search(accepted=(cause(),), not_random=left), MUCH, NOTHING).word == EXPLAINED

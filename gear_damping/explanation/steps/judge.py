@@ -12,6 +12,7 @@ CONSISTENT, EXPLAINED, AMBIGUOUS = "consistent", "explained", "ambiguous"
 PARTLY, UNEXPLAINED, DATA_PROBLEM = "partly_explained", "unexplained", "data_problem"
 LARGEST_SET = 4  # names in a set
 UNTOLD = "but there was no time to see whether it stands in for something else."
+NOT_LESS = "but what is visible and not random stays."
 OTHER_SIZES = "but with another size in other records: it stands in for something that has no name here."
 
 
@@ -99,6 +100,8 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
     beside = (taken.sentence, *_not_told_apart(confused), *known.unsettled)
     if known.stands_in:
         return _not_established(found, before, known, known.stands_in)
+    if taken.is_faint and taken.share < settings.least_share:
+        return _not_established(found, before, known, NOT_LESS)
     if not rest and known.is_untold:
         return _not_established(found, before, known, UNTOLD)
     if not rest:
@@ -213,10 +216,11 @@ def is_visible(seen: Assessment | None) -> bool:
 
 @dataclass(frozen=True)
 class _Taken:
-    """Share of what was missing that causes take, and what it is a share of."""
+    """Share of what was missing that causes take, what it is a share of, and whether its power is too small to tell."""
 
     share: float
     of: str
+    is_faint: bool = False
 
     @property
     def sentence(self) -> str:
@@ -227,7 +231,7 @@ def _taken(found: State, before: Excess, after: Excess) -> _Taken:
     """Of held-out power, or of what is not random where that is small."""
     seen, left = found.seen, found.left
     if not before.significant and seen is not None and left is not None and seen.taken:
-        return _Taken(1 - min(left.taken / seen.taken, 1.0), "what is not random in the fitted records")
+        return _Taken(1 - min(left.taken / seen.taken, 1.0), "what is not random in the fitted records", is_faint=True)
     fall = before.percent - after.percent
     share = fall / before.percent if before.percent > 0 else 0.0
     return _Taken(min(share, 1.0), "the held-out excess")  # what is left may by chance be below noise
