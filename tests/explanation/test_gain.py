@@ -1,8 +1,10 @@
 """What is said of fitted parameters."""
 
+import numpy as np
+import pytest
 import torch
 
-from gear_damping.explanation.answer.gain import parameters_of
+from gear_damping.explanation.answer.gain import mean_stiffness, parameters_of
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.fitting import fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Hypothesis
@@ -38,3 +40,22 @@ def test_a_gap_whose_far_flank_is_never_touched_has_its_whole_range_as_interval(
     low, high = damping["interval95"]
     assert low < 64.5 < high
     assert high - low < 6.0
+
+
+def test_the_mean_stiffness_knows_the_shape_of_the_teeth():
+    """The product of two series, one of them written out here, over a period."""
+    effects = [effect_class(name)() for name in ("fourier_mesh_stiffness", "mesh_stiffness_shape")]
+    shape = {"in_phase": (0.08, -0.05, 0.0), "quadrature": (0.0, 0.06, 0.03)}
+    model = Model(GearPair(), effects)
+    given = {f"mesh_stiffness_shape.{part}": values for part, values in shape.items()}
+    prepared = model.prepare(model.values(2, **given, **{"fourier_mesh_stiffness.edge": 0.1}))
+    angle = np.arange(4096) * 2 * np.pi / 4096
+    ideal = np.full(4096, 2e8 + 2e8 * 0.6)
+    for h in range(1, 9):
+        size = np.sinc(0.1 * h) * 2 * 2e8 / (h * np.pi) * np.sin(h * np.pi * 0.6)
+        ideal += size * np.cos(h * (angle - np.pi * 0.6))
+    factor = 1 + sum(a * np.cos((h + 1) * angle) for h, a in enumerate(shape["in_phase"]))
+    factor += sum(b * np.sin((h + 1) * angle) for h, b in enumerate(shape["quadrature"]))
+    found = mean_stiffness(model, prepared)
+    assert found.tolist() == pytest.approx([np.mean(ideal * factor)] * 2, rel=1e-9)
+    assert abs(float(found[0]) / float(prepared.derived["mean_stiffness"][0]) - 1) > 0.003  # it counts

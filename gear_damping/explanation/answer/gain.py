@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from math import pi
 
 import torch
 from torch import Tensor
@@ -17,11 +18,13 @@ from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.uncertainty import QUANTILE
 from gear_damping.identification.output_error.unknowns import OFFSET, is_of_model
 from gear_damping.physics.damping_ratio import harmonic_damping_coefficient
-from gear_damping.physics.model import Prepared
-from gear_damping.physics.moment import Moment
-from gear_damping.physics.terms import DampingForce, DampingLaw
+from gear_damping.physics.effects.mesh_stiffness_shape import MeshStiffnessShape
+from gear_damping.physics.model import Model, Prepared
+from gear_damping.physics.moment import Moment, Rotation
+from gear_damping.physics.terms import DampingForce, DampingLaw, MeshStiffness
 from gear_damping.simulation.runs import reference_velocity
 
+PHASES = 128  # of the mesh: more than the harmonics of wave and shape together, so that the mean is exact
 STEP = 1e-4  # of a coordinate, for the slope of the damping ratio
 
 
@@ -144,8 +147,8 @@ def _ratios(outcome: Outcome, free: Mapping[str, Tensor], batch: int) -> tuple[T
         if is_of_model(name):
             set_value(values, name, value)
     prepared = model.prepare(values)
-    derived = prepared.derived
-    speed = reference_velocity(derived)
+    derived = prepared.derived | {"mean_stiffness": mean_stiffness(model, prepared)}
+    speed = reference_velocity(prepared.derived)
     speed = speed[:1].expand(batch)  # the same amplitude for every point
     total = torch.zeros(batch, dtype=torch.float64)
     for effect in model.effects:
@@ -156,6 +159,24 @@ def _ratios(outcome: Outcome, free: Mapping[str, Tensor], batch: int) -> tuple[T
             critical = 2 * torch.sqrt(derived["mean_stiffness"] * derived["equivalent_mass"])
             total = total + _coefficient(effect, prepared, speed) / critical
     return 100 * total, float(speed[0])
+
+
+def mean_stiffness(model: Model, prepared: Prepared) -> Tensor:
+    """Mean over a mesh period in N/m, (batch,), with the calibrated shape of the teeth.
+
+    The harmonics of the shape have no mean, but their product with those of the ideal wave has: some 1 % of the mean.
+    """
+    plain = prepared.derived["mean_stiffness"]
+    shape = next((effect for effect in model.effects if isinstance(effect, MeshStiffnessShape)), None)
+    if shape is None:
+        return plain
+    mesh = next(effect for effect in model.effects if isinstance(effect, MeshStiffness))
+    none, sums = torch.zeros_like(plain), torch.zeros(2, len(plain), dtype=plain.dtype)
+    for angle in torch.arange(PHASES) * (2 * pi / PHASES):
+        now = Moment(none, none, none, mesh=Rotation(none + angle, none))
+        ideal = mesh.stiffness(now, prepared.terms[mesh.name])
+        sums += torch.stack([ideal, ideal * shape.factor(now, prepared.terms[shape.name])])
+    return plain * sums[1] / sums[0]
 
 
 def _coefficient(effect: DampingForce, prepared: Prepared, speed: Tensor) -> Tensor:

@@ -126,8 +126,8 @@ def draw(found: dict[str, Any], path: Path) -> None:
         axis.errorbar(value, at, xerr=np.abs(ends - value), fmt=marker, markersize=4, linewidth=1, label=label)
     axis.axvline(1.0, color="0.6", linewidth=1)
     axis.set(xscale="log", yticks=np.arange(len(names)), xlabel="size at which nine of ten succeed, over the limit")
-    for ticks in (axis.xaxis.set_major_formatter, axis.xaxis.set_minor_formatter):
-        ticks("{x:g}")
+    axis.xaxis.set_major_formatter("{x:g}")
+    axis.xaxis.set_minor_formatter("")
     axis.set_yticklabels([name.replace("_", " ") for name in names])
     axis.set_ylim(-0.6, len(names) - 0.4)
     drawing.legend(loc="outside lower center", frameon=False, ncols=2)
