@@ -27,7 +27,7 @@ from gear_damping.explanation.steps.confirm import Confirmed, confirmed
 from gear_damping.explanation.steps.estimate import estimated
 from gear_damping.explanation.steps.judge import CONSISTENT, Judged, Known, verdict
 from gear_damping.explanation.steps.too_short import died_away, too_short
-from gear_damping.explanation.trials.bench import Bench
+from gear_damping.explanation.trials.bench import Bench, Say
 from gear_damping.identification.decimation import decimated
 from gear_damping.identification.oscillator import linear_model
 from gear_damping.identification.output_error.records import FitRecord
@@ -37,7 +37,6 @@ from gear_damping.measurement.record import Measurement
 from gear_damping.physics.terms import Effect
 from gear_damping.simulation.solver_settings import Solver
 
-Say = Callable[[str], None]
 STEPS = 4  # that are reported: evidence, calibration, search, verdict
 STRETCHES, CLEAR = 8, 10.0  # of a record; noise variances that a stretch must hold to tell anything
 MOST_SUBSTEPS = 24  # of an output interval: only forces far beyond the load would need more

@@ -1,6 +1,6 @@
 """Gear pairs, and any model of one's own, fitted to whatever channels respond."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,6 +19,7 @@ from gear_damping.explanation.model.hypothesis import Given, Hypothesis, Outcome
 from gear_damping.explanation.model.nominal_gear_pair import angles_of, first_gear_pair
 from gear_damping.explanation.model.spread import spread_of
 from gear_damping.explanation.steps.too_short import too_short
+from gear_damping.explanation.trials.bench import Say
 from gear_damping.explanation.trials.efficient import weighed
 from gear_damping.identification.oscillator import linear_model
 from gear_damping.identification.output_error.least_squares import Rounds
@@ -33,7 +34,6 @@ from gear_damping.simulation.solver_settings import Solver
 SHOWN = ("mesh_stiffness_shape",)  # what is fitted in many numbers stands in the JSON alone
 DAMPING_RATIO = "damping_ratio"  # stands for the coefficient of a model's one damping law
 ITERATIONS = 40  # at most, of a fit of one's own model
-Say = Callable[[str], None]
 
 
 @dataclass(frozen=True)
