@@ -23,7 +23,8 @@ def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
     names = sorted((n for n in best if seen.visible.shows(n)), key=lambda n: -seen.visible.by_name[n])
     names = names[: bench.settings.full_fits]
     names = [name for name in names if best[name].gain > 0 and not bench.budget.refuses(name)]
-    fits = [fit for name in names if (fit := bench.full_fit(best[name], state.outcome)) is not None]
+    found = (bench.full_fit(best[name], state.outcome, reach=state.outcome.fitted.cost) for name in names)
+    fits = [fit for fit in found if fit is not None]
     fits = [bench.converged(fit, state.outcome) if fit.gain > 0 else fit for fit in fits]
     worth = [fit for fit in fits if _is_worth(fit, state.outcome, seen, bench)]
     state = replace(state, rejected=tuple(fits), first_fits=state.first_fits or tuple(fits))

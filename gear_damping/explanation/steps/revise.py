@@ -6,7 +6,7 @@ from functools import reduce
 from gear_damping.explanation.evidence.excess import is_settled
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.state import Accepted, State
-from gear_damping.explanation.trials.bench import smallest
+from gear_damping.explanation.trials.bench import RIVALS_LEAVE, smallest
 from gear_damping.explanation.trials.score import best_by_effect
 
 
@@ -26,7 +26,8 @@ def exchanged(state: State) -> State:
 def _exchanged_at(state: State, place: int) -> State:
     bench, cause, before = state.bench, state.accepted[place], state.outcome
     without = bench.without(before, cause.name)
-    fits = bench.full_fits(bench.ranked(without), without, before, bench.settings.exchange_share)
+    reach = RIVALS_LEAVE * before.fitted.cost
+    fits = bench.full_fits(bench.ranked(without), without, before, bench.settings.exchange_share, reach)
     if fits and fits[0].t > bench.settings.accepted_t and fits[0].is_seen_in_fit:
         best, rivals = bench.simplest(fits[0], fits)
         if best.name != cause.name:

@@ -118,9 +118,9 @@ class Bench:
         return refitted(score, outcome, self.evidence, self.solver, against, reach)
 
     def full_fits(
-        self, ranked: Sequence[Score], outcome: Outcome, against: Outcome, promise: float = 0.0
+        self, ranked: Sequence[Score], outcome: Outcome, against: Outcome, promise: float = 0.0, reach: float = inf
     ) -> tuple[Refit, ...]:
-        """The candidates worth it, fitted in full; the best first."""
+        """The candidates worth it, fitted in full, the best first; one that will not get below `reach` is given up."""
         if not ranked:
             return ()
         fits: list[Refit] = []
@@ -129,8 +129,8 @@ class Bench:
             if self.budget.refuses(score.candidate.name):
                 continue
             most = max((base - fit.outcome.fitted.cost for fit in fits), default=0.0)
-            reach = self._reach(most, base, against) if most > 0 else inf
-            fit = self.full_fit(score, outcome, against, reach) if score.gain > 0 else None
+            goal = min(reach, self._reach(most, base, against)) if most > 0 else reach
+            fit = self.full_fit(score, outcome, against, goal) if score.gain > 0 else None
             if fit is None and score.gain > 0:
                 self.failed[score.candidate.name] = "its full fit ran away"
             fits += [] if fit is None else [fit]

@@ -80,8 +80,7 @@ def chosen(
 ) -> list[Score]:
     """The candidates worth a full fit: the best variant of the best effects, and who resembles the first.
 
-    An effect that is tried as a whole keeps its other sizes as starts: it is far from linear between them. Another
-    form of an effect (a filter of another order) is tried too where it promises nearly as much.
+    Another form of an effect (a filter of another order) is tried too where it promises nearly as much.
 
     Args:
         scores: Every candidate, the best first.
@@ -91,10 +90,10 @@ def chosen(
             is even in the deflection pulls the frequency by its square, and what is tried as a whole (a sensor that
             saturates) promises little at a wrong size. No linear score foresees either.
     """
-    forms: dict[tuple, list[Score]] = {}
+    forms: dict[tuple, Score] = {}
     for score in scores:
-        forms.setdefault((score.candidate.name, *score.candidate.options), []).append(score)
-    every = [replace(found[0], variants=_other_sizes(found)) for found in forms.values()]
+        forms.setdefault((score.candidate.name, *score.candidate.options), score)
+    every = list(forms.values())
     ranked = list(best_by_effect(every).values())
     first = [score for score in ranked[: settings.full_fits] if score.gain >= least * ranked[0].gain]
     promising = [score for score in ranked[settings.full_fits :] if score.gain > LEAST_PROMISE * ranked[0].gain]
@@ -108,11 +107,6 @@ def chosen(
 
 def _is_far_from_linear(candidate: Candidate) -> bool:
     return candidate.is_elastic or bool(candidate.presence)
-
-
-def _other_sizes(found: Sequence[Score]) -> tuple[Candidate, ...]:
-    """The other sizes of the best variant of one form of an effect that is tried as a whole."""
-    return tuple(score.candidate for score in found[1:] if score.candidate.presence)
 
 
 def refitted(

@@ -118,7 +118,24 @@ def scores(
         found += _score_together(group, base)
         if report:
             report(len(found), len(candidates))
-    return sorted(found, key=lambda score: -score.gain)
+    return _with_other_sizes(sorted(found, key=lambda score: -score.gain))
+
+
+def _with_other_sizes(ranked: Sequence[Score]) -> list[Score]:
+    """The scores, those of an effect that is tried as a whole with the other sizes of its form, the best first.
+
+    It is far from linear between them, so a full fit begins at each.
+    """
+    sizes: dict[tuple, list[Candidate]] = {}
+    for candidate in (score.candidate for score in ranked):
+        if candidate.presence:
+            sizes.setdefault((candidate.name, *candidate.options), []).append(candidate)
+
+    def others(candidate: Candidate) -> tuple[Candidate, ...]:
+        found = sizes.get((candidate.name, *candidate.options), ())
+        return tuple(other for other in found if other is not candidate)
+
+    return [replace(score, variants=others(score.candidate)) for score in ranked]
 
 
 def _alike(candidates: Sequence[Candidate], samples: int) -> list[list[Candidate]]:

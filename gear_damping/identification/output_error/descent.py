@@ -48,8 +48,8 @@ class Descent:
 
     Every tensor has a row for each start: `points`, `now` (the linearisation at them), `cost`, `damping`, `calm` (steps
     in a row that changed little), `carried` (steps since the sensitivities were worked out), `made` (linearisations),
-    `short` (those in a row from which a start seemed not to get below `reach`), `strayed` (whether a step has failed:
-    of small problems steps then follow the bend of the response).
+    `short` (those in a row from which a start seemed to get neither below `reach` nor below the best start), `strayed`
+    (whether a step has failed: where sensitivities are fresh, steps then follow the bend of the response).
     """
 
     def __init__(
@@ -122,11 +122,12 @@ class Descent:
         """One trial of some starts."""
         points, now, fresh = self.points.pick(left), self.now.pick(left), self.carried[left] == 0
         trial = newton_step(self.problem, points, now, self.damping[left])
-        if self.at_once and self.strayed[left].any():  # where one more simulation costs little
+        is_known = self.at_once or (not self.lent and bool(fresh.all()))  # the slope, by which the bend is seen
+        if is_known and self.strayed[left].any():
             trial = accelerated(self.problem, points, now, self.damping[left], trial, self.horizon)
         seen = self._looked_at(trial)
         old, cost = self.cost[left], self._cost(trial, seen.residual)
-        if not self.at_once and not self.lent and self.reach < inf:
+        if not self.at_once and not self.lent and (self.reach < inf or len(self.cost) > 1):
             self._look_ahead(left[self.looked_at[left] < self.made[left]])
         gain, better = old - cost, cost < old
         flat = self._judge(left, gain, better, fresh)
@@ -174,7 +175,8 @@ class Descent:
         points, now = self.points.pick(fresh), self.now.pick(fresh)
         end = newton_step(self.problem, points, now, torch.full((len(fresh),), SMALLEST_DAMPING, dtype=torch.float64))
         linear = now.along(moves(self.problem, points, end))
-        falls_short = self._cost(end, now.residual - linear) > self.reach
+        best = torch.where(self.cost[fresh] > self.cost.min(), self.cost.min(), inf)  # of another start
+        falls_short = self._cost(end, now.residual - linear) > best.clamp(max=self.reach)
         self.short[fresh] = torch.where(falls_short, self.short[fresh] + 1, 0)
 
     def _carry(self, places: Tensor, missed: Tensor, changes: Tensor) -> None:

@@ -37,13 +37,12 @@ def fit(
 
 @dataclass(frozen=True)
 class Scored:
-    """A score; `replace` can copy it."""
+    """A score."""
 
     candidate: SimpleNamespace
     gain: float
     direction: torch.Tensor
     columns: torch.Tensor
-    variants: tuple = ()
 
 
 def scored(place: int, gain: float, direction: int | None = None) -> Scored:
