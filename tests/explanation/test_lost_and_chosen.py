@@ -10,8 +10,10 @@ from gear_damping.explanation.explain import best_is_lost, is_lost_by
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.trials.bench import Bench
 from gear_damping.explanation.trials.refit import chosen
+from gear_damping.explanation.trials.score import Score, with_other_sizes
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.physics.catalogue import effect_class
+from tests.explanation.decisions.made_up import bench
 
 NOISE, SAMPLES = 1e-3, 800
 
@@ -119,3 +121,36 @@ def test_what_is_tried_as_a_whole_is_fitted_whatever_it_promises_at_one_size():
     ranked[-1].candidate.presence = True
     assert "sensor_saturation" not in {s.candidate.name for s in chosen(ranked, SearchSettings())}
     assert "sensor_saturation" in {s.candidate.name for s in chosen(ranked, SearchSettings(), springs=True)}
+
+
+def test_what_is_tried_as_a_whole_begins_at_every_size_of_its_form():
+    def sized(name, form, gain, presence=True):
+        candidate = SimpleNamespace(name=name, options=(("shaft", form),), presence=presence)
+        direction = torch.ones(2, dtype=torch.float64)
+        return Score(candidate, gain, direction, direction, 0.0, direction[:, None])
+
+    small, large = sized("shaft_torsion", "pinion", 0.1), sized("shaft_torsion", "pinion", 0.3)
+    other, plain = sized("shaft_torsion", "gear", 0.2), sized("profile_error", "pinion", 0.4, presence=False)
+    found = with_other_sizes([plain, large, other, small])
+    assert [len(one.variants) for one in found] == [0, 1, 0, 1]
+    assert found[1].variants[0] is small.candidate
+    assert found[3].variants[0] is large.candidate
+
+
+def test_a_full_fit_is_given_up_where_it_cannot_take_the_place_of_what_is_there(monkeypatch):
+    asked = []
+
+    def refitted(candidate, outcome, evidence, solver, against, reach):
+        asked.append(reach)
+        fitted = SimpleNamespace(cost=6.0, converged=True)
+        return SimpleNamespace(outcome=SimpleNamespace(fitted=fitted, left_out_cost=1.0), name=candidate.candidate.name)
+
+    monkeypatch.setattr("gear_damping.explanation.trials.bench.refitted", refitted)
+    before = SimpleNamespace(fitted=SimpleNamespace(cost=10.0, converged=True))
+    made_up = bench(SearchSettings())
+    ranked = [score(name, 0.5) for name in ("coulomb_friction", "power_law_damping")]
+    made_up.full_fits(ranked, before, before, reach=5.0)
+    assert asked == [5.0, 5.0]
+    asked.clear()
+    made_up.full_fits(ranked, before, before)
+    assert asked == [math.inf, 9.0]  # a quarter of what the first one took

@@ -21,6 +21,7 @@ from gear_damping.physics.systems.oscillator import Oscillator
 STIFFNESS, DAMPING, CUBIC = (2 * math.pi * 10) ** 2, 4.0, 3e5
 COEFFICIENT = "viscous_damping.damping_coefficient"
 MODEL = Model(Oscillator(), [effect_class("viscous_damping")(), effect_class("cubic_stiffness")()])
+DESCENT = "gear_damping.identification.output_error.descent"
 RATE, SAMPLES, NOISE = 500.0, 300, 1e-3
 FREE = [
     FreeParameter("stiffness", STIFFNESS * 1.05, logarithmic=True),
@@ -42,6 +43,19 @@ def decay(name, damping, seed):
     return FitRecord(name, torch.tensor(noisy), RATE)
 
 
+def decay_by_power(name, seed):
+    """A noisy free decay under c |v|^2.4 sign(v), by scipy."""
+
+    def rates(_, state):
+        x, v = state
+        return v, -0.4 * v - STIFFNESS * x - 1300.0 * np.sign(v) * abs(v) ** 2.4
+
+    times = np.arange(SAMPLES) / RATE
+    found = solve_ivp(rates, (0, times[-1]), (5e-4, 0.0), t_eval=times, rtol=1e-9, atol=1e-12).y[0]
+    noisy = found + 1e-2 * NOISE * np.random.default_rng(seed).standard_normal(SAMPLES)
+    return FitRecord(name, torch.tensor(noisy), RATE)
+
+
 def problem_of():
     records = [decay("first", DAMPING, 0), decay("second", 1.1 * DAMPING, 1)]
     return OutputErrorProblem(MODEL, {"amplitude": 0.05}, FREE, records)
@@ -49,7 +63,7 @@ def problem_of():
 
 @pytest.fixture(autouse=True)
 def every_problem_counts_as_large(monkeypatch):
-    monkeypatch.setattr("gear_damping.identification.output_error.descent.AT_ONCE", 0.0)
+    monkeypatch.setattr(DESCENT + ".AT_ONCE", 0.0)
 
 
 def begun(problem, starts=1, at_once=False, **options):
@@ -199,6 +213,40 @@ def test_a_fit_that_will_not_reach_a_cost_is_given_up():
     assert int(given_up.made[0]) < int(whole.made[0])
     assert bool(goes_on.converged[0])
     assert float(goes_on.cost[0]) == pytest.approx(least, rel=1e-7)
+
+
+def test_a_start_that_falls_behind_another_is_given_up():
+    """The second start has half the frequency: it settles in a minimum of its own, and more steps do not help."""
+    problem = problem_of()
+    descent, alone = (begun(problem, starts=starts) for starts in (2, 1))
+    away = descent.points.shared.clone()
+    away[1, 0] = math.log(0.25)
+    descent = Descent(problem, Points(away, descent.points.states), None, 0.0)
+    descent.run(40)
+    alone.run(40)
+    assert bool(descent.converged[0])
+    assert not bool(descent.is_promising[1])
+    assert int(descent.made[1]) < 10
+    assert float(descent.cost[0]) == pytest.approx(float(alone.cost[0]), rel=1e-6)
+
+
+def test_steps_follow_the_bend_of_a_valley_where_slopes_are_fresh(monkeypatch):
+    """A coefficient beside its exponent, in a unit far from the motion's: without the bend the fit creeps."""
+    model = Model(Oscillator(), [effect_class("viscous_damping")(), effect_class("power_law_damping")()])
+    free = [
+        FreeParameter("power_law_damping.coefficient", 10.0, scale=10.0),
+        FreeParameter("power_law_damping.exponent", 1.2),
+    ]
+    records = [decay_by_power("first", 0), decay_by_power("second", 1)]
+    given = {"amplitude": 5e-4, "stiffness": STIFFNESS, COEFFICIENT: 0.4}
+    trials = {}
+    for name in ("bent", "straight"):
+        if name == "straight":
+            monkeypatch.setattr(DESCENT + ".accelerated", lambda *steps: steps[4])
+        descent = begun(OutputErrorProblem(model, given, free, records))
+        descent.run(60)
+        trials[name] = int(descent.made[0])
+    assert 2 * trials["bent"] < trials["straight"]
 
 
 def test_an_offset_of_one_record_is_left_alone_by_the_others():

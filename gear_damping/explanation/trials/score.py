@@ -118,10 +118,10 @@ def scores(
         found += _score_together(group, base)
         if report:
             report(len(found), len(candidates))
-    return _with_other_sizes(sorted(found, key=lambda score: -score.gain))
+    return with_other_sizes(sorted(found, key=lambda score: -score.gain))
 
 
-def _with_other_sizes(ranked: Sequence[Score]) -> list[Score]:
+def with_other_sizes(ranked: Sequence[Score]) -> list[Score]:
     """The scores, those of an effect that is tried as a whole with the other sizes of its form, the best first.
 
     It is far from linear between them, so a full fit begins at each.
