@@ -112,9 +112,15 @@ def excess_of(percent):
     return Excess(percent, threshold=0.01, chance=0.002, misfit=1 + percent, per_record={})
 
 
-@pytest.mark.parametrize(("left", "as_good", "kept"), [(0.001, False, True), (0.5, False, False), (0.001, True, False)])
-def test_what_explains_all_and_is_missed_is_there_whatever_its_size(left, as_good, kept, monkeypatch):
-    """A strength that trades against another parameter has no size of its own. left: of an excess of 1 %."""
+@pytest.mark.parametrize(
+    ("left", "as_good", "whole", "kept"),
+    [(0.001, False, False, True), (0.5, False, False, False), (0.001, True, False, False), (0.001, False, True, False)],
+)
+def test_what_explains_all_and_is_missed_is_there_whatever_its_size(left, as_good, whole, kept, monkeypatch):
+    """A strength that trades against another parameter has no size of its own. left: of an excess of 1 %.
+
+    Of what is tried as a whole, one that is not known is no cause.
+    """
     monkeypatch.setattr("gear_damping.explanation.steps.told.is_told", lambda *_: False)
     nominal, outcome, without = (SimpleNamespace(is_finite=True) for _ in range(3))
     bench = SimpleNamespace(
@@ -125,7 +131,8 @@ def test_what_explains_all_and_is_missed_is_there_whatever_its_size(left, as_goo
         is_as_good=lambda *_: as_good,
         excess=lambda one: excess_of(1.0 if one is nominal else left),
     )
-    state = State(bench, nominal, outcome, (Accepted("a", SimpleNamespace(), 0.5, ()),))
+    refit = SimpleNamespace(score=SimpleNamespace(candidate=SimpleNamespace(presence=whole)))
+    state = State(bench, nominal, outcome, (Accepted("a", refit, 0.5, ()),))
     found = told_of(state)
     assert bool(found.accepted) is kept
     assert found.outcome is (outcome if kept else without)

@@ -26,7 +26,8 @@ def told(state: State) -> State:
     """Without causes whose size the records do not tell from none.
 
     A strength may trade against another parameter however far (the growth of a contact ratio against the height of
-    its edges): what explains all, and is missed when it is taken out, is there whatever its size.
+    its edges): what explains all, and is missed when it is taken out, is there whatever its size. That is no rescue for
+    what is tried as a whole: of any stiffness and any inertia, the torsion of a shaft bends to what another one does.
     """
     bench = state.bench
     for cause in state.accepted:
@@ -34,7 +35,8 @@ def told(state: State) -> State:
         if not runs_away and is_told(state.outcome, cause.refit, bench.evidence):
             continue
         outcome = bench.without(state.outcome, cause.name)
-        if not runs_away and _explain_all(state) and not bench.is_as_good(outcome, state.outcome):
+        is_missed = not runs_away and not cause.refit.score.candidate.presence and _explain_all(state)
+        if is_missed and not bench.is_as_good(outcome, state.outcome):
             continue
         bench.say(f"{cause.name} lowers the cost, but its size is not told from none")
         kept = tuple(other for other in state.accepted if other is not cause)
