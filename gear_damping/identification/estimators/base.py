@@ -1,27 +1,30 @@
-"""What a file of this room declares: a network that reads windows of a record and says a damping ratio."""
+"""What a file of this room declares: an estimator of damping, by itself from a record or as a network of windows."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar
 
+from gear_damping.identification.damping_estimate import DampingEstimate
 from gear_damping.identification.features import FrontEnd
+from gear_damping.identification.free_vibration import FreeVibration, free_vibration
 from gear_damping.identification.networks import DampingNetwork
+from gear_damping.identification.observation import Known
+from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.setting import Setting
 from gear_damping.signals.wavelets.base import ContinuousWavelet
 
 
-class WindowEstimator(ABC):
-    """A network of windows, by name.
+class Estimator(ABC):
+    """An estimator of damping, by name.
 
-    Class attributes: `name`, its key in `model.names`; `reference`, where it is from; `settings`, the numbers by which
-    it is built; `transforms`, whether its features are a transform, which a protocol may take of whole runs, as the
-    paper does.
+    Class attributes: `name`, its key; `reference`, where it is from; `settings`, the numbers by which it is built.
     """
 
     name: ClassVar[str]
     reference: ClassVar[str]
     settings: ClassVar[tuple[Setting, ...]] = ()
-    transforms: ClassVar[bool] = False
 
     def __init__(self, given: Mapping[str, float | int | bool]) -> None:
         """Hold the settings.
@@ -37,6 +40,54 @@ class WindowEstimator(ABC):
         for name, value in self.values.items():
             if problem := known[name].problem(value):
                 raise ValueError(f"{self.name}: {problem}")
+
+
+@dataclass(frozen=True, eq=False)
+class Recorded:
+    """A record as an estimator meets it.
+
+    Args:
+        record: Its responses and inputs.
+        system: `gear_pair` or `oscillator`.
+        known: What is stated of the rig.
+        mesh_frequency_hz: Of a gear pair at a constant speed, else 0.
+    """
+
+    record: FitRecord
+    system: str
+    known: Known
+    mesh_frequency_hz: float = 0.0
+
+    @cached_property
+    def free_vibration(self) -> FreeVibration:
+        """What dies away in it by itself.
+
+        Raises:
+            UnsuitedRecord: nothing does.
+        """
+        return free_vibration(self.record, self.mesh_frequency_hz)
+
+
+class RecordEstimator(Estimator):
+    """An estimator that learns nothing beforehand: a record is all it needs, its settings are all it holds."""
+
+    @abstractmethod
+    def estimate(self, recorded: Recorded) -> DampingEstimate:
+        """The damping of one record, with its 95 % interval.
+
+        Raises:
+            UnsuitedRecord: it cannot say anything of this record; the message says why, and what would suit.
+        """
+
+
+class WindowEstimator(Estimator):
+    """A network of windows.
+
+    Class attribute: `transforms`, whether its features are a transform, which a protocol may take of whole runs, as
+    the paper does.
+    """
+
+    transforms: ClassVar[bool] = False
 
     @abstractmethod
     def front_end(self, transform: ContinuousWavelet | None) -> FrontEnd:

@@ -1,0 +1,64 @@
+"""The rate at which the logarithm of an amplitude falls, with an interval that knows how straight the fall is."""
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import t as student
+
+from gear_damping.identification.damping_estimate import DampingEstimate
+
+Array = NDArray[np.float64]
+
+BLOCKS = 8  # left out one at a time
+LEVEL = 0.95  # of the intervals
+
+
+@dataclass(frozen=True)
+class DecayRate:
+    """A rate in 1/s with its standard error and the degrees of freedom of that."""
+
+    value: float
+    error: float
+    freedom: int
+
+
+def decay_rate(time: Array, log_amplitude: Array, deviation: Array) -> DecayRate:
+    """The slope of a weighted line, negated; its error by leaving out one block after another (Quenouille & Tukey).
+
+    Neighbouring amplitudes share their noise, and the fall need not be straight: both spread the slopes of blocks.
+
+    Args:
+        time: (n,) in s.
+        log_amplitude: (n,).
+        deviation: (n,) standard deviations of the logarithm, up to a factor.
+    """
+    weights = 1 / deviation**2
+    blocks = np.array_split(np.arange(time.size), min(BLOCKS, time.size // 2))
+    whole = -_slope(time, log_amplitude, weights)
+    others = []
+    for block in blocks:
+        kept = np.ones(time.size, dtype=bool)
+        kept[block] = False
+        others.append(-_slope(time[kept], log_amplitude[kept], weights[kept]))
+    count = len(blocks)
+    error = float(np.sqrt((count - 1) / count * np.square(np.array(others) - np.mean(others)).sum()))
+    return DecayRate(whole, error, count - 1)
+
+
+def _slope(time: Array, values: Array, weights: Array) -> float:
+    about = time - weights @ time / weights.sum()
+    return float((weights * about) @ values / ((weights * about) @ about))
+
+
+def estimate_of(rate: DecayRate, frequency_hz: float, amplitudes: tuple[float, float]) -> DampingEstimate:
+    """The damping ratio of a vibration of a damped frequency whose amplitude falls at a rate."""
+    half = float(student.ppf((1 + LEVEL) / 2, rate.freedom)) * rate.error
+    values = ratio_percent(np.array([rate.value, rate.value - half, rate.value + half]), frequency_hz)
+    return DampingEstimate(float(values[0]), (float(values[1]), float(values[2])), frequency_hz, amplitudes)
+
+
+def ratio_percent(rate: Array, frequency_hz: float | Array) -> Array:
+    """Damping ratio in % of critical of amplitudes that fall at a rate (1/s) at a damped frequency."""
+    return 100 * rate / np.sqrt(rate**2 + (2 * pi * frequency_hz) ** 2)

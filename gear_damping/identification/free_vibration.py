@@ -1,0 +1,177 @@
+"""The free vibration in a record: what dies away after a start, a stroke, or beside the lines of a mesh."""
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+
+from gear_damping.identification.damping_estimate import UnsuitedRecord
+from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.measurement.spectral_floor import spectrum_of
+from gear_damping.signals.wavelets.morlet import MorletCWT
+
+Array = NDArray[np.float64]
+
+FEWEST_PERIODS, FEWEST_SAMPLES_PER_PERIOD = 5.0, 5.0  # of a free vibration, to tell its damping
+OMEGA0 = 6.0  # of the wavelet that finds the stretch where it is
+BAND = (0.6, 1.6)  # of its frequency, within which it may move
+WAVELET_REACH = 2.0  # periods: twice the length of that wavelet
+ABOVE_NOISE = 3.0  # standard deviations that an amplitude must have to count
+END_PERIODS = 3.0  # of a record, whose damped sinusoid continues it beyond an end
+ROUND_TURNS = 0.01  # of the records' length: a force that is on for no longer is a stroke
+
+
+@dataclass(frozen=True, eq=False)
+class FreeVibration:
+    """A vibration that dies away by itself.
+
+    Args:
+        values: (n,) samples about their mean, without lines of the mesh.
+        sampling_rate: Hz.
+        frequency_hz: Of the vibration, roughly.
+        noise: Standard deviation of white noise of the density that is beside it.
+    """
+
+    values: Array
+    sampling_rate: float
+    frequency_hz: float
+    noise: float
+
+    @property
+    def period(self) -> float:
+        """Samples of a period."""
+        return self.sampling_rate / self.frequency_hz
+
+    @property
+    def time(self) -> Array:
+        """Seconds from its beginning, (n,)."""
+        return np.arange(self.values.size) / self.sampling_rate
+
+    def continued(self, samples: int) -> Array:
+        """The values with so many samples before and after them, as damped sinusoids go on.
+
+        What looks across an end of a record (a wavelet, a filter) would take what is not there for damping.
+        """
+        count = min(self.values.size, max(8, round(END_PERIODS * self.period)))
+        before = self._beyond(self.values[:count][::-1], samples)[::-1]
+        return np.concatenate([before, self.values, self._beyond(self.values[-count:], samples)])
+
+    def _beyond(self, last: Array, samples: int) -> Array:
+        """What follows the last values: the damped sinusoid that they end as, its rate changing within them."""
+        time, first, widest = np.arange(-last.size + 1, 1.0), 2 * pi / self.period, 1 / self.period
+
+        def columns(at: Array, rate: float, omega: float, change: float) -> Array:
+            fade = np.exp(-rate * at - change * at**2 / 2)
+            return np.stack([fade * np.cos(omega * at), fade * np.sin(omega * at), np.ones_like(at)], axis=1)
+
+        def left(point: Array) -> Array:
+            basis = columns(time, *point)
+            return last - basis @ np.linalg.lstsq(basis, last, rcond=None)[0]
+
+        steepest = widest / last.size  # so that the rate changes by a damping ratio of 16 % at most
+        ends = ([-widest, first * BAND[0], -steepest], [widest, first * BAND[1], steepest])
+        found = least_squares(left, [0.0, first, 0.0], bounds=ends, x_scale=[widest, first / 10, steepest]).x
+        sizes = np.linalg.lstsq(columns(time, *found), last, rcond=None)[0]
+        return columns(np.arange(1.0, samples + 1), found[0], found[1], 0.0) @ sizes
+
+
+def free_vibration(record: FitRecord, mesh_frequency_hz: float = 0.0) -> FreeVibration:
+    """The free vibration of a record's first response.
+
+    Args:
+        record: Of a free decay, of one after a stroke of force, or of a gear pair at a constant speed.
+        mesh_frequency_hz: Of a gear pair; its harmonics are taken out.
+
+    Raises:
+        UnsuitedRecord: it is driven all the time, too short, too coarse, or nothing in it swings freely.
+    """
+    values, rate = record.response.numpy(), record.sampling_rate
+    begin = _last_drive(record)
+    values = values[begin:] - values[begin:].mean()
+    if mesh_frequency_hz > 0:
+        values = _without_lines(values, mesh_frequency_hz / rate)
+    spectrum = spectrum_of(values, rate)
+    if spectrum is None:
+        raise UnsuitedRecord(f"{values.size} samples are too few for a free vibration: record longer")
+    frequency = _strongest(values, rate)
+    found = FreeVibration(values, rate, frequency, spectrum.noise)
+    if found.period < FEWEST_SAMPLES_PER_PERIOD:
+        raise UnsuitedRecord(
+            f"the vibration of {frequency:.4g} Hz has {found.period:.2g} samples a period: sample "
+            f"{FEWEST_SAMPLES_PER_PERIOD:g} times as fast as it swings at least"
+        )
+    return _stretch(found)
+
+
+def _last_drive(record: FitRecord) -> int:
+    """The first sample after the last drive.
+
+    Raises:
+        UnsuitedRecord: it is driven nearly all the time.
+    """
+    begin = 0
+    for name in ("force", "base_acceleration"):
+        series = record.inputs.get(name)
+        if series is None or float(series.max()) == float(series.min()):
+            continue
+        away = (series - series[-1]).abs() > ROUND_TURNS * float((series - series[-1]).abs().max())
+        begin = max(begin, int(away.nonzero()[-1]) + 1)
+    if begin > len(record.response) / 2:
+        raise UnsuitedRecord("it is driven by a measured input: this estimator needs a free decay (a ring-down)")
+    return begin
+
+
+def _strongest(values: Array, rate: float) -> float:
+    """The frequency of the strongest line, in Hz, between its two neighbours by their power."""
+    power = np.abs(np.fft.rfft(values * np.hanning(2 * values.size)[values.size :], 4 * values.size)) ** 2
+    lowest = max(1, int(4 * FEWEST_PERIODS))
+    place = lowest + int(np.argmax(power[lowest:]))
+    return place * rate / (4 * values.size)
+
+
+def _without_lines(values: Array, frequency: float) -> Array:
+    """Without the harmonics of a frequency, in cycles a sample, by least squares."""
+    sample = np.arange(values.size)
+    orders = np.arange(1, int(0.5 / frequency) + 1)
+    angle = 2 * pi * frequency * np.outer(sample, orders)
+    basis = np.concatenate([np.cos(angle), np.sin(angle), np.ones((values.size, 1))], axis=1)
+    return values - basis @ np.linalg.lstsq(basis, values, rcond=None)[0]
+
+
+def _stretch(found: FreeVibration) -> FreeVibration:
+    """From where it is largest to where it is lost in noise.
+
+    Raises:
+        UnsuitedRecord: that is shorter than a few periods.
+    """
+    amplitude, deviation = amplitude_of(found, OMEGA0)
+    begin = int(np.argmax(amplitude))
+    begin = begin if begin > WAVELET_REACH * found.period else 0  # there the beginning hides it
+    lost = np.flatnonzero(amplitude[begin:] < ABOVE_NOISE * deviation)
+    end = begin + int(lost[0]) if lost.size else amplitude.size
+    if end - begin < FEWEST_PERIODS * found.period:
+        raise UnsuitedRecord(
+            f"nothing swings freely for {FEWEST_PERIODS:g} periods of {found.frequency_hz:.4g} Hz above the noise: "
+            "record a ring-down from a larger amplitude"
+        )
+    return FreeVibration(found.values[begin:end], found.sampling_rate, found.frequency_hz, found.noise)
+
+
+def amplitude_of(found: FreeVibration, omega0: float) -> tuple[Array, float]:
+    """Amplitude at the vibration's frequency by a Morlet wavelet, (n,), and its standard deviation by noise."""
+    wavelet = MorletCWT(found.sampling_rate, frequencies_hz=[found.frequency_hz], omega0=omega0)
+    coefficients = wavelet(torch.as_tensor(found.values).unsqueeze(0))[0, 0].abs().numpy()
+    size = tone_size(wavelet, wavelet.ridge_number)[0]
+    return coefficients / size, found.noise / (2**0.5 * size)
+
+
+def tone_size(wavelet: MorletCWT, number: float) -> Array:
+    """|W| of a tone of amplitude one whose s w is `number` at each scale s, (scales,).
+
+    The integral of psi = pi^(-1/4) exp(i w0 t) exp(-t^2/2) with the tone.
+    """
+    gauss = (2 * pi) ** 0.5 * pi**-0.25 / 2
+    return gauss * np.exp(-((number - wavelet.omega0) ** 2) / 2) * np.asarray(wavelet.scales) ** 0.5
