@@ -36,13 +36,16 @@ def without_input_noise(records: Sequence[FitRecord]) -> tuple[FitRecord, ...] |
 def _cleaned(record: FitRecord) -> FitRecord:
     if len(record.response) < FEWEST_SAMPLES:
         return record
-    found = {}
+    found, errors = {}, {}
     for name, series in record.inputs.items():
         variance, floor = float(series.var()), floor_variance(replace(record, response=series))
         if name not in record.held and LEAST * variance < floor < FLOOR_SHARE * variance:
             stamps = None if record.stamps is None else record.stamps.numpy()
             found[name] = torch.as_tensor(expected_load(series.numpy(), floor, stamps))
-    return replace(record, inputs={**record.inputs, **found}) if found else record
+            errors[name] = torch.as_tensor(error_of_load(series.numpy(), floor))
+    if not found:
+        return record
+    return replace(record, inputs={**record.inputs, **found}, input_errors=errors)
 
 
 def expected_load(series: Array, floor: float, stamps: Array | None = None) -> Array:
@@ -60,9 +63,25 @@ def expected_load(series: Array, floor: float, stamps: Array | None = None) -> A
     return make_interp_spline(even, _filtered(between, floor), DEGREE)(stamps)
 
 
+def error_of_load(series: Array, floor: float) -> Array:
+    """Autocovariance (time,) of what the expected load is wrong by, in the unit of the load squared.
+
+    At each frequency that is the noise times the share of the load that is kept. Lags that the length of the record
+    does not tell fade out, so that it stays one of a stationary error (Bartlett 1950, Biometrika 37).
+    """
+    _, _, share = _spectrum(series, floor)
+    lags = np.arange(len(series))
+    return floor * np.fft.irfft(share, len(series)) * np.clip(1 - 2 * lags / len(series), 0.0, 1.0)
+
+
 def _filtered(series: Array, floor: float) -> Array:
+    ramp, lines, share = _spectrum(series, floor)
+    return ramp + np.fft.irfft(share * lines, len(series))
+
+
+def _spectrum(series: Array, floor: float) -> tuple[Array, NDArray[np.complex128], Array]:
+    """The line from start to end, the spectrum beside it, and the share of the load in each of its lines."""
     ramp = np.linspace(series[0], series[-1], len(series))  # without it the jump from end to start would spread
     lines = np.fft.rfft(series - ramp)
     power = np.convolve(np.pad(np.abs(lines) ** 2, LINES // 2, mode="edge"), np.full(LINES, 1 / LINES), mode="valid")
-    share = np.clip(1 - floor * len(series) / np.maximum(power, 1e-300), 0.0, 1.0)
-    return ramp + np.fft.irfft(share * lines, len(series))
+    return ramp, lines, np.clip(1 - floor * len(series) / np.maximum(power, 1e-300), 0.0, 1.0)

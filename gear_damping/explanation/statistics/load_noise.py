@@ -54,6 +54,11 @@ class LoadNoise:
     sensor: float
     deviance: float
 
+    @property
+    def samples(self) -> int:
+        """Of the record."""
+        return len(self.motion.first) + MEMORY
+
     def innovations(self, rows: Array) -> Array:
         """Rows (time, n) of residuals made white, of unit variance; the first two samples are 0."""
         found = np.zeros_like(rows)

@@ -21,6 +21,8 @@ from gear_damping.explanation.model.nominal_gear_pair import (
     shaped,
     with_stiffness,
 )
+from gear_damping.explanation.statistics.paired import paired_gain
+from gear_damping.explanation.trials.refit import block_samples
 from gear_damping.identification.observation import MESH_PHASE
 from gear_damping.identification.oscillator import DAMPING, GAIN, fit_oscillator, linear_model, linear_oscillator
 from gear_damping.identification.output_error.angles import STARTS
@@ -90,7 +92,10 @@ def _simulable() -> Iterator[None]:
 
 
 def _oscillator_calibrated(evidence: Evidence, solver: Solver | None) -> Calibration:
-    """With loads as they were measured, or without their noise where that is followed better."""
+    """With loads without the noise of their sensor; as they were measured where the oscillator moves with that noise.
+
+    It does where it is followed clearly better with it than without.
+    """
     found = Calibration(evidence, _oscillator(evidence, solver))
     cleaned = without_input_noise(evidence.records)
     if cleaned is None:
@@ -98,7 +103,9 @@ def _oscillator_calibrated(evidence: Evidence, solver: Solver | None) -> Calibra
     count = len(evidence.fit)
     evidence = replace(evidence, fit=cleaned[:count], holdout=cleaned[count:], input_noise=True)
     quiet = Calibration(evidence, _oscillator(evidence, solver))
-    return quiet if quiet.nominal.fitted.cost < found.nominal.fitted.cost else found
+    blocks = block_samples(quiet.nominal, evidence, evidence.fitted)
+    _, t = paired_gain(quiet.nominal.fit_residuals, found.nominal.fit_residuals, blocks)
+    return found if t >= evidence.settings.rival_t else quiet
 
 
 def _oscillator(evidence: Evidence, solver: Solver | None) -> Outcome:

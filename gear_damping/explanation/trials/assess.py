@@ -12,7 +12,7 @@ from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency_hz
 from gear_damping.explanation.statistics.family_wise import Effect, Lines, Residual, Visible, block_numbers, family_wise
 from gear_damping.explanation.statistics.projector import Projector
-from gear_damping.explanation.trials.innovations import recurrences
+from gear_damping.explanation.trials.innovations import driven, load_errors
 from gear_damping.explanation.trials.line import strongest_line
 from gear_damping.explanation.trials.random_part import Random, Whitener, random_part
 from gear_damping.explanation.trials.score import Score, projected
@@ -70,7 +70,9 @@ def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, fami
     named = {score.candidate.name: score.columns for score in reversed(scores) if score.columns.shape[1]}
     beside, count = project(residual), problem.response.weights.numel()
     nameless = cache(lambda: {name: orthonormal(project(columns)) for name, columns in unnamed.items()})
-    motions, line = cache(lambda: recurrences(outcome)), cache(lambda: strongest_line(outcome, evidence))
+    known, line = cache(lambda: driven(outcome)), cache(lambda: strongest_line(outcome, evidence))
+
+    errors = cache(lambda: load_errors(outcome, evidence.records))
 
     def looked_at(random: Random) -> Assessment:
         white = Whitener(random, outcome)
@@ -84,11 +86,12 @@ def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, fami
         return _tested(seen, effects, whitened, white, outcome, evidence.settings.level)
 
     def random_in(left: Tensor, taken: float) -> Random:
-        found = random_part(left[:count, 0], taken, outcome, motions)
+        found = replace(random_part(left[:count, 0], taken, outcome, known), errors=errors())
         if not found.is_coloured or (strongest := line()) is None:
             return found
-        apart = random_part(strongest.taken_out_of(left[:count, 0]), taken + strongest.degrees, outcome, motions)
-        return apart if apart.deviance + strongest.degrees * log(count) < found.deviance else found
+        apart = random_part(strongest.taken_out_of(left[:count, 0]), taken + strongest.degrees, outcome, known)
+        is_better = apart.deviance + strongest.degrees * log(count) < found.deviance
+        return replace(apart, errors=errors()) if is_better else found
 
     large = {s.candidate.name for s in scores if s.gain > evidence.settings.random_share}
     taken_out = [columns for name, columns in named.items() if name in large]

@@ -1,17 +1,86 @@
 """The random load's part of residuals: how the free motion about the fitted one goes on, record by record."""
 
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
 import torch
 from torch import Tensor
 
 from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency_hz
 from gear_damping.explanation.model.linear import linear_of
-from gear_damping.explanation.statistics.load_noise import Recurrence, drive_correlation, recurrence
+from gear_damping.explanation.statistics.load_error import KnownError, Linear, LoadError, load_error, moved_by
+from gear_damping.explanation.statistics.load_noise import (
+    MEMORY,
+    Array,
+    LoadNoise,
+    Recurrence,
+    drive_correlation,
+    load_noise,
+    recurrence,
+)
+from gear_damping.identification.oscillator import GAIN
 from gear_damping.identification.output_error.problem import OutputErrorProblem
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import part
 
 PIECE = 3.0  # natural periods that the free motion is followed over: it must not have died away
 FEWEST = 6  # samples of a piece
+
+
+@dataclass(frozen=True)
+class Driven:
+    """What is known of how a random load moves each record.
+
+    Args:
+        motion: How its free motion goes on; None where that is not known.
+        error: What is known beforehand of the error of its load; None where that has none.
+    """
+
+    motion: Recurrence | None
+    error: KnownError | None
+
+    def part(self, residual: Array) -> LoadNoise | LoadError:
+        """The random load's part of a residual (time,): a white one of any size, or the known error, if likelier."""
+        found: list[LoadNoise | LoadError] = []
+        if self.motion is not None:
+            found.append(load_noise(residual[: len(self.motion.first) + MEMORY], self.motion))
+        if self.error is not None:
+            found.append(load_error(residual[: len(self.error.stamps)], self.error))
+        return min(found, key=lambda part: part.deviance)
+
+
+def driven(outcome: Outcome) -> list[Driven] | None:
+    """How a random load moves the first channel of each record of the problem; None where that is not known."""
+    records = outcome.problem.records
+    motions, errors = recurrences(outcome), [known_error(record, outcome) for record in records]
+    if motions is None:
+        return None if any(error is None for error in errors) else [Driven(None, error) for error in errors]
+    return [Driven(*pair) for pair in zip(motions, errors, strict=True)]
+
+
+def load_errors(outcome: Outcome, records: Sequence[FitRecord]) -> dict[str, float]:
+    """Variance, unweighted, that the known error of a load adds to the first channel of records that have one."""
+    found = {record.name: known_error(replace(record, weight=1.0), outcome) for record in records}
+    return {name: float(error.motion[0]) for name, error in found.items() if error is not None}
+
+
+def known_error(record: FitRecord, outcome: Outcome) -> KnownError | None:
+    """The error of the loads of an oscillator's record as its weighed residual sees it; None where there is none.
+
+    None, too, where several channels respond, or more than a displacement and its velocity goes on.
+    """
+    problem, values = outcome.problem, {**outcome.flat_given(), **outcome.values}
+    factors = {"force": values.get(GAIN, 1.0), "base_acceleration": -1.0}  # per unit of mass
+    errors = [factors[name] ** 2 * error.numpy() for name, error in record.input_errors.items()]
+    if not errors or problem.extra or problem.response.modes or len(problem.response.channels) > 1:
+        return None
+    mass, damping, stiffness = linear_of(outcome)
+    if stiffness <= 0 or damping <= 0:  # nothing holds its motion, which grows
+        return None
+    seen, interval = Linear(mass, damping, stiffness, record.observed.derivatives), 1 / record.sampling_rate
+    stamps = torch.arange(len(record.response)) if record.stamps is None else record.stamps
+    motion, step = moved_by(record.weight**2 * sum(errors), seen, interval)
+    return KnownError(interval * stamps.double().numpy(), motion, step, problem.noise**2)
 
 
 def recurrences(outcome: Outcome) -> list[Recurrence] | None:

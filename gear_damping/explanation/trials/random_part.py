@@ -1,7 +1,7 @@
 """The random part of residuals: of a load, of the colour of a sensor, and how it is made white."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from math import log
 
 import torch
@@ -9,8 +9,10 @@ from torch import Tensor
 
 from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.model.hypothesis import Outcome
-from gear_damping.explanation.statistics.load_noise import MEMORY, LoadNoise, Recurrence, load_noise
+from gear_damping.explanation.statistics.load_error import LoadError
+from gear_damping.explanation.statistics.load_noise import MEMORY, LoadNoise
 from gear_damping.explanation.statistics.whitening import Autoregression, autoregression
+from gear_damping.explanation.trials.innovations import Driven
 
 RANDOM_PART = "raised to the random part of the residuals"
 PER_LOAD = 2  # numbers of a load's part: its level and the sensor's
@@ -28,6 +30,8 @@ class Random:
         correlation: Sum of its squared autocorrelations.
         by_record: Variance by record.
         deviance: Minus twice the logarithm of its likelihood, with what its numbers cost.
+        sensor: Variance beside what loads add, where these are a part.
+        errors: Variance that the known error of a load adds, by record, those that were not fitted among them.
     """
 
     laws: tuple[Autoregression, ...]
@@ -35,8 +39,10 @@ class Random:
     variance: float
     correlation: float
     by_record: dict[str, float]
-    loads: tuple[LoadNoise, ...] = ()
+    loads: tuple[LoadNoise | LoadError, ...] = ()
     deviance: float = 0.0
+    sensor: float = 0.0
+    errors: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def is_coloured(self) -> bool:
@@ -50,15 +56,22 @@ class Random:
 
     def joined(self, noise: NoiseLevel) -> NoiseLevel:
         """The noise of every record, where the random part is larger than what was known of it."""
-        typical = self.variance
-        levels = {name: max(level, self.by_record.get(name, typical) ** 0.5) for name, level in noise.by_record.items()}
+        levels = {name: max(level, self._of(name) ** 0.5) for name, level in noise.by_record.items()}
         if levels == noise.by_record:
             return noise
         correlation = max(noise.correlation, self.correlation)
         return replace(noise, by_record=levels, correlation=correlation, method=f"{noise.method}; {RANDOM_PART}")
 
+    def _of(self, record: str) -> float:
+        """Variance in a record: its own; else of a sensor and what the error of its load adds; else the typical one."""
+        if record in self.by_record:
+            return self.by_record[record]
+        if record in self.errors and self.loads:
+            return self.sensor + self.errors[record]
+        return self.variance
 
-def random_part(left: Tensor, taken: float, outcome: Outcome, motions: Callable[[], list[Recurrence] | None]) -> Random:
+
+def random_part(left: Tensor, taken: float, outcome: Outcome, driven: Callable[[], list[Driven] | None]) -> Random:
     """The random part of what is left beside everything that has a shape.
 
     An autoregression of each channel; or, where that tells more (Schwarz 1978), a random load's part of each record
@@ -68,7 +81,7 @@ def random_part(left: Tensor, taken: float, outcome: Outcome, motions: Callable[
         left: (samples,).
         taken: Degrees of freedom that were taken out.
         outcome: The fitted model.
-        motions: How the free motion goes on in each record; None where that is not known.
+        driven: How a random load moves each record; None where that is not known.
     """
     problem = outcome.problem
     groups, count = _grouped(outcome)
@@ -78,8 +91,8 @@ def random_part(left: Tensor, taken: float, outcome: Outcome, motions: Callable[
     regressed = _Regressed(groups.reshape(-1), count, weights > 0, (taken + problem.n_shared) / max(total, 1.0))
     laws, loads = regressed.of(rows), ()
     kept, least = laws, regressed.deviance(laws)
-    if any(law.order for law in laws) and (known := motions()) is not None:
-        parts = [load_noise(row[: len(m.first) + MEMORY].numpy(), m) for row, m in zip(rows, known, strict=True)]
+    if any(law.order for law in laws) and (known := driven()) is not None:
+        parts = [moved.part(row.numpy()) for row, moved in zip(rows, known, strict=True)]
         beside = regressed.of(innovations(rows.unsqueeze(-1), parts).squeeze(-1))
         deviance = sum(part.deviance + PER_LOAD * log(total) for part in parts) + regressed.deviance(beside)
         if deviance < least:
@@ -88,7 +101,9 @@ def random_part(left: Tensor, taken: float, outcome: Outcome, motions: Callable[
     correlation = [laws[int(g)].correlation for g in groups.reshape(-1) if g >= 0]
     by_record = _by_record(rows, weights, outcome, scale)
     mean = sum(by_record.values()) / len(by_record)
-    return Random(kept, groups, mean, sum(correlation) / len(correlation), by_record, loads, least)
+    sensors = [part.sensor / record.weight**2 for part, record in zip(loads, problem.records, strict=False)]
+    sensor = sum(sensors) / max(len(sensors), 1)
+    return Random(kept, groups, mean, sum(correlation) / len(correlation), by_record, loads, least, sensor)
 
 
 @dataclass(frozen=True)
@@ -186,10 +201,9 @@ def _valid(weights: Tensor, order: int) -> Tensor:
     return found
 
 
-def innovations(rows: Tensor, loads: Sequence[LoadNoise]) -> Tensor:
+def innovations(rows: Tensor, loads: Sequence[LoadNoise | LoadError]) -> Tensor:
     """Rows (rows, time, n) with the random load's part made white, of unit variance."""
     found = torch.zeros_like(rows)
     for place, load in enumerate(loads):
-        length = len(load.motion.first) + MEMORY
-        found[place, :length] = torch.as_tensor(load.innovations(rows[place, :length].numpy()))
+        found[place, : load.samples] = torch.as_tensor(load.innovations(rows[place, : load.samples].numpy()))
     return found

@@ -137,6 +137,7 @@ class FitRecord:
         begins: Time in s from the beginning of that record.
         stamps: Instants of the samples in sampling intervals, (time,), where they are not evenly spaced.
         held: Inputs that stay at a sample's value until the next one.
+        input_errors: Autocovariance (time,) of what inputs are known wrong by, where they were measured with noise.
     """
 
     name: str
@@ -152,6 +153,7 @@ class FitRecord:
     begins: float = 0.0
     stamps: Tensor | None = None
     held: tuple[str, ...] = ()
+    input_errors: Mapping[str, Tensor] = field(default_factory=dict)
 
     @property
     def record(self) -> str:

@@ -1,0 +1,164 @@
+"""What the error of a measured load leaves in residuals, where its colour and size are known.
+
+A load that was measured with noise is known but for an error. Behind the oscillator that becomes a narrow random motion
+about its natural frequency, on which the noise of the sensor lies. Its share, and the level and colour of the sensor,
+are found from the spectrum of the residual (Whittle 1953); the Cholesky factor of both covariances makes it white.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from math import exp, log
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+from scipy.linalg import cholesky, solve_triangular, toeplitz
+from scipy.optimize import minimize
+
+from gear_damping.explanation.statistics.load_noise import MEMORY
+
+Array = NDArray[np.float64]
+LONGEST = 800  # samples of a piece whose covariance is factored at once: time goes with their square
+PADDED = 8  # lengths of a record over which a motion that dies away slowly is followed
+FINER = 4  # steps between two samples, from which a spline tells the covariance at any lag
+SHARES = (0.1, 2.0)  # of the error that is expected: a fit takes a part of it, and its size is an estimate
+SENSOR = (0.01, 100.0)  # of the variance that the spectrum of the response tells: a coloured sensor has another floor
+POLES = (-0.9, 0.98)  # of the sensor's colour, from sample to sample
+ROUNDING = 1e-9  # of the variance, on the diagonal
+
+
+class Linear(NamedTuple):
+    """The oscillator that a model is on average: kg, N s/m, N/m, and derivatives of its motion that are seen."""
+
+    mass: float
+    damping: float
+    stiffness: float
+    derivatives: int = 0
+
+
+@dataclass(frozen=True)
+class KnownError:
+    """The error of a load as a residual sees it.
+
+    Args:
+        stamps: Instants of the samples in s, (time,).
+        motion: Autocovariance of what it adds to them, by lags of `interval`, in the unit of the residual squared.
+        interval: In s.
+        sensor: Variance of the noise of the response as its spectrum tells it.
+    """
+
+    stamps: Array
+    motion: Array
+    interval: float
+    sensor: float
+
+
+class Levels(NamedTuple):
+    """Share of the expected error, variance of the sensor's innovations, and the pole of its colour."""
+
+    share: float
+    sensor: float
+    pole: float
+
+
+@dataclass(frozen=True)
+class LoadError:
+    """The random part of one record's residual.
+
+    Args:
+        factors: Lower Cholesky factors of its covariance, piece by piece.
+        level: Its variance over that.
+        sensor: Variance of the sensor's part.
+        deviance: Minus twice the logarithm of its likelihood without the first two samples, but for a constant.
+    """
+
+    factors: tuple[Array, ...] = field(repr=False)
+    level: float
+    sensor: float
+    deviance: float
+
+    @property
+    def samples(self) -> int:
+        """Of the record."""
+        return sum(len(factor) for factor in self.factors)
+
+    def innovations(self, rows: Array) -> Array:
+        """Rows (time, n) of residuals made white, of unit variance."""
+        return _white(rows, self.factors) / self.level**0.5
+
+
+def load_error(residual: Array, known: KnownError) -> LoadError:
+    """The random part of one record's residual (time,)."""
+    levels = _levels(residual, known)
+    factors = tuple(cholesky(_covariance(known, levels, piece), lower=True) for piece in _pieces(len(residual)))
+    white = _white(residual[:, None], factors)[MEMORY:]
+    level = max(float((white**2).mean()), 1e-300)
+    spread = np.concatenate([np.log(np.diag(factor)) for factor in factors])[MEMORY:]
+    sensor = level * levels.sensor / (1 - levels.pole**2)
+    return LoadError(factors, level, sensor, len(white) * log(level) + 2 * float(spread.sum()))
+
+
+def moved_by(error: Array, linear: Linear, interval: float) -> tuple[Array, float]:
+    """Autocovariance of the motion that the error of a load adds, and the step of its lags in s.
+
+    Args:
+        error: Autocovariance (time,) of the load's error, in N^2, by lags of `interval`.
+        linear: What it drives.
+        interval: Between samples in s.
+    """
+    length = PADDED * len(error)
+    both = np.concatenate([error, np.zeros(length - 2 * len(error) + 1), error[:0:-1]])
+    density = np.fft.rfft(both).real.clip(min=0.0)
+    rate = 2j * np.pi * np.fft.rfftfreq(length, interval)
+    response = rate**linear.derivatives / (linear.mass * rate**2 + linear.damping * rate + linear.stiffness)
+    seen = np.fft.irfft(np.abs(response) ** 2 * density, FINER * length) * FINER
+    return seen[: FINER * len(error)], interval / FINER
+
+
+def _levels(residual: Array, known: KnownError) -> Levels:
+    """Where the likelihood of the residual's spectrum is largest, as if samples were even."""
+    count = len(residual)
+    window = np.hanning(count)
+    seen = np.abs(np.fft.rfft(window * residual))[1:] ** 2 / float((window**2).sum())
+    lags = known.motion[::FINER][:count]
+    windowed = lags * np.correlate(window, window, "full")[count - 1 :] / float((window**2).sum())
+    both = np.concatenate([windowed, windowed[:0:-1]])
+    moved = np.fft.rfft(both).real[2::2].clip(min=0.0)
+    turn = np.exp(-2j * np.pi * np.fft.rfftfreq(count)[1:])
+    fewest = min(len(seen), len(moved))
+
+    def of(place: Array) -> Levels:
+        return Levels(exp(place[0]), exp(place[1]) * known.sensor, float(place[2]))
+
+    def deviance(place: Array) -> float:
+        levels = of(place)
+        density = levels.share * moved[:fewest] + levels.sensor / np.abs(1 - levels.pole * turn[:fewest]) ** 2
+        return float((np.log(density) + seen[:fewest] / density).sum())
+
+    bounds = [tuple(map(log, SHARES)), tuple(map(log, SENSOR)), POLES]
+    begun = [minimize(deviance, np.array([0.0, 0.0, pole]), bounds=bounds, method="L-BFGS-B") for pole in (0.0, 0.6)]
+    return of(min(begun, key=lambda found: float(found.fun)).x)
+
+
+def _covariance(known: KnownError, levels: Levels, piece: slice) -> Array:
+    stamps = known.stamps[piece]
+    lags = known.interval * np.arange(len(known.motion))
+    apart = np.abs(stamps[:, None] - stamps[None, :])
+    moved = levels.share * CubicSpline(lags, known.motion)(np.minimum(apart, lags[-1]))
+    sensor = levels.sensor / (1 - levels.pole**2) * levels.pole ** np.arange(len(stamps))
+    moved[np.diag_indices(len(moved))] *= 1 + ROUNDING
+    return moved + toeplitz(sensor)
+
+
+def _white(rows: Array, factors: Sequence[Array]) -> Array:
+    pieces = zip(_pieces(len(rows)), factors, strict=True)
+    return np.concatenate([solve_triangular(f, rows[piece], lower=True, check_finite=False) for piece, f in pieces])
+
+
+def _pieces(count: int) -> list[slice]:
+    """Pieces of about equal lengths; that samples of two of them hang together does not count."""
+    parts = max(1, -(-count // LONGEST))
+    ends = [round(i * count / parts) for i in range(parts + 1)]
+    return [slice(*pair) for pair in pairwise(ends)]
