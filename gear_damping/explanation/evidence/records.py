@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 from math import floor, log10, pi
 
 from gear_damping.explanation.evidence.silent_end import audible_samples
+from gear_damping.explanation.evidence.slow_rotation import gear_ratio, with_slow_rotation
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.identification.observation import (
     MESH_PHASE,
@@ -131,14 +132,18 @@ def evidence_of(measurement: Measurement) -> Evidence:
     spring = known.values.get("stiffness", 1.0) != 0
     used = [record for record in measurement.records if record.role != "reference"]
     records = [(fit_record(record, system, spring), record.role) for record in used]
+    modes = {record.gear_torque_mode for record in used} - {None}
+    mode = "held" if any("gear_torque" in r.conditions for r, _ in records) else next(iter(modes), "balanced")
     if system == "oscillator":
         require_alike([record for record, _ in records], str(measurement.source))
+    elif mode == "balanced":  # else torques tell how the shafts speed up
+        swaying = with_slow_rotation([record for record, _ in records], gear_ratio(known.values))
+        records = [(record, role) for record, (_, role) in zip(swaying, records, strict=True)]
     fit, holdout = _roles(records)
     one, silent = not holdout, 0.0
     if one:
         fit, silent = _audible(fit) if system == "oscillator" else (fit, 0.0)
         fit, holdout = _cut(fit)
-    modes = {record.gear_torque_mode for record in used} - {None}
     return Evidence(
         system=system,
         fit=tuple(fit),
@@ -146,7 +151,7 @@ def evidence_of(measurement: Measurement) -> Evidence:
         known=known,
         channel=used[0].channels[response_names(used[0], system)[0]],
         one_record=one and len(used) == 1,
-        gear_torque_mode="held" if any("gear_torque" in r.conditions for r in fit) else next(iter(modes), "balanced"),
+        gear_torque_mode=mode,
         stated_segments=Segments(measurement.segment_s, exact=True) if measurement.segment_s else WHOLE,
         has_index=all("pinion_angle" in record.inputs for record, _ in records) or system != "gear_pair",
         mesh_index=all(record.mesh_index for record in used),

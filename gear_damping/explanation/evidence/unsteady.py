@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from math import pi
 
 from gear_damping.explanation.evidence.records import Evidence, with_own
+from gear_damping.explanation.evidence.slow_rotation import VARIES
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 
-VARIES = 1e-3  # of the speed, standard deviation: what a drive lets it vary in waves about as long as a record
 MOST = 3.0  # such deviations, at which the search of a model that lacks something is held
 
 

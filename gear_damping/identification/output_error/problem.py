@@ -102,7 +102,7 @@ class OutputErrorProblem:
         return ("displacement", "velocity", *self.extra, *self.response.modes)
 
     def _offsets(self) -> list[FreeParameter]:
-        """Zeros of channels that are not known, one for each record."""
+        """Zeros of channels that are not known, one for each record, and how they change slowly."""
         found = []
         for first in first_segments(self.records):
             places = segments_of(self.records, first.record)
@@ -110,6 +110,10 @@ class OutputErrorProblem:
             for channel in (c for c in first.channels if c.offset):
                 start, scale = first_offset(pieces, channel, float(self.static[places[0]]))
                 found.append(FreeParameter(_offset_of(first, channel.name), start, scale))
+            for channel in (c for c in first.channels if c.slow):
+                size = channel.slow.deviation
+                names = [_offset_of(first, f"{channel.name}[{k + 1}]") for k in range(channel.slow.terms)]
+                found += [FreeParameter(name, 0.0, size, deviation=size, expected=0.0) for name in names]
         return found
 
     @cached_property

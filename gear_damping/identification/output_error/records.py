@@ -87,6 +87,26 @@ class Filter:
 
 
 @dataclass(frozen=True)
+class SlowChange:
+    """A change of a channel that no vibration makes, as a sum of Legendre polynomials.
+
+    Args:
+        terms: How many beyond the zero itself.
+        span: Length in s over which they are orthogonal.
+        deviation: What is expected of each, a standard deviation in the unit of the channel.
+    """
+
+    terms: int
+    span: float
+    deviation: float
+
+    def shapes(self, time: Tensor) -> Tensor:
+        """The polynomials at instants of a record (..., time) in s, (terms, ..., time)."""
+        place = torch.as_tensor(2 * time / self.span - 1)
+        return torch.stack([torch.special.legendre_polynomial_p(place, k + 1) for k in range(self.terms)])
+
+
+@dataclass(frozen=True)
 class Observed:
     """How a response channel shows the motion.
 
@@ -101,6 +121,7 @@ class Observed:
         radius: Where on that shaft, in m.
         absolute: Of an acceleration on a moving base, whether that of the base is in it.
         gain_uncertainty: Relative standard deviation of its gain; 0 where it is known.
+        slow: How its zero changes slowly, in every record on its own; None where it stays.
     """
 
     name: str = "displacement"
@@ -112,6 +133,7 @@ class Observed:
     radius: float | None = None
     absolute: bool = False
     gain_uncertainty: float = 0.0
+    slow: "SlowChange | None" = None
 
     @property
     def derivatives(self) -> int:

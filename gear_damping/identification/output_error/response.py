@@ -86,8 +86,19 @@ class Response:
             shown = shown * (self._gains.get(f"{GAIN}.{channel.name}", 1.0) if gain is None else gain[:, rows, None])
             if (offset := values.get(f"{OFFSET}.{channel.name}")) is not None:
                 shown = shown + offset[:, rows].nan_to_num(0.0).unsqueeze(-1)
+            if channel.slow:
+                shown = shown + self._slow_change(channel, values, rows, runs.time)
             scale = shown.new_tensor([self._records[i].channels[number].scale for i in rows]).unsqueeze(1)
             found[:, rows, self.channels.index(channel.name), :samples] = shown * scale
+
+    def _slow_change(
+        self, channel: Observed, values: Mapping[str, Tensor], rows: Sequence[int], time: Tensor
+    ) -> Tensor:
+        """What changes slowly in a channel, (points, records, time)."""
+        begins = torch.tensor([self._records[i].begins for i in rows], dtype=torch.float64)
+        shapes = channel.slow.shapes(begins.unsqueeze(1) + time)
+        sizes = [values[f"{OFFSET}.{channel.name}[{k + 1}]"][:, rows] for k in range(channel.slow.terms)]
+        return torch.einsum("kpr,krt->prt", torch.stack(sizes), shapes)
 
     def _left_of_start(self, runs: Runs, channel: Observed, modes: Tensor, first: bool) -> Tensor | float:
         """What the states of the sensors at the start leave in a channel, (points, records, time)."""
