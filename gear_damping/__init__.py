@@ -7,6 +7,7 @@
     record = gd.load("measurement.yaml")
     fit = gd.identify(record, model, free=["backlash.gap", "damping_ratio"])
     answer = gd.explain(record)
+    gd.damping(record).plot()
 
 Every effect of docs/effects.md is there by its name without underscores (`power_law_damping`: `PowerLawDamping`).
 Nothing heavy is imported before it is used.
@@ -21,7 +22,8 @@ __version__ = "0.1.0"
 if TYPE_CHECKING:
     from gear_damping.errors import InputError
     from gear_damping.explanation.explain import Listener
-    from gear_damping.interface.estimator import Estimator, load_estimator
+    from gear_damping.interface.damping import Damping, damping
+    from gear_damping.interface.estimator import Estimator, estimator, load_estimator
     from gear_damping.interface.explained import Answer, explain
     from gear_damping.interface.identified import Identification, identify
     from gear_damping.interface.model import Model
@@ -36,6 +38,7 @@ if TYPE_CHECKING:
 # what is offered -> where it is, and what it is called there
 _PLACES = {
     "Answer": ("interface.explained", "Answer"),
+    "Damping": ("interface.damping", "Damping"),
     "Driven": ("simulation.driven", "Driven"),
     "Estimator": ("interface.estimator", "Estimator"),
     "GearPair": ("physics.systems.gear_pair", "GearPair"),
@@ -47,6 +50,8 @@ _PLACES = {
     "Oscillator": ("physics.systems.oscillator", "Oscillator"),
     "Simulation": ("interface.simulated", "Simulation"),
     "Solver": ("simulation.solver_settings", "Solver"),
+    "damping": ("interface.damping", "damping"),
+    "estimator": ("interface.estimator", "estimator"),
     "explain": ("interface.explained", "explain"),
     "identify": ("interface.identified", "identify"),
     "load": ("measurement.load", "load_measurement"),
@@ -59,8 +64,9 @@ _EFFECTS = {
 }
 
 __all__ = [
-    "Answer", "Driven", "Estimator", "GearPair", "Identification", "InputError", "Listener", "Measurement", "Model",
-    "Oscillator", "Simulation", "Solver", "__version__", "explain", "identify", "load", "load_estimator", "simulate",
+    "Answer", "Damping", "Driven", "Estimator", "GearPair", "Identification", "InputError", "Listener", "Measurement",
+    "Model", "Oscillator", "Simulation", "Solver", "__version__", "damping", "estimator", "explain", "identify", "load",
+    "load_estimator", "simulate",
 ]  # fmt: skip
 
 

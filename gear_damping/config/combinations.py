@@ -8,6 +8,7 @@ from typing import Any
 import torch
 
 from gear_damping.config.folders import unusable
+from gear_damping.config.learners import ModelSettings
 from gear_damping.config.light import no_file, wrong_measurement, wrong_name
 from gear_damping.config.quantities import SUFFIXES
 from gear_damping.config.simulator import SimulatorSettings
@@ -31,6 +32,7 @@ class Whole:
     config: Mapping[str, Any]
     simulator: SimulatorSettings | None
     origin: Origin
+    models: ModelSettings | None = None
 
     def __getitem__(self, key: str) -> Any:
         return self.config[key]
@@ -40,7 +42,7 @@ def combination_problems(whole: Whole, wrong: set[str]) -> list[Problem]:
     """The problems of every check none of whose keys is wrong by itself.
 
     Args:
-        whole: The configuration; its simulator is None where that is wrong.
+        whole: The configuration; its simulator and models are None where these are wrong.
         wrong: The keys that are wrong by themselves.
     """
     problems = []
@@ -63,6 +65,23 @@ def _checkpoint(whole: Whole) -> Found:
         yield "checkpoint", no_file(Path(path)), path, "give the path of a best.ckpt"
     if whole["task"] == "evaluate" and path is None:
         yield "checkpoint", "task=evaluate needs a trained estimator", None, "checkpoint=…/best.ckpt"
+
+
+def _estimators(whole: Whole) -> Found:
+    """Networks are trained and then asked by their checkpoint; estimators of records need neither."""
+    task, names = whole["task"], whole["model"]["names"]
+    of_records = () if whole.models is None else whole.models.of_records
+    if of_records and task in SIMULATING:
+        rule = f"{', '.join(of_records)} has nothing to learn: it takes a record by itself"
+        yield "model.names", rule, names, "choose task=identify, or name networks only"
+    elif of_records and task == "identify" and whole["checkpoint"] is not None:
+        rule = f"is of a network, and model names {', '.join(of_records)}"
+        yield "checkpoint", rule, whole["checkpoint"], "leave one of them out"
+    elif task == "identify" and whole["checkpoint"] is None and set(names) - set(of_records):
+        typed = [one.lstrip("+~").partition("=") for one in whole.origin.overrides]
+        if of_records or any(key in ("model", "model.names") for key, _, _ in typed):
+            rule = "names a network, which tells nothing before it is trained"
+            yield "model.names", rule, names, "give its checkpoint=…/best.ckpt, or choose model=classical"
 
 
 def _resume(whole: Whole) -> Found:
@@ -227,6 +246,7 @@ def _physics(whole: Whole) -> Found:
 CHECKS: tuple[tuple[tuple[str, ...], Callable[[Whole], Found]], ...] = (
     (("name",), _name),
     (("task", "checkpoint"), _checkpoint),
+    (("task", "checkpoint", "model"), _estimators),
     (("resume",), _resume),
     (("task", "measurement"), _measurement),
     (("task", "explain", "ruled_out"), _of_a_search),

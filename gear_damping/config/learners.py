@@ -8,7 +8,7 @@ from gear_damping.config.schema import Key, problem_with, problems_with
 from gear_damping.config.source import COMMAND_LINE, Origin
 from gear_damping.errors import InputError, Problem
 from gear_damping.identification.catalogue import KEY, estimator_catalogue, wavelet_catalogue
-from gear_damping.identification.estimators.base import WindowEstimator
+from gear_damping.identification.estimators.base import Estimator, RecordEstimator
 from gear_damping.setting import Setting
 
 PLUGINS = Key("names", optional=True)
@@ -26,10 +26,12 @@ class ModelSettings:
     Args:
         settings: The numbers that each is built by, by name of the estimator and of the setting.
         plugins: The user's own files of estimators and wavelets.
+        of_records: Those that learn nothing and take a record by itself.
     """
 
     settings: dict[str, dict[str, float | int | bool]]
     plugins: tuple[str, ...] = ()
+    of_records: tuple[str, ...] = ()
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -55,7 +57,7 @@ def read_models(node: Mapping[str, Any], origin: Origin) -> ModelSettings:
     if problems:
         raise InputError(problems)
     own = {name: {one.name: given[one.name] for one in kind.settings} for name, kind in chosen.items()}
-    return ModelSettings(own, plugins)
+    return ModelSettings(own, plugins, tuple(n for n, kind in chosen.items() if issubclass(kind, RecordEstimator)))
 
 
 def read_wavelet(node: Mapping[str, Any], plugins: tuple[str, ...], origin: Origin) -> dict[str, Any]:
@@ -92,7 +94,7 @@ def read_wavelet(node: Mapping[str, Any], plugins: tuple[str, ...], origin: Orig
 
 
 def _without_others(
-    node: Mapping[str, Any], chosen: Iterable[str], known: Mapping[str, type[WindowEstimator]], origin: Origin
+    node: Mapping[str, Any], chosen: Iterable[str], known: Mapping[str, type[Estimator]], origin: Origin
 ) -> dict[str, Any]:
     """The node without what a file of `conf/model` sets for estimators that are not trained; typed, it is refused."""
     used = {one.name for name in chosen for one in known[name].settings}
@@ -100,7 +102,7 @@ def _without_others(
     return {key: v for key, v in node.items() if key not in others or origin.place(f"model.{key}") == COMMAND_LINE}
 
 
-def _own(node: Mapping[str, Any], origin: Origin) -> tuple[tuple[str, ...], dict[str, type[WindowEstimator]]]:
+def _own(node: Mapping[str, Any], origin: Origin) -> tuple[tuple[str, ...], dict[str, type[Estimator]]]:
     """The user's own files, every one of which can be used, and the estimators that there are with them."""
     plugins = node.get("plugins") or []
     wrong = problem_with(plugins, PLUGINS, KEY, origin) if plugins else None

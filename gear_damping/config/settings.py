@@ -75,7 +75,7 @@ def read_settings(config: Mapping[str, Any], origin: Origin) -> Settings:
     wavelet = tried(read_wavelet, ["wavelet"], models.plugins if models else ())
     simulator = tried(read_simulator, ["simulator", "family"])
     path = (config.get("measurement") or {}).get("path")
-    whole = Whole(config, simulator, origin)
+    whole = Whole(config, simulator, origin, models)
     problems += combination_problems(whole, {problem.key for problem in problems})
     if problems:
         raise InputError(problems)

@@ -8,7 +8,7 @@ from typing import Any
 
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.identification import estimators as room
-from gear_damping.identification.estimators.base import WindowEstimator
+from gear_damping.identification.estimators.base import Estimator, RecordEstimator, WindowEstimator
 from gear_damping.own_files import REMEDY, classes_of, load_module, modules_of
 from gear_damping.setting import Setting
 from gear_damping.signals.wavelets.base import ContinuousWavelet
@@ -16,23 +16,24 @@ from gear_damping.signals.wavelets.catalogue import builtin_wavelets
 
 KEY = "model.plugins"
 TAKEN = ("mean", "white_noise", "names", "plugins", "kind", "frequency_min_hz", "frequency_max_hz", "n_scales")
-Part = type[WindowEstimator] | type[ContinuousWavelet]
+BASES = ("RecordEstimator", "WindowEstimator", "ContinuousWavelet")
+Part = type[Estimator] | type[ContinuousWavelet]
 
 
 @cache
-def builtin_estimators() -> dict[str, type[WindowEstimator]]:
-    """The estimators that come with the package."""
-    kinds = (kind for module in modules_of(room) for kind in classes_of(module, WindowEstimator))
+def builtin_estimators() -> dict[str, type[Estimator]]:
+    """The estimators that come with the package: of records, and networks of windows."""
+    kinds = (kind for module in modules_of(room) for kind in classes_of(module, Estimator))
     return {kind.name: kind for kind in kinds if not isabstract(kind)}
 
 
-def estimator_catalogue(plugins: Sequence[str | Path] = ()) -> dict[str, type[WindowEstimator]]:
+def estimator_catalogue(plugins: Sequence[str | Path] = ()) -> dict[str, type[Estimator]]:
     """Every known estimator, with those of the user's own files added.
 
     Raises:
         InputError: a file is missing, cannot be loaded, declares nothing complete, or repeats a name.
     """
-    return {**builtin_estimators(), **_own(plugins, WindowEstimator)}
+    return {**builtin_estimators(), **_own(plugins, Estimator)}
 
 
 def wavelet_catalogue(plugins: Sequence[str | Path] = ()) -> dict[str, type[ContinuousWavelet]]:
@@ -40,13 +41,33 @@ def wavelet_catalogue(plugins: Sequence[str | Path] = ()) -> dict[str, type[Cont
     return {**builtin_wavelets(), **_own(plugins, ContinuousWavelet)}
 
 
-def kind_of(name: str, plugins: Sequence[str] = ()) -> type[WindowEstimator]:
-    """The estimator of this name.
+def kind_of(name: str, plugins: Sequence[str | Path] = ()) -> type[WindowEstimator]:
+    """The network of this name.
 
     Raises:
         InputError: there is none, or a file cannot be used.
     """
-    return _named("estimator", name, estimator_catalogue(plugins))
+    return _of_kind(name, plugins, WindowEstimator)
+
+
+def record_estimator(
+    name: str, settings: Mapping[str, float | int | bool], plugins: Sequence[str | Path] = ()
+) -> RecordEstimator:
+    """The estimator of records of this name, with its settings.
+
+    Raises:
+        InputError: there is none, a setting is unknown or out of range, or a file cannot be used.
+    """
+    kind = _of_kind(name, plugins, RecordEstimator)
+    try:
+        return kind(settings)
+    except ValueError as error:
+        raise InputError(Problem(f"estimator {name}", str(error), dict(settings))) from error
+
+
+def _of_kind(name: str, plugins: Sequence[str | Path], base: type[Estimator]) -> Any:
+    known = {one: kind for one, kind in estimator_catalogue(plugins).items() if issubclass(kind, base)}
+    return _named("estimator", name, known)
 
 
 def make_wavelet(settings: Mapping[str, Any], sampling_rate: float, plugins: Sequence[str] = ()) -> ContinuousWavelet:
@@ -76,7 +97,7 @@ def _own(plugins: Sequence[str | Path], base: type) -> dict[str, Any]:
         parts = _parts_of(path, path.stat().st_mtime_ns if path.is_file() else 0)
         faults = [f"the class {kind.__name__} {fault}" for kind in parts for fault in _faults(kind)]
         if not parts:
-            faults = ["declares no estimator and no wavelet: derive it from WindowEstimator or ContinuousWavelet"]
+            faults = [f"declares no estimator and no wavelet: derive it from {', '.join(BASES)}"]
         taken = {*builtin_estimators(), *builtin_wavelets(), *found, *TAKEN}
         repeated = sorted({kind.name for kind in parts if not faults} & taken)
         if repeated:
@@ -91,12 +112,12 @@ def _own(plugins: Sequence[str | Path], base: type) -> dict[str, Any]:
 def _parts_of(path: Path, changed: int) -> list[Part]:
     """The parts that a file declares; it is run once, until it has changed."""
     module = load_module(path, KEY)
-    return [kind for base in (WindowEstimator, ContinuousWavelet) for kind in classes_of(module, base)]
+    return [kind for base in (Estimator, ContinuousWavelet) for kind in classes_of(module, base)]
 
 
 def _faults(kind: Part) -> list[str]:
     """What is missing or wrong in a class."""
-    is_estimator = issubclass(kind, WindowEstimator)
+    is_estimator = issubclass(kind, Estimator)
     found = [f"lacks {method}" for method in sorted(kind.__abstractmethods__)]
     texts = ("name", "reference") if is_estimator else ("name",)
     found += [f"lacks {one}, a text" for one in texts if not isinstance(getattr(kind, one, None), str)]

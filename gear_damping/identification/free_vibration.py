@@ -6,6 +6,7 @@ from math import pi
 import numpy as np
 import torch
 from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
 from scipy.optimize import least_squares
 
 from gear_damping.identification.damping_estimate import UnsuitedRecord
@@ -78,21 +79,21 @@ class FreeVibration:
         return columns(np.arange(1.0, samples + 1), found[0], found[1], 0.0) @ sizes
 
 
-def free_vibration(record: FitRecord, mesh_frequency_hz: float = 0.0) -> FreeVibration:
+def free_vibration(record: FitRecord, mesh_angle: Array | None = None) -> FreeVibration:
     """The free vibration of a record's first response.
 
     Args:
-        record: Of a free decay, of one after a stroke of force, or of a gear pair at a constant speed.
-        mesh_frequency_hz: Of a gear pair; its harmonics are taken out.
+        record: Of a free decay, of one after a stroke of force, or of a gear pair.
+        mesh_angle: Of a gear pair, at every sample in rad, (time,); what follows it is taken out.
 
     Raises:
         UnsuitedRecord: it is driven all the time, too short, too coarse, or nothing in it swings freely.
     """
-    values, rate = record.response.numpy(), record.sampling_rate
+    values, rate = _at_even_instants(record), record.sampling_rate
     begin = _last_drive(record)
     values = values[begin:] - values[begin:].mean()
-    if mesh_frequency_hz > 0:
-        values = _without_lines(values, mesh_frequency_hz / rate)
+    if mesh_angle is not None:
+        values = _without_orders(values, mesh_angle[begin:])
     spectrum = spectrum_of(values, rate)
     if spectrum is None:
         raise UnsuitedRecord(f"{values.size} samples are too few for a free vibration: record longer")
@@ -125,19 +126,39 @@ def _last_drive(record: FitRecord) -> int:
 
 
 def _strongest(values: Array, rate: float) -> float:
-    """The frequency of the strongest line, in Hz, between its two neighbours by their power."""
-    power = np.abs(np.fft.rfft(values * np.hanning(2 * values.size)[values.size :], 4 * values.size)) ** 2
-    lowest = max(1, int(4 * FEWEST_PERIODS))
-    place = lowest + int(np.argmax(power[lowest:]))
-    return place * rate / (4 * values.size)
+    """The frequency of the strongest line, in Hz; a drift, which a parabola follows, is none.
+
+    Raises:
+        UnsuitedRecord: it swings too few times.
+    """
+    place = np.linspace(-1, 1, values.size)
+    steady = values - np.polynomial.Polynomial.fit(place, values, 2)(place)
+    power = np.abs(np.fft.rfft(steady * np.hanning(2 * values.size)[values.size :], 4 * values.size)) ** 2
+    strongest = 4 + int(np.argmax(power[4:]))
+    if strongest < 4 * FEWEST_PERIODS:
+        raise UnsuitedRecord(
+            f"what swings most in it does so {strongest / 4:.2g} times, and {FEWEST_PERIODS:g} are needed: record longer"
+        )
+    return strongest * rate / (4 * values.size)
 
 
-def _without_lines(values: Array, frequency: float) -> Array:
-    """Without the harmonics of a frequency, in cycles a sample, by least squares."""
-    sample = np.arange(values.size)
-    orders = np.arange(1, int(0.5 / frequency) + 1)
-    angle = 2 * pi * frequency * np.outer(sample, orders)
-    basis = np.concatenate([np.cos(angle), np.sin(angle), np.ones((values.size, 1))], axis=1)
+def _at_even_instants(record: FitRecord) -> Array:
+    values = record.response.numpy()
+    if record.stamps is None:
+        return values
+    stamps = record.stamps.numpy()
+    return CubicSpline(stamps, values)(np.linspace(stamps[0], stamps[-1], values.size))
+
+
+def _without_orders(values: Array, angle: Array) -> Array:
+    """Without what follows an angle (n,) that turns, up to half the sampling rate, by least squares."""
+    fastest = float(np.abs(np.diff(angle)).max())
+    if fastest <= 0:
+        return values
+    phases = np.outer(angle, np.arange(1, max(1, int(pi / fastest)) + 1))
+    basis = np.concatenate([np.cos(phases), np.sin(phases), np.ones((values.size, 1))], axis=1)
+    if basis.shape[1] > values.size / 2:
+        raise UnsuitedRecord("it holds fewer turns of the mesh than its harmonics take: record longer")
     return values - basis @ np.linalg.lstsq(basis, values, rcond=None)[0]
 
 

@@ -1,34 +1,71 @@
-"""A trained network that tells the damping of records."""
+"""What tells the damping of records: a trained network, or an estimator that takes a record by itself."""
 
+import json
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import torch
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.identification.catalogue import record_estimator
+from gear_damping.identification.damping_estimate import DampingCurve, UnsuitedRecord
+from gear_damping.identification.estimators.base import Recorded, RecordEstimator
 from gear_damping.identification.lightning_module import DampingModule
 from gear_damping.identification.lightning_module import load_estimator as load_module
+from gear_damping.identification.observation import RESPONSES, fit_record, known_of
+from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.measurement.record import Measurement, Record
 from gear_damping.physics.catalogue import SYSTEMS
+from gear_damping.physics.systems.gear_pair import GearPair
+
+FORMAT = "gear_damping.estimator"  # of a file that holds an estimator without weights
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Prediction:
-    """What a network says of a record.
+    """What an estimator says of a record.
 
     Args:
-        damping_ratio_percent: In % of critical, the mean over its windows.
-        spread_percent: Standard deviation over its windows, which is no interval of confidence.
-        outside: Sentences about what lies outside the ranges that it was trained on; then it is a guess.
+        damping_ratio_percent: In % of critical; None where the record does not suit it.
+        spread_percent: Of a network, the standard deviation over its windows, which is no interval of confidence.
+        outside: Sentences about what lies outside the ranges that a network was trained on; then it is a guess.
+        interval95: Of the ratio; None of a network of windows.
+        frequency_hz: Of the damped vibration.
+        amplitudes: Largest and smallest amplitude that the ratio is a mean over, in the channel's unit as it was loaded.
+        curve: The ratio against amplitude, of estimators that tell it.
+        unsuited: Why the record does not suit it, and what would.
     """
 
-    damping_ratio_percent: float
-    spread_percent: float
-    outside: tuple[str, ...]
+    damping_ratio_percent: float | None
+    spread_percent: float | None = None
+    outside: tuple[str, ...] = ()
+    interval95: tuple[float, float] | None = None
+    frequency_hz: float | None = None
+    amplitudes: tuple[float, float] | None = None
+    curve: DampingCurve | None = None
+    unsuited: str = ""
 
 
-class Estimator:
+class Estimator(ABC):
+    """An estimator that is ready for records."""
+
+    @abstractmethod
+    def predict(self, measurement: Measurement, channel: str | None = None) -> Mapping[str, Prediction]:
+        """What it says of every record, by name.
+
+        Args:
+            measurement: As `load` gives it.
+            channel: Which channel of the records; the first response of the system where absent.
+
+        Raises:
+            InputError: the records are not of the kind that it takes, or have no such channel.
+        """
+
+
+class NetworkEstimator(Estimator):
     """A checkpoint that `task=train` left; it holds only for gears like those it was trained on."""
 
     def __init__(self, module: DampingModule) -> None:
@@ -36,28 +73,14 @@ class Estimator:
         self.module, self.trained_on = module, module.trained_on
 
     def predict(self, measurement: Measurement, channel: str | None = None) -> Mapping[str, Prediction]:
-        """The damping ratio of every record in %, by name, with its spread over windows, which is no interval.
-
-        Args:
-            measurement: As `load` gives it.
-            channel: Which channel of the records; the response of the system where absent.
+        """The mean over the windows of every record, with their spread, which is no interval.
 
         Raises:
             InputError: the records are of another system, channel, unit or rate than the network was trained on, a
                 record has no such channel, or is too short.
         """
         wanted = channel or SYSTEMS[measurement.system].response
-        problems = [
-            Problem(
-                f"{record.name}.{wanted}",
-                "no such channel",
-                remedy=f"choose measurement.channel from {', '.join(record.channels)}",
-                source=str(record.file),
-            )
-            for record in measurement.records
-            if wanted not in record.channels
-        ]
-        problems = problems or self._unlike(measurement, wanted)
+        problems = _without_channel(measurement, wanted) or self._unlike(measurement, wanted)
         if problems:
             raise InputError(problems)
         return {record.name: self._of_record(record, wanted) for record in measurement.records}
@@ -75,14 +98,126 @@ class Estimator:
         return Prediction(*found[:2], self.trained_on.outside(values, found.damping_ratio_percent, conditions))
 
 
-def load_estimator(path: Path | str, plugins: Sequence[str] = ()) -> Estimator:
-    """The estimator of a checkpoint.
+class ClassicalEstimator(Estimator):
+    """An estimator that learns nothing: a record is all it needs, its settings are all it holds."""
 
-    Args:
-        path: The checkpoint.
-        plugins: Files of one's own that declare estimators: a checkpoint holds numbers and runs no code.
+    def __init__(self, estimator: RecordEstimator) -> None:
+        """Hold an estimator of records."""
+        self.estimator = estimator
+
+    @property
+    def name(self) -> str:
+        """Its key."""
+        return self.estimator.name
+
+    def predict(self, measurement: Measurement, channel: str | None = None) -> Mapping[str, Prediction]:
+        """The damping of every record with its 95 % interval, or why the record does not suit.
+
+        Raises:
+            InputError: a record has no such channel, or no response at all.
+        """
+        problems = _without_channel(measurement, channel) if channel else []
+        if problems:
+            raise InputError(problems)
+        return {record.name: self._of_record(record, measurement, channel) for record in measurement.records}
+
+    def save(self, path: Path | str) -> None:
+        """Write its name and settings as JSON, for `load_estimator`."""
+        content = {"format": FORMAT, "estimator": self.name, "settings": self.estimator.values}
+        Path(path).write_text(json.dumps(content, indent=1) + "\n")
+
+    def _of_record(self, record: Record, measurement: Measurement, channel: str | None) -> Prediction:
+        try:
+            found = self.estimator.estimate(recorded(record, measurement, channel))
+        except UnsuitedRecord as reason:
+            return Prediction(None, unsuited=str(reason))
+        return Prediction(
+            found.damping_ratio_percent,
+            interval95=found.interval95,
+            frequency_hz=found.frequency_hz,
+            amplitudes=found.amplitudes,
+            curve=found.curve,
+        )
+
+
+def recorded(record: Record, measurement: Measurement, channel: str | None = None) -> Recorded:
+    """A record as an estimator meets it, through one channel where that is named.
 
     Raises:
-        InputError: the file is missing, is no checkpoint of such a network, or of one that no file declares.
+        InputError: it has no response.
     """
-    return Estimator(load_module(path, plugins))
+    system, known = measurement.system, known_of(measurement)
+    if channel is not None:
+        others = [name for name in RESPONSES[system] if name != channel]
+        record = replace(record, channels={n: c for n, c in record.channels.items() if n not in others})
+    found = fit_record(record, system, known.values.get("stiffness", 1.0) != 0)
+    return Recorded(found, system, known, _mesh_angle(found, known.values) if system == "gear_pair" else None)
+
+
+def _mesh_angle(record: FitRecord, values: Mapping[str, float]) -> Any:
+    """The angle of the mesh at every sample, (time,) in rad; None where no speed is known."""
+    teeth = values.get("n_teeth_pinion", GearPair.parameters[0].default)
+    if "pinion_angle" in record.inputs:
+        return teeth * record.inputs["pinion_angle"].numpy()
+    speed = record.conditions.get("pinion_speed")
+    stamps = torch.arange(len(record.response)) if record.stamps is None else record.stamps
+    return None if not speed else teeth * speed / record.sampling_rate * stamps.double().numpy()
+
+
+def estimator(name: str, *, plugins: Sequence[Path | str] = (), **settings: float | bool) -> ClassicalEstimator:
+    """An estimator that takes a record by itself: `gd.estimator("wavelet_ridge", omega0=8)`.
+
+    Args:
+        name: Of the estimator.
+        plugins: Files of one's own that declare estimators.
+        settings: The numbers that it is built by; as usual where absent.
+
+    Raises:
+        InputError: there is none, a setting is unknown or out of range, or a file cannot be used.
+    """
+    return ClassicalEstimator(record_estimator(name, settings, plugins))
+
+
+def load_estimator(path: Path | str, plugins: Sequence[str] = ()) -> Estimator:
+    """The estimator of a checkpoint, or of a file that `save` wrote.
+
+    Args:
+        path: The file.
+        plugins: Files of one's own that declare estimators: what is saved holds numbers and runs no code.
+
+    Raises:
+        InputError: the file is missing, is none of either kind, or of an estimator that no file declares.
+    """
+    if Path(path).suffix == ".json":
+        content = _content_of(Path(path))
+        return estimator(content["estimator"], plugins=plugins, **content["settings"])
+    return NetworkEstimator(load_module(path, plugins))
+
+
+def _content_of(path: Path) -> dict[str, Any]:
+    """Name and settings as they were saved."""
+    try:
+        content = json.loads(path.read_text())
+    except OSError as error:
+        raise InputError(Problem("checkpoint", f"cannot be read: {error.strerror}", str(path))) from error
+    except ValueError as error:
+        raise InputError(Problem("checkpoint", f"is no JSON: {error}", str(path))) from error
+    is_one = isinstance(content, dict) and content.get("format") == FORMAT
+    if not (is_one and isinstance(content.get("estimator"), str) and isinstance(content.get("settings"), dict)):
+        rule, remedy = f"is no file of the format {FORMAT}", "give what `save` of an estimator wrote, or a best.ckpt"
+        raise InputError(Problem("checkpoint", rule, str(path), remedy))
+    return content
+
+
+def _without_channel(measurement: Measurement, channel: str) -> list[Problem]:
+    """Which records have no such channel."""
+    return [
+        Problem(
+            f"{record.name}.{channel}",
+            "no such channel",
+            remedy=f"choose measurement.channel from {', '.join(record.channels)}",
+            source=str(record.file),
+        )
+        for record in measurement.records
+        if channel not in record.channels
+    ]

@@ -82,7 +82,8 @@ def identify(
         measurement: As `load` gives it.
         model: What is fitted; the linear oscillator, or the nominal gear pair, where absent.
         free: Its free parameters, by flat name (`backlash.gap`); `damping_ratio` stands for the coefficient of its one
-            damping law. Initial states and unknown zeros of channels are always free.
+            damping law. Where absent, every number that its effects were given, and an oscillator's stiffness and
+            force gain. Initial states and unknown zeros of channels are always free.
         say: Told what is found on the way.
         progress: Told (done, total) of the fit of an oscillator.
         solver: Settings of the solver.
@@ -94,9 +95,11 @@ def identify(
     if model is None and free:
         raise InputError(Problem("free", "names parameters of a model", list(free), "give the model too"))
     if model is not None:
-        if not free:
-            raise InputError(Problem("free", "names nothing to be fitted", remedy="for example ['damping_ratio']"))
-        return Identification(measurement, identified_gears.own_fit(measurement, model, free, say, solver))
+        named = free or identified_gears.given_numbers(model)
+        if not named:
+            rule = "names nothing to be fitted, and the model was given no values"
+            raise InputError(Problem("free", rule, remedy="for example ['damping_ratio']"))
+        return Identification(measurement, identified_gears.own_fit(measurement, model, named, say, solver))
     if measurement.system == "oscillator":
         return Identification(measurement, identified_oscillator.linear_fit(measurement, progress, solver))
     return Identification(measurement, identified_gears.nominal_fit(measurement, say, solver))

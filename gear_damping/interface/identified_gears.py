@@ -33,6 +33,7 @@ from gear_damping.simulation.solver_settings import Solver
 
 SHOWN = ("mesh_stiffness_shape",)  # what is fitted in many numbers stands in the JSON alone
 DAMPING_RATIO = "damping_ratio"  # stands for the coefficient of a model's one damping law
+OF_OSCILLATORS = ("stiffness", "force_gain")  # parameters of the system that may be fitted
 ITERATIONS = 40  # at most, of a fit of one's own model
 
 
@@ -76,6 +77,16 @@ def own_fit(measurement: Measurement, model: Model, free: Sequence[str], say: Sa
         own = angles_of(begun, evidence, evidence.duration, solver)
     outcome = fit_hypothesis(begun, evidence, Begun(own=own), Rounds(ITERATIONS), solver=solver)
     return Fitted(evidence, noise, weighed(outcome, evidence))
+
+
+def given_numbers(model: Model) -> tuple[str, ...]:
+    """What may be free in a model: numbers that its effects were given, an oscillator's stiffness and force gain."""
+    declared = model.parameters()
+    return tuple(
+        name
+        for name, value in model.given.items()
+        if not declared[name].vector and value and ("." in name or name in OF_OSCILLATORS)
+    )
 
 
 def _refuse_casing(measurement: Measurement) -> None:

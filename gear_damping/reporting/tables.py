@@ -48,6 +48,18 @@ def parameter_table(title: str, rows: Iterable[Sequence[str]]) -> str:
     return _text(title, QUANTITY_COLUMNS, rows, left=("quantity", "unit"))
 
 
+def damping_table(rows: Iterable[Sequence[str]], unit: str) -> str:
+    """What estimators say of records as text of fixed width.
+
+    Args:
+        rows: Record, estimator, damping ratio, 95 % interval, frequency and amplitudes as text.
+        unit: Of the amplitudes.
+    """
+    amplitude = f"amplitude / {pretty_unit(unit)}"
+    columns = ("record", "estimator", "damping ratio / %", "95 % interval", "f / Hz", amplitude)
+    return _text("damping of free vibrations", columns, rows, left=("record", "estimator"))
+
+
 def identification_table(identification: Mapping[str, Any], title: str = "identified") -> str:
     """The table of an identification as text of fixed width.
 

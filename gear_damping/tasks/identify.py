@@ -1,10 +1,12 @@
-"""task=identify: damping from a measured record, by output error or by a trained network."""
+"""task=identify: damping from measured records, by output error, by estimators of records or by a trained network."""
 
 from typing import Any
 
 from gear_damping.config.settings import Settings
+from gear_damping.interface.damping import damping
 from gear_damping.interface.estimator import load_estimator
 from gear_damping.interface.identified import Identification, identify, refuse_faults
+from gear_damping.interface.model import Model
 from gear_damping.measurement.load import load_measurement
 from gear_damping.measurement.record import Measurement
 from gear_damping.reporting import figures
@@ -22,9 +24,17 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
         statements.say(f"note: {finding.record} {finding.channel}: {finding.message}")
     if settings.checkpoint is not None:
         return _by_network(settings, measurement, folder)
+    if settings.model.of_records:
+        return _by_estimators(settings, measurement, folder)
+    return _written(_fitted(settings, measurement), folder)
+
+
+def _fitted(settings: Settings, measurement: Measurement) -> Identification:
+    """By output error: the extended simulation where one is named, else the linear one."""
+    solver = settings.simulator.solver
+    model = Model.of_settings(settings.simulator) if settings.simulator.extended else None
     with progress_bar("fitting", settings.progress) as progress:
-        found = identify(measurement, say=statements.say, progress=progress, solver=settings.simulator.solver)
-    return _written(found, folder)
+        return identify(measurement, model, say=statements.say, progress=progress, solver=solver)
 
 
 def _written(found: Identification, folder: RunFolder) -> dict[str, Any]:
@@ -44,6 +54,20 @@ def _written(found: Identification, folder: RunFolder) -> dict[str, Any]:
         "rmse_fit": left["fit"]["rmse"],
         "rmse_holdout": (left["holdout"] or {}).get("rmse"),
     }
+
+
+def _by_estimators(settings: Settings, measurement: Measurement, folder: RunFolder) -> dict[str, Any]:
+    """Every estimator on every record; the mean over the records for run.json."""
+    models = settings.model
+    laws = {"extended simulation": _fitted(settings, measurement)} if settings.simulator.extended else None
+    channel = settings.measurement_channel
+    found = damping(measurement, models.settings, channel=channel, plugins=models.plugins, laws=laws)
+    text = found.table()
+    folder.write_json("damping.json", found.content)
+    folder.write_text("damping.txt", text)
+    statements.say(text)
+    figures.save(found.plot(), folder.path / "damping.png")
+    return {f"{name}/damping_ratio_percent": mean for name, mean in found.mean_percent.items()}
 
 
 def _by_network(settings: Settings, measurement: Measurement, folder: RunFolder) -> dict[str, Any]:

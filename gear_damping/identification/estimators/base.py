@@ -6,6 +6,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar
 
+import numpy as np
+from numpy.typing import NDArray
+
 from gear_damping.identification.damping_estimate import DampingEstimate
 from gear_damping.identification.features import FrontEnd
 from gear_damping.identification.free_vibration import FreeVibration, free_vibration
@@ -50,13 +53,13 @@ class Recorded:
         record: Its responses and inputs.
         system: `gear_pair` or `oscillator`.
         known: What is stated of the rig.
-        mesh_frequency_hz: Of a gear pair at a constant speed, else 0.
+        mesh_angle: Of a gear pair, at every sample, (time,) in rad; None where there is none or no speed is known.
     """
 
     record: FitRecord
     system: str
     known: Known
-    mesh_frequency_hz: float = 0.0
+    mesh_angle: NDArray[np.float64] | None = None
 
     @cached_property
     def free_vibration(self) -> FreeVibration:
@@ -65,7 +68,7 @@ class Recorded:
         Raises:
             UnsuitedRecord: nothing does.
         """
-        return free_vibration(self.record, self.mesh_frequency_hz)
+        return free_vibration(self.record, self.mesh_angle)
 
 
 class RecordEstimator(Estimator):

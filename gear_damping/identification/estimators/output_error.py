@@ -20,11 +20,14 @@ class OutputError(RecordEstimator):
     def estimate(self, recorded: Recorded) -> DampingEstimate:
         """By a fit to this record alone."""
         if recorded.system != "oscillator":
-            raise UnsuitedRecord("output error of one record is for oscillators: leave identify.estimators away")
+            raise UnsuitedRecord("this fit is for oscillators: task=identify without a model fits gear pairs")
         found = fit_oscillator([recorded.record], known=recorded.known)
         ratio, frequency = found.damping_ratio_percent, found.natural_frequency_hz
         if ratio is None or frequency is None:
             raise UnsuitedRecord("it was fitted without a spring, and then nothing is critical")
         damped = frequency.value * max(1 - (ratio.value / 100) ** 2, 0.0) ** 0.5
-        size = np.abs(found.predictions[recorded.record.name].numpy())
-        return DampingEstimate(ratio.value, ratio.interval95, damped, (float(size.max()), float(size[-1:].max())))
+        seen = found.predictions[recorded.record.name].numpy()
+        period = max(1, round(recorded.record.sampling_rate / max(damped, np.finfo(float).tiny)))
+        about = np.abs(seen - np.median(seen))
+        ends = float(about.max()), float(about[-period:].max())
+        return DampingEstimate(ratio.value, ratio.interval95, damped, ends)

@@ -9,6 +9,7 @@ from gear_damping.reporting.figures.casing import (
     casing_orders_figure,
     casing_turns_figure,
 )
+from gear_damping.reporting.figures.damping import DampingBand, DampingPanel, damping_figure
 from gear_damping.reporting.figures.forest import forest_figure
 from gear_damping.reporting.figures.identification import identification_figure
 from gear_damping.reporting.figures.misfit import misfit_figure
@@ -31,6 +32,8 @@ from gear_damping.reporting.figures.visible import visible_figure
 from gear_damping.reporting.style import save
 
 __all__ = [
+    "DampingBand",
+    "DampingPanel",
     "Figure",
     "ForceMap",
     "ForceSurface",
@@ -42,6 +45,7 @@ __all__ = [
     "casing_kurtosis_figure",
     "casing_orders_figure",
     "casing_turns_figure",
+    "damping_figure",
     "forest_figure",
     "identification_figure",
     "mesh_stiffness_figure",

@@ -1,0 +1,148 @@
+"""Estimators of a record's free vibration, against closed forms and scipy's integrator."""
+
+import math
+
+import numpy as np
+import pytest
+import torch
+from scipy.integrate import solve_ivp
+from scipy.signal import firwin, lfilter
+
+from gear_damping.identification.catalogue import builtin_estimators
+from gear_damping.identification.damping_estimate import UnsuitedRecord
+from gear_damping.identification.estimators.base import Recorded, RecordEstimator
+from gear_damping.identification.observation import Known
+from gear_damping.identification.output_error.records import FitRecord, Observed
+
+FREQUENCY, RATE = 12.0, 600.0  # Hz: fifty samples a period
+OMEGA = 2 * math.pi * FREQUENCY
+KINDS = {name: kind for name, kind in builtin_estimators().items() if issubclass(kind, RecordEstimator)}
+NOISE = 1e-4
+QUADRATIC = 2.5  # 1/m
+
+
+def recorded(values, inputs=None, angle=None, stamps=None, offset=False):
+    series = torch.as_tensor(np.asarray(values, dtype=float))
+    drives = {name: torch.as_tensor(drive) for name, drive in (inputs or {}).items()}
+    observed = Observed("displacement", offset=offset)
+    record = FitRecord("run", series, RATE, drives, observed=observed, stamps=stamps)
+    system = "oscillator" if angle is None else "gear_pair"
+    return Recorded(record, system, Known({}, {}), angle)
+
+
+def decay(ratio, seconds=8.0, amplitude=0.02, time=None):
+    """A linear decay from rest at its amplitude, in closed form."""
+    time = np.arange(round(seconds * RATE)) / RATE if time is None else time
+    damped = OMEGA * math.sqrt(1 - ratio**2)
+    wave = np.cos(damped * time) + ratio / math.sqrt(1 - ratio**2) * np.sin(damped * time)
+    return amplitude * np.exp(-ratio * OMEGA * time) * wave
+
+
+def noise(count, seed, size=NOISE):
+    return size * np.random.default_rng(seed).normal(size=count)
+
+
+@pytest.mark.parametrize("name", sorted(KINDS))
+@pytest.mark.parametrize("ratio", [0.004, 0.02])
+def test_a_linear_decay(name, ratio):
+    clean, errors, inside = decay(ratio), [], 0
+    for seed in range(8):
+        found = KINDS[name]({}).estimate(recorded(clean + noise(clean.size, seed)))
+        errors.append(found.damping_ratio_percent / (100 * ratio) - 1)
+        inside += found.interval95[0] <= 100 * ratio <= found.interval95[1]
+    assert abs(np.mean(errors)) < 0.01
+    assert np.std(errors) < 0.02
+    assert inside >= 5  # of eight: fewer come by chance once in 3000 times
+    assert found.frequency_hz == pytest.approx(FREQUENCY * math.sqrt(1 - ratio**2), rel=2e-3)
+    assert found.amplitudes[0] == pytest.approx(0.02, rel=0.12)
+    assert found.amplitudes[1] < found.amplitudes[0]
+
+
+def quadratic_decay():
+    """x'' + c x'|x'| + w^2 x = 0 by an integrator."""
+    time = np.arange(12000) / RATE
+    rates = lambda t, y: (y[1], -QUADRATIC * y[1] * abs(y[1]) - OMEGA**2 * y[0])  # noqa: E731
+    return solve_ivp(rates, (0, time[-1]), (0.02, 0.0), t_eval=time, rtol=1e-9, atol=1e-12).y[0]
+
+
+def test_the_ridge_tells_damping_that_grows_with_amplitude():
+    """The fall of a cycle is that of the ratio 4 c A / (3 pi) (Krylov & Bogoliubov), to first order of it."""
+    clean = quadratic_decay()
+    size = 0.01 * np.std(clean)  # 40 dB
+    found = KINDS["wavelet_ridge"]({}).estimate(recorded(clean + noise(clean.size, 1, size)))
+    amplitude, ratio = found.curve.amplitude, found.curve.damping_ratio_percent
+    expected = 100 * 4 * QUADRATIC * amplitude / (3 * math.pi)
+    decade = amplitude > amplitude.max() / 10
+    assert amplitude.max() / amplitude.min() > 8
+    assert np.median(np.abs(ratio / expected - 1)[decade]) < 0.03
+    low, high = found.curve.interval95.T
+    twice = np.abs(ratio - expected) <= (high - low)
+    assert np.mean(twice) > 0.9
+    assert np.all(np.diff(amplitude) <= 0)
+    np.testing.assert_allclose(found.curve.frequency_hz, FREQUENCY, rtol=5e-3)
+
+
+@pytest.mark.parametrize("name", sorted(set(KINDS) - {"output_error"}))
+def test_lines_of_a_mesh_that_turns_unevenly_are_no_vibration(name):
+    clean = decay(0.01, seconds=4.0)
+    time = np.arange(clean.size) / RATE
+    angle = 2 * math.pi * (17 * time + 0.3 * np.sin(2 * math.pi * 0.4 * time))
+    lines = 0.01 * np.cos(angle + 1) + 0.004 * np.cos(2 * angle) + 0.003
+    found = KINDS[name]({}).estimate(recorded(clean + lines + noise(clean.size, 2), angle=angle))
+    assert found.damping_ratio_percent == pytest.approx(1.0, rel=0.06)
+
+
+@pytest.mark.parametrize("name", sorted(set(KINDS) - {"output_error"}))
+def test_uneven_stamps(name):
+    jitter = np.random.default_rng(3).uniform(-0.3, 0.3, 4800)
+    stamps = np.arange(4800) + jitter
+    clean = decay(0.01, time=stamps / RATE)
+    found = KINDS[name]({}).estimate(recorded(clean + noise(4800, 4), stamps=torch.as_tensor(stamps)))
+    assert found.damping_ratio_percent == pytest.approx(1.0, rel=0.03)
+
+
+@pytest.mark.parametrize("name", sorted(set(KINDS) - {"output_error"}))
+@pytest.mark.parametrize(
+    ("values", "drive", "said"),
+    [
+        (decay(0.01), np.sin(np.arange(4800.0)), "driven by a measured input"),
+        (decay(0.01, seconds=0.2), None, "record"),
+        (decay(0.01)[::25], None, "samples a period"),
+        (noise(4800, 5), None, "record|sample"),
+    ],
+)
+def test_what_does_not_suit_is_said_with_what_would(name, values, drive, said):
+    inputs = None if drive is None else {"force": drive}
+    with pytest.raises(UnsuitedRecord, match=said):
+        KINDS[name]({}).estimate(recorded(values, inputs))
+
+
+@pytest.mark.parametrize("name", sorted(KINDS))
+def test_noise_in_a_band_tells_no_damping(name):
+    """It is refused, or its interval is as wide as what is said."""
+    for seed in range(5):
+        try:
+            found = KINDS[name]({}).estimate(recorded(lfilter(firwin(61, 0.2), 1, noise(4800, seed))))
+        except UnsuitedRecord:
+            continue
+        low, high = found.interval95
+        assert high - low > abs(found.damping_ratio_percent)
+
+
+def test_a_decay_after_a_stroke_is_free():
+    clean = np.concatenate([np.zeros(60), decay(0.01)])
+    force = np.zeros(clean.size)
+    force[55:60] = 30.0
+    values = clean + noise(clean.size, 6)
+    found = KINDS["log_decrement"]({}).estimate(recorded(values, {"force": force}))
+    assert found.damping_ratio_percent == pytest.approx(1.0, rel=0.02)
+
+
+def test_settings_are_checked_and_count():
+    with pytest.raises(ValueError, match="omega0 must lie within 5 and 100"):
+        KINDS["wavelet_ridge"]({"omega0": 1.0})
+    with pytest.raises(ValueError, match=r"has no setting \['omega'\]"):
+        KINDS["wavelet_ridge"]({"omega": 6.0})
+    values = decay(0.02) + noise(4800, 7)
+    found = [KINDS["wavelet_ridge"]({"omega0": w}).estimate(recorded(values)).damping_ratio_percent for w in (6, 20)]
+    assert found[0] != found[1]
