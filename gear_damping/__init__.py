@@ -22,6 +22,7 @@ __version__ = "0.1.0"
 if TYPE_CHECKING:
     from gear_damping.errors import InputError
     from gear_damping.explanation.explain import Listener
+    from gear_damping.interface.bound import bound
     from gear_damping.interface.damping import Damping, damping
     from gear_damping.interface.estimator import Estimator, estimator, load_estimator
     from gear_damping.interface.explained import Answer, explain
@@ -50,6 +51,7 @@ _PLACES = {
     "Oscillator": ("physics.systems.oscillator", "Oscillator"),
     "Simulation": ("interface.simulated", "Simulation"),
     "Solver": ("simulation.solver_settings", "Solver"),
+    "bound": ("interface.bound", "bound"),
     "damping": ("interface.damping", "damping"),
     "estimator": ("interface.estimator", "estimator"),
     "explain": ("interface.explained", "explain"),
@@ -65,8 +67,8 @@ _EFFECTS = {
 
 __all__ = [
     "Answer", "Damping", "Driven", "Estimator", "GearPair", "Identification", "InputError", "Listener", "Measurement",
-    "Model", "Oscillator", "Simulation", "Solver", "__version__", "damping", "estimator", "explain", "identify", "load",
-    "load_estimator", "simulate",
+    "Model", "Oscillator", "Simulation", "Solver", "__version__", "bound", "damping", "estimator", "explain", "identify",
+    "load", "load_estimator", "simulate",
 ]  # fmt: skip
 
 

@@ -137,7 +137,7 @@ def _strongest(values: Array, rate: float) -> float:
     strongest = 4 + int(np.argmax(power[4:]))
     if strongest < 4 * FEWEST_PERIODS:
         raise UnsuitedRecord(
-            f"what swings most in it does so {strongest / 4:.2g} times, and {FEWEST_PERIODS:g} are needed: record longer"
+            f"what swings most does so {strongest / 4:.2g} times, and {FEWEST_PERIODS:g} are needed: record longer"
         )
     return strongest * rate / (4 * values.size)
 

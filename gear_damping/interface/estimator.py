@@ -34,7 +34,7 @@ class Prediction:
         outside: Sentences about what lies outside the ranges that a network was trained on; then it is a guess.
         interval95: Of the ratio; None of a network of windows.
         frequency_hz: Of the damped vibration.
-        amplitudes: Largest and smallest amplitude that the ratio is a mean over, in the channel's unit as it was loaded.
+        amplitudes: Largest and smallest amplitude that the ratio is a mean over, in the unit of the loaded channel.
         curve: The ratio against amplitude, of estimators that tell it.
         unsuited: Why the record does not suit it, and what would.
     """

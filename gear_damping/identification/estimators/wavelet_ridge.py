@@ -18,7 +18,7 @@ from gear_damping.signals.wavelets.morlet import MorletCWT
 
 Array = NDArray[np.float64]
 
-SCALES_PER_WIDTH = 3.0  # of the wavelet's band: the ridge is interpolated between them
+SCALES_PER_WIDTH = 5.0  # of the wavelet's band: the ridge is interpolated between them
 STEPS_PER_SCALE = 2.0  # at which the ridge is read; what is closer tells the same
 REACH = 4.0  # scales: a wavelet is nothing beyond
 ABOVE_NOISE = 4.0  # standard deviations that an amplitude must have to count
@@ -71,10 +71,12 @@ class WaveletRidge(RecordEstimator):
         ridge = self._ridge(free)
         if ridge.time.size < FEWEST:
             raise UnsuitedRecord("too little of the ridge stands out of the noise: record a longer ring-down")
-        rate = decay_rate(ridge.time, ridge.log_amplitude, ridge.deviation)
+        inner = _within(ridge)
+        rate = decay_rate(inner.time, inner.log_amplitude, inner.deviation)
         size = np.exp(ridge.log_amplitude)
-        weights = 1 / ridge.deviation**2
-        frequency = float(weights @ ridge.frequency_hz / weights.sum())
+        weights = 1 / inner.deviation**2
+        frequency = float(weights @ inner.frequency_hz / weights.sum())
+        frequency *= self._beside_fall(np.array([rate.value]), frequency)[0]
         whole = estimate_of(rate, frequency, (float(size.max()), float(size.min())))
         return replace(whole, curve=self._curve(ridge))
 
@@ -110,7 +112,7 @@ class WaveletRidge(RecordEstimator):
         rates, errors = np.array([self._rate_at(ridge, place) for place in places]).T
         order = np.argsort(-ridge.log_amplitude[places], kind="stable")
         places, rates, errors = places[order], rates[order], errors[order]
-        frequency = ridge.frequency_hz[places]
+        frequency = ridge.frequency_hz[places] * self._beside_fall(rates, ridge.frequency_hz[places])
         half = float(norm.ppf((1 + LEVEL) / 2)) * errors
         return DampingCurve(
             np.exp(ridge.log_amplitude[places]),
@@ -118,6 +120,16 @@ class WaveletRidge(RecordEstimator):
             np.stack([ratio_percent(rates + side * half, frequency) for side in (-1, 1)], axis=1),
             frequency,
         )
+
+    def _beside_fall(self, rates: Array, frequency_hz: Array | float) -> Array:
+        """The frequency over that of the scale where the transform is largest, of a vibration that dies away.
+
+        Of exp((i w - d) t) the modulus is largest where x = s w obeys x - w0 = 1 / (2 x) + x d^2 / w^2; the frequency
+        was read as if it did not die away.
+        """
+        omega0, kept = self.values["omega0"], 1 - (rates / (2 * pi * frequency_hz)) ** 2
+        steady = omega0 + (omega0**2 + 2) ** 0.5
+        return (omega0 + np.sqrt(omega0**2 + 2 * kept)) / (kept * steady)
 
     def _rate_at(self, ridge: Ridge, place: int) -> tuple[float, float]:
         """The decay rate about one place, with its standard error.
@@ -128,6 +140,15 @@ class WaveletRidge(RecordEstimator):
         other, larger = _slope(ridge, place, _window(ridge, place, CLOSER * self.values["fall"]))
         bent = max((rate - other) ** 2 - max(larger - variance, 0.0), 0.0)
         return rate, (variance + bent) ** 0.5
+
+
+def _within(ridge: Ridge) -> Ridge:
+    """Without a scale at either end, where the transform sees how the record is continued; as it is where short."""
+    kept = (ridge.time >= ridge.time[0] + ridge.scale) & (ridge.time <= ridge.time[-1] - ridge.scale)
+    if kept.sum() < FEWEST:
+        return ridge
+    series = (ridge.time, ridge.log_amplitude, ridge.frequency_hz, ridge.deviation)
+    return Ridge(*(values[kept] for values in series), ridge.scale)
 
 
 def _slope(ridge: Ridge, place: int, window: slice) -> tuple[float, float]:

@@ -1,0 +1,120 @@
+"""The Cramer-Rao bound: how well anybody could know a parameter from a record behind white noise.
+
+With the sensitivities J of the response and what is known beforehand, the covariance of any unbiased estimate is at
+least (J'J / noise^2 + P)^-1 (van Trees 1968, part I, 2.4; P: of the prior). The displacement and the velocity at the
+start are always unknown.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import inf
+
+import torch
+from torch import Tensor
+
+from gear_damping.errors import InputError, Problem, nearest
+from gear_damping.physics.terms import DampingLaw
+from gear_damping.simulation.driven import Driven
+from gear_damping.simulation.runs import Runs
+from gear_damping.simulation.simulate import simulate
+from gear_damping.simulation.solver_settings import Solver
+
+START = ("initial_displacement", "initial_velocity")
+DAMPING_RATIO = "damping_ratio"  # in % of critical, for the coefficient of the one damping law
+STEP = 1e-5  # of what counts as a step of order one, on either side
+SMALLEST = 1e-300  # of a scale
+
+
+@dataclass(frozen=True)
+class Bound:
+    """The smallest standard deviations, run by run.
+
+    Args:
+        names: What is unknown, in order; the start of the runs at the end.
+        covariance: (batch, n, n), in the units of the parameters; a damping ratio in %.
+        samples: Of the record that it holds for.
+    """
+
+    names: tuple[str, ...]
+    covariance: Tensor
+    samples: int
+
+    def deviation(self, name: str) -> Tensor:
+        """Smallest standard deviation of one of them, (batch,)."""
+        place = self.names.index(name)
+        return self.covariance[:, place, place].sqrt()
+
+
+def cramer_rao(
+    runs: Runs,
+    free: Sequence[str],
+    noise: Tensor,
+    *,
+    expected: Mapping[str, float] | None = None,
+    samples: int | None = None,
+    solver: Solver | None = None,
+) -> Bound:
+    """The bound for each of several runs.
+
+    Args:
+        runs: Simulated with the values that are true.
+        free: Flat names of what is unknown beside the start; `damping_ratio` is that of the one damping law, in %.
+        noise: Standard deviation of white noise on every sample of the response, (batch,) or one.
+        expected: Standard deviations of what is known beforehand, by name, those of the start included.
+        samples: Of the record that are used, from its beginning; all where absent.
+        solver: Settings of the solver, those of the runs.
+
+    Raises:
+        InputError: a name is unknown, or there is not one damping law.
+    """
+    flat = {name: _flat(runs, name) for name in free}
+    names, used = (*free, *START), samples or runs.response.shape[-1]
+    columns = torch.stack([_sensitivity(runs, flat.get(name, name), used, solver) for name in names], -1)
+    for place, name in enumerate(names):
+        if name == DAMPING_RATIO:  # the ratio grows with the coefficient
+            columns[..., place] *= (runs.values[flat[name]] / runs.damping_ratio_percent).unsqueeze(-1)
+    weights = 1 / torch.as_tensor(noise, dtype=torch.float64).expand(len(columns)).square()
+    information = columns.mT @ columns * weights[:, None, None]
+    prior = torch.tensor([(expected or {}).get(name, inf) for name in names], dtype=torch.float64)
+    return Bound(names, _inverse(information + torch.diag(prior**-2)), used)
+
+
+def _flat(runs: Runs, name: str) -> str:
+    """The parameter of the model that a name stands for."""
+    declared = runs.model.parameters()
+    if name in declared and not declared[name].vector and name not in START:
+        return name
+    if name == DAMPING_RATIO:
+        laws = [effect for effect in runs.model.effects if isinstance(effect, DampingLaw)]
+        if len(laws) == 1:
+            return f"{laws[0].name}.{laws[0].parameters[0].name}"
+        raise InputError(Problem("free", f"the model has {len(laws)} damping laws", name, "name their coefficients"))
+    known = [one for one, parameter in declared.items() if not parameter.vector and one not in START]
+    raise InputError(Problem("free", "no such parameter of the model", name, nearest(name, [*known, DAMPING_RATIO])))
+
+
+def _sensitivity(runs: Runs, name: str, samples: int, solver: Solver | None) -> Tensor:
+    """Slope of the response by one parameter, (batch, time), by central differences."""
+    value = runs.values[name]
+    scale = _start_scale(runs, name) if name in START else torch.where(value != 0, value.abs(), 1.0)
+    moved = []
+    for side in (1, -1):
+        values = {**runs.values, name: value + side * STEP * scale}
+        inputs = Driven({n: series[:, :samples] for n, series in runs.inputs.items()}) if runs.inputs else None
+        again = simulate(
+            runs.model, values, sampling_rate=runs.sampling_rate, n_samples=samples, inputs=inputs, solver=solver
+        )
+        moved.append(again.response)
+    return (moved[0] - moved[1]) / (2 * STEP * scale).unsqueeze(-1)
+
+
+def _start_scale(runs: Runs, name: str) -> Tensor:
+    state = "displacement" if name == START[0] else "velocity"
+    return runs.states[state].std(-1).clamp(min=SMALLEST)
+
+
+def _inverse(information: Tensor) -> Tensor:
+    """Of symmetric matrices whose units differ."""
+    size = information.diagonal(dim1=-2, dim2=-1).sqrt().clamp(min=SMALLEST)
+    both = size.unsqueeze(-1) * size.unsqueeze(-2)
+    return torch.linalg.inv(information / both) / both

@@ -1,0 +1,48 @@
+"""How well anybody could know the damping from a record."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from gear_damping.errors import InputError, Problem
+from gear_damping.identification.cramer_rao import DAMPING_RATIO, cramer_rao
+from gear_damping.interface.simulated import Simulation
+from gear_damping.simulation.solver_settings import Solver
+
+
+def bound(
+    runs: Simulation,
+    free: Sequence[str] = (DAMPING_RATIO,),
+    *,
+    noise: float | None = None,
+    snr_db: float | None = None,
+    expected: Mapping[str, float] | None = None,
+    samples: int | None = None,
+    solver: Solver | None = None,
+) -> dict[str, NDArray[np.float64]]:
+    """The smallest standard deviation that any unbiased estimate can have, by name, run by run, (batch,).
+
+    The Cramer-Rao bound for a record of the response behind white noise, whose displacement and velocity at the start
+    are unknown.
+
+    Args:
+        runs: As `simulate` gives them, with the values that are true.
+        free: What is unknown beside the start, by flat name; `damping_ratio` in % of critical.
+        noise: Standard deviation of the noise, in the unit of the response; or
+        snr_db: its level below the response about its mean, run by run.
+        expected: Standard deviations of what is known beforehand, by name (`initial_displacement` and
+            `initial_velocity` too).
+        samples: How many samples of the record are used; all where absent.
+        solver: Settings of the solver.
+
+    Raises:
+        InputError: a name is unknown, or neither or both of noise and snr_db are given.
+    """
+    if (noise is None) == (snr_db is None):
+        raise InputError(Problem("noise", "one of noise and snr_db is needed", noise, "for example snr_db=30"))
+    response = runs.runs.response
+    level = torch.tensor(noise, dtype=torch.float64) if snr_db is None else response.std(-1) * 10 ** (-snr_db / 20)
+    found = cramer_rao(runs.runs, free, level, expected=expected, samples=samples, solver=solver)
+    return {name: found.deviation(name).numpy() for name in found.names}
