@@ -67,8 +67,8 @@ _EFFECTS = {
 
 __all__ = [
     "Answer", "Damping", "Driven", "Estimator", "GearPair", "Identification", "InputError", "Listener", "Measurement",
-    "Model", "Oscillator", "Simulation", "Solver", "__version__", "bound", "damping", "estimator", "explain", "identify",
-    "load", "load_estimator", "simulate",
+    "Model", "Oscillator", "Simulation", "Solver", "__version__", "bound", "damping", "estimator", "explain",
+    "identify", "load", "load_estimator", "simulate",
 ]  # fmt: skip
 
 
