@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from gear_damping.errors import InputError, Problem
 from gear_damping.identification.cramer_rao import DAMPING_RATIO, cramer_rao
 from gear_damping.interface.simulated import Simulation
-from gear_damping.simulation.solver_settings import Solver
 
 
 def bound(
@@ -20,7 +19,6 @@ def bound(
     snr_db: float | None = None,
     expected: Mapping[str, float] | None = None,
     samples: int | None = None,
-    solver: Solver | None = None,
 ) -> dict[str, NDArray[np.float64]]:
     """The smallest standard deviation that any unbiased estimate can have, by name, run by run, (batch,).
 
@@ -35,7 +33,6 @@ def bound(
         expected: Standard deviations of what is known beforehand, by name (`initial_displacement` and
             `initial_velocity` too).
         samples: How many samples of the record are used; all where absent.
-        solver: Settings of the solver.
 
     Raises:
         InputError: a name is unknown, or neither or both of noise and snr_db are given.
@@ -44,5 +41,5 @@ def bound(
         raise InputError(Problem("noise", "one of noise and snr_db is needed", noise, "for example snr_db=30"))
     response = runs.runs.response
     level = torch.tensor(noise, dtype=torch.float64) if snr_db is None else response.std(-1) * 10 ** (-snr_db / 20)
-    found = cramer_rao(runs.runs, free, level, expected=expected, samples=samples, solver=solver)
+    found = cramer_rao(runs.runs, free, level, expected=expected, samples=samples)
     return {name: found.deviation(name).numpy() for name in found.names}

@@ -6,6 +6,7 @@ from gear_damping.config.locate import conf_folder, groups
 from gear_damping.config.settings import read_settings
 from gear_damping.tasks.composed import composed
 
+NETWORKS = ("both", "cwt_lstm", "raw_lstm")  # of conf/model: these are trained, the others take records
 CHOICES = [(group, choice) for group, choices in groups().items() for choice in choices]
 
 
@@ -16,6 +17,8 @@ def test_choice_is_valid(group, choice):
         overrides += ["family=none", "++task=simulate"]
     if choice == "none" and group == "family":
         overrides += ["++simulator.damping_law=null"]
+    if group == "model" and choice not in NETWORKS:
+        overrides += ["++task=identify", "measurement=ship_roll_21337"]
     settings = read_settings(*composed(overrides))
     assert settings.simulator.n_runs >= 1
 

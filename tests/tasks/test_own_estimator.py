@@ -106,7 +106,8 @@ def test_a_name_that_is_taken_is_refused(tmp_path, caplog):
     assert "repeats the name ['raw_lstm']" in caplog.text
 
 
-def test_the_page_shows_the_file_as_it_is():
+@pytest.mark.parametrize(("place", "name"), [(1, "my_record_estimator.py"), (2, "my_estimator.py")])
+def test_the_page_shows_the_files_as_they_are(place, name):
     page = (ROOT / "docs" / "your_own_estimator.md").read_text()
-    shown = page.split("```python\n")[1].split("```")[0]
-    assert shown in EXAMPLE.read_text()
+    shown = page.split("```python\n")[place].split("```")[0]
+    assert shown in (ROOT / "docs" / "examples" / name).read_text()
