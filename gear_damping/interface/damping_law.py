@@ -12,16 +12,16 @@ from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency
 from gear_damping.explanation.model.spread import spread_of
 from gear_damping.identification.damping_estimate import DampingCurve
 from gear_damping.identification.decay_rate import ratio_percent
+from gear_damping.identification.output_error.uncertainty import QUANTILE
 from gear_damping.simulation.simulate import simulate
 
 Array = NDArray[np.float64]
-DRAWS, SEED = 100, 0  # of the parameters, for the band
+SHARE, LARGEST, SMALLEST = 0.05, 0.02, 1e-12  # of a standard deviation, and of a coordinate: moves for slopes
 PER_PERIOD = 60  # samples: a turning point between two of them is right to their fourth power
 FIRST_PERIODS, MOST_PERIODS = 40, 2000  # of a decay; as often doubled as it takes to fall to the smallest amplitude
 AT_REST = 3.0  # periods without a turn
 ABOVE = 1.1  # times the largest amplitude, where the decay begins
 POINTS = 60  # of the curve
-QUANTILES = (0.025, 0.975)  # of a 95 % interval
 FEWEST_SWINGS = 4  # half swings of a decay that tells a rate
 
 
@@ -43,23 +43,31 @@ def damping_law(outcome: Outcome, evidence: Evidence, ends: tuple[float, float])
     factor = (2 * np.pi * frequency) ** evidence.fit[0].observed.derivatives
     grid = np.geomspace(*ends, POINTS)
     free, count = outcome.problem.free, len(hypothesis.common)
-    coordinates = _draws(outcome.fitted.shared[:count], spread_of(outcome, evidence)[:count, :count])
+    moves, sizes = _moves(spread_of(outcome, evidence)[:count, :count])
+    steps = torch.cat([torch.zeros_like(moves[:1]), moves, -moves])
+    coordinates = outcome.fitted.shared[:count] + steps
     values = {p.name: p.value(coordinates[:, i]) for i, p in enumerate(free[:count])}
     decays = _decays(outcome, values, (ends[0] / factor, ends[1] / factor), frequency)
     curves = [_against(grid / factor, *decay) for decay in decays]
-    first, others = curves[0], [curve for curve in curves[1:] if curve is not None]
-    if first is None or not others:
+    if any(curve is None for curve in curves):
         return None
-    rates = np.stack([ratio for ratio, _ in others])
-    return DampingCurve(grid, first[0], np.quantile(rates, QUANTILES, axis=0).T, first[1])
+    ratio, frequencies = curves[0]
+    moved = np.array([one for one, _ in curves[1:]])
+    slopes = (moved[: len(moves)] - moved[len(moves) :]) / 2 * sizes[:, None]
+    half = QUANTILE * np.sqrt(np.square(slopes).sum(0))
+    return DampingCurve(grid, ratio, np.stack([ratio - half, ratio + half], axis=1), frequencies)
 
 
-def _draws(best: Tensor, spread: Tensor) -> Tensor:
-    """Coordinates as they were found, and as they may be, (1 + draws, n)."""
+def _moves(spread: Tensor) -> tuple[Tensor, Array]:
+    """Small moves (n, n) of the coordinates that are independent of each other, and standard deviations over them.
+
+    Parameters that trade against each other may lie far apart along a curved valley, which their covariance does not
+    know: the slopes at its bottom are what it is for.
+    """
     sizes, axes = torch.linalg.eigh((spread + spread.T) / 2)
-    random = torch.randn(DRAWS, len(best), dtype=best.dtype, generator=torch.Generator().manual_seed(SEED))
-    moved = random * sizes.clamp(min=0).sqrt() @ axes.T
-    return best + torch.cat([torch.zeros_like(moved[:1]), moved])
+    deviations = sizes.clamp(min=0).sqrt()
+    steps = (SHARE * deviations).clamp(max=LARGEST)
+    return steps.unsqueeze(1) * axes.T, (deviations / steps.clamp(min=SMALLEST)).numpy()
 
 
 def _decays(

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 from numpy.typing import NDArray
 
 from gear_damping.reporting.style import CYCLE, INK, new_figure, say_empty, styled
@@ -16,7 +16,8 @@ MOST_PANELS = 12  # that can be read on one page
 ABREAST = 3  # panels in a row, at most
 HEIGHT = 2.6  # inches of a row
 ROOM = 0.35  # of the largest ratio, above it
-LEAST_SPAN = 1.5  # from the smallest to the largest amplitude of an axis
+FEW_TICKS = 5.0  # from the smallest to the largest: below it 1, 2 and 5 are too few
+LEAST_SPAN = 1.2  # from the smallest to the largest amplitude of an axis
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,11 +98,12 @@ def _panel(axes: Axes, panel: DampingPanel, names: Sequence[str]) -> None:
             axes.fill_between(law.amplitude, *law.interval95.T, color=INK, alpha=0.15, linewidth=0)
             axes.plot(law.amplitude, law.ratio_percent, color=INK, linestyle="--", label=name)
     axes.set_xscale("log")
-    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, place: f"{value:g}"))
-    axes.xaxis.set_minor_formatter(NullFormatter())
     every = np.concatenate([band.amplitude for band in told.values()])
     if every.max() < LEAST_SPAN * every.min():
         axes.set_xlim(every.min() / LEAST_SPAN, every.max() * LEAST_SPAN)
+    low, high = axes.get_xlim()
+    axes.xaxis.set_major_locator(MaxNLocator(4) if high < FEW_TICKS * low else LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, place: f"{value:g}"))
+    axes.xaxis.set_minor_formatter(NullFormatter())
     largest = max(float(band.ratio_percent.max()) for band in told.values())
     axes.set_ylim(min(0.0, *(float(band.ratio_percent.min()) for band in told.values())), (1 + ROOM) * largest)
