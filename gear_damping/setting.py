@@ -29,6 +29,10 @@ class Setting:
 
     def problem(self, value: float | int | bool) -> str:
         """What is wrong with a value; "" where nothing is."""
+        is_number = isinstance(value, (int, float)) and (self.kind == "bool" or not isinstance(value, bool))
+        if not is_number or (self.kind == "int" and value != round(value)):
+            wanted = {"int": "a whole number", "float": "a number", "bool": "true or false"}[self.kind]
+            return f"{self.name} must be {wanted}, got {value!r}"
         if self.lower <= value <= self.upper:
             return ""
         return f"{self.name} must lie within {self.lower:g} and {self.upper:g}, got {value!r}"

@@ -71,8 +71,8 @@ def _estimators(whole: Whole) -> Found:
     """Networks are trained and then asked by their checkpoint; estimators of records need neither."""
     task, names = whole["task"], whole["model"]["names"]
     of_records = () if whole.models is None else whole.models.of_records
-    if of_records and task in SIMULATING:
-        rule = f"{', '.join(of_records)} has nothing to learn: it takes a record by itself"
+    if of_records and task != "identify":
+        rule = f"{', '.join(of_records)} has nothing to learn: it takes a record by itself, in task=identify"
         yield "model.names", rule, names, "choose task=identify, or name networks only"
     elif of_records and task == "identify" and whole["checkpoint"] is not None:
         rule = f"is of a network, and model names {', '.join(of_records)}"
@@ -82,6 +82,14 @@ def _estimators(whole: Whole) -> Found:
         if of_records or any(key in ("model", "model.names") for key, _, _ in typed):
             rule = "names a network, which tells nothing before it is trained"
             yield "model.names", rule, names, "give its checkpoint=…/best.ckpt, or choose model=classical"
+
+
+def _wavelet_of_networks(whole: Whole) -> Found:
+    """The transform is one of networks: an estimator of records has its own."""
+    for typed in whole.origin.overrides if whole.models is not None and whole.models.of_records else ():
+        key, _, value = typed.lstrip("+~").partition("=")
+        if key == "wavelet" or key.startswith("wavelet."):
+            yield key, "acts on networks, and none is named", value, "leave it out; wavelet_ridge has model.omega0"
 
 
 def _resume(whole: Whole) -> Found:
@@ -247,6 +255,7 @@ CHECKS: tuple[tuple[tuple[str, ...], Callable[[Whole], Found]], ...] = (
     (("name",), _name),
     (("task", "checkpoint"), _checkpoint),
     (("task", "checkpoint", "model"), _estimators),
+    (("model", "wavelet"), _wavelet_of_networks),
     (("resume",), _resume),
     (("task", "measurement"), _measurement),
     (("task", "explain", "ruled_out"), _of_a_search),

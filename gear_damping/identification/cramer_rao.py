@@ -65,10 +65,11 @@ def cramer_rao(
         solver: Settings of the solver, those of the runs.
 
     Raises:
-        InputError: a name is unknown, or there is not one damping law.
+        InputError: a name is unknown or there twice, there is not one damping law, or no positive noise.
     """
-    flat = {name: _flat(runs, name) for name in free}
     names, used = (*free, *START), samples or runs.response.shape[-1]
+    flat = {name: _flat(runs, name) for name in free}
+    _refuse(runs, noise, names, [*flat.values(), *START], expected or {}, used)
     columns = torch.stack([_sensitivity(runs, flat.get(name, name), used, solver) for name in names], -1)
     for place, name in enumerate(names):
         if name == DAMPING_RATIO:  # the ratio grows with the coefficient
@@ -77,6 +78,33 @@ def cramer_rao(
     information = columns.mT @ columns * weights[:, None, None]
     prior = torch.tensor([(expected or {}).get(name, inf) for name in names], dtype=torch.float64)
     return Bound(names, _inverse(information + torch.diag(prior**-2)), used)
+
+
+def _refuse(
+    runs: Runs, noise: Tensor, names: Sequence[str], flat: Sequence[str], expected: Mapping[str, float], used: int
+) -> None:
+    """Refuse what has no bound.
+
+    Raises:
+        InputError: everything that is wrong.
+    """
+    level, longest = torch.as_tensor(noise), runs.response.shape[-1]
+    strange = [name for name in expected if name not in names]
+    found = [Problem("expected", "is not among what is unknown", name, nearest(name, names)) for name in strange]
+    found += [Problem(f"expected.{n}", "must be positive", v) for n, v in expected.items() if not v > 0]
+    if not bool((level > 0).all()):
+        found.append(Problem("noise", "must be positive", level.tolist(), "without noise there is no bound"))
+    if not 2 <= used <= longest:
+        found.append(Problem("samples", f"must lie within 2 and {longest}", used, "simulate longer runs"))
+    if len(set(flat)) < len(flat):
+        found.append(Problem("free", "names one parameter twice", list(names[: -len(START)]), "name it once"))
+    found += [
+        Problem("free", "is 0 in a run, where no ratio follows it", name, "give it a value")
+        for name, one in zip(names, flat, strict=True)
+        if name == DAMPING_RATIO and not bool((runs.values[one] != 0).all())
+    ]
+    if found:
+        raise InputError(found)
 
 
 def _flat(runs: Runs, name: str) -> str:

@@ -22,7 +22,11 @@ BAND = (0.6, 1.6)  # of its frequency, within which it may move
 WAVELET_REACH = 2.0  # periods: twice the length of that wavelet
 ABOVE_NOISE = 3.0  # standard deviations that an amplitude must have to count
 END_PERIODS = 3.0  # of a record, whose damped sinusoid continues it beyond an end
-ROUND_TURNS = 0.01  # of the records' length: a force that is on for no longer is a stroke
+SHAFT_ORDERS, SIDEBANDS = 6, 3  # harmonics of a shaft, and of the mesh whose sidebands are taken out
+OFF = 0.01  # of the largest force: what is left of it after a stroke,
+OFF_NOISE = 6.0  # or so many standard deviations of its noise
+LONGEST_DRIVE = 0.9  # of the record: a force that is on for longer leaves no free vibration
+LEAST_FALL = 0.1  # nepers over a record: what falls less is a line that goes on, or tells no damping
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,12 +38,14 @@ class FreeVibration:
         sampling_rate: Hz.
         frequency_hz: Of the vibration, roughly.
         noise: Standard deviation of white noise of the density that is beside it.
+        ends: Sample of the record behind its last.
     """
 
     values: Array
     sampling_rate: float
     frequency_hz: float
     noise: float
+    ends: int = 0
 
     @property
     def period(self) -> float:
@@ -79,12 +85,36 @@ class FreeVibration:
         return columns(np.arange(1.0, samples + 1), found[0], found[1], 0.0) @ sizes
 
 
-def free_vibration(record: FitRecord, mesh_angle: Array | None = None) -> FreeVibration:
+@dataclass(frozen=True, eq=False)
+class Turning:
+    """What turns in a gear pair.
+
+    Args:
+        mesh_angle: (time,) in rad, at evenly spaced instants.
+        teeth: Of pinion and gear.
+    """
+
+    mesh_angle: Array
+    teeth: tuple[float, float]
+
+    def orders(self) -> list[Array]:
+        """Angles (time,) of every harmonic of the mesh, and of the lower ones of both shafts and their sidebands."""
+        fastest = float(np.abs(np.diff(self.mesh_angle)).max())
+        if fastest <= 0:
+            return []
+        mesh = [k * self.mesh_angle for k in range(1, int(pi / fastest) + 1)]
+        shafts = [self.mesh_angle / teeth for teeth in self.teeth]
+        low = [k * shaft for shaft in shafts for k in range(1, SHAFT_ORDERS + 1)]
+        beside = [m + k * shaft for m in mesh[:SIDEBANDS] for shaft in shafts for k in (-2, -1, 1, 2)]
+        return [*mesh, *low, *beside]
+
+
+def free_vibration(record: FitRecord, turning: Turning | None = None) -> FreeVibration:
     """The free vibration of a record's first response.
 
     Args:
         record: Of a free decay, of one after a stroke of force, or of a gear pair.
-        mesh_angle: Of a gear pair, at every sample in rad, (time,); what follows it is taken out.
+        turning: Of a gear pair; what follows its shafts and their mesh is taken out.
 
     Raises:
         UnsuitedRecord: it is driven all the time, too short, too coarse, or nothing in it swings freely.
@@ -92,13 +122,13 @@ def free_vibration(record: FitRecord, mesh_angle: Array | None = None) -> FreeVi
     values, rate = _at_even_instants(record), record.sampling_rate
     begin = _last_drive(record)
     values = values[begin:] - values[begin:].mean()
-    if mesh_angle is not None:
-        values = _without_orders(values, mesh_angle[begin:])
+    if turning is not None:
+        values = _without_orders(values, turning, begin)
     spectrum = spectrum_of(values, rate)
     if spectrum is None:
         raise UnsuitedRecord(f"{values.size} samples are too few for a free vibration: record longer")
     frequency = _strongest(values, rate)
-    found = FreeVibration(values, rate, frequency, spectrum.noise)
+    found = FreeVibration(values, rate, frequency, spectrum.noise, begin + values.size)
     if found.period < FEWEST_SAMPLES_PER_PERIOD:
         raise UnsuitedRecord(
             f"the vibration of {frequency:.4g} Hz has {found.period:.2g} samples a period: sample "
@@ -118,9 +148,12 @@ def _last_drive(record: FitRecord) -> int:
         series = record.inputs.get(name)
         if series is None or float(series.max()) == float(series.min()):
             continue
-        away = (series - series[-1]).abs() > ROUND_TURNS * float((series - series[-1]).abs().max())
-        begin = max(begin, int(away.nonzero()[-1]) + 1)
-    if begin > len(record.response) / 2:
+        force = series.numpy()
+        spectrum = spectrum_of(force - np.median(force), record.sampling_rate)
+        off = max(OFF * np.abs(force - np.median(force)).max(), OFF_NOISE * (spectrum.noise if spectrum else 0.0))
+        on = np.flatnonzero(np.abs(force - np.median(force)) > off)
+        begin = max(begin, int(on[-1]) + 1 if on.size else 0)
+    if begin > LONGEST_DRIVE * len(record.response):
         raise UnsuitedRecord("it is driven by a measured input: this estimator needs a free decay (a ring-down)")
     return begin
 
@@ -150,15 +183,15 @@ def _at_even_instants(record: FitRecord) -> Array:
     return CubicSpline(stamps, values)(np.linspace(stamps[0], stamps[-1], values.size))
 
 
-def _without_orders(values: Array, angle: Array) -> Array:
-    """Without what follows an angle (n,) that turns, up to half the sampling rate, by least squares."""
-    fastest = float(np.abs(np.diff(angle)).max())
-    if fastest <= 0:
+def _without_orders(values: Array, turning: Turning, begin: int) -> Array:
+    """Without what follows mesh and shafts, up to half the sampling rate, by least squares."""
+    angles = [angle[begin:] for angle in turning.orders() if np.abs(np.diff(angle)).max() < pi]
+    if not angles:
         return values
-    phases = np.outer(angle, np.arange(1, max(1, int(pi / fastest)) + 1))
+    phases = np.stack(angles, axis=1)
     basis = np.concatenate([np.cos(phases), np.sin(phases), np.ones((values.size, 1))], axis=1)
     if basis.shape[1] > values.size / 2:
-        raise UnsuitedRecord("it holds fewer turns of the mesh than its harmonics take: record longer")
+        raise UnsuitedRecord("it holds fewer turns than the orders of mesh and shafts take: record longer")
     return values - basis @ np.linalg.lstsq(basis, values, rcond=None)[0]
 
 
@@ -178,7 +211,13 @@ def _stretch(found: FreeVibration) -> FreeVibration:
             f"nothing swings freely for {FEWEST_PERIODS:g} periods of {found.frequency_hz:.4g} Hz above the noise: "
             "record a ring-down from a larger amplitude"
         )
-    return FreeVibration(found.values[begin:end], found.sampling_rate, found.frequency_hz, found.noise)
+    fall = -np.polynomial.Polynomial.fit(np.arange(end - begin), np.log(amplitude[begin:end]), 1).convert().coef[1]
+    if fall * (end - begin) < LEAST_FALL:
+        raise UnsuitedRecord(
+            f"what swings most in it, at {found.frequency_hz:.4g} Hz, does not die away: a line, or too short a record"
+        )
+    last = found.ends - found.values.size + end
+    return FreeVibration(found.values[begin:end], found.sampling_rate, found.frequency_hz, found.noise, last)
 
 
 def amplitude_of(found: FreeVibration, omega0: float) -> tuple[Array, float]:

@@ -1,6 +1,7 @@
 """The damping of every record by estimators that learn nothing, side by side."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from statistics import fmean
 from typing import Any
@@ -12,13 +13,13 @@ from gear_damping.errors import InputError, Problem
 from gear_damping.identification.catalogue import builtin_estimators, record_estimator
 from gear_damping.identification.damping_estimate import DampingCurve
 from gear_damping.identification.estimators.base import RecordEstimator
-from gear_damping.identification.observation import response_names
 from gear_damping.interface import identified_gears
 from gear_damping.interface.damping_law import damping_law
-from gear_damping.interface.estimator import ClassicalEstimator, Prediction
+from gear_damping.interface.estimator import ClassicalEstimator, Prediction, channel_of
 from gear_damping.interface.identified import Identification, refuse_faults
-from gear_damping.measurement.record import Channel, Measurement
+from gear_damping.measurement.record import Channel, Measurement, Record
 from gear_damping.reporting import figures
+from gear_damping.reporting.numbers import pretty_unit
 from gear_damping.reporting.tables import damping_table
 
 Settings = Mapping[str, float | int | bool]
@@ -28,23 +29,34 @@ Found = Mapping[str, Mapping[str, Prediction]]  # estimator -> record -> what it
 class Damping:
     """What estimators say of records: `content`, as in damping.json, a `table()` and a `plot()` of it."""
 
-    def __init__(self, measurement: Measurement, found: Found, channel: str, laws: Found | None = None) -> None:
-        """Hold predictions by estimator and record, and what fitted simulations have over the same amplitudes."""
-        self.measurement, self.found, self.channel, self.laws = measurement, found, channel, laws or {}
+    def __init__(
+        self, measurement: Measurement, found: Found, channels: Mapping[str, str], laws: Found | None = None
+    ) -> None:
+        """Hold predictions by estimator and record, and what fitted simulations have over the same amplitudes.
+
+        Args:
+            measurement: The records.
+            found: Of the estimators.
+            channels: The channel of each record, whose amplitudes they speak of.
+            laws: Of fitted simulations.
+        """
+        self.measurement, self.found, self.channels, self.laws = measurement, found, channels, laws or {}
 
     @property
     def content(self) -> dict[str, Any]:
         """Ratio with interval, frequency, amplitudes and curve, or the reason, by record and estimator."""
         return {
             "system": self.measurement.system,
-            "channel": self.channel,
-            "unit": self._declared.declared_unit,
+            "channels": {
+                record.name: {"channel": self.channels[record.name], "unit": self._declared(record).declared_unit}
+                for record in self.measurement.records
+            },
             "records": {
-                record.name: {name: self._plain(found[record.name]) for name, found in self.found.items()}
+                record.name: {name: self._plain(found[record.name], record) for name, found in self.found.items()}
                 for record in self.measurement.records
             },
             "laws": {
-                record.name: {name: self._plain(one) for name, one in self._laws_of(record.name).items()}
+                record.name: {name: self._plain(one, record) for name, one in self._laws_of(record.name).items()}
                 for record in self.measurement.records
             },
         }
@@ -70,23 +82,26 @@ class Damping:
                     continue
                 low, high = one.interval95
                 ratio, interval = f"{one.damping_ratio_percent:.4g}", f"{low:.4g} … {high:.4g}"
-                large, small = (self._shown(size) for size in one.amplitudes)
-                rows.append((record.name, name, ratio, interval, f"{one.frequency_hz:.5g}", f"{large} … {small}"))
+                declared = self._declared(record)
+                large, small = (f"{size / declared.declared_factor:.3g}" for size in one.amplitudes)
+                amplitudes = f"{large} … {small} {pretty_unit(declared.declared_unit)}"
+                rows.append((record.name, name, ratio, interval, f"{one.frequency_hz:.5g}", amplitudes))
         said = [f"{name} says nothing of {', '.join(of)}: {why}" for (name, why), of in reasons.items()]
-        return "\n".join([damping_table(rows, self._declared.declared_unit).rstrip(), *said]) + "\n"
+        return "\n".join([damping_table(rows).rstrip(), *said]) + "\n"
 
     def plot(self) -> Figure:
         """The damping ratio against amplitude, record by record, with bands."""
-        factor = self._declared.declared_factor
-        panels = [
-            figures.DampingPanel(
-                record.name,
-                {name: _drawn(found[record.name], factor) for name, found in self.found.items()},
-                {name: _drawn(one, factor) for name, one in self._laws_of(record.name).items()},
-            )
-            for record in self.measurement.records
-        ]
-        return figures.damping_figure(panels, self.channel, self._declared.declared_unit)
+        panels, shown = [], []
+        for record in self.measurement.records:
+            declared = self._declared(record)
+            factor, said = declared.declared_factor, f"{declared.name.replace('_', ' ')} / {declared.declared_unit}"
+            bands = {name: _drawn(found[record.name], factor) for name, found in self.found.items()}
+            laws = {name: _drawn(one, factor) for name, one in self._laws_of(record.name).items()}
+            panels.append(figures.DampingPanel(record.name, bands, laws))
+            shown.append(said)
+        if len(set(shown)) > 1:
+            panels = [replace(one, record=f"{one.record}: {said}") for one, said in zip(panels, shown, strict=True)]
+        return figures.damping_figure(panels, f"of {shown[0]}" if len(set(shown)) == 1 else "of each record's channel")
 
     def __repr__(self) -> str:
         return self.table()
@@ -94,20 +109,16 @@ class Damping:
     def _repr_html_(self) -> str:
         return f"<pre>{self.table()}</pre>"
 
-    @property
-    def _declared(self) -> Channel:
-        return next(r.channels[self.channel] for r in self.measurement.records if self.channel in r.channels)
+    def _declared(self, record: Record) -> Channel:
+        return record.channels[self.channels[record.name]]
 
     def _laws_of(self, record: str) -> dict[str, Prediction]:
         return {name: found[record] for name, found in self.laws.items() if record in found}
 
-    def _shown(self, size: float) -> str:
-        return f"{size / self._declared.declared_factor:.3g}"
-
-    def _plain(self, one: Prediction) -> dict[str, Any]:
+    def _plain(self, one: Prediction, record: Record) -> dict[str, Any]:
         if one.damping_ratio_percent is None:
             return {"damping_ratio_percent": None, "unsuited": one.unsuited}
-        factor = self._declared.declared_factor
+        factor = self._declared(record).declared_factor
         return {
             "damping_ratio_percent": one.damping_ratio_percent,
             "interval95": list(one.interval95),
@@ -141,13 +152,14 @@ def damping(
     refuse_faults(measurement)
     kinds = builtin_estimators()
     chosen = estimators or [name for name, kind in kinds.items() if issubclass(kind, RecordEstimator)]
+    chosen = [chosen] if isinstance(chosen, str) else chosen
     settings = chosen if isinstance(chosen, Mapping) else {name: {} for name in chosen}
     made = {name: ClassicalEstimator(record_estimator(name, given, plugins)) for name, given in settings.items()}
     found = {name: one.predict(measurement, channel) for name, one in made.items()}
-    record = measurement.records[0]
+    channels = {record.name: channel_of(record, measurement.system, channel) for record in measurement.records}
     swings = _swings(found)
-    fitted = {name: _of_law(one, swings) for name, one in (laws or {}).items()}
-    return Damping(measurement, found, channel or response_names(record, measurement.system)[0], fitted)
+    fitted = {name: _of_law(one, swings, channels) for name, one in (laws or {}).items()}
+    return Damping(measurement, found, channels, fitted)
 
 
 def _swings(found: Found) -> dict[str, tuple[float, float]]:
@@ -160,13 +172,19 @@ def _swings(found: Found) -> dict[str, tuple[float, float]]:
     return swings
 
 
-def _of_law(fit: Identification, swings: Mapping[str, tuple[float, float]]) -> dict[str, Prediction]:
+def _of_law(
+    fit: Identification, swings: Mapping[str, tuple[float, float]], channels: Mapping[str, str]
+) -> dict[str, Prediction]:
     """The damping of a fitted simulation over the amplitudes of every record; its mean is that over their logarithm."""
     if not isinstance(fit.fitted, identified_gears.Fitted) or fit.fitted.evidence.system != "oscillator":
         rule, remedy = "is no fitted simulation of an oscillator", "give what gd.identify(record, model) found"
         raise InputError(Problem("laws", rule, remedy=remedy))
-    found = {}
+    found, first = {}, fit.fitted.evidence.fit[0].observed.name
     for record, ends in swings.items():
+        if channels[record] != first:
+            why = f"the simulation was fitted to a {first}, and these amplitudes are those of the {channels[record]}"
+            found[record] = Prediction(None, unsuited=why)
+            continue
         curve = damping_law(fit.fitted.outcome, fit.fitted.evidence, ends)
         if curve is None:
             found[record] = Prediction(None, unsuited="the simulation does not fall over these amplitudes")

@@ -7,15 +7,17 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import torch
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.identification.catalogue import record_estimator
 from gear_damping.identification.damping_estimate import DampingCurve, UnsuitedRecord
 from gear_damping.identification.estimators.base import Recorded, RecordEstimator
+from gear_damping.identification.free_vibration import Turning
 from gear_damping.identification.lightning_module import DampingModule
 from gear_damping.identification.lightning_module import load_estimator as load_module
-from gear_damping.identification.observation import RESPONSES, fit_record, known_of
+from gear_damping.identification.observation import RESPONSES, fit_record, known_of, response_names
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.measurement.record import Measurement, Record
 from gear_damping.physics.catalogue import SYSTEMS
@@ -116,7 +118,7 @@ class ClassicalEstimator(Estimator):
         Raises:
             InputError: a record has no such channel, or no response at all.
         """
-        problems = _without_channel(measurement, channel) if channel else []
+        problems = _without_channel(measurement, channel, RESPONSES[measurement.system]) if channel else []
         if problems:
             raise InputError(problems)
         return {record.name: self._of_record(record, measurement, channel) for record in measurement.records}
@@ -140,28 +142,41 @@ class ClassicalEstimator(Estimator):
         )
 
 
+def channel_of(record: Record, system: str, channel: str | None = None) -> str:
+    """The channel of a record that is looked at: the one that is named, else its first response.
+
+    Raises:
+        InputError: it has no response.
+    """
+    names = response_names(record, system)
+    if not (channel or names):
+        rule, remedy = f"no response of a {system}", f"declare one of {', '.join(RESPONSES[system])}"
+        raise InputError(Problem(f"{record.name}.channels", rule, remedy=remedy, source=str(record.file)))
+    return channel or names[0]
+
+
 def recorded(record: Record, measurement: Measurement, channel: str | None = None) -> Recorded:
-    """A record as an estimator meets it, through one channel where that is named.
+    """A record as an estimator meets it, through one channel.
 
     Raises:
         InputError: it has no response.
     """
     system, known = measurement.system, known_of(measurement)
-    if channel is not None:
-        others = [name for name in RESPONSES[system] if name != channel]
-        record = replace(record, channels={n: c for n, c in record.channels.items() if n not in others})
-    found = fit_record(record, system, known.values.get("stiffness", 1.0) != 0)
-    return Recorded(found, system, known, _mesh_angle(found, known.values) if system == "gear_pair" else None)
+    shown = channel_of(record, system, channel)
+    others = [name for name in RESPONSES[system] if name != shown]
+    alone = replace(record, channels={n: c for n, c in record.channels.items() if n not in others})
+    found = fit_record(alone, system, known.values.get("stiffness", 1.0) != 0)
+    return Recorded(found, system, known, _turning(found, known.values) if system == "gear_pair" else None)
 
 
-def _mesh_angle(record: FitRecord, values: Mapping[str, float]) -> Any:
-    """The angle of the mesh at every sample, (time,) in rad; None where no speed is known."""
-    teeth = values.get("n_teeth_pinion", GearPair.parameters[0].default)
+def _turning(record: FitRecord, values: Mapping[str, float]) -> Turning | None:
+    """What turns in a gear pair; None where no speed is known."""
+    teeth = tuple(values.get(p.name, p.default) for p in GearPair.parameters[:2])
     if "pinion_angle" in record.inputs:
-        return teeth * record.inputs["pinion_angle"].numpy()
-    speed = record.conditions.get("pinion_speed")
-    stamps = torch.arange(len(record.response)) if record.stamps is None else record.stamps
-    return None if not speed else teeth * speed / record.sampling_rate * stamps.double().numpy()
+        return Turning(teeth[0] * record.inputs["pinion_angle"].numpy(), teeth)
+    speed, count = record.conditions.get("pinion_speed"), len(record.response)
+    ends = (0.0, count - 1.0) if record.stamps is None else (float(record.stamps[0]), float(record.stamps[-1]))
+    return Turning(teeth[0] * speed / record.sampling_rate * np.linspace(*ends, count), teeth) if speed else None
 
 
 def estimator(name: str, *, plugins: Sequence[Path | str] = (), **settings: float | bool) -> ClassicalEstimator:
@@ -190,7 +205,7 @@ def load_estimator(path: Path | str, plugins: Sequence[str] = ()) -> Estimator:
     """
     if Path(path).suffix == ".json":
         content = _content_of(Path(path))
-        return estimator(content["estimator"], plugins=plugins, **content["settings"])
+        return ClassicalEstimator(record_estimator(content["estimator"], content["settings"], plugins))
     return NetworkEstimator(load_module(path, plugins))
 
 
@@ -209,15 +224,13 @@ def _content_of(path: Path) -> dict[str, Any]:
     return content
 
 
-def _without_channel(measurement: Measurement, channel: str) -> list[Problem]:
-    """Which records have no such channel."""
-    return [
-        Problem(
-            f"{record.name}.{channel}",
-            "no such channel",
-            remedy=f"choose measurement.channel from {', '.join(record.channels)}",
-            source=str(record.file),
-        )
-        for record in measurement.records
-        if channel not in record.channels
-    ]
+def _without_channel(measurement: Measurement, channel: str, known: Sequence[str] | None = None) -> list[Problem]:
+    """Which records have no such channel, or have it as something else than one of these responses."""
+    found = []
+    for record in measurement.records:
+        there = [name for name in record.channels if known is None or name in known]
+        if channel not in there:
+            rule = "no such channel" if channel not in record.channels else "is no response"
+            remedy = f"choose measurement.channel from {', '.join(there)}"
+            found.append(Problem(f"{record.name}.{channel}", rule, remedy=remedy, source=str(record.file)))
+    return found

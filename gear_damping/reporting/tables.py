@@ -48,15 +48,13 @@ def parameter_table(title: str, rows: Iterable[Sequence[str]]) -> str:
     return _text(title, QUANTITY_COLUMNS, rows, left=("quantity", "unit"))
 
 
-def damping_table(rows: Iterable[Sequence[str]], unit: str) -> str:
+def damping_table(rows: Iterable[Sequence[str]]) -> str:
     """What estimators say of records as text of fixed width.
 
     Args:
-        rows: Record, estimator, damping ratio, 95 % interval, frequency and amplitudes as text.
-        unit: Of the amplitudes.
+        rows: Record, estimator, damping ratio, 95 % interval, frequency and amplitudes with their unit as text.
     """
-    amplitude = f"amplitude / {pretty_unit(unit)}"
-    columns = ("record", "estimator", "damping ratio / %", "95 % interval", "f / Hz", amplitude)
+    columns = ("record", "estimator", "damping ratio / %", "95 % interval", "f / Hz", "amplitude")
     return _text("damping of free vibrations", columns, rows, left=("record", "estimator"))
 
 

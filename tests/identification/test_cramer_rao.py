@@ -92,6 +92,10 @@ def test_of_a_gear_pair_more_unknowns_are_known_less():
     [
         (["stifness"], {"snr_db": 30}, "did you mean 'stiffness'"),
         (["initial_velocity"], {"snr_db": 30}, "no such parameter"),
+        (["stiffness"], {"noise": -1.0}, "must be positive"),
+        (["stiffness"], {"noise": 1.0, "expected": {"stifness": 1.0}}, "is not among what is unknown"),
+        (["stiffness"], {"noise": 1.0, "samples": 99999}, "must lie within 2 and 400"),
+        (["damping_ratio", "viscous_damping.damping_coefficient"], {"noise": 1.0}, "names one parameter twice"),
         (["damping_ratio"], {}, "one of noise and snr_db is needed"),
         (["damping_ratio"], {"snr_db": 30, "noise": 1e-6}, "one of noise and snr_db is needed"),
     ],

@@ -11,6 +11,7 @@ from scipy.signal import firwin, lfilter
 from gear_damping.identification.catalogue import builtin_estimators
 from gear_damping.identification.damping_estimate import UnsuitedRecord
 from gear_damping.identification.estimators.base import Recorded, RecordEstimator
+from gear_damping.identification.free_vibration import Turning
 from gear_damping.identification.observation import Known
 from gear_damping.identification.output_error.records import FitRecord, Observed
 
@@ -27,7 +28,7 @@ def recorded(values, inputs=None, angle=None, stamps=None, offset=False):
     observed = Observed("displacement", offset=offset)
     record = FitRecord("run", series, RATE, drives, observed=observed, stamps=stamps)
     system = "oscillator" if angle is None else "gear_pair"
-    return Recorded(record, system, Known({}, {}), angle)
+    return Recorded(record, system, Known({}, {}), None if angle is None else Turning(angle, (20, 33)))
 
 
 def decay(ratio, seconds=8.0, amplitude=0.02, time=None):
@@ -88,8 +89,28 @@ def test_lines_of_a_mesh_that_turns_unevenly_are_no_vibration(name):
     time = np.arange(clean.size) / RATE
     angle = 2 * math.pi * (17 * time + 0.3 * np.sin(2 * math.pi * 0.4 * time))
     lines = 0.01 * np.cos(angle + 1) + 0.004 * np.cos(2 * angle) + 0.003
+    lines = lines + 0.05 * np.cos(angle / 20) + 0.02 * np.cos(2 * angle / 33 + 1) + 0.005 * np.cos(angle - angle / 20)
     found = KINDS[name]({}).estimate(recorded(clean + lines + noise(clean.size, 2), angle=angle))
     assert found.damping_ratio_percent == pytest.approx(1.0, rel=0.06)
+
+
+@pytest.mark.parametrize("name", sorted(set(KINDS) - {"output_error"}))
+def test_a_line_that_goes_on_is_no_free_vibration(name):
+    values = 0.01 * np.cos(OMEGA * np.arange(4800) / RATE) + noise(4800, 2)
+    with pytest.raises(UnsuitedRecord, match="does not die away"):
+        KINDS[name]({}).estimate(recorded(values))
+
+
+def test_what_does_not_swing_has_no_ratio():
+    values = 0.01 * np.exp(-np.arange(1200) / RATE / 0.05) + noise(1200, 2)
+    with pytest.raises(UnsuitedRecord, match="does not swing"):
+        KINDS["output_error"]({}).estimate(recorded(values))
+
+
+def test_amplitudes_end_where_noise_begins():
+    values = decay(0.02, seconds=100.0)
+    found = KINDS["output_error"]({}).estimate(recorded(values + noise(values.size, 2)))
+    assert found.amplitudes[1] == pytest.approx(3 * NOISE, rel=0.1)
 
 
 @pytest.mark.parametrize("name", sorted(set(KINDS) - {"output_error"}))
@@ -133,6 +154,7 @@ def test_a_decay_after_a_stroke_is_free():
     clean = np.concatenate([np.zeros(60), decay(0.01)])
     force = np.zeros(clean.size)
     force[55:60] = 30.0
+    force = force + noise(force.size, 8, 0.3)  # the sensor of the hammer
     values = clean + noise(clean.size, 6)
     found = KINDS["log_decrement"]({}).estimate(recorded(values, {"force": force}))
     assert found.damping_ratio_percent == pytest.approx(1.0, rel=0.02)

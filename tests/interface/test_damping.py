@@ -59,7 +59,7 @@ def test_every_estimator_speaks_of_every_record(record):
     found = gd.damping(record)
     assert set(found.found) == {"log_decrement", "half_power", "hilbert_envelope", "wavelet_ridge", "output_error"}
     plain = json.loads(json.dumps(found.content))
-    assert plain["unit"] == "mm"
+    assert plain["channels"]["first"]["unit"] == "mm"
     ridge = plain["records"]["first"]["wavelet_ridge"]
     assert 10 < ridge["amplitudes"][0] < 21  # mm, as in the file
     curve = ridge["curve"]
@@ -134,6 +134,35 @@ def test_a_simulation_that_comes_to_rest_has_a_law_as_far_as_it_swings(record):
     model = gd.Model(gd.Oscillator(stiffness=OMEGA**2), [gd.CoulombFriction(force=100.0)])
     found = gd.identify(record, model, free=["stiffness", "coulomb_friction.force"])
     assert damping_law(found.fitted.outcome, found.fitted.evidence, (20.0, 2.0)) is not None
+
+
+def test_records_of_several_channels_are_each_seen_through_their_first(tmp_path):
+    time = np.arange(2000) / RATE
+    fall = np.exp(-0.01 * OMEGA * time) * np.cos(OMEGA * time)
+    random = np.random.default_rng(2)
+    for name, size in (("x", 5.0), ("a", 12.0)):
+        series = size * (fall + 1e-3 * random.normal(size=time.size))
+        np.savetxt(tmp_path / f"{name}.csv", series, "%.9g", header=name, comments="")
+    first = "{file: x.csv, name: one, sampling_rate: 400 Hz, channels: {displacement: {column: x, unit: mm}}}"
+    second = "{file: a.csv, name: two, sampling_rate: 400 Hz, channels: {acceleration: {column: a, unit: m/s^2}}}"
+    (tmp_path / "m.yaml").write_text(f"system: oscillator\nrecords:\n- {first}\n- {second}\n")
+    found = gd.damping(gd.load(tmp_path / "m.yaml"), "log_decrement")
+    assert found.content["channels"]["one"] == {"channel": "displacement", "unit": "mm"}
+    assert found.content["channels"]["two"] == {"channel": "acceleration", "unit": "m/s^2"}
+    assert found.content["records"]["two"]["log_decrement"]["amplitudes"][0] == pytest.approx(12.0, rel=0.1)
+    assert "mm" in found.table()
+    assert found.plot().axes
+
+
+def test_a_law_belongs_to_the_channel_it_was_fitted_to(tmp_path, fitted):
+    time = np.arange(2000) / RATE
+    fall = np.exp(-0.01 * OMEGA * time) * np.cos(OMEGA * time) + 1e-3 * np.random.default_rng(1).normal(size=2000)
+    np.savetxt(tmp_path / "v.csv", fall, "%.9g", header="v", comments="")
+    only = "{file: v.csv, name: one, sampling_rate: 400 Hz, channels: {velocity: {column: v, unit: m/s}}}"
+    (tmp_path / "m.yaml").write_text(f"system: oscillator\nrecords:\n- {only}\n")
+    found = gd.damping(gd.load(tmp_path / "m.yaml"), ["log_decrement"], laws={"fitted": fitted})
+    assert "was fitted to a displacement" in found.laws["fitted"]["one"].unsuited
+    assert found.plot().axes
 
 
 def test_a_law_needs_a_fitted_simulation(record):

@@ -66,6 +66,8 @@ def test_one_from_outside_stands_beside_them(measured, tmp_path):
     [
         (["model=wavelet_ridge", "model.omega0=1"], "model.omega0 = 1: must lie within 5 and 100"),
         (["model=wavelet_ridge", "model.smoothing=0.2"], "model.smoothing: no such key"),
+        (["model=wavelet_ridge", "wavelet=morlet"], "wavelet = 'morlet': acts on networks"),
+        (["model=half_power", "model.draws=20.5"], "model.draws = 20.5: must be a whole number"),
         (["model=cwt_lstm"], "names a network, which tells nothing before it is trained"),
         (["model.names=[wavelet_ridge,raw_lstm]"], "names a network, which tells nothing before it is trained"),
         (["model=classical", f"checkpoint={EXAMPLE}"], "is of a network, and model names log_decrement"),
@@ -77,9 +79,10 @@ def test_what_does_not_go_together_is_said(measured, tmp_path, capfd, caplog, mo
     assert said in capfd.readouterr().err + caplog.text
 
 
-@pytest.mark.parametrize("task", ["train", "simulate"])
+@pytest.mark.parametrize("task", ["train", "simulate", "explain"])
 def test_what_learns_nothing_is_not_trained(task, tmp_path, caplog):
-    assert main([f"task={task}", "model=wavelet_ridge", f"hydra.run.dir={tmp_path / 'run'}"]) == 1
+    more = ["measurement=ship_roll_21337"] if task == "explain" else []
+    assert main([f"task={task}", "model=wavelet_ridge", *more, f"hydra.run.dir={tmp_path / 'run'}"]) == 1
     assert "wavelet_ridge has nothing to learn: it takes a record by itself" in caplog.text
     assert "choose task=identify" in caplog.text
 

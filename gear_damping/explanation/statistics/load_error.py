@@ -26,6 +26,9 @@ FINER = 4  # steps between two samples, from which a spline tells the covariance
 SHARES = (0.1, 2.0)  # of the error that is expected: a fit takes a part of it, and its size is an estimate
 SENSOR = (0.01, 100.0)  # of the variance that the spectrum of the response tells: a coloured sensor has another floor
 POLES = (-0.9, 0.98)  # of the sensor's colour, from sample to sample
+SIMPLEX = np.array([[0, 0, 0], [0.4, 0, 0], [0, -0.7, 0], [0, 0, 0.2]])  # about where the search begins
+UNEVEN = 1e-3  # of a step between samples
+TRIED, SHORT = 60, 400  # evaluations of the likelihood where samples are uneven, and samples that it is of
 ROUNDING = 1e-9  # of the variance, on the diagonal
 
 
@@ -53,6 +56,12 @@ class KnownError:
     motion: Array
     interval: float
     sensor: float
+
+    @property
+    def is_uneven(self) -> bool:
+        """Whether samples are not evenly spaced."""
+        steps = np.diff(self.stamps)
+        return bool(steps.max() - steps.min() > UNEVEN * steps.mean())
 
 
 class Levels(NamedTuple):
@@ -92,6 +101,8 @@ class LoadError:
 def load_error(residual: Array, known: KnownError) -> LoadError:
     """The random part of one record's residual (time,)."""
     levels = _levels(residual, known)
+    if known.is_uneven:
+        levels = _at_their_stamps(levels, residual, known)
     factors = tuple(cholesky(_covariance(known, levels, piece), lower=True) for piece in _pieces(len(residual)))
     white = _white(residual[:, None], factors)[MEMORY:]
     level = max(float((white**2).mean()), 1e-300)
@@ -140,6 +151,31 @@ def _levels(residual: Array, known: KnownError) -> Levels:
     bounds = [tuple(map(log, SHARES)), tuple(map(log, SENSOR)), POLES]
     begun = [minimize(deviance, np.array([0.0, 0.0, pole]), bounds=bounds, method="L-BFGS-B") for pole in (0.0, 0.6)]
     return of(min(begun, key=lambda found: float(found.fun)).x)
+
+
+def _at_their_stamps(levels: Levels, residual: Array, known: KnownError) -> Levels:
+    """The levels where the likelihood of the first samples is largest, taken when they were taken.
+
+    In a spectrum that takes uneven samples for even ones, what the jitter makes of the motion looks like the sensor.
+    """
+    piece = slice(0, min(SHORT, len(residual)))
+    seen, largest = residual[piece], residual.var()
+
+    def of(place: Array) -> Levels:
+        share, sensor = np.clip(np.exp(place[:2]), *np.transpose((SHARES, SENSOR)))
+        return Levels(float(share), float(sensor) * known.sensor, float(np.clip(place[2], *POLES)))
+
+    def deviance(place: Array) -> float:
+        factor = cholesky(_covariance(known, of(place), piece), lower=True)
+        white = solve_triangular(factor, seen, lower=True)
+        return float(white @ white + 2 * np.log(np.diag(factor)).sum())
+
+    if largest <= 0:
+        return levels
+    begun = np.array([log(levels.share), log(levels.sensor / known.sensor), levels.pole])
+    options = {"maxfev": TRIED, "initial_simplex": begun + SIMPLEX}
+    found = minimize(deviance, begun, method="Nelder-Mead", options=options)
+    return of(found.x)
 
 
 def _covariance(known: KnownError, levels: Levels, piece: slice) -> Array:

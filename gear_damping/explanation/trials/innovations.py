@@ -67,12 +67,14 @@ def load_errors(outcome: Outcome, records: Sequence[FitRecord]) -> dict[str, flo
 def known_error(record: FitRecord, outcome: Outcome) -> KnownError | None:
     """The error of the loads of an oscillator's record as its weighed residual sees it; None where there is none.
 
-    None, too, where several channels respond, or more than a displacement and its velocity goes on.
+    None, too, where several channels respond or the motion of the base with them, or where more than a displacement
+    and its velocity goes on.
     """
     problem, values = outcome.problem, {**outcome.flat_given(), **outcome.values}
     factors = {"force": values.get(GAIN, 1.0), "base_acceleration": -1.0}  # per unit of mass
     errors = [factors[name] ** 2 * error.numpy() for name, error in record.input_errors.items()]
-    if not errors or problem.extra or problem.response.modes or len(problem.response.channels) > 1:
+    many = len(problem.response.channels) > 1 or record.observed.absolute  # the base is in that response itself
+    if not errors or problem.extra or problem.response.modes or many:
         return None
     mass, damping, stiffness = linear_of(outcome)
     if stiffness <= 0 or damping <= 0:  # nothing holds its motion, which grows

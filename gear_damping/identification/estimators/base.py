@@ -6,12 +6,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar
 
-import numpy as np
-from numpy.typing import NDArray
-
 from gear_damping.identification.damping_estimate import DampingEstimate
 from gear_damping.identification.features import FrontEnd
-from gear_damping.identification.free_vibration import FreeVibration, free_vibration
+from gear_damping.identification.free_vibration import FreeVibration, Turning, free_vibration
 from gear_damping.identification.networks import DampingNetwork
 from gear_damping.identification.observation import Known
 from gear_damping.identification.output_error.records import FitRecord
@@ -53,13 +50,13 @@ class Recorded:
         record: Its responses and inputs.
         system: `gear_pair` or `oscillator`.
         known: What is stated of the rig.
-        mesh_angle: Of a gear pair, at every sample, (time,) in rad; None where there is none or no speed is known.
+        turning: Of a gear pair, what turns in it; None where no speed is known.
     """
 
     record: FitRecord
     system: str
     known: Known
-    mesh_angle: NDArray[np.float64] | None = None
+    turning: Turning | None = None
 
     @cached_property
     def free_vibration(self) -> FreeVibration:
@@ -68,7 +65,7 @@ class Recorded:
         Raises:
             UnsuitedRecord: nothing does.
         """
-        return free_vibration(self.record, self.mesh_angle)
+        return free_vibration(self.record, self.turning)
 
 
 class RecordEstimator(Estimator):

@@ -5,6 +5,11 @@ import numpy as np
 from gear_damping.identification.damping_estimate import DampingEstimate, UnsuitedRecord
 from gear_damping.identification.estimators.base import Recorded, RecordEstimator
 from gear_damping.identification.oscillator import fit_oscillator
+from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.identification.output_error.segments import shortened
+
+OVERDAMPED = 99.9  # % of critical, from which on nothing swings
+ABOVE_NOISE = 3.0  # standard deviations of the residual that an amplitude must have to count
 
 
 class OutputError(RecordEstimator):
@@ -21,13 +26,26 @@ class OutputError(RecordEstimator):
         """By a fit to this record alone."""
         if recorded.system != "oscillator":
             raise UnsuitedRecord("this fit is for oscillators: task=identify without a model fits gear pairs")
-        found = fit_oscillator([recorded.record], known=recorded.known)
+        record = _as_long_as_it_swings(recorded)
+        found = fit_oscillator([record], known=recorded.known)
         ratio, frequency = found.damping_ratio_percent, found.natural_frequency_hz
         if ratio is None or frequency is None:
             raise UnsuitedRecord("it was fitted without a spring, and then nothing is critical")
-        damped = frequency.value * max(1 - (ratio.value / 100) ** 2, 0.0) ** 0.5
-        seen = found.predictions[recorded.record.name].numpy()
-        period = max(1, round(recorded.record.sampling_rate / max(damped, np.finfo(float).tiny)))
+        if ratio.value >= OVERDAMPED:
+            raise UnsuitedRecord("the nearest simulation does not swing: give a ring-down from its release on")
+        damped = frequency.value * (1 - (ratio.value / 100) ** 2) ** 0.5
+        seen = found.predictions[record.name].numpy()
+        left = record.response.numpy()[: seen.size] - seen[: len(record.response)]
+        period = min(seen.size, max(1, round(record.sampling_rate / damped)))
         about = np.abs(seen - np.median(seen))
-        ends = float(about.max()), float(about[-period:].max())
-        return DampingEstimate(ratio.value, ratio.interval95, damped, ends)
+        smallest = max(float(about[-period:].max()), ABOVE_NOISE * float(left.std()))
+        return DampingEstimate(ratio.value, ratio.interval95, damped, (float(about.max()), smallest))
+
+
+def _as_long_as_it_swings(recorded: Recorded) -> FitRecord:
+    """The record without what follows a ring-down, where there is only noise in which a fit loses itself."""
+    try:
+        ends = recorded.free_vibration.ends
+    except UnsuitedRecord:
+        return recorded.record
+    return shortened(recorded.record, ends)

@@ -95,8 +95,7 @@ class Response:
         self, channel: Observed, values: Mapping[str, Tensor], rows: Sequence[int], time: Tensor
     ) -> Tensor:
         """What changes slowly in a channel, (points, records, time)."""
-        begins = torch.tensor([self._records[i].begins for i in rows], dtype=torch.float64)
-        shapes = channel.slow.shapes(begins.unsqueeze(1) + time)
+        shapes = channel.slow.shapes(torch.stack([_instants(self._records[i], time) for i in rows]))
         sizes = [values[f"{OFFSET}.{channel.name}[{k + 1}]"][:, rows] for k in range(channel.slow.terms)]
         return torch.einsum("kpr,krt->prt", torch.stack(sizes), shapes)
 
@@ -165,3 +164,11 @@ def _between(shown: Tensor, places: Sequence[Places]) -> Tensor:
             inside = place[0].clamp(max=samples - 1)[:samples]
             found[:, i, : len(inside)] = (shown[:, i][:, inside] * place[1][:samples]).sum(-1)
     return found
+
+
+def _instants(record: FitRecord, time: Tensor) -> Tensor:
+    """Of a record's samples from the beginning of the whole record in s, the last one repeated to (time,)."""
+    if record.stamps is None:
+        return record.begins + time
+    own = record.begins + record.stamps / record.sampling_rate
+    return torch.cat([own, own[-1:].expand(max(0, len(time) - len(own)))])[: len(time)]

@@ -50,13 +50,12 @@ class DampingPanel:
     laws: Mapping[str, DampingBand | None] = field(default_factory=dict)
 
 
-def damping_figure(panels: Sequence[DampingPanel], channel: str, unit: str) -> Figure:
+def damping_figure(panels: Sequence[DampingPanel], of: str) -> Figure:
     """Ratios with bands over a logarithmic amplitude; a mean over amplitudes is a line as long as these.
 
     Args:
         panels: One for each record.
-        channel: Whose amplitude it is.
-        unit: Of that amplitude.
+        of: Whose amplitude it is, with its unit.
     """
     shown = list(panels)[:MOST_PANELS]
     names = list(dict.fromkeys(name for panel in shown for name in panel.bands))
@@ -73,7 +72,7 @@ def damping_figure(panels: Sequence[DampingPanel], channel: str, unit: str) -> F
             _panel(axes, panel, names)
         left_out = len(panels) - len(shown)
         more = f"   ({left_out} more records not shown)" if left_out else ""
-        figure.supxlabel(f"amplitude of {channel.replace('_', ' ')} / {unit}{more}", fontsize=10)
+        figure.supxlabel(f"amplitude {of}{more}", fontsize=10)
         figure.supylabel("damping ratio / % of critical", fontsize=10)
         drawn = [axes.get_legend_handles_labels() for axes in grid.flat]
         handles = {label: one for ones, labels in drawn for one, label in zip(ones, labels, strict=True)}
