@@ -54,8 +54,8 @@ def damping_table(rows: Iterable[Sequence[str]]) -> str:
     Args:
         rows: Record, estimator, damping ratio, 95 % interval, frequency and amplitudes with their unit as text.
     """
-    columns = ("record", "estimator", "damping ratio / %", "95 % interval", "f / Hz", "amplitude")
-    return _text("damping of free vibrations", columns, rows, left=("record", "estimator"))
+    columns = ("record", "estimator", "zeta / %", "95 % interval", "f / Hz", "amplitude")
+    return _text("damping ratio zeta of free vibrations, in % of critical", columns, rows, left=("record", "estimator"))
 
 
 def identification_table(identification: Mapping[str, Any], title: str = "identified") -> str:
