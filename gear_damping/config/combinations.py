@@ -15,7 +15,6 @@ from gear_damping.config.simulator import SimulatorSettings
 from gear_damping.config.source import ORDER, Origin
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.physics.catalogue import catalogue
-from gear_damping.physics.terms import DampingLaw
 from gear_damping.simulation.families import DAMPING_RATIO, coefficients_for
 from gear_damping.simulation.runs import reference_velocity
 
@@ -55,6 +54,13 @@ def combination_problems(whole: Whole, wrong: set[str]) -> list[Problem]:
     return problems
 
 
+def _typed(whole: Whole) -> Iterator[tuple[str, str]]:
+    """Key and value of what was typed."""
+    for override in whole.origin.overrides:
+        key, _, value = override.lstrip("+~").partition("=")
+        yield key, value
+
+
 def _name(whole: Whole) -> Found:
     yield from wrong_name(whole.config)
 
@@ -74,20 +80,19 @@ def _estimators(whole: Whole) -> Found:
     if of_records and task != "identify":
         rule = f"{', '.join(of_records)} has nothing to learn: it takes a record by itself, in task=identify"
         yield "model.names", rule, names, "choose task=identify, or name networks only"
-    elif of_records and task == "identify" and whole["checkpoint"] is not None:
+    elif of_records and whole["checkpoint"] is not None:
         rule = f"is of a network, and model names {', '.join(of_records)}"
         yield "checkpoint", rule, whole["checkpoint"], "leave one of them out"
     elif task == "identify" and whole["checkpoint"] is None and set(names) - set(of_records):
-        typed = [one.lstrip("+~").partition("=") for one in whole.origin.overrides]
-        if of_records or any(key in ("model", "model.names") for key, _, _ in typed):
-            rule = "names a network, which tells nothing before it is trained"
-            yield "model.names", rule, names, "give its checkpoint=…/best.ckpt, or choose model=classical"
+        is_asked = of_records or any(key in ("model", "model.names") for key, _ in _typed(whole))
+        rule = "names a network, which tells nothing before it is trained"
+        remedy = "give its checkpoint=…/best.ckpt, or choose model=classical"
+        yield from [("model.names", rule, names, remedy)] if is_asked else []
 
 
 def _wavelet_of_networks(whole: Whole) -> Found:
     """The transform is one of networks: an estimator of records has its own."""
-    for typed in whole.origin.overrides if whole.models is not None and whole.models.of_records else ():
-        key, _, value = typed.lstrip("+~").partition("=")
+    for key, value in _typed(whole) if whole.models is not None and whole.models.of_records else ():
         if key == "wavelet" or key.startswith("wavelet."):
             yield key, "acts on networks, and none is named", value, "leave it out; wavelet_ridge has model.omega0"
 
@@ -104,8 +109,7 @@ def _measurement(whole: Whole) -> Found:
 
 def _of_a_search(whole: Whole) -> Found:
     """What only a search for causes reads would be accepted by other tasks without any effect."""
-    for typed in whole.origin.overrides if whole["task"] != "explain" else ():
-        key, _, value = typed.lstrip("+~").partition("=")
+    for key, value in _typed(whole) if whole["task"] != "explain" else ():
         if key.startswith(SEARCHED):
             yield key, f"acts in task=explain, and this is task={whole['task']}", value, "leave it out"
 
@@ -230,7 +234,7 @@ def _label(whole: Whole) -> Found:
     model, given = whole.simulator.model, whole.simulator.given
     if whole["task"] not in ("train", "evaluate"):
         return
-    if not any(isinstance(effect, DampingLaw) for effect in model.effects):
+    if not model.damping_laws:
         remedy = "switch one on, for example simulator.viscous_damping={}"
         yield "simulator.damping_law", f"task={whole['task']} needs an effect that states a damping ratio", None, remedy
     elif not bool((model.prepare(model.values(1, **given)).derived["mean_stiffness"] > 0).all()):

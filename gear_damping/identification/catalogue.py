@@ -61,7 +61,7 @@ def record_estimator(
     kind = _of_kind(name, plugins, RecordEstimator)
     try:
         return kind(settings)
-    except (ValueError, TypeError) as error:
+    except ValueError as error:
         raise InputError(Problem(f"estimator {name}", str(error), dict(settings))) from error
 
 

@@ -13,14 +13,13 @@ import torch
 from torch import Tensor
 
 from gear_damping.errors import InputError, Problem, nearest
-from gear_damping.physics.terms import DampingLaw
+from gear_damping.physics.damping_ratio import DAMPING_RATIO
 from gear_damping.simulation.driven import Driven
 from gear_damping.simulation.runs import Runs
 from gear_damping.simulation.simulate import simulate
 from gear_damping.simulation.solver_settings import Solver
 
 START = ("initial_displacement", "initial_velocity")
-DAMPING_RATIO = "damping_ratio"  # in % of critical, for the coefficient of the one damping law
 STEP = 1e-5  # of what counts as a step of order one, on either side
 SMALLEST = 1e-300  # of a scale
 
@@ -32,12 +31,10 @@ class Bound:
     Args:
         names: What is unknown, in order; the start of the runs at the end.
         covariance: (batch, n, n), in the units of the parameters; a damping ratio in %.
-        samples: Of the record that it holds for.
     """
 
     names: tuple[str, ...]
     covariance: Tensor
-    samples: int
 
     def deviation(self, name: str) -> Tensor:
         """Smallest standard deviation of one of them, (batch,)."""
@@ -77,7 +74,7 @@ def cramer_rao(
     weights = 1 / torch.as_tensor(noise, dtype=torch.float64).expand(len(columns)).square()
     information = columns.mT @ columns * weights[:, None, None]
     prior = torch.tensor([(expected or {}).get(name, inf) for name in names], dtype=torch.float64)
-    return Bound(names, _inverse(information + torch.diag(prior**-2)), used)
+    return Bound(names, _inverse(information + torch.diag(prior**-2)))
 
 
 def _refuse(
@@ -113,10 +110,10 @@ def _flat(runs: Runs, name: str) -> str:
     if name in declared and not declared[name].vector and name not in START:
         return name
     if name == DAMPING_RATIO:
-        laws = [effect for effect in runs.model.effects if isinstance(effect, DampingLaw)]
-        if len(laws) == 1:
-            return f"{laws[0].name}.{laws[0].parameters[0].name}"
-        raise InputError(Problem("free", f"the model has {len(laws)} damping laws", name, "name their coefficients"))
+        count = len(runs.model.damping_laws)
+        if count != 1:
+            raise InputError(Problem("free", f"the model has {count} damping laws", name, "name their coefficients"))
+        return runs.model.damping_coefficient
     known = [one for one, parameter in declared.items() if not parameter.vector and one not in START]
     raise InputError(Problem("free", "no such parameter of the model", name, nearest(name, [*known, DAMPING_RATIO])))
 

@@ -68,6 +68,19 @@ def response_names(record: Record, system: str) -> tuple[str, ...]:
     return tuple(name for name in names if record.channels[name].mounting != "casing")
 
 
+def fitted_names(record: Record, system: str) -> tuple[str, ...]:
+    """The same, of which there must be one.
+
+    Raises:
+        InputError: the record has no response that can be fitted.
+    """
+    names = response_names(record, system)
+    if not names:
+        rule, remedy = f"no response of a {system}", f"declare one of {', '.join(RESPONSES[system])}"
+        raise InputError(Problem(f"{record.name}.channels", rule, remedy=remedy, source=str(record.file)))
+    return names
+
+
 def fit_record(record: Record, system: str, spring: bool = True) -> FitRecord:
     """A record as the fits see it.
 
@@ -79,10 +92,7 @@ def fit_record(record: Record, system: str, spring: bool = True) -> FitRecord:
     Raises:
         InputError: the record has no response that can be fitted.
     """
-    names = response_names(record, system)
-    if not names:
-        rule, remedy = f"no response of a {system}", f"declare one of {', '.join(RESPONSES[system])}"
-        raise InputError(Problem(f"{record.name}.channels", rule, remedy=remedy, source=str(record.file)))
+    names = fitted_names(record, system)
     channels = [(_observed(record, record.channels[name], spring), record.channels[name].values) for name in names]
     inputs = {name: _input(record, record.channels[name]) for name in INPUTS[system] if name in record.channels}
     if "pinion_angle" in inputs:

@@ -7,8 +7,9 @@ import torch
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.identification.cramer_rao import DAMPING_RATIO, cramer_rao
+from gear_damping.identification.cramer_rao import cramer_rao
 from gear_damping.interface.simulated import Simulation
+from gear_damping.physics.damping_ratio import DAMPING_RATIO
 
 
 def bound(

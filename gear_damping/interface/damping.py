@@ -15,7 +15,7 @@ from gear_damping.identification.damping_estimate import DampingCurve
 from gear_damping.identification.estimators.base import RecordEstimator
 from gear_damping.interface import identified_gears
 from gear_damping.interface.damping_law import damping_law
-from gear_damping.interface.estimator import ClassicalEstimator, Prediction, channel_of
+from gear_damping.interface.estimator import ClassicalEstimator, Prediction, all_recorded
 from gear_damping.interface.identified import Identification, refuse_faults
 from gear_damping.measurement.record import Channel, Measurement, Record
 from gear_damping.reporting import figures
@@ -155,8 +155,9 @@ def damping(
     chosen = [chosen] if isinstance(chosen, str) else chosen
     settings = chosen if isinstance(chosen, Mapping) else {name: {} for name in chosen}
     made = {name: ClassicalEstimator(record_estimator(name, given, plugins)) for name, given in settings.items()}
-    found = {name: one.predict(measurement, channel) for name, one in made.items()}
-    channels = {record.name: channel_of(record, measurement.system, channel) for record in measurement.records}
+    records = all_recorded(measurement, channel)
+    found = {name: {record: one.tell(seen) for record, seen in records.items()} for name, one in made.items()}
+    channels = {record: seen.record.observed.name for record, seen in records.items()}
     swings = _swings(found)
     fitted = {name: _of_law(one, swings, channels) for name, one in (laws or {}).items()}
     return Damping(measurement, found, channels, fitted)

@@ -17,11 +17,11 @@ from gear_damping.identification.estimators.base import Recorded, RecordEstimato
 from gear_damping.identification.free_vibration import Turning
 from gear_damping.identification.lightning_module import DampingModule
 from gear_damping.identification.lightning_module import load_estimator as load_module
-from gear_damping.identification.observation import RESPONSES, fit_record, known_of, response_names
+from gear_damping.identification.observation import RESPONSES, fit_record, fitted_names, known_of
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.measurement.record import Measurement, Record
 from gear_damping.physics.catalogue import SYSTEMS
-from gear_damping.physics.systems.gear_pair import GearPair
+from gear_damping.physics.systems.gear_pair import teeth_of
 
 FORMAT = "gear_damping.estimator"  # of a file that holds an estimator without weights
 
@@ -118,51 +118,37 @@ class ClassicalEstimator(Estimator):
         Raises:
             InputError: a record has no such channel, or no response at all.
         """
-        problems = _without_channel(measurement, channel, RESPONSES[measurement.system]) if channel else []
-        if problems:
-            raise InputError(problems)
-        return {record.name: self._of_record(record, measurement, channel) for record in measurement.records}
+        return {name: self.tell(one) for name, one in all_recorded(measurement, channel).items()}
 
     def save(self, path: Path | str) -> None:
         """Write its name and settings as JSON, for `load_estimator`."""
         content = {"format": FORMAT, "estimator": self.name, "settings": self.estimator.values}
         Path(path).write_text(json.dumps(content, indent=1) + "\n")
 
-    def _of_record(self, record: Record, measurement: Measurement, channel: str | None) -> Prediction:
+    def tell(self, record: Recorded) -> Prediction:
+        """What it says of one record."""
         try:
-            found = self.estimator.estimate(recorded(record, measurement, channel))
+            return Prediction(**vars(self.estimator.estimate(record)))
         except UnsuitedRecord as reason:
             return Prediction(None, unsuited=str(reason))
-        return Prediction(
-            found.damping_ratio_percent,
-            interval95=found.interval95,
-            frequency_hz=found.frequency_hz,
-            amplitudes=found.amplitudes,
-            curve=found.curve,
-        )
 
 
-def channel_of(record: Record, system: str, channel: str | None = None) -> str:
-    """The channel of a record that is looked at: the one that is named, else its first response.
+def all_recorded(measurement: Measurement, channel: str | None = None) -> dict[str, Recorded]:
+    """Every record as estimators meet it, by name, through one channel each.
 
     Raises:
-        InputError: it has no response.
+        InputError: a record has no such channel, or no response at all.
     """
-    names = response_names(record, system)
-    if not (channel or names):
-        rule, remedy = f"no response of a {system}", f"declare one of {', '.join(RESPONSES[system])}"
-        raise InputError(Problem(f"{record.name}.channels", rule, remedy=remedy, source=str(record.file)))
-    return channel or names[0]
+    problems = _without_channel(measurement, channel, RESPONSES[measurement.system]) if channel else []
+    if problems:
+        raise InputError(problems)
+    return {record.name: _recorded(record, measurement, channel) for record in measurement.records}
 
 
-def recorded(record: Record, measurement: Measurement, channel: str | None = None) -> Recorded:
-    """A record as an estimator meets it, through one channel.
-
-    Raises:
-        InputError: it has no response.
-    """
+def _recorded(record: Record, measurement: Measurement, channel: str | None) -> Recorded:
+    """Through the channel that is named, else its first response."""
     system, known = measurement.system, known_of(measurement)
-    shown = channel_of(record, system, channel)
+    shown = channel or fitted_names(record, system)[0]
     others = [name for name in RESPONSES[system] if name != shown]
     alone = replace(record, channels={n: c for n, c in record.channels.items() if n not in others})
     found = fit_record(alone, system, known.values.get("stiffness", 1.0) != 0)
@@ -171,7 +157,7 @@ def recorded(record: Record, measurement: Measurement, channel: str | None = Non
 
 def _turning(record: FitRecord, values: Mapping[str, float]) -> Turning | None:
     """What turns in a gear pair; None where no speed is known."""
-    teeth = tuple(values.get(p.name, p.default) for p in GearPair.parameters[:2])
+    teeth = teeth_of(values)
     if "pinion_angle" in record.inputs:
         return Turning(teeth[0] * record.inputs["pinion_angle"].numpy(), teeth)
     speed, count = record.conditions.get("pinion_speed"), len(record.response)

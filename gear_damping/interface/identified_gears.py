@@ -26,13 +26,12 @@ from gear_damping.identification.output_error.least_squares import Rounds
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.interface.identified_page import MOST_PANELS, estimate_rows, panel, residual_rows
 from gear_damping.measurement.record import Measurement
+from gear_damping.physics.damping_ratio import DAMPING_RATIO
 from gear_damping.physics.model import Model
-from gear_damping.physics.terms import DampingLaw
 from gear_damping.reporting import figures, tables
 from gear_damping.simulation.solver_settings import Solver
 
 SHOWN = ("mesh_stiffness_shape",)  # what is fitted in many numbers stands in the JSON alone
-DAMPING_RATIO = "damping_ratio"  # stands for the coefficient of a model's one damping law
 OF_OSCILLATORS = ("stiffness", "force_gain")  # parameters of the system that may be fitted
 ITERATIONS = 40  # at most, of a fit of one's own model
 
@@ -108,7 +107,7 @@ def _free(model: Model, given: Given, names: Sequence[str]) -> tuple[FreeParamet
     """Free parameters that begin where the model has them."""
     declared, found, problems = model.parameters(), [], []
     for name in names:
-        flat = _law(model) if name == DAMPING_RATIO and name not in declared else name
+        flat = model.damping_coefficient if name == DAMPING_RATIO and name not in declared else name
         if flat is None or flat not in declared:
             remedy = nearest(name, [*declared, DAMPING_RATIO])
             problems.append(Problem(f"free.{name}", "no such parameter of the model", remedy=remedy))
@@ -125,12 +124,6 @@ def _free(model: Model, given: Given, names: Sequence[str]) -> tuple[FreeParamet
     if problems:
         raise InputError(problems)
     return tuple(found)
-
-
-def _law(model: Model) -> str | None:
-    """The coefficient of the model's one damping law."""
-    laws = [effect for effect in model.effects if isinstance(effect, DampingLaw)]
-    return f"{laws[0].name}.{laws[0].parameters[0].name}" if len(laws) == 1 else None
 
 
 def content_of(measurement: Measurement, found: Fitted) -> dict[str, Any]:

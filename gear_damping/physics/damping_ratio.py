@@ -10,6 +10,7 @@ from math import pi, sqrt
 import torch
 from torch import Tensor
 
+DAMPING_RATIO = "damping_ratio"  # stands for the coefficient of a model's one damping law
 CYCLE = 1000  # instants of a cycle over which a loss is summed; a sign change of a hundredth has sixteen of them
 
 

@@ -10,7 +10,15 @@ from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.scales import Scales
 from gear_damping.physics.systems.base import System
-from gear_damping.physics.terms import Contact, ContactChange, Effect, LoadPath, MeshStiffness, SystemChange
+from gear_damping.physics.terms import (
+    Contact,
+    ContactChange,
+    DampingLaw,
+    Effect,
+    LoadPath,
+    MeshStiffness,
+    SystemChange,
+)
 from gear_damping.units import parse_unit
 
 Named = dict[str, Tensor]
@@ -63,6 +71,17 @@ class Model:
         for effect in self.effects:
             found |= {f"{effect.name}.{p.name}": p for p in effect.parameters}
         return found
+
+    @property
+    def damping_laws(self) -> tuple[DampingLaw, ...]:
+        """The effects that state a damping ratio."""
+        return tuple(effect for effect in self.effects if isinstance(effect, DampingLaw))
+
+    @property
+    def damping_coefficient(self) -> str | None:
+        """Flat name of the coefficient of its one damping law; None where there is not one."""
+        laws = self.damping_laws
+        return f"{laws[0].name}.{laws[0].parameters[0].name}" if len(laws) == 1 else None
 
     @property
     def given(self) -> dict[str, float | tuple[float, ...]]:

@@ -10,7 +10,7 @@ from torch import Tensor
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.physics.equation import EquationOfMotion
 from gear_damping.physics.model import Model, Prepared
-from gear_damping.physics.terms import DampingLaw, ExtraStates
+from gear_damping.physics.terms import ExtraStates
 from gear_damping.simulation.runs import reference_velocity
 
 Values = dict[str, Tensor]
@@ -108,7 +108,7 @@ def _check(model: Model, family: Family, damping_law: str | None, values: Values
         for name in family.spreads
         if name != DAMPING_RATIO and name not in values
     ]
-    laws = [effect.name for effect in model.effects if isinstance(effect, DampingLaw)]
+    laws = [effect.name for effect in model.damping_laws]
     if damping_law is not None and damping_law not in laws:
         rule = "must be a damping effect that is switched on"
         remedy = f"on are: {', '.join(laws)}" if laws else "switch one on, for example simulator.viscous_damping={}"

@@ -7,7 +7,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.physics.model import Model
-from gear_damping.physics.terms import DampingLaw, ExtraStates, Recording, Sensor
+from gear_damping.physics.terms import ExtraStates, Recording, Sensor
 from gear_damping.simulation.series import ANGLE, ANGLE_RATE
 
 FINE, DIVERGED = 0, 1  # what became of a run
@@ -65,7 +65,7 @@ class Runs:
         """
         total = torch.zeros_like(self.derived["equivalent_mass"])
         mass, stiffness = self.derived["equivalent_mass"], self.derived["mean_stiffness"]
-        laws = [effect for effect in self.model.effects if isinstance(effect, DampingLaw)]
+        laws = self.model.damping_laws
         for effect in laws:
             own = {p.name: self.values[f"{effect.name}.{p.name}"] for p in effect.parameters}
             total = total + effect.damping_ratio(own, mass, stiffness, self.reference_velocity)

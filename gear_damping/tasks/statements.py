@@ -12,7 +12,6 @@ from gear_damping.physics.damping_ratio import log_decrement
 from gear_damping.physics.terms import (
     BearingForce,
     ContactChange,
-    DampingLaw,
     ElasticForce,
     ExtraStates,
     LoadPath,
@@ -54,7 +53,7 @@ def say_runs(settings: Settings, runs: Runs) -> None:
 def _damping(runs: Runs, law: str | None) -> str:
     """The damping ratios of the runs, or why there are none."""
     ratio = runs.damping_ratio_percent
-    if not any(isinstance(effect, DampingLaw) for effect in runs.model.effects):
+    if not runs.model.damping_laws:
         return "no effect of the model states a damping ratio"
     if bool((runs.derived["mean_stiffness"] == 0).any()):
         return "no damping ratio can be stated: there is no linear stiffness, so nothing is critical"

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import torch
+from closed_forms import free_decay
 from numpy.polynomial.legendre import legval
 
 from gear_damping.explanation.evidence.slow_rotation import gear_ratio, with_slow_rotation
@@ -25,8 +26,7 @@ SLOW = SlowChange(3, SAMPLES / RATE, 0.5)
 def decay(slow=SLOW):
     """The velocity of a decay in closed form, and a speed that sways."""
     time = np.arange(SAMPLES) / RATE
-    turn = math.sqrt(STIFFNESS - DAMPING**2 / 4)
-    seen = -0.01 * STIFFNESS / turn * np.exp(-DAMPING / 2 * time) * np.sin(turn * time)
+    seen = free_decay(time, 1.0, DAMPING, STIFFNESS, 0.01, 0.0)[1]
     sway = legval(2 * time / SLOW.span - 1, (0.0, *SIZES))
     observed = Observed("velocity", offset=True, slow=slow)
     return FitRecord("run", torch.as_tensor(seen + sway), RATE, observed=observed)

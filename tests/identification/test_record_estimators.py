@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 import torch
+from closed_forms import free_decay
 from scipy.integrate import solve_ivp
 from scipy.signal import firwin, lfilter
 
@@ -34,9 +35,7 @@ def recorded(values, inputs=None, angle=None, stamps=None, offset=False):
 def decay(ratio, seconds=8.0, amplitude=0.02, time=None):
     """A linear decay from rest at its amplitude, in closed form."""
     time = np.arange(round(seconds * RATE)) / RATE if time is None else time
-    damped = OMEGA * math.sqrt(1 - ratio**2)
-    wave = np.cos(damped * time) + ratio / math.sqrt(1 - ratio**2) * np.sin(damped * time)
-    return amplitude * np.exp(-ratio * OMEGA * time) * wave
+    return free_decay(time, 1.0, 2 * ratio * OMEGA, OMEGA**2, amplitude, 0.0)[0]
 
 
 def noise(count, seed, size=NOISE):

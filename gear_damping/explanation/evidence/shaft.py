@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.identification.output_error.records import FitRecord
-from gear_damping.physics.systems.gear_pair import GearPair
+from gear_damping.physics.systems.gear_pair import teeth_of
 
 Array = NDArray[np.float64]
 
@@ -24,7 +24,8 @@ def shaft_of(record: FitRecord, evidence: Evidence) -> Shaft | None:
     """The shaft of a record of a gear pair; None for an oscillator."""
     if evidence.system != "gear_pair":
         return None
-    teeth = tuple(round(evidence.parameters.get(p.name, p.default)) for p in GearPair.parameters[:2])
+    pinion, gear = teeth_of(evidence.parameters)
+    teeth = (round(pinion), round(gear))
     if "pinion_angle" in record.inputs:
         return Shaft(record.inputs["pinion_angle"].numpy(), teeth)
     time = np.arange(len(record.response)) / record.sampling_rate

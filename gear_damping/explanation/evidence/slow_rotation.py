@@ -9,7 +9,7 @@ from dataclasses import replace
 from math import pi
 
 from gear_damping.identification.output_error.records import FitRecord, Observed, SlowChange
-from gear_damping.physics.systems.gear_pair import GearPair
+from gear_damping.physics.systems.gear_pair import teeth_of
 
 VARIES = 1e-3  # of the speed, standard deviation: what a drive lets it vary in waves about as long as a record
 FEWEST_TERMS, MOST_TERMS = 3, 12  # polynomials: a wave as long as twice a record, and what does not cost too much
@@ -18,7 +18,7 @@ PER_TURN = 1.0  # polynomials to a turn of the slower shaft: they follow waves o
 
 def gear_ratio(values: Mapping[str, float]) -> float:
     """Teeth of the pinion over those of the gear, as stated or as usual."""
-    pinion, gear = (values.get(p.name, p.default) for p in GearPair.parameters[:2])
+    pinion, gear = teeth_of(values)
     return pinion / gear
 
 

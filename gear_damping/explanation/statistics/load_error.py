@@ -7,6 +7,7 @@ are found from the spectrum of the residual (Whittle 1953); the Cholesky factor 
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import pairwise
 from math import exp, log
 from typing import NamedTuple
@@ -63,6 +64,16 @@ class KnownError:
         steps = np.diff(self.stamps)
         return bool(steps.max() - steps.min() > UNEVEN * steps.mean())
 
+    @cached_property
+    def covariances(self) -> tuple[Array, ...]:
+        """Of what it adds to the samples of each piece, (n, n); the same for every residual and level."""
+        lags = self.interval * np.arange(len(self.motion))
+        told, found = CubicSpline(lags, self.motion), []
+        for piece in _pieces(len(self.stamps)):
+            stamps = self.stamps[piece]
+            found.append(told(np.minimum(np.abs(stamps[:, None] - stamps[None, :]), lags[-1])))
+        return tuple(found)
+
 
 class Levels(NamedTuple):
     """Share of the expected error, variance of the sensor's innovations, and the pole of its colour."""
@@ -103,7 +114,7 @@ def load_error(residual: Array, known: KnownError) -> LoadError:
     levels = _levels(residual, known)
     if known.is_uneven:
         levels = _at_their_stamps(levels, residual, known)
-    factors = tuple(cholesky(_covariance(known, levels, piece), lower=True) for piece in _pieces(len(residual)))
+    factors = tuple(cholesky(_both(moved, levels), lower=True) for moved in known.covariances)
     white = _white(residual[:, None], factors)[MEMORY:]
     level = max(float((white**2).mean()), 1e-300)
     spread = np.concatenate([np.log(np.diag(factor)) for factor in factors])[MEMORY:]
@@ -158,15 +169,15 @@ def _at_their_stamps(levels: Levels, residual: Array, known: KnownError) -> Leve
 
     In a spectrum that takes uneven samples for even ones, what the jitter makes of the motion looks like the sensor.
     """
-    piece = slice(0, min(SHORT, len(residual)))
-    seen, largest = residual[piece], residual.var()
+    moved = known.covariances[0][:SHORT, :SHORT]
+    seen, largest = residual[: len(moved)], residual.var()
 
     def of(place: Array) -> Levels:
         share, sensor = np.clip(np.exp(place[:2]), *np.transpose((SHARES, SENSOR)))
         return Levels(float(share), float(sensor) * known.sensor, float(np.clip(place[2], *POLES)))
 
     def deviance(place: Array) -> float:
-        factor = cholesky(_covariance(known, of(place), piece), lower=True)
+        factor = cholesky(_both(moved, of(place)), lower=True)
         white = solve_triangular(factor, seen, lower=True)
         return float(white @ white + 2 * np.log(np.diag(factor)).sum())
 
@@ -178,14 +189,11 @@ def _at_their_stamps(levels: Levels, residual: Array, known: KnownError) -> Leve
     return of(found.x)
 
 
-def _covariance(known: KnownError, levels: Levels, piece: slice) -> Array:
-    stamps = known.stamps[piece]
-    lags = known.interval * np.arange(len(known.motion))
-    apart = np.abs(stamps[:, None] - stamps[None, :])
-    moved = levels.share * CubicSpline(lags, known.motion)(np.minimum(apart, lags[-1]))
-    sensor = levels.sensor / (1 - levels.pole**2) * levels.pole ** np.arange(len(stamps))
-    moved[np.diag_indices(len(moved))] *= 1 + ROUNDING
-    return moved + toeplitz(sensor)
+def _both(moved: Array, levels: Levels) -> Array:
+    """Covariance of what the error of the load adds, of which that is expected, and of the sensor."""
+    found = levels.share * moved + toeplitz(levels.sensor / (1 - levels.pole**2) * levels.pole ** np.arange(len(moved)))
+    found[np.diag_indices(len(found))] += ROUNDING * levels.share * moved.diagonal()
+    return found
 
 
 def _white(rows: Array, factors: Sequence[Array]) -> Array:

@@ -12,7 +12,7 @@ from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency_hz
 from gear_damping.explanation.statistics.family_wise import Effect, Lines, Residual, Visible, block_numbers, family_wise
 from gear_damping.explanation.statistics.projector import Projector
-from gear_damping.explanation.trials.innovations import driven, load_errors
+from gear_damping.explanation.trials.innovations import load_errors, random_loads
 from gear_damping.explanation.trials.line import strongest_line
 from gear_damping.explanation.trials.random_part import Random, Whitener, random_part
 from gear_damping.explanation.trials.score import Score, projected
@@ -70,7 +70,7 @@ def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, fami
     named = {score.candidate.name: score.columns for score in reversed(scores) if score.columns.shape[1]}
     beside, count = project(residual), problem.response.weights.numel()
     nameless = cache(lambda: {name: orthonormal(project(columns)) for name, columns in unnamed.items()})
-    known, line = cache(lambda: driven(outcome)), cache(lambda: strongest_line(outcome, evidence))
+    known, line = cache(lambda: random_loads(outcome)), cache(lambda: strongest_line(outcome, evidence))
 
     errors = cache(lambda: load_errors(outcome, evidence.records))
 

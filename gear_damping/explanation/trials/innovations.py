@@ -28,8 +28,8 @@ FEWEST = 6  # samples of a piece
 
 
 @dataclass(frozen=True)
-class Driven:
-    """What is known of how a random load moves each record.
+class RandomLoad:
+    """What is known of how a random load moves a record.
 
     Args:
         motion: How its free motion goes on; None where that is not known.
@@ -49,13 +49,13 @@ class Driven:
         return min(found, key=lambda part: part.deviance)
 
 
-def driven(outcome: Outcome) -> list[Driven] | None:
+def random_loads(outcome: Outcome) -> list[RandomLoad] | None:
     """How a random load moves the first channel of each record of the problem; None where that is not known."""
     records = outcome.problem.records
     motions, errors = recurrences(outcome), [known_error(record, outcome) for record in records]
     if motions is None:
-        return None if any(error is None for error in errors) else [Driven(None, error) for error in errors]
-    return [Driven(*pair) for pair in zip(motions, errors, strict=True)]
+        return None if any(error is None for error in errors) else [RandomLoad(None, error) for error in errors]
+    return [RandomLoad(*pair) for pair in zip(motions, errors, strict=True)]
 
 
 def load_errors(outcome: Outcome, records: Sequence[FitRecord]) -> dict[str, float]:
@@ -73,8 +73,7 @@ def known_error(record: FitRecord, outcome: Outcome) -> KnownError | None:
     problem, values = outcome.problem, {**outcome.flat_given(), **outcome.values}
     factors = {"force": values.get(GAIN, 1.0), "base_acceleration": -1.0}  # per unit of mass
     errors = [factors[name] ** 2 * error.numpy() for name, error in record.input_errors.items()]
-    many = len(problem.response.channels) > 1 or record.observed.absolute  # the base is in that response itself
-    if not errors or problem.extra or problem.response.modes or many:
+    if not errors or not _is_one_motion(problem) or record.observed.absolute:  # that has the base in itself
         return None
     mass, damping, stiffness = linear_of(outcome)
     if stiffness <= 0 or damping <= 0:  # nothing holds its motion, which grows
@@ -85,6 +84,11 @@ def known_error(record: FitRecord, outcome: Outcome) -> KnownError | None:
     return KnownError(interval * stamps.double().numpy(), motion, step, problem.noise**2)
 
 
+def _is_one_motion(problem: OutputErrorProblem) -> bool:
+    """Whether one channel shows a displacement and its velocity and nothing that goes on beside them."""
+    return not (problem.extra or problem.response.modes or len(problem.response.channels) > 1)
+
+
 def recurrences(outcome: Outcome) -> list[Recurrence] | None:
     """How the free motion of the first channel goes on in each record of the problem.
 
@@ -93,7 +97,7 @@ def recurrences(outcome: Outcome) -> list[Recurrence] | None:
     """
     problem = outcome.problem
     even = all(record.stamps is None for record in problem.records)
-    if problem.extra or problem.response.modes or len(problem.response.channels) > 1 or not even:
+    if not (even and _is_one_motion(problem)):
         return None
     mass, damping, stiffness = linear_of(outcome)
     if stiffness <= 0:

@@ -12,7 +12,7 @@ from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.statistics.load_error import LoadError
 from gear_damping.explanation.statistics.load_noise import MEMORY, LoadNoise
 from gear_damping.explanation.statistics.whitening import Autoregression, autoregression
-from gear_damping.explanation.trials.innovations import Driven
+from gear_damping.explanation.trials.innovations import RandomLoad
 
 RANDOM_PART = "raised to the random part of the residuals"
 PER_LOAD = 2  # numbers of a load's part: its level and the sensor's
@@ -71,7 +71,9 @@ class Random:
         return self.variance
 
 
-def random_part(left: Tensor, taken: float, outcome: Outcome, driven: Callable[[], list[Driven] | None]) -> Random:
+def random_part(
+    left: Tensor, taken: float, outcome: Outcome, loads_of: Callable[[], list[RandomLoad] | None]
+) -> Random:
     """The random part of what is left beside everything that has a shape.
 
     An autoregression of each channel; or, where that tells more (Schwarz 1978), a random load's part of each record
@@ -81,7 +83,7 @@ def random_part(left: Tensor, taken: float, outcome: Outcome, driven: Callable[[
         left: (samples,).
         taken: Degrees of freedom that were taken out.
         outcome: The fitted model.
-        driven: How a random load moves each record; None where that is not known.
+        loads_of: How a random load moves each record; None where that is not known.
     """
     problem = outcome.problem
     groups, count = _grouped(outcome)
@@ -91,7 +93,7 @@ def random_part(left: Tensor, taken: float, outcome: Outcome, driven: Callable[[
     regressed = _Regressed(groups.reshape(-1), count, weights > 0, (taken + problem.n_shared) / max(total, 1.0))
     laws, loads = regressed.of(rows), ()
     kept, least = laws, regressed.deviance(laws)
-    if any(law.order for law in laws) and (known := driven()) is not None:
+    if any(law.order for law in laws) and (known := loads_of()) is not None:
         parts = [moved.part(row.numpy()) for row, moved in zip(rows, known, strict=True)]
         beside = regressed.of(innovations(rows.unsqueeze(-1), parts).squeeze(-1))
         deviance = sum(part.deviance + PER_LOAD * log(total) for part in parts) + regressed.deviance(beside)

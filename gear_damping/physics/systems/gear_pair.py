@@ -3,6 +3,7 @@
 Özgüven & Houser (1988), J. Sound Vib. 121(3); Kahraman & Singh (1990), J. Sound Vib. 142(1).
 """
 
+from collections.abc import Mapping
 from math import pi
 from typing import ClassVar
 
@@ -17,6 +18,12 @@ from gear_damping.physics.systems.base import System, Values
 PRINTED_BASE_CIRCLES = (0.05, 0.11)  # m; the paper's Table 1, truncated base diameters
 PRINTED_MASS = 1.0  # kg; the paper's equation 8 has no mass
 UNLOADED_LENGTH = 1e-6  # m; the unit of length of a member that carries no load
+
+
+def teeth_of(values: Mapping[str, float]) -> tuple[float, float]:
+    """Teeth of pinion and gear as stated by flat name, or as usual."""
+    pinion, gear = (values.get(p.name, p.default) for p in GearPair.parameters[:2])
+    return pinion, gear
 
 
 class GearPair(System):
