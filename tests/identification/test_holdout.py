@@ -9,10 +9,12 @@ import torch
 from gear_damping.identification.output_error.holdout import Frozen, _begun_anew, predict_holdout
 from gear_damping.identification.output_error.least_squares import Rounds, fit
 from gear_damping.identification.output_error.problem import OutputErrorProblem
-from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.identification.output_error.records import FitRecord, FreeParameter, Observed
 from gear_damping.physics.catalogue import effect_class
 from gear_damping.physics.model import Model
+from gear_damping.physics.systems.gear_pair import GearPair
 from gear_damping.physics.systems.oscillator import Oscillator
+from gear_damping.simulation.simulate import simulate
 
 FREQUENCY, RATIO, RATE, NOISE = 10.0, 0.001, 200.0, 1e-3
 OMEGA = 2 * math.pi * FREQUENCY
@@ -83,3 +85,21 @@ def test_a_record_that_seems_to_have_begun_wrong_is_begun_from_rest():
     assert wrong.cost > 100 * right.cost
     assert _begun_anew(problem, wrong, 20).cost == pytest.approx(right.cost, rel=1e-6)
     assert _begun_anew(problem, right, 20) is right
+
+
+@pytest.mark.parametrize("off", [-0.012, 0.009])
+def test_a_gear_pair_whose_speed_is_uncertain_is_followed_from_where_its_mesh_begins(off):
+    """Over .1 s the mesh runs ahead by a cycle and the resonance's harmonic by four: no small step leads back."""
+    effects = [effect_class("fourier_mesh_stiffness")(), effect_class("viscous_damping")()]
+    model, stated = Model(GearPair(), effects), 300.0
+    given = {"pinion_torque": 150.0, DAMPING: 3000.0}
+    true = given | {"pinion_speed": stated * (1 + off), "mesh_phase": 2.0}
+    runs = simulate(model, model.values(1, **true), sampling_rate=50e3, n_samples=5000)
+    noise = 1e-7 * torch.randn(5000, generator=torch.Generator().manual_seed(1), dtype=torch.float64)
+    observed = Observed("transmission_error")
+    own = (FreeParameter("pinion_speed", stated, 0.005 * stated, deviation=0.005 * stated, expected=stated),)
+    record = FitRecord("run", runs.response[0] + noise, 50e3, {}, {"pinion_speed": stated}, observed=observed, own=own)
+    angle = FreeParameter("mesh_phase", 0.0, per_record=True)
+    found = predict_holdout(Frozen(model, given, (angle,), 1e-7), [record], 2e-4)
+    assert found.own["pinion_speed@run"] == pytest.approx(true["pinion_speed"], rel=1e-5)
+    assert float(found.residuals[0].std()) == pytest.approx(1e-7, rel=0.05)

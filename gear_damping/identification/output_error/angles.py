@@ -1,7 +1,7 @@
 """Where the angles of single records begin: tried all around, record by record."""
 
 from collections.abc import Mapping, Sequence
-from math import ceil, pi
+from math import ceil, inf, pi
 
 import torch
 from torch import Tensor
@@ -12,7 +12,8 @@ from gear_damping.identification.output_error.records import SEPARATOR, FitRecor
 from gear_damping.identification.output_error.unknowns import is_of_model
 from gear_damping.physics.model import Model
 
-MESH_PHASE = "mesh_phase"
+MESH_PHASE, SPEED = "mesh_phase", "pinion_speed"
+TURNED, LIKELY = 0.25, 2.0  # of a cycle that a harmonic may turn away; standard deviations of the speed that do so
 PER_HARMONIC, MOST_STARTS = 4.0, 120  # angles for each harmonic up to the natural frequency
 STARTS = 18  # angles that are tried where a parameter asks for no more, 20 degrees apart
 
@@ -66,6 +67,22 @@ def _starts(problem: OutputErrorProblem, base: str) -> int:
     given = {name: value for name, value in problem.given.items() if is_of_model(name)}
     harmonics = harmonics_to_resonance(problem.model, given, problem.records)
     return min(max(STARTS, ceil(PER_HARMONIC * harmonics)), MOST_STARTS)
+
+
+def steady_horizon(problem: OutputErrorProblem) -> float:
+    """Seconds for which the mesh keeps its phase though the speeds of the records are uncertain; inf where none is.
+
+    So long the highest harmonic up to the natural frequency turns away from where it should be by little.
+    """
+    places = range(problem.unknowns.n_common, problem.n_shared)
+    speeds = [p for p in (problem.free[i] for i in places) if p.name.startswith(SPEED + SEPARATOR)]
+    uncertain = max((p.deviation for p in speeds if p.deviation < inf), default=0.0)
+    if not uncertain:
+        return inf
+    given = {name: value for name, value in problem.given.items() if is_of_model(name)}
+    teeth = float(problem.model.values(1, **given)["n_teeth_pinion"][0])
+    highest = max(harmonics_to_resonance(problem.model, given, problem.records), 1.0) * teeth
+    return TURNED * 2 * pi / (LIKELY * uncertain * highest)
 
 
 def harmonics_to_resonance(

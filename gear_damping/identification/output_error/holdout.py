@@ -2,11 +2,12 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from math import inf
 
 import torch
 from torch import Tensor
 
-from gear_damping.identification.output_error.angles import angle_bases, scanned
+from gear_damping.identification.output_error.angles import angle_bases, scanned, steady_horizon
 from gear_damping.identification.output_error.least_squares import Fitted, Rounds, fit
 from gear_damping.identification.output_error.normal_equations import own_basis, without_own
 from gear_damping.identification.output_error.problem import OutputErrorProblem, Prediction, growth
@@ -18,6 +19,7 @@ from gear_damping.simulation.solver_settings import Solver
 FIRST_PERIODS = 1.25  # characteristic times at the start of a record that its initial state is first sought in
 FIRST_ITERATIONS, LAST_ITERATIONS = 20, 20  # over a part of the record, and over all of it
 FIRST_PART, MOST_OF_IT = 0.25, 0.75  # of a record; share of what is left in it that a wrong start would leave there
+GROWTH = 3.0  # of a stretch to the next: a speed found over one is that much surer over the next
 
 
 @dataclass(frozen=True)
@@ -80,12 +82,11 @@ def predict_holdout(
         starts[0, place] = parameter.coordinate(known[parameter.name]) if parameter.name in known else 0.0
     unknown = [base for base in angle_bases(problem) if not any(name.startswith(base) for name in known)]
     states = problem.safe_states(starts[0])
-    for name, angle in scanned(problem, starts[0], bases=unknown, states=states).items():
+    horizons = _horizons(problem, characteristic_s, unknown)
+    for name, angle in scanned(problem, starts[0], horizons[0], unknown, states).items() if unknown else ():
         place = next(i for i, parameter in enumerate(problem.free) if parameter.name == name)
         starts[0, place] = problem.free[place].coordinate(angle)
-    # so short a stretch tells nothing of an angle, which would leave the valley that it was begun in
-    horizons = [None] if angle_bases(problem) else [FIRST_PERIODS * characteristic_s, None]
-    iterations = (FIRST_ITERATIONS, LAST_ITERATIONS)[-len(horizons) :]
+    iterations = (*(FIRST_ITERATIONS for _ in horizons[1:]), LAST_ITERATIONS)
     first = fit(problem, starts, Rounds(iterations, horizons), states.unsqueeze(0))
     found = _begun_anew(problem, first, iterations[-1])
     prediction, weights = found.prediction, problem.response.weights.clamp(min=1e-300)
@@ -96,6 +97,22 @@ def predict_holdout(
     whole = [joined(series * counted, kept, segments, channels) for series in (problem.response.values - left, beside)]
     values = {name: float(value) for name, value in problem.unknowns.parameters(found.shared).items()}
     return HeldOut(*whole, growth(prediction, problem.n_shared), values)
+
+
+def _horizons(problem: OutputErrorProblem, characteristic_s: float, unknown: Sequence[str]) -> list[float | None]:
+    """Seconds of the records over which one fit after another goes, None for all of them.
+
+    So short a stretch as shows how an oscillator begins tells nothing of an angle, which would leave the valley that
+    it was begun in. A speed that is uncertain turns the mesh away from any angle in time, and is followed from there.
+    """
+    if not angle_bases(problem):
+        return [FIRST_PERIODS * characteristic_s, None]
+    steady = steady_horizon(problem) if unknown else inf
+    longest, found = max(len(record.response) / record.sampling_rate for record in problem.records), []
+    while steady < longest / GROWTH:
+        found.append(steady)
+        steady *= GROWTH
+    return [*found, None]
 
 
 def _begun_anew(problem: OutputErrorProblem, found: Fitted, iterations: int) -> Fitted:
