@@ -91,10 +91,33 @@ def _estimators(whole: Whole) -> Found:
 
 
 def _wavelet_of_networks(whole: Whole) -> Found:
-    """The transform is one of networks: an estimator of records has its own."""
-    for key, value in _typed(whole) if whole.models is not None and whole.models.of_records else ():
+    """The transform is one of networks that say so: the others have their own, or none."""
+    models = whole.models
+    if models is None or models.transforming:
+        return
+    remedy = "leave it out; wavelet_ridge has model.omega0" if models.of_records else "leave it out, or name cwt_lstm"
+    for key, value in _typed(whole) if models.of_records or models.whole else ():
         if key == "wavelet" or key.startswith("wavelet."):
-            yield key, "acts on networks, and none is named", value, "leave it out; wavelet_ridge has model.omega0"
+            yield key, "acts on networks of the transform, and none is named", value, remedy
+
+
+def _whole_records(whole: Whole) -> Found:
+    """Networks of whole records know no windows, and no cut inside a record."""
+    names = whole.models.whole if whole.models is not None and whole["task"] == "train" else ()
+    if names and whole["protocol"]["name"] != "by_run":
+        rule = f"cuts inside records, and {', '.join(names)} sees whole ones"
+        yield "protocol.name", rule, whole["protocol"]["name"], "choose protocol=by_run"
+    for key, value in _typed(whole) if names and len(names) == len(whole.models.names) else ():
+        if key in ("protocol.window", "protocol.stride", "protocol.evaluation_stride"):
+            yield key, f"acts on networks of windows, and {', '.join(names)} sees whole records", value, "leave it out"
+
+
+def _noise_twice(whole: Whole) -> Found:
+    """The noise of training records is drawn, or is that of the simulated sensor."""
+    drawn = whole["training"]["noise_snr_db"]
+    if drawn is not None and whole["task"] == "train" and whole.simulator.sensor_noise_db is not None:
+        rule = "takes the place of simulator.sensor_noise, and both are given"
+        yield "training.noise_snr_db", rule, drawn, "leave one of them out"
 
 
 def _resume(whole: Whole) -> Found:
@@ -260,6 +283,8 @@ CHECKS: tuple[tuple[tuple[str, ...], Callable[[Whole], Found]], ...] = (
     (("task", "checkpoint"), _checkpoint),
     (("task", "checkpoint", "model"), _estimators),
     (("model", "wavelet"), _wavelet_of_networks),
+    (("task", "model", "protocol"), _whole_records),
+    (("task", "training", "simulator"), _noise_twice),
     (("resume",), _resume),
     (("task", "measurement"), _measurement),
     (("task", "explain", "ruled_out"), _of_a_search),

@@ -8,7 +8,7 @@ from gear_damping.config.schema import Key, problem_with, problems_with
 from gear_damping.config.source import COMMAND_LINE, Origin
 from gear_damping.errors import InputError, Problem
 from gear_damping.identification.catalogue import KEY, estimator_catalogue, wavelet_catalogue
-from gear_damping.identification.estimators.base import Estimator, RecordEstimator
+from gear_damping.identification.estimators.base import Estimator, LearnedEstimator, RecordEstimator, RecordNetwork
 from gear_damping.setting import Setting
 
 PLUGINS = Key("names", optional=True)
@@ -27,11 +27,15 @@ class ModelSettings:
         settings: The numbers that each is built by, by name of the estimator and of the setting.
         plugins: The user's own files of estimators and wavelets.
         of_records: Those that learn nothing and take a record by itself.
+        whole: The networks that see whole records, no windows.
+        transforming: The networks that read the wavelet transform of the group `wavelet`.
     """
 
     settings: dict[str, dict[str, float | int | bool]]
     plugins: tuple[str, ...] = ()
     of_records: tuple[str, ...] = ()
+    whole: tuple[str, ...] = ()
+    transforming: tuple[str, ...] = ()
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -57,7 +61,14 @@ def read_models(node: Mapping[str, Any], origin: Origin) -> ModelSettings:
     if problems:
         raise InputError(problems)
     own = {name: {one.name: given[one.name] for one in kind.settings} for name, kind in chosen.items()}
-    return ModelSettings(own, plugins, tuple(n for n, kind in chosen.items() if issubclass(kind, RecordEstimator)))
+    networks = {name: kind for name, kind in chosen.items() if issubclass(kind, LearnedEstimator)}
+    return ModelSettings(
+        own,
+        plugins,
+        of_records=tuple(name for name, kind in chosen.items() if issubclass(kind, RecordEstimator)),
+        whole=tuple(name for name, kind in networks.items() if issubclass(kind, RecordNetwork)),
+        transforming=tuple(name for name, kind in networks.items() if kind.transforms),
+    )
 
 
 def read_wavelet(node: Mapping[str, Any], plugins: tuple[str, ...], origin: Origin) -> dict[str, Any]:

@@ -1,7 +1,7 @@
 """The keys outside the simulator: type, range and choices of each, and their check."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from math import inf, isfinite
 from typing import Any
 
@@ -17,7 +17,7 @@ class Key:
     """What one key may hold.
 
     Args:
-        kind: `int`, `float`, `bool`, `text` or `names`.
+        kind: `int`, `float`, `bool`, `text`, `names`, or `span`: two numbers that ascend.
         lower: Smallest number.
         upper: Largest number.
         choices: Allowed texts or names; empty for any.
@@ -69,6 +69,9 @@ SCHEMA: dict[str, Any] = {
         "batch_size": Key("int", 1, 1_000_000),
         "patience": Key("int", 1, 1_000_000),
         "learning_rate": Key("float", 0, 10, exclusive=True),
+        "schedule": Key("text", choices=("constant", "cosine")),
+        "gradient_clip": Key("float", 0, 1e6, exclusive=True, optional=True),
+        "noise_snr_db": Key("span", -100, 200, optional=True),
     },
     "measurement": {
         "path": Key("text", optional=True),
@@ -147,6 +150,7 @@ def _wrong_type(value: Any, rule: Key) -> tuple[str, str] | None:
         "float": (number, "a number"),
         "bool": (isinstance(value, bool), "true or false"),
         "text": (isinstance(value, str), "text"),
+        "span": (_is_span(value), "two numbers that ascend, [1, 30]"),
         "names": (
             isinstance(value, list) and len(value) > 0 and len(set(map(str, value))) == len(value),
             "a list of different names",
@@ -156,7 +160,14 @@ def _wrong_type(value: Any, rule: Key) -> tuple[str, str] | None:
     return None if good else (f"must be {said}", f"write {said}")
 
 
+def _is_span(value: Any) -> bool:
+    good = isinstance(value, list) and len(value) == 2
+    return good and all(type(end) in (int, float) and isfinite(end) for end in value) and value[0] <= value[1]
+
+
 def _out_of_range(value: Any, rule: Key) -> tuple[str, str] | None:
+    if rule.kind == "span":
+        return next(filter(None, (_out_of_range(end, replace(rule, kind="float")) for end in value)), None)
     if rule.kind not in ("int", "float"):
         return None
     inside = rule.lower < value < rule.upper if rule.exclusive else rule.lower <= value <= rule.upper

@@ -8,7 +8,7 @@ from typing import Any
 
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.identification import estimators as room
-from gear_damping.identification.estimators.base import Estimator, RecordEstimator, WindowEstimator
+from gear_damping.identification.estimators.base import Estimator, LearnedEstimator, RecordEstimator
 from gear_damping.own_files import REMEDY, classes_of, load_module, modules_of
 from gear_damping.setting import Setting
 from gear_damping.signals.wavelets.base import ContinuousWavelet
@@ -16,7 +16,7 @@ from gear_damping.signals.wavelets.catalogue import builtin_wavelets
 
 KEY = "model.plugins"
 TAKEN = ("mean", "white_noise", "names", "plugins", "kind", "frequency_min_hz", "frequency_max_hz", "n_scales")
-BASES = ("RecordEstimator", "WindowEstimator", "ContinuousWavelet")
+BASES = ("RecordEstimator", "WindowEstimator", "RecordNetwork", "ContinuousWavelet")
 Part = type[Estimator] | type[ContinuousWavelet]
 
 
@@ -41,13 +41,13 @@ def wavelet_catalogue(plugins: Sequence[str | Path] = ()) -> dict[str, type[Cont
     return {**builtin_wavelets(), **_own(plugins, ContinuousWavelet)}
 
 
-def kind_of(name: str, plugins: Sequence[str | Path] = ()) -> type[WindowEstimator]:
+def kind_of(name: str, plugins: Sequence[str | Path] = ()) -> type[LearnedEstimator]:
     """The network of this name.
 
     Raises:
         InputError: there is none, or a file cannot be used.
     """
-    return _of_kind(name, plugins, WindowEstimator)
+    return _of_kind(name, plugins, LearnedEstimator)
 
 
 def record_estimator(

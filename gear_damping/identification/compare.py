@@ -10,8 +10,10 @@ from typing import Any
 import torch
 from torch import Tensor
 
+from gear_damping.identification.catalogue import kind_of
 from gear_damping.identification.controls import mean_predictor, white_noise_runs
 from gear_damping.identification.datamodule import Material, WindowDataModule
+from gear_damping.identification.estimators.base import RecordNetwork
 from gear_damping.identification.lightning_module import EstimatorConfig
 from gear_damping.identification.metrics import means_over_runs, scores
 from gear_damping.identification.trainer import SHOWN, Place, Shown, Training, fit_estimator, predict_windows
@@ -31,6 +33,14 @@ class _Seed:
     noise_data: WindowDataModule
     place: Place
     shown: Shown
+
+    def data_of(self, config: EstimatorConfig, is_noise: bool = False) -> WindowDataModule:
+        """What an estimator meets: windows, or whole records."""
+        data = self.noise_data if is_noise else self.data
+        if not issubclass(kind_of(config.estimator, config.plugins), RecordNetwork):
+            return data
+        protocol = data.protocol.of_whole_records(data.run_set.n_samples)
+        return WindowDataModule(replace(data.material, protocol=protocol), seed=self.seed)
 
     def place_of(self, name: str) -> Place:
         """Where an estimator's files go, and its part of the comparison to go on with."""
@@ -92,10 +102,10 @@ def compare_models(
     for seed in seeds:
         data = WindowDataModule(material, seed=seed)
         shared = _Seed(seed, repeats.training, data, _white_noise_data(data), place, shown)
-        for name, (found, true, predicted) in _one_seed(shared, models, announce):
+        for name, (found, *said) in _one_seed(shared, models, announce):
             per_seed[name].append(found)
             if seed == seeds[0]:
-                predictions[name] = _plain_predictions(true, predicted, data.test_window_runs)
+                predictions[name] = _plain_predictions(*said)
     summaries = {name: _summary(found) for name, found in per_seed.items()}
     controls = {name: summaries.pop(name) for name in (MEAN, WHITE_NOISE)}
     results = {"protocol": material.protocol.name, "seeds": list(seeds), "models": summaries, "controls": controls}
@@ -113,17 +123,18 @@ def _white_noise_data(data: WindowDataModule) -> WindowDataModule:
 
 def _one_seed(
     shared: _Seed, models: Mapping[str, EstimatorConfig], announce: Callable[[str], None]
-) -> Iterator[tuple[str, tuple[Scores, Tensor, Tensor]]]:
-    """Name, and scores with true and predicted values, of every model and control."""
+) -> Iterator[tuple[str, tuple[Scores, Tensor, Tensor, Tensor]]]:
+    """Name, and scores with true and predicted values and their runs, of every model and control."""
     for name, config in models.items():
-        yield name, _fit_and_score(shared, name, config, shared.data, announce)
+        yield name, _fit_and_score(shared, name, config, shared.data_of(config), announce)
     config = next(iter(models.values()))
-    yield WHITE_NOISE, _fit_and_score(shared, WHITE_NOISE, config, shared.noise_data, announce)
+    yield WHITE_NOISE, _fit_and_score(shared, WHITE_NOISE, config, shared.data_of(config, is_noise=True), announce)
     data = shared.data
     mean = mean_predictor(data.training_labels)
     true = data.test_runs.damping_ratio_percent[data.test_window_runs].cpu()
     predicted = torch.full_like(true, mean)
-    yield MEAN, ({**scores(true, predicted, data.test_window_runs, mean), "epochs": 0}, true, predicted)
+    runs = data.test_window_runs
+    yield MEAN, ({**scores(true, predicted, runs, mean), "epochs": 0}, true, predicted, runs)
 
 
 def _fit_and_score(
@@ -132,7 +143,7 @@ def _fit_and_score(
     config: EstimatorConfig,
     data: WindowDataModule,
     announce: Callable[[str], None],
-) -> tuple[Scores, Tensor, Tensor]:
+) -> tuple[Scores, Tensor, Tensor, Tensor]:
     shown = replace(shared.shown, hparams={"model": name, **shared.shown.hparams})
     fit = fit_estimator(config, data, shared.training, shared.place_of(name), seed=shared.seed, shown=shown)
     true, predicted = predict_windows(fit.estimator, data.test_dataloader())
@@ -141,7 +152,7 @@ def _fit_and_score(
         f"{name}, seed {shared.seed}: test RMSE {found['rmse_percent']:.4f} %, validation "
         f"{fit.best_validation_rmse:.4f} %, {len(fit.history)} epochs"
     )
-    return {**found, "epochs": fit.epochs}, true, predicted
+    return {**found, "epochs": fit.epochs}, true, predicted, data.test_window_runs
 
 
 def _summary(per_seed: Sequence[Scores]) -> dict[str, Any]:

@@ -1,9 +1,16 @@
 """What the network is fed: the raw window, or its wavelet transform, with normalisation stored inside."""
 
+from collections.abc import Sequence
+from math import ceil, pi
+
 import torch
 from torch import Tensor, nn
 
 from gear_damping.signals.wavelets.base import ContinuousWavelet
+
+REACH = 4.0  # standard deviations of an envelope at which a wavelet is cut off: 3e-4 of its height
+AT_ONCE = 512  # records, whose overlapping frames are held at a time
+QUIET = 1e-12  # of the energy of a signal of deviation 1: below single precision
 
 
 class FrontEnd(nn.Module):
@@ -47,6 +54,38 @@ class FrontEnd(nn.Module):
 
     def _transform(self, signals: Tensor) -> Tensor:
         return signals[..., None]
+
+
+class FrameFrontEnd(FrontEnd):
+    """Log energies of a record in frames: how much there is of each frequency, and when.
+
+    Each frame and frequency is one coefficient of a complex Morlet wavelet; all last equally long (Gabor 1946), so
+    that every frequency is resolved alike, and frames as far apart as a wavelet is long leave nothing out.
+
+    Args:
+        sampling_rate: Samples per second (Hz).
+        frequencies_hz: Of the wavelets.
+        duration: Standard deviation of their envelope, s.
+        hop: Between frames, s.
+    """
+
+    def __init__(self, sampling_rate: float, frequencies_hz: Sequence[float], duration: float, hop: float) -> None:
+        self.n_features = len(frequencies_hz)
+        super().__init__()
+        self.hop = max(1, round(hop * sampling_rate))
+        self.reach = ceil(REACH * duration * sampling_rate)
+        time = torch.arange(-self.reach, self.reach + 1, dtype=torch.float64) / sampling_rate
+        envelope = torch.exp(-((time / duration) ** 2) / 2)
+        turned = 2 * pi * time[:, None] * torch.tensor(frequencies_hz, dtype=torch.float64)
+        bank = torch.cat([torch.cos(turned), torch.sin(turned)], 1) * (envelope / envelope.norm())[:, None]
+        self.register_buffer("bank", bank.float(), persistent=False)
+
+    def _transform(self, signals: Tensor) -> Tensor:
+        level = signals - signals.mean(1, keepdim=True)
+        padded = nn.functional.pad(level, (self.reach, self.reach))
+        parts = [part.unfold(1, len(self.bank), self.hop) @ self.bank for part in padded.split(AT_ONCE)]
+        real, imaginary = torch.cat(parts).tensor_split(2, dim=-1)
+        return torch.log(real.square() + imaginary.square() + QUIET)
 
 
 class WaveletFrontEnd(FrontEnd):

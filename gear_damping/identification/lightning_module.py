@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from math import isnan
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -11,12 +12,15 @@ from torch import Tensor
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.identification.catalogue import kind_of, make_wavelet
+from gear_damping.identification.estimators.base import LearnedEstimator, RecordNetwork
+from gear_damping.identification.features import FrontEnd
 from gear_damping.identification.trained_on import TrainedOn
 from gear_damping.identification.windows import gather_windows, window_starts, windows_of_runs
 
 # A rate that is wrong by this fraction moves every frequency, and with it the damping, by the same.
 _RATE_TOLERANCE = 1e-3
 _WINDOWS_AT_ONCE = 4096  # that are evaluated together, so that memory stays bounded
+CONSTANT, COSINE = "constant", "cosine"  # how the learning rate goes over the epochs
 _PLAIN = (bool, int, float, str, list, tuple)
 
 
@@ -56,15 +60,20 @@ CWT_LSTM = EstimatorConfig("cwt_lstm")
 
 
 class RecordPrediction(NamedTuple):
-    """Damping ratio of a record (% of critical): mean and standard deviation over its windows, and each."""
+    """Damping ratio of a record (% of critical).
+
+    The mean and standard deviation over its windows, and each; of a network of whole records, what it says, the
+    standard deviation that it states, and its 95 % interval.
+    """
 
     damping_ratio_percent: float
     spread_percent: float
     per_window_percent: Tensor
+    interval95: tuple[float, float] | None = None
 
 
 class DampingModule(L.LightningModule):
-    """An estimator of the catalogue, trained on the RMSE of the damping ratio in %.
+    """An estimator of the catalogue, trained on the RMSE of the damping ratio in %, or on its network's likelihood.
 
     All arguments are plain values and are stored in the checkpoint with the weights, the normalisation
     buffers and the learning curve (`history`): a checkpoint is all that a prediction needs.
@@ -93,11 +102,13 @@ class DampingModule(L.LightningModule):
         self.save_hyperparameters(logger=False, ignore=["plugins"])
         self.plugins = tuple(plugins)
         made = kind_of(estimator, plugins)(settings or {})
-        transform = None if wavelet is None else make_wavelet(wavelet, data["sampling_rate"], plugins)
-        self.front_end = made.front_end(transform)
+        self.front_end = _front_end(made, data["sampling_rate"], wavelet, plugins)
         self.network = made.network(self.front_end.n_features)
         self.history: list[dict[str, float]] = []
-        self._squares = {"train": _Squares(), "val": _Squares()}
+        self.schedule = CONSTANT
+        self._squares = {"train": _Mean(), "val": _Mean()}
+        self._losses = {"train": _Mean(), "val": _Mean()}
+        self._said: list[tuple[Tensor, Tensor, Tensor]] = []
 
     @property
     def data(self) -> dict[str, Any]:
@@ -114,36 +125,53 @@ class DampingModule(L.LightningModule):
         return self.network(self.front_end(inputs))
 
     def training_step(self, batch: tuple[Tensor, Tensor], _: int) -> Tensor:
-        """RMSE of one batch."""
-        square = (self(batch[0]) - batch[1]).square()
-        self._squares["train"].add(square)
-        # The root has no slope at zero, which one constant label can reach.
-        return (square.mean() + 1e-12).sqrt()
+        """Loss of one batch."""
+        loss, found = self.network.loss(self.front_end(batch[0]), batch[1])
+        self._count("train", loss, found, batch[1])
+        return loss
 
     def validation_step(self, batch: tuple[Tensor, Tensor], _: int) -> None:
-        """Collect the squared errors, so that the RMSE is that of the whole set, not a mean over batches."""
-        self._squares["val"].add((self(batch[0]) - batch[1]).square())
+        """Collect the errors, so that the figures are those of the whole set, not a mean over batches."""
+        features = self.front_end(batch[0])
+        loss, found = self.network.loss(features, batch[1])
+        self._count("val", loss, found, batch[1])
+        if self.network.is_likelihood:
+            self._said.append((*self.network.distribution(features), batch[1]))
+
+    def _count(self, part: str, loss: Tensor, found: Tensor, labels: Tensor) -> None:
+        square = (found - labels).square()
+        self._squares[part].add(square)
+        self._losses[part].add(loss.expand_as(square))
 
     def on_train_epoch_end(self) -> None:
-        """Log the epoch and add it to the learning curve.
+        """Log the epoch, add it to the learning curve, and take the widths of intervals from the validation runs.
 
         Once an epoch: logging each step costs about as much as the step.
         """
         rate = self.trainer.optimizers[0].param_groups[0]["lr"]
-        validation = self._squares["val"].take_rmse()
+        errors = {part: squares.take() ** 0.5 for part, squares in self._squares.items()}
+        losses = {part: values.take() for part, values in self._losses.items()}
+        shown = losses if self.network.is_likelihood else errors
         epoch = {
-            "train_loss": self._squares["train"].take_rmse(),
-            "val_loss": validation,
-            "val_rmse_percent": validation,
+            "train_loss": shown["train"],
+            "val_loss": shown["val"],
+            "val_rmse_percent": errors["val"],
             "learning_rate": rate,
         }
+        if self._said:
+            self.network.calibrate(*(torch.cat(column) for column in zip(*self._said, strict=True)))
+            self._said.clear()
         self.log_dict({name: epoch[name] for name in ("train_loss", "val_loss", "learning_rate")}, batch_size=1)
-        self.log("val_rmse_percent", validation, batch_size=1, prog_bar=True)
+        self.log("val_rmse_percent", errors["val"], batch_size=1, prog_bar=True)
         self.history.append(epoch)
 
-    def configure_optimizers(self) -> torch.optim.Optimizer:
+    def configure_optimizers(self) -> dict[str, Any]:
         """Adam, fused into one call for all weights: three times less per step for a network this small."""
-        return torch.optim.Adam(self.parameters(), lr=self.hparams["learning_rate"], fused=True)
+        adam = torch.optim.Adam(self.parameters(), lr=self.hparams["learning_rate"], fused=True)
+        if self.schedule == CONSTANT:
+            return {"optimizer": adam}
+        falls = torch.optim.lr_scheduler.CosineAnnealingLR(adam, int(self.trainer.estimated_stepping_batches))
+        return {"optimizer": adam, "lr_scheduler": {"scheduler": falls, "interval": "step"}}
 
     def on_save_checkpoint(self, checkpoint: dict[str, Any]) -> None:
         """Put the learning curve into the checkpoint."""
@@ -160,6 +188,9 @@ class DampingModule(L.LightningModule):
         The spread over overlapping windows is no interval of confidence: the windows share samples, and a
         network that is sure of itself can be wrong in all of them.
 
+        A network of whole records reads as many as there are in it, one after another: independent noise, so that what
+        they say counts by its precision.
+
         Args:
             values: Samples of the record, (time,), in the unit of the training signals.
             sampling_rate: Samples per second (Hz), that of the training signals to 0.1 %.
@@ -172,6 +203,10 @@ class DampingModule(L.LightningModule):
         self._check_record(values, sampling_rate)
         was_training = self.training
         self.eval()
+        if self.network.is_likelihood:
+            said = self._of_whole_records(values)
+            self.train(was_training)
+            return said
         record = self.front_end.columns(values[None]) if self.data["whole_run"] else values[None]
         starts = window_starts(0, len(values), self.data["window"], stride)
         index = windows_of_runs(torch.zeros(1, dtype=torch.long), starts).to(self.device)
@@ -179,6 +214,17 @@ class DampingModule(L.LightningModule):
         each = torch.cat([self(gather_windows(record, part, self.data["window"])) for part in parts]).cpu()
         self.train(was_training)
         return RecordPrediction(float(each.mean()), float(each.std(correction=0)), each)
+
+    def _of_whole_records(self, values: Tensor) -> RecordPrediction:
+        window = self.data["window"]
+        parts = values[: len(values) // window * window].reshape(-1, window)
+        found, deviation = self.network.distribution(self.front_end(parts))
+        low, high = self.network.interval(found, deviation, 0.95)
+        weights = deviation**-2 / (deviation**-2).sum()
+        mean, spread = float((weights * found).sum()), float((deviation**-2).sum() ** -0.5)
+        half = float(((weights * (high - low) / 2).square().sum()).sqrt())
+        ends = (float(low), float(high)) if len(parts) == 1 else (max(mean - half, 0.0), mean + half)
+        return RecordPrediction(mean, spread, found.cpu(), None if isnan(half) else ends)
 
     def _check_record(self, values: Tensor, sampling_rate: float) -> None:
         trained, window = self.data["sampling_rate"], self.data["window"]
@@ -219,18 +265,26 @@ def load_estimator(path: Path | str, plugins: Sequence[str] = ()) -> DampingModu
     return module.eval()
 
 
-class _Squares:
-    """Sum and number of squared errors, kept on the device until the epoch ends."""
+def _front_end(
+    made: LearnedEstimator, sampling_rate: float, wavelet: dict[str, Any] | None, plugins: Sequence[str]
+) -> FrontEnd:
+    if isinstance(made, RecordNetwork):
+        return made.front_end(sampling_rate)
+    return made.front_end(None if wavelet is None else make_wavelet(wavelet, sampling_rate, plugins))
+
+
+class _Mean:
+    """Sum and number of values, kept on the device until the epoch ends."""
 
     def __init__(self) -> None:
         self.total: Tensor | float = 0.0
         self.count = 0
 
-    def add(self, square: Tensor) -> None:
-        self.total = self.total + square.detach().sum()
-        self.count += square.numel()
+    def add(self, values: Tensor) -> None:
+        self.total = self.total + values.detach().sum()
+        self.count += values.numel()
 
-    def take_rmse(self) -> float:
+    def take(self) -> float:
         mean = float(self.total) / max(self.count, 1)
         self.total, self.count = 0.0, 0
-        return mean**0.5
+        return mean

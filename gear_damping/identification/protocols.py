@@ -1,6 +1,6 @@
 """How runs become training, validation and test windows: the three protocols."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import torch
@@ -72,6 +72,16 @@ class Protocol:
                 raise ValueError(f"{name} must be between 0 and 1, got {getattr(self, name)!r}")
         if self.windows_per_epoch is not None and self.windows_per_epoch < 1:
             raise ValueError(f"windows_per_epoch must be at least 1 or None, got {self.windows_per_epoch!r}")
+
+    def of_whole_records(self, n_samples: int) -> "Protocol":
+        """The same with records in the place of windows.
+
+        Raises:
+            ValueError: it cuts records.
+        """
+        if self.chronological:
+            raise ValueError(f"{self.name} cuts inside records, and a network of whole records needs protocol=by_run")
+        return replace(self, window=n_samples, stride=1, evaluation_stride=1)
 
     @property
     def chronological(self) -> bool:

@@ -15,9 +15,14 @@ from lightning.pytorch.plugins.environments import LightningEnvironment
 from torch import Tensor
 
 from gear_damping.identification.catalogue import kind_of
-from gear_damping.identification.controls import mean_predictor
 from gear_damping.identification.datamodule import WindowDataModule
-from gear_damping.identification.lightning_module import DampingModule, EstimatorConfig, load_estimator
+from gear_damping.identification.lightning_module import (
+    CONSTANT,
+    COSINE,
+    DampingModule,
+    EstimatorConfig,
+    load_estimator,
+)
 from gear_damping.identification.lightning_support import (
     EpochSeeds,
     EventsLogger,
@@ -33,7 +38,8 @@ from gear_damping.identification.metrics import epochs_to_convergence
 from gear_damping.identification.seeding import derived_seed
 from gear_damping.identification.trained_on import TrainedOn
 
-_MONITOR = "val_rmse_percent"
+SCHEDULES = (CONSTANT, COSINE)
+_MONITOR = "val_loss"  # the RMSE, but of networks with a likelihood
 
 
 @dataclass(frozen=True)
@@ -45,14 +51,23 @@ class Training:
         batch_size: Windows of a batch.
         patience: Epochs without a better validation error before training stops.
         learning_rate: Step of Adam.
+        schedule: `constant`, or `cosine`: the rate falls to nothing over all epochs.
+        gradient_clip: Norm that a gradient is cut to; None for none.
+        noise_snr_db: Limits between which the sensor noise of each record is drawn, in the place of that of the
+            simulator; None: as simulated.
     """
 
     max_epochs: int = 40
     batch_size: int = 256
     patience: int = 8
     learning_rate: float = 1e-3
+    schedule: str = CONSTANT
+    gradient_clip: float | None = None
+    noise_snr_db: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
+        if self.schedule not in SCHEDULES:
+            raise ValueError(f"schedule must be one of {', '.join(SCHEDULES)}, got {self.schedule!r}")
         for name in ("max_epochs", "batch_size", "patience", "learning_rate"):
             if not getattr(self, name) > 0:
                 raise ValueError(f"{name} must be positive, got {getattr(self, name)!r}")
@@ -103,7 +118,7 @@ class FitResult:
     @property
     def best_validation_rmse(self) -> float:
         """Lowest validation RMSE (%)."""
-        return min(epoch[_MONITOR] for epoch in self.history)
+        return min(epoch["val_rmse_percent"] for epoch in self.history)
 
     @property
     def epochs(self) -> int:
@@ -148,6 +163,7 @@ def fit_estimator(
             (folder / name).unlink(missing_ok=True)
     with own_randomness(derived_seed(seed, "weights")), threads(training.batch_size), quiet_lightning():
         module = build_estimator(config, data, training.learning_rate)
+        module.schedule = training.schedule
         fit_front_end(module, data)
         finished = resume is not None and _take_over(Path(resume), folder, module, training)
         logger = EventsLogger(folder)
@@ -178,7 +194,7 @@ def build_estimator(config: EstimatorConfig, data: WindowDataModule, learning_ra
         learning_rate=float(learning_rate),
         plugins=config.plugins,
     )
-    module.network.start_at(mean_predictor(data.training_labels))
+    module.network.begin(data.training_labels)
     return module
 
 
@@ -231,6 +247,7 @@ def _trainer(training: Training, folder: Path, logger: EventsLogger, seed: int, 
         enable_progress_bar=bar,
         enable_model_summary=False,
         num_sanity_val_steps=0,
+        gradient_clip_val=training.gradient_clip,
         log_every_n_steps=1,
     )
 

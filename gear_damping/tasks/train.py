@@ -28,7 +28,7 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     runs = simulated(plan, settings)
     test_runs = simulated(other, settings, "simulating test runs") if other else None
     statements.say_runs(settings, runs)
-    noise = SensorNoise(settings.simulator.sensor_noise_db)
+    noise = SensorNoise(training.noise_snr_db or settings.simulator.sensor_noise_db)
     material = Material(run_set_of(runs, plan), protocol, noise, run_set_of(test_runs, other) if other else None)
     results = compare_models(
         material,

@@ -9,7 +9,7 @@ from typing import ClassVar
 from gear_damping.identification.damping_estimate import DampingEstimate
 from gear_damping.identification.features import FrontEnd
 from gear_damping.identification.free_vibration import FreeVibration, Turning, free_vibration
-from gear_damping.identification.networks import DampingNetwork
+from gear_damping.identification.networks import DampingNetwork, GaussianNetwork
 from gear_damping.identification.observation import Known
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.setting import Setting
@@ -80,14 +80,38 @@ class RecordEstimator(Estimator):
         """
 
 
-class WindowEstimator(Estimator):
-    """A network of windows.
+class LearnedEstimator(Estimator):
+    """A network that learns from simulated runs.
 
-    Class attribute: `transforms`, whether its features are a transform, which a protocol may take of whole runs, as
-    the paper does.
+    Class attribute: `transforms`, whether its features are the wavelet transform that was chosen, which a protocol may
+    take of whole runs, as the paper does.
     """
 
     transforms: ClassVar[bool] = False
+
+    @abstractmethod
+    def network(self, n_features: int) -> DampingNetwork:
+        """From features to damping ratios."""
+
+
+class RecordNetwork(LearnedEstimator):
+    """A network of whole records, which says how sure it is."""
+
+    @abstractmethod
+    def front_end(self, sampling_rate: float) -> FrontEnd:
+        """From records (batch, time) to features (batch, frame, feature).
+
+        Args:
+            sampling_rate: Of the records, samples per second.
+        """
+
+    @abstractmethod
+    def network(self, n_features: int) -> GaussianNetwork:
+        """From features to damping ratios with their deviations."""
+
+
+class WindowEstimator(LearnedEstimator):
+    """A network of windows."""
 
     @abstractmethod
     def front_end(self, transform: ContinuousWavelet | None) -> FrontEnd:
@@ -96,7 +120,3 @@ class WindowEstimator(Estimator):
         Args:
             transform: The wavelet transform that was chosen, for those that say that they transform.
         """
-
-    @abstractmethod
-    def network(self, n_features: int) -> DampingNetwork:
-        """From features to damping ratios."""

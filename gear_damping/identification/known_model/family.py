@@ -1,0 +1,97 @@
+"""Runs of a family whose equation is known: what is known of them, and their response to what is not."""
+
+from dataclasses import dataclass, replace
+
+import torch
+from torch import Tensor
+
+from gear_damping.simulation.driven import Driven
+from gear_damping.simulation.families import DAMPING_RATIO, Family, coefficients_for
+from gear_damping.simulation.runs import Runs
+from gear_damping.simulation.simulate import simulate
+from gear_damping.simulation.solver_settings import Solver
+
+START = ("initial_displacement", "initial_velocity")
+
+
+@dataclass(frozen=True, eq=False)
+class KnownRuns:
+    """Records of runs of which all is known but the damping ratio and the start.
+
+    Args:
+        runs: As simulated; their damping and start are not looked at.
+        law: The effect that carries the damping ratio.
+        range_percent: Smallest and largest damping ratio, between which any is as likely as another.
+        centre: Displacement and velocity at the start that are expected, (runs, 2).
+        spread: Their standard deviations, (runs, 2).
+        records: Noisy responses, (runs, time).
+        noise: Standard deviation of the noise, (runs,).
+        solver: Settings of the solver.
+    """
+
+    runs: Runs
+    law: str
+    range_percent: tuple[float, float]
+    centre: Tensor
+    spread: Tensor
+    records: Tensor
+    noise: Tensor
+    solver: Solver
+
+    def __len__(self) -> int:
+        return len(self.records)
+
+    def values(self, ratio: Tensor, start: Tensor, repeat: int = 1) -> dict[str, Tensor]:
+        """Parameters of the runs, one block of all runs after another.
+
+        Args:
+            ratio: Damping ratio in %, (repeat * runs,).
+            start: Displacement and velocity at the start in standard deviations about the centre, (repeat * runs, 2).
+            repeat: Blocks.
+        """
+        found = {name: _repeated(value, repeat) for name, value in self.runs.values.items()}
+        velocity = self.runs.reference_velocity.repeat(repeat)
+        found |= coefficients_for(self.runs.model, found, self.law, ratio / 100, velocity)
+        places = self.centre.repeat(repeat, 1) + start * self.spread.repeat(repeat, 1)
+        return found | dict(zip(START, places.unbind(-1), strict=True))
+
+    def response(self, ratio: Tensor, start: Tensor, samples: int) -> Tensor:
+        """Response to blocks of damping ratios (blocks, runs) and starts (blocks, runs, 2): (blocks, runs, samples)."""
+        blocks = len(ratio)
+        values = self.values(ratio.reshape(-1), start.reshape(-1, 2), blocks)
+        inputs = {name: _repeated_rows(series[:, :samples], blocks) for name, series in self.runs.inputs.items()}
+        found = simulate(
+            self.runs.model,
+            values,
+            sampling_rate=self.runs.sampling_rate,
+            n_samples=samples,
+            inputs=Driven(inputs) if inputs else None,
+            solver=replace(self.solver, progress=None),
+        )
+        return found.response.reshape(blocks, len(self), samples)
+
+
+def start_of(runs: Runs, family: Family) -> tuple[Tensor, Tensor]:
+    """Centre and standard deviation of the start of runs of a family, (runs, 2) each; both 0 of one at rest."""
+    static = runs.derived["mean_load"] / runs.derived["mean_stiffness"]
+    if family.start != "static":
+        zero = torch.zeros(len(static), 2, dtype=torch.float64)
+        return zero, zero
+    centre = torch.stack([static, torch.zeros_like(static)], -1)
+    return centre, family.perturbation * torch.stack([static.abs(), runs.reference_velocity], -1)
+
+
+def range_of(family: Family) -> tuple[float, float]:
+    """Smallest and largest damping ratio of a family, %."""
+    spread = family.spreads[DAMPING_RATIO]
+    return spread.low, spread.high
+
+
+def _repeated(value: Tensor, count: int) -> Tensor:
+    return value.repeat(count) if value.ndim == 1 else value.repeat(1, count)
+
+
+def _repeated_rows(series: Tensor, count: int) -> Tensor:
+    return series.repeat(count, 1)
+
+

@@ -1,0 +1,98 @@
+"""A joint unscented Kalman filter over many runs at once: displacement, velocity and the logarithm of the damping ratio.
+
+The sigma points go through the simulator from sample to sample (Julier and Uhlmann 2004; van der Merwe 2004 for the
+scaling), so that the filter knows the same equation as the simulation.
+"""
+
+from math import log, sqrt
+
+import torch
+from torch import Tensor
+
+from gear_damping.identification.known_model.estimate import HALF, Estimates
+from gear_damping.identification.known_model.family import KnownRuns
+from gear_damping.simulation.driven import Driven
+from gear_damping.simulation.simulate import simulate
+
+SIZE = 3  # displacement and velocity in units of their spread at the start, and ln(damping ratio)
+ALPHA, BETA, KAPPA = 0.5, 2.0, 0.0  # spread of the sigma points, what is known of a normal distribution, and the rest
+DRIFT = 1e-10  # variance that each sample adds: against rounding
+WIDEST = 2.0  # of the logarithm, beyond the range on either side: what a sigma point may ask of the simulator
+
+
+def unscented_kalman(known: KnownRuns) -> Estimates:
+    """The damping ratio of each run in %, with its 90 % interval."""
+    low, high = (log(end) for end in known.range_percent)
+    mean = torch.zeros(len(known), SIZE, dtype=torch.float64)
+    mean[:, 2] = (low + high) / 2
+    covariance = torch.diag_embed(torch.ones_like(mean))
+    covariance[:, 2, 2] = (high - low) ** 2 / 12
+    weights = _weights()
+    for sample in range(known.records.shape[1]):
+        mean, covariance = _corrected(known, sample, mean, covariance)
+        if sample + 1 < known.records.shape[1]:
+            points = _points(mean, covariance)
+            mean, covariance = _moments(_moved(known, points, sample), weights)
+    deviation = covariance[:, 2, 2].sqrt()
+    ends = ((mean[:, 2] + side * HALF * deviation).exp().clamp(*known.range_percent) for side in (-1, 1))
+    centre = (mean[:, 2] + deviation**2 / 2).exp().clamp(*known.range_percent)
+    return Estimates(centre, *ends)
+
+
+def _weights() -> tuple[Tensor, Tensor]:
+    """Of the sigma points in the mean and in the covariance, (points,) each."""
+    spread = ALPHA**2 * (SIZE + KAPPA)
+    mean = torch.full((2 * SIZE + 1,), 1 / (2 * spread), dtype=torch.float64)
+    mean[0] = 1 - SIZE / spread
+    covariance = mean.clone()
+    covariance[0] += 1 - ALPHA**2 + BETA
+    return mean, covariance
+
+
+def _points(mean: Tensor, covariance: Tensor) -> Tensor:
+    """Sigma points, (points, runs, 3)."""
+    root = sqrt(ALPHA**2 * (SIZE + KAPPA)) * torch.linalg.cholesky(covariance).mT
+    steps = root.permute(1, 0, 2)
+    return torch.cat([mean.unsqueeze(0), mean + steps, mean - steps])
+
+
+def _moments(points: Tensor, weights: tuple[Tensor, Tensor]) -> tuple[Tensor, Tensor]:
+    mean = (weights[0][:, None, None] * points).sum(0)
+    off = points - mean
+    covariance = torch.einsum("p,pri,prj->rij", weights[1], off, off)
+    return mean, (covariance + covariance.mT) / 2 + DRIFT * torch.eye(SIZE, dtype=torch.float64)
+
+
+def _corrected(known: KnownRuns, sample: int, mean: Tensor, covariance: Tensor) -> tuple[Tensor, Tensor]:
+    """After a look at one sample: the displacement is seen behind noise, so that this step is exact."""
+    scale = known.spread[:, 0]
+    off = (known.records[:, sample] - known.centre[:, 0]) / scale - mean[:, 0]
+    gain = covariance[:, :, 0] / (covariance[:, 0, 0] + (known.noise / scale) ** 2)[:, None]
+    left = torch.eye(SIZE, dtype=torch.float64).repeat(len(mean), 1, 1)
+    left[:, :, 0] -= gain
+    spread = left @ covariance @ left.mT + (gain[:, :, None] * gain[:, None, :]) * (known.noise / scale)[
+        :, None, None
+    ] ** 2
+    return mean + gain * off[:, None], (spread + spread.mT) / 2
+
+
+def _moved(known: KnownRuns, points: Tensor, sample: int) -> Tensor:
+    """Sigma points one sample later."""
+    blocks, runs = points.shape[:2]
+    low, high = (log(end) for end in known.range_percent)
+    ratio = points[..., 2].clamp(low - WIDEST, high + WIDEST).exp().reshape(-1)
+    values = known.values(ratio, points[..., :2].reshape(-1, 2), blocks)
+    seconds = torch.full((blocks * runs,), sample / known.runs.sampling_rate, dtype=torch.float64)
+    values |= known.runs.model.system.begun_later(values, seconds)
+    inputs = {name: one[:, sample : sample + 2].repeat(blocks, 1) for name, one in known.runs.inputs.items()}
+    found = simulate(
+        known.runs.model,
+        values,
+        sampling_rate=known.runs.sampling_rate,
+        n_samples=2,
+        inputs=Driven(inputs) if inputs else None,
+        solver=known.solver,
+    )
+    last = torch.stack([found.states["displacement"][:, -1], found.states["velocity"][:, -1]], -1)
+    places = (last - known.centre.repeat(blocks, 1)) / known.spread.repeat(blocks, 1)
+    return torch.cat([places.reshape(blocks, runs, 2), points[..., 2:]], -1)
