@@ -188,8 +188,7 @@ class DampingModule(L.LightningModule):
         The spread over overlapping windows is no interval of confidence: the windows share samples, and a
         network that is sure of itself can be wrong in all of them.
 
-        A network of whole records reads as many as there are in it, one after another: independent noise, so that what
-        they say counts by its precision.
+        A network of whole records reads its beginning, as long as those that it was trained on.
 
         Args:
             values: Samples of the record, (time,), in the unit of the training signals.
@@ -204,7 +203,7 @@ class DampingModule(L.LightningModule):
         was_training = self.training
         self.eval()
         if self.network.is_likelihood:
-            said = self._of_whole_records(values)
+            said = self._of_its_beginning(values[: self.data["window"]])
             self.train(was_training)
             return said
         record = self.front_end.columns(values[None]) if self.data["whole_run"] else values[None]
@@ -215,16 +214,10 @@ class DampingModule(L.LightningModule):
         self.train(was_training)
         return RecordPrediction(float(each.mean()), float(each.std(correction=0)), each)
 
-    def _of_whole_records(self, values: Tensor) -> RecordPrediction:
-        window = self.data["window"]
-        parts = values[: len(values) // window * window].reshape(-1, window)
-        found, deviation = self.network.distribution(self.front_end(parts))
-        low, high = self.network.interval(found, deviation, 0.95)
-        weights = deviation**-2 / (deviation**-2).sum()
-        mean, spread = float((weights * found).sum()), float((deviation**-2).sum() ** -0.5)
-        half = float(((weights * (high - low) / 2).square().sum()).sqrt())
-        ends = (float(low), float(high)) if len(parts) == 1 else (max(mean - half, 0.0), mean + half)
-        return RecordPrediction(mean, spread, found.cpu(), None if isnan(half) else ends)
+    def _of_its_beginning(self, values: Tensor) -> RecordPrediction:
+        found, deviation = self.network.distribution(self.front_end(values[None]))
+        low, high = map(float, self.network.interval(found, deviation, 0.95))
+        return RecordPrediction(float(found), float(deviation), found.cpu(), None if isnan(low) else (low, high))
 
     def _check_record(self, values: Tensor, sampling_rate: float) -> None:
         trained, window = self.data["sampling_rate"], self.data["window"]

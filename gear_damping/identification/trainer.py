@@ -123,7 +123,7 @@ class FitResult:
     @property
     def epochs(self) -> int:
         """Epochs to convergence (`metrics.epochs_to_convergence`)."""
-        return epochs_to_convergence([epoch[_MONITOR] for epoch in self.history])
+        return epochs_to_convergence([epoch["val_rmse_percent"] for epoch in self.history])
 
 
 def fit_estimator(

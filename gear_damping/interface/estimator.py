@@ -77,6 +77,8 @@ class NetworkEstimator(Estimator):
     def predict(self, measurement: Measurement, channel: str | None = None) -> Mapping[str, Prediction]:
         """The mean over the windows of every record, with their spread, which is no interval.
 
+        Of a network of whole records, what it says of the beginning of each, with its 95 % interval.
+
         Raises:
             InputError: the records are of another system, channel, unit or rate than the network was trained on, a
                 record has no such channel, or is too short.
@@ -97,7 +99,8 @@ class NetworkEstimator(Estimator):
         values = torch.as_tensor(record.channels[channel].values)
         found = self.module.predict_record(values, record.sampling_rate)
         conditions = {name: quantity.value for name, quantity in record.conditions.items()}
-        return Prediction(*found[:2], self.trained_on.outside(values, found.damping_ratio_percent, conditions))
+        outside = self.trained_on.outside(values, found.damping_ratio_percent, conditions)
+        return Prediction(*found[:2], outside, interval95=found.interval95)
 
 
 class ClassicalEstimator(Estimator):

@@ -6,7 +6,7 @@ from gear_damping.config.locate import conf_folder, groups
 from gear_damping.config.settings import read_settings
 from gear_damping.tasks.composed import composed
 
-NETWORKS = ("both", "cwt_lstm", "raw_lstm", "record_cwt_lstm")  # of conf/model: these are trained, the others take records
+NETWORKS = ("both", "cwt_lstm", "raw_lstm", "record_cwt_lstm")  # of conf/model: these are trained
 CHOICES = [(group, choice) for group, choices in groups().items() for choice in choices]
 
 

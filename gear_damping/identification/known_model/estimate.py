@@ -1,12 +1,12 @@
 """What an estimator says of many runs at once."""
 
 from dataclasses import dataclass
-from math import sqrt
 
 import torch
 from torch import Tensor
 
 LEVEL = 0.9  # of the intervals
+GRID, REACH = 801, 8.0  # points of a cut distribution; deviations beyond which nothing of it is left
 HALF = 1.6448536269514722  # standard deviations of a normal distribution on either side that hold so much
 
 
@@ -44,6 +44,7 @@ def within(centre: Tensor, deviation: Tensor, ends: tuple[float, float]) -> Esti
     left, right = low.clamp(-REACH, REACH), high.clamp(-REACH, REACH)
     places = left[:, None] + (right - left)[:, None] * grid
     weight = torch.exp(-(places**2 - places.abs().amin(1, keepdim=True) ** 2) / 2)
+    weight[:, [0, -1]] /= 2  # by the trapezoidal rule
     weight = weight / weight.sum(1, keepdim=True)
     mean = centre + deviation * (weight * places).sum(1)
     below = weight.cumsum(1)
@@ -52,14 +53,6 @@ def within(centre: Tensor, deviation: Tensor, ends: tuple[float, float]) -> Esti
     return Estimates(*bounded)
 
 
-GRID, REACH = 801, 40.0  # points of the cut distribution; deviations beyond which nothing of it is left
-
-
 def _quantile(places: Tensor, below: Tensor, share: float) -> Tensor:
     number = torch.searchsorted(below, torch.full((len(below), 1), share, dtype=below.dtype)).clamp(max=GRID - 1)
     return places.gather(1, number).squeeze(1)
-
-
-def standard_error(count: int) -> float:
-    """Of a ratio to the bound over so many runs."""
-    return 1 / sqrt(2 * count)

@@ -1,4 +1,4 @@
-"""A joint unscented Kalman filter over many runs at once: displacement, velocity and the logarithm of the damping ratio.
+"""A joint unscented Kalman filter over many runs at once: displacement, velocity, logarithm of the damping ratio.
 
 The sigma points go through the simulator from sample to sample (Julier and Uhlmann 2004; van der Merwe 2004 for the
 scaling), so that the filter knows the same equation as the simulation.

@@ -1,0 +1,130 @@
+"""How near estimators of the damping ratio come to what whole records hold: `make limit`.
+
+Trains on a family of runs and evaluates on others, every estimator on the same noisy records. Each training and each
+part of an evaluation is kept; the same command goes on where it was stopped. Writes `outputs/limit/evaluation.json`
+and `docs/limit.md`.
+"""
+
+import argparse
+import json
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import torch
+
+from benchmarks.limit import page
+from benchmarks.limit.bench import SNRS, Bench, bench
+from benchmarks.limit.networks import NETWORKS, say_of_network, trained
+from gear_damping.identification.evaluation import scores
+from gear_damping.identification.known_model.estimate import Estimates
+from gear_damping.identification.known_model.output_error import output_error
+from gear_damping.identification.known_model.unscented_kalman import unscented_kalman
+
+KNOWING = {"output_error": output_error, "unscented_kalman": unscented_kalman}  # the equation
+CHUNK = 250  # runs that these take at once
+MINUTES = 85  # at most, of one call
+
+
+def main() -> None:
+    """Do what the time allows."""
+    asked = _asked()
+    torch.set_num_threads(asked.threads)
+    end = time.monotonic() + 60 * asked.minutes
+    made = bench(asked.family, asked.test_runs, asked.out)
+    for work in _works(made, asked):
+        if time.monotonic() > end:
+            print("the time is over: the same command goes on from here", flush=True)
+            return
+        work()
+    _write(made, asked)
+
+
+def _works(made: Bench, asked: argparse.Namespace) -> Iterator:
+    """Everything that is not done yet, in order."""
+    for seed in asked.seeds:
+        for name in NETWORKS:
+            folder = asked.out / "networks" / name / f"seed_{seed}"
+            yield lambda name=name, seed=seed, folder=folder: trained(name, seed, folder, asked.runs)
+            yield from _parts(made, asked, name, seed, lambda rows, snr, f=folder: say_of_network(f, made, rows, snr))
+    for name, estimate in KNOWING.items():
+        yield from _parts(made, asked, name, None, lambda rows, snr, e=estimate: e(made.known(rows, snr)))
+
+
+def _parts(made: Bench, asked: argparse.Namespace, name: str, seed: int | None, say) -> Iterator:
+    """The parts of an evaluation; those that are kept are not asked again."""
+    size = CHUNK if seed is None else len(made)
+    for snr in SNRS:
+        for number, rows in enumerate(torch.arange(len(made)).split(size)):
+            path = _part(asked.out, name, seed, snr) / f"{number}.json"
+            yield lambda path=path, rows=rows, snr=snr: path.exists() or _keep(path, rows, snr, say)
+
+
+def _part(out: Path, name: str, seed: int | None, snr: int) -> Path:
+    return out / "said" / (name if seed is None else f"{name}_{seed}") / str(snr)
+
+
+def _keep(path: Path, rows: torch.Tensor, snr: int, say) -> None:
+    begun = time.perf_counter()
+    found: Estimates = say(rows, snr)
+    seconds = (time.perf_counter() - begun) / len(rows)
+    content = {part: getattr(found, part).tolist() for part in ("ratio", "low", "high")} | {"seconds": seconds}
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.with_suffix(".part").write_text(json.dumps(content))
+    path.with_suffix(".part").replace(path)
+    print(f"{path.parent.parent.name}, {snr} dB: {len(rows)} records, {1e3 * seconds:.1f} ms each", flush=True)
+
+
+def _said(folder: Path) -> tuple[Estimates, float]:
+    parts = [json.loads(path.read_text()) for path in sorted(folder.glob("*.json"), key=lambda one: int(one.stem))]
+    whole = {name: [value for part in parts for value in part[name]] for name in ("ratio", "low", "high")}
+    columns = {name: torch.tensor(values, dtype=torch.float64) for name, values in whole.items()}
+    return Estimates(**columns), sum(part["seconds"] * len(part["ratio"]) for part in parts) / len(columns["ratio"])
+
+
+def _write(made: Bench, asked: argparse.Namespace) -> None:
+    """The figures of every estimator, means over the seeds, and the page."""
+    names = [*NETWORKS, *KNOWING]
+    content = {"family": asked.family, "test_runs": len(made), "irregular_runs": int((~made.regular).sum()),
+               "training_runs": asked.runs, "seeds": asked.seeds, "snr_db": {}}  # fmt: skip
+    for snr in SNRS:
+        limit = made.limit(snr)
+        row = {"bound_percent": float(limit[made.regular].square().mean().sqrt()), "estimators": {}}
+        for name in names:
+            seeds = asked.seeds if name in NETWORKS else [None]
+            row["estimators"][name] = _figures(made, [_said(_part(asked.out, name, seed, snr)) for seed in seeds], snr)
+        row["estimators"]["mean"] = _figures(made, [(made.mean_predictor, 0.0)], snr)
+        content["snr_db"][str(snr)] = row
+    (asked.out / "evaluation.json").write_text(json.dumps(content, indent=1) + "\n")
+    if asked.page:
+        page.write(content)
+    print(page.table(content), flush=True)
+
+
+def _figures(made: Bench, said: list[tuple[Estimates, float]], snr: int) -> dict:
+    """Means over the seeds, with the figures of each."""
+    kept, limit, mean = made.regular, made.limit(snr), made.mean_ratio
+    each = [
+        dict(scores(made.true[kept], Estimates(one.ratio[kept], one.low[kept], one.high[kept]), limit[kept], mean))
+        for one, _ in said
+    ]
+    found = {key: None if each[0][key] is None else sum(one[key] for one in each) / len(each) for key in each[0]}
+    found["seconds_per_record"] = sum(seconds for _, seconds in said) / len(said)
+    return found | ({"per_seed": each} if len(each) > 1 else {})
+
+
+def _asked() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.limit", description=__doc__)
+    parser.add_argument("--family", default="bench", help="of runs (conf/family)")
+    parser.add_argument("--runs", type=int, default=40_000, help="simulated for training and validation")
+    parser.add_argument("--test-runs", type=int, default=2000)
+    parser.add_argument("--seeds", type=int, nargs="+", default=[1, 2, 3])
+    parser.add_argument("--minutes", type=float, default=MINUTES)
+    parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--out", type=Path, default=Path("outputs/limit"))
+    parser.add_argument("--no-page", dest="page", action="store_false", help="leave docs/limit.md as it is")
+    return parser.parse_args()
+
+
+if __name__ == "__main__":
+    main()

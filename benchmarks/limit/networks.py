@@ -1,0 +1,76 @@
+"""The networks: trained on one set of runs each seed, kept, and asked."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import torch
+from torch import Tensor
+
+from benchmarks.limit.bench import Bench, settings_of
+from gear_damping.identification.datamodule import Material, WindowDataModule
+from gear_damping.identification.known_model.estimate import LEVEL, Estimates
+from gear_damping.identification.lightning_module import EstimatorConfig, load_estimator
+from gear_damping.identification.noise import SensorNoise
+from gear_damping.identification.protocols import BY_RUN
+from gear_damping.identification.runs import RunSet
+from gear_damping.identification.trainer import Place, Shown, Training, fit_estimator
+from gear_damping.simulation.plan import run_plan
+from gear_damping.tasks.simulated import run_set_of
+
+WHOLE = "record_cwt_lstm"
+NETWORKS = ("raw_lstm", "cwt_lstm", WHOLE)
+VALIDATION, TEST = 0.075, 1e-4  # of the runs; other runs are tested on
+WINDOW_RUNS = 4000  # that networks of windows are trained on: 8 million windows
+STRIDE = 15  # samples between the windows of a record that are asked about
+AT_ONCE = 250  # records
+_sets: dict[int, RunSet] = {}  # of the last seed: three networks share it
+
+
+def trained(name: str, seed: int, folder: Path, n_runs: int) -> None:
+    """Train a network, unless it is kept already."""
+    if (folder / "done").exists():
+        return
+    settings = settings_of("bench", n_runs, seed)
+    runs = _runs_of(settings, seed)
+    whole = name == WHOLE
+    training = Training(**settings.training) if whole else Training(noise_snr_db=settings.training["noise_snr_db"])
+    protocol = replace(BY_RUN, validation_fraction=VALIDATION, test_fraction=TEST)
+    if whole:
+        protocol = replace(protocol.of_whole_records(runs.n_samples), windows_per_epoch=None)
+    elif len(runs) > WINDOW_RUNS:
+        runs = runs.subset(torch.arange(WINDOW_RUNS))
+    noise = SensorNoise(tuple(training.noise_snr_db))
+    data = WindowDataModule(Material(runs, protocol, noise), seed=seed)
+    config = EstimatorConfig(name, settings.model.settings[name] if whole else {})
+    resume = folder / "last.ckpt" if (folder / "last.ckpt").exists() else None
+    found = fit_estimator(config, data, training, Place(folder, resume), seed=seed, shown=Shown(progress=True))
+    (folder / "done").touch()
+    print(f"{name}, seed {seed}: {len(found.history)} epochs", flush=True)
+
+
+def _runs_of(settings, seed: int) -> RunSet:
+    if seed not in _sets:
+        _sets.clear()
+        from gear_damping.tasks.simulated import plan_of
+
+        plan = plan_of(settings)
+        _sets[seed] = run_set_of(run_plan(plan), plan)
+    return _sets[seed]
+
+
+@torch.inference_mode()
+def say_of_network(folder: Path, made: Bench, rows: Tensor, snr: int) -> Estimates:
+    """What a trained network says of whole records; of windows, their mean."""
+    module = load_estimator(folder / "best.ckpt")
+    records = made.records(rows, snr).float()
+    if module.network.is_likelihood:
+        parts = [module.network.distribution(module.front_end(part)) for part in records.split(AT_ONCE)]
+        ratio, deviation = (torch.cat(column) for column in zip(*parts, strict=True))
+        low, high = module.network.interval(ratio, deviation, LEVEL)
+        return Estimates(ratio, low, high)
+    window = module.data["window"]
+    said = [
+        module(part.unfold(1, window, STRIDE).reshape(-1, window)).reshape(len(part), -1).mean(1)
+        for part in records.split(AT_ONCE)
+    ]
+    return Estimates.without_interval(torch.cat(said))
