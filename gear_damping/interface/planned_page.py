@@ -70,7 +70,8 @@ def sentences(plan: TestPlan) -> list[str]:
         found.append(f"an interval wider than ± {WIDE:g} % is not symmetric: the true one is wider (docs/plan.md)")
     lost = int((~surveyed.fine).sum())
     if lost:
-        found.append(f"{lost} of {len(surveyed.settings)} settings diverge in simulation and tell nothing")
+        text = f"{lost} of {surveyed.fine.numel()} tests diverge or move irregularly in simulation"
+        found.append(f"{text}: nothing can be promised for them")
     return found
 
 

@@ -1,5 +1,6 @@
 """A test plan: what each test tells, the cheapest set that tells enough, and what more money would buy."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -80,6 +81,16 @@ class TestPlan:
     best: ToldTest
     front: tuple[ToldTest, ...]
     search: Search
+
+    def told(self, tests: Sequence[tuple[int, int]], sensors: Sequence[int] | None = None) -> ToldTest:
+        """What a set of tests tells.
+
+        Args:
+            tests: Numbers of the setting (`survey.settings`) and of the length (`survey.lengths`) of each.
+            sensors: Numbers of the sensors, ascending; all where absent.
+        """
+        chosen = tuple(range(len(self.asked.sensors))) if sensors is None else tuple(sensors)
+        return _Book(self.asked, self.survey).told(tuple(tests), chosen)
 
 
 def plan_tests(rig: Rig, asked: Asked, progress: Progress | None = None) -> TestPlan:

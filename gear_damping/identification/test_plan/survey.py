@@ -14,6 +14,11 @@ from gear_damping.identification.test_plan.starts import AT_ONCE, INITIAL, Begun
 from gear_damping.simulation.runs import effect_state_units
 from gear_damping.simulation.solver_settings import Progress
 
+GROWTH = 8.0  # from the second quarter of a record to the last: squares of time make 5.4
+ROUNDED = 1e-5  # of a slope, below which it is what rounding left
+FARTHEST = 1e4  # of a slope at the beginning; at 1e6 an error of a step has grown as far as it can
+BEGINNING = 16  # samples
+
 
 @dataclass(frozen=True)
 class Names:
@@ -46,7 +51,7 @@ class Survey:
         shared_prior: Precision of the shared ones, (shared,).
         gradient: Of the damping ratio in % by the shared ones, (shared,).
         start: Where the records begin, a member for each setting.
-        fine: Settings at which nothing diverged, (settings,).
+        fine: Tests whose motion neither diverges nor is irregular, (settings, lengths); others promise nothing.
     """
 
     rig: Rig
@@ -76,7 +81,7 @@ class Survey:
     def told(self, chosen: Sequence[int]) -> Tensor:
         """Information on the shared unknowns by tests with these sensors, (settings, lengths, shared, shared)."""
         found = shared_information(self.whole[list(chosen)].sum(0), len(self.names.shared), self.own_prior[:, None])
-        return torch.where(self.fine[:, None, None, None], found, 0.0)
+        return torch.where(self.fine[..., None, None], found, 0.0)
 
 
 def survey(
@@ -93,16 +98,18 @@ def survey(
     recorder = Recorder(rig, tests.sampling_rate, lengths[-1], tuple(sensor.sees for sensor in sensors))
     scales, solver = scales_of(recorder, start, names.all), recorder.solver(start.values)
     pieces = torch.arange(len(settings)).split(max(1, AT_ONCE // (lengths[-1] * (2 * len(scales) + 1))))
-    parts, levels = [], []
+    parts, levels, regular = [], [], []
+    begins = [names.all.index(name) for name in INITIAL]
     for number, piece in enumerate(pieces):
         records, found = slopes(recorder, picked(start, piece), {n: s[piece] for n, s in scales.items()}, solver)
         levels.append(noise_of(sensors, records[..., : lengths[0]]))
+        regular.append(is_regular(found[:, :, begins], lengths))
         parts.append(information(_with_offsets(found, sensors, levels[-1]), levels[-1], list(lengths)))
         if progress:
             progress(number + 1, len(pieces))
     whole, noise = torch.cat(parts, 1), torch.cat(levels, 1)
-    fine = start.fine & whole.flatten(2).isfinite().all(-1).all(0)
-    whole = torch.where(fine[None, :, None, None, None], whole, 0.0)
+    fine = start.fine[:, None] & whole.flatten(3).isfinite().all(-1).all(0) & torch.cat(regular)
+    whole = torch.where(fine[None, ..., None, None], whole, 0.0)
     prior = {name: _precision(names.prior.get(name), scales[name]) for name in names.all}
     offsets = [torch.zeros(len(settings), dtype=torch.float64) for sensor in sensors if sensor.offset]
     own = torch.stack([*(prior[name] for name in names.own), *offsets], -1)
@@ -136,6 +143,25 @@ def noise_of(sensors: Sequence[PlannedSensor], records: Tensor) -> Tensor:
         for sensor, record in zip(sensors, records, strict=True)
     ]
     return torch.where((level := torch.stack(levels)) > 0, level, torch.nan)  # without motion there is no ratio to it
+
+
+def is_regular(slopes: Tensor, lengths: Sequence[int]) -> Tensor:
+    """Whether an error of the start does not grow faster than by a power of time over records, (batch, lengths).
+
+    Where it does, the motion is irregular: likelihoods have many peaks, and no estimate stays near the right one.
+
+    Args:
+        slopes: By what a record begins with, (channels, batch, unknowns, time).
+        lengths: Of the records in samples.
+    """
+    found, first = [], slopes[..., :BEGINNING].square().mean(-1).sqrt()
+    for length in lengths:
+        quarters = [part.square().mean(-1).sqrt() for part in slopes[..., :length].tensor_split(4, -1)]
+        floor = ROUNDED * quarters[0]
+        slow = quarters[3] <= GROWTH * torch.maximum(quarters[1], floor)
+        near = torch.stack(quarters).amax(0) <= FARTHEST * first
+        found.append((slow & near).all(-1).all(0))
+    return torch.stack(found, -1)
 
 
 def gradient_of(rig: Rig, shared: Sequence[str]) -> Tensor:

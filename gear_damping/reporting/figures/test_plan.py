@@ -10,10 +10,10 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from numpy.typing import NDArray
 
-from gear_damping.reporting.style import CYCLE, INK, RED, SEQUENTIAL, legend_above, new_figure, say_empty, styled
+from gear_damping.reporting.style import CYCLE, FAINT, INK, RED, SEQUENTIAL, legend_above, new_figure, say_empty, styled
 
 Array = NDArray[np.float64]
-STEPS = np.array([1.0, 3.0])  # of a decade, at which contours are drawn
+STEPS = np.array([1.0])  # of a decade, at which contours are drawn
 DARKEST, PALEST = 0.01, 1000.0  # % between which colours tell
 MOST_CURVES = 12  # that can be told apart
 
@@ -89,9 +89,11 @@ def test_plan_figure(picture: PlanPicture) -> Figure:
 
 def _map(figure: Figure, axes: Axes, shown: PlanMap, wanted: float, name: str) -> None:
     axes.grid(False)
+    axes.set_facecolor(FAINT)
     percent = np.ma.masked_invalid(shown.percent).clip(DARKEST, PALEST)
+    missing = np.ma.getmaskarray(percent)
     norm = LogNorm(max(float(percent.min()), DARKEST), float(percent.max()) * 1.0001)
-    filled = axes.pcolormesh(shown.speeds, shown.torques, percent, norm=norm, cmap=SEQUENTIAL + "_r", shading="gouraud")
+    filled = axes.pcolormesh(shown.speeds, shown.torques, percent, norm=norm, cmap=SEQUENTIAL + "_r", shading="nearest")
     filled.set_rasterized(True)
     bar = figure.colorbar(filled, ax=axes, label="± % of the damping ratio", pad=0.02)
     _plain(bar.ax.yaxis)
@@ -103,6 +105,8 @@ def _map(figure: Figure, axes: Axes, shown: PlanMap, wanted: float, name: str) -
         axes.contour(shown.speeds, shown.torques, percent, levels=[wanted], colors=RED, linewidths=1.8)
         axes.plot([], [], color=RED, linewidth=1.8, label=f"wanted: ± {wanted:g} %")
     look = {"linestyle": "none", "marker": "o", "markeredgecolor": INK, "markersize": 6, "clip_on": False, "zorder": 5}
+    if missing.any():
+        axes.plot([], [], "s", color=FAINT, markersize=8, label="nothing promised")
     axes.plot(*np.transpose(shown.tests), markerfacecolor="white", label="tests", **look)
     chosen = [shown.tests[number] for number in shown.chosen]
     axes.plot(*np.transpose(chosen), **(look | {"markerfacecolor": RED, "markersize": 9}), label=name)
