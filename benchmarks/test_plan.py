@@ -101,7 +101,7 @@ def planned(case: Case) -> tuple[gd.Plan, ToldTest]:
     count = len(case.settings)
     goal = gd.PlanGoal(joint=case.joint, most_tests=count)
     found = gd.plan(case.model, tests, sensors, unknown=[STIFFNESS, TORQUE] if turning else ["stiffness"], goal=goal)
-    wanted = [(speed * RPM, torque) for speed, torque in case.settings] if turning else [(one,) for one in case.settings]
+    wanted = [(one[0] * RPM, one[1]) if turning else (one,) for one in case.settings]
     places = [tuple(one.values()) for one in found.found.survey.settings]
     return found, found.found.told([(places.index(one), 0) for one in wanted])
 
@@ -117,7 +117,8 @@ def rows(case: Case, count: int) -> list[tuple[str, ...]]:
     plan, told = planned(case)
     found: Repeated = plan.simulated(told, count=count, joint=case.joint, seed=SEED)
     said = told.joint if case.joint else told.alone
-    lines = [row(case.name, "ratio, n unknown" if case.joint else "ratio", said.percent, found.damping_ratio, said.percent)]
+    wanted = "ratio, n unknown" if case.joint else "ratio"
+    lines = [row(case.name, wanted, said.percent, found.damping_ratio, said.percent)]
     if found.exponent is not None:
         exponent = float(plan.found.survey.rig.values[plan.found.survey.rig.exponent][0])
         lines.append(row("", "exponent", 100 * said.exponent / exponent, found.exponent, said.percent))

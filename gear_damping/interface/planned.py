@@ -76,7 +76,9 @@ class Plan:
         curves = None if self.map is not None else interval_curves(self.found)
         return test_plan_figure(page.picture(self.found, self.map, curves))
 
-    def simulated(self, of: ToldTest | None = None, *, count: int = 1000, joint: bool = False, seed: int = 0) -> Repeated:
+    def simulated(
+        self, of: ToldTest | None = None, *, count: int = 1000, joint: bool = False, seed: int = 0
+    ) -> Repeated:
         """Simulate a test or a set many times behind noise, fit each, and compare what the fits scatter by.
 
         Args:
@@ -100,7 +102,7 @@ def plan(
     sensors: Sequence[PlannedSensor],
     *,
     unknown: Sequence[Unknown | str] = (),
-    goal: PlanGoal = PlanGoal(),
+    goal: PlanGoal | None = None,
     solver: Solver | None = None,
 ) -> Plan:
     """Plan tests of a rig before any is made.
@@ -122,5 +124,6 @@ def plan(
     """
     solver = solver or Solver()
     named = tuple(Unknown(one) if isinstance(one, str) else one for one in unknown)
+    goal = goal or PlanGoal()
     rig = Rig(model, {}, goal.law, solver)
     return Plan(plan_tests(rig, Asked(tests, tuple(sensors), named, goal), solver.progress))

@@ -57,7 +57,8 @@ def sentences(plan: TestPlan) -> list[str]:
     if chosen is not None:
         said = f"the cheapest set that knows the damping ratio within {wanted}: {_told(plan, chosen)}"
     elif isfinite(goal_precision(plan, plan.best).percent):
-        said = f"no set of up to {plan.search.most} tests knows the damping ratio within {wanted}; "
+        which = f"no set of up to {plan.search.most} tests" if plan.search.most > 1 else "no single test"
+        said = f"{which} knows the damping ratio within {wanted}; "
         said += f"the best: {_told(plan, plan.best)}"
     else:
         said = "no test tells anything of the damping: its effect is nowhere seen apart from what else is unknown"
@@ -102,7 +103,8 @@ def picture(plan: TestPlan, found: IntervalMap | None, curves: IntervalCurves | 
     numbers = [setting for setting, _ in chosen.tests]
     if found is not None:
         points = [(one["pinion_speed"] * RPM, one["pinion_torque"]) for one in settings]
-        shown: PlanMap | PlanCurves = PlanMap(found.speeds * RPM, found.torques, found.percent, points, sorted({*numbers}))
+        chosen_points = sorted({*numbers})
+        shown: PlanMap | PlanCurves = PlanMap(found.speeds * RPM, found.torques, found.percent, points, chosen_points)
     else:
         labels = [", ".join(_axis(name, value) for name, value in one.items()) or "as configured" for one in settings]
         seconds = [(setting, plan.survey.lengths[length] / plan.survey.tests.sampling_rate)
@@ -175,7 +177,9 @@ def _named(plan: TestPlan, told: ToldTest) -> str:
 def _how_found(plan: TestPlan) -> str:
     found = plan.search
     if found.exact_to >= found.most:
-        return f"every set of up to {found.most} tests was tried, {found.tried} sets: none is cheaper"
+        every = f"every set of up to {found.most} tests" if found.most > 1 else "every test"
+        told = "none that reaches it is cheaper" if plan.cheapest is not None else "none reaches it"
+        return f"{every} was tried, {found.tried} sets: {told}"
     text = f"every set of up to {found.exact_to} tests was tried; larger ones, up to {found.most}, grew test by test "
     return text + f"({found.tried} sets in all): a cheaper one of more than {found.exact_to} tests may exist"
 

@@ -59,6 +59,6 @@ def rig_of(simulator: SimulatorSettings) -> Model:
 
 def _said(shown: Repeated) -> str:
     one = shown.damping_ratio
-    text = f"{shown.count} simulated and fitted tests of it: standard deviation {number(one.deviation, 3)} % of critical, "
-    text += f"promised {number(one.promised, 3)}; the interval holds the truth in {100 * one.covered:.1f} %"
+    text = f"{shown.count} simulated and fitted tests of it: standard deviation {number(one.deviation, 3)} % of "
+    text += f"critical, promised {number(one.promised, 3)}; the interval holds the truth in {100 * one.covered:.1f} %"
     return text + (f"; {shown.lost} fits did not come to rest" if shown.lost else "")

@@ -109,7 +109,7 @@ def search(judge: Judge, most: int, repeats: int) -> Search:
     """The cheapest set of up to `most` tests, each made up to `repeats` times."""
     count, choices = len(judge.candidates.cost), len(judge.candidates.sensors)
     most = min(most, count * repeats)
-    exact_to = max((size for size in range(1, most + 1) if _tried(count, size) <= MOST_TRIED), default=1)
+    exact_to = max((size for size in range(1, most + 1) if _tried(count, size, repeats) <= MOST_TRIED), default=1)
     front, tried = _Front(), 0
     for sensors in range(choices):
         for size in range(1, exact_to + 1):
@@ -123,9 +123,10 @@ def search(judge: Judge, most: int, repeats: int) -> Search:
     return Search(enough[0] if enough else None, kept[-1], tuple(kept), exact_to, most, tried)
 
 
-def _tried(count: int, size: int) -> int:
-    """Sets of up to so many tests."""
-    return sum(comb(count + one - 1, one) for one in range(1, size + 1))
+def _tried(count: int, size: int, repeats: int) -> int:
+    """Sets of up to so many tests, at most."""
+    more = 0 if repeats == 1 else 1
+    return sum(comb(count + more * (one - 1), one) for one in range(1, size + 1))
 
 
 def _sets(count: int, size: int, repeats: int) -> Iterator[tuple[int, ...]]:

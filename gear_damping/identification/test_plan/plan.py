@@ -1,12 +1,13 @@
 """A test plan: what each test tells, the cheapest set that tells enough, and what more money would buy."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import combinations
 
 import torch
 from torch import Tensor
 
+from gear_damping.errors import InputError, Problem
 from gear_damping.identification.test_plan.asked import PlanGoal, PlannedSensor, PlannedTests, Unknown
 from gear_damping.identification.test_plan.cheapest import Candidates, Found, Judge, Search, search
 from gear_damping.identification.test_plan.checks import refuse, refuse_goal
@@ -23,7 +24,7 @@ class Asked:
     tests: PlannedTests
     sensors: tuple[PlannedSensor, ...]
     unknown: tuple[Unknown, ...] = ()
-    goal: PlanGoal = PlanGoal()
+    goal: PlanGoal = field(default_factory=PlanGoal)
 
 
 @dataclass(frozen=True)
@@ -102,6 +103,9 @@ def plan_tests(rig: Rig, asked: Asked, progress: Progress | None = None) -> Test
     refuse(rig, asked.tests, asked.sensors, asked.unknown)
     refuse_goal(rig, asked.goal)
     surveyed = survey(rig, asked.tests, asked.sensors, asked.unknown, progress)
+    if not bool(surveyed.fine.any()):
+        rule = "no test tells anything: in simulation each stands still, diverges or moves irregularly"
+        raise InputError(Problem("plan", rule, None, "give speeds, torques or amplitudes at which the rig vibrates"))
     book = _Book(asked, surveyed)
     everyone = tuple(range(len(asked.sensors)))
     shown = [(one,) for one in everyone] + ([everyone] if len(everyone) > 1 else [])
@@ -150,7 +154,7 @@ class _Book:
         self.tests = [(setting, length) for setting in settings for length in lengths]
 
     def candidates(self) -> Candidates:
-        asked, kept = self.asked, known_exponent(self.survey, self.asked.goal.joint)
+        kept = known_exponent(self.survey, self.asked.goal.joint)
         told = torch.stack([self.information[one].flatten(0, 1)[:, kept][..., kept] for one in self.choices])
         speeds = [one.get("pinion_speed", 0.0) for one in self.survey.settings]
         numbers = {speed: number for number, speed in enumerate(dict.fromkeys(speeds))}
@@ -160,7 +164,7 @@ class _Book:
             torque=torch.tensor([setting for setting, _ in self.tests]),
             told=told,
             prior=torch.diag(self.survey.shared_prior[kept]),
-            sensors=torch.tensor([sum(asked.sensors[n].cost for n in one) for one in self.choices], dtype=torch.float64),
+            sensors=torch.tensor([self._mounted(one) for one in self.choices], dtype=torch.float64),
         )
 
     def judge(self) -> Judge:
@@ -168,7 +172,7 @@ class _Book:
         gradients = [self.survey.gradient[kept] / (goal.percent / 100 * self.survey.ratio_percent)]
         if goal.exponent is not None:
             gradients.append(_unit(self.survey, kept) / goal.exponent)
-        return Judge(self.candidates(), torch.stack(gradients), (self.asked.goal.costs.per_speed, self.asked.goal.costs.per_torque))
+        return Judge(self.candidates(), torch.stack(gradients), (goal.costs.per_speed, goal.costs.per_torque))
 
     def of(self, found: Found) -> ToldTest:
         return self.told(tuple(self.tests[test] for test in found.tests), self.choices[found.sensors])
@@ -178,10 +182,13 @@ class _Book:
         total = sum(self.information[sensors][setting, length] for setting, length in tests)
         settings = {setting for setting, _ in tests}
         speeds = {surveyed.settings[setting].get("pinion_speed") for setting in settings}
-        cost = sum(self._price(length) for _, length in tests) + sum(self.asked.sensors[n].cost for n in sensors)
+        cost = sum(self._price(length) for _, length in tests) + self._mounted(sensors)
         cost += costs.per_speed * len(speeds) + costs.per_torque * len(settings)
         joint = precision_of(surveyed, total, True) if surveyed.rig.exponent else None
         return ToldTest(tests, sensors, precision_of(surveyed, total, False), joint, cost)
+
+    def _mounted(self, sensors: tuple[int, ...]) -> float:
+        return sum(self.asked.sensors[n].cost for n in sensors)
 
     def _price(self, length: int) -> float:
         seconds = self.survey.lengths[length] / self.survey.tests.sampling_rate

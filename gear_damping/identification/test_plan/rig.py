@@ -1,7 +1,7 @@
 """The rig that tests are planned for: its model with values, and the damping that one wants to know."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import torch
@@ -28,7 +28,7 @@ class Rig:
     model: Model
     given: Mapping[str, float | tuple[float, ...]]
     law: str | None = None
-    solver: Solver = Solver()
+    solver: Solver = field(default_factory=Solver)
 
     @cached_property
     def values(self) -> dict[str, Tensor]:
@@ -66,7 +66,7 @@ class Rig:
 
     @cached_property
     def velocity(self) -> Tensor:
-        """The velocity amplitude that the damping ratio is stated at, m/s, (1,): that of the rig as it is configured."""
+        """The velocity amplitude that the damping ratio is stated at, m/s, (1,): that of the configured rig."""
         return reference_velocity(self.model.prepare(self.values).derived)
 
     def ratio_percent(self, values: Mapping[str, Tensor]) -> Tensor:
