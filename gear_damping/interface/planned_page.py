@@ -13,7 +13,7 @@ from gear_damping.reporting.numbers import number
 from gear_damping.reporting.tables import plan_table
 
 RPM = 30 / pi  # of a rad/s
-WIDE = 50.0  # % of the value; beyond it an interval is no longer symmetric and true ones are wider (docs/plan.md)
+WIDE = 50.0  # % of the value; beyond it some estimates run off to no damping at all (docs/plan.md)
 MOST_OF_FRONT = 8  # sets that a reader looks through
 LEAST_GAIN = 1.1  # from one of them to the next; who pays more wants to see more
 AXES = {"pinion_speed": ("rpm", RPM), "pinion_torque": ("N m", 1.0), "initial_displacement": ("m", 1.0)}
@@ -68,7 +68,7 @@ def sentences(plan: TestPlan) -> list[str]:
     ratio += f"{number(float(rig.velocity), 3)} m/s, by {rig.damping.name}"
     found.append(ratio + (", its exponent unknown" if goal.joint else ""))
     if WIDE < goal_precision(plan, chosen or plan.best).percent < inf:
-        found.append(f"an interval wider than ± {WIDE:g} % is not symmetric: the true one is wider (docs/plan.md)")
+        found.append(f"beyond ± {WIDE:g} % some estimates run off to no damping at all: no interval is promised there")
     lost = int((~surveyed.fine).sum())
     if lost:
         text = f"{lost} of {surveyed.fine.numel()} tests diverge or move irregularly in simulation"

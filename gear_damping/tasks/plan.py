@@ -39,6 +39,7 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     statements.say(found.table(MOST_SHOWN))
     for sentence in sentences:
         statements.say(sentence)
+    statements.say("drawing the interval between the tests")
     figures.save(found.plot(), folder.path / "plan_map.png")
     statements.say(f"wrote plan.txt with every test, plan.json and plan_map.png into {folder.path}")
     best = goal_precision(found.found, found.cheapest or found.best)

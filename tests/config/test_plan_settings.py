@@ -52,7 +52,7 @@ def test_what_was_said_last_counts():
 def test_an_experiment_is_read_whole():
     found = plan("experiment=plan")
     assert [one.name for one in found.sensors] == ["encoders", "accelerometer"]
-    assert found.sensors[1] == PlannedSensor("accelerometer", 2000, None, "pinion_acceleration", False, 4)
+    assert found.sensors[1] == PlannedSensor("accelerometer", 2e4, None, "pinion_acceleration", False, 4)
     torque = Unknown("pinion_torque", percent=1.0, each=True)
     assert found.unknown == (Unknown("fourier_mesh_stiffness.maximum"), torque)
     assert found.goal.joint

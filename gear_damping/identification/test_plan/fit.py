@@ -73,7 +73,8 @@ class TestFit:
             where[name] = shared.moved(name, where[name], scale, at[:, place])
             scales[name] = where[name] if name == shared.coefficient else scale.expand(count)
         begin = Begun(values, departures, torch.ones(count, dtype=torch.bool))
-        records, found = slopes(self.recorder, begin, scales, self.solver)
+        both = slopes(self.recorder, begin, scales, self.solver)
+        records, found = both.records, both.by
         level = self.noise[:, None, None]
         records, found = (records / level).transpose(0, 1), (found / level[..., None]).permute(1, 2, 0, 3)
         zeros = found.new_zeros(count, len(self.offsets), *found.shape[2:])

@@ -11,7 +11,7 @@ from gear_damping.identification.test_plan.plan import TestPlan, known_exponent
 from gear_damping.identification.test_plan.survey import Survey, survey
 from gear_damping.simulation.solver_settings import Progress
 
-SPEEDS, TORQUES = 61, 11  # points of a map: resonances are narrow in speed
+SPEEDS, TORQUES = 49, 9  # points of a map: resonances are narrow in speed
 LENGTHS = 40  # points of a curve
 SHORTEST = 32  # samples at which a curve begins
 

@@ -38,7 +38,7 @@ class Repeated:
 
     Args:
         count: Tests, or sets of them, that were simulated and fitted.
-        lost: Of these, fits that did not come to rest; they are left out.
+        lost: Of these, fits that did not come to rest: they count as not covered, and for nothing else.
         damping_ratio: In % of critical.
         exponent: Of the law, where it was unknown.
     """
@@ -117,10 +117,10 @@ def _shown(surveyed: Survey, common: SharedFit, shared: Tensor, promised: Precis
     values = rig.members(len(shared))
     for place, name in enumerate(common.names):
         values[name] = common.moved(name, values[name], _scale(values[name]), shared[:, place])
-    ratio = _of_one(rig.ratio_percent(values), surveyed.ratio_percent, promised.damping_ratio)
+    ratio = _of_one(rig.ratio_percent(values), surveyed.ratio_percent, promised.damping_ratio, count)
     if promised.exponent is None:
         return Repeated(count, lost, ratio, None)
-    exponent = _of_one(values[rig.exponent], float(rig.values[rig.exponent][0]), promised.exponent)
+    exponent = _of_one(values[rig.exponent], float(rig.values[rig.exponent][0]), promised.exponent, count)
     return Repeated(count, lost, ratio, exponent)
 
 
@@ -128,7 +128,7 @@ def _scale(value: Tensor) -> Tensor:
     return torch.where(value != 0, value.abs(), 1.0)
 
 
-def _of_one(found: Tensor, truth: float, half: float) -> Shown:
+def _of_one(found: Tensor, truth: float, half: float, count: int) -> Shown:
     error = found - truth
-    covered = float((error.abs() <= half).double().mean())
+    covered = int((error.abs() <= half).sum()) / count
     return Shown(half / QUANTILE, float(found.std()), float(error.mean()), covered)

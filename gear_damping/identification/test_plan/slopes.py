@@ -16,6 +16,8 @@ from gear_damping.simulation.simulate import natural_units, simulate
 from gear_damping.simulation.solver_settings import Solver
 
 STEP = 1e-6  # of each unknown's scale, on either side: between what rounding and what curvature leave, 1e-8 of a slope
+BENT = 0.1  # second difference over the first; of a smooth motion it is about the step itself
+LEAST_CHANGE = 1e-9  # of a record, over two steps; of smaller ones rounding would make the second difference
 
 
 @dataclass(frozen=True)
@@ -66,17 +68,30 @@ def scales_of(recorder: Recorder, start: Begun, names: Sequence[str]) -> dict[st
     return found
 
 
-def slopes(recorder: Recorder, start: Begun, scales: Mapping[str, Tensor], solver: Solver) -> tuple[Tensor, Tensor]:
-    """Records and their slopes.
+@dataclass(frozen=True)
+class Slopes:
+    """Records with their slopes.
+
+    Args:
+        records: (channels, batch, time).
+        by: Slopes by each unknown over its scale, (channels, batch, unknowns, time).
+        straight: Members whose records follow every step in a straight line, (batch,). Others graze a contact or are
+            so irregular that no slope describes them.
+    """
+
+    records: Tensor
+    by: Tensor
+    straight: Tensor
+
+
+def slopes(recorder: Recorder, start: Begun, scales: Mapping[str, Tensor], solver: Solver) -> Slopes:
+    """Simulate members and how their records change.
 
     Args:
         recorder: How the tests are recorded.
         start: The members.
         scales: Of each unknown; a slope is one by an unknown over its scale.
         solver: As `Recorder.solver` gives it.
-
-    Returns:
-        (channels, batch, time) and (channels, batch, unknowns, time).
     """
     batch, count = start.fine.shape[0], 2 * len(scales) + 1
     values = {name: value.repeat(*[1] * (value.ndim - 1), count) for name, value in start.values.items()}
@@ -86,4 +101,7 @@ def slopes(recorder: Recorder, start: Begun, scales: Mapping[str, Tensor], solve
             lane = slice((1 + 2 * place + side) * batch, (2 + 2 * place + side) * batch)
             (departures if name in departures else values)[name][..., lane] += sign * STEP * scale
     found = recorder.records(values, departures, solver).unflatten(1, (count, batch))
-    return found[:, 0], ((found[:, 1::2] - found[:, 2::2]) / (2 * STEP)).transpose(1, 2)
+    above, below, middle = found[:, 1::2], found[:, 2::2], found[:, :1]
+    change, bend = (above - below).norm(dim=-1), (above + below - 2 * middle).norm(dim=-1)
+    straight = (bend <= BENT * torch.maximum(change, LEAST_CHANGE * middle.norm(dim=-1))).all(1).all(0)
+    return Slopes(found[:, 0], ((above - below) / (2 * STEP)).transpose(1, 2), straight)

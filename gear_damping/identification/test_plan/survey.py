@@ -101,10 +101,10 @@ def survey(
     parts, levels, regular = [], [], []
     begins = [names.all.index(name) for name in INITIAL]
     for number, piece in enumerate(pieces):
-        records, found = slopes(recorder, picked(start, piece), {n: s[piece] for n, s in scales.items()}, solver)
-        levels.append(noise_of(sensors, records[..., : lengths[0]]))
-        regular.append(is_regular(found[:, :, begins], lengths))
-        parts.append(information(_with_offsets(found, sensors, levels[-1]), levels[-1], list(lengths)))
+        found = slopes(recorder, picked(start, piece), {n: s[piece] for n, s in scales.items()}, solver)
+        levels.append(noise_of(sensors, found.records[..., : lengths[0]]))
+        regular.append(is_regular(found.by[:, :, begins], lengths) & found.straight[:, None])
+        parts.append(information(_with_offsets(found.by, sensors, levels[-1]), levels[-1], list(lengths)))
         if progress:
             progress(number + 1, len(pieces))
     whole, noise = torch.cat(parts, 1), torch.cat(levels, 1)
