@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 import gear_damping as gd
+from gear_damping.identification.test_plan import checks
 from gear_damping.interface import planned_page
 
 RPM = math.pi / 30
@@ -156,6 +157,21 @@ def test_irregular_motion_promises_nothing():
     assert found.found.survey.fine[:, 0].tolist() == [False, True]
     assert found.tests[0].alone.percent == math.inf
     assert any("1 of 2 tests diverge or move irregularly" in one for one in found.sentences)
+
+
+def test_a_record_without_a_slope_is_told(monkeypatch):
+    """Steps of a sensor have none; an effect of one's own that does the same is not known by its name."""
+    monkeypatch.setattr(checks, "NOISY", ())
+    rig = gd.Model(gd.Oscillator(stiffness=1e4, amplitude=0.01),
+                   [gd.ViscousDamping(damping_coefficient=1.0), gd.SensorQuantisation(step=2e-8)])  # fmt: skip
+    with pytest.raises(gd.InputError, match="no test tells anything"):
+        gd.plan(rig, decays(), [gd.PlannedSensor("displacement", 1e-4)])
+
+
+def test_a_wide_interval_is_said_to_promise_nothing():
+    found = gd.plan(oscillator(), decays(durations=(0.1,)), [gd.PlannedSensor("displacement", 1e-3)])
+    assert 50 < found.best.alone.percent < math.inf
+    assert any("beyond ± 50 % some estimates run off" in one for one in found.sentences)
 
 
 def test_the_example_of_the_page_runs():
