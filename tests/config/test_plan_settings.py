@@ -1,9 +1,11 @@
 """The `plan` node as the task receives it, and what is refused of it."""
 
 import math
+from pathlib import Path
 
 import pytest
 
+from gear_damping.config.command_line import read_command_line
 from gear_damping.config.settings import read_settings
 from gear_damping.errors import InputError
 from gear_damping.identification.test_plan.asked import PlanCosts, PlannedSensor, Unknown
@@ -78,6 +80,16 @@ def test_a_coefficient_that_is_typed_counts():
     """The family draws no damping for a plan."""
     settings = read_settings(*composed(["++task=plan", "++simulator.power_law_damping.coefficient=50"]))
     assert settings.simulator.given["power_law_damping.coefficient"] == 50
+
+
+def test_the_commands_of_the_page_are_read():
+    lines = (Path(__file__).parents[2] / "docs" / "plan.md").read_text(encoding="utf-8").splitlines()
+    commands = [line.split("gear_damping ")[1].split() for line in lines if line.startswith("    python -m")]
+    assert len(commands) == 2
+    for words in commands:
+        typed = read_command_line(words)
+        assert not typed.problems
+        assert read_settings(*composed(typed.overrides)).plan is not None
 
 
 REFUSED = {
