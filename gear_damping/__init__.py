@@ -22,12 +22,14 @@ __version__ = "0.1.0"
 if TYPE_CHECKING:
     from gear_damping.errors import InputError
     from gear_damping.explanation.explain import Listener
+    from gear_damping.identification.test_plan.asked import PlanCosts, PlanGoal, PlannedSensor, PlannedTests, Unknown
     from gear_damping.interface.bound import bound
     from gear_damping.interface.damping import Damping, damping
     from gear_damping.interface.estimator import Estimator, estimator, load_estimator
     from gear_damping.interface.explained import Answer, explain
     from gear_damping.interface.identified import Identification, identify
     from gear_damping.interface.model import Model
+    from gear_damping.interface.planned import Plan, plan
     from gear_damping.interface.simulated import Simulation, simulate
     from gear_damping.measurement.load import load_measurement as load
     from gear_damping.measurement.record import Measurement
@@ -49,8 +51,14 @@ _PLACES = {
     "Measurement": ("measurement.record", "Measurement"),
     "Model": ("interface.model", "Model"),
     "Oscillator": ("physics.systems.oscillator", "Oscillator"),
+    "Plan": ("interface.planned", "Plan"),
+    "PlanCosts": ("identification.test_plan.asked", "PlanCosts"),
+    "PlanGoal": ("identification.test_plan.asked", "PlanGoal"),
+    "PlannedSensor": ("identification.test_plan.asked", "PlannedSensor"),
+    "PlannedTests": ("identification.test_plan.asked", "PlannedTests"),
     "Simulation": ("interface.simulated", "Simulation"),
     "Solver": ("simulation.solver_settings", "Solver"),
+    "Unknown": ("identification.test_plan.asked", "Unknown"),
     "bound": ("interface.bound", "bound"),
     "damping": ("interface.damping", "damping"),
     "estimator": ("interface.estimator", "estimator"),
@@ -58,6 +66,7 @@ _PLACES = {
     "identify": ("interface.identified", "identify"),
     "load": ("measurement.load", "load_measurement"),
     "load_estimator": ("interface.estimator", "load_estimator"),
+    "plan": ("interface.planned", "plan"),
     "simulate": ("interface.simulated", "simulate"),
 }
 _EFFECTS = {
@@ -67,8 +76,9 @@ _EFFECTS = {
 
 __all__ = [
     "Answer", "Damping", "Driven", "Estimator", "GearPair", "Identification", "InputError", "Listener", "Measurement",
-    "Model", "Oscillator", "Simulation", "Solver", "__version__", "bound", "damping", "estimator", "explain",
-    "identify", "load", "load_estimator", "simulate",
+    "Model", "Oscillator", "Plan", "PlanCosts", "PlanGoal", "PlannedSensor", "PlannedTests", "Simulation", "Solver",
+    "Unknown", "__version__", "bound", "damping", "estimator", "explain", "identify", "load", "load_estimator", "plan",
+    "simulate",
 ]  # fmt: skip
 
 

@@ -20,6 +20,11 @@ from gear_damping.simulation.runs import reference_velocity
 
 SIMULATING = ("train", "simulate", "evaluate")  # tasks that simulate runs of the configured simulator
 SEARCHED = ("explain.", "ruled_out")  # how keys of a search for causes begin
+PLAN = "plan"
+NOT_PLANNED = (
+    "family.", "protocol", "training", "model", "wavelet", "measurement", "seeds", "checkpoint", "resume",
+    "write_measurement", "data_folder", "simulator.n_runs", "simulator.n_samples", "simulator.diverged_share",
+)  # how keys begin that a plan does not read; a choice of family may say the rig's speed
 RESUMABLE = "*/seed_*/last.ckpt"  # what an interrupted training leaves in its folder
 Found = Iterator[tuple[str, str, Any, str]]  # key, rule, value, remedy
 
@@ -137,6 +142,15 @@ def _of_a_search(whole: Whole) -> Found:
             yield key, f"acts in task=explain, and this is task={whole['task']}", value, "leave it out"
 
 
+def _of_a_plan(whole: Whole) -> Found:
+    """What only a plan reads is refused elsewhere, and what a plan does not read is refused there."""
+    for key, value in _typed(whole):
+        if whole["task"] != PLAN and key.startswith("plan."):
+            yield key, f"acts in task={PLAN}, and this is task={whole['task']}", value, "leave it out"
+        elif whole["task"] == PLAN and key.startswith(NOT_PLANNED):
+            yield key, f"has no effect in task={PLAN}", value, "leave it out"
+
+
 def _ruled_out(whole: Whole) -> Found:
     if not whole["ruled_out"]:
         return  # without a look at the catalogue, which runs the user's files
@@ -209,7 +223,7 @@ def _test_ratio(whole: Whole) -> Found:
 def _without_effect(whole: Whole) -> Found:
     """Values that were given and that something else decides."""
     simulator = whole.simulator
-    drawn = simulator.family.spreads
+    drawn = {} if whole["task"] == PLAN else simulator.family.spreads  # a plan is one for one rig
     for name, spread in drawn.items():
         key = None if name == DAMPING_RATIO else _given_on_top(name, whole.origin)
         if key and not spread.relative:
@@ -288,6 +302,7 @@ CHECKS: tuple[tuple[tuple[str, ...], Callable[[Whole], Found]], ...] = (
     (("resume",), _resume),
     (("task", "measurement"), _measurement),
     (("task", "explain", "ruled_out"), _of_a_search),
+    (("task",), _of_a_plan),
     (("ruled_out", "simulator"), _ruled_out),
     (("task", "data_folder"), _data_folder),
     (("task", "protocol", "simulator"), _windows),
@@ -297,6 +312,6 @@ CHECKS: tuple[tuple[tuple[str, ...], Callable[[Whole], Found]], ...] = (
     (("task", "protocol", "simulator"), _test_ratio),
     (("task", "simulator", "family"), _ratio_carried),
     (("task", "simulator"), _label),
-    (("simulator", "family"), _without_effect),
+    (("task", "simulator", "family"), _without_effect),
     (("simulator",), _physics),
 )

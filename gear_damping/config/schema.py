@@ -9,7 +9,7 @@ from gear_damping.config.source import Origin
 from gear_damping.errors import Problem, nearest
 from gear_damping.explanation.settings import SearchSettings
 
-TASKS = ("train", "simulate", "evaluate", "identify", "explain", "inspect")
+TASKS = ("train", "simulate", "evaluate", "identify", "explain", "inspect", "plan")
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ SCHEMA: dict[str, Any] = {
         "plugins": Key("names", optional=True),
     },
 }
-ELSEWHERE = ("simulator", "family", "model", "wavelet")  # groups with a check of their own
+ELSEWHERE = ("simulator", "family", "model", "wavelet", "plan")  # groups with a check of their own
 
 
 def check(config: Mapping[str, Any], origin: Origin) -> list[Problem]:

@@ -9,6 +9,7 @@ from gear_damping.config import schema
 from gear_damping.config.combinations import Whole, combination_problems
 from gear_damping.config.learners import ModelSettings, read_models, read_wavelet
 from gear_damping.config.measured import measurement_file
+from gear_damping.config.planned import PlanSettings, read_plan
 from gear_damping.config.simulator import SimulatorSettings, read_simulator
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
@@ -41,6 +42,7 @@ class Settings:
     measurement_path: Path | None
     measurement_channel: str | None
     measurement_plugins: tuple[str, ...]
+    plan: PlanSettings | None = None
 
     @property
     def all_seeds(self) -> list[int]:
@@ -74,6 +76,7 @@ def read_settings(config: Mapping[str, Any], origin: Origin) -> Settings:
     models = tried(read_models, ["model"])
     wavelet = tried(read_wavelet, ["wavelet"], models.plugins if models else ())
     simulator = tried(read_simulator, ["simulator", "family"])
+    plan = tried(read_plan, ["plan"], simulator) if simulator and config.get("task") == "plan" else None
     path = (config.get("measurement") or {}).get("path")
     whole = Whole(config, simulator, origin, models)
     problems += combination_problems(whole, {problem.key for problem in problems})
@@ -100,6 +103,7 @@ def read_settings(config: Mapping[str, Any], origin: Origin) -> Settings:
         measurement_path=measurement_file(path) if path else None,
         measurement_channel=config["measurement"]["channel"],
         measurement_plugins=tuple(config["measurement"]["plugins"] or ()),
+        plan=plan,
     )
 
 

@@ -15,7 +15,7 @@ EXTENDED, COMMAND_LINE = "extended", "command line"
 # Later ones beat earlier ones, as in the defaults list of config.yaml.
 ORDER = (
     "config", "simulator", EXTENDED, "family", "protocol", "wavelet", "model", "training", "measurement",
-    "experiment", COMMAND_LINE,
+    "plan", "experiment", COMMAND_LINE,
 )  # fmt: skip
 
 

@@ -58,6 +58,11 @@ def damping_table(rows: Iterable[Sequence[str]]) -> str:
     return _text("damping ratio zeta of free vibrations, in % of critical", columns, rows, left=("record", "estimator"))
 
 
+def plan_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Tests of a plan as text of fixed width; names of sensors and of tests stand on the left."""
+    return _text(title, columns, rows, left=("sensors", "tests"))
+
+
 def identification_table(identification: Mapping[str, Any], title: str = "identified") -> str:
     """The table of an identification as text of fixed width.
 

@@ -98,8 +98,9 @@ def help_text() -> str:
         "  python -m gear_damping --multirun experiment=noise simulator.load_noise.snr_db=1,10,20,30,40,50",
         "  python -m gear_damping task=inspect measurement.path=PATH/FILE",
         "  python -m gear_damping task=identify measurement.path=PATH/measurement.yaml",
+        "  python -m gear_damping experiment=plan",
         "",
-        "task        train (default), simulate, evaluate, identify, explain, inspect",
+        "task        train (default), simulate, evaluate, identify, explain, inspect, plan",
         "groups      choose with group=choice:",
     ]
     lines += [f"  {group:<12}{', '.join(choices)}" for group, choices in groups().items()]

@@ -19,8 +19,11 @@ def test_choice_is_valid(group, choice):
         overrides += ["++simulator.damping_law=null"]
     if group == "model" and choice not in NETWORKS:
         overrides += ["++task=identify", "measurement=ship_roll_21337"]
+    if group == "plan" or choice == "plan":
+        overrides += ["++task=plan"]
     settings = read_settings(*composed(overrides))
     assert settings.simulator.n_runs >= 1
+    assert (settings.plan is not None) == (settings.task == "plan")
 
 
 def test_every_experiment_begins_with_its_command():
