@@ -11,7 +11,7 @@ PYTEST := $(BIN)/python -m pytest -n auto --dist worksteal
 ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test check bench estimators plan-check blind power p-values docs clean
+.PHONY: help setup run test check bench estimators limit plan-check blind power p-values docs clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-11s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -61,6 +61,9 @@ bench-setup: $(BENCH_VENV)/.installed  ## create .venv-bench with the libraries 
 
 estimators: setup  ## measure the estimators of records into docs/estimators.md (about 4 minutes)
 	$(BIN)/python -m benchmarks.record_estimators $(ARGS)
+
+limit: setup  ## train and evaluate beside the bound, into outputs/limit and docs/limit.md (85 minutes a call at most, resumes)
+	$(BIN)/python -m benchmarks.limit $(ARGS)
 
 plan-check: setup  ## what test plans promise beside what 1000 simulated tests show, into docs/plan.md (about 15 minutes)
 	$(BIN)/python -m benchmarks.test_plan $(ARGS)

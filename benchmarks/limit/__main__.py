@@ -14,14 +14,13 @@ from pathlib import Path
 import torch
 
 from benchmarks.limit import page
-from benchmarks.limit.bench import SNRS, Bench, bench
+from benchmarks.limit.bench import SNRS, bench
 from benchmarks.limit.networks import NETWORKS, say_of_network, trained
-from gear_damping.identification.evaluation import scores
+from gear_damping.identification.bench import Bench
 from gear_damping.identification.known_model.estimate import Estimates
-from gear_damping.identification.known_model.output_error import output_error
-from gear_damping.identification.known_model.unscented_kalman import unscented_kalman
+from gear_damping.reporting.evaluation import evaluation_table
+from gear_damping.tasks.evaluate import KNOWING, mean_over_seeds
 
-KNOWING = {"output_error": output_error, "unscented_kalman": unscented_kalman}  # the equation
 CHUNK = 250  # runs that these take at once
 MINUTES = 85  # at most, of one call
 
@@ -92,25 +91,14 @@ def _write(made: Bench, asked: argparse.Namespace) -> None:
         row = {"bound_percent": float(limit[made.regular].square().mean().sqrt()), "estimators": {}}
         for name in names:
             seeds = asked.seeds if name in NETWORKS else [None]
-            row["estimators"][name] = _figures(made, [_said(_part(asked.out, name, seed, snr)) for seed in seeds], snr)
-        row["estimators"]["mean"] = _figures(made, [(made.mean_predictor, 0.0)], snr)
+            said = [_said(_part(asked.out, name, seed, snr)) for seed in seeds]
+            row["estimators"][name] = mean_over_seeds(made, said, snr)
+        row["estimators"]["mean"] = mean_over_seeds(made, [(made.mean_predictor, 0.0)], snr)
         content["snr_db"][str(snr)] = row
     (asked.out / "evaluation.json").write_text(json.dumps(content, indent=1) + "\n")
     if asked.page:
         page.write(content)
-    print(page.table(content), flush=True)
-
-
-def _figures(made: Bench, said: list[tuple[Estimates, float]], snr: int) -> dict:
-    """Means over the seeds, with the figures of each."""
-    kept, limit, mean = made.regular, made.limit(snr), made.mean_ratio
-    each = [
-        dict(scores(made.true[kept], Estimates(one.ratio[kept], one.low[kept], one.high[kept]), limit[kept], mean))
-        for one, _ in said
-    ]
-    found = {key: None if each[0][key] is None else sum(one[key] for one in each) / len(each) for key in each[0]}
-    found["seconds_per_record"] = sum(seconds for _, seconds in said) / len(said)
-    return found | ({"per_seed": each} if len(each) > 1 else {})
+    print(evaluation_table(content), flush=True)
 
 
 def _asked() -> argparse.Namespace:

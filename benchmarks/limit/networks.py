@@ -7,22 +7,21 @@ import torch
 from torch import Tensor
 
 from benchmarks.limit.bench import Bench, settings_of
+from gear_damping.identification.asked import estimates_of
 from gear_damping.identification.datamodule import Material, WindowDataModule
-from gear_damping.identification.known_model.estimate import LEVEL, Estimates
+from gear_damping.identification.known_model.estimate import Estimates
 from gear_damping.identification.lightning_module import EstimatorConfig, load_estimator
 from gear_damping.identification.noise import SensorNoise
 from gear_damping.identification.protocols import BY_RUN
 from gear_damping.identification.runs import RunSet
 from gear_damping.identification.trainer import Place, Shown, Training, fit_estimator
 from gear_damping.simulation.plan import run_plan
-from gear_damping.tasks.simulated import run_set_of
+from gear_damping.tasks.simulated import plan_of, run_set_of
 
 WHOLE = "record_cwt_lstm"
 NETWORKS = ("raw_lstm", "cwt_lstm", WHOLE)
 VALIDATION, TEST = 0.075, 1e-4  # of the runs; other runs are tested on
 WINDOW_RUNS = 4000  # that networks of windows are trained on: 8 million windows
-STRIDE = 15  # samples between the windows of a record that are asked about
-AT_ONCE = 250  # records
 _sets: dict[int, RunSet] = {}  # of the last seed: three networks share it
 
 
@@ -51,26 +50,11 @@ def trained(name: str, seed: int, folder: Path, n_runs: int) -> None:
 def _runs_of(settings, seed: int) -> RunSet:
     if seed not in _sets:
         _sets.clear()
-        from gear_damping.tasks.simulated import plan_of
-
         plan = plan_of(settings)
         _sets[seed] = run_set_of(run_plan(plan), plan)
     return _sets[seed]
 
 
-@torch.inference_mode()
 def say_of_network(folder: Path, made: Bench, rows: Tensor, snr: int) -> Estimates:
-    """What a trained network says of whole records; of windows, their mean."""
-    module = load_estimator(folder / "best.ckpt")
-    records = made.records(rows, snr).float()
-    if module.network.is_likelihood:
-        parts = [module.network.distribution(module.front_end(part)) for part in records.split(AT_ONCE)]
-        ratio, deviation = (torch.cat(column) for column in zip(*parts, strict=True))
-        low, high = module.network.interval(ratio, deviation, LEVEL)
-        return Estimates(ratio, low, high)
-    window = module.data["window"]
-    said = [
-        module(part.unfold(1, window, STRIDE).reshape(-1, window)).reshape(len(part), -1).mean(1)
-        for part in records.split(AT_ONCE)
-    ]
-    return Estimates.without_interval(torch.cat(said))
+    """What a trained network says of whole records."""
+    return estimates_of(load_estimator(folder / "best.ckpt"), made.records(rows, snr))

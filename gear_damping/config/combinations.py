@@ -15,6 +15,7 @@ from gear_damping.config.simulator import SimulatorSettings
 from gear_damping.config.source import ORDER, Origin
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.physics.catalogue import catalogue
+from gear_damping.physics.terms import HeldLoad
 from gear_damping.simulation.families import DAMPING_RATIO, coefficients_for
 from gear_damping.simulation.runs import reference_velocity
 
@@ -72,7 +73,8 @@ def _name(whole: Whole) -> Found:
 
 def _checkpoint(whole: Whole) -> Found:
     path = whole["checkpoint"]
-    if path is not None and not Path(path).is_file():
+    many = whole["task"] == "evaluate" and path is not None and any(Path(path).glob("*/seed_*/best.ckpt"))
+    if path is not None and not many and not Path(path).is_file():
         yield "checkpoint", no_file(Path(path)), path, "give the path of a best.ckpt"
     if whole["task"] == "evaluate" and path is None:
         yield "checkpoint", "task=evaluate needs a trained estimator", None, "checkpoint=…/best.ckpt"
@@ -115,6 +117,23 @@ def _whole_records(whole: Whole) -> Found:
     for key, value in _typed(whole) if names and len(names) == len(whole.models.names) else ():
         if key in ("protocol.window", "protocol.stride", "protocol.evaluation_stride"):
             yield key, f"acts on networks of windows, and {', '.join(names)} sees whole records", value, "leave it out"
+
+
+def _evaluated(whole: Whole) -> Found:
+    """What only an evaluation reads, and what it needs of the runs."""
+    for key, value in _typed(whole) if whole["task"] != "evaluate" else ():
+        if key.startswith("evaluation."):
+            yield key, f"acts in task=evaluate, and this is task={whole['task']}", value, "leave it out"
+    if whole["task"] == "evaluate" and DAMPING_RATIO not in whole.simulator.family.spreads:
+        rule = "has no range of damping ratios, beside which an estimate could be good"
+        yield "family", rule, whole.simulator.family.name, "choose family=bench, field or paper"
+    drawn = [effect.name for effect in whole.simulator.model.effects if isinstance(effect, HeldLoad)]
+    if whole["task"] == "evaluate" and whole["evaluation"]["known_model"] and drawn:
+        rule = f"{', '.join(drawn)} is drawn, and no estimator knows it"
+        yield "evaluation.known_model", rule, True, "leave it out"
+    if whole["task"] == "evaluate" and whole["evaluation"]["snr_db"] and whole.simulator.sensor_noise_db is not None:
+        rule = "takes the place of simulator.sensor_noise, and both are given"
+        yield "evaluation.snr_db", rule, whole["evaluation"]["snr_db"], "leave one of them out"
 
 
 def _noise_twice(whole: Whole) -> Found:
@@ -299,6 +318,7 @@ CHECKS: tuple[tuple[tuple[str, ...], Callable[[Whole], Found]], ...] = (
     (("model", "wavelet"), _wavelet_of_networks),
     (("task", "model", "protocol"), _whole_records),
     (("task", "training", "simulator"), _noise_twice),
+    (("task", "evaluation", "simulator", "family"), _evaluated),
     (("resume",), _resume),
     (("task", "measurement"), _measurement),
     (("task", "explain", "ruled_out"), _of_a_search),

@@ -17,7 +17,8 @@ class Key:
     """What one key may hold.
 
     Args:
-        kind: `int`, `float`, `bool`, `text`, `names`, or `span`: two numbers that ascend.
+        kind: `int`, `float`, `bool`, `text`, `names`, `span`, two numbers that ascend, or `levels`,
+            different numbers.
         lower: Smallest number.
         upper: Largest number.
         choices: Allowed texts or names; empty for any.
@@ -73,6 +74,7 @@ SCHEMA: dict[str, Any] = {
         "gradient_clip": Key("float", 0, 1e6, exclusive=True, optional=True),
         "noise_snr_db": Key("span", -100, 200, optional=True),
     },
+    "evaluation": {"snr_db": Key("levels", -100, 200, optional=True), "known_model": Key("bool")},
     "measurement": {
         "path": Key("text", optional=True),
         "channel": Key("text", optional=True),
@@ -151,6 +153,7 @@ def _wrong_type(value: Any, rule: Key) -> tuple[str, str] | None:
         "bool": (isinstance(value, bool), "true or false"),
         "text": (isinstance(value, str), "text"),
         "span": (_is_span(value), "two numbers that ascend, [1, 30]"),
+        "levels": (_are_levels(value), "a list of different numbers, [30, 20, 10]"),
         "names": (
             isinstance(value, list) and len(value) > 0 and len(set(map(str, value))) == len(value),
             "a list of different names",
@@ -165,8 +168,13 @@ def _is_span(value: Any) -> bool:
     return good and all(type(end) in (int, float) and isfinite(end) for end in value) and value[0] <= value[1]
 
 
+def _are_levels(value: Any) -> bool:
+    good = isinstance(value, list) and len(value) > 0 and len(set(map(str, value))) == len(value)
+    return good and all(type(level) in (int, float) and isfinite(level) for level in value)
+
+
 def _out_of_range(value: Any, rule: Key) -> tuple[str, str] | None:
-    if rule.kind == "span":
+    if rule.kind in ("span", "levels"):
         return next(filter(None, (_out_of_range(end, replace(rule, kind="float")) for end in value)), None)
     if rule.kind not in ("int", "float"):
         return None

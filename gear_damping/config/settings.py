@@ -39,6 +39,7 @@ class Settings:
     wavelet: dict[str, Any]
     model: ModelSettings
     training: dict[str, Any]
+    evaluation: dict[str, Any]
     measurement_path: Path | None
     measurement_channel: str | None
     measurement_plugins: tuple[str, ...]
@@ -100,6 +101,7 @@ def read_settings(config: Mapping[str, Any], origin: Origin) -> Settings:
         wavelet=wavelet,
         model=models,
         training=dict(config["training"]),
+        evaluation=dict(config["evaluation"]),
         measurement_path=measurement_file(path) if path else None,
         measurement_channel=config["measurement"]["channel"],
         measurement_plugins=tuple(config["measurement"]["plugins"] or ()),

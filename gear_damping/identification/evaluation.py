@@ -53,30 +53,30 @@ def with_prior(bound: Tensor, ends: tuple[float, float]) -> Tensor:
     return (1 / (bound**-2 + before**-2)).sqrt()
 
 
-def scores(true: Tensor, said: Estimates, limit: Tensor, mean: float) -> Mapping[str, float | None]:
+def scores(true: Tensor, said: Estimates, limit: Tensor | None, mean: float) -> Mapping[str, float | None]:
     """How good estimates are.
 
     Args:
         true: Damping ratios in %, (runs,).
         said: The estimates.
-        limit: Standard deviations that the bound leaves, (runs,).
+        limit: Standard deviations that the bound leaves, (runs,); None where there is no bound.
         mean: Of the labels: what knows nothing says.
 
     Returns:
         `rmse_percent`; `median_relative_error` and `p90_relative_error`; `ratio_to_bound`, the root mean square of the
         error over the limit, and `typical_ratio`, the same from its median, as of a normal distribution, which a few
-        runs do not rule; `skill` against the mean; `coverage90`, None without intervals.
+        runs do not rule (both None without a limit); `skill` against the mean; `coverage90`, None without intervals.
     """
     error = (said.ratio - true).double()
-    over = error / limit
+    over = None if limit is None else error / limit
     held = ((said.low <= true) & (true <= said.high)).double().mean()
     relative = (error.abs() / true).double()
     return {
         "rmse_percent": rmse_percent(true, said.ratio),
         "median_relative_error": median_relative_error(true, said.ratio),
         "p90_relative_error": float(relative.quantile(0.9)),
-        "ratio_to_bound": float(over.square().mean().sqrt()),
-        "typical_ratio": float(over.abs().median()) / NORMAL_MEDIAN,
+        "ratio_to_bound": None if over is None else float(over.square().mean().sqrt()),
+        "typical_ratio": None if over is None else float(over.abs().median()) / NORMAL_MEDIAN,
         "skill": skill(true, said.ratio, mean),
         "coverage90": None if bool(torch.isnan(said.low).any()) else float(held),
     }

@@ -1,41 +1,139 @@
-"""task=evaluate: a trained estimator on fresh runs of the configured simulator."""
+"""task=evaluate: trained networks on fresh runs of the configured simulator, beside the bound and the controls."""
 
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from pathlib import Path
+from time import perf_counter
 from typing import Any
 
 import torch
 
 from gear_damping.config.settings import Settings
-from gear_damping.identification.lightning_module import load_estimator
-from gear_damping.identification.metrics import median_relative_error, rmse_percent, skill
-from gear_damping.identification.noise import SensorNoise, noisy_records
+from gear_damping.config.simulator import SENSOR_NOISE
+from gear_damping.errors import InputError, Problem
+from gear_damping.identification.asked import estimates_of
+from gear_damping.identification.bench import CLEAN, Bench, bench
+from gear_damping.identification.evaluation import scores
+from gear_damping.identification.known_model.estimate import Estimates
+from gear_damping.identification.known_model.output_error import output_error
+from gear_damping.identification.known_model.unscented_kalman import unscented_kalman
+from gear_damping.identification.lightning_module import DampingModule, load_estimator
 from gear_damping.reporting import figures
+from gear_damping.reporting.evaluation import evaluation_figure, evaluation_table
+from gear_damping.simulation.plan import SimulationPlan
 from gear_damping.tasks import statements
 from gear_damping.tasks.run_folder import RunFolder
-from gear_damping.tasks.simulated import TEST_SEED, plan_of, run_set_of, simulated
+from gear_damping.tasks.simulated import TEST_SEED, plan_of, simulated
+
+BEST = "*/seed_*/best.ckpt"  # of a training's folder
+SHOWN = ("rmse_percent", "median_relative_error", "skill", "ratio_to_bound", "coverage90")
+KNOWING = {"output_error": output_error, "unscented_kalman": unscented_kalman}
+Said = tuple[Estimates, float]
 
 
 def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
-    """Score a checkpoint on runs that it never met; returns the metrics for run.json."""
-    folder.add_inputs([settings.checkpoint])
-    estimator = load_estimator(settings.checkpoint, settings.model.plugins)
-    plan = plan_of(settings)
+    """Score networks on runs that they never met; returns the metrics for run.json."""
+    paths = _checkpoints(settings.checkpoint)
+    folder.add_inputs(paths)
+    modules = {path: load_estimator(path, settings.model.plugins) for path in paths}
     ratio = settings.simulator.damping_ratio_percent
-    plan = replace(plan, seed=plan.seed + 2 * TEST_SEED, damping_ratio_percent=ratio)
-    run_set = run_set_of(simulated(plan, settings), plan)
-    noise = SensorNoise(settings.simulator.sensor_noise_db)
-    signals = noisy_records(run_set.signals, torch.arange(len(run_set)), noise, settings.seed, "evaluation")
-    predicted = torch.tensor(
-        [estimator.predict_record(s, run_set.sampling_rate, stride=15).damping_ratio_percent for s in signals]
-    )
-    true = run_set.damping_ratio_percent
-    metrics = {
-        "rmse_percent": rmse_percent(true, predicted),
-        "median_relative_error": median_relative_error(true, predicted),
-        "skill": skill(true, predicted, float(true.mean())),
-    }
-    folder.write_json("evaluation.json", {"checkpoint": str(settings.checkpoint), "n_runs": len(true), **metrics})
-    pairs = {"estimator": {"per_run": {"true": true.tolist(), "predicted": predicted.tolist()}}}
+    plan = replace(plan_of(settings), seed=settings.seed + 2 * TEST_SEED, damping_ratio_percent=ratio)
+    runs = simulated(plan, settings)
+    generator = torch.Generator().manual_seed(plan.seed + 2)
+    made = bench(plan, runs, _levels(settings), signals=runs.record(generator, skip=(SENSOR_NOISE,)))
+    _require_alike(modules, plan, made)
+    content = {"family": plan.family.name, "test_runs": len(made), "irregular_runs": int((~made.regular).sum())}
+    content["snr_db"] = {f"{snr:g}": _level(made, snr, modules, settings) for snr in made.bounds}
+    first = _first(content)
+    folder.write_json("evaluation.json", {**first, **content})
+    text = evaluation_table(content)
+    folder.write_text("evaluation.txt", text)
+    statements.say(text)
+    figures.save(evaluation_figure(content), folder.path / "evaluation.png")
+    _draw_pairs(made, next(iter(modules.values())), folder)
+    return first
+
+
+def _checkpoints(path: Path) -> list[Path]:
+    """The file, or every network of a training, control included."""
+    return sorted(path.glob(BEST)) if path.is_dir() else [path]
+
+
+def _levels(settings: Settings) -> tuple[float, ...]:
+    """Signal-to-noise ratios of the sensor in dB."""
+    noise = settings.simulator.sensor_noise_db
+    return settings.evaluation["snr_db"] or ((CLEAN,) if noise is None else (noise,))
+
+
+def _require_alike(modules: Mapping[Path, DampingModule], plan: SimulationPlan, made: Bench) -> None:
+    """Refuse networks of other records.
+
+    Raises:
+        InputError: of each that another rate or longer records were trained on.
+    """
+    length, problems = made.runs.response.shape[-1], []
+    for path, module in modules.items():
+        rate, window = module.data["sampling_rate"], module.data["window"]
+        if rate != plan.sampling_rate:
+            remedy = f"simulator.sampling_rate={rate:g}"
+            rule = f"was trained at {rate:g} Hz, and these runs have {plan.sampling_rate:g} Hz"
+            problems.append(Problem("checkpoint", rule, str(path), remedy))
+        if window > length:
+            remedy = f"simulator.n_samples={window}"
+            rule = f"sees {window} samples at once, and runs have {length}"
+            problems.append(Problem("checkpoint", rule, str(path), remedy))
+    if problems:
+        raise InputError(problems)
+
+
+def _level(made: Bench, snr: float, modules: Mapping[Path, DampingModule], settings: Settings) -> dict[str, Any]:
+    """Every estimator at one level of noise: the mean over the seeds of a network, and each."""
+    found: dict[str, list[Said]] = {}
+    for name, said in _asked(made, snr, modules, settings):
+        found.setdefault(name, []).append(said)
+    limit, kept = made.limit(snr), made.regular
+    row = {"bound_percent": None if limit is None else float(limit[kept].square().mean().sqrt())}
+    return row | {"estimators": {name: mean_over_seeds(made, said, snr) for name, said in found.items()}}
+
+
+def _asked(
+    made: Bench, snr: float, modules: Mapping[Path, DampingModule], settings: Settings
+) -> Iterator[tuple[str, Said]]:
+    rows = torch.arange(len(made))
+    records = made.records(rows, snr)
+    for path, module in modules.items():
+        begun = perf_counter()
+        said = estimates_of(module, records)
+        control = path.parent.parent.name == "white_noise"
+        name = "white_noise" if control else module.hparams["estimator"]
+        yield name, (said, (perf_counter() - begun) / len(rows))
+    for name, estimate in KNOWING.items() if settings.evaluation["known_model"] else ():
+        begun = perf_counter()
+        yield name, (estimate(made.known(rows, snr)), (perf_counter() - begun) / len(rows))
+    yield "mean", (made.mean_predictor, 0.0)
+
+
+def mean_over_seeds(made: Bench, said: list[Said], snr: float) -> dict[str, Any]:
+    """Figures of one estimator over the regular runs: means over its trainings, with those of each."""
+    kept, limit = made.regular, made.limit(snr)
+    limit = None if limit is None else limit[kept]
+    each = [
+        dict(scores(made.true[kept], Estimates(*(part[kept] for part in one)), limit, made.mean_ratio))
+        for one in ((e.ratio, e.low, e.high) for e, _ in said)
+    ]
+    found = {key: None if each[0][key] is None else sum(one[key] for one in each) / len(each) for key in each[0]}
+    found["seconds_per_record"] = sum(seconds for _, seconds in said) / len(said)
+    return found | ({"per_seed": each} if len(each) > 1 else {})
+
+
+def _first(content: Mapping[str, Any]) -> dict[str, Any]:
+    """The first network at the first level, for run.json and sweeps."""
+    level = next(iter(content["snr_db"].values()))
+    found = next(iter(level["estimators"].values()))
+    return {key: found[key] for key in SHOWN}
+
+
+def _draw_pairs(made: Bench, module: DampingModule, folder: RunFolder) -> None:
+    said = estimates_of(module, made.records(torch.arange(len(made)), next(iter(made.bounds))))
+    pairs = {module.hparams["estimator"]: {"per_run": {"true": made.true.tolist(), "predicted": said.ratio.tolist()}}}
     figures.save(figures.predicted_against_true_figure(pairs), folder.path / "predicted_against_true.png")
-    statements.say(f"{len(true)} fresh runs: RMSE {metrics['rmse_percent']:.4f} % of critical, whole records")
-    return metrics

@@ -1,0 +1,116 @@
+"""Runs that estimators are asked about: their noise, the same for all, and the bound of what they hold."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import torch
+from torch import Tensor
+
+from gear_damping.identification.cramer_rao import cramer_rao
+from gear_damping.identification.evaluation import is_regular, with_prior
+from gear_damping.identification.known_model.estimate import Estimates
+from gear_damping.identification.known_model.family import START, KnownRuns, range_of, start_of
+from gear_damping.identification.seeding import seeded_generator
+from gear_damping.physics.damping_ratio import DAMPING_RATIO
+from gear_damping.physics.terms import HeldLoad
+from gear_damping.simulation.plan import SimulationPlan
+from gear_damping.simulation.runs import Runs
+
+CLEAN = 120.0  # dB: noise below what single precision holds
+
+
+@dataclass(frozen=True, eq=False)
+class Bench:
+    """Runs that nobody was trained on.
+
+    Args:
+        plan: What they are.
+        runs: As simulated.
+        bounds: The Cramer-Rao bound of each by level of noise, start unknown, %; None where there is none.
+        regular: Which of them have one, (runs,).
+        signals: What the sensor shows of them but for its noise, (runs, time).
+    """
+
+    plan: SimulationPlan
+    runs: Runs
+    bounds: dict[float, Tensor | None]
+    regular: Tensor
+    signals: Tensor
+
+    def __len__(self) -> int:
+        return len(self.true)
+
+    @cached_property
+    def true(self) -> Tensor:
+        """Damping ratio of each run, %."""
+        return self.runs.damping_ratio_percent.double()
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Smallest and largest ratio of the family, %."""
+        return range_of(self.plan.family)
+
+    @property
+    def mean_ratio(self) -> float:
+        """Of the family: what knows nothing says."""
+        return sum(self.ends) / 2
+
+    @property
+    def mean_predictor(self) -> Estimates:
+        """What knows the family and nothing of the record."""
+        low, high = self.ends
+        edge = 0.05 * (high - low)  # of a uniform distribution, outside the middle nine tenths
+        centre = torch.full_like(self.true, self.mean_ratio)
+        return Estimates(centre, torch.full_like(centre, low + edge), torch.full_like(centre, high - edge))
+
+    def limit(self, snr: float) -> Tensor | None:
+        """What the bound leaves of the family's ratios, standard deviations in %, (runs,)."""
+        bound = self.bounds[snr]
+        return None if bound is None else with_prior(bound, self.ends)
+
+    def noise(self, snr: float) -> Tensor:
+        """Standard deviation of the noise, (runs,)."""
+        return self.signals.std(-1, correction=0) * 10 ** (-snr / 20)
+
+    def records(self, rows: Tensor, snr: float) -> Tensor:
+        """Noisy records, the same for every estimator, (rows, time)."""
+        key = int(snr) if snr == int(snr) else str(snr)
+        drawn = torch.randn(self.signals.shape, generator=seeded_generator(self.plan.seed, "noise", key))
+        return (self.signals + self.noise(snr)[:, None] * drawn)[rows]
+
+    def known(self, rows: Tensor, snr: float) -> KnownRuns:
+        """Some of the runs for estimators that know their equation."""
+        picked = torch.zeros(len(self), dtype=torch.bool)
+        picked[rows] = True
+        runs = self.runs.keep(picked)
+        start = start_of(runs, self.plan.family)
+        law = self.plan.damping_law
+        return KnownRuns(
+            runs, law, self.ends, *start, self.records(rows, snr), self.noise(snr)[rows], solver=self.plan.solver
+        )
+
+
+def bench(plan: SimulationPlan, runs: Runs, levels: Sequence[float], signals: Tensor | None = None) -> Bench:
+    """Runs with their bounds; there are none where a load is drawn, which nobody knows, and none without noise.
+
+    Args:
+        plan: What they are; its family has a range of damping ratios.
+        runs: As simulated.
+        levels: Signal-to-noise ratios of the sensor, dB.
+        signals: What the sensor shows but for its noise, (runs, time); the response itself where absent.
+    """
+    shown = runs.response if signals is None else signals
+    if any(isinstance(effect, HeldLoad) for effect in plan.model.effects):
+        every = torch.ones(len(shown), dtype=torch.bool)
+        return Bench(plan, runs, dict.fromkeys(levels), every, shown)
+    _, spread = start_of(runs, plan.family)
+    known = {name: float(size) for name, size in zip(START, spread.mean(0), strict=True) if size > 0}
+    rms = shown.std(-1, correction=0)
+    bounds = {
+        snr: cramer_rao(runs, [DAMPING_RATIO], rms * 10 ** (-snr / 20), expected=known, solver=plan.solver)
+        for snr in levels
+        if snr < CLEAN
+    }
+    deviations = {snr: bounds[snr].deviation(DAMPING_RATIO) if snr in bounds else None for snr in levels}
+    return Bench(plan, runs, deviations, is_regular(runs, plan.solver), shown)

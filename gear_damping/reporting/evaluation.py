@@ -1,0 +1,61 @@
+"""Table and figure of an evaluation: every estimator on the same records, beside the bound."""
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from gear_damping.reporting.style import INK, colour_of, legend_above, marker_of, new_figure, styled
+
+NO_NOISE = 120.0  # dB
+COLUMNS = (
+    "SNR / dB", "bound / %", "estimator", "RMSE / %", "ratio to bound", "typical ratio", "skill",
+    "90 % interval holds", "ms a record",
+)  # fmt: skip
+
+
+def evaluation_table(content: Mapping[str, Any]) -> str:
+    """A row for every level of noise and estimator, as Markdown.
+
+    Args:
+        content: Of `evaluation.json`.
+    """
+    rows = [f"| {' | '.join(COLUMNS)} |", "|---" * len(COLUMNS) + "|"]
+    for snr, level in content["snr_db"].items():
+        for name, found in level["estimators"].items():
+            covered = "–" if found["coverage90"] is None else f"{100 * found['coverage90']:.1f} %"
+            ratios = (_to(found[key], "{:.2f}") for key in ("ratio_to_bound", "typical_ratio"))
+            skill, bound = _to(found["skill"], "{:.3f}"), _to(level["bound_percent"], "{:.4f}")
+            shown = "no noise" if float(snr) >= NO_NOISE else snr
+            cells = (shown, bound, f"`{name}`", f"{found['rmse_percent']:.4f}", *ratios, skill, covered)
+            taken = f"{1e3 * found['seconds_per_record']:.2g}"
+            rows.append(f"| {' | '.join((*cells, taken))} |")
+    return "\n".join(rows)
+
+
+def _to(value: float | None, style: str) -> str:
+    return "–" if value is None else style.format(value)
+
+
+def evaluation_figure(content: Mapping[str, Any]) -> Figure:
+    """Error of every estimator against the noise, above what the records hold."""
+    levels = {float(snr): level for snr, level in content["snr_db"].items()}
+    with styled():
+        shown = new_figure(4.4)
+        axes = shown.subplots()
+        names = next(iter(levels.values()))["estimators"]
+        for number, name in enumerate(names):
+            errors = [level["estimators"][name]["rmse_percent"] for level in levels.values()]
+            look = {"color": colour_of(name, number), "marker": marker_of(name)}
+            axes.plot(list(levels), errors, "--" if name == "mean" else "-", label=name, **look)
+        bounds = [level["bound_percent"] or math.nan for level in levels.values()]
+        axes.plot(list(levels), bounds, ":", color=INK, label="bound")
+        axes.fill_between(list(levels), bounds, color=INK, alpha=0.08, linewidth=0)
+        axes.set_yscale("log")
+        axes.set_xlabel("signal-to-noise ratio of the sensor / dB")
+        axes.set_ylabel("RMSE of the damping ratio / % of critical")
+        legend_above(axes)
+        return shown
+
+
