@@ -18,9 +18,15 @@ from gear_damping.physics.catalogue import catalogue
 from gear_damping.simulation.families import DAMPING_RATIO, coefficients_for
 from gear_damping.simulation.runs import reference_velocity
 
-SIMULATING = ("train", "simulate", "evaluate")  # tasks that simulate runs of the configured simulator
+SIMULATING = ("train", "simulate", "evaluate", "paper")  # tasks that simulate runs of the configured simulator
+TRAINING = ("train", "paper")  # tasks that train networks
+TAKEN_BY_PAPER = (  # how keys begin that task=paper takes
+    "task", "experiment", "name", "seed", "resume", "data_folder", "progress", "figures", "training", "hydra",
+    "simulator.n_runs", "simulator.n_samples", "simulator.solver.accuracy", "protocol.windows_per_epoch",
+    "protocol.evaluation_stride",
+)  # fmt: skip
 SEARCHED = ("explain.", "ruled_out")  # how keys of a search for causes begin
-RESUMABLE = "*/seed_*/last.ckpt"  # what an interrupted training leaves in its folder
+RESUMABLE = {"paper": "parts/*.json"}  # what an interrupted task leaves in its folder, of a training a checkpoint
 Found = Iterator[tuple[str, str, Any, str]]  # key, rule, value, remedy
 
 
@@ -99,8 +105,10 @@ def _wavelet_of_networks(whole: Whole) -> Found:
 
 def _resume(whole: Whole) -> Found:
     path = whole["resume"]
-    if path is not None and not any(Path(path).glob(RESUMABLE)):
-        yield "resume", "holds no checkpoint to go on from", path, "give the folder of an interrupted training"
+    of_training = "*/seed_*/last.ckpt"
+    if path is not None and not any(Path(path).glob(RESUMABLE.get(whole["task"], of_training))):
+        what, kind = ("finished part", "study") if whole["task"] in RESUMABLE else ("checkpoint", "training")
+        yield "resume", f"holds no {what} to go on from", path, f"give the folder of an interrupted {kind}"
 
 
 def _measurement(whole: Whole) -> Found:
@@ -112,6 +120,15 @@ def _of_a_search(whole: Whole) -> Found:
     for key, value in _typed(whole) if whole["task"] != "explain" else ():
         if key.startswith(SEARCHED):
             yield key, f"acts in task=explain, and this is task={whole['task']}", value, "leave it out"
+
+
+def _of_the_paper(whole: Whole) -> Found:
+    """The paper's study makes its own effects, families and protocols; other tasks have no figures of the paper."""
+    for key, value in _typed(whole):
+        if whole["task"] != "paper" and key == "figures":
+            yield key, f"acts in task=paper, and this is task={whole['task']}", value, "leave it out"
+        elif whole["task"] == "paper" and not key.startswith(TAKEN_BY_PAPER):
+            yield key, "has no effect: task=paper makes every effect, family and protocol itself", value, "leave it out"
 
 
 def _ruled_out(whole: Whole) -> Found:
@@ -133,7 +150,7 @@ def _data_folder(whole: Whole) -> Found:
 def _windows(whole: Whole) -> Found:
     """A window fits into every part that a run is cut into."""
     protocol, samples = whole["protocol"], whole.simulator.n_samples
-    if whole["task"] != "train":
+    if whole["task"] not in TRAINING:
         return
     part = samples
     if protocol["name"] != "by_run":
@@ -147,7 +164,7 @@ def _windows(whole: Whole) -> Found:
 def _split(whole: Whole) -> Found:
     """Every part gets a run."""
     protocol, runs = whole["protocol"], whole.simulator.n_runs
-    if whole["task"] != "train":
+    if whole["task"] not in TRAINING:
         return
     run = protocol["run"]
     if protocol["name"] == "paper" and run >= runs:
@@ -168,7 +185,7 @@ def _wavelet(whole: Whole) -> Found:
 
 def _nyquist(whole: Whole) -> Found:
     highest, half = whole["wavelet"]["frequency_max_hz"], whole.simulator.sampling_rate / 2
-    if whole["task"] == "train" and highest >= half:
+    if whole["task"] in TRAINING and highest >= half:
         rule = f"must lie below half the sampling rate, {half:g} Hz"
         yield "wavelet.frequency_max_hz", rule, highest, "lower it, or sample faster"
 
@@ -260,7 +277,8 @@ CHECKS: tuple[tuple[tuple[str, ...], Callable[[Whole], Found]], ...] = (
     (("task", "checkpoint"), _checkpoint),
     (("task", "checkpoint", "model"), _estimators),
     (("model", "wavelet"), _wavelet_of_networks),
-    (("resume",), _resume),
+    (("task", "resume"), _resume),
+    (("task",), _of_the_paper),
     (("task", "measurement"), _measurement),
     (("task", "explain", "ruled_out"), _of_a_search),
     (("ruled_out", "simulator"), _ruled_out),

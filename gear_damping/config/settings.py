@@ -33,6 +33,7 @@ class Settings:
     explain_minutes: float
     search: SearchSettings
     write_measurement: bool
+    figures: tuple[str, ...]
     simulator: SimulatorSettings
     protocol: dict[str, Any]
     wavelet: dict[str, Any]
@@ -92,6 +93,7 @@ def read_settings(config: Mapping[str, Any], origin: Origin) -> Settings:
         explain_minutes=float(config["explain"]["minutes"]),
         search=SearchSettings(**{one.name: config["explain"][one.name] for one in fields(SearchSettings)}),
         write_measurement=config["write_measurement"],
+        figures=tuple(config["figures"] or ()),
         simulator=simulator,
         protocol=dict(config["protocol"]),
         wavelet=wavelet,

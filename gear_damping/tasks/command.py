@@ -99,7 +99,7 @@ def help_text() -> str:
         "  python -m gear_damping task=inspect measurement.path=PATH/FILE",
         "  python -m gear_damping task=identify measurement.path=PATH/measurement.yaml",
         "",
-        "task        train (default), simulate, evaluate, identify, explain, inspect",
+        "task        train (default), simulate, evaluate, identify, explain, inspect, paper",
         "groups      choose with group=choice:",
     ]
     lines += [f"  {group:<12}{', '.join(choices)}" for group, choices in groups().items()]

@@ -1,0 +1,3 @@
+"""The tables and the report."""
+def table(name, study): return ""
+def report(study, wanted): return ""
