@@ -1,4 +1,4 @@
-"""What Yousfi et al. (2026), Sound & Vibration 60(2), 3869, print: figures by number, tables, and the words beside them.
+"""What Yousfi et al. (2026), Sound & Vibration 60(2), 3869, print: figures by number, tables, words beside them.
 
 The paper never says whether an error is a fraction or in % of critical; numbers stand here as they are printed.
 """

@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from gear_damping.reporting.paper.names import one_run_of
 from gear_damping.reporting.paper.printed import ECCENTRICITY, RATIOS_PERCENT, REPRESENTATIVE_PERCENT, SNRS_DB
 
 ONE_RUN, MANY_RUNS, BY_RUN = "paper", "paper_many_runs", "by_run"  # the three protocols
@@ -54,11 +55,6 @@ def noise_name(snr_db: float) -> str:
     return f"noise_{snr_db:g}_db"
 
 
-def ratio_name(ratio_percent: float) -> str:
-    """What the run of this damping ratio is called; the representative one is the baseline."""
-    return "baseline" if ratio_percent == REPRESENTATIVE_PERCENT else f"ratio_{ratio_percent:g}"
-
-
 def _every() -> list[Case]:
     both = ("figure_14", "table_2")
     found = _protocols("baseline", "experiment=baseline", ("figure_06", "figure_07"), also=both, by_ratio=True)
@@ -70,7 +66,7 @@ def _every() -> list[Case]:
     found += [case for snr in SNRS_DB for case in _noise(snr)]
     for ratio in RATIOS_PERCENT:
         if ratio != REPRESENTATIVE_PERCENT:
-            found.append(Case(ratio_name(ratio), ONE_RUN, ("experiment=baseline",), both, ratio_percent=ratio))
+            found.append(Case(one_run_of(ratio), ONE_RUN, ("experiment=baseline",), both, ratio_percent=ratio))
     return found
 
 

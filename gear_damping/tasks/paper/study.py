@@ -7,9 +7,11 @@ from typing import Any
 from gear_damping.config.settings import Settings
 from gear_damping.identification.compare import MEAN
 from gear_damping.reporting import figures
-from gear_damping.reporting.paper import drawn, pages
+from gear_damping.reporting.paper import drawn
+from gear_damping.reporting.paper.page import NUMBERS, report
 from gear_damping.reporting.paper.printed import EFFECTS
 from gear_damping.reporting.paper.study import Study
+from gear_damping.reporting.paper.tables import TABLES
 from gear_damping.tasks.paper.cases import cases
 from gear_damping.tasks.paper.kept import KeptParts, Part
 from gear_damping.tasks.paper.learned import learn
@@ -31,8 +33,13 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     parts = _parts(ready, settings, kept)
     study = Study(parts, physics, _said(settings, folder))
     plain = study.plain()
-    folder.write_json("paper.json", plain)
-    _write(study, wanted, folder)
+    folder.write_json(NUMBERS, plain)
+    for name in wanted:
+        if name.startswith("figure"):
+            figures.save(drawn.figure(name, study), folder.path / f"{name}.png")
+        else:
+            folder.write_text(f"{name}.md", TABLES[name](plain) + "\n")
+    folder.write_text("paper.md", report(plain, wanted))
     return _metrics(plain)
 
 
@@ -76,16 +83,6 @@ def _said(settings: Settings, folder: RunFolder) -> dict[str, Any]:
         "n_runs": s.n_runs,
         "n_samples": s.n_samples,
     }
-
-
-def _write(study: Study, wanted: tuple[str, ...], folder: RunFolder) -> None:
-    """The figures and tables that were asked for, and the page."""
-    for name in wanted:
-        if name.startswith("figure"):
-            figures.save(drawn.figure(name, study), folder.path / f"{name}.png")
-        else:
-            folder.write_text(f"{name}.md", pages.table(name, study))
-    folder.write_text("paper.md", pages.report(study, wanted))
 
 
 def _metrics(found: Mapping[str, Any]) -> dict[str, Any]:
