@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from math import pi
+from typing import Any
 
 import numpy as np
 import torch
@@ -40,7 +41,7 @@ def physics_of(settings: Settings) -> Physics:
     samples = settings.simulator.n_samples
     runs = {name: _runs(overrides, samples) for name, overrides in VARIANTS.items()}
     return Physics(
-        {name: _response(found) for name, found in runs.items()},
+        {name: _response(found, settings.wavelet) for name, found in runs.items()},
         {label: _stiffness(("experiment=baseline", *more)) for label, more in MESHES.items()},
         {name: _derived(runs[name][REPRESENTATIVE_PERCENT]) for name in ("right", "as_printed")},
     )
@@ -56,11 +57,11 @@ def _runs(overrides: tuple[str, ...], n_samples: int) -> dict[float, Runs]:
     return {ratio: run_plan(replace(plan, damping_ratio_percent=ratio)) for ratio in RATIOS_PERCENT}
 
 
-def _response(runs: dict[float, Runs]) -> Response:
+def _response(runs: dict[float, Runs], wavelet: dict[str, Any]) -> Response:
     """The response of the representative ratio, its transform, and the mean magnitudes at every ratio."""
     shown = runs[REPRESENTATIVE_PERCENT]
-    coarse, magnitude, cone = _transform(shown, None)
-    fine = [_transform(one, FINE_SCALES) for one in runs.values()]
+    coarse, magnitude, cone = _transform(shown, wavelet)
+    fine = [_transform(one, wavelet | {"n_scales": FINE_SCALES}) for one in runs.values()]
     means = [np.nanmean(np.where(outside, np.nan, size), axis=1) for _, size, outside in fine]
     derived = _derived(shown)
     return Response(
@@ -76,10 +77,9 @@ def _response(runs: dict[float, Runs]) -> Response:
     )
 
 
-def _transform(runs: Runs, n_scales: int | None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _transform(runs: Runs, settings: dict[str, Any]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Frequencies (Hz), magnitudes (scale, time) and what the ends of the record reach, of the first run."""
-    given = read_settings(*composed(["family=paper"])).wavelet
-    wavelet = make_wavelet(given | ({} if n_scales is None else {"n_scales": n_scales}), runs.sampling_rate)
+    wavelet = make_wavelet(settings, runs.sampling_rate)
     signal = runs.response[0]
     with torch.no_grad():
         columns = wavelet((signal - signal.mean()).float().unsqueeze(0))[0]
