@@ -90,7 +90,7 @@ def _errors(axes: Axes, study: Study, name: str, effect: str) -> None:
         axes.plot(value, place, marker_of(network), color=colour_of(network), markerfacecolor="none", markersize=6)
         axes.plot(AS_FRACTION * value, place, marker_of(network), color=colour_of(network), markersize=6)
     axes.set_yticks(range(printed + 1), labels=[*(PROTOCOL_NAMES[one] for one in rows), "printed"])
-    axes.set(xscale="log", xlabel="RMSE (1/N) / % of critical", ylim=(printed + 0.6, -0.6), xlim=(FLOOR_PERCENT, 100))
+    axes.set(xscale="log", xlabel="RMSE (1/N) / % of critical", ylim=(printed + 0.6, -0.6), xlim=(FLOOR_PERCENT, 10))
     axes.set_title("bars: deviation over seeds; printed: hollow if it is in %, full if it is a fraction", fontsize=9.5)
 
 

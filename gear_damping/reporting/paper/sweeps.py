@@ -28,6 +28,7 @@ def noise_figure(study: Study) -> Figure:
             axes.set(xlabel="signal-to-noise ratio of the load / dB", ylabel="RMSE (1/N) / % of critical")
             axes.set_title(title, fontsize=9.5)
             axes.set_xticks(SNRS_DB)
+            axes.set_xlim(-2, 52)
             axes.set_ylim(0, 1.25 * axes.get_ylim()[1])
         _legend(figure)
         return figure

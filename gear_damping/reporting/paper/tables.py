@@ -16,7 +16,13 @@ from gear_damping.reporting.paper.cells import (
     score,
 )
 from gear_damping.reporting.paper.names import EFFECT_OF, one_run_of
-from gear_damping.reporting.paper.printed import BASE_CIRCLES_M, CONVERGED_AT, RATIOS_PERCENT, SNRS_DB
+from gear_damping.reporting.paper.printed import (
+    BASE_CIRCLES_M,
+    CONVERGED_AT,
+    DOMINANT_FREQUENCIES,
+    RATIOS_PERCENT,
+    SNRS_DB,
+)
 from gear_damping.reporting.paper.study import BLIND, MEAN, NETWORKS
 
 ESTIMATORS = (*NETWORKS, BLIND, MEAN)
@@ -126,7 +132,7 @@ def ridge_table(found: Found, names: tuple[str, ...]) -> str:
             f"{one['frequency_hz']:.0f} ({one['low_hz']:.0f} … {one['high_hz']:.0f})" for one in ridges
         )
         rows.append((RESPONSES[name], str(len(ridges)), places))
-    return markdown(("response", "ridges (printed: 5)", "frequency (half-power width) / Hz"), rows)
+    return markdown(("response", f"ridges (printed: {DOMINANT_FREQUENCIES})", "frequency (half-power width) / Hz"), rows)
 
 
 RESPONSES = {
