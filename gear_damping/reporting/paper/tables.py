@@ -132,7 +132,8 @@ def ridge_table(found: Found, names: tuple[str, ...]) -> str:
             f"{one['frequency_hz']:.0f} ({one['low_hz']:.0f} … {one['high_hz']:.0f})" for one in ridges
         )
         rows.append((RESPONSES[name], str(len(ridges)), places))
-    return markdown(("response", f"ridges (printed: {DOMINANT_FREQUENCIES})", "frequency (half-power width) / Hz"), rows)
+    count = f"ridges (printed: {DOMINANT_FREQUENCIES})"
+    return markdown(("response", count, "frequency (half-power width) / Hz"), rows)
 
 
 RESPONSES = {

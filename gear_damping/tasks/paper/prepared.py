@@ -1,6 +1,7 @@
 """A case made ready: its settings, its runs and the budget of its networks."""
 
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import Any
 
 from gear_damping.config.settings import Settings, read_settings
@@ -73,6 +74,12 @@ class Prepared:
         return replace(runs, damping_ratio_percent=runs.damping_ratio_percent * self.per_percent)
 
 
+@cache
+def _read(overrides: tuple[str, ...]) -> Settings:
+    """Settings of these overrides: cases that differ by their label alone share them."""
+    return read_settings(*composed(overrides))
+
+
 def prepared(case: Case, settings: Settings) -> Prepared:
     """Compose a case as its own experiment, with sizes and budget of the study.
 
@@ -92,7 +99,7 @@ def prepared(case: Case, settings: Settings) -> Prepared:
     if case.protocol != ONE_RUN:
         overrides.append(f"++protocol.windows_per_epoch={protocol['windows_per_epoch'] or 'null'}")
         overrides.append(f"++protocol.evaluation_stride={protocol['evaluation_stride']}")
-    own = read_settings(*composed(overrides))
+    own = _read(tuple(overrides))
     own = replace(own, data_folder=settings.data_folder, progress=settings.progress)
     plan, training = plan_of(own), Training(**settings.training)
     training = replace(training, max_epochs=case.longer * training.max_epochs)
