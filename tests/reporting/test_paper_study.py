@@ -109,7 +109,7 @@ def test_a_spread_is_that_of_its_values():
     one = Spread.over([1.0, 2.0, 6.0])
     assert (one.mean, one.std) == (3.0, pytest.approx(sqrt(7)))
     assert Spread.over([2.0]).std == 0
-    assert as_fraction({"mean": 0.0819, "std": 0.0012}) == "(8.19 ± 0.12)·10⁻⁴"
+    assert as_fraction({"mean": 0.0819, "std": 0.0012, "values": (0, 1)}) == "(8.19 ± 0.12)·10⁻⁴"
 
 
 def test_ridges_are_the_maxima_with_their_half_power_width():

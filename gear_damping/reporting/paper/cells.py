@@ -12,9 +12,9 @@ PERCENT = 100.0  # of critical in 1
 SMALL = 0.01  # below it numbers have a power of ten, as the paper prints them
 
 
-def markdown(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A table: the first column to the left, the others to the right."""
-    lines = [f"| {' | '.join(head)} |", "|---|" + "---:|" * (len(head) - 1)]
+def markdown(head: Sequence[str], rows: Iterable[Sequence[str]], left: int = 1) -> str:
+    """A table: the first columns to the left, the others to the right."""
+    lines = [f"| {' | '.join(head)} |", "|" + "---|" * left + "---:|" * (len(head) - left)]
     return "\n".join([*lines, *(f"| {' | '.join(row)} |" for row in rows)])
 
 
@@ -28,7 +28,7 @@ def in_percent(spread: Mapping[str, Any] | None) -> str:
     """In % of critical: `0.112 ± 0.003`."""
     if spread is None:
         return NOTHING
-    return f"{spread['mean']:.3f} ± {spread['std']:.3f}"
+    return f"{spread['mean']:.3f}{_deviation(spread['std'], 3, spread)}"
 
 
 def as_fraction(spread: Mapping[str, Any] | None) -> str:
@@ -39,9 +39,9 @@ def as_fraction(spread: Mapping[str, Any] | None) -> str:
     if mean == 0:
         return "0"
     if mean >= SMALL:
-        return f"{mean:.3f} ± {std:.3f}"
+        return f"{mean:.3f}{_deviation(std, 3, spread)}"
     power = floor(log10(mean))
-    return f"({mean / 10**power:.2f} ± {std / 10**power:.2f})·10{superscript(power)}"
+    return f"({mean / 10**power:.2f}{_deviation(std / 10**power, 2, spread)})·10{superscript(power)}"
 
 
 def printed(name: str, network: str) -> str:
@@ -57,12 +57,17 @@ def printed(name: str, network: str) -> str:
 
 def plain_number(spread: Mapping[str, Any] | None, decimals: int = 2) -> str:
     """A mean with its deviation."""
-    return NOTHING if spread is None else f"{spread['mean']:.{decimals}f} ± {spread['std']:.{decimals}f}"
+    return NOTHING if spread is None else f"{spread['mean']:.{decimals}f}{_deviation(spread['std'], decimals, spread)}"
 
 
 def percent_of(spread: Mapping[str, Any] | None) -> str:
     """A share in %."""
     return NOTHING if spread is None else f"{PERCENT * spread['mean']:.3g} %"
+
+
+def _deviation(std: float, decimals: int, spread: Mapping[str, Any]) -> str:
+    """What stands behind a mean; nothing of one seed."""
+    return f" ± {std:.{decimals}f}" if len(spread["values"]) > 1 else ""
 
 
 def superscript(power: int) -> str:

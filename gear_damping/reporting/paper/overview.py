@@ -38,7 +38,7 @@ def overview_table(found: Found) -> str:
     """Every figure with a printed error in one row: printed, on one run, on unseen runs."""
     head = ("figure", "effect", "printed LSTM", "printed CWT–LSTM", "one run, raw_lstm", "one run, cwt_lstm",
             "one run, white noise", "unseen, raw_lstm / %", "unseen, cwt_lstm / %", "unseen, mean / %")  # fmt: skip
-    return markdown(head, [_overview_row(found, name) for name in RMSE])
+    return markdown(head, [_overview_row(found, name) for name in RMSE], left=2)
 
 
 def _overview_row(found: Found, name: str) -> tuple[str, ...]:
@@ -81,7 +81,7 @@ def leads_table(found: Found) -> str:
         columns = [_lead(found, effect, protocol) for protocol in ("paper", "paper_many_runs", "by_run")]
         rows.append((name.removeprefix("figure_").lstrip("0"), EFFECTS[name], ahead, *columns))
     head = ("figure", "effect", "printed", "one run", "many runs, cut by time", "unseen runs")
-    return markdown(head, rows)
+    return markdown(head, rows, left=2)
 
 
 def _lead(found: Found, effect: str, protocol: str) -> str:
@@ -91,8 +91,9 @@ def _lead(found: Found, effect: str, protocol: str) -> str:
         return NOTHING
     leads = spread_of([100 * (1 - c / r) for r, c in zip(raw["values"], cwt["values"], strict=True)])
     error = leads["std"] / len(leads["values"]) ** 0.5
-    clear = len(leads["values"]) > 1 and abs(leads["mean"]) > CLEAR * error
-    return f"{leads['mean']:+.0f} ± {error:.0f} %" + ("" if clear else " (not clear)")
+    if len(leads["values"]) == 1:
+        return f"{leads['mean']:+.0f} %"
+    return f"{leads['mean']:+.0f} ± {error:.0f} %" + ("" if abs(leads["mean"]) > CLEAR * error else " (not clear)")
 
 
 def table_2(found: Found) -> str:

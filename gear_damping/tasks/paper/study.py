@@ -20,6 +20,7 @@ from gear_damping.tasks.paper.prepared import Prepared, prepared
 from gear_damping.tasks.progress import progress_bar
 from gear_damping.tasks.run_folder import RunFolder
 
+OF_THE_MACHINE = ("hydra.run.dir=", "data_folder=", "resume=", "progress=")  # how words begin that decide no number
 say = logging.getLogger("gear_damping").info
 
 
@@ -73,7 +74,7 @@ def _said(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     """What the numbers rest on, for the page."""
     s = settings.simulator
     return {
-        "command": folder.record["command"],
+        "command": _command(folder.record["command"]),
         "git": folder.record["git"],
         "versions": folder.record["versions"],
         "seeds": settings.all_seeds,
@@ -83,6 +84,12 @@ def _said(settings: Settings, folder: RunFolder) -> dict[str, Any]:
         "n_runs": s.n_runs,
         "n_samples": s.n_samples,
     }
+
+
+def _command(typed: str) -> str:
+    """The command without the places of this machine."""
+    words = (word.replace("++", "") for word in typed.split())
+    return " ".join(word for word in words if not word.startswith(OF_THE_MACHINE))
 
 
 def _metrics(found: Mapping[str, Any]) -> dict[str, Any]:
