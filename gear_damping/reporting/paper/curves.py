@@ -42,15 +42,15 @@ def convergence_figure(study: Study, name: str, effect: str) -> Figure:
 
 
 def _curves(axes: Axes, network: str, parts: list[Part]) -> None:
-    """Mean over the seeds that are still training, and their range."""
+    """Mean over the seeds and their range, as long as all of them train."""
     for which, line in (("validation", "-"), ("train", "--")):
         curves = [part["histories"][network][which] for part in parts]
         if not curves:
             return
-        length = max(map(len, curves))
-        padded = np.array([curve + [np.nan] * (length - len(curve)) for curve in curves])
+        length = min(map(len, curves))
+        errors = np.array([curve[:length] for curve in curves])
         epochs = np.arange(1, length + 1)
-        axes.plot(epochs, np.nanmean(padded, axis=0), line, color=colour_of(network), linewidth=1.2)
+        axes.plot(epochs, errors.mean(axis=0), line, color=colour_of(network), linewidth=1.2)
         if which == "validation":
-            low, high = np.nanmin(padded, axis=0), np.nanmax(padded, axis=0)
+            low, high = errors.min(axis=0), errors.max(axis=0)
             axes.fill_between(epochs, low, high, color=colour_of(network), alpha=0.18, linewidth=0)

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from statistics import fmean, stdev
+from textwrap import fill
 from typing import Any
 
 from gear_damping.reporting.numbers import NOTHING
@@ -10,6 +11,7 @@ from gear_damping.reporting.paper.names import EFFECT_OF, one_run_of
 from gear_damping.reporting.paper.printed import CWT, EFFECTS, RATIOS_PERCENT, RAW, RMSE
 from gear_damping.reporting.paper.study import BLIND, MEAN
 
+LINE = 120  # characters of a line of text
 CLEAR = 2.0  # standard errors of the mean from which a difference is called one
 
 
@@ -23,8 +25,7 @@ def settings_text(found: Found) -> str:
     s = found["settings"]
     training, versions = s["training"], s["versions"]
     revision = ", ".join(one[:7] for one in found["revisions"])
-    return (
-        f"    {s['command']}\n\n"
+    said = (
         f"Seeds {', '.join(map(str, s['seeds']))}; at most {training['max_epochs']} epochs, patience "
         f"{training['patience']}, batch {training['batch_size']}, {s['windows_per_epoch']} windows an epoch, Adam "
         f"{training['learning_rate']:g}, {s['n_runs']} runs of {s['n_samples']} samples; on one run batch 32 and "
@@ -32,6 +33,7 @@ def settings_text(found: Found) -> str:
         f"core. Revision {revision}; Python {versions['python']}, torch {versions['torch']}. Spreads are standard "
         "deviations over the seeds."
     )
+    return f"    {s['command']}\n\n{fill(said, LINE)}"
 
 
 def overview_table(found: Found) -> str:

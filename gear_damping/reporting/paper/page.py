@@ -46,7 +46,7 @@ def with_tables(text: str, found: Found) -> str:
         text: The page, with a pair of markers for every table.
         found: The content of paper.json.
     """
-    return MARKED.sub(lambda mark: f"{mark[1]}{TABLES[mark[2]](found)}\n{mark[3]}", text)
+    return MARKED.sub(lambda mark: f"{mark[1]}\n{TABLES[mark[2]](found)}\n\n{mark[3]}", text)
 
 
 def report(found: Found, wanted: Iterable[str]) -> str:
