@@ -12,7 +12,7 @@ from gear_damping.reporting.style import INK, PURPLE, colour_of, marker_of, new_
 PROTOCOL_NAMES = {"paper": "one run", "paper_many_runs": "many runs, cut by time", "by_run": "unseen runs"}
 AS_FRACTION = 100.0  # % of critical that 1 is, where a printed error is a fraction
 OFFSET = 0.17  # rows between the estimators of one protocol
-FLOOR_PERCENT = 1e-4  # of the error axis, in %: what always saying the one label leaves is 0 and lies below
+FLOOR_PERCENT = 5e-5  # of the error axis, in %: what always saying the one label leaves is 0 and lies below
 
 
 def effect_figure(study: Study, name: str, effect: str) -> Figure:
