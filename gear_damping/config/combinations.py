@@ -1,46 +1,25 @@
 """What is wrong with values that are each right by themselves."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any
 
 import torch
 
+from gear_damping.config.by_task import BY_TASK
 from gear_damping.config.folders import unusable
-from gear_damping.config.learners import ModelSettings
-from gear_damping.config.light import no_file, wrong_measurement, wrong_name
+from gear_damping.config.light import wrong_measurement, wrong_name
 from gear_damping.config.quantities import SUFFIXES
 from gear_damping.config.simulator import SimulatorSettings
 from gear_damping.config.source import ORDER, Origin
+from gear_damping.config.whole import Found, Whole
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.physics.catalogue import catalogue
-from gear_damping.physics.terms import HeldLoad
 from gear_damping.simulation.families import DAMPING_RATIO, coefficients_for
 from gear_damping.simulation.runs import reference_velocity
 
-SIMULATING = ("train", "simulate", "evaluate")  # tasks that simulate runs of the configured simulator
-SEARCHED = ("explain.", "ruled_out")  # how keys of a search for causes begin
+SIMULATING = ("train", "simulate", "evaluate", "paper")  # tasks that simulate runs of the configured simulator
+TRAINING = ("train", "paper")  # tasks that train networks
 PLAN = "plan"
-NOT_PLANNED = (
-    "family.", "protocol", "training", "model", "wavelet", "measurement", "seeds", "checkpoint", "resume",
-    "write_measurement", "data_folder", "simulator.n_runs", "simulator.n_samples", "simulator.diverged_share",
-)  # how keys begin that a plan does not read; a choice of family may say the rig's speed
-RESUMABLE = "*/seed_*/last.ckpt"  # what an interrupted training leaves in its folder
-Found = Iterator[tuple[str, str, Any, str]]  # key, rule, value, remedy
-
-
-@dataclass(frozen=True)
-class Whole:
-    """A configuration of which the keys that a check reads are right."""
-
-    config: Mapping[str, Any]
-    simulator: SimulatorSettings | None
-    origin: Origin
-    models: ModelSettings | None = None
-
-    def __getitem__(self, key: str) -> Any:
-        return self.config[key]
 
 
 def combination_problems(whole: Whole, wrong: set[str]) -> list[Problem]:
@@ -60,114 +39,12 @@ def combination_problems(whole: Whole, wrong: set[str]) -> list[Problem]:
     return problems
 
 
-def _typed(whole: Whole) -> Iterator[tuple[str, str]]:
-    """Key and value of what was typed."""
-    for override in whole.origin.overrides:
-        key, _, value = override.lstrip("+~").partition("=")
-        yield key, value
-
-
 def _name(whole: Whole) -> Found:
     yield from wrong_name(whole.config)
 
 
-def _checkpoint(whole: Whole) -> Found:
-    path = whole["checkpoint"]
-    many = whole["task"] == "evaluate" and path is not None and any(Path(path).glob("*/seed_*/best.ckpt"))
-    if path is not None and not many and not Path(path).is_file():
-        yield "checkpoint", no_file(Path(path)), path, "give the path of a best.ckpt"
-    if whole["task"] == "evaluate" and path is None:
-        yield "checkpoint", "task=evaluate needs a trained estimator", None, "checkpoint=…/best.ckpt"
-
-
-def _estimators(whole: Whole) -> Found:
-    """Networks are trained and then asked by their checkpoint; estimators of records need neither."""
-    task, names = whole["task"], whole["model"]["names"]
-    of_records = () if whole.models is None else whole.models.of_records
-    if of_records and task != "identify":
-        rule = f"{', '.join(of_records)} has nothing to learn: it takes a record by itself, in task=identify"
-        yield "model.names", rule, names, "choose task=identify, or name networks only"
-    elif of_records and whole["checkpoint"] is not None:
-        rule = f"is of a network, and model names {', '.join(of_records)}"
-        yield "checkpoint", rule, whole["checkpoint"], "leave one of them out"
-    elif task == "identify" and whole["checkpoint"] is None and set(names) - set(of_records):
-        is_asked = of_records or any(key in ("model", "model.names") for key, _ in _typed(whole))
-        rule = "names a network, which tells nothing before it is trained"
-        remedy = "give its checkpoint=…/best.ckpt, or choose model=classical"
-        yield from [("model.names", rule, names, remedy)] if is_asked else []
-
-
-def _wavelet_of_networks(whole: Whole) -> Found:
-    """The transform is one of networks that say so: the others have their own, or none."""
-    models = whole.models
-    if models is None or models.transforming:
-        return
-    remedy = "leave it out; wavelet_ridge has model.omega0" if models.of_records else "leave it out, or name cwt_lstm"
-    for key, value in _typed(whole) if models.of_records or models.whole else ():
-        if key == "wavelet" or key.startswith("wavelet."):
-            yield key, "acts on networks of the transform, and none is named", value, remedy
-
-
-def _whole_records(whole: Whole) -> Found:
-    """Networks of whole records know no windows, and no cut inside a record."""
-    names = whole.models.whole if whole.models is not None and whole["task"] == "train" else ()
-    if names and whole["protocol"]["name"] != "by_run":
-        rule = f"cuts inside records, and {', '.join(names)} sees whole ones"
-        yield "protocol.name", rule, whole["protocol"]["name"], "choose protocol=by_run"
-    for key, value in _typed(whole) if names and len(names) == len(whole.models.names) else ():
-        if key in ("protocol.window", "protocol.stride", "protocol.evaluation_stride"):
-            yield key, f"acts on networks of windows, and {', '.join(names)} sees whole records", value, "leave it out"
-
-
-def _evaluated(whole: Whole) -> Found:
-    """What only an evaluation reads, and what it needs of the runs."""
-    for key, value in _typed(whole) if whole["task"] != "evaluate" else ():
-        if key.startswith("evaluation."):
-            yield key, f"acts in task=evaluate, and this is task={whole['task']}", value, "leave it out"
-    if whole["task"] == "evaluate" and DAMPING_RATIO not in whole.simulator.family.spreads:
-        rule = "has no range of damping ratios, beside which an estimate could be good"
-        yield "family", rule, whole.simulator.family.name, "choose family=bench, field or paper"
-    drawn = [effect.name for effect in whole.simulator.model.effects if isinstance(effect, HeldLoad)]
-    if whole["task"] == "evaluate" and whole["evaluation"]["known_model"] and drawn:
-        rule = f"{', '.join(drawn)} is drawn, and no estimator knows it"
-        yield "evaluation.known_model", rule, True, "leave it out"
-    if whole["task"] == "evaluate" and whole["evaluation"]["snr_db"] and whole.simulator.sensor_noise_db is not None:
-        rule = "takes the place of simulator.sensor_noise, and both are given"
-        yield "evaluation.snr_db", rule, whole["evaluation"]["snr_db"], "leave one of them out"
-
-
-def _noise_twice(whole: Whole) -> Found:
-    """The noise of training records is drawn, or is that of the simulated sensor."""
-    drawn = whole["training"]["noise_snr_db"]
-    if drawn is not None and whole["task"] == "train" and whole.simulator.sensor_noise_db is not None:
-        rule = "takes the place of simulator.sensor_noise, and both are given"
-        yield "training.noise_snr_db", rule, drawn, "leave one of them out"
-
-
-def _resume(whole: Whole) -> Found:
-    path = whole["resume"]
-    if path is not None and not any(Path(path).glob(RESUMABLE)):
-        yield "resume", "holds no checkpoint to go on from", path, "give the folder of an interrupted training"
-
-
 def _measurement(whole: Whole) -> Found:
     yield from wrong_measurement(whole.config)
-
-
-def _of_a_search(whole: Whole) -> Found:
-    """What only a search for causes reads would be accepted by other tasks without any effect."""
-    for key, value in _typed(whole) if whole["task"] != "explain" else ():
-        if key.startswith(SEARCHED):
-            yield key, f"acts in task=explain, and this is task={whole['task']}", value, "leave it out"
-
-
-def _of_a_plan(whole: Whole) -> Found:
-    """What only a plan reads is refused elsewhere, and what a plan does not read is refused there."""
-    for key, value in _typed(whole):
-        if whole["task"] != PLAN and key.startswith("plan."):
-            yield key, f"acts in task={PLAN}, and this is task={whole['task']}", value, "leave it out"
-        elif whole["task"] == PLAN and key.startswith(NOT_PLANNED):
-            yield key, f"has no effect in task={PLAN}", value, "leave it out"
 
 
 def _ruled_out(whole: Whole) -> Found:
@@ -189,7 +66,7 @@ def _data_folder(whole: Whole) -> Found:
 def _windows(whole: Whole) -> Found:
     """A window fits into every part that a run is cut into."""
     protocol, samples = whole["protocol"], whole.simulator.n_samples
-    if whole["task"] != "train":
+    if whole["task"] not in TRAINING:
         return
     part = samples
     if protocol["name"] != "by_run":
@@ -203,7 +80,7 @@ def _windows(whole: Whole) -> Found:
 def _split(whole: Whole) -> Found:
     """Every part gets a run."""
     protocol, runs = whole["protocol"], whole.simulator.n_runs
-    if whole["task"] != "train":
+    if whole["task"] not in TRAINING:
         return
     run = protocol["run"]
     if protocol["name"] == "paper" and run >= runs:
@@ -224,7 +101,7 @@ def _wavelet(whole: Whole) -> Found:
 
 def _nyquist(whole: Whole) -> Found:
     highest, half = whole["wavelet"]["frequency_max_hz"], whole.simulator.sampling_rate / 2
-    if whole["task"] == "train" and highest >= half:
+    if whole["task"] in TRAINING and highest >= half:
         rule = f"must lie below half the sampling rate, {half:g} Hz"
         yield "wavelet.frequency_max_hz", rule, highest, "lower it, or sample faster"
 
@@ -312,17 +189,9 @@ def _physics(whole: Whole) -> Found:
 
 
 CHECKS: tuple[tuple[tuple[str, ...], Callable[[Whole], Found]], ...] = (
+    *BY_TASK,
     (("name",), _name),
-    (("task", "checkpoint"), _checkpoint),
-    (("task", "checkpoint", "model"), _estimators),
-    (("model", "wavelet"), _wavelet_of_networks),
-    (("task", "model", "protocol"), _whole_records),
-    (("task", "training", "simulator"), _noise_twice),
-    (("task", "evaluation", "simulator", "family"), _evaluated),
-    (("resume",), _resume),
     (("task", "measurement"), _measurement),
-    (("task", "explain", "ruled_out"), _of_a_search),
-    (("task",), _of_a_plan),
     (("ruled_out", "simulator"), _ruled_out),
     (("task", "data_folder"), _data_folder),
     (("task", "protocol", "simulator"), _windows),

@@ -8,8 +8,9 @@ from typing import Any
 from gear_damping.config.source import Origin
 from gear_damping.errors import Problem, nearest
 from gear_damping.explanation.settings import SearchSettings
+from gear_damping.reporting.paper.printed import EFFECTS
 
-TASKS = ("train", "simulate", "evaluate", "identify", "explain", "inspect", "plan")
+TASKS = ("train", "simulate", "evaluate", "identify", "explain", "inspect", "plan", "paper")
 
 
 @dataclass(frozen=True)
@@ -55,6 +56,7 @@ SCHEMA: dict[str, Any] = {
     "ruled_out": Key("names", optional=True),
     "explain": {"minutes": Key("float", 0, 1e6, exclusive=True)} | _thresholds(),
     "write_measurement": Key("bool"),
+    "figures": Key("names", choices=tuple(EFFECTS), optional=True),
     "protocol": {
         "name": Key("text", choices=("by_run", "paper", "paper_many_runs")),
         "window": Key("int", 2, 1_000_000),

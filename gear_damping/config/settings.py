@@ -6,12 +6,13 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from gear_damping.config import schema
-from gear_damping.config.combinations import Whole, combination_problems
+from gear_damping.config.combinations import combination_problems
 from gear_damping.config.learners import ModelSettings, read_models, read_wavelet
 from gear_damping.config.measured import measurement_file
 from gear_damping.config.planned import PlanSettings, read_plan
 from gear_damping.config.simulator import SimulatorSettings, read_simulator
 from gear_damping.config.source import Origin
+from gear_damping.config.whole import Whole
 from gear_damping.errors import InputError, Problem
 from gear_damping.explanation.settings import SearchSettings
 
@@ -34,6 +35,7 @@ class Settings:
     explain_minutes: float
     search: SearchSettings
     write_measurement: bool
+    figures: tuple[str, ...]
     simulator: SimulatorSettings
     protocol: dict[str, Any]
     wavelet: dict[str, Any]
@@ -96,6 +98,7 @@ def read_settings(config: Mapping[str, Any], origin: Origin) -> Settings:
         explain_minutes=float(config["explain"]["minutes"]),
         search=SearchSettings(**{one.name: config["explain"][one.name] for one in fields(SearchSettings)}),
         write_measurement=config["write_measurement"],
+        figures=tuple(config["figures"] or ()),
         simulator=simulator,
         protocol=dict(config["protocol"]),
         wavelet=wavelet,

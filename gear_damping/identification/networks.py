@@ -76,12 +76,21 @@ class DampingLSTM(DampingNetwork):
         n_features: Features at each sample.
         hidden_size: Units of the LSTM.
         dropout: Part of the state that is dropped in training, 0 <= p < 1.
+        start_at_mean: Whether training starts at the mean label; if not, where the drawn weights lie.
     """
 
-    def __init__(self, n_features: int, hidden_size: int = 60, dropout: float = 0.2) -> None:
+    def __init__(
+        self, n_features: int, hidden_size: int = 60, dropout: float = 0.2, start_at_mean: bool = True
+    ) -> None:
         super().__init__()
+        self.start_at_mean = start_at_mean
         self.lstm = nn.LSTM(n_features, hidden_size, batch_first=True)
         self.end(hidden_size, dropout)
+
+    def start_at(self, damping_ratio_percent: float) -> None:
+        """Start at this damping ratio, unless the drawn weights are to be kept."""
+        if self.start_at_mean:
+            super().start_at(damping_ratio_percent)
 
     def state(self, features: Tensor) -> Tensor:
         """The hidden state after the last sample."""

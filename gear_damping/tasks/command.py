@@ -100,7 +100,7 @@ def help_text() -> str:
         "  python -m gear_damping task=identify measurement.path=PATH/measurement.yaml",
         "  python -m gear_damping experiment=plan",
         "",
-        "task        train (default), simulate, evaluate, identify, explain, inspect, plan",
+        "task        train (default), simulate, evaluate, identify, explain, inspect, plan, paper",
         "groups      choose with group=choice:",
     ]
     lines += [f"  {group:<12}{', '.join(choices)}" for group, choices in groups().items()]

@@ -17,6 +17,7 @@ class RawLSTM(WindowEstimator):
     settings: ClassVar = (
         Setting("hidden_size", 60, "units of the LSTM", 1, 4096),
         Setting("dropout", 0.2, "part of the state that is dropped in training", 0.0, 0.99),
+        Setting("start_at_mean", True, "training starts at the mean label; false: where the drawn weights lie"),
     )
 
     def front_end(self, transform: ContinuousWavelet | None) -> FrontEnd:

@@ -1,0 +1,143 @@
+"""Which keys act in which task: what would be accepted without any effect is refused."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+from gear_damping.config.light import no_file
+from gear_damping.config.whole import Found, Whole, typed
+from gear_damping.physics.terms import HeldLoad
+from gear_damping.simulation.families import DAMPING_RATIO
+
+TAKEN_BY_PAPER = (  # how keys begin that task=paper takes
+    "task", "experiment", "name", "seed", "resume", "data_folder", "progress", "figures", "training", "hydra",
+    "simulator.n_runs", "simulator.n_samples", "simulator.solver.accuracy", "protocol.windows_per_epoch",
+    "protocol.evaluation_stride",
+)  # fmt: skip
+OWN_NOISE = "training.noise_snr_db"  # the paper's study has its own
+SEARCHED = ("explain.", "ruled_out")  # how keys of a search for causes begin
+PLAN = "plan"
+NOT_PLANNED = (
+    "family.", "protocol", "training", "model", "wavelet", "measurement", "seeds", "checkpoint", "resume",
+    "write_measurement", "data_folder", "simulator.n_runs", "simulator.n_samples", "simulator.diverged_share",
+)  # how keys begin that a plan does not read; a choice of family may say the rig's speed
+RESUMABLE = {"paper": "parts/*.json"}  # what an interrupted task leaves in its folder, of a training a checkpoint
+
+
+def _checkpoint(whole: Whole) -> Found:
+    path = whole["checkpoint"]
+    many = whole["task"] == "evaluate" and path is not None and any(Path(path).glob("*/seed_*/best.ckpt"))
+    if path is not None and not many and not Path(path).is_file():
+        yield "checkpoint", no_file(Path(path)), path, "give the path of a best.ckpt"
+    if whole["task"] == "evaluate" and path is None:
+        yield "checkpoint", "task=evaluate needs a trained estimator", None, "checkpoint=…/best.ckpt"
+
+
+def _estimators(whole: Whole) -> Found:
+    """Networks are trained and then asked by their checkpoint; estimators of records need neither."""
+    task, names = whole["task"], whole["model"]["names"]
+    of_records = () if whole.models is None else whole.models.of_records
+    if of_records and task != "identify":
+        rule = f"{', '.join(of_records)} has nothing to learn: it takes a record by itself, in task=identify"
+        yield "model.names", rule, names, "choose task=identify, or name networks only"
+    elif of_records and whole["checkpoint"] is not None:
+        rule = f"is of a network, and model names {', '.join(of_records)}"
+        yield "checkpoint", rule, whole["checkpoint"], "leave one of them out"
+    elif task == "identify" and whole["checkpoint"] is None and set(names) - set(of_records):
+        is_asked = of_records or any(key in ("model", "model.names") for key, _ in typed(whole))
+        rule = "names a network, which tells nothing before it is trained"
+        remedy = "give its checkpoint=…/best.ckpt, or choose model=classical"
+        yield from [("model.names", rule, names, remedy)] if is_asked else []
+
+
+def _wavelet_of_networks(whole: Whole) -> Found:
+    """The transform is one of networks that say so: the others have their own, or none."""
+    models = whole.models
+    if models is None or models.transforming:
+        return
+    remedy = "leave it out; wavelet_ridge has model.omega0" if models.of_records else "leave it out, or name cwt_lstm"
+    for key, value in typed(whole) if models.of_records or models.whole else ():
+        if key == "wavelet" or key.startswith("wavelet."):
+            yield key, "acts on networks of the transform, and none is named", value, remedy
+
+
+def _whole_records(whole: Whole) -> Found:
+    """Networks of whole records know no windows, and no cut inside a record."""
+    names = whole.models.whole if whole.models is not None and whole["task"] == "train" else ()
+    if names and whole["protocol"]["name"] != "by_run":
+        rule = f"cuts inside records, and {', '.join(names)} sees whole ones"
+        yield "protocol.name", rule, whole["protocol"]["name"], "choose protocol=by_run"
+    for key, value in typed(whole) if names and len(names) == len(whole.models.names) else ():
+        if key in ("protocol.window", "protocol.stride", "protocol.evaluation_stride"):
+            yield key, f"acts on networks of windows, and {', '.join(names)} sees whole records", value, "leave it out"
+
+
+def _evaluated(whole: Whole) -> Found:
+    """What only an evaluation reads, and what it needs of the runs."""
+    for key, value in typed(whole) if whole["task"] != "evaluate" else ():
+        if key.startswith("evaluation."):
+            yield key, f"acts in task=evaluate, and this is task={whole['task']}", value, "leave it out"
+    if whole["task"] == "evaluate" and DAMPING_RATIO not in whole.simulator.family.spreads:
+        rule = "has no range of damping ratios, beside which an estimate could be good"
+        yield "family", rule, whole.simulator.family.name, "choose family=bench, field or paper"
+    drawn = [effect.name for effect in whole.simulator.model.effects if isinstance(effect, HeldLoad)]
+    if whole["task"] == "evaluate" and whole["evaluation"]["known_model"] and drawn:
+        rule = f"{', '.join(drawn)} is drawn, and no estimator knows it"
+        yield "evaluation.known_model", rule, True, "leave it out"
+    if whole["task"] == "evaluate" and whole["evaluation"]["snr_db"] and whole.simulator.sensor_noise_db is not None:
+        rule = "takes the place of simulator.sensor_noise, and both are given"
+        yield "evaluation.snr_db", rule, whole["evaluation"]["snr_db"], "leave one of them out"
+
+
+def _noise_twice(whole: Whole) -> Found:
+    """The noise of training records is drawn, or is that of the simulated sensor."""
+    drawn = whole["training"]["noise_snr_db"]
+    if drawn is not None and whole["task"] == "train" and whole.simulator.sensor_noise_db is not None:
+        rule = "takes the place of simulator.sensor_noise, and both are given"
+        yield "training.noise_snr_db", rule, drawn, "leave one of them out"
+
+
+def _resume(whole: Whole) -> Found:
+    path = whole["resume"]
+    of_training = "*/seed_*/last.ckpt"
+    if path is not None and not any(Path(path).glob(RESUMABLE.get(whole["task"], of_training))):
+        what, kind = ("finished part", "study") if whole["task"] in RESUMABLE else ("checkpoint", "training")
+        yield "resume", f"holds no {what} to go on from", path, f"give the folder of an interrupted {kind}"
+
+
+def _of_a_search(whole: Whole) -> Found:
+    """What only a search for causes reads would be accepted by other tasks without any effect."""
+    for key, value in typed(whole) if whole["task"] != "explain" else ():
+        if key.startswith(SEARCHED):
+            yield key, f"acts in task=explain, and this is task={whole['task']}", value, "leave it out"
+
+
+def _of_a_plan(whole: Whole) -> Found:
+    """What only a plan reads is refused elsewhere, and what a plan does not read is refused there."""
+    for key, value in typed(whole):
+        if whole["task"] != PLAN and key.startswith("plan."):
+            yield key, f"acts in task={PLAN}, and this is task={whole['task']}", value, "leave it out"
+        elif whole["task"] == PLAN and key.startswith(NOT_PLANNED):
+            yield key, f"has no effect in task={PLAN}", value, "leave it out"
+
+
+def _of_the_paper(whole: Whole) -> Found:
+    """The paper's study makes its own effects, families and protocols; other tasks have no figures of the paper."""
+    for key, value in typed(whole):
+        if whole["task"] != "paper" and key == "figures":
+            yield key, f"acts in task=paper, and this is task={whole['task']}", value, "leave it out"
+        elif whole["task"] == "paper" and (key == OWN_NOISE or not key.startswith(TAKEN_BY_PAPER)):
+            yield key, "has no effect: task=paper makes every effect, family and protocol itself", value, "leave it out"
+
+
+BY_TASK: tuple[tuple[tuple[str, ...], Callable[[Whole], Found]], ...] = (
+    (("task", "checkpoint"), _checkpoint),
+    (("task", "checkpoint", "model"), _estimators),
+    (("model", "wavelet"), _wavelet_of_networks),
+    (("task", "model", "protocol"), _whole_records),
+    (("task", "evaluation", "simulator", "family"), _evaluated),
+    (("task", "training", "simulator"), _noise_twice),
+    (("task", "resume"), _resume),
+    (("task", "explain", "ruled_out"), _of_a_search),
+    (("task",), _of_a_plan),
+    (("task",), _of_the_paper),
+)

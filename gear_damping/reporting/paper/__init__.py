@@ -1,0 +1,1 @@
+"""The figures and tables of Yousfi et al. (2026), printed beside repeated."""
