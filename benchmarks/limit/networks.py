@@ -19,8 +19,9 @@ from gear_damping.simulation.plan import run_plan
 from gear_damping.tasks.simulated import plan_of, run_set_of
 
 WHOLE = "record_cwt_lstm"
-NETWORKS = ("raw_lstm", "cwt_lstm", WHOLE)
+NETWORKS = (WHOLE, "raw_lstm", "cwt_lstm")
 VALIDATION, TEST = 0.075, 1e-4  # of the runs; other runs are tested on
+VALIDATION_STRIDE = 150  # samples between windows of validation runs
 WINDOW_RUNS = 4000  # that networks of windows are trained on: 8 million windows
 _sets: dict[int, RunSet] = {}  # of the last seed: three networks share it
 
@@ -36,8 +37,9 @@ def trained(name: str, seed: int, folder: Path, n_runs: int) -> None:
     protocol = replace(BY_RUN, validation_fraction=VALIDATION, test_fraction=TEST)
     if whole:
         protocol = replace(protocol.of_whole_records(runs.n_samples), windows_per_epoch=None)
-    elif len(runs) > WINDOW_RUNS:
-        runs = runs.subset(torch.arange(WINDOW_RUNS))
+    else:
+        protocol = replace(protocol, evaluation_stride=VALIDATION_STRIDE)
+        runs = runs.subset(torch.arange(min(WINDOW_RUNS, len(runs))))
     noise = SensorNoise(tuple(training.noise_snr_db))
     data = WindowDataModule(Material(runs, protocol, noise), seed=seed)
     config = EstimatorConfig(name, settings.model.settings[name] if whole else {})
