@@ -41,6 +41,11 @@ class KnownRuns:
     def __len__(self) -> int:
         return len(self.records)
 
+    def pick(self, chosen: Tensor) -> "KnownRuns":
+        """Those of the runs that a mask (runs,) names."""
+        names = ("centre", "spread", "records", "noise")
+        return replace(self, runs=self.runs.keep(chosen), **{name: getattr(self, name)[chosen] for name in names})
+
     def values(self, ratio: Tensor, start: Tensor, repeat: int = 1) -> dict[str, Tensor]:
         """Parameters of the runs, one block of all runs after another.
 

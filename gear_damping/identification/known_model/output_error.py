@@ -1,9 +1,11 @@
 """Output error of many runs at once: damping ratio and start by least squares on simulated responses.
 
 Gauss-Newton steps with Levenberg's damping over growing stretches of the record (Ljung 1999, chapter 10), several
-damping ratios to begin with. The answer is the mean of the distribution that is left, normal within the range.
+damping ratios to begin with; more of them, and more slowly, where more is left than the noise. The answer is the mean
+of the distribution that is left, normal within the range.
 """
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import torch
@@ -12,11 +14,30 @@ from torch import Tensor
 from gear_damping.identification.known_model.estimate import Estimates, within
 from gear_damping.identification.known_model.family import KnownRuns
 
-SHARES = (0.1, 0.45, 0.8)  # of the range of damping ratios: where the starts lie
-STRETCHES = (60, 200, 600)  # samples, before the whole record
-STEPS = (5, 5, 6, 10)  # of each stretch
+DOUBT = 2.0  # standard deviations of a sum of squares above what noise leaves: then another valley is looked for
 STEP = 1e-4  # of the range, and of a deviation of the start: differences
 FEWER, MORE, FIRST = 0.2, 5.0, 1e-2  # Levenberg's damping after a good and a bad step, and at first
+
+
+@dataclass(frozen=True)
+class _Search:
+    """Where to begin and how to go on.
+
+    Args:
+        shares: Of the range of damping ratios: where the starts lie.
+        stretches: Samples that are looked at one after another, before the whole record.
+        kept: Starts that are left after each stretch, the best ones; one after the whole record.
+    """
+
+    shares: tuple[float, ...]
+    stretches: tuple[int, ...]
+    kept: tuple[int, ...]
+
+
+PLAIN = _Search((0.1, 0.45, 0.8), (60, 200, 600), (3, 3, 1))
+SIXTEEN = tuple((number + 0.5) / 16 for number in range(16))
+CAREFUL = _Search(SIXTEEN, (60, 100, 170, 300, 500, 850, 1400), (16, 16, 12, 8, 8, 6, 6))
+STEPS, LAST = 5, 10  # of each stretch, and of the whole record
 
 
 class _Points(NamedTuple):
@@ -30,19 +51,32 @@ class _Points(NamedTuple):
 def output_error(known: KnownRuns) -> Estimates:
     """The damping ratio of each run in %, with its 90 % interval."""
     length = known.records.shape[1]
-    stretches = [one for one in STRETCHES if one < length] + [length]
-    places = torch.zeros(len(SHARES), len(known), 3, dtype=torch.float64)
-    places[..., 0] = torch.tensor(SHARES, dtype=torch.float64)[:, None]
-    for number, samples in enumerate(stretches):
-        points = _began(known, places, samples)
-        for _ in range(STEPS[number - len(stretches)]):
-            points = _stepped(known, points, samples)
-        places = _best(points).unsqueeze(0) if samples >= STRETCHES[-1] else points.places
-    information = _information(known, places)
-    deviation = torch.linalg.inv(information)[:, 0, 0].sqrt()
+    found = _found(known, PLAIN)
+    doubtful = found.cost[0] > length + DOUBT * (2 * length) ** 0.5
+    if bool(doubtful.any()):
+        again = _found(known.pick(doubtful), CAREFUL)
+        better = again.cost[0] < found.cost[0, doubtful]
+        found.places[0, doubtful] = torch.where(better.unsqueeze(-1), again.places[0], found.places[0, doubtful])
+    deviation = torch.linalg.inv(_information(known, found.places))[:, 0, 0].sqrt()
     low, high = known.range_percent
-    scale = high - low
-    return within(low + scale * places[0, :, 0], scale * deviation, (low, high))
+    return within(low + (high - low) * found.places[0, :, 0], (high - low) * deviation, (low, high))
+
+
+def _found(known: KnownRuns, search: _Search) -> _Points:
+    """The lowest point of each run that a search comes to, one start."""
+    length, places = known.records.shape[1], torch.zeros(len(search.shares), len(known), 3, dtype=torch.float64)
+    places[..., 0] = torch.tensor(search.shares, dtype=torch.float64)[:, None]
+    shorter = [(samples, kept) for samples, kept in zip(search.stretches, search.kept, strict=True) if samples < length]
+    for samples, kept in shorter:
+        places = _best(_walked(known, places, samples, STEPS), kept).places
+    return _best(_walked(known, places, length, LAST), 1)
+
+
+def _walked(known: KnownRuns, places: Tensor, samples: int, steps: int) -> _Points:
+    points = _began(known, places, samples)
+    for _ in range(steps):
+        points = _stepped(known, points, samples)
+    return points
 
 
 def _residuals(known: KnownRuns, places: Tensor, samples: int) -> Tensor:
@@ -83,10 +117,11 @@ def _stepped(known: KnownRuns, points: _Points, samples: int) -> _Points:
     )
 
 
-def _best(points: _Points) -> Tensor:
-    """The coordinates of the start that came lowest, (runs, 3)."""
-    first = points.cost.argmin(0)
-    return points.places[first, torch.arange(len(first))]
+def _best(points: _Points, kept: int) -> _Points:
+    """The starts that came lowest, run by run."""
+    order = points.cost.argsort(0)[:kept]
+    places = points.places.gather(0, order.unsqueeze(-1).expand(-1, -1, 3))
+    return _Points(places, points.cost.gather(0, order), points.damping.gather(0, order))
 
 
 def _information(known: KnownRuns, places: Tensor) -> Tensor:
