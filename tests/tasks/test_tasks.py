@@ -89,6 +89,37 @@ def test_evaluate_scores_a_checkpoint_on_fresh_runs(trained, tmp_path):
     assert list(record_of(tmp_path / "run")["inputs"]) == [str(checkpoint)]
 
 
+def test_evaluate_asks_every_network_of_a_training_and_what_knows_the_equation(trained, tmp_path):
+    asked = [f"checkpoint={trained}", "evaluation.snr_db=[30,10]", "evaluation.known_model=true", "family=bench"]
+    assert main([*QUICK, "task=evaluate", *asked, *own(tmp_path)]) == 0
+    found = json.loads((tmp_path / "run" / "evaluation.json").read_text())
+    networks = {"raw_lstm", "cwt_lstm", "white_noise"}
+    for level in found["snr_db"].values():
+        assert set(level["estimators"]) == networks | {"output_error", "unscented_kalman", "mean"}
+        assert len(level["estimators"]["cwt_lstm"]["per_seed"]) == 2
+        assert level["estimators"]["output_error"]["coverage90"] > 0.5
+        assert level["estimators"]["output_error"]["rmse_percent"] < level["estimators"]["mean"]["rmse_percent"]
+    assert found["snr_db"]["30"]["bound_percent"] < found["snr_db"]["10"]["bound_percent"]
+    assert (tmp_path / "run" / "evaluation.png").is_file()
+    assert len(record_of(tmp_path / "run")["inputs"]) == 6
+
+
+@pytest.mark.parametrize(
+    ("asked", "rule"),
+    [
+        (["evaluation.snr_db=[30,30]"], "a list of different numbers"),
+        (["evaluation.snr_db=[30]", "+simulator.sensor_noise={}"], "takes the place of simulator.sensor_noise"),
+        (["evaluation.known_model=true", "experiment=noise"], "no estimator knows it"),
+        (["family=none"], "has no range of damping ratios"),
+        (["simulator.sampling_rate=20000"], "was trained at 40000 Hz"),
+    ],
+)
+def test_what_cannot_be_evaluated_is_said(asked, rule, trained, tmp_path, said):
+    checkpoint = trained / "raw_lstm" / "seed_0" / "best.ckpt"
+    assert main([*QUICK, "task=evaluate", f"checkpoint={checkpoint}", *asked, *own(tmp_path)]) == 1
+    assert rule in said()
+
+
 def test_simulated_runs_come_back_as_a_measurement_and_are_identified(trained, tmp_path):
     """simulate -> measurement.yaml -> identify with a trained network."""
     arguments = ["task=simulate", "write_measurement=true", "simulator.n_runs=2", "simulator.sensor_offset={}"]
