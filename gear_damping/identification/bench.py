@@ -8,7 +8,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.identification.cramer_rao import cramer_rao
-from gear_damping.identification.evaluation import is_regular, with_prior
+from gear_damping.identification.evaluation import is_repeatable, with_prior
 from gear_damping.identification.known_model.estimate import Estimates
 from gear_damping.identification.known_model.family import START, KnownRuns, range_of, start_of
 from gear_damping.identification.seeding import seeded_generator
@@ -113,4 +113,4 @@ def bench(plan: SimulationPlan, runs: Runs, levels: Sequence[float], signals: Te
         if snr < CLEAN
     }
     deviations = {snr: bounds[snr].deviation(DAMPING_RATIO) if snr in bounds else None for snr in levels}
-    return Bench(plan, runs, deviations, is_regular(runs, plan.solver), shown)
+    return Bench(plan, runs, deviations, is_repeatable(runs, plan.solver), shown)

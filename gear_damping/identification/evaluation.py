@@ -18,7 +18,7 @@ FINER = 1e-2  # of the accuracy: of the computation that a run is held against
 PARTED = 1e-3  # of a run's deviation by which two computations of it may part
 
 
-def is_regular(runs: Runs, solver: Solver) -> Tensor:
+def is_repeatable(runs: Runs, solver: Solver) -> Tensor:
     """Which runs have a bound, (runs,): those that a finer computation repeats.
 
     Where flanks part and meet again, a motion can be chaotic. A change of its damping by any small amount then makes

@@ -24,7 +24,8 @@ def bound(
     """The smallest standard deviation that any unbiased estimate can have, by name, run by run, (batch,).
 
     The Cramer-Rao bound for a record of the response behind white noise, whose displacement and velocity at the start
-    are unknown.
+    are unknown. Of a chaotic run, in which flanks part again and again, it says nothing: its sensitivities grow without
+    end.
 
     Args:
         runs: As `simulate` gives them, with the values that are true.

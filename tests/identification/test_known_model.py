@@ -10,7 +10,7 @@ from scipy.optimize import least_squares
 from scipy.stats import truncnorm
 
 from gear_damping.identification.cramer_rao import cramer_rao
-from gear_damping.identification.evaluation import is_regular, scores, with_prior
+from gear_damping.identification.evaluation import is_repeatable, scores, with_prior
 from gear_damping.identification.known_model.estimate import Estimates, within
 from gear_damping.identification.known_model.family import KnownRuns, range_of, start_of
 from gear_damping.identification.known_model.output_error import output_error
@@ -130,14 +130,14 @@ def test_a_motion_that_no_computation_repeats_has_no_bound():
     """Light load and a small gap: flanks part and meet again, and neighbouring motions part without end."""
     plan = gears(40, gap=100e-6)
     runs = run_plan(plan)
-    regular = is_regular(runs, plan.solver)
+    regular = is_repeatable(runs, plan.solver)
     parting = runs.response.min(-1).values < 0
     assert bool(regular[~parting].all())
     calm = run_plan(gears(8))
-    assert bool(is_regular(calm, Solver()).all())
+    assert bool(is_repeatable(calm, Solver()).all())
     rough = Solver(accuracy=0.3)  # a computation that is wrong itself is not repeated either
     coarse = simulate(calm.model, calm.values, sampling_rate=40e3, n_samples=1000, solver=rough)
-    assert not bool(is_regular(coarse, rough).all())
+    assert not bool(is_repeatable(coarse, rough).all())
 
 
 def test_scores_are_what_they_say():
