@@ -75,17 +75,19 @@ def _by_network(settings: Settings, measurement: Measurement, folder: RunFolder)
     estimator = load_estimator(settings.checkpoint, settings.model.plugins)
     found = estimator.predict(measurement, settings.measurement_channel)
     mean = sum(one.damping_ratio_percent for one in found.values()) / len(found)
+    only = next(iter(found.values())).interval95 if len(found) == 1 else None
     content = {
         "system": measurement.system,
         "method": "network",
         "parameters": {},
-        "damping_ratio_percent": {"value": mean, "interval95": None},
+        "damping_ratio_percent": {"value": mean, "interval95": only},
         "natural_frequency_hz": None,
         "residual": {"fit": None, "holdout": None},
         "records": {
             name: {
                 "damping_ratio_percent": one.damping_ratio_percent,
-                "spread_over_windows_percent": one.spread_percent,
+                "interval95": one.interval95,
+                "spread_percent": one.spread_percent,  # over windows; of a network of records, its own deviation
                 "outside_training": list(one.outside),
             }
             for name, one in found.items()
@@ -95,6 +97,13 @@ def _by_network(settings: Settings, measurement: Measurement, folder: RunFolder)
     for name, one in found.items():
         if one.outside:
             statements.say(f"warning: {name} lies outside what the network was trained on: {'; '.join(one.outside)}")
+    for name, one in found.items():
+        if one.interval95:
+            low, high = one.interval95
+            said = f"damping ratio {one.damping_ratio_percent:.4f} % of critical, 95 % interval {low:.4f} to {high:.4f}"
+            statements.say(f"{name}: {said}")
     statements.say(f"damping ratio {mean:.4f} % of critical, the mean over {len(found)} records")
-    statements.say("a network of windows gives no interval, and holds only for gears like those it was trained on")
+    holds = "holds only for gears like those that the network was trained on"
+    sure = all(one.interval95 for one in found.values())
+    statements.say(f"it {holds}" if sure else f"a network of windows gives no interval; what it says {holds}")
     return {"damping_ratio_percent": mean}

@@ -1,5 +1,6 @@
 """The network of whole records: its features, its likelihood, the intervals that it states, and what it refuses."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -18,6 +19,7 @@ from gear_damping.identification.noise import SensorNoise
 from gear_damping.identification.protocols import BY_RUN, PAPER
 from gear_damping.identification.runs import RunSet
 from gear_damping.identification.trainer import Place, Training, fit_estimator, predict_windows
+from gear_damping.tasks.command import main
 from gear_damping.tasks.composed import composed
 
 RATE, SAMPLES = 1000.0, 200
@@ -166,3 +168,21 @@ def test_keys_that_would_do_nothing_are_refused(overrides, key, said):
 def test_a_frequency_beyond_the_rate_is_said():
     with pytest.raises(ValueError, match="highest_hz"):
         fit_estimator(EstimatorConfig("record_cwt_lstm"), data(60), TRAINING, Place("unused"), seed=1)
+
+
+def test_a_record_is_told_with_its_interval_from_the_command_line(tmp_path):
+    """Train on a few runs, record one more, identify it."""
+    few = ["simulator.n_runs=700", "simulator.n_samples=400", "training.max_epochs=1", "model.hidden_size=4"]
+    own = [f"data_folder={tmp_path}/data", "progress=false"]
+    run = tmp_path / "trained"
+    assert main(["experiment=limit", *few, "protocol.validation_fraction=0.5", f"hydra.run.dir={run}", *own]) == 0
+    one = ["task=simulate", "experiment=limit", "simulator.n_runs=1", few[1], "write_measurement=true"]
+    assert main([*one, f"hydra.run.dir={tmp_path}/sim", *own]) == 0
+    asked = [f"measurement.path={tmp_path}/sim/measurement/measurement.yaml"]
+    checkpoint = run / "record_cwt_lstm" / "seed_0" / "best.ckpt"
+    found = ["task=identify", *asked, f"checkpoint={checkpoint}", f"hydra.run.dir={tmp_path}/found", "progress=false"]
+    assert main(found) == 0
+    content = json.loads((tmp_path / "found" / "identification.json").read_text())
+    low, high = content["damping_ratio_percent"]["interval95"]
+    assert low < content["damping_ratio_percent"]["value"] < high
+    assert content["records"]["run_1"]["interval95"] == [low, high]

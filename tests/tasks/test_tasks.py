@@ -140,6 +140,7 @@ def test_simulated_runs_come_back_as_a_measurement_and_are_identified(trained, t
     assert found["damping_ratio_percent"]["value"] > 0
     assert str(path) in record_of(tmp_path / "again")["inputs"]
     assert all("outside_training" in one for one in found["records"].values())
+    assert all(one["interval95"] is None for one in found["records"].values())
 
 
 def a_measurement(folder, system, channel, unit, values, conditions=""):
