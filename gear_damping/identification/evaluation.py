@@ -64,8 +64,9 @@ def scores(true: Tensor, said: Estimates, limit: Tensor | None, mean: float) -> 
 
     Returns:
         `rmse_percent`; `median_relative_error` and `p90_relative_error`; `ratio_to_bound`, the root mean square of the
-        error over the limit, and `typical_ratio`, the same from its median, as of a normal distribution, which a few
-        runs do not rule (both None without a limit); `skill` against the mean; `coverage90`, None without intervals.
+        error over the limit, `typical_ratio`, the same from its median, as of a normal distribution, which a few runs
+        do not rule, and `rmse_to_bound`, over the root mean square of the limits (these None without a limit); `skill`
+        against the mean; `coverage90`, None without intervals.
     """
     error = (said.ratio - true).double()
     over = None if limit is None else error / limit
@@ -76,6 +77,7 @@ def scores(true: Tensor, said: Estimates, limit: Tensor | None, mean: float) -> 
         "median_relative_error": median_relative_error(true, said.ratio),
         "p90_relative_error": float(relative.quantile(0.9)),
         "ratio_to_bound": None if over is None else float(over.square().mean().sqrt()),
+        "rmse_to_bound": None if limit is None else float((error.square().mean() / limit.square().mean()).sqrt()),
         "typical_ratio": None if over is None else float(over.abs().median()) / NORMAL_MEDIAN,
         "skill": skill(true, said.ratio, mean),
         "coverage90": None if bool(torch.isnan(said.low).any()) else float(held),

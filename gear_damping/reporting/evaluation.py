@@ -10,7 +10,7 @@ from gear_damping.reporting.style import INK, colour_of, legend_above, marker_of
 
 NO_NOISE = 120.0  # dB
 COLUMNS = (
-    "SNR / dB", "bound / %", "estimator", "RMSE / %", "ratio to bound", "typical ratio", "skill",
+    "SNR / dB", "bound / %", "estimator", "RMSE / %", "ratio to bound", "typical ratio", "RMSE over bound", "skill",
     "90 % interval holds", "ms a record",
 )  # fmt: skip
 
@@ -25,7 +25,7 @@ def evaluation_table(content: Mapping[str, Any]) -> str:
     for snr, level in content["snr_db"].items():
         for name, found in level["estimators"].items():
             covered = "–" if found["coverage90"] is None else f"{100 * found['coverage90']:.1f} %"
-            ratios = (_to(found[key], "{:.2f}") for key in ("ratio_to_bound", "typical_ratio"))
+            ratios = (_to(found[key], "{:.2f}") for key in ("ratio_to_bound", "typical_ratio", "rmse_to_bound"))
             skill, bound = _to(found["skill"], "{:.3f}"), _to(level["bound_percent"], "{:.4f}")
             shown = "no noise" if float(snr) >= NO_NOISE else snr
             cells = (shown, bound, f"`{name}`", f"{found['rmse_percent']:.4f}", *ratios, skill, covered)

@@ -146,6 +146,7 @@ def test_scores_are_what_they_say():
     found = scores(true, said, torch.full_like(true, 0.1), 2.5)
     assert found["rmse_percent"] == pytest.approx(math.sqrt(0.11 / 4))
     assert found["ratio_to_bound"] == pytest.approx(math.sqrt(11 / 4))
+    assert found["rmse_to_bound"] == pytest.approx(math.sqrt(0.11 / 4) / 0.1)
     assert found["typical_ratio"] == pytest.approx(1 / 0.67449, rel=1e-4)
     assert found["skill"] == pytest.approx(1 - 0.11 / 5)
     assert found["coverage90"] == 0.75
