@@ -17,6 +17,7 @@ from gear_damping.physics.terms import HeldLoad
 from gear_damping.simulation.plan import SimulationPlan
 from gear_damping.simulation.runs import Runs
 
+EXACT = 1e-6  # of the size of a motion: how well a start is known that a family does not vary
 CLEAN = 120.0  # dB: noise below what single precision holds
 
 
@@ -105,8 +106,10 @@ def bench(plan: SimulationPlan, runs: Runs, levels: Sequence[float], signals: Te
         every = torch.ones(len(shown), dtype=torch.bool)
         return Bench(plan, runs, dict.fromkeys(levels), every, shown)
     _, spread = start_of(runs, plan.family)
-    known = {name: float(size) for name, size in zip(START, spread.mean(0), strict=True) if size > 0}
     rms = shown.std(-1, correction=0)
+    usual = (float(rms.mean()), float(runs.reference_velocity.mean()))
+    sizes = zip(START, spread.mean(0).tolist(), usual, strict=True)
+    known = {name: max(size, EXACT * unit) for name, size, unit in sizes}
     bounds = {
         snr: cramer_rao(runs, [DAMPING_RATIO], rms * 10 ** (-snr / 20), expected=known, solver=plan.solver)
         for snr in levels

@@ -1,6 +1,7 @@
 """Estimators that know the equation: against least squares on closed forms, and against the bound."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -81,6 +82,15 @@ def test_the_filter_finds_the_same_within_its_deviation(decays):
         assert float(said.ratio[number]) == pytest.approx(place, abs=deviation)  # it linearises each sample once
         half = float(said.high[number] - said.low[number]) / 2
         assert half == pytest.approx(1.6449 * deviation, rel=0.15)
+
+
+def test_a_start_that_is_known_exactly_is_taken_as_it_is(decays):
+    """Of rest, or of any start that a family does not vary."""
+    known = replace(decays, centre=torch.as_tensor(STARTS), spread=torch.zeros(4, 2, dtype=torch.float64))
+    for said in (output_error(known), unscented_kalman(known)):
+        half = (said.high - said.low) / 2
+        assert bool(((said.ratio - RATIOS).abs() < 2 * half).all())
+        assert bool((half < 0.1).all())
 
 
 def test_a_cut_normal_distribution_is_that_of_scipy():

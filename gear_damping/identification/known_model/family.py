@@ -46,18 +46,27 @@ class KnownRuns:
         names = ("centre", "spread", "records", "noise")
         return replace(self, runs=self.runs.keep(chosen), **{name: getattr(self, name)[chosen] for name in names})
 
-    def values(self, ratio: Tensor, start: Tensor, repeat: int = 1) -> dict[str, Tensor]:
+    @property
+    def units(self) -> Tensor:
+        """What displacement and velocity are counted in, (runs, 2): the spread of the start, or that of the motion."""
+        usual = torch.stack([self.records.std(-1), self.runs.reference_velocity], -1)
+        return torch.where(self.spread > 0, self.spread, usual)
+
+    def values(
+        self, ratio: Tensor, start: Tensor, repeat: int = 1, units: Tensor | None = None
+    ) -> dict[str, Tensor]:
         """Parameters of the runs, one block of all runs after another.
 
         Args:
             ratio: Damping ratio in %, (repeat * runs,).
-            start: Displacement and velocity at the start in standard deviations about the centre, (repeat * runs, 2).
+            start: Displacement and velocity at the start about the centre, (repeat * runs, 2).
             repeat: Blocks.
+            units: What these are counted in, (runs, 2); standard deviations of the start where absent.
         """
         found = {name: _repeated(value, repeat) for name, value in self.runs.values.items()}
         velocity = self.runs.reference_velocity.repeat(repeat)
         found |= coefficients_for(self.runs.model, found, self.law, ratio / 100, velocity)
-        places = self.centre.repeat(repeat, 1) + start * self.spread.repeat(repeat, 1)
+        places = self.centre.repeat(repeat, 1) + start * (self.spread if units is None else units).repeat(repeat, 1)
         return found | dict(zip(START, places.unbind(-1), strict=True))
 
     def response(self, ratio: Tensor, start: Tensor, samples: int) -> Tensor:

@@ -25,7 +25,8 @@ def unscented_kalman(known: KnownRuns) -> Estimates:
     low, high = (log(end) for end in known.range_percent)
     mean = torch.zeros(len(known), SIZE, dtype=torch.float64)
     mean[:, 2] = (low + high) / 2
-    covariance = torch.diag_embed(torch.ones_like(mean))
+    covariance = DRIFT * torch.eye(SIZE, dtype=torch.float64).repeat(len(known), 1, 1)
+    covariance[:, :2, :2] += torch.diag_embed((known.spread / known.units).square())
     covariance[:, 2, 2] = (high - low) ** 2 / 12
     weights = _weights()
     for sample in range(known.records.shape[1]):
@@ -65,7 +66,7 @@ def _moments(points: Tensor, weights: tuple[Tensor, Tensor]) -> tuple[Tensor, Te
 
 def _corrected(known: KnownRuns, sample: int, mean: Tensor, covariance: Tensor) -> tuple[Tensor, Tensor]:
     """After a look at one sample: the displacement is seen behind noise, so that this step is exact."""
-    scale = known.spread[:, 0]
+    scale = known.units[:, 0]
     off = (known.records[:, sample] - known.centre[:, 0]) / scale - mean[:, 0]
     gain = covariance[:, :, 0] / (covariance[:, 0, 0] + (known.noise / scale) ** 2)[:, None]
     left = torch.eye(SIZE, dtype=torch.float64).repeat(len(mean), 1, 1)
@@ -81,7 +82,7 @@ def _moved(known: KnownRuns, points: Tensor, sample: int) -> Tensor:
     blocks, runs = points.shape[:2]
     low, high = (log(end) for end in known.range_percent)
     ratio = points[..., 2].clamp(low - WIDEST, high + WIDEST).exp().reshape(-1)
-    values = known.values(ratio, points[..., :2].reshape(-1, 2), blocks)
+    values = known.values(ratio, points[..., :2].reshape(-1, 2), blocks, known.units)
     seconds = torch.full((blocks * runs,), sample / known.runs.sampling_rate, dtype=torch.float64)
     values |= known.runs.model.system.begun_later(values, seconds)
     inputs = {name: one[:, sample : sample + 2].repeat(blocks, 1) for name, one in known.runs.inputs.items()}
@@ -94,5 +95,5 @@ def _moved(known: KnownRuns, points: Tensor, sample: int) -> Tensor:
         solver=known.solver,
     )
     last = torch.stack([found.states["displacement"][:, -1], found.states["velocity"][:, -1]], -1)
-    places = (last - known.centre.repeat(blocks, 1)) / known.spread.repeat(blocks, 1)
+    places = (last - known.centre.repeat(blocks, 1)) / known.units.repeat(blocks, 1)
     return torch.cat([places.reshape(blocks, runs, 2), points[..., 2:]], -1)
