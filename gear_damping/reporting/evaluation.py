@@ -29,7 +29,7 @@ def evaluation_table(content: Mapping[str, Any]) -> str:
             skill, bound = _to(found["skill"], "{:.3f}"), _to(level["bound_percent"], "{:.4f}")
             shown = "no noise" if float(snr) >= NO_NOISE else snr
             cells = (shown, bound, f"`{name}`", f"{found['rmse_percent']:.4f}", *ratios, skill, covered)
-            taken = f"{1e3 * found['seconds_per_record']:.2g}"
+            taken = f"{1e3 * found['seconds_per_record']:.3g}"
             rows.append(f"| {' | '.join((*cells, taken))} |")
     return "\n".join(rows)
 
