@@ -16,10 +16,10 @@ import torch
 from benchmarks.limit import page
 from benchmarks.limit.bench import SNRS, bench
 from benchmarks.limit.networks import NETWORKS, say_of_network, trained
-from gear_damping.identification.bench import Bench
+from gear_damping.identification.bench import Bench, mean_over_seeds
 from gear_damping.identification.known_model.estimate import Estimates
 from gear_damping.reporting.evaluation import evaluation_table
-from gear_damping.tasks.evaluate import KNOWING, mean_over_seeds
+from gear_damping.tasks.evaluate import KNOWING
 
 CHUNK = 250  # runs that these take at once
 MINUTES = 85  # at most, of one call

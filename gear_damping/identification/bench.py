@@ -3,12 +3,13 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import torch
 from torch import Tensor
 
 from gear_damping.identification.cramer_rao import cramer_rao
-from gear_damping.identification.evaluation import is_repeatable, with_prior
+from gear_damping.identification.evaluation import is_repeatable, scores, with_prior
 from gear_damping.identification.known_model.estimate import Estimates
 from gear_damping.identification.known_model.family import START, KnownRuns, range_of, start_of
 from gear_damping.identification.seeding import seeded_generator
@@ -18,6 +19,7 @@ from gear_damping.simulation.plan import SimulationPlan
 from gear_damping.simulation.runs import Runs
 
 EXACT = 1e-6  # of the size of a motion: how well a start is known that a family does not vary
+Said = tuple[Estimates, float]  # of one training, with the seconds that a record took
 CLEAN = 120.0  # dB: noise below what single precision holds
 
 
@@ -117,3 +119,16 @@ def bench(plan: SimulationPlan, runs: Runs, levels: Sequence[float], signals: Te
     }
     deviations = {snr: bounds[snr].deviation(DAMPING_RATIO) if snr in bounds else None for snr in levels}
     return Bench(plan, runs, deviations, is_repeatable(runs, plan.solver), shown)
+
+
+def mean_over_seeds(made: Bench, said: list[Said], snr: float) -> dict[str, Any]:
+    """Figures of one estimator over the regular runs: means over its trainings, with those of each."""
+    kept, limit = made.regular, made.limit(snr)
+    limit = None if limit is None else limit[kept]
+    each = [
+        dict(scores(made.true[kept], Estimates(*(part[kept] for part in one)), limit, made.mean_ratio))
+        for one in ((e.ratio, e.low, e.high) for e, _ in said)
+    ]
+    found = {key: None if each[0][key] is None else sum(one[key] for one in each) / len(each) for key in each[0]}
+    found["seconds_per_record"] = sum(seconds for _, seconds in said) / len(said)
+    return found | ({"per_seed": each} if len(each) > 1 else {})

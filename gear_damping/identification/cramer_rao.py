@@ -125,7 +125,7 @@ def _sensitivity(runs: Runs, name: str, samples: int, solver: Solver | None) -> 
     moved = []
     for side in (1, -1):
         values = {**runs.values, name: value + side * STEP * scale}
-        inputs = Driven({n: series[:, :samples] for n, series in runs.inputs.items()}) if runs.inputs else None
+        inputs = Driven({n: series[:, :samples] for n, series in runs.inputs.items()})
         again = simulate(
             runs.model, values, sampling_rate=runs.sampling_rate, n_samples=samples, inputs=inputs, solver=solver
         )

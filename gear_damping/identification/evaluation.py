@@ -29,7 +29,7 @@ def is_repeatable(runs: Runs, solver: Solver) -> Tensor:
         solver: What they were simulated with.
     """
     finer = replace(solver, accuracy=FINER * solver.accuracy, progress=None)
-    inputs = Driven(dict(runs.inputs)) if runs.inputs else None
+    inputs = Driven(dict(runs.inputs))
     again = simulate(
         runs.model,
         runs.values,

@@ -133,10 +133,13 @@ class DampingModule(L.LightningModule):
     def validation_step(self, batch: tuple[Tensor, Tensor], _: int) -> None:
         """Collect the errors, so that the figures are those of the whole set, not a mean over batches."""
         features = self.front_end(batch[0])
-        loss, found = self.network.loss(features, batch[1])
-        self._count("val", loss, found, batch[1])
         if self.network.is_likelihood:
-            self._said.append((*self.network.distribution(features), batch[1]))
+            found, deviation = self.network.distribution(features)
+            loss = self.network.unlikelihood(found, deviation, batch[1])
+            self._said.append((found, deviation, batch[1]))
+        else:
+            loss, found = self.network.loss(features, batch[1])
+        self._count("val", loss, found, batch[1])
 
     def _count(self, part: str, loss: Tensor, found: Tensor, labels: Tensor) -> None:
         square = (found - labels).square()

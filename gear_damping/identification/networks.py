@@ -138,7 +138,11 @@ class GaussianNetwork(DampingNetwork):
     def loss(self, features: Tensor, labels: Tensor) -> tuple[Tensor, Tensor]:
         """Mean negative log likelihood of the labels, in units of their spread, and the damping ratios."""
         found, deviation = self.distribution(features)
-        return (((labels - found) / deviation).square() / 2 + (deviation / self.label_scale).log()).mean(), found
+        return self.unlikelihood(found, deviation, labels), found
+
+    def unlikelihood(self, found: Tensor, deviation: Tensor, labels: Tensor) -> Tensor:
+        """Mean negative log likelihood of labels under normal distributions, (batch,) each; a scalar."""
+        return (((labels - found) / deviation).square() / 2 + (deviation / self.label_scale).log()).mean()
 
     def calibrate(self, found: Tensor, deviation: Tensor, labels: Tensor) -> None:
         """Take the widths of the intervals from runs that training did not see, (runs,) each."""

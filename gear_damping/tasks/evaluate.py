@@ -12,9 +12,7 @@ from gear_damping.config.settings import Settings
 from gear_damping.config.simulator import SENSOR_NOISE
 from gear_damping.errors import InputError, Problem
 from gear_damping.identification.asked import estimates_of
-from gear_damping.identification.bench import CLEAN, Bench, bench
-from gear_damping.identification.evaluation import scores
-from gear_damping.identification.known_model.estimate import Estimates
+from gear_damping.identification.bench import CLEAN, Bench, Said, bench, mean_over_seeds
 from gear_damping.identification.known_model.output_error import output_error
 from gear_damping.identification.known_model.unscented_kalman import unscented_kalman
 from gear_damping.identification.lightning_module import DampingModule, load_estimator
@@ -28,7 +26,6 @@ from gear_damping.tasks.simulated import TEST_SEED, plan_of, simulated
 BEST = "*/seed_*/best.ckpt"  # of a training's folder
 SHOWN = ("rmse_percent", "median_relative_error", "skill", "ratio_to_bound", "coverage90")
 KNOWING = {"output_error": output_error, "unscented_kalman": unscented_kalman}
-Said = tuple[Estimates, float]
 
 
 def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
@@ -111,19 +108,6 @@ def _asked(
         begun = perf_counter()
         yield name, (estimate(made.known(rows, snr)), (perf_counter() - begun) / len(rows))
     yield "mean", (made.mean_predictor, 0.0)
-
-
-def mean_over_seeds(made: Bench, said: list[Said], snr: float) -> dict[str, Any]:
-    """Figures of one estimator over the regular runs: means over its trainings, with those of each."""
-    kept, limit = made.regular, made.limit(snr)
-    limit = None if limit is None else limit[kept]
-    each = [
-        dict(scores(made.true[kept], Estimates(*(part[kept] for part in one)), limit, made.mean_ratio))
-        for one in ((e.ratio, e.low, e.high) for e, _ in said)
-    ]
-    found = {key: None if each[0][key] is None else sum(one[key] for one in each) / len(each) for key in each[0]}
-    found["seconds_per_record"] = sum(seconds for _, seconds in said) / len(said)
-    return found | ({"per_seed": each} if len(each) > 1 else {})
 
 
 def _first(content: Mapping[str, Any]) -> dict[str, Any]:

@@ -71,18 +71,22 @@ class KnownRuns:
 
     def response(self, ratio: Tensor, start: Tensor, samples: int) -> Tensor:
         """Response to blocks of damping ratios (blocks, runs) and starts (blocks, runs, 2): (blocks, runs, samples)."""
-        blocks = len(ratio)
-        values = self.values(ratio.reshape(-1), start.reshape(-1, 2), blocks)
-        inputs = {name: _repeated_rows(series[:, :samples], blocks) for name, series in self.runs.inputs.items()}
-        found = simulate(
+        values = self.values(ratio.reshape(-1), start.reshape(-1, 2), len(ratio))
+        return self.simulated(values, samples).response.reshape(len(ratio), len(self), samples)
+
+    def simulated(self, values: dict[str, Tensor], samples: int, first: int = 0) -> Runs:
+        """Blocks of all runs with these parameters, (blocks * runs,), from sample `first` of their inputs on."""
+        blocks = len(values[START[0]]) // len(self)
+        part = slice(first, first + samples)
+        inputs = {name: series[:, part].repeat(blocks, 1) for name, series in self.runs.inputs.items()}
+        return simulate(
             self.runs.model,
             values,
             sampling_rate=self.runs.sampling_rate,
             n_samples=samples,
-            inputs=Driven(inputs) if inputs else None,
+            inputs=Driven(inputs),
             solver=replace(self.solver, progress=None),
         )
-        return found.response.reshape(blocks, len(self), samples)
 
 
 def start_of(runs: Runs, family: Family) -> tuple[Tensor, Tensor]:
@@ -103,9 +107,5 @@ def range_of(family: Family) -> tuple[float, float]:
 
 def _repeated(value: Tensor, count: int) -> Tensor:
     return value.repeat(count) if value.ndim == 1 else value.repeat(1, count)
-
-
-def _repeated_rows(series: Tensor, count: int) -> Tensor:
-    return series.repeat(count, 1)
 
 

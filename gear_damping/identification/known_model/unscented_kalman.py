@@ -11,8 +11,6 @@ from torch import Tensor
 
 from gear_damping.identification.known_model.estimate import HALF, Estimates
 from gear_damping.identification.known_model.family import KnownRuns
-from gear_damping.simulation.driven import Driven
-from gear_damping.simulation.simulate import simulate
 
 SIZE = 3  # displacement and velocity in units of their spread at the start, and ln(damping ratio)
 ALPHA, BETA, KAPPA = 0.5, 2.0, 0.0  # spread of the sigma points, what is known of a normal distribution, and the rest
@@ -85,15 +83,7 @@ def _moved(known: KnownRuns, points: Tensor, sample: int) -> Tensor:
     values = known.values(ratio, points[..., :2].reshape(-1, 2), blocks, known.units)
     seconds = torch.full((blocks * runs,), sample / known.runs.sampling_rate, dtype=torch.float64)
     values |= known.runs.model.system.begun_later(values, seconds)
-    inputs = {name: one[:, sample : sample + 2].repeat(blocks, 1) for name, one in known.runs.inputs.items()}
-    found = simulate(
-        known.runs.model,
-        values,
-        sampling_rate=known.runs.sampling_rate,
-        n_samples=2,
-        inputs=Driven(inputs) if inputs else None,
-        solver=known.solver,
-    )
+    found = known.simulated(values, 2, sample)
     last = torch.stack([found.states["displacement"][:, -1], found.states["velocity"][:, -1]], -1)
     places = (last - known.centre.repeat(blocks, 1)) / known.units.repeat(blocks, 1)
     return torch.cat([places.reshape(blocks, runs, 2), points[..., 2:]], -1)
