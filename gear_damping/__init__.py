@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from gear_damping.interface.bound import bound
     from gear_damping.interface.damping import Damping, damping
     from gear_damping.interface.estimator import Estimator, estimator, load_estimator
+    from gear_damping.interface.evaluated import Evaluation, evaluate
     from gear_damping.interface.explained import Answer, explain
     from gear_damping.interface.identified import Identification, identify
     from gear_damping.interface.model import Model
@@ -44,6 +45,7 @@ _PLACES = {
     "Damping": ("interface.damping", "Damping"),
     "Driven": ("simulation.driven", "Driven"),
     "Estimator": ("interface.estimator", "Estimator"),
+    "Evaluation": ("interface.evaluated", "Evaluation"),
     "GearPair": ("physics.systems.gear_pair", "GearPair"),
     "Identification": ("interface.identified", "Identification"),
     "InputError": ("errors", "InputError"),
@@ -62,6 +64,7 @@ _PLACES = {
     "bound": ("interface.bound", "bound"),
     "damping": ("interface.damping", "damping"),
     "estimator": ("interface.estimator", "estimator"),
+    "evaluate": ("interface.evaluated", "evaluate"),
     "explain": ("interface.explained", "explain"),
     "identify": ("interface.identified", "identify"),
     "load": ("measurement.load", "load_measurement"),
@@ -75,10 +78,10 @@ _EFFECTS = {
 }
 
 __all__ = [
-    "Answer", "Damping", "Driven", "Estimator", "GearPair", "Identification", "InputError", "Listener", "Measurement",
-    "Model", "Oscillator", "Plan", "PlanCosts", "PlanGoal", "PlannedSensor", "PlannedTests", "Simulation", "Solver",
-    "Unknown", "__version__", "bound", "damping", "estimator", "explain", "identify", "load", "load_estimator", "plan",
-    "simulate",
+    "Answer", "Damping", "Driven", "Estimator", "Evaluation", "GearPair", "Identification", "InputError", "Listener",
+    "Measurement", "Model", "Oscillator", "Plan", "PlanCosts", "PlanGoal", "PlannedSensor", "PlannedTests",
+    "Simulation", "Solver", "Unknown", "__version__", "bound", "damping", "estimator", "evaluate", "explain",
+    "identify", "load", "load_estimator", "plan", "simulate",
 ]  # fmt: skip
 
 

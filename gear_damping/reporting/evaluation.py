@@ -28,10 +28,17 @@ def evaluation_table(content: Mapping[str, Any]) -> str:
             ratios = (_to(found[key], "{:.2f}") for key in ("ratio_to_bound", "typical_ratio", "rmse_to_bound"))
             skill, bound = _to(found["skill"], "{:.3f}"), _to(level["bound_percent"], "{:.4f}")
             shown = "no noise" if float(snr) >= NO_NOISE else snr
-            cells = (shown, bound, f"`{name}`", f"{found['rmse_percent']:.4f}", *ratios, skill, covered)
+            error = _to(found["rmse_percent"], "{:.4f}")
+            cells = (shown, bound, _named(name, found, content["test_runs"]), error, *ratios, skill, covered)
             taken = f"{1e3 * found['seconds_per_record']:.3g}"
             rows.append(f"| {' | '.join((*cells, taken))} |")
     return "\n".join(rows)
+
+
+def _named(name: str, found: Mapping[str, Any], runs: int) -> str:
+    """The estimator, with how many of the runs suit it where not all do."""
+    answered = found.get("answered", runs)
+    return f"`{name}`" if answered == runs else f"`{name}` ({answered} of {runs} runs suit it)"
 
 
 def _to(value: float | None, style: str) -> str:
@@ -46,7 +53,7 @@ def evaluation_figure(content: Mapping[str, Any]) -> Figure:
         axes = shown.subplots()
         names = next(iter(levels.values()))["estimators"]
         for number, name in enumerate(names):
-            errors = [level["estimators"][name]["rmse_percent"] for level in levels.values()]
+            errors = [level["estimators"][name]["rmse_percent"] or math.nan for level in levels.values()]
             look = {"color": colour_of(name, number), "marker": marker_of(name)}
             axes.plot(list(levels), errors, "--" if name == "mean" else "-", label=name, **look)
         bounds = [level["bound_percent"] or math.nan for level in levels.values()]
