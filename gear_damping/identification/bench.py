@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import torch
@@ -20,6 +21,7 @@ from gear_damping.simulation.runs import Runs
 
 EXACT = 1e-6  # of the size of a motion: how well a start is known that a family does not vary
 Said = tuple[Estimates, float]  # of one training, with the seconds that a record took
+BANDS = 4  # of the range of damping ratios, in which errors are told apart
 CLEAN = 120.0  # dB: noise below what single precision holds
 
 
@@ -131,4 +133,22 @@ def mean_over_seeds(made: Bench, said: list[Said], snr: float) -> dict[str, Any]
     ]
     found = {key: None if each[0][key] is None else sum(one[key] for one in each) / len(each) for key in each[0]}
     found["seconds_per_record"] = sum(seconds for _, seconds in said) / len(said)
+    found["by_damping_ratio"] = _by_ratio(made, [one for one, _ in said])
     return found | ({"per_seed": each} if len(each) > 1 else {})
+
+
+def _by_ratio(made: Bench, said: Sequence[Estimates]) -> list[dict[str, float]]:
+    """Error and median relative error in each quarter of the range of damping ratios that holds runs."""
+    low, high = made.ends
+    edges = [low + (high - low) * number / BANDS for number in range(BANDS + 1)]
+    found = []
+    for start, end in pairwise(edges):
+        kept = made.regular & (start <= made.true) & ((made.true < end) | (end == high))
+        if not bool(kept.any()):
+            continue
+        errors = torch.stack([one.ratio[kept].double() - made.true[kept] for one in said])
+        error = errors.square().mean(1).sqrt().mean()
+        relative = (errors.abs() / made.true[kept]).median(1).values.mean()
+        row = {"from_percent": start, "to_percent": end, "runs": int(kept.sum())}
+        found.append(row | {"rmse_percent": float(error), "median_relative_error": float(relative)})
+    return found

@@ -35,6 +35,22 @@ def evaluation_table(content: Mapping[str, Any]) -> str:
     return "\n".join(rows)
 
 
+def ratio_table(content: Mapping[str, Any]) -> str:
+    """Error against the damping ratio, a row for every level of noise and estimator, as Markdown.
+
+    Args:
+        content: Of `evaluation.json`.
+    """
+    bands = next(iter(next(iter(content["snr_db"].values()))["estimators"].values()))["by_damping_ratio"]
+    ranges = [f"{band['from_percent']:.3g} to {band['to_percent']:.3g} % ({band['runs']} runs)" for band in bands]
+    rows = [f"| SNR / dB | RMSE / % of | {' | '.join(ranges)} |", "|---" * (len(ranges) + 2) + "|"]
+    for snr, level in content["snr_db"].items():
+        for name, found in level["estimators"].items():
+            errors = (f"{band['rmse_percent']:.4f}" for band in found["by_damping_ratio"])
+            rows.append(f"| {'no noise' if float(snr) >= NO_NOISE else snr} | `{name}` | {' | '.join(errors)} |")
+    return "\n".join(rows)
+
+
 def _named(name: str, found: Mapping[str, Any], runs: int) -> str:
     """The estimator, with how many of the runs suit it where not all do."""
     answered = found.get("answered", runs)

@@ -17,7 +17,7 @@ from gear_damping.identification.known_model.output_error import output_error
 from gear_damping.identification.known_model.unscented_kalman import unscented_kalman
 from gear_damping.identification.lightning_module import DampingModule, load_estimator
 from gear_damping.reporting import figures
-from gear_damping.reporting.evaluation import evaluation_figure, evaluation_table
+from gear_damping.reporting.evaluation import evaluation_figure, evaluation_table, ratio_table
 from gear_damping.simulation.plan import SimulationPlan
 from gear_damping.tasks import statements
 from gear_damping.tasks.run_folder import RunFolder
@@ -43,7 +43,7 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     content["snr_db"] = {f"{snr:g}": _level(made, snr, modules, settings) for snr in made.bounds}
     first = _first(content)
     folder.write_json("evaluation.json", {**first, **content})
-    text = evaluation_table(content)
+    text = f"{evaluation_table(content)}\n\n{ratio_table(content)}"
     folder.write_text("evaluation.txt", text)
     statements.say(text)
     figures.save(evaluation_figure(content), folder.path / "evaluation.png")

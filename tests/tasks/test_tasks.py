@@ -99,7 +99,14 @@ def test_evaluate_asks_every_network_of_a_training_and_what_knows_the_equation(t
         assert len(level["estimators"]["cwt_lstm"]["per_seed"]) == 2
         assert level["estimators"]["output_error"]["coverage90"] > 0.5
         assert level["estimators"]["output_error"]["rmse_percent"] < level["estimators"]["mean"]["rmse_percent"]
+        for one in level["estimators"].values():
+            bands = one["by_damping_ratio"]
+            assert sum(band["runs"] for band in bands) == found["test_runs"] - found["irregular_runs"]
+            whole = sum(band["runs"] * band["rmse_percent"] ** 2 for band in bands) / sum(b["runs"] for b in bands)
+            if "per_seed" not in one:  # of several, the mean of roots is no root of the mean
+                assert whole**0.5 == pytest.approx(one["rmse_percent"], rel=1e-4)
     assert found["snr_db"]["30"]["bound_percent"] < found["snr_db"]["10"]["bound_percent"]
+    assert "| SNR / dB | RMSE / % of | 0.1 to 0.225 %" in (tmp_path / "run" / "evaluation.txt").read_text()
     assert (tmp_path / "run" / "evaluation.png").is_file()
     assert len(record_of(tmp_path / "run")["inputs"]) == 6
 
