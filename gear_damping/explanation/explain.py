@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import inf
 from typing import Any
 
 from torch import Tensor
@@ -84,7 +83,7 @@ def explain(
     listener: Listener = NOBODY,
     solver: Solver | None = None,
     library: Mapping[str, type[Effect]] | None = None,
-    minutes: float = inf,
+    budget: Budget | None = None,
     settings: SearchSettings | None = None,
 ) -> Explanation:
     """Explain a measurement.
@@ -94,13 +93,14 @@ def explain(
         listener: Who is told on the way.
         solver: Settings of the solver.
         library: Effects that may be causes, by name; the whole catalogue where absent.
-        minutes: Time of the search; when it is over, the best verdict so far says what was not tried.
+        budget: Time of the search; when it is over, the best verdict so far says what was not tried. As long as it
+            takes where absent.
         settings: Thresholds of the search; the defaults where absent.
 
     Raises:
         InputError: a record lacks the channel that its system is explained from.
     """
-    say, step, budget = listener.say, listener.progress, Budget(minutes)
+    say, step, budget = listener.say, listener.progress, budget or Budget()
     faults = data_faults(measurement)
     if faults:
         return Explanation(content.of_faults(measurement, faults))

@@ -9,6 +9,7 @@ from typing import Any
 
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.explanation import explain as explaining
+from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.explain import NOBODY, Listener
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.interface.model import Model
@@ -102,7 +103,8 @@ def explain(
     if wrong:
         raise InputError(wrong)
     library = {name: kind for name, kind in known.items() if name not in ruled_out}
-    return Answer(explaining.explain(measurement, listener, solver, library, minutes, SearchSettings(**thresholds)))
+    budget, settings = Budget(minutes), SearchSettings(**thresholds)
+    return Answer(explaining.explain(measurement, listener, solver, library, budget, settings))
 
 
 def _wrong(thresholds: Mapping[str, float]) -> list[Problem]:

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from gear_damping.config.settings import Settings
+from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.explain import Explanation, Listener, explain
 from gear_damping.explanation.model.extended_simulator import write_extended
 from gear_damping.measurement.load import load_measurement
@@ -23,8 +24,9 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     measurement = load_measurement(settings.measurement_path, plugins=settings.measurement_plugins)
     folder.add_inputs(measurement.files)
     with progress_bar("explaining", settings.progress) as progress:
-        limits = {"library": _library(settings), "minutes": settings.explain_minutes, "settings": settings.search}
-        found = explain(measurement, Listener(statements.say, progress), settings.simulator.solver, **limits)
+        listener, solver = Listener(statements.say, progress), settings.simulator.solver
+        budget = Budget(settings.explain_minutes)
+        found = explain(measurement, listener, solver, _library(settings), budget, settings.search)
     folder.write_json("explanation.json", found.content)
     if found.found is not None:
         _write_extended(folder.path / EXTENDED, found, measurement)

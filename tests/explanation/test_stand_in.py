@@ -99,7 +99,8 @@ def test_what_takes_less_than_a_cause_must_is_stood_in_for_by_none(forced):
 
 
 def test_what_there_is_no_time_to_ask_is_noted(forced):
-    state, budget = forced, Budget(1.0, [], -1e9)
+    state, budget = forced, Budget(1.0)
+    budget.clock = lambda: math.inf
     friction = replace(state.accepted[0], name="coulomb_friction")
     late = replace(state, bench=SimpleNamespace(**vars(state.bench) | {"budget": budget}))
     assert list(stand_ins(late))  # of a single cause it takes no fit

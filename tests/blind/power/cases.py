@@ -90,5 +90,6 @@ def keep(rows: Sequence[dict[str, Any]], path: Path) -> None:
     kept, named = [], ("name", "status", "confusable_with")
     for row in sorted(rows, key=lambda row: (row["seed"], row["stratum"])):
         causes = [{key: cause[key] for key in named} for cause in row["answer"]["causes"]]
-        kept.append(row | {"answer": {"verdict": row["answer"]["verdict"], "causes": causes}})
+        said = {key: row["answer"][key] for key in ("verdict", "seconds") if key in row["answer"]}
+        kept.append(row | {"answer": said | {"causes": causes}})
     path.write_text("".join(json.dumps(row) + "\n" for row in kept), encoding="utf-8")
