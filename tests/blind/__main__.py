@@ -50,7 +50,7 @@ def main(given: list[str] | None = None) -> int:
         return 130 if stopped else 0
     found = write(cases, options.out, PAGE if options.page else None, " ".join(["make blind", *_shown(given)]))
     for claim, row in found["rates"].items():
-        _say(f"{claim}: {row['count']} of {row['n']} ({row['target']}: {'met' if row['met'] else 'NOT met'})")
+        _say(f"{claim}: {row['count']} of {row['n']} ({row['target']}: {row['met']})")
     _say(f"rates and table: {options.out}")
     return 130 if stopped else 0
 

@@ -8,6 +8,7 @@ from .strata import NOISES, same_class
 
 LOUD = 4.0  # times the noise floor, from where an effect outside the catalogue has to be called unexplained
 LARGEST_SET = 4
+BUDGET = 300.0  # s of one core
 UNDISTURBED = ("data_problem", "refused", "consistent", "unexplained")
 Case = dict[str, Any]
 
@@ -29,7 +30,11 @@ def offered(answer: dict[str, Any]) -> list[str]:
 
 def judged(case: Case) -> dict[str, bool | None]:
     """The claims about one case by the names of `rates.TARGETS`."""
-    everywhere = {"any case: a wrong name established": _wrong(case), "did not crash": _sound(case)}
+    everywhere = {
+        "any case: a wrong name established": _wrong(case),
+        "any case: over its budget": case["seconds"] > BUDGET,
+        "did not crash": _sound(case),
+    }
     return JUDGES[case["stratum"]](case, case["answer"]) | everywhere
 
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import statistics
+from collections import Counter
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from scipy.stats import beta
+import numpy as np
+from scipy.stats import PermutationMethod, beta, chi2_contingency
 
 from .accuracy import errors, misfits
 from .judge import Case, channel_of, damping_held, judged, names
@@ -54,8 +56,11 @@ TARGETS = {
     },
     "outside or removed, a name established": (0.02, "at most"),
     "any case: a wrong name established": (0.01, "at most"),
+    "any case: over its budget": (0.0, "at most"),
     "did not crash": (1.0, "at least"),
 }
+MET, NOT_CONTRADICTED, MISSED = "met", "not contradicted", "no"  # the interval, the estimate, or neither is within
+SAME_LEVEL, RESAMPLED, SEED = 0.01, 9999, 0  # of the test that cells are alike; its permutations, their seed
 
 
 def clopper_pearson(count: int, n: int, level: float = 0.95) -> tuple[float, float]:
@@ -72,7 +77,7 @@ def rates(cases: Sequence[Case]) -> dict[str, Any]:
     """Everything that rates.json holds."""
     verdicts = [(case, judged(case)) for case in cases]
     rows = {claim: row for claim in TARGETS if (row := _row(claim, verdicts))}
-    found = errors(case for case in cases if case["stratum"] == "single")
+    found = errors(cases)
     return {
         "cases": len(cases),
         "engines": sorted({case["engine"] for case in cases}),
@@ -83,8 +88,9 @@ def rates(cases: Sequence[Case]) -> dict[str, Any]:
             "median_relative_error": statistics.median(error for error, _ in found) if found else None,
             "interval_coverage": _counted([held for _, held in found]) if found else None,
         },
-        "seconds": {"median": statistics.median(c["seconds"] for c in cases) if cases else None},
+        "seconds": _seconds([case["seconds"] for case in cases]),
         "effects": _by_effect(verdicts),
+        "cells": _alike(verdicts),
         "rigs": _by(lambda case: case["truth"].get("pair") or "20/40", verdicts, ("rigs",)),
         "channels": _by(channel_of, verdicts, ("rigs", "channels", "oscillators")),
     }
@@ -96,10 +102,38 @@ def _row(claim: str, verdicts: Sequence[tuple[Case, dict]]) -> dict[str, Any] | 
         return None
     target, side = TARGETS[claim]
     row = _counted([value for _, value in counted])
-    met = row["rate"] >= target if side == "at least" else row["rate"] <= target
+    low, high = row["interval95"]
+    nearest, farthest = (row["rate"], low) if side == "at least" else (-row["rate"], -high)
+    bound = target if side == "at least" else -target
+    met = MET if farthest >= bound else NOT_CONTRADICTED if nearest >= bound else MISSED
     wrong = [f"{c['stratum']} {c['seed']}" for c, value in counted if value != (side == "at least")]
     seeds = sorted({case["seed"] for case, _ in counted})
     return row | {"target": f"{side} {target:g}", "met": met, "seeds": [seeds[0], seeds[-1]], "failed": wrong}
+
+
+def _seconds(values: Sequence[float]) -> dict[str, float] | None:
+    """Of one core, for a diagnosis."""
+    if not values:
+        return None
+    return {"median": statistics.median(values), "p95": float(np.quantile(values, 0.95)), "longest": max(values)}
+
+
+def _alike(verdicts: Sequence[tuple[Case, dict]]) -> dict[str, Any] | None:
+    """Whether rigs are answered alike: one test of homogeneity over pinions by plans of sensors, by permutations."""
+    cells: dict[tuple[str, str], Counter] = {}
+    for case, value in verdicts:
+        if case["stratum"] == "rigs" and case.get("sensors") != "inertia_wrong":
+            claims = {claim.split(": ")[-1]: said for claim, said in value.items()}
+            right = claims["null consistent"] if not names(case) else claims["named or in the set"]
+            cell = (case["truth"].get("pair", "20/40").split("/")[0], case["truth"].get("sensors") or "full")
+            cells.setdefault(cell, Counter())[bool(right)] += 1
+    table = np.array([[cell[True], cell[False]] for cell in cells.values()])
+    if len(table) < 2 or not table.sum(0).all():
+        return None
+    method = PermutationMethod(n_resamples=RESAMPLED, rng=np.random.default_rng(SEED))
+    p = float(chi2_contingency(table, correction=False, method=method).pvalue)
+    return {"cells": len(table), "cases": int(table.sum()), "right": int(table[:, 0].sum()), "p": p,
+            "alike": p > SAME_LEVEL}  # fmt: skip
 
 
 def _counted(values: Sequence[bool]) -> dict[str, Any]:

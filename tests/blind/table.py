@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from .judge import Case
+from .rates import MISSED
 from .strata import COUNTS, MEANING
 
 HEAD = """# Blind cases
@@ -26,11 +27,12 @@ def table(found: dict[str, Any], cases: Sequence[Case], command: str) -> str:
 
 
 def _basis(found: dict[str, Any], command: str) -> str:
-    engines = len(found["engines"])
+    engines, seconds = len(found["engines"]), found["seconds"]
     said = "one version" if engines == 1 else f"{engines} versions"
     return (
         f"Written by `{command}` from {found['cases']} cases, explained by {said} of the package "
-        f"({', '.join(found['engines'])}); a diagnosis took {found['seconds']['median']:.3g} s (median, one core).\n"
+        f"({', '.join(found['engines'])}); a diagnosis took {seconds['median']:.3g} s of one core (median; nineteen of "
+        f"twenty at most {seconds['p95']:.3g}, the longest {seconds['longest']:.3g}), its kernels compiled.\n"
     )
 
 
@@ -38,10 +40,13 @@ def _rates(found: dict[str, Any]) -> str:
     rows = ["| what | rate | of | 95 % interval | target | met |", "|---|---|---|---|---|---|"]
     for claim, row in found["rates"].items():
         low, high = (f"{100 * v:.1f}" for v in row["interval95"])
-        met = "yes" if row["met"] else "**no**"
+        met = f"**{row['met']}**" if row["met"] == MISSED else row["met"]
         rows.append(f"| {claim} | {100 * row['rate']:.1f} % | {row['n']} | {low} to {high} % | "
                     f"{_percent(row['target'])} | {met} |")  # fmt: skip
-    note = "`of` is the number of seeds that a rate rests on; intervals are those of Clopper and Pearson.\n"
+    note = (
+        "`of` is the number of seeds that a rate rests on; intervals are those of Clopper and Pearson. *Met*: the "
+        "interval lies within the target; *not contradicted*: only the rate does.\n"
+    )
     return "\n".join(["## Rates", "", *rows, "", note])
 
 
@@ -62,6 +67,12 @@ def _figures(found: dict[str, Any]) -> str:
         lines.append(
             f"- Parameters of named effects that mean the same on both sides: median error "
             f"{100 * own['median_relative_error']:.2g} %; {held['count']} of {held['n']} intervals hold the truth."
+        )
+    cells = found["cells"]
+    if cells:
+        lines.append(
+            f"- Other rigs: {cells['right']} of {cells['cases']} cases right in {cells['cells']} cells (teeth of the "
+            f"pinion by plan of sensors); that all cells are alike has p = {cells['p']:.2g}."
         )
     return "\n".join(["## Figures", "", *lines, ""]) if lines else ""
 

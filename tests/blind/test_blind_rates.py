@@ -110,7 +110,33 @@ def test_a_damaged_file_that_is_explained_counts_against(verdict):
 def test_a_crash_is_counted():
     found = rates([case("null", verdict="crashed"), case("null", verdict="consistent", seed=1)])
     assert found["rates"]["did not crash"]["count"] == 1
-    assert not found["rates"]["did not crash"]["met"]
+    assert found["rates"]["did not crash"]["met"] == "no"
+
+
+@pytest.mark.parametrize(("wrong", "n", "word"), [(0, 20, "not contradicted"), (0, 200, "met"), (5, 200, "no")])
+def test_a_target_is_met_where_the_whole_interval_is_within_it(wrong, n, word):
+    cases = [case("null", causes=[cause("backlash")] if i < wrong else [], seed=i) for i in range(n)]
+    assert rates(cases)["rates"]["null names a cause"]["met"] == word
+
+
+def test_a_diagnosis_over_its_budget_counts_and_times_are_told():
+    slow = [case("null", seed=i) | {"seconds": 10.0 + 40 * i} for i in range(11)]
+    found = rates(slow)
+    assert found["rates"]["any case: over its budget"]["failed"] == [f"null {i}" for i in (8, 9, 10)]
+    assert found["seconds"] == {"median": 210.0, "p95": pytest.approx(390.0), "longest": 410.0}
+
+
+def test_cells_are_alike_unless_one_of_them_is_always_wrong():
+    def asked(cell_wrong):
+        return [
+            other(verdict="unexplained" if wrong else "consistent", seed=10 * place + i, sensors=sensors)
+            for place, sensors in enumerate(("ac", "encoders", "speed"))
+            for i in range(10)
+            for wrong in [sensors == cell_wrong or i == 0]
+        ]
+
+    assert rates(asked(None))["cells"] | {"p": None} == {"cells": 3, "cases": 30, "right": 27, "p": None, "alike": True}
+    assert not rates(asked("speed"))["cells"]["alike"]
 
 
 def test_rates_say_how_many_seeds_they_rest_on_and_which_failed():
@@ -118,7 +144,7 @@ def test_rates_say_how_many_seeds_they_rest_on_and_which_failed():
     cases.append(case("null", causes=[cause("backlash")], seed=19))
     row = rates(cases)["rates"]["null names a cause"]
     assert (row["count"], row["n"], row["seeds"], row["failed"]) == (1, 20, [0, 19], ["null 19"])
-    assert not row["met"]  # one of twenty, where one of fifty is allowed
+    assert row["met"] == "no"  # one of twenty, where one of fifty is allowed
     assert row["interval95"] == pytest.approx(clopper_pearson(1, 20))
 
 
