@@ -1,12 +1,14 @@
 """The time that a search may take, and what it then has not tried."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from math import inf
 from time import monotonic
 
 SEARCH_SHARE = 0.85  # of the time; the rest is for what is under way, for opening held-out records,
 LAST_SHARE = 0.97  # and for seeing whether what was found is what it seems
+LOOKS_LEFT = 2.5  # after the search: beside the last cause, once more where one is dropped, and half a one to spare
 
 
 @dataclass
@@ -23,6 +25,7 @@ class Budget:
     clock: Callable[[], float] = monotonic
     not_tried: list[str] = field(default_factory=list)
     _begun: float = field(init=False)
+    _look: float = field(default=0.0, init=False)
 
     def __post_init__(self) -> None:
         """Begin."""
@@ -31,10 +34,18 @@ class Budget:
     @property
     def spent(self) -> bool:
         """Whether the time for the search is over."""
-        return self._is_over(SEARCH_SHARE)
+        kept = LOOKS_LEFT * self._look
+        return self._is_over(SEARCH_SHARE) or self.clock() - self._begun + kept > 60 * self.minutes
 
     def _is_over(self, share: float) -> bool:
         return self.clock() - self._begun > 60 * share * self.minutes
+
+    @contextmanager
+    def looking(self) -> Iterator[None]:
+        """Around a look at what is left, of which the longest says how much time is kept for the last ones."""
+        begun = self.clock()
+        yield
+        self._look = max(self._look, self.clock() - begun)
 
     @property
     def sentence(self) -> str:

@@ -46,8 +46,9 @@ def _doubted(state: State) -> State:
 
 def looked(state: State) -> State:
     """With scores beside the present model, and what its residuals hold; the noise follows from what is random."""
-    ranked = tuple(state.bench.ranked(state.outcome))
-    left = state.bench.assessed(state.outcome, ranked)
+    with state.bench.budget.looking():
+        ranked = tuple(state.bench.ranked(state.outcome))
+        left = state.bench.assessed(state.outcome, ranked)
     state = replace(state, bench=state.bench.knowing(left), ranked=ranked, left=left)
     if state.outcome is state.nominal:  # nothing is accepted, or all was calibrated anew
         state = replace(state, first_scores=ranked, seen=left)

@@ -29,3 +29,17 @@ def test_what_comes_last_has_time_when_the_search_is_over():
     for second, is_over in ((260.0, False), (289.0, False), (293.0, True)):
         clock.now = second
         assert made.refuses("what it stands in for", is_last=True) is is_over
+
+
+def test_time_is_kept_for_the_last_looks_where_one_takes_long():
+    """Of 300 s two and a half looks of 40 s leave 200; of 10 s the usual share is more."""
+    for look, last in ((40.0, 200.0), (10.0, 255.0)):
+        clock = Clock()
+        made = Budget(5.0, clock)
+        with made.looking():
+            clock.now = look
+        with made.looking():
+            clock.now += 1.0  # the longest counts
+        for second, is_over in ((last - 1, False), (last + 1, True)):
+            clock.now = second
+            assert made.spent is is_over
