@@ -20,7 +20,13 @@ NOT_PLANNED = (
     "family.", "protocol", "training", "model", "wavelet", "measurement", "seeds", "checkpoint", "resume",
     "write_measurement", "data_folder", "simulator.n_runs", "simulator.n_samples", "simulator.diverged_share",
 )  # how keys begin that a plan does not read; a choice of family may say the rig's speed
-RESUMABLE = {"paper": "parts/*.json"}  # what an interrupted task leaves in its folder, of a training a checkpoint
+RESUMABLE = {"paper": "parts/*.json", "train": "*/seed_*/last.ckpt"}  # what an interrupted task leaves in its folder
+COLLECT = "collect"
+
+
+def resumable(task: str, folder: Path) -> bool:
+    """Whether a folder holds something that a task can go on from."""
+    return task in RESUMABLE and any(folder.glob(RESUMABLE[task]))
 
 
 def _checkpoint(whole: Whole) -> Found:
@@ -97,11 +103,19 @@ def _noise_twice(whole: Whole) -> Found:
 
 
 def _resume(whole: Whole) -> Found:
-    path = whole["resume"]
-    of_training = "*/seed_*/last.ckpt"
-    if path is not None and not any(Path(path).glob(RESUMABLE.get(whole["task"], of_training))):
-        what, kind = ("finished part", "study") if whole["task"] in RESUMABLE else ("checkpoint", "training")
+    path, task = whole["resume"], whole["task"]
+    if path is not None and not resumable(task if task in RESUMABLE else "train", Path(path)):
+        what, kind = ("finished part", "study") if task == "paper" else ("checkpoint", "training")
         yield "resume", f"holds no {what} to go on from", path, f"give the folder of an interrupted {kind}"
+
+
+def _collected(whole: Whole) -> Found:
+    """The folder of a sweep, which only its task reads."""
+    path, task = whole["sweep"], whole["task"]
+    if task == COLLECT and path is None:
+        yield "sweep", f"task={COLLECT} needs the folder of a sweep", None, "sweep=outputs/sweep/…"
+    elif task != COLLECT and path is not None:
+        yield "sweep", f"acts in task={COLLECT}, and this is task={task}", path, "leave it out"
 
 
 def _of_a_search(whole: Whole) -> Found:
@@ -138,6 +152,7 @@ BY_TASK: tuple[tuple[tuple[str, ...], Callable[[Whole], Found]], ...] = (
     (("task", "training", "simulator"), _noise_twice),
     (("task", "resume"), _resume),
     (("task", "explain", "ruled_out"), _of_a_search),
+    (("task", "sweep"), _collected),
     (("task",), _of_a_plan),
     (("task",), _of_the_paper),
 )

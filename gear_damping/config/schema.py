@@ -10,7 +10,7 @@ from gear_damping.errors import Problem, nearest
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.reporting.paper.printed import EFFECTS
 
-TASKS = ("train", "simulate", "evaluate", "identify", "explain", "inspect", "plan", "paper")
+TASKS = ("train", "simulate", "evaluate", "identify", "explain", "inspect", "plan", "paper", "collect")
 
 
 @dataclass(frozen=True)
@@ -51,6 +51,7 @@ SCHEMA: dict[str, Any] = {
     "seeds": Key("int", 1, 1000),
     "checkpoint": Key("text", optional=True),
     "resume": Key("text", optional=True),
+    "sweep": Key("text", optional=True),
     "data_folder": Key("text"),
     "progress": Key("bool"),
     "ruled_out": Key("names", optional=True),

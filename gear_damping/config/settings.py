@@ -29,6 +29,7 @@ class Settings:
     seeds: int
     checkpoint: Path | None
     resume: Path | None
+    sweep: Path | None
     data_folder: Path
     progress: bool
     ruled_out: tuple[str, ...]
@@ -92,6 +93,7 @@ def read_settings(config: Mapping[str, Any], origin: Origin) -> Settings:
         seeds=config["seeds"],
         checkpoint=_path(config["checkpoint"]),
         resume=_path(config["resume"]),
+        sweep=_path(config["sweep"]),
         data_folder=Path(config["data_folder"]),
         progress=config["progress"],
         ruled_out=tuple(config["ruled_out"] or ()),

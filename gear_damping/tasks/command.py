@@ -7,17 +7,22 @@ from pathlib import Path
 
 import hydra
 from hydra.core.hydra_config import HydraConfig
+from hydra.types import RunMode
 from omegaconf import DictConfig
 
 from gear_damping.config.command_line import CommandLine, read_command_line, swept_keys
 from gear_damping.config.locate import conf_folder, groups
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
-from gear_damping.tasks import sweep
 from gear_damping.tasks.composed import choices_of, plain, problems_of
 from gear_damping.tasks.dispatch import INTERRUPTED_CODE, OK, run_job
+from gear_damping.tasks.sweep import callback
+from gear_damping.tasks.sweep.folder import PLACE, place_of, problem_with_place, read_sweep, sweep_of, unfinished
+from gear_damping.tasks.sweep.job import Place as JobPlace
+from gear_damping.tasks.sweep.job import limit_cores, run_swept
 from gear_damping.tasks.wrong_declaration import WRONG_INPUT, say_problems, start_logging
 
+log = logging.getLogger("gear_damping")
 _codes: list[int] = []
 _CHOOSING = {"task", "experiment", "measurement", "measurement.path"}  # what decides which measurement is read
 
@@ -33,7 +38,9 @@ def main(arguments: Sequence[str]) -> int:
     if problems:
         say_problems(InputError(problems))
         return WRONG_INPUT
-    return _run(typed)
+    if typed.many and not typed.shows:
+        return _sweep(typed)
+    return _run(typed.flags, typed.overrides)
 
 
 def _problems_of(typed: CommandLine) -> list[Problem]:
@@ -50,11 +57,36 @@ def _concerns(problem: Problem, swept: str) -> bool:
     return swept in groups() or problem.key == swept or problem.key.startswith(swept + ".")
 
 
-def _run(typed: CommandLine) -> int:
+def _sweep(typed: CommandLine) -> int:
+    """Run a sweep, or go on with the one that the same command began; returns the exit code."""
+    from gear_damping.tasks.sweep.summary import summarise
+
+    sweep, place, overrides = sweep_of(typed.overrides), place_of(typed.overrides), list(typed.overrides)
+    if place is None and (begun := unfinished(sweep)) is not None:
+        log.info("going on with the sweep in %s; %s=… begins another", begun, PLACE)
+        overrides.append(f"{PLACE}={begun}")
+    if place is not None and (problem := problem_with_place(sweep, Path(place))) is not None:
+        say_problems(InputError(problem))
+        return WRONG_INPUT
+    callback.begun.clear()
+    code = _run(typed.flags, overrides)
+    for folder in callback.begun:
+        try:
+            found = summarise(folder)
+        except InputError as error:
+            say_problems(error)
+            return WRONG_INPUT
+        log.info("%d of %d jobs are finished; the sweep lies in %s", found.finished, found.jobs, folder)
+        if not found.is_complete:
+            log.info("the same command goes on from here")
+            code = max(code, WRONG_INPUT)
+    return code
+
+
+def _run(flags: Sequence[str], overrides: Sequence[str]) -> int:
     _codes.clear()
-    sweep.current.clear()
     handlers = list(logging.root.handlers)  # Hydra puts its own in their place
-    old, sys.argv = sys.argv, ["gear_damping", *typed.flags, *typed.overrides]
+    old, sys.argv = sys.argv, ["gear_damping", *flags, *overrides]
     command = hydra.main(version_base="1.3", config_path=str(conf_folder()), config_name="config")(_job)
     try:
         command()
@@ -65,26 +97,32 @@ def _run(typed: CommandLine) -> int:
     finally:
         sys.argv = old
         logging.root.handlers[:] = handlers
-    failed = _summarise() if typed.many else 0
-    return max([WRONG_INPUT if failed else OK, *_codes])
+    return max([OK, *_codes])
 
 
 def _job(config: DictConfig) -> int:
     """One job as Hydra calls it, in this process or in a worker of a launcher."""
     own = HydraConfig.get()
-    origin = Origin(list(own.overrides.task), choices_of(own))
-    code = run_job(plain(config), origin, Path(own.runtime.output_dir))
+    origin, folder = Origin(list(own.overrides.task), choices_of(own)), Path(own.runtime.output_dir)
+    if own.mode == RunMode.MULTIRUN:
+        code = _swept(config, origin, folder)
+    else:
+        code = run_job(plain(config), origin, folder)
     _codes.append(code)
     return code
 
 
-def _summarise() -> int:
-    failed = 0
-    for folder, keys in sweep.current:
-        failed += sweep.summarise(folder, keys)
-        if (folder / "sweep.csv").exists():
-            logging.getLogger("gear_damping").info("the sweep lies in %s (sweep.csv, sweep.png)", folder)
-    return failed
+def _swept(config: DictConfig, origin: Origin, folder: Path) -> int:
+    """One job of a sweep."""
+    own = HydraConfig.get()
+    beside = own.launcher.get("n_jobs") or 1
+    if beside != 1:
+        limit_cores(beside)
+    sweep = Path(own.sweep.dir).absolute()
+    keys = (read_sweep(sweep) or sweep_of(())).keys
+    typed = [word.lstrip("+") for word in own.overrides.task]
+    words = " ".join(word.removeprefix("simulator.") for word in typed if word.partition("=")[0] in keys)
+    return run_swept(plain(config), origin, JobPlace(folder, sweep, words))
 
 
 def help_text() -> str:
@@ -99,8 +137,9 @@ def help_text() -> str:
         "  python -m gear_damping task=inspect measurement.path=PATH/FILE",
         "  python -m gear_damping task=identify measurement.path=PATH/measurement.yaml",
         "  python -m gear_damping experiment=plan",
+        "  python -m gear_damping task=collect sweep=outputs/sweep/…",
         "",
-        "task        train (default), simulate, evaluate, identify, explain, inspect, plan, paper",
+        "task        train (default), simulate, evaluate, identify, explain, inspect, plan, paper, collect",
         "groups      choose with group=choice:",
     ]
     lines += [f"  {group:<12}{', '.join(choices)}" for group, choices in groups().items()]

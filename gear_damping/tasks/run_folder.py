@@ -92,6 +92,15 @@ def problem_with_used(folder: Path, config: Mapping[str, Any]) -> Problem | None
     return Problem("hydra.run.dir", f"holds {article} {name} already", str(folder), remedy)
 
 
+def read_record(folder: Path) -> dict[str, Any] | None:
+    """What run.json of a folder says; None where there is none that can be read."""
+    try:
+        found = json.loads((folder / "run.json").read_text())
+    except (OSError, ValueError):
+        return None
+    return found if isinstance(found, dict) and "status" in found else None
+
+
 def write_json(path: Path, content: Any) -> Path:
     """Write JSON that any reader understands: numbers that are not finite become null."""
     unfinished = path.with_name(path.name + ".part")

@@ -70,12 +70,14 @@ def _hparams(settings: Settings) -> dict[str, Any]:
 
 def _metrics(results: Mapping[str, Any]) -> dict[str, Any]:
     scored = {**results["models"], **results["controls"]}
-    return {
-        f"{name}/{score}": value["mean"] if isinstance(value, Mapping) else value
-        for name, found in scored.items()
-        for score, value in found.items()
-        if score != "per_seed"
-    }
+    metrics: dict[str, Any] = {}
+    for name, found in scored.items():
+        for score, value in found.items():
+            if isinstance(value, Mapping) and score != "per_seed":
+                metrics |= {f"{name}/{score}": value["mean"], f"{name}/{score}_std": value["std"]}
+            elif score != "per_seed":
+                metrics[f"{name}/{score}"] = value
+    return metrics
 
 
 def _figures(settings: Settings, runs: Runs, predictions: Mapping[str, Any], folder: RunFolder) -> None:

@@ -27,6 +27,7 @@ from gear_damping.reporting.figures.scalogram import scalogram_figure
 from gear_damping.reporting.figures.simulation import ShownRun, simulation_figure
 from gear_damping.reporting.figures.stiffness import mesh_stiffness_figure
 from gear_damping.reporting.figures.sweep import sweep_figure
+from gear_damping.reporting.figures.sweep_map import sweep_figures, sweep_map_figure
 from gear_damping.reporting.figures.test_plan import PlanCurves, PlanMap, PlanPicture, test_plan_figure
 from gear_damping.reporting.figures.training import training_figure
 from gear_damping.reporting.figures.visible import visible_figure
@@ -64,6 +65,8 @@ __all__ = [
     "scalogram_figure",
     "simulation_figure",
     "sweep_figure",
+    "sweep_figures",
+    "sweep_map_figure",
     "test_plan_figure",
     "training_figure",
     "visible_figure",

@@ -1,6 +1,8 @@
-"""Test error against a swept value."""
+"""What a sweep found against its swept values: small multiples with bands."""
 
 from collections.abc import Mapping, Sequence
+from math import ceil
+from statistics import fmean, stdev
 from typing import Any
 
 import numpy as np
@@ -9,11 +11,14 @@ from matplotlib.figure import Figure
 
 from gear_damping.reporting.figures.arrays import any_finite
 from gear_damping.reporting.figures.axis_names import swept_axis
-from gear_damping.reporting.style import colour_of, legend_above, marker_of, new_figure, say_empty, styled
+from gear_damping.reporting.style import WIDTH, colour_of, legend_above, marker_of, new_figure, say_empty, styled
 
 SUFFIX = "/rmse_percent"
 CONTROLS = ("mean", "white_noise")
 LOGARITHMIC_FROM = 200.0  # ratio of the highest to the lowest swept value
+SEED = "seed"  # the key over whose values a band is drawn
+COLUMNS, PANEL, HEIGHT = 3, 3.6, 2.8  # panels beside each other, and the size of one in inches
+MOST_PANELS = 12  # of figures of a task that states no errors
 
 Row = Mapping[str, Any]
 
@@ -29,23 +34,114 @@ def sweep_figure(rows: Sequence[Row], key: str, others: Sequence[str] = ()) -> F
     """
     panels: dict[str, list[Row]] = {}
     for row in rows:
-        panels.setdefault(", ".join(f"{other} = {row.get(other)}" for other in others), []).append(row)
+        panels.setdefault(_others(row, others), []).append(row)
     with styled():
-        figure = new_figure(1.2 + 3.2 * max(len(panels), 1))
-        grid = figure.subplots(max(len(panels), 1), 1, squeeze=False, sharey=True)[:, 0]
-        for axes in grid:
-            axes.set_ylabel("test RMSE / % of critical")
-        grid[-1].set_xlabel(swept_axis(key))
+        figure, grid = _grid(len(panels))
+        _name_axes(figure, grid, key, "test RMSE / % of critical")
         highest = 0.0
         for axes, (title, found) in zip(grid, panels.items(), strict=False):
-            axes.set_title(title, loc="right", fontsize=9)
+            axes.set_title(title, fontsize=9)
             highest = max(highest, _panel(axes, found, key))
         if highest > 0:
-            grid[0].set_ylim(0, 1.06 * highest)
-            legend_above(grid[0])
+            for axes in grid:
+                axes.set_ylim(0, 1.06 * highest)
+            _legend(figure, grid)
         else:
             say_empty(grid[0], "no finished jobs to show")
         return figure
+
+
+def figures_of_sweep(rows: Sequence[Row], key: str, others: Sequence[str]) -> Figure | None:
+    """Every figure that jobs of some other task state, each in a panel of its own; None where there is no number.
+
+    Args:
+        rows: One row a job.
+        key: The swept configuration key.
+        others: Further swept keys: each combination of their values has a line.
+    """
+    names = numbers_of(rows, (key, *others))[:MOST_PANELS]
+    if not names:
+        return None
+    lines: dict[str, list[Row]] = {}
+    for row in sorted(rows, key=lambda row: _place(row.get(key))):
+        lines.setdefault(_others(row, others), []).append(row)
+    with styled():
+        figure, grid = _grid(len(names))
+        for axes, name in zip(grid, names, strict=True):
+            axes.set_title(name, fontsize=9)
+            for number, (title, found) in enumerate(lines.items()):
+                places = _places(axes, [row.get(key) for row in found])
+                values = np.array([_number(row.get(name)) for row in found])
+                spread = np.nan_to_num([_number(row.get(f"{name}_std")) for row in found])
+                _line(axes, title, colour_of(title, number), places, values, spread)
+        _name_axes(figure, grid, key)
+        if len(lines) > 1:
+            _legend(figure, grid)
+    return figure
+
+
+def numbers_of(rows: Sequence[Row], keys: Sequence[str]) -> list[str]:
+    """Columns that hold numbers, without the swept ones and spreads."""
+    columns = dict.fromkeys(column for row in rows for column in row)
+    return [
+        name
+        for name in columns
+        if name not in keys and not name.endswith("_std") and name != "job"
+        and any(isinstance(row.get(name), (int, float)) and not isinstance(row.get(name), bool) for row in rows)
+    ]  # fmt: skip
+
+
+def over_seeds(rows: Sequence[Row], keys: Sequence[str]) -> tuple[list[Row], list[str]]:
+    """The rows with means and spreads over swept seeds, and the other keys."""
+    if SEED not in keys or len(keys) == 1:
+        return list(rows), list(keys)
+    others = [key for key in keys if key != SEED]
+    groups: dict[tuple, list[Row]] = {}
+    for row in rows:
+        groups.setdefault(tuple(str(row.get(key)) for key in others), []).append(row)
+    return [_mean(group, others) for group in groups.values()], others
+
+
+def _mean(group: Sequence[Row], keys: Sequence[str]) -> Row:
+    found: dict[str, Any] = {key: group[0].get(key) for key in keys}
+    for name in numbers_of(group, (*keys, SEED)):
+        values = [row[name] for row in group if isinstance(row.get(name), (int, float))]
+        found[name] = fmean(values)
+        found[f"{name}_std"] = stdev(values) if len(values) > 1 else 0.0
+    return found
+
+
+def _others(row: Row, others: Sequence[str]) -> str:
+    return ", ".join(f"{other.rpartition('.')[2]} = {row.get(other)}" for other in others)
+
+
+def _name_axes(figure: Figure, grid: Sequence[Axes], key: str, value: str = "") -> None:
+    """What the axes are, once for all panels."""
+    if len(grid) == 1:
+        grid[0].set(xlabel=swept_axis(key), ylabel=value)
+        return
+    figure.supxlabel(swept_axis(key), fontsize=10)
+    figure.supylabel(value, fontsize=10)
+
+
+def _legend(figure: Figure, grid: Sequence[Axes]) -> None:
+    """The legend over all panels."""
+    if len(grid) == 1:
+        legend_above(grid[0])
+        return
+    shown = dict(zip(*reversed(grid[0].get_legend_handles_labels()), strict=True))
+    figure.legend(shown.values(), shown.keys(), loc="outside upper left", ncols=4)
+
+
+def _grid(panels: int) -> tuple[Figure, list[Axes]]:
+    """A figure with so many panels, at least one."""
+    columns = min(max(panels, 1), COLUMNS)
+    rows = ceil(max(panels, 1) / columns)
+    figure = new_figure(1.2 + HEIGHT * rows, WIDTH if columns == 1 else PANEL * columns)
+    axes = figure.subplots(rows, columns, squeeze=False, sharey=False).ravel().tolist()
+    for unused in axes[max(panels, 1) :]:
+        unused.remove()
+    return figure, axes[: max(panels, 1)]
 
 
 def _panel(axes: Axes, rows: Sequence[Row], key: str) -> float:

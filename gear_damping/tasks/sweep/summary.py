@@ -1,39 +1,68 @@
-"""What a sweep leaves: one table and one figure over all its jobs, also where some of them failed."""
+"""What a sweep leaves: one table and figures over all its jobs of any task, also where some of them failed."""
 
-import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from hydra.experimental.callback import Callback
-from omegaconf import DictConfig
+from gear_damping.errors import InputError, Problem, writing
+from gear_damping.tasks.run_folder import FINISHED, RUNNING, read_record
+from gear_damping.tasks.sweep.folder import NOTE, read_sweep
+from gear_damping.tasks.sweep.lease import is_held
 
-from gear_damping.config.command_line import swept_keys
-from gear_damping.tasks.run_folder import FINISHED
-
-current: list[tuple[Path, list[str]]] = []  # the sweep of this process: folder and swept keys
-
-
-class SweepSummary(Callback):
-    """Tells where the sweep of this process lies, for the summary at its end."""
-
-    def on_multirun_start(self, config: DictConfig, **kwargs: Any) -> None:
-        """Remember folder and swept keys."""
-        current.append((Path(config.hydra.sweep.dir), swept_keys(config.hydra.overrides.task)))
+TABLE, FIGURE, MAP = "sweep.csv", "sweep.png", "sweep_map.png"
+CUT_OFF = "cut off"  # a job whose process is gone
+NOT_BEGUN = "not begun"
 
 
-def summarise(folder: Path, keys: Sequence[str]) -> int:
-    """Write sweep.csv and sweep.png; returns how many jobs did not finish."""
+@dataclass(frozen=True)
+class Summary:
+    """What a sweep has come to.
+
+    Args:
+        jobs: How many are known of.
+        finished: How many of them are finished.
+        files: What was written.
+    """
+
+    jobs: int
+    finished: int
+    files: tuple[Path, ...] = ()
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether nothing is left to do."""
+        return 0 < self.jobs == self.finished
+
+
+def summarise(folder: Path) -> Summary:
+    """Write the table and the figures of a sweep, and note whether it is complete.
+
+    Raises:
+        InputError: the folder holds no sweep, or a file cannot be written.
+    """
     from gear_damping.reporting import figures, tables  # here, since every command imports this file
 
-    rows = [_row(path, keys) for path in sorted(folder.glob("*/run.json"), key=_number)]
-    if not rows:
-        return 0
-    tables.write_csv(rows, folder / "sweep.csv")
+    sweep = read_sweep(folder)
+    if sweep is None:
+        rule = "holds no sweep" if folder.is_dir() else "is no folder"
+        raise InputError(
+            Problem("sweep", f"{rule}: there is no {NOTE}", str(folder), "give the folder of a --multirun")
+        )
+    rows = [_row(path.parent, sweep.keys) for path in sorted(folder.glob("*/run.json"), key=_number)]
     finished = [row for row in rows if row["status"] == FINISHED]
-    if finished and keys:
-        figures.save(figures.sweep_figure(finished, keys[0]), folder / "sweep.png")
-    return len(rows) - len(finished)
+    found = Summary(max(len(rows), sweep.jobs or 0), len(finished))
+    if found.is_complete != sweep.complete:
+        replace(sweep, complete=found.is_complete).write(folder)
+    if not rows:
+        return found
+    with writing(folder / TABLE) as path:
+        tables.write_csv(rows, path)
+    files = [folder / TABLE]
+    for name, figure in figures.sweep_figures(finished, sweep.keys, (FIGURE, MAP)).items():
+        figures.save(figure, folder / name)
+        files.append(folder / name)
+    return replace(found, files=tuple(files))
 
 
 def _number(path: Path) -> tuple[int, str]:
@@ -41,23 +70,22 @@ def _number(path: Path) -> tuple[int, str]:
     return (int(name) if name.isdigit() else 10**9, name)
 
 
-def _row(path: Path, keys: Sequence[str]) -> dict[str, Any]:
-    record = json.loads(path.read_text())
-    row = {"job": path.parent.name, "status": record["status"]}
+def _row(folder: Path, keys: Sequence[str]) -> dict[str, Any]:
+    """Status, swept values, figures and error of a job."""
+    record = read_record(folder) or {"status": NOT_BEGUN, "config": {}, "choices": {}, "metrics": {}}
+    status = record["status"]
+    if status == RUNNING and not is_held(folder):
+        status = CUT_OFF
+    row = {"job": folder.name, "status": status}
     choices = record["choices"]
     row |= {key: choices[key] if key in choices else _lookup(record["config"], key) for key in keys}
-    results = path.parent / "results.json"
-    if record["status"] == FINISHED and results.exists():
-        found = json.loads(results.read_text())
-        for name, scores in {**found["models"], **found["controls"]}.items():
-            row[f"{name}/rmse_percent"] = scores["rmse_percent"]["mean"]
-            row[f"{name}/rmse_percent_std"] = scores["rmse_percent"]["std"]
-            row[f"{name}/skill"] = scores["skill"]
+    metrics = record["metrics"].items()
+    row |= {name: ", ".join(map(str, value)) if isinstance(value, list) else value for name, value in metrics}
     row["error"] = record.get("error", "")
     return row
 
 
 def _lookup(config: Any, key: str) -> Any:
     for part in key.split("."):
-        config = config.get(part) if isinstance(config, dict) else None
+        config = config.get(part) if isinstance(config, Mapping) else None
     return config
