@@ -11,7 +11,7 @@ PYTEST := $(BIN)/python -m pytest -n auto --dist worksteal
 ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test check bench estimators limit plan-check blind power p-values docs clean
+.PHONY: help setup run test test-sweeps test-slurm check bench estimators limit plan-check blind power p-values docs clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-11s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -19,7 +19,7 @@ help:  ## list the targets
 # The environment is remade whenever what it should hold has changed.
 $(VENV)/.installed: pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/pip install --quiet --disable-pip-version-check $(PIP_OPTIONS) -c constraints.txt -e ".[dev,joblib,formats]"
+	$(BIN)/pip install --quiet --disable-pip-version-check $(PIP_OPTIONS) -c constraints.txt -e ".[dev,joblib,slurm,formats]"
 	@touch $@
 
 setup: $(VENV)/.installed  ## create .venv with everything that development needs
@@ -31,6 +31,12 @@ test: setup  ## style, import contracts and the test suite
 	$(BIN)/ruff check .
 	$(BIN)/lint-imports
 	$(PYTEST) -m "not slow" $(ARGS)
+
+test-sweeps: setup  ## a sweep of 60 jobs whose launcher is killed three times, beside one that is left alone (12 minutes)
+	$(BIN)/python -m tests.cluster.disturbed $(ARGS)
+
+test-slurm: setup  ## the same through a real SLURM, installed and started here (Debian, root), and a job requeued
+	$(BIN)/python -m tests.cluster.slurm $(ARGS)
 
 check: setup  ## everything `make test` runs and the slow tests
 	$(BIN)/ruff check .

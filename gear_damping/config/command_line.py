@@ -6,6 +6,7 @@ unknown key shall meet our own check, which knows the nearest valid one, and not
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from importlib.util import find_spec
 
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.override_parser.types import Override
@@ -15,6 +16,11 @@ from gear_damping.config.locate import conf_folder, groups
 from gear_damping.errors import Problem, nearest
 
 SOURCE = "the command line"
+LAUNCHER = "hydra/launcher"
+NEEDED = {  # what a launcher is made of: its module, and what brings it
+    "joblib": ("hydra_plugins.hydra_joblib_launcher", "joblib"),
+    "slurm": ("hydra_plugins.hydra_submitit_launcher", "slurm"),
+}
 OFF_BY_NULL = ("experiment",)  # groups that may be left out
 SHOWS = ("--cfg", "-c", "--info", "-i", "--resolve", "--version", "--hydra-help", "--shell-completion", "-sc")
 MANY = ("--multirun", "-m")
@@ -100,6 +106,8 @@ def _read_override(argument: str, many: bool) -> tuple[list[Problem], list[str]]
     if not many and not parsed.is_delete() and parsed.is_sweep_override():
         rule, remedy = "has several values and this is one run", "add --multirun for a sweep, or write a list: [a,b]"
         return [Problem(key, rule, value, remedy, SOURCE)], []
+    if key == LAUNCHER and value in NEEDED:
+        return _missing_launcher(value), [argument]
     if parsed.is_delete() or key.startswith("hydra"):
         return [], [argument]
     if key not in groups():
@@ -108,6 +116,16 @@ def _read_override(argument: str, many: bool) -> tuple[list[Problem], list[str]]
         return [], []
     problems = _unknown_choices(key, value)
     return problems, [] if problems else [f"{key}={value}"]
+
+
+def _missing_launcher(name: str) -> list[Problem]:
+    module, extra = NEEDED[name]
+    try:
+        found = find_spec(module)
+    except ModuleNotFoundError:  # no plugin of Hydra at all
+        found = None
+    remedy = f"pip install gear-damping[{extra}]"
+    return [] if found else [Problem(LAUNCHER, "needs a plugin of Hydra that is not installed", name, remedy, SOURCE)]
 
 
 def _unknown_choices(group: str, value: str) -> list[Problem]:

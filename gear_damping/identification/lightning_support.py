@@ -140,6 +140,8 @@ def quiet_lightning() -> Iterator[None]:
         warnings.filterwarnings("ignore", message=r"`isinstance\(treespec, LeafSpec\)` is deprecated")
         # A fit shares its folder with the TensorBoard events, and a resumed one overwrites its own files.
         warnings.filterwarnings("ignore", message="Checkpoint directory .* exists and is not empty")
+        # On a login node of a cluster; a job of one process needs no `srun`.
+        warnings.filterwarnings("ignore", message="The `srun` command is available")
         yield
 
 

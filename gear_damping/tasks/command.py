@@ -115,9 +115,7 @@ def _job(config: DictConfig) -> int:
 def _swept(config: DictConfig, origin: Origin, folder: Path) -> int:
     """One job of a sweep."""
     own = HydraConfig.get()
-    beside = own.launcher.get("n_jobs") or 1
-    if beside != 1:
-        limit_cores(beside)
+    limit_cores(own.launcher)
     sweep = Path(own.sweep.dir).absolute()
     keys = (read_sweep(sweep) or sweep_of(())).keys
     typed = [word.lstrip("+") for word in own.overrides.task]

@@ -76,6 +76,14 @@ def test_a_fit_depends_on_its_seed_and_not_on_torchs(trained, tmp_path):
     assert torch.equal(torch.random.get_rng_state(), state)
 
 
+def test_a_login_node_of_a_cluster_trains_without_a_warning(tmp_path, monkeypatch):
+    """Warnings are errors here; Lightning has one where it finds `srun`."""
+    (tmp_path / "srun").write_text("#!/bin/sh\n")
+    (tmp_path / "srun").chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=":")
+    assert len(fit(tmp_path / "fit", training=replace(TRAINING, max_epochs=1)).history) == 1
+
+
 def test_a_fit_leaves_two_checkpoints_and_events_and_nothing_else(trained):
     names = {path.name for path in trained[0].iterdir()}
     assert {"best.ckpt", "last.ckpt"} < names

@@ -55,10 +55,17 @@ def run_swept(config: Mapping[str, Any], origin: Origin, place: Place) -> int:
         return code
 
 
-def limit_cores(jobs: int) -> None:
-    """Share the cores of this machine out among so many jobs; less than none: as many jobs as cores."""
+def limit_cores(launcher: Mapping[str, Any]) -> None:
+    """Use this job's share of the cores: those that it was given, or those of the machine among `n_jobs` jobs.
+
+    Args:
+        launcher: Its settings; without any share all cores are left to the job.
+    """
+    given, jobs = launcher.get("cpus_per_task"), launcher.get("n_jobs")
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    threads = max(1, cores // (min(jobs, cores) if jobs > 0 else cores))
+    if given is None and jobs is None:
+        return
+    threads = given if given is not None else max(1, cores // (min(jobs, cores) if jobs > 0 else cores))
     os.environ["OMP_NUM_THREADS"] = str(threads)
     if "torch" in sys.modules:
         sys.modules["torch"].set_num_threads(threads)

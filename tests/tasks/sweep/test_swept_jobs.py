@@ -15,7 +15,7 @@ import pytest
 
 from gear_damping.tasks.command import main
 from gear_damping.tasks.run_folder import RunFolder
-from gear_damping.tasks.sweep.job import Place, run_swept
+from gear_damping.tasks.sweep.job import Place, limit_cores, run_swept
 
 ROOT = Path(__file__).resolve().parents[3]
 NAMES = ("a", "b", "c", "d")
@@ -163,6 +163,18 @@ def test_only_what_is_finished_is_not_done_again(status, config, again, tmp_path
     left(tmp_path / "0", config, status)
     assert run_swept(CONFIG, None, Place(tmp_path / "0", tmp_path, "seed=1")) == 0
     assert len(done) == again
+
+
+@pytest.mark.parametrize(
+    ("launcher", "threads"),
+    [({}, "none"), ({"n_jobs": -1}, "1"), ({"n_jobs": 2}, "3"), ({"n_jobs": 99}, "1"), ({"cpus_per_task": 5}, "5")],
+)
+def test_each_job_is_limited_to_its_cores(launcher, threads, monkeypatch):
+    monkeypatch.setattr(os, "sched_getaffinity", lambda process: range(6))
+    monkeypatch.setenv("OMP_NUM_THREADS", "none")
+    monkeypatch.delitem(sys.modules, "torch", raising=False)
+    limit_cores(launcher)
+    assert os.environ["OMP_NUM_THREADS"] == threads
 
 
 def test_a_training_goes_on_from_its_checkpoint(tmp_path, done):
