@@ -33,7 +33,7 @@ def run_job(config: Mapping[str, Any], origin: Origin, folder: Path) -> int:
         say_problems(InputError(used))
         return WRONG_INPUT
     try:
-        run_folder = RunFolder(folder, config, origin.choices)
+        run_folder = RunFolder(folder, config, origin)
     except OSError as error:
         say_problems(InputError(_not_written(error, folder)))
         return WRONG_INPUT

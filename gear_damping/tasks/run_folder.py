@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from gear_damping.config.measured import INSPECT, YAML_SUFFIXES
+from gear_damping.config.source import Origin
 from gear_damping.errors import Problem, writing
 
 RUNNING, FINISHED, FAILED, INTERRUPTED = "running", "finished", "failed", "interrupted"
@@ -24,13 +25,13 @@ PACKAGES = ("gear-damping", "torch", "lightning", "hydra-core", "torchdiffeq", "
 class RunFolder:
     """The folder of one run, with its run.json."""
 
-    def __init__(self, path: Path, config: Mapping[str, Any], choices: Mapping[str, str | None]) -> None:
+    def __init__(self, path: Path, config: Mapping[str, Any], origin: Origin) -> None:
         """Open the folder and say that the run is running.
 
         Args:
             path: The folder; made where it is missing.
             config: The resolved configuration.
-            choices: The choice of each group.
+            origin: Where its values come from: what was typed, of a sweep for this job, and the choice of each group.
         """
         self.path = path
         path.mkdir(parents=True, exist_ok=True)
@@ -38,9 +39,9 @@ class RunFolder:
         self.record: dict[str, Any] = {
             "status": RUNNING,
             "task": config.get("task"),
-            "command": " ".join(["python -m gear_damping", *sys.argv[1:]]),
+            "command": " ".join(["python -m gear_damping", *(word.lstrip("+") for word in origin.overrides)]),
             "config": dict(config),
-            "choices": dict(choices),
+            "choices": dict(origin.choices),
             "seed": config.get("seed"),
             "git": git_state(),
             "versions": versions(),

@@ -32,8 +32,8 @@ Hook = Callable[[Path], None]  # told the folder of the sweep while it runs
 
 def command(folder: Path, jobs: int, launcher: str, more: Sequence[str] = ()) -> list[str]:
     """A sweep over noise and damping ratio; `folder` keeps what it leaves."""
-    ratios = RATIOS[: max(1, jobs // len(LEVELS))] if jobs >= len(LEVELS) else RATIOS[:2]
-    levels = LEVELS[: jobs // len(ratios)]
+    count = next(n for n in range(2, len(RATIOS) + 1) if jobs % n == 0 and jobs // n <= len(LEVELS))
+    ratios, levels = RATIOS[:count], LEVELS[: jobs // count]
     swept = [f"simulator.load_noise.snr_db={_listed(levels)}", f"simulator.damping_ratio_percent={_listed(ratios)}"]
     place = [f"hydra.sweep.dir={folder / 'sweep'}", f"data_folder={folder / 'data'}"]
     launched = {"basic": [], "joblib": ["hydra/launcher=joblib"],

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from gear_damping.config.source import Origin
 from gear_damping.tasks.command import main
 from gear_damping.tasks.run_folder import RunFolder
 from gear_damping.tasks.sweep.job import Place, limit_cores, run_swept
@@ -96,6 +97,8 @@ def test_the_table_has_the_figures_of_any_task_and_the_reason_of_what_failed(tmp
     assert [Path(row["measurement.path"]).stem for row in rows] == [*NAMES]
     assert [row["sampling_rate"] for row in rows] == ["100.0", "200.0", "300.0", "400.0"]
     assert (undisturbed / "sweep.png").is_file()
+    command = json.loads((undisturbed / "2" / "run.json").read_text())["command"]
+    assert command == f"python -m gear_damping task=inspect measurement.path={rows[2]['measurement.path']}"
     (undisturbed / "2" / "run.json").rename(tmp_path / "kept")
     try:
         record = json.loads((tmp_path / "kept").read_text())
@@ -133,7 +136,7 @@ def done(monkeypatch):
 
     def job(config, origin, folder):
         told.append(dict(config))
-        RunFolder(folder, config, {}).close("finished", {"x": 1.0})
+        RunFolder(folder, config, Origin()).close("finished", {"x": 1.0})
         return 0
 
     monkeypatch.setattr("gear_damping.tasks.sweep.job.run_job", job)
@@ -141,7 +144,7 @@ def done(monkeypatch):
 
 
 def left(folder, config, status):
-    record = RunFolder(folder, config, {})
+    record = RunFolder(folder, config, Origin())
     record.close(status)
 
 
