@@ -27,9 +27,12 @@ def resolve_file(text: str, folder: Path, key: str, source: str) -> Path:
         rule = f"only ${{{DATA_VARIABLE}}} is filled in"
         raise InputError(Problem(key, rule, text, "write the path itself", source))
     path = folder / Path(filled).expanduser()
-    if path.is_file():
-        return path
-    what = "is a folder, not a file" if path.is_dir() else "no such file"
+    try:
+        if path.is_file():
+            return path
+        what = "is a folder, not a file" if path.is_dir() else "no such file"
+    except OSError as error:  # a name that no file can bear
+        what = error.strerror
     remedy = f"'file' is relative to {folder}"
     if filled != text:
         remedy = f"set the environment variable {DATA_VARIABLE} to the folder that holds the records"

@@ -20,6 +20,7 @@ from gear_damping.measurement.formats.table import (
 )
 
 SUFFIXES = (".h5", ".hdf5", ".hdf")
+DEADLY = True  # a damaged file may end the process
 
 _UNIT_ATTRIBUTES = ("unit", "units", "Unit", "Units", "unit_string")
 

@@ -24,6 +24,7 @@ from gear_damping.measurement.formats.table import (
 )
 
 SUFFIXES = (".mat",)
+DEADLY = True  # a damaged file may end the process
 
 _HDF5_MAGIC = b"\x89HDF"
 _COMPRESSED = 15  # the type of an element that is deflated

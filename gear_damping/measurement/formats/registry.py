@@ -1,8 +1,10 @@
 """From the suffix of a file to its reader: every `*_file.py` of this room, and the user's own.
 
-A file of a format says its `SUFFIXES`, and has `read(path, max_bytes)`, which gives a `Table`.
+A file of a format says its `SUFFIXES`, and has `read(path, max_bytes)`, which gives a `Table`. One whose library a
+damaged file may kill says `DEADLY = True`.
 """
 
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from pathlib import Path
@@ -10,6 +12,7 @@ from types import ModuleType
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement import formats as room
+from gear_damping.measurement.formats.guarded import refuse_deadly
 from gear_damping.measurement.formats.table import Table, refuse_size
 from gear_damping.own_files import REMEDY, load_module, modules_of
 
@@ -72,4 +75,6 @@ def read_table(path: Path, max_bytes: int = MAX_BYTES, known: Mapping[str, Reade
     if size == 0:
         raise InputError(Problem("file", "the file is empty", str(path), "export it again"))
     refuse_size(path, size, max_bytes)
+    if getattr(sys.modules.get(known[suffix].__module__), "DEADLY", False):
+        refuse_deadly(known[suffix], path, max_bytes)
     return known[suffix](path, max_bytes)
