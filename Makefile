@@ -11,7 +11,7 @@ PYTEST := $(BIN)/python -m pytest -n auto --dist worksteal
 ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test test-sweeps test-slurm check bench estimators limit plan-check blind power p-values docs clean
+.PHONY: help setup run test test-sweeps test-slurm check bench estimators limit window plan-check blind power p-values fuzz docs clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-11s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -71,6 +71,9 @@ estimators: setup  ## measure the estimators of records into docs/estimators.md 
 limit: setup  ## train and evaluate beside the bound, into outputs/limit and docs/limit.md (85 minutes a call at most, resumes)
 	$(BIN)/python -m benchmarks.limit $(ARGS)
 
+window: setup  ## what one window of 30 samples tells, exactly, beside the networks of windows, into docs/limit.md (40 minutes)
+	$(BIN)/python -m benchmarks.window $(ARGS)
+
 plan-check: setup  ## what test plans promise beside what 1000 simulated tests show, into docs/plan.md (about 15 minutes)
 	$(BIN)/python -m benchmarks.test_plan $(ARGS)
 
@@ -85,6 +88,9 @@ power: setup  ## how small an effect is found, beside how small anybody could fi
 
 p-values: setup  ## draw noise in the place of residuals and count how often something is called visible (resumes)
 	$(BIN)/python -m tests.blind.p_values $(ARGS)
+
+fuzz: setup  ## damage files, declarations and commands, 10 000 of each, and see that each is read or refused (1 hour)
+	$(BIN)/python -m tests.fuzz $(ARGS)
 
 clean:  ## remove the environment and caches; outputs/ stays
 	rm -rf $(VENV) .pytest_cache .ruff_cache .import_linter_cache build dist *.egg-info
