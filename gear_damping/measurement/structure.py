@@ -167,7 +167,9 @@ def _cut(content: object, place: Path, lost: set[Path]) -> bool:
         try:
             holder = holder[part]
         except (KeyError, IndexError, TypeError):
-            return True  # went with what held it
+            if any(place[:depth] in lost for depth in range(1, len(place))):
+                return True  # went with what held it
+            return _cut(content, place[:-1], lost)  # a name with dots is no place
     if isinstance(holder, dict) and place[-1] in holder:
         del holder[place[-1]]
         return True

@@ -48,6 +48,21 @@ def test_an_unknown_key_names_the_nearest(bench, place, key, right):
     assert "measurement.yaml" in problem
 
 
+@pytest.mark.timeout(20)
+@pytest.mark.parametrize("key", ["uncertain.1.2", ".", "value.unit", "a" * 3000])
+def test_an_unknown_key_with_dots_ends_as_a_message(bench, key):
+    """It was looked for in vain, again and again."""
+    bench.content["parameters"]["module"][key] = 0.05
+    (problem,) = bench.problems()
+    assert "unknown key" in problem
+
+
+def test_a_file_name_that_no_file_can_bear_ends_as_a_message(bench):
+    bench.record["file"] = "a" * 5000
+    (problem,) = bench.problems()
+    assert "File name too long" in problem
+
+
 @pytest.mark.parametrize(
     ("unit", "said"),
     [
