@@ -39,7 +39,9 @@ def composed(overrides: Sequence[str]) -> tuple[dict[str, Any], Origin]:
             config = compose("config", list(overrides), return_hydra_config=True)
             _refuse_folder(config)
             return plain(config), Origin(list(overrides), choices_of(config.hydra))
-    except (HydraException, OmegaConfBaseException) as error:
+    except InputError:
+        raise
+    except (HydraException, OmegaConfBaseException, ValueError) as error:  # of a deletion that names a number, say
         said = str(error).split("\n")[0]
         raise InputError(Problem("configuration", said, remedy="see python -m gear_damping --help")) from error
 

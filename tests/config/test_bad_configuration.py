@@ -62,6 +62,7 @@ FAULTS = {
     "spread_of_odd_form": (["family.spreads.pinion_torque=3"], ["pinion_torque", "uniform"]),
     "broken_override": (["simulator.pinion_torque=[1"], ["simulator.pinion_torque=[1", "close every bracket"]),
     "several_values_without_multirun": (["seed=1,2"], ["seed = '1,2'", "add --multirun"]),
+    "deletion_of_a_number": (["~model=1e-3"], ["configuration", "deletion value must be a string", "--help"]),
     "unknown_flag": (["--multirn"], ["--multirn: no such flag", "--multirun"]),
     "no_family": (["family=null"], ["family = 'null'", "no such choice"]),
     "drawn_by_the_family": (
