@@ -10,6 +10,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "blind.md"
+KEPT = PAGE.with_name("blind_cases.jsonl")  # what the page follows from, and where a fresh clone goes on
 
 
 def arguments(given: list[str] | None = None) -> argparse.Namespace:
@@ -36,10 +37,11 @@ def main(given: list[str] | None = None) -> int:
     options = arguments(given)
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.default_int_handler)
-    from .run import CASES, ask, done_cases, write
+    from .run import CASES, ask, begin_from, done_cases, keep, write
     from .strata import COUNTS, questions
 
     asked = questions(tuple(options.stratum or COUNTS), options.cases, options.seed)
+    begin_from(KEPT, options.out / CASES)
     stopped = False
     try:
         cases = ask(asked, options.out, options.processes, _say, options.minutes, redo=options.redo)
@@ -49,6 +51,8 @@ def main(given: list[str] | None = None) -> int:
     if not cases:
         return 130 if stopped else 0
     found = write(cases, options.out, PAGE if options.page else None, " ".join(["make blind", *_shown(given)]))
+    if options.page:
+        keep(cases, KEPT)
     for claim, row in found["rates"].items():
         _say(f"{claim}: {row['count']} of {row['n']} ({row['target']}: {row['met']})")
     _say(f"rates and table: {options.out}")

@@ -22,6 +22,8 @@ PACKAGE = Path(__file__).resolve().parents[2] / "gear_damping"
 DOORS = ("gear_damping.explanation.explain", "gear_damping.measurement.load")  # what a case is explained through
 FOUND_BY_NAME = ("physics/effects", "physics/systems", "measurement/formats")  # folders whose files no import names
 NATIVE = ("*.cpp", "*.h")
+ANSWER = ("verdict", "misfit", "damping_ratio_percent", "seconds", "converged")  # what is kept of an answer,
+CAUSE = ("name", "status", "confusable_with", "parameters", "excess_explained")  # and of a cause
 CASES, RATES, TABLE = "cases.jsonl", "rates.json", "table.md"
 Say = Callable[[str], None]
 
@@ -84,6 +86,24 @@ def begin_from(kept: Path, path: Path) -> None:
     if kept.exists() and not path.exists():
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(kept.read_text(encoding="utf-8"), encoding="utf-8")
+
+
+def keep(cases: Sequence[Case], path: Path) -> None:
+    """Write all that the page follows from, a case a line; of the answers no sentences and no figures of records."""
+    lines = []
+    for case in sorted(cases, key=lambda case: (case["stratum"], case["seed"])):
+        answers = {key: _shortened(case[key]) for key in ("answer", "answer_with_more") if key in case}
+        lines.append(json.dumps(case | answers) + "\n")
+    path.write_text("".join(lines), encoding="utf-8")
+
+
+def _shortened(answer: dict[str, Any]) -> dict[str, Any]:
+    causes = [{key: cause[key] for key in CAUSE if key in cause} for cause in answer["causes"]]
+    unseen = [{"name": entry["name"]} for entry in answer.get("not_observable") or []]
+    short = {key: answer[key] for key in ANSWER if key in answer}
+    if short.get("misfit"):
+        short["misfit"] = {key: short["misfit"][key] for key in ("before", "after")}
+    return short | {"causes": causes, "not_observable": unseen}
 
 
 def ask(

@@ -15,7 +15,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from tests.blind.accuracy import errors
 from tests.blind.judge import judged
 from tests.blind.rates import clopper_pearson, rates
-from tests.blind.run import CASES, ask, done_cases, write
+from tests.blind.run import CASES, ask, begin_from, done_cases, keep, write
 from tests.blind.strata import (
     CHANNEL_GEARS,
     CHANNEL_OSCILLATORS,
@@ -245,6 +245,21 @@ def test_a_case_done_is_not_done_again(tmp_path):
     page = (tmp_path / "docs" / "blind.md").read_text()
     assert "95 % interval" in page
     assert "| faint effect named, suggested or in the set | 100.0 % | 2 | 15.8 to 100.0 %" in page
+
+
+def test_what_is_kept_gives_the_same_rates_and_a_clone_goes_on_from_it(tmp_path):
+    cases = [other(), other(["tooth_crack"], "explained", [cause("tooth_crack", depth=0.1)], seed=1)]
+    cases += [case("single", ["pinion_eccentricity"], causes=[cause("pinion_eccentricity", amplitude=1e-6)], seed=2)]
+    for one in cases:
+        one["answer"] |= {"sentences": ["long"], "not_observable": [{"name": "backlash", "x": 1}]}
+    keep(cases, tmp_path / "kept.jsonl")
+    assert "long" not in (tmp_path / "kept.jsonl").read_text()
+    begin_from(tmp_path / "kept.jsonl", tmp_path / "out" / CASES)
+    again = done_cases(tmp_path / "out" / CASES)
+    assert rates(again) == rates(sorted(cases, key=lambda one: one["stratum"]))
+    (tmp_path / "out" / CASES).write_text("")
+    begin_from(tmp_path / "kept.jsonl", tmp_path / "out" / CASES)
+    assert done_cases(tmp_path / "out" / CASES) == []  # what is there already is not written over
 
 
 def test_no_case_begins_after_the_minutes_are_over(tmp_path):
