@@ -16,6 +16,8 @@ from gear_damping.measurement.spectral_floor import Spectrum, spectrum_of
 from gear_damping.measurement.time_column import Stamps, find_stamps
 from gear_damping.measurement.timebase import TimeBase, stamped_time, steady_time
 
+SHORTEST = 1e-15  # s between two samples: below it lie damaged stamps, and no sensor
+
 
 @dataclass(frozen=True, eq=False)
 class Column:
@@ -158,7 +160,8 @@ def _base(
         steps = np.diff(seconds)
         faults = tuple(problem.rule for problem in error.problems)
         span = float(np.abs(seconds[-1] - seconds[0])) or float(np.median(np.abs(steps))) * steps.size
-        return (steady_time(steps.size / span, 0, seconds.size) if span else None), faults
+        is_rate = span > steps.size * SHORTEST
+        return (steady_time(steps.size / span, 0, seconds.size) if is_rate else None), faults
 
 
 def _seen(

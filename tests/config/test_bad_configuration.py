@@ -63,6 +63,7 @@ FAULTS = {
     "broken_override": (["simulator.pinion_torque=[1"], ["simulator.pinion_torque=[1", "close every bracket"]),
     "several_values_without_multirun": (["seed=1,2"], ["seed = '1,2'", "add --multirun"]),
     "deletion_of_a_number": (["~model=1e-3"], ["configuration", "deletion value must be a string", "--help"]),
+    "folder_too_long": ([f"hydra.run.dir={'a' * 5000}"], ["hydra.run.dir", "cannot be made: File name too long"]),
     "unknown_flag": (["--multirn"], ["--multirn: no such flag", "--multirun"]),
     "no_family": (["family=null"], ["family = 'null'", "no such choice"]),
     "drawn_by_the_family": (

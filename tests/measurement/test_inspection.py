@@ -147,3 +147,12 @@ def test_a_unit_that_nobody_knows_stays_open(tmp_path):
     found = inspected(tmp_path, time=T, x=np.sin(20 * T), angle=np.sin(9 * T), travel_mm=np.cos(7 * T))
     units = {g.column.reference: g.unit for g in guesses(found, "oscillator")}
     assert units == {"x": UNKNOWN, "angle": "rad", "travel_mm": "mm"}
+
+
+def test_stamps_closer_than_anything_is_sampled_give_no_rate(tmp_path):
+    """Of a damaged file: their rate would be infinite."""
+    rows = "".join(f"{k}e-320,{np.sin(k)}\n" for k in (0, 2, 1, *range(3, 60)))
+    (tmp_path / "run.csv").write_text("t (s),x\n" + rows)
+    found = inspect_table(read_table(tmp_path / "run.csv"))
+    assert found.base is None
+    assert found.rate is None
