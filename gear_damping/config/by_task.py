@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from gear_damping.config.light import no_file
+from gear_damping.config.light import RESUMABLE, no_file, resumable
 from gear_damping.config.whole import Found, Whole, typed
 from gear_damping.physics.terms import HeldLoad
 from gear_damping.simulation.families import DAMPING_RATIO
@@ -20,13 +20,7 @@ NOT_PLANNED = (
     "family.", "protocol", "training", "model", "wavelet", "measurement", "seeds", "checkpoint", "resume",
     "write_measurement", "data_folder", "simulator.n_runs", "simulator.n_samples", "simulator.diverged_share",
 )  # how keys begin that a plan does not read; a choice of family may say the rig's speed
-RESUMABLE = {"paper": "parts/*.json", "train": "*/seed_*/last.ckpt"}  # what an interrupted task leaves in its folder
 COLLECT = "collect"
-
-
-def resumable(task: str, folder: Path) -> bool:
-    """Whether a folder holds something that a task can go on from."""
-    return task in RESUMABLE and any(folder.glob(RESUMABLE[task]))
 
 
 def _checkpoint(whole: Whole) -> Found:

@@ -12,7 +12,13 @@ from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
 
 _NAME = re.compile(r"^[\w][\w.-]*$")
+RESUMABLE = {"paper": "parts/*.json", "train": "*/seed_*/last.ckpt"}  # what an interrupted task leaves in its folder
 Found = Iterator[tuple[str, str, Any, str]]  # key, rule, value, remedy
+
+
+def resumable(task: str, folder: Path) -> bool:
+    """Whether a folder holds something that a task can go on from."""
+    return task in RESUMABLE and any(folder.glob(RESUMABLE[task]))
 
 
 @dataclass(frozen=True)

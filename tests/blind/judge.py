@@ -40,7 +40,7 @@ def judged(case: Case) -> dict[str, bool | None]:
 
 def _wrong(case: Case) -> bool:
     """Whether a cause is established that was not hidden, and that is in no set with one that was."""
-    truth = names(case)
+    truth = names(case) or (["inertia_error"] if case.get("sensors") == "inertia_wrong" else [])
     sets = [(c["name"], *c["confusable_with"]) for c in case["answer"]["causes"] if c["status"] == "established"]
     return any(not any(same_class(name, true) for name in one for true in truth) for one in sets)
 

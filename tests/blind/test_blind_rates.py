@@ -207,6 +207,9 @@ def test_a_wrong_inertia_has_to_be_ambiguous_with_its_class():
     named = [cause("sensor_gain", alike=["inertia_error"])]
     assert judged(other(verdict="ambiguous", causes=named, sensors="inertia_wrong"))[claim]
     assert not judged(other(verdict="explained", causes=named, sensors="inertia_wrong"))[claim]
+    wrong = "any case: a wrong name established"  # the class of a wrong inertia is none, any other name is
+    assert not judged(other(verdict="ambiguous", causes=named, sensors="inertia_wrong"))[wrong]
+    assert judged(other(verdict="explained", causes=[cause("backlash")], sensors="inertia_wrong"))[wrong]
     assert not judged(other(verdict="ambiguous", causes=[cause("sensor_gain")], sensors="inertia_wrong"))[claim]
 
 

@@ -150,13 +150,19 @@ def test_a_law_of_several_may_be_named():
 
 
 def test_irregular_motion_promises_nothing():
-    """The flanks clatter at 2100 rpm and 75 N m: an error of the start has grown beyond all bounds in 0.1 s."""
+    """The flanks clatter about 2100 rpm at 75 N m: an error of the start has grown beyond all bounds in 0.1 s.
+
+    At which of these speeds it does, the last bits of the processor decide.
+    """
     model = gears(gd.Backlash(gap=1e-4), pinion_torque=75.0)
-    clatter = made(durations=(0.1,), speeds=(2100 * RPM, 5500 * RPM), torques=(), settle=None, sampling_rate=40e3)
+    speeds = tuple(speed * RPM for speed in (*range(1900, 2301, 50), 5500))
+    clatter = made(durations=(0.1,), speeds=speeds, torques=(), settle=None, sampling_rate=40e3)
     found = gd.plan(model, clatter, [SENSOR])
-    assert found.found.survey.fine[:, 0].tolist() == [False, True]
-    assert found.tests[0].alone.percent == math.inf
-    assert any("1 of 2 tests diverge or move irregularly" in one for one in found.sentences)
+    fine = found.found.survey.fine[:, 0].tolist()
+    assert fine[-1]
+    assert not all(fine)
+    assert [test.alone.percent < math.inf for test in found.tests] == fine
+    assert any(f"{fine.count(False)} of 10 tests diverge or move irregularly" in one for one in found.sentences)
 
 
 def test_a_record_without_a_slope_is_told(monkeypatch):

@@ -18,6 +18,7 @@ CONTROLS = ("mean", "white_noise")
 LOGARITHMIC_FROM = 200.0  # ratio of the highest to the lowest swept value
 SEED = "seed"  # the key over whose values a band is drawn
 COLUMNS, PANEL, HEIGHT = 3, 3.6, 2.8  # panels beside each other, and the size of one in inches
+LONGEST_NAME = 16  # characters of the name of a value
 MOST_PANELS = 12  # of figures of a task that states no errors
 
 Row = Mapping[str, Any]
@@ -171,13 +172,19 @@ def _line(axes: Axes, name: str, colour: str, places: Sequence[float], mean: np.
 def _places(axes: Axes, values: Sequence[Any]) -> list[float]:
     """Where the values stand: as numbers, or side by side with their names as ticks."""
     if not all(isinstance(value, (int, float)) for value in values):
-        axes.set_xticks(range(len(values)), labels=["off" if value is None else str(value) for value in values])
+        axes.set_xticks(range(len(values)), labels=[_named(value) for value in values])
         return list(map(float, range(len(values))))
     if values and min(values) > 0 and max(values) / min(values) >= LOGARITHMIC_FROM:
         axes.set_xscale("log")
     elif len(values) <= 10:
         axes.set_xticks(values, labels=[f"{value:g}" for value in values])
     return list(map(float, values))
+
+
+def _named(value: Any) -> str:
+    """The name of a value below the axis; of a long path its end."""
+    text = "off" if value is None else str(value)
+    return text if len(text) <= LONGEST_NAME else f"…{text[1 - LONGEST_NAME :]}"
 
 
 def _place(value: Any) -> tuple[int, float, str]:
