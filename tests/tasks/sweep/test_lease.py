@@ -39,28 +39,32 @@ def test_a_lease_is_held_and_left(tmp_path):
     assert os.listdir(tmp_path) == []
 
 
-def test_a_process_that_is_gone_is_replaced_at_once(tmp_path):
+@pytest.mark.timeout(60)
+def test_a_process_that_is_gone_is_replaced_without_waiting(tmp_path, monkeypatch):
+    monkeypatch.setattr(lease, "SILENCE", 1e9)
     gone = subprocess.Popen([sys.executable, "-c", ""])
     gone.wait()
     noted(tmp_path, pid=gone.pid, begun="1")
     assert not is_held(tmp_path)
-    assert seconds_to_take(tmp_path) < 0.5
+    seconds_to_take(tmp_path)
 
 
-def test_a_later_process_with_the_same_number_is_another(tmp_path):
+@pytest.mark.timeout(60)
+def test_a_later_process_with_the_same_number_is_another(tmp_path, monkeypatch):
+    monkeypatch.setattr(lease, "SILENCE", 1e9)
     noted(tmp_path, begun="1")
-    assert seconds_to_take(tmp_path) < 0.5
+    seconds_to_take(tmp_path)
 
 
 def test_a_silent_worker_of_another_host_is_replaced_after_a_while(tmp_path):
     noted(tmp_path, host="elsewhere")
     assert is_held(tmp_path)
-    assert 0.6 <= seconds_to_take(tmp_path) < 3
+    assert seconds_to_take(tmp_path) >= 0.6
 
 
 def test_a_lease_that_was_cut_off_is_replaced_after_a_while(tmp_path):
     (tmp_path / NAME).write_text('{"host": "el')
-    assert 0.6 <= seconds_to_take(tmp_path) < 3
+    assert seconds_to_take(tmp_path) >= 0.6
 
 
 def test_a_worker_that_lives_is_waited_for_however_long(tmp_path, monkeypatch):
