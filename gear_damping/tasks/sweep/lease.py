@@ -86,18 +86,22 @@ class _Own:
         return True
 
     def take_over(self, dead: str) -> bool:
-        """Whether it is ours now, in the place of a dead one; whoever moves that away first may try."""
-        moved = self.path.with_name(f"{NAME}.{self.token}")
+        """Whether it is ours now, in the place of a dead one; the path is never without a lease meanwhile."""
+        lock = self.path.with_name(f"{NAME}.takeover")
         try:
-            os.rename(self.path, moved)
-        except FileNotFoundError:
-            return self.take()
-        is_same = moved.read_text() == dead
-        if not is_same:  # another has taken over in between: give it back
-            with suppress(FileExistsError):
-                os.link(moved, self.path)
-        moved.unlink()
-        return is_same and self.take()
+            os.close(os.open(lock, os.O_CREAT | os.O_EXCL))
+        except FileExistsError:  # another is at it, or died over it
+            with suppress(FileNotFoundError):
+                if time.time() - lock.stat().st_mtime > SILENCE:
+                    lock.unlink()
+            return False
+        try:
+            if _read(self.path) != dead:
+                return False
+            os.replace(self._written(), self.path)
+            return True
+        finally:
+            lock.unlink(missing_ok=True)
 
     def beat(self, over: threading.Event) -> None:
         """Sign of life until it is over; a disk that is full for a while does not end the work."""
@@ -135,6 +139,7 @@ def _wait_for(own: _Own) -> None:
         if _is_gone(content) or time.monotonic() - since > SILENCE:
             if own.take_over(content):
                 return
+            time.sleep(LOOK / 10)
             continue
         if not said:
             holder = _holder(content)
