@@ -17,8 +17,15 @@ from gear_damping.errors import InputError, Problem
 from gear_damping.tasks.composed import choices_of, plain, problems_of
 from gear_damping.tasks.dispatch import INTERRUPTED_CODE, OK, run_job
 from gear_damping.tasks.sweep import callback
-from gear_damping.tasks.sweep.folder import PLACE, place_of, problem_with_place, read_sweep, sweep_of, unfinished
-from gear_damping.tasks.sweep.job import Place as JobPlace
+from gear_damping.tasks.sweep.folder import (
+    PLACE,
+    Place,
+    place_of,
+    problem_with_place,
+    read_sweep,
+    sweep_of,
+    unfinished,
+)
 from gear_damping.tasks.sweep.job import limit_cores, run_swept
 from gear_damping.tasks.wrong_declaration import WRONG_INPUT, say_problems, start_logging
 
@@ -120,7 +127,7 @@ def _swept(config: DictConfig, origin: Origin, folder: Path) -> int:
     keys = (read_sweep(sweep) or sweep_of(())).keys
     typed = [word.lstrip("+") for word in own.overrides.task]
     words = " ".join(word.removeprefix("simulator.") for word in typed if word.partition("=")[0] in keys)
-    return run_swept(plain(config), origin, JobPlace(folder, sweep, words))
+    return run_swept(plain(config), origin, Place(folder, sweep, words))
 
 
 def help_text() -> str:

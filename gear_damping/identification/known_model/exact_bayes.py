@@ -10,6 +10,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.identification.known_model.estimate import LEVEL, Estimates
+from gear_damping.simulation.families import DAMPING_RATIO
 from gear_damping.simulation.plan import SimulationPlan, run_plan
 
 GRID = 201  # damping ratios; a window of 30 samples at 30 dB tells them to a hundredth of the range at best
@@ -78,7 +79,7 @@ def window_bayes(
     Raises:
         ValueError: the family varies something else, of which a grid would need more dimensions.
     """
-    others = sorted(set(plan.family.spreads) - {"damping_ratio_percent"})
+    others = sorted(set(plan.family.spreads) - {DAMPING_RATIO})
     if others or plan.family.start != "rest":
         what = ", ".join(others) or f"the start ({plan.family.start})"
         raise ValueError(f"family {plan.family.name} varies {what} too: choose one that varies the damping ratio alone")

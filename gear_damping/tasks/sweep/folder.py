@@ -14,7 +14,8 @@ from gear_damping.tasks.run_folder import git_state, versions, write_json
 NOTE = "sweep.json"
 PLACE = "hydra.sweep.dir"
 USUAL = "outputs/sweep"  # where sweeps go unless the command says otherwise, as in conf/config.yaml
-OF_THE_MACHINE = ("hydra", "progress", "data_folder", "resume")  # how keys begin that change no number of a job
+NOT_DECIDING = ("progress", "data_folder", "resume")  # keys that change no number of a job,
+OF_THE_MACHINE = ("hydra", *NOT_DECIDING)  # and how those of a command begin
 
 
 @dataclass(frozen=True)
@@ -43,6 +44,21 @@ class Sweep:
         """Note it in its folder."""
         folder.mkdir(parents=True, exist_ok=True)
         write_json(folder / NOTE, asdict(self))
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a job stands in its sweep.
+
+    Args:
+        folder: Of the job.
+        sweep: Of the sweep.
+        words: Its values of the swept keys, as typed.
+    """
+
+    folder: Path
+    sweep: Path
+    words: str
 
 
 def sweep_of(overrides: Sequence[str]) -> Sweep:

@@ -6,7 +6,6 @@ import sys
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,28 +13,13 @@ from gear_damping.config.light import resumable
 from gear_damping.config.source import Origin
 from gear_damping.tasks.dispatch import OK, run_job
 from gear_damping.tasks.run_folder import EDITED, FINISHED, read_record
+from gear_damping.tasks.sweep.folder import NOT_DECIDING, Place
 from gear_damping.tasks.sweep.lease import leased
 from gear_damping.tasks.sweep.line import line_of
 
 CUT_OFF = ".cut_off"  # what a file of an unfinished job is called from then on
 LOG = "log.txt"
-NOT_DECIDING = ("progress", "data_folder", "resume")  # keys that change no number of a job
 log = logging.getLogger("gear_damping")
-
-
-@dataclass(frozen=True)
-class Place:
-    """Where a job stands in its sweep.
-
-    Args:
-        folder: Of the job.
-        sweep: Of the sweep.
-        words: Its values of the swept keys, as typed.
-    """
-
-    folder: Path
-    sweep: Path
-    words: str
 
 
 def run_swept(config: Mapping[str, Any], origin: Origin, place: Place) -> int:

@@ -2,21 +2,18 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from gear_damping.reporting.numbers import number
 from gear_damping.tasks.run_folder import FINISHED, read_record
-from gear_damping.tasks.sweep.folder import read_sweep
-
-if TYPE_CHECKING:
-    from gear_damping.tasks.sweep.job import Place
+from gear_damping.tasks.sweep.folder import Place, read_sweep
 
 BAR = 20  # characters
 SHOWN = 2  # figures of a job
 FIRST = ("rmse_percent", "verdict", "misfit_after", "damping_ratio_percent")  # how the names end of those shown first
 
 
-def line_of(place: "Place", how: str) -> str:
+def line_of(place: Place, how: str) -> str:
     """Bar, values of the job, how it ended with its first figures, and how it came to be."""
     record = read_record(place.folder) or {"status": "unknown", "metrics": {}}
     reason = record.get("error", "").split("\n")[0].removeprefix("- ")

@@ -16,7 +16,8 @@ import pytest
 from gear_damping.config.source import Origin
 from gear_damping.tasks.command import main
 from gear_damping.tasks.run_folder import RunFolder
-from gear_damping.tasks.sweep.job import Place, limit_cores, run_swept
+from gear_damping.tasks.sweep.folder import Place
+from gear_damping.tasks.sweep.job import limit_cores, run_swept
 
 ROOT = Path(__file__).resolve().parents[3]
 NAMES = ("a", "b", "c", "d")
