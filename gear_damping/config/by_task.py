@@ -3,7 +3,8 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from gear_damping.config.light import RESUMABLE, no_file, resumable
+from gear_damping.config.folders import RESUMABLE, resumable
+from gear_damping.config.light import no_file
 from gear_damping.config.whole import Found, Whole, typed
 from gear_damping.physics.terms import HeldLoad
 from gear_damping.simulation.families import DAMPING_RATIO

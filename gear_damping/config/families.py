@@ -5,15 +5,15 @@ from typing import Any
 
 from gear_damping.config.quantities import quantity
 from gear_damping.config.reader import Reader
-from gear_damping.config.schema import Key
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.physics.parameter import Parameter
+from gear_damping.schema.values import Number, OneOf, Text
 from gear_damping.simulation.families import DAMPING_RATIO, Family, Spread
 
 PLAIN = {
-    "name": Key("text"),
-    "start": Key("text", choices=("static", "rest")),
-    "perturbation": Key("float", 0, 100),
+    "name": Text(),
+    "start": OneOf(("static", "rest")),
+    "perturbation": Number(0, 100),
 }
 KINDS = ("uniform", "factor")
 RATIO = Parameter(DAMPING_RATIO, "1", 0.3, "equivalent damping ratio in % of critical", 0, 50)

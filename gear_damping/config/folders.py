@@ -1,7 +1,14 @@
-"""Whether a folder can be made and written to: said before any work."""
+"""Folders of runs: whether one can be made and written to, and whether an interrupted task can go on from it."""
 
 import os
 from pathlib import Path
+
+RESUMABLE = {"paper": "parts/*.json", "train": "*/seed_*/last.ckpt"}  # what an interrupted task leaves in its folder
+
+
+def resumable(task: str, folder: Path) -> bool:
+    """Whether a folder holds something that a task can go on from."""
+    return task in RESUMABLE and any(folder.glob(RESUMABLE[task]))
 
 
 def unusable(folder: Path) -> str | None:

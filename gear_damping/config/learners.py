@@ -4,18 +4,19 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from gear_damping.config.schema import Key, problem_with, problems_with
+from gear_damping.config.keys import problem_with, problems_with
 from gear_damping.config.source import COMMAND_LINE, Origin
 from gear_damping.errors import InputError, Problem
 from gear_damping.identification.catalogue import KEY, estimator_catalogue, wavelet_catalogue
 from gear_damping.identification.estimators.base import Estimator, LearnedEstimator, RecordEstimator, RecordNetwork
+from gear_damping.schema.values import Flag, Given, Names, Number, OneOf, Value
 from gear_damping.setting import Setting
 
-PLUGINS = Key("names", optional=True)
+PLUGINS = Given(Names(), optional=True)
 FREQUENCIES = {
-    "frequency_min_hz": Key("float", 0, 1e12, exclusive=True),
-    "frequency_max_hz": Key("float", 0, 1e12, exclusive=True),
-    "n_scales": Key("int", 2, 4096),
+    "frequency_min_hz": Number(0, 1e12, exclusive=True),
+    "frequency_max_hz": Number(0, 1e12, exclusive=True),
+    "n_scales": Number(2, 4096, whole=True),
 }
 
 
@@ -50,14 +51,14 @@ def read_models(node: Mapping[str, Any], origin: Origin) -> ModelSettings:
         InputError: everything that is wrong with it.
     """
     plugins, known = _own(node, origin)
-    names = Key("names", choices=tuple(known))
+    names = Names(tuple(known))
     _require(node, "names", names, "model.", origin)
     chosen = {name: known[name] for name in node["names"]}
     node = _without_others(node, chosen, known, origin)
     settings = {one.name: one for kind in chosen.values() for one in kind.settings}
     given = {name: node.get(name, one.default) for name, one in settings.items()}
-    schema = {"names": names, "plugins": PLUGINS} | _schema_of(settings.values())
-    problems = problems_with({**node, **given, "plugins": list(plugins) or None}, schema, "model.", origin)
+    kinds = {"names": names, "plugins": PLUGINS} | _kinds_of(settings.values())
+    problems = problems_with({**node, **given, "plugins": list(plugins) or None}, kinds, "model.", origin)
     if problems:
         raise InputError(problems)
     own = {name: {one.name: given[one.name] for one in kind.settings} for name, kind in chosen.items()}
@@ -78,8 +79,8 @@ def read_wavelet(node: Mapping[str, Any], plugins: tuple[str, ...], origin: Orig
         InputError: everything that is wrong with it.
     """
     known = wavelet_catalogue(plugins)
-    kinds = Key("text", choices=tuple(known))
-    _require(node, "kind", kinds, "wavelet.", origin)
+    chosen_kind = OneOf(tuple(known))
+    _require(node, "kind", chosen_kind, "wavelet.", origin)
     chosen = known[node["kind"]]
     settings = {one.name: one for one in chosen.own_settings}
     own = {name: one.default if node.get(name) is None else node[name] for name, one in settings.items()}
@@ -97,8 +98,8 @@ def read_wavelet(node: Mapping[str, Any], plugins: tuple[str, ...], origin: Orig
         if value is not None
     ]
     left = {name: value for name, value in node.items() if name not in foreign}
-    schema = {"kind": kinds} | FREQUENCIES | _schema_of(settings.values())
-    problems += problems_with({**left, **own}, schema, "wavelet.", origin)
+    kinds = {"kind": chosen_kind} | FREQUENCIES | _kinds_of(settings.values())
+    problems += problems_with({**left, **own}, kinds, "wavelet.", origin)
     if problems:
         raise InputError(problems)
     return {**left, **own}
@@ -125,13 +126,14 @@ def _own(node: Mapping[str, Any], origin: Origin) -> tuple[tuple[str, ...], dict
         raise InputError([replace(problem, source=origin.of(KEY)) for problem in error.problems]) from error
 
 
-def _require(node: Mapping[str, Any], name: str, rule: Key, prefix: str, origin: Origin) -> None:
+def _require(node: Mapping[str, Any], name: str, kind: Value, prefix: str, origin: Origin) -> None:
     """Refuse a node in which a key is missing or wrong, on which all others hang."""
     part = {name: node[name]} if name in node else {}
-    problems = problems_with(part, {name: rule}, prefix, origin)
+    problems = problems_with(part, {name: kind}, prefix, origin)
     if problems:
         raise InputError(problems)
 
 
-def _schema_of(settings: Iterable[Setting]) -> dict[str, Key]:
-    return {one.name: Key(one.kind, one.lower, one.upper) for one in settings}
+def _kinds_of(settings: Iterable[Setting]) -> dict[str, Value]:
+    return {one.name: Flag() if one.kind == "bool" else Number(one.lower, one.upper, one.kind == "int")
+            for one in settings}  # fmt: skip

@@ -6,19 +6,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from gear_damping.config import schema
+from gear_damping.config import keys
 from gear_damping.config.measured import INSPECT, MEASURED, measurement_file
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
 
 _NAME = re.compile(r"^[\w][\w.-]*$")
-RESUMABLE = {"paper": "parts/*.json", "train": "*/seed_*/last.ckpt"}  # what an interrupted task leaves in its folder
 Found = Iterator[tuple[str, str, Any, str]]  # key, rule, value, remedy
-
-
-def resumable(task: str, folder: Path) -> bool:
-    """Whether a folder holds something that a task can go on from."""
-    return task in RESUMABLE and any(folder.glob(RESUMABLE[task]))
 
 
 @dataclass(frozen=True)
@@ -55,7 +49,7 @@ def read_inspect_settings(config: Mapping[str, Any], origin: Origin) -> InspectS
 def light_problems(config: Mapping[str, Any], origin: Origin) -> list[Problem]:
     """The problems with the keys outside simulator and family, and with the path of the measurement."""
     plain = {key: value for key, value in config.items() if key != "hydra"}
-    problems = schema.check(plain, origin)
+    problems = keys.check(plain, origin)
     wrong = {problem.key.split(".")[0] for problem in problems}
     for needed, check in ((("name",), wrong_name), (("task", "measurement"), wrong_measurement)):
         if not wrong & set(needed):

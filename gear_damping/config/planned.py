@@ -6,13 +6,13 @@ from typing import Any
 
 from gear_damping.config.quantities import quantity, split_suffix
 from gear_damping.config.reader import Reader
-from gear_damping.config.schema import Key
 from gear_damping.config.simulator import SimulatorSettings
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, nearest
 from gear_damping.identification.test_plan.asked import PlanCosts, PlanGoal, PlannedSensor, PlannedTests, Unknown
 from gear_damping.identification.test_plan.channels import CHANNELS
 from gear_damping.physics.parameter import Parameter
+from gear_damping.schema.values import Flag, Given, Number, Text
 from gear_damping.units import spoken
 
 AXES = {
@@ -23,19 +23,19 @@ AXES = {
     "settle": Parameter("settle", "s", None, "time before the record", 0, 1e6),
 }
 PLAIN = {
-    "joint": Key("bool"),
-    "wanted_percent": Key("float", 0, 1000, exclusive=True),
-    "wanted_exponent": Key("float", 0, 100, optional=True, exclusive=True),
-    "most_tests": Key("int", 1, 100),
-    "repeats": Key("int", 1, 100),
-    "simulated_tests": Key("int", 0, 1_000_000),
+    "joint": Flag(),
+    "wanted_percent": Number(0, 1000, exclusive=True),
+    "wanted_exponent": Given(Number(0, 100, exclusive=True), optional=True),
+    "most_tests": Number(1, 100, whole=True),
+    "repeats": Number(1, 100, whole=True),
+    "simulated_tests": Number(0, 1_000_000, whole=True),
 }
-COSTS = {name: Key("float", 0, 1e12) for name in ("per_test", "per_second", "per_speed", "per_torque")}
+COSTS = {name: Number(0, 1e12) for name in ("per_test", "per_second", "per_speed", "per_torque")}
 SENSOR = {
-    "snr_db": Key("float", -40, 200, optional=True),
-    "channel": Key("text", optional=True),
-    "offset": Key("bool", optional=True),
-    "cost": Key("float", 0, 1e12, optional=True),
+    "snr_db": Given(Number(-40, 200), optional=True),
+    "channel": Given(Text(), optional=True),
+    "offset": Given(Flag(), optional=True),
+    "cost": Given(Number(0, 1e12), optional=True),
 }
 GROUPS = ("sensors", "unknown", "unknown_each", "cost")
 

@@ -4,11 +4,12 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
+from gear_damping.config.keys import problem_with
 from gear_damping.config.quantities import parameter_value, split_suffix
-from gear_damping.config.schema import Key, problem_with
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.physics.parameter import Parameter
+from gear_damping.schema.values import Value
 
 
 class Reader:
@@ -47,11 +48,11 @@ class Reader:
         key = problem.key if inside else f"{group}.{problem.key}"
         return replace(problem, key=key, source=self.origin.of(key))
 
-    def plain(self, node: Mapping[str, Any], rules: Mapping[str, Key], prefix: str) -> dict[str, Any]:
-        """Values of the keys in `rules`, None where one is wrong."""
+    def plain(self, node: Mapping[str, Any], kinds: Mapping[str, Value], prefix: str) -> dict[str, Any]:
+        """Values of the keys in `kinds`, None where one is wrong."""
         found = {}
-        for name, rule in rules.items():
-            problem = problem_with(node.get(name), rule, prefix + name, self.origin)
+        for name, kind in kinds.items():
+            problem = problem_with(node.get(name), kind, prefix + name, self.origin)
             self.problems += [problem] if problem else []
             found[name] = None if problem else node.get(name)
         return found

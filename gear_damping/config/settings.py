@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, TypeVar
 
-from gear_damping.config import schema
+from gear_damping.config import keys
 from gear_damping.config.combinations import combination_problems
 from gear_damping.config.learners import ModelSettings, read_models, read_wavelet
 from gear_damping.config.measured import measurement_file
@@ -61,8 +61,8 @@ def read_settings(config: Mapping[str, Any], origin: Origin) -> Settings:
         InputError: every problem of the whole configuration.
     """
     config = {key: value for key, value in config.items() if key != "hydra"}
-    problems = schema.check(config, origin)
-    nodes = {group: config.get(group) for group in schema.ELSEWHERE}
+    problems = keys.check(config, origin)
+    nodes = {group: config.get(group) for group in keys.ELSEWHERE}
     for group, node in nodes.items():
         if not isinstance(node, Mapping):
             problems.append(Problem(group, "is a group of keys", node, f"choose {group}=<choice>", origin.of(group)))

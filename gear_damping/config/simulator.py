@@ -3,13 +3,12 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 from gear_damping.config.extended import with_extended
 from gear_damping.config.families import read_family
 from gear_damping.config.quantities import split_suffix
 from gear_damping.config.reader import Reader
-from gear_damping.config.schema import Key
 from gear_damping.config.source import COMMAND_LINE, Origin
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.physics.catalogue import SYSTEMS, catalogue
@@ -17,23 +16,24 @@ from gear_damping.physics.model import Model
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.systems.base import System
 from gear_damping.physics.terms import DampingLaw, Effect, MeshStiffness
+from gear_damping.schema.values import Given, Number, OneOf, Text
 from gear_damping.simulation.families import Family
-from gear_damping.simulation.solver_settings import Solver
+from gear_damping.simulation.solver_settings import Engine, Solver
 
 PLAIN = {
-    "system": Key("text", choices=tuple(SYSTEMS)),
-    "n_runs": Key("int", 1, 10_000_000),
-    "n_samples": Key("int", 2, 100_000_000),
-    "damping_law": Key("text", optional=True),
-    "damping_ratio_percent": Key("float", 0, 50, optional=True),
-    "diverged_share": Key("float", 0, 1),
-    "extended": Key("text", optional=True),
+    "system": OneOf(tuple(SYSTEMS)),
+    "n_runs": Number(1, 10_000_000, whole=True),
+    "n_samples": Number(2, 100_000_000, whole=True),
+    "damping_law": Given(Text(), optional=True),
+    "damping_ratio_percent": Given(Number(0, 50), optional=True),
+    "diverged_share": Number(0, 1),
+    "extended": Given(Text(), optional=True),
 }
 SOLVER = {
-    "accuracy": Key("float", 1e-10, 0.1),
-    "substeps": Key("int", 1, 10_000, optional=True),
-    "engine": Key("text", choices=("auto", "native", "fused", "eager")),
-    "chunk": Key("int", 1, 10_000_000),
+    "accuracy": Number(1e-10, 0.1),
+    "substeps": Given(Number(1, 10_000, whole=True), optional=True),
+    "engine": OneOf(get_args(Engine)),
+    "chunk": Number(1, 10_000_000, whole=True),
 }
 RATE = Parameter("sampling_rate", "Hz", 40e3, "output samples per second", 1e-9, 1e9)
 HOW = (*(name for name in PLAIN if name != "system"), "solver", "plugins")  # keys that say how to simulate

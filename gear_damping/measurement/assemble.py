@@ -6,18 +6,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.checks import check_record
 from gear_damping.measurement.cutting import moved
+from gear_damping.measurement.declaration import Plan
 from gear_damping.measurement.encoders import FROM_ENCODERS, base_radius, mean_rotation, transmission_error
-from gear_damping.measurement.fields import Problems
 from gear_damping.measurement.own_units import Conversion, UnitSystem
-from gear_damping.measurement.plan import Plan
 from gear_damping.measurement.raw import RawChannel, RawRecord
 from gear_damping.measurement.record import Channel, Finding, Quantity, Record
-from gear_damping.measurement.shaft_check import tooth_ratio
+from gear_damping.measurement.record_checks import check_record, tooth_ratio
 from gear_damping.measurement.staircase import is_staircase
 from gear_damping.measurement.timebase import TimeBase
 from gear_damping.measurement.vocabulary import HOLDABLE
+from gear_damping.schema.values import Problems
 from gear_damping.units import parse_unit
 
 LOST = 0.1  # of a channel's variance, from which it is said that resampling took it

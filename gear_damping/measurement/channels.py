@@ -6,9 +6,10 @@ from typing import Annotated, ClassVar
 from pydantic import model_validator
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.fields import Column, Corner, Cutoff, Flag, Measured, Number, OneOf, Text, refuse
+from gear_damping.measurement.quantities import Column, Corner, Cutoff, Measured
 from gear_damping.measurement.record import Quantity
-from gear_damping.measurement.structure import Declared, key
+from gear_damping.schema.mappings import Declared, key
+from gear_damping.schema.values import Flag, Number, OneOf, Text, refuse
 
 Reasons = Frozen[str, tuple[str, str]]
 
@@ -307,7 +308,7 @@ class Displacement(Motion):
     """The displacement of an oscillator, in any unit."""
 
     title: ClassVar[str] = "a displacement"
-    derivative: ClassVar[int | None] = 0
+    derivative: ClassVar[int | None] = 0  # in time, of the displacement
     usual_datum: ClassVar[str] = "arbitrary"
 
 
@@ -315,13 +316,13 @@ class Velocity(Motion):
     """Its velocity."""
 
     title: ClassVar[str] = "a velocity"
-    derivative: ClassVar[int | None] = 1
+    derivative: ClassVar[int | None] = 1  # in time, of the displacement
 
 
 class Acceleration(Motion):
     """Its acceleration."""
 
     title: ClassVar[str] = "an acceleration"
-    derivative: ClassVar[int | None] = 2
+    derivative: ClassVar[int | None] = 2  # in time, of the displacement
     usual_datum: ClassVar[str] = "arbitrary"  # the zero of an accelerometer wanders; what is held has no mean one
     usual_frame: ClassVar[str] = "absolute"

@@ -1,29 +1,122 @@
-"""What makes measured data unreadable (InputError) or suspicious (Finding)."""
+"""What makes the values of a channel unreadable (InputError) or suspicious (Finding).
 
-from dataclasses import replace
+A flat top of a response is clipping, or where the motion itself stood. A plateau at an extreme is clipping where the
+samples about it say that the signal would have gone on. An analog signal never returns to the very same extreme, and a
+noisy or fast one is spread over the levels below it, so that two visits are proof. An encoder or a coarse converter
+holds values elsewhere too, and stands longest where the motion turns; there, a parabola through the samples before the
+plateau and one through those behind it must both lead beyond it by more than a step and a half of the values. A
+parabola that turns within a step is a turning point, however long friction held it there.
+"""
+
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.clipping import clipped_at
-from gear_damping.measurement.encoders import FROM_ENCODERS
-from gear_damping.measurement.not_compared import not_compared
-from gear_damping.measurement.record import Channel, Finding, Record
-from gear_damping.measurement.shaft_check import LARGEST_TRANSMISSION_ERROR, check_shafts
-from gear_damping.measurement.stamp_check import stamps_against_values
+from gear_damping.measurement.record import Channel, Finding
+from gear_damping.measurement.resolution import step_of
 from gear_damping.measurement.vocabulary import INPUTS
 
-SAMPLES_PER_PERIOD = 100  # of the fastest content; more only slow the work
-_CONTENT = 0.999  # share of the energy that counts as content
-_DRIFT = 0.1  # of the way that a straight line goes; what may lie about it
+_SAMPLES, _SHARE, _RATIO = 5, 1e-3, 6  # at the extreme: at least, of all samples, times those at the level beside it
+_HELD = 5e-3  # share of steps that are zero elsewhere, from which a signal holds its values
+_RESTLESS = 0.2  # share of moves against the one before, from which noise or a fast signal crosses many levels
+_LEAST, _MOST = 8, 200  # samples that a parabola is laid through
+_TRAVEL = 16.0  # steps of its values that the signal must have moved through over these samples
+_HOLDS = 0.1  # share of them that repeat the one before, from which the values are coarse
+_JUMP = 5.0  # steps of the signal; an extreme reached by a larger one was jumped to
+_BEYOND = 0.5  # share of the samples at the extreme that must stand in plateaus that were cut
 _BEND, _BENT_SHARE, _FEWEST_BENDS = 1e-4, 0.6, 10  # of the largest bend; of the samples; in a record
 _FEWEST_MARKS, _MOST_MARKED = 3, 0.1  # samples of one value; share of all
 _WITH_A_STROKE = 5  # samples between an input's largest value and a leap that it made
 STRUCK = ("force", "base_acceleration")  # which one blow may make
 _LONE = 5.0  # times as far from the median as any other sample
 _SPEEDS = ("velocity", "pinion_speed", "gear_speed")
-_APPLIED = (*INPUTS, "pinion_angle", "pinion_speed")  # what drives the system
+APPLIED = (*INPUTS, "pinion_angle", "pinion_speed")  # what drives the system
+
+
+def clipped_at(values: NDArray[np.float64]) -> tuple[str, NDArray[np.bool_]] | None:
+    """The extreme that a response was clipped at, `minimum` or `maximum`, and the samples there; None for neither."""
+    for name, outward in (("minimum", -values), ("maximum", values)):
+        at = outward == outward.max()
+        if _stands(outward, at) and _would_go_on(outward, at):
+            return name, at
+    return None
+
+
+def _stands(outward: NDArray, at: NDArray) -> bool:
+    """Many samples exactly at the extreme, some of them in a row, and few at the level beside it."""
+    count = int(at.sum())
+    if count < max(_SAMPLES, _SHARE * at.size) or count == at.size or not np.any(at[1:] & at[:-1]):
+        return False
+    inside = outward[~at]
+    return count > _RATIO * int(np.sum(inside >= inside.max() * (1 - 1e-9 * np.sign(inside.max()))))
+
+
+def _would_go_on(outward: NDArray, at: NDArray) -> bool:
+    steps = np.diff(outward)
+    elsewhere = ~(at[1:] & at[:-1])
+    held = float(np.mean(steps[elsewhere] == 0))
+    plateaus = list(_plateaus(at))
+    lengths = [last + 1 - first for first, last in plateaus]
+    moves = np.sign(steps[steps != 0])
+    restless = np.sum(moves[1:] != moves[:-1]) > _RESTLESS * moves.size
+    if sum(length > 1 for length in lengths) > 1 and (restless or (held < _HELD and np.median(lengths) < _LEAST)):
+        return True
+    step = max(step_of(outward), _held_step(outward, at)) if held >= _HELD else step_of(outward)
+    cut = [length for length, plateau in zip(lengths, plateaus, strict=True) if _cut(outward, *plateau, step)]
+    return sum(cut) > _BEYOND * int(at.sum())
+
+
+def _held_step(outward: NDArray, at: NDArray) -> float:
+    """What lies between the levels that are held: the step of coarse values that were interpolated afterwards."""
+    held = np.unique(outward[1:][(np.diff(outward) == 0) & ~at[1:]])
+    return float(np.quantile(np.diff(held), 0.25)) if held.size > 1 else 0.0
+
+
+def _plateaus(at: NDArray) -> Iterator[tuple[int, int]]:
+    """First and last sample of each stay."""
+    edges = np.flatnonzero(np.diff(np.r_[0, at.astype(int), 0]))
+    yield from zip(edges[::2].tolist(), (edges[1::2] - 1).tolist(), strict=True)
+
+
+def _cut(outward: NDArray, first: int, last: int, step: float) -> bool:
+    """Whether both sides of a plateau lead beyond it; at the end of a record the side that there is decides.
+
+    A record may begin at rest, from where a force moves it off at once: that is nothing to judge by.
+    """
+    length = last + 1 - first
+    before, behind = outward[max(0, first - _MOST) : first], outward[last + 1 : last + 1 + _MOST][::-1]
+    if before.size < _LEAST:
+        return False
+    leads = _leads_beyond(before, outward[first], length, step)
+    return leads and (behind.size < _LEAST or _leads_beyond(behind, outward[first], length, step))
+
+
+def _leads_beyond(side: NDArray, top: float, length: int, step: float) -> bool:
+    """Whether samples before a plateau at `top` lead more than a step and a half beyond it within half its length."""
+    side = side[-_reach(side, length // 2) :]
+    moves = np.abs(np.diff(side))
+    if top - side[-1] > _JUMP * float(moves.max()) > 0:
+        return True
+    bend, slope, height = np.polyfit(np.arange(1 - side.size, 1), side, 2)
+    if slope <= 0:
+        return False
+    turn = -slope / (2 * bend) if bend < 0 else np.inf
+    ahead = min(turn, (length + 1) / 2)
+    return bool(height + slope * ahead + bend * ahead**2 - top > max(1.5 * step, 2 * abs(bend)))
+
+
+def _reach(side: NDArray, least: int) -> int:
+    """How many samples next to a plateau are enough: coarse values that repeat must move through several steps."""
+    reach = max(_LEAST, least)
+    while reach < side.size:
+        moves = np.abs(np.diff(side[-reach:]))
+        moving, way = moves[moves > 0], np.ptp(side[-reach:])
+        if moving.size and (moving.size >= (1 - _HOLDS) * moves.size or way >= _TRAVEL * np.median(moving)):
+            break
+        reach += reach // 2
+    return min(reach, side.size)
 
 
 def refuse_not_finite(values: NDArray[np.float64], key: str, source: str, first: int = 0) -> None:
@@ -36,17 +129,16 @@ def refuse_not_finite(values: NDArray[np.float64], key: str, source: str, first:
         raise InputError(Problem(key, rule, remedy="use slices that leave them out", source=source))
 
 
-def check_record(record: Record) -> tuple[Finding, ...]:
-    """Everything suspicious in the values of a record, beside the findings that it has already."""
-    found = []
-    for channel in record.channels.values():
-        marked = _marked(channel)
-        found += [marked or _constant(channel) or _clipped(channel) or _straight_lines(channel)]
-        found += [] if marked or channel.name in STRUCK else [_spike(channel, _strokes(record))]
-    if not any(finding.severity == "data_problem" and finding.channel == "time" for finding in record.findings):
-        found.append(stamps_against_values(record))
-    found += [_magnitude(record), *check_shafts(record), *not_compared(record), _oversampled(record)]
-    return tuple(replace(finding, record=record.name) for finding in found if finding)
+def check_channel(channel: Channel, strokes: NDArray[np.int64]) -> list[Finding | None]:
+    """What is suspicious in the values of a channel.
+
+    Args:
+        channel: The channel.
+        strokes: Samples at which an input is largest: a hammer's blow, with which a response may leap.
+    """
+    marked = _marked(channel)
+    found = [marked or _constant(channel) or _clipped(channel) or _straight_lines(channel)]
+    return found if marked or channel.name in STRUCK else [*found, _spike(channel, strokes)]
 
 
 def _constant(channel: Channel) -> Finding | None:
@@ -72,11 +164,6 @@ def _marked(channel: Channel) -> Finding | None:
         "else near it: a mark for a missing value; put what was measured there, or use slices beside it"
     )
     return Finding("marked_values", message, channel=channel.name, sample=where)
-
-
-def _strokes(record: Record) -> NDArray[np.int64]:
-    """Where an input is largest: a hammer's blow, with which a response may leap."""
-    return np.array([np.argmax(np.abs(c.values)) for name, c in record.channels.items() if name in STRUCK], dtype=int)
 
 
 def _spike(channel: Channel, strokes: NDArray[np.int64]) -> Finding | None:
@@ -122,7 +209,7 @@ def _clipped(channel: Channel) -> Finding | None:
     What drives the system stands at its limit where the drive does: that is what was applied.
     """
     values = channel.values
-    cut = None if channel.name in _APPLIED else clipped_at(values)
+    cut = None if channel.name in APPLIED else clipped_at(values)
     if channel.name in _SPEEDS and cut and values[cut[1]][0] == 0:
         cut = None  # a shaft or a drive that stands still
     if cut:
@@ -142,52 +229,3 @@ def _clipping(channel: Channel, at: NDArray, where: str) -> Finding:
     return Finding("clipped", message, channel=channel.name, sample=int(np.argmax(at)))
 
 
-def _magnitude(record: Record) -> Finding | None:
-    """A transmission error that no gear pair has: by its unit, or because it runs away."""
-    channel = record.channels.get("transmission_error")
-    if channel is None or any(finding.kind == "tooth_ratio" for finding in record.findings):
-        return None
-    values = channel.values - (np.median(channel.values) if channel.datum == "arbitrary" else 0.0)
-    where = int(np.argmax(np.abs(values)))
-    largest = abs(float(values[where]))
-    if largest <= LARGEST_TRANSMISSION_ERROR:
-        return None
-    place = np.linspace(-1, 1, values.size)
-    slope = float(np.polyfit(place, values, 1)[0])
-    rest = values - slope * place
-    if np.max(np.abs(rest - np.median(rest))) <= min(LARGEST_TRANSMISSION_ERROR, _DRIFT * 2 * abs(slope)):
-        message = (
-            f"the transmission error runs away by {2 * abs(slope):.3g} m over the record; "
-            "check the tooth counts and the counts per revolution that it was made with"
-        )
-        return Finding("drifting_error", message, channel=channel.name)
-    check = f"check its unit '{channel.declared_unit}' (mm or um read as m?)"
-    if FROM_ENCODERS in record.notes:
-        check = "check the tooth counts and the counts per revolution, and whether counts were lost"
-    message = f"the transmission error reaches {largest:.3g} m, and gear pairs stay below 1 mm; {check}"
-    return Finding("implausible_magnitude", message, channel=channel.name, sample=where)
-
-
-def _oversampled(record: Record) -> Finding | None:
-    """A response whose fastest content has more than a hundred samples a period."""
-    if not record.uniform:
-        return None
-    fastest = 0.0
-    for channel in record.channels.values():
-        if channel.name not in _APPLIED:
-            fastest = max(fastest, _fastest_content(channel.values, record.sampling_rate))
-    if fastest == 0.0 or record.sampling_rate <= SAMPLES_PER_PERIOD * fastest:
-        return None
-    message = (
-        f"99.9 % of the energy lies below {fastest:.3g} Hz, so that {record.sampling_rate:.4g} Hz "
-        "is far more than is needed; decimate to save time"
-    )
-    return Finding("oversampled", message, severity="note")
-
-
-def _fastest_content(values: NDArray[np.float64], rate: float) -> float:
-    """Hz below which 99.9 % of the energy about the mean lies; 0 for a constant."""
-    if np.ptp(values) == 0:
-        return 0.0
-    power = np.abs(np.fft.rfft((values - values.mean()) * np.hanning(values.size))) ** 2
-    return float(np.searchsorted(np.cumsum(power), _CONTENT * power.sum())) * rate / values.size

@@ -15,7 +15,7 @@ _ANGLE = re.compile(r"angle|winkel|theta|phi|phase|encoder|azimuth|rotation|revo
 _MOTION = re.compile(r"accel|veloc|displac|force|torque", re.I)  # what bears such a name is no pulse train
 _LEVELS, _AT_LEVEL, _FEWEST_PULSES = 0.15, 0.95, 4  # of the range; of the samples; rises
 _FEWEST_JUMPS, _ONE_WAY, _COARSE = 2, 0.9, 50  # wraps; of the steps; steps that a direction is seen by
-_TURNS = {"rad": 2 * np.pi, "deg": 360.0, "rev": 1.0}
+_TURNS = {"rad": 2 * np.pi, "deg": 360.0, "rev": 1.0}  # one turn in each unit that an angle is written in
 _NEAR_TURN = 0.03  # of a turn: a ramp that ends so near to it wraps there
 
 

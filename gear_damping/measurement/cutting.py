@@ -13,11 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.splines import cubic_spline
-from gear_damping.measurement.timebase import TimeBase, moved_to, refuse_uncovered
+from gear_damping.measurement.timebase import TimeBase, cubic_spline, moved_to, refuse_uncovered
 
 PASS, STOP = 0.4, 0.5  # of the new rate
-_ATTENUATION = 80.0  # dB
+_ATTENUATION = 80.0  # dB that the filter stops by: what is left lies below the noise of a sensor
 _REACH = 25  # samples of the new rate that the filter reaches to either side; enough for 80 dB between PASS and STOP
 _FITTED = 50  # samples of the new rate at an end that its continuation is fitted to
 _FINE = 8  # samples of the filtered signal for one of the new rate, between which a spline is exact enough

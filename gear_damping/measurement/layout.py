@@ -7,7 +7,7 @@ from pydantic import model_validator
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement import channels as c
-from gear_damping.measurement.fields import Column, Flag, Measured, Number, OneOf, Rows, Text, refuse
+from gear_damping.measurement.quantities import Column, Measured, Rows
 from gear_damping.measurement.record import ROLES, Quantity
 from gear_damping.measurement.rig import (
     GEAR_TORQUE_MODES,
@@ -16,7 +16,8 @@ from gear_damping.measurement.rig import (
     OscillatorConditions,
     OscillatorParameters,
 )
-from gear_damping.measurement.structure import Declared, Item, Listed, Word, key
+from gear_damping.schema.mappings import Declared, Item, Listed, Word, key
+from gear_damping.schema.values import Flag, Number, OneOf, Text, refuse
 from gear_damping.units import parse_unit, to_si
 
 SYSTEMS = ("gear_pair", "oscillator")

@@ -11,15 +11,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.declaration import declared_plan
-from gear_damping.measurement.fields import Problems
+from gear_damping.measurement.declaration import Plan, RecordPlan, declared_plan
+from gear_damping.measurement.files import Files, read_yaml
+from gear_damping.measurement.formats.registry import MAX_BYTES, readers
 from gear_damping.measurement.own_units import UnitSystem
-from gear_damping.measurement.plan import Plan, RecordPlan
 from gear_damping.measurement.record import Finding, Measurement, Quantity, Record
-from gear_damping.measurement.yaml_file import read_yaml
+from gear_damping.schema.values import Problems
 
 if TYPE_CHECKING:
-    from gear_damping.measurement.raw import Files, RawRecord
+    from gear_damping.measurement.raw import RawRecord
 
 ONE_RATE = 1e-6  # rates that differ by less are one, written with other digits
 OTHER_RATE = 0.01  # rates that differ by more are said
@@ -74,7 +74,8 @@ def load_measurement(
     plan = declared_plan(content, problems, source)
     if plan is None:
         problems.raise_any()
-    raw = _read(plan, _files(path.parent, max_bytes, plugins), problems, source)
+    files = Files(path.parent, MAX_BYTES if max_bytes is None else max_bytes, readers(plugins))
+    raw = _read(plan, files, problems, source)
     declared = [(channel.plan.name, channel.unit) for record in raw for channel in record.channels]
     declared += [(name, quantity.unit) for record in raw for name, quantity in record.plan.conditions.items()]
     units = UnitSystem(plan.system, declared)
@@ -113,14 +114,7 @@ def _compare_units(plan: Plan, units: UnitSystem, problems: Problems, source: st
     return own
 
 
-def _files(folder: Path, max_bytes: int | None, plugins: Sequence[str | Path]) -> "Files":
-    from gear_damping.measurement.formats.registry import MAX_BYTES, readers
-    from gear_damping.measurement.raw import Files
-
-    return Files(folder, MAX_BYTES if max_bytes is None else max_bytes, readers(plugins))
-
-
-def _read(plan: Plan, files: "Files", problems: Problems, source: str) -> "list[RawRecord]":
+def _read(plan: Plan, files: Files, problems: Problems, source: str) -> "list[RawRecord]":
     from gear_damping.measurement.raw import RawReader
 
     records = []

@@ -12,7 +12,7 @@ from gear_damping.measurement.record import Quantity
 from gear_damping.measurement.vocabulary import GEAR_CHANNELS, OSCILLATOR_CHANNELS
 from gear_damping.units import Dimension, Unit, parse_unit
 
-_PER_SECOND = Dimension(time=-1)
+_PER_SECOND = Dimension(time=-1)  # exponent of a derivative in time
 _PER = {0: "", 1: "/s", 2: "/s^2"}
 _BASE = "base_acceleration"  # an input in the unit of the response's acceleration
 

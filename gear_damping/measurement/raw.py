@@ -1,10 +1,7 @@
 """Reading what a record's plan asks for out of its file, before units are compared."""
 
-import hashlib
-from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,42 +9,17 @@ from numpy.typing import NDArray
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.checks import refuse_not_finite
 from gear_damping.measurement.cutting import slower, window_rows
-from gear_damping.measurement.fields import Problems
-from gear_damping.measurement.formats.registry import Reader, read_table
+from gear_damping.measurement.declaration import ChannelPlan, EncoderPlan, RecordPlan, TimePlan
+from gear_damping.measurement.encoders import ReadColumn, shaft_angle
 from gear_damping.measurement.formats.table import Table
-from gear_damping.measurement.paths import resolve_file
-from gear_damping.measurement.plan import ChannelPlan, EncoderPlan, RecordPlan, TimePlan
-from gear_damping.measurement.shaft import ReadColumn, shaft_angle
 from gear_damping.measurement.time_column import is_time
 from gear_damping.measurement.timebase import TimeBase, stamped_time, steady_time
+from gear_damping.schema.values import Problems
 from gear_damping.units import to_si
 
 LEAST_SAMPLES = 8  # of a record, for a spectrum at all
 _SAME_RATE = 1e-3  # how far a declared rate may lie from the file's
 _SAME_UNIT = 1e-9  # the same of units
-
-
-class Files:
-    """Files that are read and digested once, however many records lie in them."""
-
-    def __init__(self, folder: Path, max_bytes: int, known: Mapping[str, Reader] | None = None) -> None:
-        self._folder, self._max_bytes, self._known = folder, max_bytes, known
-        self._tables: dict[Path, Table] = {}
-        self._digests: dict[Path, str] = {}
-
-    def table(self, file: str, key: str, source: str) -> Table:
-        """The table of a file named in the YAML; raises InputError where it cannot be read."""
-        path = resolve_file(file, self._folder, key, source)
-        if path not in self._tables:
-            self._tables[path] = read_table(path, self._max_bytes, self._known)
-        return self._tables[path]
-
-    def sha256(self, path: Path) -> str:
-        """The digest of a file in hexadecimal."""
-        if path not in self._digests:
-            with path.open("rb") as file:
-                self._digests[path] = hashlib.file_digest(file, "sha256").hexdigest()
-        return self._digests[path]
 
 
 @dataclass(frozen=True, eq=False)

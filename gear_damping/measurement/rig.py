@@ -5,9 +5,10 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import model_validator
 
-from gear_damping.measurement.fields import Measured, OneOf, refuse
+from gear_damping.measurement.quantities import Measured
 from gear_damping.measurement.record import Quantity
-from gear_damping.measurement.structure import Declared, key
+from gear_damping.schema.mappings import Declared, key
+from gear_damping.schema.values import OneOf, refuse
 
 GEAR_TORQUE_MODES = ("balanced", "held")
 _KNOWN = "known, or a prior with its uncertainty"

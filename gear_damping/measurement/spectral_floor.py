@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 FEWEST = 64  # samples; with fewer there is no floor to be seen
-_LONGEST = 8192  # samples of a segment
+_LONGEST = 8192  # samples of a segment: more would resolve no floor and cost time
 _AVERAGED = 4  # segments, at least, where the record is long enough
 _NUTTALL = (0.3635819, -0.4891775, 0.1365995, -0.0106411)  # side lobes 98 dB down: what is strong hides no floor
 _SKIPPED, _TOP = 4, 0.95  # lowest lines, which hold trends; share of the band below the anti-alias corner

@@ -14,8 +14,9 @@ from gear_damping.units import to_si
 NAMED = re.compile(r"^(t|ts|tt)$|time|zeit|temps|tiempo|stamp|second|millis|micros|elapsed|clock|abscissa", re.I)
 _SUFFIX = re.compile(r"[_ .\-/](s|sec|ms|us|µs|min|h)$", re.I)
 _SLOW = 200  # whole numbers a step: as milliseconds less than 5 Hz, and few vibrate as slowly
-_EPOCHS = ((1e8, 1e10, "s"), (1e11, 1e13, "ms"), (1e14, 1e16, "us"))  # counted from 1970
-_FEWEST = 8  # stamps
+# Ranges that a time counted from 1970 lies in, by its unit: from 1973 on, and they do not meet.
+_EPOCHS = ((1e8, 1e10, "s"), (1e11, 1e13, "ms"), (1e14, 1e16, "us"))
+_FEWEST = 8  # stamps, as many as a record needs
 _ADVANCING = 0.9  # share of the steps of a named column that go forward
 _SHORT = re.compile(r"^t[a-z]?\d*(_\w+)?$", re.I)  # t1, tb_n: a time only where its steps are even
 _EVEN = 0.05  # of the median step; how far the steps of an unnamed column may differ

@@ -1,5 +1,16 @@
-"""From time stamps to a time base: uniform, put on a grid, or left at the stamps and said."""
+"""From time stamps to a time base: uniform, put on a grid, or left at the stamps and said.
 
+What uneven stamps are: rounded, jittering as a recorder's do, or a fault. Jitter is explained where every step rounds
+to one: a step between 0.5 and 1.5 of the usual one is what two stamps within a quarter of a step of their places make,
+and a band-limited signal is determined by samples so placed (Kadec's theorem). Beyond, a step could as well be a lost
+or a doubled sample, and the stamps alone no longer say which. A few late stamps (one in a thousand) that the next ones
+make good again are a busy recorder's and are let pass. Another rate over an eighth of the record is a recorder's that
+slowed down, or one that writes events: samples are taken at their stamps, which is said. What stays unexplained is a
+data problem: a lasting shift of whole steps (samples were dropped), any other lasting shift (the clock jumps), steps
+all over the place. Whether the values were taken at their stamps is asked of them too (`record_checks`).
+"""
+
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,14 +18,43 @@ from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.record import Finding
-from gear_damping.measurement.splines import cubic_spline
-from gear_damping.measurement.stamps import REMEDY, irregularity, jitter_note, written_in
 
+Curve = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 RATE_TOLERANCE = 0.01  # relative; rates within are one
 GRID_TOLERANCE = 1e-6  # of a step; stamps this close to a grid are one
 # Of a step: a cubic spline that moves samples this far errs by at most 0.07 % of content at 4 samples a period and
 # 0.001 % of content at 10, because its slope errs by 4.5 and 0.1 %; beyond, samples are fitted at their stamps.
 SPLINE_TOLERANCE = 0.01
+REMEDY = "or give sampling_rate instead of the time column, where the stamps are written with too few digits"
+_HALF = 0.5  # of a step; a stamp that far from where it is due counts as another sample's
+_WHOLE = 0.05  # of a gap; how near a whole number of steps it must be, beside what the jitter allows
+_RUN = 0.8  # share of gaps behind a gap from which they are a lower rate, not losses
+_MANY = 0.1  # share of the steps; so many are no jumps but another rate
+_LOOSE = 0.2  # of a step; all that jitter may add to that
+_SIDE = 8  # samples at either side of a gap that say whether the shift lasts
+_LATE_SHARE = 1e-3  # of the stamps that may come late
+_RATE = 0.01  # relative change of rate that is no longer the same rate
+_PARTS, _LEAST_PART = 8, 16  # a rate is looked at over an eighth of the record, of so many steps at least
+_SIGMAS = 5.0  # of the jitter, that a rate over a part must leave the mean by
+_WRITTEN = 1.2  # last digits over which rounded stamps may spread about their grid
+_PLACES = range(10)  # decimal places that are tried
+_EXACT = 1e-4  # of the last digit; how near a whole number of it stamps must be
+
+
+def cubic_spline(place: NDArray[np.float64], values: NDArray[np.float64]) -> Curve:
+    """The cubic spline through (n,) `values` at increasing places."""
+    from scipy.interpolate import CubicSpline
+
+    return CubicSpline(place, values)
+
+
+def monotone_spline(place: NDArray[np.float64], values: NDArray[np.float64]) -> Curve:
+    """The cubic Hermite interpolant that is monotone where (n,) `values` are."""
+    from scipy.interpolate import PchipInterpolator
+
+    return PchipInterpolator(place, values)
+
+
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,3 +146,134 @@ def refuse_uncovered(time: NDArray[np.float64], own: TimeBase, key: str, source:
         rule = f"covers {own.time[0]:.6g} to {own.time[-1]:.6g} s"
         rule += f", the record {time[0]:.6g} to {time[-1]:.6g} s"
         raise InputError(Problem(key, rule, remedy="shorten the record with slice", source=source))
+
+
+
+
+@dataclass(frozen=True)
+class Written:
+    """A grid that stamps are rounded to: the last digit in s, the first sample's time in s, the rate in Hz."""
+
+    digit: float
+    start: float
+    rate: float
+
+
+def written_in(stamps: NDArray[np.float64]) -> Written | None:
+    """The even grid that stamps of few digits stand for; None where they are not rounded, or not from a grid.
+
+    Rounding moves a stamp by half of its last digit, so that it tells nothing against a grid that is nearer. Of the
+    rates that the digits allow, the one with the fewest digits of its own is taken.
+    """
+    since, index = stamps - stamps[0], np.arange(stamps.size)
+    digit = _last_digit(since, 4 * np.spacing(np.abs(stamps).max()))
+    rate = 1 / float(np.polyfit(index, since, 1)[0])
+    if digit is None or np.ptp(since - index / rate) > _WRITTEN * digit:
+        return None
+    plain = (float(f"{rate:.{places}g}") for places in range(1, 7))
+    rate = next((r for r in plain if np.ptp(since - index / r) <= (1 + _EXACT) * digit), rate)
+    off = since - index / rate
+    return Written(digit, float(stamps[0] + (off.max() + off.min()) / 2), rate)
+
+
+def _last_digit(since: NDArray, rounding: float) -> float | None:
+    """The largest power of ten in s that times are whole multiples of."""
+    for digit in (10.0**-places for places in _PLACES):
+        if np.all(np.abs(since - digit * np.round(since / digit)) <= _EXACT * digit + rounding):
+            return digit
+    return None
+
+
+def irregularity(stamps: NDArray[np.float64]) -> Finding | None:
+    """The data problem or the note that uneven stamps call for, or None where they jitter as a recorder's do.
+
+    Args:
+        stamps: (n,) strictly increasing, in s.
+    """
+    steps = np.diff(stamps)
+    usual = float(np.median(steps))
+    odd = np.flatnonzero(np.abs(steps / usual - 1) > _HALF)
+    lasting = np.array([k for k in odd if abs(_shift(stamps, usual, k)) > _HALF], int)
+    gaps = steps[lasting] / usual
+    run = np.mean(np.diff(lasting) == 1) if lasting.size > 2 else 0.0
+    if lasting.size and run < _RUN and _are_whole(gaps, _scatter(steps) / usual):
+        return _dropped(np.round(gaps).astype(int) - 1, lasting)
+    few = run < _RUN and lasting.size < _MANY * steps.size
+    changes = _change_of_rate(np.delete(steps, lasting) if few else steps)
+    if changes is not None:
+        return _changing(steps, changes)
+    if lasting.size:
+        return _unexplained(steps, int(lasting[0]) + 1, "the clock jumps")
+    if odd.size > 2 * max(1.0, _LATE_SHARE * steps.size):  # a late stamp has an odd step at either side
+        return _unexplained(steps, int(odd[0]) + 1, "more than jitter, for some steps are nearer to none or to two")
+    return None
+
+
+def jitter_note(stamps: NDArray[np.float64]) -> Finding:
+    """The note on stamps that jitter."""
+    steps = np.diff(stamps)
+    mean = float(steps.mean())
+    message = (
+        f"time steps scatter by {100 * steps.std() / mean:.2g} % (from {steps.min():.4g} to {steps.max():.4g} s) about "
+        f"{1 / mean:.6g} Hz: samples are taken at their stamps"
+    )
+    return Finding("uneven_stamps", message, channel="time", severity="note")
+
+
+def _shift(stamps: NDArray, usual: float, k: int) -> float:
+    """By how many steps the stamps behind step k are later than those before it say, beside the step itself."""
+    first, last = max(0, k + 1 - _SIDE), min(stamps.size, k + 1 + _SIDE)
+    late = stamps[first:last] - stamps[first] - usual * np.arange(last - first)
+    at = k + 1 - first
+    return float(np.median(late[at:]) - np.median(late[:at])) / usual
+
+
+def _scatter(steps: NDArray) -> float:
+    """Standard deviation of steps in s; neither gaps nor changes of the rate count."""
+    return 1.4826 * float(np.median(np.abs(np.diff(steps)))) / np.sqrt(2)
+
+
+def _are_whole(gaps: NDArray, scatter: float) -> bool:
+    """Whether gaps, in steps, are two steps or more and whole ones, up to the jitter."""
+    whole = np.round(gaps)
+    return bool(np.all((whole >= 2) & (np.abs(gaps - whole) <= _WHOLE * whole + min(_SIGMAS * scatter, _LOOSE))))
+
+
+def _change_of_rate(steps: NDArray) -> int | None:
+    """The first sample of the part with another rate, or None where one rate holds throughout."""
+    part = max(_LEAST_PART, steps.size // _PARTS)
+    if steps.size < 2 * part:
+        return None
+    time = np.r_[0.0, np.cumsum(steps)]
+    local = (time[part:] - time[:-part]) / part
+    mean = float(np.median(local))
+    allowed = _RATE + _SIGMAS * _scatter(steps) / mean / np.sqrt(part)
+    if np.max(np.abs(local / mean - 1)) <= allowed:
+        return None
+    return int(np.argmax(np.abs(time - np.linspace(0.0, time[-1], time.size)))) + 1
+
+
+def _dropped(lost: NDArray, gaps: NDArray) -> Finding:
+    where = int(gaps[0]) + 1
+    message = (
+        f"about {lost.sum()} sample(s) were dropped in {gaps.size} gap(s), "
+        f"the first before sample {where}; use slices between the gaps"
+    )
+    return Finding("dropped_samples", message, channel="time", sample=where)
+
+
+def _changing(steps: NDArray, where: int) -> Finding:
+    message = (
+        f"{_range_of(steps)}: the rate changes, first before sample {where}; samples are taken at their stamps; where "
+        "the clock and not the sampling did that, give sampling_rate instead of the time column"
+    )
+    return Finding("uneven_stamps", message, channel="time", sample=where, severity="note")
+
+
+def _unexplained(steps: NDArray, where: int, what: str) -> Finding:
+    message = f"{_range_of(steps)}: {what}, first before sample {where}; use slices of one rate, {REMEDY}"
+    return Finding("uneven_stamps", message, channel="time", sample=where)
+
+
+def _range_of(steps: NDArray) -> str:
+    return f"time steps from {steps.min():.4g} to {steps.max():.4g} s about a median of {np.median(steps):.4g} s"

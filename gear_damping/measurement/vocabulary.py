@@ -4,7 +4,7 @@ from types import MappingProxyType as Frozen
 
 from gear_damping.measurement import layout, rig
 from gear_damping.measurement.channels import AnyChannel, Held
-from gear_damping.measurement.structure import Declared, inner_model, kind_of, names
+from gear_damping.schema.mappings import Declared, inner_model, kind_of, names
 
 SYSTEMS = layout.SYSTEMS
 GEAR_TORQUE_MODES = rig.GEAR_TORQUE_MODES

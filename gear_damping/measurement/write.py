@@ -9,11 +9,11 @@ import yaml
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.declaration import declared_plan
-from gear_damping.measurement.fields import Problems
 from gear_damping.measurement.record import Channel, Quantity, Record
 from gear_damping.measurement.staircase import is_staircase
-from gear_damping.measurement.structure import names
 from gear_damping.measurement.vocabulary import CHANNEL_MODELS, CHANNELS, SYSTEMS
+from gear_damping.schema.mappings import names
+from gear_damping.schema.values import Problems
 
 YAML_NAME = "measurement.yaml"
 _FILE_NAME = re.compile(r"^[A-Za-z0-9][\w.-]*$")

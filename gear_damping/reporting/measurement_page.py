@@ -9,8 +9,8 @@ from pathlib import Path
 
 from gear_damping.measurement import channels as c
 from gear_damping.measurement import layout, rig
-from gear_damping.measurement.structure import Declared, kind_of, names
 from gear_damping.measurement.vocabulary import CHANNEL_MODELS
+from gear_damping.schema.mappings import Declared, kind_of, names
 from gear_damping.units import unit_names
 
 BEGIN = "<!-- reference: begin; written by `make docs` from the declarations, do not edit -->"

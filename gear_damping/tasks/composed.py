@@ -1,7 +1,7 @@
 """The configuration of a command: composed by Hydra, in plain containers, and what is wrong with it.
 
-What simulates is imported only where the configuration is to be read whole: a mistake in a measurement.yaml is
-answered before, and task=inspect does without it.
+What checks is imported where it is needed: `--help` needs none of it, a mistake in a measurement.yaml is answered
+before anything that simulates, and task=inspect does without that.
 """
 
 from collections.abc import Mapping, Sequence
@@ -16,13 +16,10 @@ from omegaconf.errors import OmegaConfBaseException
 
 from gear_damping.config.command_line import parse
 from gear_damping.config.folders import unusable
-from gear_damping.config.light import light_problems
 from gear_damping.config.locate import conf_folder, groups
 from gear_damping.config.measured import INSPECT, MEASURED, declares, measurement_file
-from gear_damping.config.schema import ELSEWHERE
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.load import check_declaration
 from gear_damping.tasks.own_parts import errors_in, plugins_of
 from gear_damping.tasks.wrong_declaration import PATH, placed
 
@@ -75,6 +72,9 @@ def _problems_of_measurement(config: Mapping[str, Any], origin: Origin, declared
     task = config.get("task")
     if task not in MEASURED:
         return []
+    from gear_damping.config.light import light_problems
+    from gear_damping.measurement.load import check_declaration
+
     problems = light_problems(config, origin)
     path = (config.get("measurement") or {}).get("path")
     file = measurement_file(path) if isinstance(path, str) else None
@@ -88,6 +88,8 @@ def _problems_of_measurement(config: Mapping[str, Any], origin: Origin, declared
 
 def _physics_typed(overrides: Sequence[str]) -> bool:
     """Whether the command line says something of the simulator, which is then to be right, used or not."""
+    from gear_damping.config.keys import ELSEWHERE
+
     return any(parse(override).key_or_group.split(".")[0] in ELSEWHERE for override in overrides)
 
 

@@ -10,7 +10,6 @@ from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Any
 
-from gear_damping.config.light import InspectSettings, read_inspect_settings
 from gear_damping.config.measured import INSPECT
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
@@ -19,6 +18,7 @@ from gear_damping.tasks.run_folder import FAILED, FINISHED, INTERRUPTED, RunFold
 from gear_damping.tasks.wrong_declaration import WRONG_INPUT, say_problems
 
 if TYPE_CHECKING:
+    from gear_damping.config.light import InspectSettings
     from gear_damping.config.settings import Settings
 
 log = logging.getLogger("gear_damping")
@@ -62,6 +62,8 @@ def run_job(config: Mapping[str, Any], origin: Origin, folder: Path) -> int:
 def _settings(config: Mapping[str, Any], origin: Origin) -> "Settings | InspectSettings":
     """The settings of the task; what simulates is imported where the task needs it."""
     if config.get("task") == INSPECT:
+        from gear_damping.config.light import read_inspect_settings
+
         return read_inspect_settings(config, origin)
     from gear_damping.config.settings import read_settings
 

@@ -14,7 +14,7 @@ from gear_damping.reporting import figures
 from gear_damping.simulation.inspect import forces_of
 from gear_damping.simulation.runs import Runs
 
-SCALOGRAM_SAMPLES = 480  # 12 ms at 40 kHz
+SCALOGRAM_SAMPLES = 480  # that a scalogram shows: 12 ms at 40 kHz, some 18 mesh periods
 
 
 def experiment_figures(settings: Settings, runs: Runs, predictions: Mapping[str, Any]) -> dict[str, Figure]:

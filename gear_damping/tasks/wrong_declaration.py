@@ -13,9 +13,8 @@ from pathlib import Path
 from gear_damping.config.folders import unusable
 from gear_damping.config.measured import MEASURED, declares, measurement_file
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.load import check_declaration
 
-WRONG_INPUT = 1  # exit code
+WRONG_INPUT = 1  # exit code of a command that was wrong
 PATH, TASK, FOLDER = "measurement.path", "task", "hydra.run.dir"
 USUAL_FOLDER = "outputs"  # where runs go unless the command says otherwise
 _PLAIN = re.compile(r"[\w./~@:+-]+( [\w./~@:+-]+)*")  # a value that Hydra takes as it stands
@@ -33,6 +32,8 @@ def answered(words: Sequence[str]) -> bool:
     file = measurement_file(typed[PATH])
     if unusable(Path(typed.get(FOLDER, USUAL_FOLDER))) or not declares(file, typed[TASK]):
         return False
+    from gear_damping.measurement.load import check_declaration
+
     try:
         check_declaration(file)
     except InputError as error:

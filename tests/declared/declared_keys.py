@@ -3,8 +3,9 @@
 from collections.abc import Iterator
 
 from gear_damping.measurement import layout
-from gear_damping.measurement.fields import Column, Flag, Measured, Number, OneOf, Rows, Text, Value
-from gear_damping.measurement.structure import Declared, inner_model, kind_of, names
+from gear_damping.measurement.quantities import Column, Measured, Rows
+from gear_damping.schema.mappings import Declared, inner_model, kind_of, names
+from gear_damping.schema.values import Flag, Number, OneOf, Text, Value
 
 Key = tuple[tuple[str, ...], Value, str]
 OTHER_UNIT = {"m": "mm", "N*m": "mN*m", "rad": "mrad", "rad/s": "mrad/s", "m/s^2": "mm/s^2", "s": "min", "Hz": "1/min",

@@ -18,10 +18,10 @@ from gear_damping.errors import InputError
 from gear_damping.explanation.explain import explain
 from gear_damping.explanation.state import State
 from gear_damping.identification.output_error.descent import Descent
-from gear_damping.measurement.fields import Value
 from gear_damping.measurement.load import load_measurement
-from gear_damping.measurement.structure import names
 from gear_damping.measurement.vocabulary import CHANNEL_MODELS
+from gear_damping.schema.mappings import names
+from gear_damping.schema.values import Value
 
 ITERATIONS = 1
 SAME = 1e-6  # relative difference of figures that are one

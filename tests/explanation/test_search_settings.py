@@ -8,7 +8,7 @@ import pytest
 import yaml
 
 import gear_damping
-from gear_damping.config.schema import SCHEMA, problem_with
+from gear_damping.config.keys import SCHEMA, problem_with
 from gear_damping.config.source import Origin
 from gear_damping.explanation.settings import SearchSettings
 

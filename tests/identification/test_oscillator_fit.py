@@ -11,8 +11,8 @@ from scipy.integrate import solve_ivp
 from gear_damping.identification.observation import fit_record
 from gear_damping.identification.oscillator import DAMPING, first_frequency, fit_oscillator
 from gear_damping.identification.output_error.records import FitRecord, Observed
+from gear_damping.measurement.files import data_root
 from gear_damping.measurement.load import load_measurement
-from gear_damping.measurement.paths import data_root
 
 RATE, FREQUENCY, RATIO = 500.0, 20.0, 0.02
 OMEGA = 2 * np.pi * FREQUENCY

@@ -10,8 +10,7 @@ from scipy.io import savemat
 
 from gear_damping.errors import InputError
 from gear_damping.measurement.formats import guarded
-from gear_damping.measurement.formats.guarded import refuse_deadly
-from gear_damping.measurement.formats.registry import read_table
+from gear_damping.measurement.formats.registry import read_table, refuse_deadly
 
 
 class Columns:

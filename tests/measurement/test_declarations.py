@@ -13,8 +13,8 @@ from gear_damping.errors import InputError
 from gear_damping.measurement.channels import AnyChannel, Response
 from gear_damping.measurement.load import check_declaration, load_measurement
 from gear_damping.measurement.record import Quantity
-from gear_damping.measurement.structure import names
 from gear_damping.measurement.vocabulary import CHANNEL_MODELS
+from gear_damping.schema.mappings import names
 
 TIME = "sampling_rate: {value: 1, unit: kHz}"
 MOTION = "displacement: {column: x, unit: m}"

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from gear_damping.measurement.stamp_check import share_at_stamps
-from gear_damping.measurement.stamps import irregularity
+from gear_damping.measurement.record_checks import share_at_stamps
+from gear_damping.measurement.timebase import irregularity
 
 RATE = 1000.0
 TURN = 2 * np.pi

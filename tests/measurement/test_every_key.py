@@ -12,10 +12,10 @@ from declared_keys import another, declared_keys, holder
 
 from gear_damping.errors import InputError
 from gear_damping.measurement import layout
-from gear_damping.measurement.fields import Value
 from gear_damping.measurement.load import check_declaration, load_measurement
-from gear_damping.measurement.structure import inner_model, kind_of, names
 from gear_damping.measurement.vocabulary import CHANNEL_MODELS
+from gear_damping.schema.mappings import inner_model, kind_of, names
+from gear_damping.schema.values import Value
 
 N = 128
 RATE = 1000.0

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import yaml
 
+from gear_damping.measurement.files import data_root
 from gear_damping.measurement.load import load_measurement
-from gear_damping.measurement.paths import data_root
 
 
 def test_a_sound_gear_record_is_read_in_si(bench):

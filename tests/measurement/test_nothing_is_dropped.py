@@ -8,9 +8,9 @@ import pytest
 from gear_damping.errors import InputError
 from gear_damping.measurement import rig
 from gear_damping.measurement.load import load_measurement
-from gear_damping.measurement.structure import kind_of, names
 from gear_damping.measurement.vocabulary import OSCILLATOR_CHANNELS
 from gear_damping.physics.systems.gear_pair import GearPair
+from gear_damping.schema.mappings import kind_of, names
 from gear_damping.tasks.recorded import OWN_UNITS, UNITS
 
 N, RATE = 200, 1000.0

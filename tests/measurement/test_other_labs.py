@@ -7,11 +7,11 @@ from nptdms import ChannelObject, TdmsWriter
 from scipy.io import wavfile
 
 from gear_damping.errors import InputError
-from gear_damping.measurement.checks import check_record
 from gear_damping.measurement.encoders import angle_from_counts, angle_from_pulses
 from gear_damping.measurement.formats.registry import read_table
 from gear_damping.measurement.inspection import inspect_table
 from gear_damping.measurement.load import load_measurement
+from gear_damping.measurement.record_checks import check_record
 from gear_damping.units import parse_unit, to_si
 
 TIME = np.arange(400) / 500.0

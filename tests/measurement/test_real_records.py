@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from gear_damping.measurement.files import data_root
 from gear_damping.measurement.load import load_measurement
-from gear_damping.measurement.paths import data_root
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "conf" / "measurement" / "records"
 pytestmark = [

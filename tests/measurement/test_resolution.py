@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from gear_damping.measurement.files import data_root
 from gear_damping.measurement.load import load_measurement
-from gear_damping.measurement.paths import data_root
 from gear_damping.measurement.resolution import step_of
 
 STEPS = (1e-3, 2.9142214e-3, 1 / 30)

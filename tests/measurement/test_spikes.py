@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gear_damping.measurement.checks import check_record
 from gear_damping.measurement.record import Channel, Record
+from gear_damping.measurement.record_checks import check_record
 
 TIME = np.arange(2000) / 1e3
 RING = np.exp(-5 * TIME) * np.cos(2 * np.pi * 30 * TIME)

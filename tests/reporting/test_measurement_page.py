@@ -3,8 +3,8 @@
 from pathlib import Path
 
 from gear_damping.measurement.layout import FILES
-from gear_damping.measurement.structure import inner_model, names
 from gear_damping.reporting.measurement_page import BEGIN, END, main, reference, with_reference
+from gear_damping.schema.mappings import inner_model, names
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "measurement.md"
 

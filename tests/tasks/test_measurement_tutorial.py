@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from gear_damping.measurement.paths import DATA_VARIABLE, data_root
+from gear_damping.measurement.files import DATA_VARIABLE, data_root
 from gear_damping.tasks.command import main
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "measurement.md").read_text(encoding="utf-8")

@@ -13,8 +13,15 @@ from pathlib import Path
 from typing import Any
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.formats.cells import SHOWN, Cells, CellTable, decimal_commas
-from gear_damping.measurement.formats.header import Header, find_header, is_number
+from gear_damping.measurement.formats.cells import (
+    SHOWN,
+    Cells,
+    CellTable,
+    Header,
+    decimal_commas,
+    find_header,
+    is_number,
+)
 from gear_damping.measurement.formats.table import Table, is_real, refuse_size, unreadable
 
 SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".gz")

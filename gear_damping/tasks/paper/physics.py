@@ -32,7 +32,7 @@ MESHES = {  # of figure 4, by label
     ),
 }  # fmt: skip
 FINE_SCALES = 240  # on which ridges are looked for: 1.3 % from one to the next
-MESH_PERIODS = 3  # shown in figure 4
+MESH_PERIODS = 3  # as many as figure 4 of the paper shows
 MESH_RATE_HZ = 1e6  # at which figure 4 is drawn: the edges of the wave are seen
 
 

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from gear_damping.config.light import resumable
+from gear_damping.config.folders import resumable
 from gear_damping.config.source import Origin
 from gear_damping.tasks.dispatch import OK, run_job
 from gear_damping.tasks.run_folder import EDITED, FINISHED, read_record

@@ -8,8 +8,8 @@ from gear_damping.reporting.numbers import number
 from gear_damping.tasks.run_folder import FINISHED, read_record
 from gear_damping.tasks.sweep.folder import Place, read_sweep
 
-BAR = 20  # characters
-SHOWN = 2  # figures of a job
+BAR = 20  # characters, so that the line fits a terminal of 80
+SHOWN = 2  # figures of a job, which the rest of the line has room for
 FIRST = ("rmse_percent", "verdict", "misfit_after", "damping_ratio_percent")  # how the names end of those shown first
 
 

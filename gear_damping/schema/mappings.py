@@ -1,22 +1,23 @@
-"""Mappings of measurement.yaml as pydantic models: every key is declared once, and every problem said at once.
+"""Mappings as pydantic models: every key is declared once, and every problem said at once.
 
-A key has its meaning, what acts on it, and the kind of its value (`fields`). A model also says why a key that has a
+A key has its meaning, what acts on it, and the kind of its value (`values`). A model also says why a key that has a
 meaning elsewhere is refused in it. `read_declared` turns pydantic's errors into problems with path, rule and remedy.
 """
 
-from collections.abc import Mapping
-from typing import Any, ClassVar, get_args
+from collections.abc import Callable, Iterable, Mapping
+from typing import Annotated, Any, ClassVar, get_args
 
-from pydantic import BaseModel, ConfigDict, Field, GetCoreSchemaHandler, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, GetCoreSchemaHandler, ValidationError, create_model
 from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, core_schema
 
 from gear_damping.errors import InputError, Problem, nearest
-from gear_damping.measurement.fields import OneOf, Problems, Value, refuse
+from gear_damping.schema.values import Given, OneOf, Problems, Value, refuse
 
 Path = tuple[str | int, ...]
 _LOST = object()  # stands for an item of a list that was wrong
-_DEEPEST = 12  # a YAML may hold itself
+_DEEPEST = 12  # mappings within mappings that are copied, since a YAML may hold itself
+_LEFT = "leave the group as it is"
 
 
 class Declared(BaseModel):
@@ -29,10 +30,43 @@ class Declared(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=False, arbitrary_types_allowed=True)
     refused: ClassVar[Mapping[str, tuple[str, str]]] = {}
     title: ClassVar[str] = ""
+    unknown: ClassVar[str] = "unknown key"
 
     def given(self, name: str) -> bool:
         """Whether the key stands in the file."""
         return name in self.model_fields_set
+
+    @classmethod
+    def not_a_mapping(cls, place: Path) -> tuple[str, str]:
+        """Rule and remedy where something else stands at `place`."""
+        return f"must be a mapping with keys among {', '.join(names(cls))}", "write `key: value` lines"
+
+
+class Group(Declared):
+    """A group of the configuration, in which every key stands."""
+
+    unknown: ClassVar[str] = "no such key"
+
+    @classmethod
+    def not_a_mapping(cls, place: Path) -> tuple[str, str]:
+        """Rule and remedy where something else stands at `place`."""
+        return "is a group of keys", f"give {'.'.join(map(str, place))}.<key>, or choose {place[-1]}=<choice>"
+
+
+def group(kinds: Mapping[str, Any], others: Iterable[str] = ()) -> type[Group]:
+    """The model of a group.
+
+    Args:
+        kinds: The kind of value under each key, or a mapping of kinds; what is not `Given` must not be null.
+        others: Keys that are checked elsewhere.
+    """
+    held: dict[str, Any] = dict.fromkeys(others, Any)
+    for name, kind in kinds.items():
+        is_group = isinstance(kind, Mapping)
+        held[name] = group(kind) if is_group else Annotated[Any, kind if isinstance(kind, Given) else Given(kind)]
+    # A name of pydantic's own is a key like any other.
+    declared = {f"key_{name}": (kind, key("", "", missing=_LEFT, alias=name)) for name, kind in held.items()}
+    return create_model("Group", __base__=Group, **declared)
 
 
 def key(meaning: str, acts: str, default: Any = None, missing: str = "", alias: str | None = None) -> Any:
@@ -108,7 +142,9 @@ def kind_of(info: FieldInfo) -> Value | None:
     return next((found for found in info.metadata if isinstance(found, Value)), None)
 
 
-def read_declared(model: type[Declared], content: object, problems: Problems, source: str) -> Declared | None:
+def read_declared(
+    model: type[Declared], content: object, problems: Problems, source: str | Callable[[str], str], prefix: str = ""
+) -> Declared | None:
     """What the content declares, without the parts that are wrong.
 
     Wrong parts are noted and taken out, and what is left is read again until it holds. A mapping that lost a key is
@@ -118,7 +154,8 @@ def read_declared(model: type[Declared], content: object, problems: Problems, so
         model: The model of the whole file.
         content: What the YAML holds.
         problems: Takes everything that is wrong.
-        source: The YAML file.
+        source: The YAML file, or what says for each key where its value came from.
+        prefix: Stands before each key, `model.` for example.
 
     Returns:
         The model, or None where nothing of the content can be used.
@@ -132,7 +169,7 @@ def read_declared(model: type[Declared], content: object, problems: Problems, so
         cuts = {place for place, _, _ in found}
         for place, problem, among in found:
             if place not in lost and not (among is not None and _touched(among, lost)):
-                problems.append(_placed(problem, place, source))
+                problems.append(_placed(problem, place, source, prefix))
         left = [_cut(content, place, lost) for place in sorted(cuts, key=len, reverse=True)]
         if not all(left):
             return None
@@ -152,9 +189,10 @@ def _touched(place: Path, lost: set[Path]) -> bool:
     return any(cut[: len(place)] == place and 0 < len(cut) - len(place) <= 2 for cut in lost)
 
 
-def _placed(problem: Problem, place: Path, source: str) -> Problem:
+def _placed(problem: Problem, place: Path, source: str | Callable[[str], str], prefix: str) -> Problem:
     text = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in place).lstrip(".")
-    return Problem(text or "the file", problem.rule, problem.value, problem.remedy, source)
+    key = prefix + text or "the file"
+    return Problem(key, problem.rule, problem.value, problem.remedy, source if isinstance(source, str) else source(key))
 
 
 def _cut(content: object, place: Path, lost: set[Path]) -> bool:
@@ -192,8 +230,8 @@ def _problems(model: type[Declared], error: Mapping[str, Any]) -> list[tuple[Pat
     if kind == "extra_forbidden":
         return [(place, _unknown(_model_at(model, place[:-1]), place[-1], value), None)]
     if kind == "model_type":
-        rule = f"must be a mapping with keys among {', '.join(names(_model_at(model, place)))}"
-        return [(place, Problem("", rule, value, "write `key: value` lines"), None)]
+        rule, remedy = _model_at(model, place).not_a_mapping(place)
+        return [(place, Problem("", rule, value, remedy), None)]
     return [(place, Problem("", error["msg"], value), None)]
 
 
@@ -201,7 +239,7 @@ def _unknown(model: type[Declared], name: object, value: object) -> Problem:
     if name in model.refused:
         reason, remedy = model.refused[name]
         return Problem("", f"has no meaning for {model.title}: {reason}", value, remedy)
-    return Problem("", "unknown key", None, nearest(str(name), tuple(names(model))))
+    return Problem("", model.unknown, None, nearest(str(name), tuple(names(model))))
 
 
 def _parts(key: str) -> Path:

@@ -1,85 +1,19 @@
-"""What a value of measurement.yaml may be: texts, words, columns, numbers and quantities with their unit.
+"""Kinds of values that only measured data have: columns, rows, and quantities with their unit.
 
-Each kind of value checks itself, says what is wrong in one message, and describes itself for the reference page.
 A check raises InputError with keys relative to the value ("" for the value itself, `unit` for its unit).
 """
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
-from math import isfinite
-from typing import Any, NoReturn
-
-from pydantic import GetCoreSchemaHandler, ValidationInfo
-from pydantic_core import CoreSchema, core_schema
+from typing import Any
 
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.measurement.record import Quantity
+from gear_damping.schema.values import Number, OneOf, Text, Value, refuse
 from gear_damping.units import parse_unit, spoken, to_si
 
-ORDERS = (1, 2, 4)  # of a Butterworth filter
+ORDERS = (1, 2, 4)  # poles of a Butterworth filter that the simulated sensor has too (`sensor_lowpass`)
 NOT_UNCERTAIN = "has no meaning here: only parameters, conditions and the gain of a channel may be uncertain"
 Found = list[Problem]
-
-
-class Problems(list[Problem]):
-    """The problems found so far."""
-
-    @contextmanager
-    def collecting(self) -> Iterator[None]:
-        """Keep the problems of an InputError raised inside, and go on after the block."""
-        try:
-            yield
-        except InputError as error:
-            self.extend(error.problems)
-
-    def raise_any(self) -> None:
-        """Raise all of them at once, each said once; nothing where there are none."""
-        if self:
-            raise InputError([problem for k, problem in enumerate(self) if problem not in self[:k]])
-
-
-def refuse(rule: str, value: object = None, remedy: str = "", at: str = "") -> NoReturn:
-    """Raise InputError about a value, or about the key `at` in it."""
-    raise InputError(Problem(at, rule, value, remedy))
-
-
-class Value:
-    """A kind of value: `read` checks it and `says` describes it."""
-
-    def read(self, value: Any, name: str) -> Any:
-        """The value in the form that the program keeps; raises InputError."""
-        raise NotImplementedError
-
-    def says(self) -> str:
-        """What may be written, for the reference page."""
-        raise NotImplementedError
-
-    def keys(self) -> tuple[str, ...]:
-        """The keys of a value that is a mapping; none for a plain one."""
-        return ()
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        def check(value: Any, info: ValidationInfo) -> Any:
-            return self.read(value, info.field_name or "")
-
-        return core_schema.with_info_plain_validator_function(check)
-
-
-class Text(Value):
-    """A text that is not empty."""
-
-    def read(self, value: Any, name: str) -> str:
-        """The text; `unit: 1`, a pure number, is one too."""
-        if isinstance(value, str) and value.strip():
-            return value
-        if type(value) is int and name == "unit":
-            return str(value)
-        return refuse("must be a text", value, "put it in quotes")
-
-    def says(self) -> str:
-        """A text."""
-        return "text"
 
 
 class Column(Value):
@@ -94,61 +28,6 @@ class Column(Value):
     def says(self) -> str:
         """A column."""
         return "header text, or 0-based index"
-
-
-class Flag(Value):
-    """True or false."""
-
-    def read(self, value: Any, name: str) -> bool:
-        """The flag."""
-        if not isinstance(value, bool):
-            refuse("must be true or false", value)
-        return value
-
-    def says(self) -> str:
-        """A flag."""
-        return "`true` or `false`"
-
-
-@dataclass(frozen=True)
-class OneOf(Value):
-    """One of a few words or numbers."""
-
-    choices: tuple[object, ...]
-
-    def read(self, value: Any, name: str) -> Any:
-        """The word; Python takes True for 1, people do not."""
-        if not isinstance(value, bool) and isinstance(value, str | int) and value in self.choices:
-            return value
-        words = [str(choice) for choice in self.choices]
-        return refuse(f"must be one of {', '.join(words)}", value, nearest(str(value), words))
-
-    def says(self) -> str:
-        """The words."""
-        return ", ".join(f"`{choice}`" for choice in self.choices)
-
-
-@dataclass(frozen=True)
-class Number(Value):
-    """A finite number."""
-
-    least: float | None = None
-    nonzero: bool = False
-
-    def read(self, value: Any, name: str) -> float:
-        """The number as a float."""
-        if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value):
-            refuse("must be a finite number", value)
-        if self.least is not None and value < self.least:
-            refuse(f"must be at least {self.least:g}", value)
-        if self.nonzero and value == 0:
-            refuse("must not be 0", value)
-        return float(value)
-
-    def says(self) -> str:
-        """The number and its range."""
-        bounds = [f"at least {self.least:g}"] if self.least is not None else []
-        return ", ".join(["number", *bounds, *(["not 0"] if self.nonzero else [])])
 
 
 class Rows(Value):

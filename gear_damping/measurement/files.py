@@ -1,0 +1,120 @@
+"""The files of a measurement: its YAML, in which 1e-6 is a number and a key may appear once, and where data lie."""
+
+import hashlib
+import os
+import re
+from collections.abc import Mapping
+from pathlib import Path
+
+import yaml
+
+from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.formats.registry import Reader, read_table
+from gear_damping.measurement.formats.table import Table
+
+_FLOAT = re.compile(
+    r"""^(?:[-+]?(?:[0-9][0-9_]*)\.[0-9_]*(?:[eE][-+]?[0-9]+)?
+        |[-+]?(?:[0-9][0-9_]*)(?:[eE][-+]?[0-9]+)
+        |[-+]?\.[0-9][0-9_]*(?:[eE][-+]?[0-9]+)?
+        |[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN))$""",
+    re.VERBOSE,
+)
+DATA_VARIABLE = "GEAR_DAMPING_DATA"
+
+
+class _Loader(yaml.SafeLoader):
+    """YAML 1.1 wants 1.0e-6 and takes 1e-6 for text; people write 1e-6."""
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict:
+        """Refuse a key that appears twice, where YAML would silently keep the last."""
+        seen = set()
+        for key_node, _ in node.value:
+            where = key_node.start_mark
+            if not isinstance(key_node, yaml.ScalarNode):
+                raise yaml.constructor.ConstructorError(None, None, "a key is a name, not a list or a mapping", where)
+            if key_node.value in seen:
+                raise yaml.constructor.ConstructorError(None, None, f"the key '{key_node.value}' appears twice", where)
+            seen.add(key_node.value)
+        return super().construct_mapping(node, deep)
+
+
+_Loader.add_implicit_resolver("tag:yaml.org,2002:float", _FLOAT, list("-+0123456789."))
+
+
+def read_yaml(path: Path) -> object:
+    """The content of a YAML file.
+
+    Raises:
+        InputError: no such file, not text, not YAML, or a key appears twice.
+    """
+    if not path.is_file():
+        remedy = "give the path of a measurement.yaml"
+        raise InputError(Problem("measurement.path", "no such file", str(path), remedy))
+    try:
+        return yaml.load(path.read_text(encoding="utf-8-sig"), Loader=_Loader)
+    except UnicodeDecodeError as error:
+        raise InputError(
+            Problem("measurement.path", "not UTF-8 text", str(path), f"save it as UTF-8 ({error.reason})")
+        ) from None
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        where = f" at line {mark.line + 1}, column {mark.column + 1}" if mark else ""
+        reason = getattr(error, "problem", None) or str(error)
+        remedy = "mind indentation, and quote texts that hold ':' or '#'"
+        raise InputError(Problem(str(path), f"not valid YAML{where}: {reason}", remedy=remedy)) from None
+
+
+
+
+def data_root() -> Path:
+    """The folder of measured records: GEAR_DAMPING_DATA, or `shared/data` beside the checkout."""
+    chosen = os.environ.get(DATA_VARIABLE)
+    if chosen:
+        return Path(chosen).expanduser()
+    return Path(__file__).resolve().parents[2].parent / "shared" / "data"
+
+
+def resolve_file(text: str, folder: Path, key: str, source: str) -> Path:
+    """The file that `text` names: `${GEAR_DAMPING_DATA}` filled in, relative to `folder`.
+
+    Raises:
+        InputError: another variable is used, or no file lies there.
+    """
+    filled = text.replace("${" + DATA_VARIABLE + "}", str(data_root()))
+    if "${" in filled:
+        rule = f"only ${{{DATA_VARIABLE}}} is filled in"
+        raise InputError(Problem(key, rule, text, "write the path itself", source))
+    path = folder / Path(filled).expanduser()
+    try:
+        if path.is_file():
+            return path
+        what = "is a folder, not a file" if path.is_dir() else "no such file"
+    except OSError as error:  # a name that no file can bear
+        what = error.strerror
+    remedy = f"'file' is relative to {folder}"
+    if filled != text:
+        remedy = f"set the environment variable {DATA_VARIABLE} to the folder that holds the records"
+    raise InputError(Problem(key, f"{what}: {path}", text, remedy, source))
+
+
+class Files:
+    """Files that are read and digested once, however many records lie in them."""
+
+    def __init__(self, folder: Path, max_bytes: int, known: Mapping[str, Reader] | None = None) -> None:
+        self._folder, self._max_bytes, self._known = folder, max_bytes, known
+        self._tables: dict[Path, Table] = {}
+        self._digests: dict[Path, str] = {}
+
+    def table(self, file: str, key: str, source: str) -> Table:
+        """The table of a file named in the YAML; raises InputError where it cannot be read."""
+        path = resolve_file(file, self._folder, key, source)
+        if path not in self._tables:
+            self._tables[path] = read_table(path, self._max_bytes, self._known)
+        return self._tables[path]
+
+    def sha256(self, path: Path) -> str:
+        """The digest of a file in hexadecimal."""
+        if path not in self._digests:
+            with path.open("rb") as file:
+                self._digests[path] = hashlib.file_digest(file, "sha256").hexdigest()
+        return self._digests[path]

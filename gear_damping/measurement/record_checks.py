@@ -1,0 +1,270 @@
+"""What is suspicious in a record as a whole, beyond the values of one channel.
+
+Shafts turn as declared: the angle that advances, the speed that is stated, the ratio of two encoders.
+
+Samples were taken at their uneven stamps. A stamp that is off its place by e moves a sample by e times the slope of the
+signal, s' e, if the sample was taken there; if the sampling was even and only the stamps are late, the values know
+nothing of e. The share b of s' e in the values (1 where the stamps are right, 0 where they are not) is fitted by least
+squares over the frequencies, each weighted with the inverse of its power, so that the quiet ones, where s' e shows,
+decide.
+
+What was recorded beside a response and is not compared with a simulation is said, so that nobody waits for it.
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_damping.measurement.checks import APPLIED, STRUCK, check_channel
+from gear_damping.measurement.encoders import FROM_ENCODERS
+from gear_damping.measurement.record import Finding, Record
+
+LARGEST_TRANSMISSION_ERROR = 1e-3  # m; a gear pair deflects by micrometres
+SPEED_TOLERANCE = 0.02  # of a stated speed: about the slip of an induction motor
+_COARSE = 50  # parts of a record in which a shaft is seen to advance
+_ONE_WAY = 0.9  # share of the parts that turn one way
+_REVERSALS = 3  # of a shaft that is turned back and forth by its drive
+_STILL = 0.01  # of the way that all parts make; a part below stands still
+SAMPLES_PER_PERIOD = 100  # of the fastest content; more only slow the work
+_CONTENT = 0.999  # share of the energy that counts as content
+_DRIFT = 0.1  # of the way that a straight line goes; what may lie about it
+_TEETH = range(5, 301)  # tooth counts that are tried
+_TURN = 2 * np.pi  # rad in one turn of a shaft
+_LOCAL = 9  # samples about which a stamp's place is judged; slower wandering of a clock is left alone
+_MATTERS = 1e-4  # share of the signal's variance that s' e must have to matter
+_FEWEST = 64  # samples, below which nothing is decided
+_NEIGHBOURS = 33  # frequencies that give the level about a line
+_SLOPE_ERROR = 0.1  # of the power of s' e; nothing is weighted higher than this error of the slope allows
+_FLOOR, _OVER = 0.1, 4.0  # quantile of the power that is noise; times this, what a line must be above
+_DECIDED = 0.35  # share below which the stamps are wrong
+_ERRORS = 4.0  # standard errors that the share must be nearer to none by
+_RESPONSES = ("transmission_error", "gear_speed")  # that make a record one of a simulation, not of a casing
+
+
+def check_shafts(record: Record) -> list[Finding | None]:
+    """What is suspicious in the angle and the speed of the pinion."""
+    return [_turning(record), _speed(record)]
+
+
+def tooth_ratio(
+    pinion: NDArray[np.float64], gear: NDArray[np.float64], teeth: tuple[float, float], radius_pinion: float
+) -> Finding | None:
+    """The finding where the mean slopes of two shaft angles contradict the tooth counts.
+
+    Teeth hold the shafts together: over any time the angles may depart from the ratio by the transmission error
+    alone, so that the ratio is known the better the longer the shafts have turned.
+
+    Args:
+        pinion: (n,) rad.
+        gear: (n,) rad.
+        teeth: Declared counts of pinion and gear.
+        radius_pinion: Base radius in m.
+    """
+    declared = teeth[1] / teeth[0]
+    turned = [float(np.polyfit(np.linspace(0, 1, angle.size), angle, 1)[0]) for angle in (pinion, gear)]
+    allowed = LARGEST_TRANSMISSION_ERROR / radius_pinion
+    if abs(turned[0] - declared * turned[1]) <= allowed or abs(turned[1]) <= allowed:
+        return None
+    measured = turned[0] / turned[1]
+    tolerance = allowed / abs(turned[1])
+    said = f"{teeth[1]:g}/{teeth[0]:g} = {declared:.6g}"
+    message = f"the two encoders turn at a ratio of {measured:.6g}, and the teeth say {said}"
+    if abs(measured + declared) <= tolerance:
+        return Finding("tooth_ratio", f"{message}; one direction is wrong: give it direction: -1")
+    if abs(measured - 1 / declared) <= tolerance:
+        return Finding("tooth_ratio", f"{message}; the encoders of pinion and gear, or the tooth counts, are exchanged")
+    near = _nearest_teeth(abs(measured), tolerance, teeth)
+    guess = f" (as {near[1]}/{near[0]} teeth would)" if near else ""
+    return Finding(
+        "tooth_ratio", f"{message}{guess}; check n_teeth_pinion, n_teeth_gear and the counts per revolution"
+    )
+
+
+def _nearest_teeth(ratio: float, tolerance: float, teeth: tuple[float, float]) -> tuple[int, int] | None:
+    """The counts nearest to the declared ones whose ratio is the measured one; None where none in range is."""
+    found = [
+        (pinion, round(pinion * ratio))
+        for pinion in _TEETH
+        if abs(round(pinion * ratio) / pinion - ratio) <= tolerance and round(pinion * ratio) in _TEETH
+    ]
+    return min(found, key=lambda pair: abs(pair[0] - teeth[0]) + abs(pair[1] - teeth[1]), default=None)
+
+
+def _turning(record: Record) -> Finding | None:
+    """A shaft angle advances one way, apart from its encoder's noise; it may stop, and turn back over whole turns."""
+    angle = record.channels.get("pinion_angle")
+    if angle is None or np.ptp(angle.values) == 0:
+        return None
+    parts = np.diff(angle.values[:: max(1, angle.values.size // _COARSE)])
+    moving = np.sign(parts[np.abs(parts) > _STILL * np.abs(parts).max()])
+    if max(np.mean(moving > 0), np.mean(moving < 0)) >= _ONE_WAY:
+        return None
+    if np.sum(moving[1:] != moving[:-1]) <= _REVERSALS and np.ptp(angle.values) >= _TURN:
+        return None
+    message = "pinion_angle does not advance like that of a turning shaft; was another column taken for it?"
+    return Finding("angle_not_turning", message, channel="pinion_angle")
+
+
+def _speed(record: Record) -> Finding | None:
+    """The stated or measured speed against the angle that was turned through."""
+    angle, condition = record.channels.get("pinion_angle"), record.conditions.get("pinion_speed")
+    measured = record.channels.get("pinion_speed")
+    if angle is None or not (condition or measured):
+        return None
+    if condition:
+        stated = fastest = condition.value
+    else:
+        stated = float(np.trapezoid(measured.values, record.time)) / record.duration
+        fastest = float(np.mean(np.abs(measured.values)))
+    rate = float(angle.values[-1] - angle.values[0]) / record.duration
+    allowed = max(SPEED_TOLERANCE, 3 * (condition.uncertainty if condition else measured.uncertainty))
+    if abs(rate - stated) <= allowed * abs(fastest) or stated == 0:
+        return None
+    message = (
+        f"the pinion angle turns at {rate * 30 / np.pi:.5g} rpm and the stated speed is "
+        f"{stated * 30 / np.pi:.5g} rpm; check unit, direction and counts per revolution"
+    )
+    return Finding("speed_mismatch", message, channel="pinion_angle")
+
+
+
+
+def stamps_against_values(record: Record) -> Finding | None:
+    """The data problem of a record with uneven stamps whose values were sampled evenly; None for any other."""
+    if record.uniform or record.time.size < _FEWEST:
+        return None
+    for channel in record.channels.values():
+        share, error = share_at_stamps(channel.values, record.time)
+        if abs(share) + _ERRORS * error < _DECIDED:  # a share far below 0 is neither: values that wait for an event
+            message = (
+                f"the values of {channel.name} were sampled evenly and the stamps were not ({100 * share:.2g} % of the "
+                f"jitter of the stamps shows in the values, +-{100 * error:.2g} %): a computer wrote them late; "
+                "give sampling_rate instead of the time column"
+            )
+            return Finding("uneven_stamps", message, channel=channel.name)
+    return None
+
+
+def share_at_stamps(values: NDArray[np.float64], stamps: NDArray[np.float64]) -> tuple[float, float]:
+    """The share of the stamps' jitter that values show, and its standard error (infinite where none can matter).
+
+    Args:
+        values: (n,) samples.
+        stamps: (n,) their stamps in s.
+    """
+    from scipy.ndimage import median_filter, uniform_filter1d  # here, since few records need what takes long to import
+
+    place = stamps / np.median(np.diff(stamps)) - np.arange(stamps.size)
+    place -= uniform_filter1d(place, _LOCAL, mode="nearest")
+    index = np.arange(values.size)
+    slope, start = np.polyfit(index, values, 1)
+    straight = start + slope * index
+    moved = (slope + np.gradient(_quiet(values - straight))) * place
+    if np.var(moved) <= _MATTERS * np.var(values):
+        return 1.0, np.inf
+    taper = np.hanning(values.size)
+    seen, due = np.fft.rfft((values - straight) * taper), np.fft.rfft((moved - moved.mean()) * taper)
+    power = np.abs(seen) ** 2
+    due_power = np.abs(due) ** 2
+    level = power + median_filter(power, _NEIGHBOURS, mode="nearest") + _SLOPE_ERROR * (due_power + due_power.mean())
+    total = float(np.sum(due_power / level))
+    share = float(np.sum((due.conj() * seen).real / level)) / total
+    spread = np.sum(due_power * np.abs(seen - share * due) ** 2 / level**2)
+    return share, float(np.sqrt(spread)) / total
+
+
+def _quiet(values: NDArray) -> NDArray:
+    """Values about their straight line without most of their noise, which would hide the slope (Wiener's filter)."""
+    from scipy.ndimage import median_filter
+
+    spectrum = np.fft.rfft(values)
+    power = np.abs(spectrum) ** 2
+    noise = float(np.quantile(median_filter(power, _NEIGHBOURS, mode="nearest"), _FLOOR)) / np.log(2)
+    return np.fft.irfft(spectrum * np.maximum(0.0, 1 - _OVER * noise / np.maximum(power, 1e-300)), values.size)
+
+
+
+
+def not_compared(record: Record) -> Iterator[Finding]:
+    """A note for every channel that the explanation leaves aside."""
+    if not any(name in record.channels for name in _RESPONSES):
+        return
+    acceleration = record.channels.get("acceleration")
+    if acceleration is not None and acceleration.mounting == "casing":
+        message = (
+            "the path from the mesh to a casing is unknown, so that this accelerometer is not compared with the "
+            "simulation; for its orders and its signs of damage, declare it in a file without the other responses"
+        )
+        yield Finding("not_compared", message, channel="acceleration", severity="note")
+    if {"pinion_speed", "pinion_angle"} <= {*record.channels} and "transmission_error" in record.channels:
+        message = (
+            "the angle is the measured one, and beside a transmission error the pinion's speed is no response: "
+            "it is checked against the angle and used for nothing else"
+        )
+        yield Finding("not_compared", message, channel="pinion_speed", severity="note")
+
+
+def check_record(record: Record) -> tuple[Finding, ...]:
+    """Everything suspicious in the values of a record, beside the findings that it has already."""
+    found = []
+    struck = [channel for name, channel in record.channels.items() if name in STRUCK]
+    strokes = np.array([np.argmax(np.abs(channel.values)) for channel in struck], dtype=int)
+    for channel in record.channels.values():
+        found += check_channel(channel, strokes)
+    if not any(finding.severity == "data_problem" and finding.channel == "time" for finding in record.findings):
+        found.append(stamps_against_values(record))
+    found += [_magnitude(record), *check_shafts(record), *not_compared(record), _oversampled(record)]
+    return tuple(replace(finding, record=record.name) for finding in found if finding)
+
+
+def _magnitude(record: Record) -> Finding | None:
+    """A transmission error that no gear pair has: by its unit, or because it runs away."""
+    channel = record.channels.get("transmission_error")
+    if channel is None or any(finding.kind == "tooth_ratio" for finding in record.findings):
+        return None
+    values = channel.values - (np.median(channel.values) if channel.datum == "arbitrary" else 0.0)
+    where = int(np.argmax(np.abs(values)))
+    largest = abs(float(values[where]))
+    if largest <= LARGEST_TRANSMISSION_ERROR:
+        return None
+    place = np.linspace(-1, 1, values.size)
+    slope = float(np.polyfit(place, values, 1)[0])
+    rest = values - slope * place
+    if np.max(np.abs(rest - np.median(rest))) <= min(LARGEST_TRANSMISSION_ERROR, _DRIFT * 2 * abs(slope)):
+        message = (
+            f"the transmission error runs away by {2 * abs(slope):.3g} m over the record; "
+            "check the tooth counts and the counts per revolution that it was made with"
+        )
+        return Finding("drifting_error", message, channel=channel.name)
+    check = f"check its unit '{channel.declared_unit}' (mm or um read as m?)"
+    if FROM_ENCODERS in record.notes:
+        check = "check the tooth counts and the counts per revolution, and whether counts were lost"
+    message = f"the transmission error reaches {largest:.3g} m, and gear pairs stay below 1 mm; {check}"
+    return Finding("implausible_magnitude", message, channel=channel.name, sample=where)
+
+
+def _oversampled(record: Record) -> Finding | None:
+    """A response whose fastest content has more than a hundred samples a period."""
+    if not record.uniform:
+        return None
+    fastest = 0.0
+    for channel in record.channels.values():
+        if channel.name not in APPLIED:
+            fastest = max(fastest, _fastest_content(channel.values, record.sampling_rate))
+    if fastest == 0.0 or record.sampling_rate <= SAMPLES_PER_PERIOD * fastest:
+        return None
+    message = (
+        f"99.9 % of the energy lies below {fastest:.3g} Hz, so that {record.sampling_rate:.4g} Hz "
+        "is far more than is needed; decimate to save time"
+    )
+    return Finding("oversampled", message, severity="note")
+
+
+def _fastest_content(values: NDArray[np.float64], rate: float) -> float:
+    """Hz below which 99.9 % of the energy about the mean lies; 0 for a constant."""
+    if np.ptp(values) == 0:
+        return 0.0
+    power = np.abs(np.fft.rfft((values - values.mean()) * np.hanning(values.size))) ** 2
+    return float(np.searchsorted(np.cumsum(power), _CONTENT * power.sum())) * rate / values.size

@@ -1,0 +1,1 @@
+"""What a key may hold, declared once: the layer under measurement.yaml and under the configuration, on pydantic."""
