@@ -44,9 +44,11 @@ class Unit:
     dimension: Dimension
 
 
+# Exponents of the base quantities; their names are those of the units.
 _KG, _M, _S = Dimension(mass=1), Dimension(length=1), Dimension(time=1)
+# Exponents again, of what is kept apart at the door only.
 _RAD, _V, _A, _ONE = Dimension(angle=1), Dimension(voltage=1), Dimension(current=1), Dimension()
-_N = Dimension(1, 1, -2)
+_N = Dimension(1, 1, -2)  # mass times length over time squared
 
 _ATOMS: dict[str, Unit] = {
     "1": Unit(1.0, _ONE), "%": Unit(1e-2, _ONE), "dB": Unit(1.0, _ONE),

@@ -8,8 +8,8 @@ from gear_damping.measurement.resolution import step_of
 
 Array = NDArray[np.float64]
 ORDER = 3  # of the polynomial in a window: speed and its change are followed
-SHORTEST = 5  # samples of a window
-WIDEST = 0.5  # of the record
+SHORTEST = 5  # samples of a window: the odd number above those that fix a cubic
+WIDEST = 0.5  # of the record, so that a window still leaves some of it beside
 FEW = 8  # advances from sample to sample that a shaft of nearly constant speed takes between steps
 SAME = 1e-8  # rad between advances that are one: far below any encoder's step, far above the rounding of numbers
 ROUNDING = 1.03  # times what rounding leaves, step / sqrt(12): from there on a window blurs how the shaft turns

@@ -21,7 +21,7 @@ from gear_damping.simulation.solver_settings import Solver
 
 START = ("initial_displacement", "initial_velocity")
 STEP = 1e-5  # of what counts as a step of order one, on either side
-SMALLEST = 1e-300  # of a scale
+SMALLEST = 1e-300  # of a scale that is divided by, in its own unit: one of 0 stays finite
 
 
 @dataclass(frozen=True)

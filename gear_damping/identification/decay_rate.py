@@ -12,7 +12,7 @@ from gear_damping.identification.damping_estimate import DampingEstimate
 Array = NDArray[np.float64]
 
 BLOCKS = 8  # left out one at a time
-LEVEL = 0.95  # of the intervals
+LEVEL = 0.95  # probability that an interval states, as is usual
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ class FrontEnd(nn.Module):
     part only (`fit_signal`, then `fit_features`). The base class gives the window itself: one feature.
     """
 
-    n_features = 1
+    n_features = 1  # for each sample: the signal itself
 
     def __init__(self) -> None:
         super().__init__()

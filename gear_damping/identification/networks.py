@@ -7,10 +7,10 @@ from typing import ClassVar
 import torch
 from torch import Tensor, nn
 
-TINY = 1e-12  # %^2; beside any error
+TINY = 1e-12  # %^2, added below a root: its slope stays finite, and no error is so small
 HIDDEN = 128  # units of the layer between a record's state and what is said of it
 SMALLEST = 3e-3  # of the spread of the labels: what a deviation stays above, so that no run draws all the gradient
-LEVELS = (0.9, 0.95)  # of the intervals
+LEVELS = (0.9, 0.95)  # probabilities that intervals state; 0.9 is the one in tables
 BINS = 8  # of deviations, in each of which intervals are calibrated
 
 

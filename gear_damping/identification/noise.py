@@ -1,4 +1,10 @@
-"""Sensor noise at a signal-to-noise ratio relative to the AC part of each run's channel."""
+"""Sensor noise at a signal-to-noise ratio relative to the AC part of each run's channel.
+
+The effect `sensor_noise` of the physics says the same level for the record of a simulation, one draw of it. Networks
+need the noise by itself: fresh in every epoch, of a level that may be drawn too, keyed by the number of the run and
+not by its place in a batch, and without an import of the physics. Only one of the two is ever added: a run that is
+trained on is simulated clean, and the configuration refuses both (`config/by_task.py`).
+"""
 
 from dataclasses import dataclass
 

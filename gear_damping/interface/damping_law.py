@@ -19,9 +19,9 @@ Array = NDArray[np.float64]
 SHARE, LARGEST, SMALLEST = 0.05, 0.02, 1e-12  # of a standard deviation, and of a coordinate: moves for slopes
 PER_PERIOD = 60  # samples: a turning point between two of them is right to their fourth power
 FIRST_PERIODS, MOST_PERIODS = 40, 2000  # of a decay; as often doubled as it takes to fall to the smallest amplitude
-AT_REST = 3.0  # periods without a turn
+AT_REST = 3.0  # periods without a turn, after which the decay has ended
 ABOVE = 1.1  # times the largest amplitude, where the decay begins
-POINTS = 60  # of the curve
+POINTS = 60  # of the curve, evenly in the logarithm of the amplitude
 FEWEST_SWINGS = 4  # half swings of a decay that tells a rate
 
 

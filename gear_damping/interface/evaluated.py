@@ -28,7 +28,8 @@ from gear_damping.reporting.evaluation import evaluation_figure, evaluation_tabl
 from gear_damping.simulation.runs import Runs
 
 NOTHING = (float("nan"),) * 3  # of a record that does not suit an estimator: ratio and ends of its interval
-NARROWER = NormalDist().inv_cdf(0.95) / NormalDist().inv_cdf(0.975)  # a 90 % interval over a 95 % one
+# Width of a Gaussian's 90 % interval over that of its 95 % one.
+NARROWER = NormalDist().inv_cdf(0.95) / NormalDist().inv_cdf(0.975)
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,10 +12,11 @@ from gear_damping.reporting.figures.test_plan import PlanCurves, PlanMap, PlanPi
 from gear_damping.reporting.numbers import number
 from gear_damping.reporting.tables import plan_table
 
-RPM = 30 / pi  # of a rad/s
+RPM = 30 / pi  # revolutions a minute in one rad/s
 WIDE = 50.0  # % of the value; beyond it some estimates run off to no damping at all (docs/plan.md)
 MOST_OF_FRONT = 8  # sets that a reader looks through
 LEAST_GAIN = 1.1  # from one of them to the next; who pays more wants to see more
+# Unit that an axis is shown in, and how many of it are in one SI unit.
 AXES = {"pinion_speed": ("rpm", RPM), "pinion_torque": ("N m", 1.0), "initial_displacement": ("m", 1.0)}
 
 

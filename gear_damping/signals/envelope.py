@@ -11,7 +11,7 @@ from gear_damping.signals.checks import require_positive, require_records
 # window's stop band is 154 dB down and half its main lobe is 0.08 of the sampling rate (Kaiser's
 # formulas), so content below 0.42 of the sampling rate is interpolated to about 2e-8 of its amplitude.
 _HALF_WIDTH = 32
-_KAISER_BETA = 16.0  # see above
+_KAISER_BETA = 16.0  # of the window, whose effect is said above
 
 
 def analytic_signal(signal: Tensor) -> Tensor:

@@ -22,6 +22,7 @@ ANGLE, ANGLE_RATE = "pinion_angle", "pinion_angle_rate"
 _KEPT = "_gear_damping_coefficients"  # attribute of a series
 POINTS = 4  # sub-intervals of an output interval at which the sinc interpolation is taken
 MARGIN = 32  # samples of odd reflection beyond each end, which the sinc interpolation needs
+# From values at the sub-intervals' ends to the polynomial through them, over the interval from 0 to 1.
 _TO_COEFFICIENTS = torch.tensor(np.linalg.inv(np.vander(np.linspace(0, 1, POINTS + 1), increasing=True)))
 
 

@@ -10,7 +10,7 @@ from gear_damping.simulation.layout import INTERVAL_ROW
 from gear_damping.simulation.series import SharedSeries
 
 MOST_SPLITS = 8  # of one sub-step; a lane that grazes a corner more often keeps its branch to the end
-REPORT_EVERY = 16  # output intervals
+REPORT_EVERY = 16  # output intervals: progress is seen, and telling it costs nothing
 VELOCITY = 1  # row of the velocity among the states
 
 

@@ -27,7 +27,7 @@ class RegionLockedTsit5(FixedGridODESolver):
     torchdiffeq only warns of an unknown option; here it is an error.
     """
 
-    order = 5
+    order = 5  # of the method of Tsitouras, as torchdiffeq asks it
 
     def __init__(self, func: Callable, y0: Tensor, **options: object) -> None:
         own = {name: options.pop(name, None) for name in OPTIONS}

@@ -10,9 +10,9 @@ from gear_damping.errors import InputError, Problem
 from gear_damping.identification.observation import response_names
 from gear_damping.measurement.record import Measurement, Record
 
-TURN = 2 * np.pi  # rad
+TURN = 2 * np.pi  # rad in one turn of a shaft
 FEWEST_TURNS = 8  # of the pinion: fewer leave no order between those of a shaft to take the floor from
-FEWEST_SAMPLES = 8  # in a mesh period
+FEWEST_SAMPLES = 8  # in a mesh period: its first harmonics are then below half the sampling rate
 DEFAULT_TEETH = (20, 40)  # of the system `gear_pair`
 NAMES = ("n_teeth_pinion", "n_teeth_gear")
 

@@ -15,7 +15,7 @@ RUNOUT = 2  # tooth frequencies up to this are runout and its first harmonic
 BLOCKS = 4  # parts of a cycle between which a window may begin
 WINDOWS = (2, 4, 8)  # blocks: half a mesh period, one, two
 COMPONENTS = 4  # principal components of each block
-DRAWS = 2000  # p down to 1 in 2000
+DRAWS = 2000  # of chance; the smallest probability that they tell is 1 in 2000
 _CHUNK = 250  # draws at once: some MB
 
 

@@ -11,7 +11,7 @@ from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.measurement.record import Finding, Measurement
 from gear_damping.physics.systems.gear_pair import GearPair
 
-HARMONICS = 4  # of a comb
+HARMONICS = 4  # of a comb, that stand for all of it: the higher ones are smaller
 FAINT = 0.1  # share of the strongest comb's energy below which the mesh order is absent
 STANDS_OUT = 5.0  # times the energy of the middle comb; a mesh order that does is there, however weak
 STRONG = 0.2  # share of a signal's variance that a comb must have to be another mesh

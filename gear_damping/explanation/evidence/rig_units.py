@@ -7,7 +7,7 @@ from gear_damping.physics.terms import Sensor
 from gear_damping.units import parse_unit
 
 CYCLES = "Hz"  # and not 1/s, which would be read as rad/s
-DERIVATIVES = {"velocity": 1, "acceleration": 2}
+DERIVATIVES = {"velocity": 1, "acceleration": 2}  # in time, of a displacement
 
 
 def rig_unit(declared: str, evidence: Evidence, recorded: bool = False) -> str:

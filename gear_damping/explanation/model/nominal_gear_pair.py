@@ -32,7 +32,7 @@ RENAMED = {
     "damping_ratio": DAMPING,
 }
 SHAPE_BAND = 1.6  # harmonics of the stiffness count up to this many natural frequencies, at the slowest record, at
-FEWEST_HARMONICS, MOST_OF_BAND = 6, 20  # least; within these
+FEWEST_HARMONICS, MOST_OF_BAND = 6, 20  # of the mesh; how many the resonance lets through is kept within these
 MOST_HARMONICS = 40  # where sensors show them: an accelerometer weighs the highest as the lowest
 EXPECTED_SHAPE = 0.1  # of the mean stiffness over the harmonic: what real teeth add to the ideal wave
 EDGE = 0.1  # of a mesh period, over which a pair takes up its load: as of real teeth, whose corners are relieved

@@ -16,7 +16,7 @@ from gear_damping.units import Dimension, parse_unit
 
 Residuals = Sequence[tuple[FitRecord, Tensor]]
 MESHES = 3  # orders are looked at up to so many mesh orders
-LINES = 8  # that are kept
+LINES = 8  # of the residual's order spectrum that are kept as candidates, the strongest first
 POINTS = 10  # samples a tooth that are enough to see them
 LEAST_TURNS = 1.0  # of the pinion in a record: less does not tell one order from the next
 MOST_TURNS = 20.0  # of a record that are looked at
@@ -28,7 +28,7 @@ HARMONICS = 5  # of the natural frequency that are no modes
 AROUND, STANDS_OUT = 10, 5.0  # bands at either side; times their median, from which a line stands out
 MODES = 2  # frequencies that are kept
 HIGHEST = 0.45  # of the sampling rate
-FEWEST_CYCLES = 8.0  # in a record
+FEWEST_CYCLES = 8.0  # in a record, below which a band of its spectrum holds too few lines
 GEAR_ORDERS = 3  # of the gear's shaft
 
 

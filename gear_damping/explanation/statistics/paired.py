@@ -9,7 +9,7 @@ from torch import Tensor
 
 from gear_damping.identification.output_error.uncertainty import long_run
 
-UPPER = 0.975  # end of a 95 % interval
+UPPER = 0.975  # share below the upper end of a two-sided 95 % interval
 FEW_BLOCKS = 9.0  # effective ones: the t of a gain over n blocks is sqrt(n) at most, 3 of nine
 
 

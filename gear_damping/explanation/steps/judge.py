@@ -10,7 +10,7 @@ from gear_damping.physics.catalogue import builtin_effects
 
 CONSISTENT, EXPLAINED, AMBIGUOUS = "consistent", "explained", "ambiguous"
 PARTLY, UNEXPLAINED, DATA_PROBLEM = "partly_explained", "unexplained", "data_problem"
-LARGEST_SET = 4  # names in a set
+LARGEST_SET = 4  # names that a sentence lists of causes that are not told apart
 UNTOLD = "but there was no time to see whether it stands in for something else."
 NOT_LESS = "but what is visible and not random stays."
 OTHER_SIZES = "but with another size in other records: it stands in for something that has no name here."

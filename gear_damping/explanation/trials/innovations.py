@@ -24,7 +24,7 @@ from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import part
 
 PIECE = 3.0  # natural periods that the free motion is followed over: it must not have died away
-FEWEST = 6  # samples of a piece
+FEWEST = 6  # samples of a piece, which two states of its own are fitted to
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
-LEVEL = 0.9  # of the intervals
+LEVEL = 0.9  # probability that an interval states, that of the networks beside it
 GRID, REACH = 801, 8.0  # points of a cut distribution; deviations beyond which nothing of it is left
 HALF = 1.6448536269514722  # standard deviations of a normal distribution on either side that hold so much
 

@@ -34,8 +34,11 @@ class _Search:
     kept: tuple[int, ...]
 
 
+# Starts over the range of damping ratios, samples of growing stretches, and how many fits go on from each: few starts
+# suffice where the motion forgets (PLAIN), and many are needed where the likelihood has many peaks (CAREFUL).
 PLAIN = _Search((0.1, 0.45, 0.8), (60, 200, 600), (3, 3, 1))
 SIXTEEN = tuple((number + 0.5) / 16 for number in range(16))
+# As many starts as lie in the middle of sixteen equal parts.
 CAREFUL = _Search(SIXTEEN, (60, 100, 170, 300, 500, 850, 1400), (16, 16, 12, 8, 8, 6, 6))
 STEPS, LAST = 5, 10  # of each stretch, and of the whole record
 

@@ -12,7 +12,7 @@ from gear_damping.identification.test_plan.survey import Survey, survey
 from gear_damping.simulation.solver_settings import Progress
 
 SPEEDS, TORQUES = 49, 9  # points of a map: resonances are narrow in speed
-LENGTHS = 40  # points of a curve
+LENGTHS = 40  # points of a curve, which then looks smooth
 SHORTEST = 32  # samples at which a curve begins
 
 

@@ -17,7 +17,7 @@ from gear_damping.simulation.solver_settings import Progress
 GROWTH = 8.0  # from the second quarter of a record to the last: squares of time make 5.4
 ROUNDED = 1e-5  # of a slope, below which it is what rounding left
 FARTHEST = 1e4  # of a slope at the beginning; at 1e6 an error of a step has grown as far as it can
-BEGINNING = 16  # samples
+BEGINNING = 16  # samples that a record's slopes are compared with further on
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,9 @@ from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.shapes import WIDTHS, sign_change_rate
 from gear_damping.physics.terms import DampingForce, Values
 
+# Where a fit begins, in natural units: small beside the static load and a damping ratio of some percent.
 DRY = {"force_forward": 0.005, "force_backward": 0.005}
-VISCOUS = {"damping_forward": 0.01, "damping_backward": 0.01}
+VISCOUS = {"damping_forward": 0.01, "damping_backward": 0.01}  # where a fit begins, as above
 
 
 def _switched_on(rig: Rig) -> tuple[Recipe, ...]:

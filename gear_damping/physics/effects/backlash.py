@@ -12,7 +12,7 @@ from gear_damping.physics.terms import Contact, Values
 
 DRIVE, COAST = "backlash.drive", "backlash.coast"
 
-GAPS = (0.01, 0.02, 0.04, 0.08)  # in modules
+GAPS = (0.01, 0.02, 0.04, 0.08)  # in modules: those of usual gears, from which fits begin
 
 
 def _gaps_of_teeth(rig: Rig) -> tuple[Recipe, ...]:
@@ -26,7 +26,7 @@ class Backlash(Contact):
     """The drive flank touches where delta > 0, the coast flank where delta < -gap."""
 
     name = "backlash"
-    refinement = 1.45
+    refinement = 1.45  # of the steps, measured by step halving: the force bends where flanks part
     equation = "deflection = delta for delta > 0, delta + gap for delta < -gap, else 0; damping only in contact"
     reference = "Kahraman & Singh (1990), J. Sound Vib. 142(1)"
     parameters: ClassVar = (Parameter("gap", "m", 1e-4, "whole clearance; the drive flank is at 0", 0, 0.01),)

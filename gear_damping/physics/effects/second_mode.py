@@ -13,7 +13,7 @@ from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import ExtraStates, Load, Values
 
 PLACE, RATE = "second_mode.displacement", "second_mode.velocity"
-RATIOS = (0.01, 0.1)  # of the masses
+RATIOS = (0.01, 0.1)  # of the masses, that fits begin from: a light part and a heavy one
 LOW, HIGH = 1e-4, 1.0  # of the ratio that is fitted: beyond, the other mass is the first one
 NEAR = 1.15  # of the line that it is sought at: farther, it would take the place of the first mode
 DAMPED = (1e-5, 0.3)  # damping ratios of what shows as a line

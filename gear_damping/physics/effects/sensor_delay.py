@@ -21,7 +21,7 @@ class SensorDelay(Sensor):
     equation = "y(t - tau)"
     reference = "Laakso et al. (1996), IEEE Signal Process. Mag. 13(1)"
     parameters: ClassVar = (Parameter("delay", "s", 2e-5, "tau", -1e3, 1e3),)
-    position = 50
+    position = 50  # in the chain, behind the filter
     cause: ClassVar = Cause(
         "a delay of the sensor",
         (Recipe({"delay": 0.05}),),

@@ -17,7 +17,7 @@ class SensorDrift(Sensor):
     equation = "y + d t"
     reference = "Doebelin (2003), Measurement Systems"
     parameters: ClassVar = (Parameter("rate", "m/s", 2e-5, "d", -1e9, 1e9),)
-    position = 30
+    position = 30  # in the chain, beside the offset
     cause: ClassVar = Cause(
         "a drift of the sensor",
         (Recipe({"rate": 0.001}),),

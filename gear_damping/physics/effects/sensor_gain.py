@@ -16,7 +16,7 @@ class SensorGain(Sensor):
     equation = "g y"
     reference = "Doebelin (2003), Measurement Systems"
     parameters: ClassVar = (Parameter("gain", "1", 1.05, "g", 0.01, 100),)
-    position = 10
+    position = 10  # first in the chain of the sensor
     cause: ClassVar = Cause(
         "a wrong gain of the sensor",
         (Recipe({"gain": None}, neutral=1.0),),

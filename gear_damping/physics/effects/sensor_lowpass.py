@@ -34,7 +34,7 @@ class SensorLowpass(Sensor):
     reference = "Butterworth (1930), Exp. Wirel. Wirel. Eng. 7"
     parameters: ClassVar = (Parameter("cutoff", "Hz", 1e4, "f_c, where half the power is left", 1e-6, 1e12),)
     options: ClassVar = (Option("order", (1, 2, 4), 2, "number of poles"),)
-    position = 40
+    position = 40  # in the chain, behind what the sensor itself does
     cause: ClassVar = Cause("the low-pass of the sensor", _switched_on, separated_by="speed")
 
     def measure(self, signal: Tensor, values: Values, recording: Recording) -> Tensor:

@@ -1,4 +1,4 @@
-"""Noise of the sensor."""
+"""Noise of the sensor, as one draw for a record; what networks are trained with is drawn in identification/noise.py."""
 
 from typing import ClassVar
 
@@ -16,7 +16,7 @@ class SensorNoise(Sensor):
     equation = "y + w, std(w) = std(y) 10^(-SNR/20), per run"
     reference = "Yousfi et al. (2026), additive noise"
     parameters: ClassVar = (Parameter("snr_db", "1", 30.0, "AC part of the run to noise in dB", -40, 200),)
-    position = 70
+    position = 70  # in the chain, behind what filters and delays
 
     def measure(self, signal: Tensor, values: Values, recording: Recording) -> Tensor:
         """The noisy record."""

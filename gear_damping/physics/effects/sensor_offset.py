@@ -16,7 +16,7 @@ class SensorOffset(Sensor):
     equation = "y + y0"
     reference = "Doebelin (2003), Measurement Systems"
     parameters: ClassVar = (Parameter("offset", "m", 2e-6, "y0", -1e9, 1e9),)
-    position = 20
+    position = 20  # in the chain, behind the gain
     cause: ClassVar = Cause(
         "an offset of the sensor",
         (Recipe({"offset": None}),),

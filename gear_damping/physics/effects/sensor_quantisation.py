@@ -16,7 +16,7 @@ class SensorQuantisation(Sensor):
     equation = "q round(y / q)"
     reference = "Widrow & Kollár (2008), Quantization Noise, Cambridge"
     parameters: ClassVar = (Parameter("step", "m", 1e-8, "q", 1e-18, 1e9),)
-    position = 90
+    position = 90  # last in the chain: the converter
 
     def measure(self, signal: Tensor, values: Values, recording: Recording) -> Tensor:
         """The rounded record."""

@@ -17,7 +17,7 @@ class SensorSaturation(Sensor):
     equation = "min(max(y, -y_max), y_max)"
     reference = "Doebelin (2003), Measurement Systems"
     parameters: ClassVar = (Parameter("limit", "m", 3e-5, "y_max", 0, 1e9),)
-    position = 80
+    position = 80  # in the chain, before the converter
     cause: ClassVar = Cause(
         "a sensor that saturates",
         tuple(Recipe({"limit": size}, presence=True) for size in (1.8, 1.3, 2.5)),
