@@ -9,7 +9,7 @@ import pytest
 from scipy.io import savemat
 
 from gear_damping.errors import InputError
-from gear_damping.measurement.formats import guarded
+from gear_damping.measurement.formats import registry
 from gear_damping.measurement.formats.registry import read_table, refuse_deadly
 
 
@@ -46,8 +46,8 @@ def test_a_reader_that_dies_is_a_message(read, name, tmp_path):
 
 def test_a_reader_that_does_not_end_is_a_message_and_leaves_no_process(tmp_path, monkeypatch):
     (tmp_path / "run.h5").write_bytes(b"x" * 200)
-    monkeypatch.setattr(guarded, "PATIENCE", 0.1)
-    monkeypatch.setattr(guarded, "SLOWEST", 1000.0)
+    monkeypatch.setattr(registry, "PATIENCE", 0.1)
+    monkeypatch.setattr(registry, "SLOWEST", 1000.0)
     begun = time.monotonic()
     with pytest.raises(InputError, match="does not end"):
         refuse_deadly(never_ends, tmp_path / "run.h5", 999)
