@@ -10,7 +10,7 @@ from gear_damping.config.simulator import SimulatorSettings
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, nearest
 from gear_damping.identification.test_plan.asked import PlanCosts, PlanGoal, PlannedSensor, PlannedTests, Unknown
-from gear_damping.identification.test_plan.channels import CHANNELS
+from gear_damping.identification.test_plan.channels import channels_of
 from gear_damping.physics.parameter import Parameter
 from gear_damping.schema.values import Flag, Given, Number, Text
 from gear_damping.units import spoken
@@ -131,7 +131,7 @@ def _sensor(reader: Reader, name: str, node: Any, simulator: SimulatorSettings) 
         reader.refuse(prefix[:-1], "must be null (left out) or hold keys", node, f"give {prefix}snr_db=30")
         return None
     found = reader.plain(node, SENSOR, prefix)
-    channels = CHANNELS[simulator.model.system.name]
+    channels = channels_of(simulator.model.system)
     sees = found["channel"] or name
     if sees not in channels:
         key = prefix + "channel" if found["channel"] else prefix[:-1]

@@ -11,10 +11,11 @@ from gear_damping.config.quantities import split_suffix
 from gear_damping.config.reader import Reader
 from gear_damping.config.source import COMMAND_LINE, Origin
 from gear_damping.errors import InputError, Problem, nearest
-from gear_damping.physics.catalogue import SYSTEMS, catalogue
+from gear_damping.physics.catalogue import catalogue
 from gear_damping.physics.model import Model
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.systems.base import System
+from gear_damping.physics.systems.known import SYSTEMS
 from gear_damping.physics.terms import DampingLaw, Effect, MeshStiffness
 from gear_damping.schema.values import Given, Number, OneOf, Text
 from gear_damping.simulation.families import Family

@@ -33,6 +33,7 @@ from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import Segments
 from gear_damping.identification.time_scale import characteristic_time
 from gear_damping.measurement.record import Measurement
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import Effect
 from gear_damping.simulation.solver_settings import Solver
 
@@ -161,7 +162,7 @@ def _searched(
     state, is_lost = State(bench, nominal, nominal), is_lost_by(nominal, evidence)
     if evidence.segments or not (state.is_unpredictable or is_lost):
         state = search(nominal, bench)
-    loses = evidence.system == "oscillator" and best_is_lost(state)
+    loses = not evidence.has(Trait.SHAFTS) and best_is_lost(state)
     if evidence.segments or not (is_lost or state.is_unpredictable or loses):
         return state
     evidence = replace(evidence, segments=segments_of(nominal.hypothesis, evidence))
@@ -204,8 +205,8 @@ def _judged(found: Confirmed, notes: Sequence[str]) -> Judged:
 
 
 def at_useful_rate(evidence: Evidence) -> Evidence:
-    """An oscillator's records at a rate that shows all of its motion, and no more."""
-    if evidence.system != "oscillator":
+    """Records of a free or forced swing at a rate that shows all of its motion, and no more."""
+    if not evidence.has(Trait.REST):
         return evidence
     scale = linear_model(evidence.fit, evidence.known)[2]
     return replace(
@@ -215,20 +216,20 @@ def at_useful_rate(evidence: Evidence) -> Evidence:
 
 def first_segments(evidence: Evidence) -> Segments:
     """How records are cut before anything was fitted: as the file says, or where nothing pulls the rig back."""
-    if evidence.stated_segments or evidence.system == "gear_pair" or evidence.known.values.get("stiffness", 1.0) != 0:
+    if evidence.stated_segments or evidence.has_spring:
         return evidence.stated_segments
     return Segments(SEGMENT_TIMES * characteristic_time(evidence.records))
 
 
 def is_lost_by(nominal: Outcome, evidence: Evidence) -> bool:
-    """Whether the nominal model leaves more than half of the fitted records, or of an oscillator's anywhere in one.
+    """Whether the nominal model leaves more than half of the fitted records, or without shafts anywhere in one.
 
     A frequency that hangs on the amplitude runs out of step in the middle of a long decay, which over the whole of it
-    counts for little, and no law looks right from there. A gear pair's teeth keep it in step; a record of it far from
+    counts for little, and no law looks right from there. Shafts keep a motion in step; a record of it far from
     resonance may hold little but what is hidden.
     """
     pairs = list(zip(nominal.fit_residuals, evidence.fitted, strict=True))
-    if evidence.system == "gear_pair":
+    if evidence.has(Trait.SHAFTS):
         total = sum(ac_energy(record) for _, record in pairs)
         return sum(float(residual.square().sum()) for residual, _ in pairs) > evidence.settings.lost_share * total
     return any(_is_lost(residual, record, evidence) for residual, record in pairs)

@@ -14,16 +14,9 @@ from gear_damping.errors import InputError, Problem
 from gear_damping.identification.angle_steps import between_steps
 from gear_damping.identification.output_error.records import Filter, FitRecord, FreeParameter, Observed
 from gear_damping.measurement.record import Channel, Measurement, Quantity, Record
+from gear_damping.physics.systems.base import System
+from gear_damping.physics.systems.oscillator import Oscillator
 
-RESPONSES = {
-    "gear_pair": ("transmission_error", "acceleration", "gear_speed", "pinion_speed"),
-    "oscillator": ("displacement", "velocity", "acceleration"),
-}
-INPUTS = {
-    "gear_pair": ("pinion_torque", "gear_torque", "pinion_angle"),
-    "oscillator": ("force", "base_acceleration"),
-}
-GAINS = {"pinion_torque": "torque_gain", "force": "force_gain"}  # of what an input was read as
 MEANS = ("pinion_torque", "gear_torque")
 SPEED_BLOCKS = 12  # of a record, over which a measured speed is averaged
 DRIFTS_AT = 0.01  # level of the test that it does not
@@ -37,10 +30,17 @@ class Known:
     Args:
         values: By the file's names, in SI or the rig's own units.
         uncertainty: Relative standard deviation of those that are not known exactly.
+        system: What was measured.
     """
 
     values: dict[str, float]
     uncertainty: dict[str, float]
+    system: type[System] = Oscillator
+
+
+def has_spring(known: Known, system: type[System]) -> bool:
+    """Whether something pulls a rig back: its file does not state a constant stiffness of 0."""
+    return system.spring is None or known.values.get(system.spring, 1.0) != 0
 
 
 def known_of(measurement: Measurement) -> Known:
@@ -48,27 +48,27 @@ def known_of(measurement: Measurement) -> Known:
     stated = measurement.parameters
     values = {name: quantity.value for name, quantity in stated.items()}
     uncertainty = {name: quantity.uncertainty for name, quantity in stated.items() if quantity.uncertainty}
-    for name, gain in GAINS.items():
+    for name, gain in measurement.base.gains.items():
         relative = max((r.channels[name].uncertainty for r in measurement.records if name in r.channels), default=0.0)
         if relative:
             values.setdefault(gain, 1.0)
             uncertainty[gain] = hypot(relative, uncertainty.get(gain, 0.0))
-    return Known(values, uncertainty)
+    return Known(values, uncertainty, measurement.base)
 
 
-def response_names(record: Record, system: str) -> tuple[str, ...]:
+def response_names(record: Record, system: type[System]) -> tuple[str, ...]:
     """The channels of a record that are fitted, the one that tells most first.
 
     The speed of the pinion is one only where no transmission error is declared, and an accelerometer on a casing
     never: its path from the shafts is unknown.
     """
-    names = [name for name in RESPONSES[system] if name in record.channels]
+    names = [name for name in system.responses if name in record.channels]
     if "transmission_error" in names:
         names = [name for name in names if name != "pinion_speed"]
     return tuple(name for name in names if record.channels[name].mounting != "casing")
 
 
-def fitted_names(record: Record, system: str) -> tuple[str, ...]:
+def fitted_names(record: Record, system: type[System]) -> tuple[str, ...]:
     """The same, of which there must be one.
 
     Raises:
@@ -76,12 +76,12 @@ def fitted_names(record: Record, system: str) -> tuple[str, ...]:
     """
     names = response_names(record, system)
     if not names:
-        rule, remedy = f"no response of a {system}", f"declare one of {', '.join(RESPONSES[system])}"
+        rule, remedy = f"no response of a {system.name}", f"declare one of {', '.join(system.responses)}"
         raise InputError(Problem(f"{record.name}.channels", rule, remedy=remedy, source=str(record.file)))
     return names
 
 
-def fit_record(record: Record, system: str, spring: bool = True) -> FitRecord:
+def fit_record(record: Record, system: type[System], spring: bool = True) -> FitRecord:
     """A record as the fits see it.
 
     Args:
@@ -94,7 +94,7 @@ def fit_record(record: Record, system: str, spring: bool = True) -> FitRecord:
     """
     names = fitted_names(record, system)
     channels = [(_observed(record, record.channels[name], spring), record.channels[name].values) for name in names]
-    inputs = {name: _input(record, record.channels[name]) for name in INPUTS[system] if name in record.channels}
+    inputs = {name: _input(record, record.channels[name]) for name in system.inputs if name in record.channels}
     if "pinion_angle" in inputs:
         inputs["pinion_angle"] = torch.as_tensor(between_steps(inputs["pinion_angle"].numpy()))
     uncertain = _uncertain(record)
@@ -109,8 +109,9 @@ def fit_record(record: Record, system: str, spring: bool = True) -> FitRecord:
             known["pinion_speed"] = mean
             own = FreeParameter("pinion_speed", mean, error, deviation=error, expected=mean)
             uncertain = [own, *(p for p in uncertain if p.name != "pinion_speed")]
-    if system == "oscillator" and "force" in record.conditions:
-        inputs["force"] = torch.full((len(record.time),), record.conditions["force"].value, dtype=torch.float64)
+    parameters = {parameter.name for parameter in system.parameters}
+    for name in (one for one in system.inputs if one in record.conditions and one not in parameters):
+        inputs[name] = torch.full((len(record.time),), record.conditions[name].value, dtype=torch.float64)
     known = {name: value for name, value in known.items() if name not in inputs}
     first, *others = [(observed, torch.as_tensor(values, dtype=torch.float64)) for observed, values in channels]
     return FitRecord(
@@ -231,7 +232,7 @@ def require_alike(records: Sequence[FitRecord], source: str) -> None:
     Raises:
         InputError: they are not alike.
     """
-    inputs = {tuple(sorted(name for name in record.inputs if name in INPUTS["oscillator"])) for record in records}
+    inputs = {tuple(sorted(name for name in record.inputs)) for record in records}
     if len(inputs) > 1:
         rule, remedy = "some records have a force and some do not", "explain free decays and forced records apart"
         raise InputError(Problem("records", rule, remedy=remedy, source=source))

@@ -21,11 +21,14 @@ from gear_damping.identification.time_scale import characteristic_time
 from gear_damping.physics.effects.offset_force import OffsetForce
 from gear_damping.physics.effects.viscous_damping import ViscousDamping
 from gear_damping.physics.model import Model
+from gear_damping.physics.systems.base import System
 from gear_damping.physics.systems.oscillator import Oscillator
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.simulation.solver_settings import Solver
 
-STIFFNESS, DAMPING, GAIN, FORCE = "stiffness", "viscous_damping.damping_coefficient", "force_gain", "offset_force.force"
+DAMPING, FORCE = "viscous_damping.damping_coefficient", "offset_force.force"
 TIME = "characteristic_time"
+LAWS = dict.fromkeys(("damping_coefficient", "damping_ratio"), DAMPING)  # words of a file for the viscous damping
 FIRST_RATIOS = (0.01, 0.05, 0.2)  # damping ratios of the starts
 MOTION, STROKE = 0.999, 0.5  # share of the energy that is the motion; of a record: less is a stroke
 FIRST_SHIFTS = (0.93, 1.0, 1.07)  # of the frequency of the starts
@@ -106,11 +109,11 @@ def fit_oscillator(
         segments: How the records are cut; where absent they are whole, or in segments where there is no spring.
     """
     free, given, scale = linear_model(fit_records, known)
-    spring = any(parameter.name == STIFFNESS for parameter in free)
+    spring = any(parameter.name == known.system.spring for parameter in free)
     if segments is None:
         segments = WHOLE if spring else Segments(SEGMENT_TIMES * scale)
     pieces = in_segments(fit_records, segments)
-    problem = OutputErrorProblem(linear_oscillator(fit_records), given, free, pieces, solver)
+    problem = OutputErrorProblem(linear_oscillator(fit_records, known.system), given, free, pieces, solver)
     fitted = _fitted(problem, spring, scale, report)
     samples = max(float((problem.response.weights > 0).sum()), 1.0)
     problem.noise = float(fitted.prediction.residual.square().sum() / samples) ** 0.5
@@ -144,44 +147,63 @@ def fit_oscillator(
 def _quantities(found: Mapping[str, Estimate]) -> dict[str, Any]:
     """Estimates where an `OscillatorFit` has them."""
     named = ("damping_ratio_percent", "natural_frequency_hz", "log_decrement")
-    parameters = {k: v for k, v in found.items() if k in (STIFFNESS, GAIN, "damping_coefficient")}
+    parameters = {k: v for k, v in found.items() if k not in named}
     return {"parameters": parameters} | {name: found.get(name) for name in named}
 
 
-def linear_oscillator(records: Sequence[FitRecord]) -> Model:
-    """The linear oscillator of these records; one that is driven has a constant force beside its input."""
-    return Model(Oscillator(), [ViscousDamping(), *([OffsetForce()] if records[0].inputs else [])])
+def linear_oscillator(records: Sequence[FitRecord], system: type[System] = Oscillator) -> Model:
+    """The linear system of these records; one that is driven has a constant force beside its input."""
+    return Model(system(), [ViscousDamping(), *([OffsetForce()] if records[0].inputs else [])])
 
 
 def linear_model(
     records: Sequence[FitRecord], known: Known = NOTHING
 ) -> tuple[list[FreeParameter], dict[str, float], float]:
     """Free parameters of the linear oscillator with their starts, its given values, and its characteristic time."""
-    stated, spread = known.values, _amplitude(records)
-    spring = stated.get(STIFFNESS, 1.0) > 0
-    rate = (stated[STIFFNESS] ** 0.5 if stated.get(STIFFNESS) else 2 * pi * first_frequency(records[0])) * spring
-    scale = characteristic_time(records, rate, stated.get("damping_coefficient", 0.0))
-    given = {"amplitude": spread} | ({} if spring else {STIFFNESS: 0.0, TIME: scale})
-    free = [FreeParameter(STIFFNESS, rate**2, logarithmic=True)] if spring else []
-    damping = 2 * FIRST_RATIOS[0] * rate if spring else 1 / scale
+    stated, spread, system, mass = known.values, _amplitude(records, known.system), known.system, mass_of(known)
+    name, spring = system.spring, stated.get(system.spring, 1.0) > 0
+    rate = ((stated[name] / mass) ** 0.5 if stated.get(name) else 2 * pi * first_frequency(records[0])) * spring
+    scale = characteristic_time(records, rate, stated.get("damping_coefficient", 0.0) / mass)
+    given = _stated(known) | {"amplitude": spread} | ({} if spring else {name: 0.0, TIME: scale})
+    free = [FreeParameter(name, rate**2 * mass, logarithmic=True)] if spring else []
+    damping = 2 * FIRST_RATIOS[0] * rate * mass if spring else 1 / scale * mass
     if "damping_ratio" in stated and spring:
-        damping = 2 * stated["damping_ratio"] * rate
+        damping = 2 * stated["damping_ratio"] * rate * mass
     damping = stated.get("damping_coefficient", damping)
     if damping > 0:
-        free.append(FreeParameter(DAMPING, damping, logarithmic=True, lower=1e-9 * (rate or 1 / scale)))
+        free.append(FreeParameter(DAMPING, damping, logarithmic=True, lower=1e-9 * (rate or 1 / scale) * mass))
     else:
         given[DAMPING] = 0.0
-    if "force" in records[0].inputs:
-        force = torch.cat([record.inputs["force"] for record in records])
-        per_spread = rate**2 * 2 * FIRST_RATIOS[1] if spring else 1 / scale**2
-        size = per_spread * spread / float(force.std().clamp(min=1e-300))
-        gain = stated.get(GAIN, size)
-        free.append(FreeParameter(GAIN, gain, scale=abs(gain) or size))
+    for drive, of_drive in system.gains.items():
+        if drive in records[0].inputs:
+            force = torch.cat([record.inputs[drive] for record in records])
+            per_spread = rate**2 * 2 * FIRST_RATIOS[1] if spring else 1 / scale**2
+            size = per_spread * spread * mass / float(force.std().clamp(min=1e-300))
+            gain = stated.get(of_drive, size)
+            free.append(FreeParameter(of_drive, gain, scale=abs(gain) or size))
     if records[0].inputs:
-        free.append(FreeParameter(FORCE, 0.0, scale=(rate**2 if spring else 1 / scale**2) * spread))
-    names = {STIFFNESS: STIFFNESS, "damping_coefficient": DAMPING, "damping_ratio": DAMPING, GAIN: GAIN}
-    expected = {names[name]: relative for name, relative in known.uncertainty.items() if stated[name]}
+        free.append(FreeParameter(FORCE, 0.0, scale=(rate**2 if spring else 1 / scale**2) * spread * mass))
+    free += [FreeParameter(one, stated[one], abs(stated[one]), logarithmic=stated[one] > 0) for one in _unsure(known)]
+    expected = {LAWS.get(one, one): relative for one, relative in known.uncertainty.items() if stated[one]}
     return [expected_about(p, expected.get(p.name)) for p in free], given, scale
+
+
+def mass_of(known: Known) -> float:
+    """What moves, from what is stated of a rig; 1 of one that is described per unit of mass."""
+    base = Model(known.system(), ())
+    return float(base.prepare(base.values(1, **_stated(known))).derived["equivalent_mass"][0])
+
+
+def _stated(known: Known) -> dict[str, float]:
+    """Stated parameters of the system that are no part of the linear fit."""
+    fitted = {known.system.spring, *known.system.gains.values()}
+    own = {parameter.name for parameter in known.system.parameters} - fitted
+    return {name: value for name, value in known.values.items() if name in own}
+
+
+def _unsure(known: Known) -> list[str]:
+    """Those that are stated with an uncertainty."""
+    return [name for name in _stated(known) if name in known.uncertainty and known.values[name]]
 
 
 def expected_about(parameter: FreeParameter, relative: float | None) -> FreeParameter:
@@ -192,9 +214,9 @@ def expected_about(parameter: FreeParameter, relative: float | None) -> FreePara
     return replace(parameter, deviation=deviation, expected=parameter.start)
 
 
-def _amplitude(records: Sequence[FitRecord]) -> float:
+def _amplitude(records: Sequence[FitRecord], system: type[System]) -> float:
     """Typical displacement, from whatever was recorded."""
-    scales = [first_motion(record, 0.0, 0.0, Model(Oscillator(), ()), {})[1][0] for record in records]
+    scales = [first_motion(record, 0.0, 0.0, Model(system(), ()), {})[1][0] for record in records]
     return float(torch.stack(scales).square().mean().sqrt())
 
 
@@ -245,13 +267,25 @@ def _fitted(
     be the better guess; and a stretch that ends in the stroke leads astray, so that it is tried over all at once.
     """
     found = fit(problem, _starts(problem, spring), Rounds(horizons=_horizons(problem, scale), report=report))
-    stiffness = next((p.start for p in problem.free if p.name == STIFFNESS), 0.0)
-    own = 2 * pi * first_frequency(problem.records[0], driven=False) / stiffness**0.5 if stiffness > 0 else 0.0
+    rate = _first_rate(problem)
+    own = 2 * pi * first_frequency(problem.records[0], driven=False) / rate if rate > 0 else 0.0
     is_new = not min(FIRST_SHIFTS) <= own <= max(FIRST_SHIFTS) or _is_stroke(problem.records[0])
     if not spring or own <= 0 or not is_new:
         return found
     other = fit(problem, _starts(problem, spring, (own,)))
     return min(found, other, key=lambda one: one.cost)
+
+
+def _first_rate(problem: OutputErrorProblem) -> float:
+    """The natural frequency in rad/s that the fit starts from; 0 without a spring."""
+    stiffness = next((p.start for p in problem.free if p.name == problem.model.system.spring), 0.0)
+    return (stiffness / _mass(problem)) ** 0.5 if stiffness > 0 else 0.0
+
+
+def _mass(problem: OutputErrorProblem) -> float:
+    """What moves, from the given values of a fit."""
+    model = problem.model
+    return float(model.prepare(model.values(1, **problem.given)).derived["equivalent_mass"][0])
 
 
 def _is_stroke(record: FitRecord) -> bool:
@@ -268,7 +302,7 @@ def _starts(problem: OutputErrorProblem, spring: bool, shifts: Sequence[float] =
         for ratio in FIRST_RATIOS if spring else FIRST_RATES:
             row = torch.zeros(problem.n_shared, dtype=torch.float64)
             if spring:
-                row[place[STIFFNESS]] = 2 * float(np.log(shift))
+                row[place[problem.model.system.spring]] = 2 * float(np.log(shift))
             if DAMPING in place:
                 row[place[DAMPING]] = float(np.log(ratio / (FIRST_RATIOS[0] if spring else 1.0)))
             rows.append(row)
@@ -285,6 +319,8 @@ def estimates(problem: OutputErrorProblem, fitted: Fitted, scale: float) -> dict
     """What a solution says, with 95 % intervals: parameters, damping ratio, frequency, decrement."""
     spread = covariance(problem, fitted, CORRELATED_PERIODS * scale)
     place = {parameter.name: i for i, parameter in enumerate(problem.free)}
+    system, mass = problem.model.system, _mass(problem)
+    stiffness, gain = system.spring, next(iter(system.gains.values()), "")
 
     def value(name: str, shared: Tensor) -> Tensor:
         if name not in place:
@@ -292,17 +328,18 @@ def estimates(problem: OutputErrorProblem, fitted: Fitted, scale: float) -> dict
         return problem.free[place[name]].value(shared[place[name]])
 
     def ratio(shared: Tensor) -> Tensor:
-        return value(DAMPING, shared) / (2 * value(STIFFNESS, shared).sqrt())
+        return value(DAMPING, shared) / (2 * (value(stiffness, shared) * mass).sqrt())
 
-    quantities = {"damping_coefficient": (lambda s: value(DAMPING, s), "1/s")} if DAMPING in place else {}
-    if STIFFNESS in place:
-        quantities[STIFFNESS] = (lambda s: value(STIFFNESS, s), "1/s^2")
-        quantities["natural_frequency_hz"] = (lambda s: value(STIFFNESS, s).sqrt() / (2 * pi), "Hz")
-    if STIFFNESS in place and DAMPING in place:
+    units = ("N*s/m", "N/m") if system.has(Trait.MASS) else ("1/s", "1/s^2")
+    quantities = {"damping_coefficient": (lambda s: value(DAMPING, s), units[0])} if DAMPING in place else {}
+    if stiffness in place:
+        quantities[stiffness] = (lambda s: value(stiffness, s), units[1])
+        quantities["natural_frequency_hz"] = (lambda s: (value(stiffness, s) / mass).sqrt() / (2 * pi), "Hz")
+    if stiffness in place and DAMPING in place:
         quantities["damping_ratio_percent"] = (lambda s: 100 * ratio(s), "%")
         quantities["log_decrement"] = (lambda s: 2 * pi * ratio(s) / (1 - ratio(s) ** 2).sqrt(), "1")
-    if GAIN in place:
-        quantities[GAIN] = (lambda s: value(GAIN, s), "response unit / force unit / s^2")
+    if gain in place:
+        quantities[gain] = (lambda s: value(gain, s), "response unit / force unit / s^2")
     found = {name: (interval(function, fitted.shared, spread), unit) for name, (function, unit) in quantities.items()}
     return {name: Estimate(number, bounds, unit) for name, ((number, bounds), unit) in found.items()}
 

@@ -18,6 +18,7 @@ from gear_damping.interface.damping_law import damping_law
 from gear_damping.interface.estimator import ClassicalEstimator, Prediction, all_recorded
 from gear_damping.interface.identified import Identification, refuse_faults
 from gear_damping.measurement.record import Channel, Measurement, Record
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.reporting import figures
 from gear_damping.reporting.numbers import pretty_unit
 from gear_damping.reporting.tables import damping_table
@@ -177,7 +178,7 @@ def _of_law(
     fit: Identification, swings: Mapping[str, tuple[float, float]], channels: Mapping[str, str]
 ) -> dict[str, Prediction]:
     """The damping of a fitted simulation over the amplitudes of every record; its mean is that over their logarithm."""
-    if not isinstance(fit.fitted, identified_gears.Fitted) or fit.fitted.evidence.system != "oscillator":
+    if not isinstance(fit.fitted, identified_gears.Fitted) or not fit.fitted.evidence.has(Trait.REST):
         rule, remedy = "is no fitted simulation of an oscillator", "give what gd.identify(record, model) found"
         raise InputError(Problem("laws", rule, remedy=remedy))
     found, first = {}, fit.fitted.evidence.fit[0].observed.name

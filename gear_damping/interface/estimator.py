@@ -17,11 +17,11 @@ from gear_damping.identification.estimators.base import Recorded, RecordEstimato
 from gear_damping.identification.free_vibration import Turning
 from gear_damping.identification.lightning_module import DampingModule
 from gear_damping.identification.lightning_module import load_estimator as load_module
-from gear_damping.identification.observation import RESPONSES, fit_record, fitted_names, known_of
+from gear_damping.identification.observation import fit_record, fitted_names, has_spring, known_of
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.measurement.record import Measurement, Record
-from gear_damping.physics.catalogue import SYSTEMS
 from gear_damping.physics.systems.gear_pair import teeth_of
+from gear_damping.physics.systems.traits import Trait
 
 FORMAT = "gear_damping.estimator"  # of a file that holds an estimator without weights
 
@@ -83,7 +83,7 @@ class NetworkEstimator(Estimator):
             InputError: the records are of another system, channel, unit or rate than the network was trained on, a
                 record has no such channel, or is too short.
         """
-        wanted = channel or SYSTEMS[measurement.system].response
+        wanted = channel or measurement.base.response
         problems = _without_channel(measurement, wanted) or self._unlike(measurement, wanted)
         if problems:
             raise InputError(problems)
@@ -142,7 +142,7 @@ def all_recorded(measurement: Measurement, channel: str | None = None) -> dict[s
     Raises:
         InputError: a record has no such channel, or no response at all.
     """
-    problems = _without_channel(measurement, channel, RESPONSES[measurement.system]) if channel else []
+    problems = _without_channel(measurement, channel, measurement.base.responses) if channel else []
     if problems:
         raise InputError(problems)
     return {record.name: _recorded(record, measurement, channel) for record in measurement.records}
@@ -150,12 +150,12 @@ def all_recorded(measurement: Measurement, channel: str | None = None) -> dict[s
 
 def _recorded(record: Record, measurement: Measurement, channel: str | None) -> Recorded:
     """Through the channel that is named, else its first response."""
-    system, known = measurement.system, known_of(measurement)
+    system, known = measurement.base, known_of(measurement)
     shown = channel or fitted_names(record, system)[0]
-    others = [name for name in RESPONSES[system] if name != shown]
+    others = [name for name in system.responses if name != shown]
     alone = replace(record, channels={n: c for n, c in record.channels.items() if n not in others})
-    found = fit_record(alone, system, known.values.get("stiffness", 1.0) != 0)
-    return Recorded(found, system, known, _turning(found, known.values) if system == "gear_pair" else None)
+    found = fit_record(alone, system, has_spring(known, system))
+    return Recorded(found, system, known, _turning(found, known.values) if system.has(Trait.SHAFTS) else None)
 
 
 def _turning(record: FitRecord, values: Mapping[str, float]) -> Turning | None:

@@ -162,7 +162,7 @@ def _said(one: Estimator, runs: Runs, records: Tensor) -> Estimates:
 def _as_recorded(runs: Runs, records: Tensor) -> list[Recorded]:
     """Records as estimators of one record meet them: nothing of the rig is told but what turns in it."""
     turned = runs.angles.get("pinion_angle")
-    system = runs.model.system.name
+    system = type(runs.model.system)
     found = []
     for number, values in enumerate(records):
         turning = None

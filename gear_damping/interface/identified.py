@@ -10,6 +10,7 @@ from gear_damping.errors import InputError, Problem
 from gear_damping.interface import identified_gears, identified_oscillator
 from gear_damping.interface.model import Model
 from gear_damping.measurement.record import Measurement
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.simulation.solver_settings import Progress, Solver
 
 Fitted = identified_gears.Fitted | identified_oscillator.Fitted
@@ -100,7 +101,7 @@ def identify(
             rule = "names nothing to be fitted, and the model was given no values"
             raise InputError(Problem("free", rule, remedy="for example ['damping_ratio']"))
         return Identification(measurement, identified_gears.own_fit(measurement, model, named, say, solver))
-    if measurement.system == "oscillator":
+    if measurement.base.has(Trait.REST):
         return Identification(measurement, identified_oscillator.linear_fit(measurement, progress, solver))
     return Identification(measurement, identified_gears.nominal_fit(measurement, say, solver))
 

@@ -28,11 +28,11 @@ from gear_damping.interface.identified_page import MOST_PANELS, estimate_rows, p
 from gear_damping.measurement.record import Measurement
 from gear_damping.physics.damping_ratio import DAMPING_RATIO
 from gear_damping.physics.model import Model
+from gear_damping.physics.systems.traits import Trait, by_trait
 from gear_damping.reporting import figures, tables
 from gear_damping.simulation.solver_settings import Solver
 
 SHOWN = ("mesh_stiffness_shape",)  # what is fitted in many numbers stands in the JSON alone
-OF_OSCILLATORS = ("stiffness", "force_gain")  # parameters of the system that may be fitted
 ITERATIONS = 40  # at most, of a fit of one's own model
 
 
@@ -80,11 +80,13 @@ def own_fit(measurement: Measurement, model: Model, free: Sequence[str], say: Sa
 
 def given_numbers(model: Model) -> tuple[str, ...]:
     """What may be free in a model: numbers that its effects were given, an oscillator's stiffness and force gain."""
-    declared = model.parameters()
+    declared, of_system = model.parameters(), {model.system.spring}
+    if model.system.has(Trait.REST):
+        of_system |= set(model.system.gains.values())
     return tuple(
         name
         for name, value in model.given.items()
-        if not declared[name].vector and value and ("." in name or name in OF_OSCILLATORS)
+        if not declared[name].vector and value and ("." in name or name in of_system)
     )
 
 
@@ -97,10 +99,19 @@ def _refuse_casing(measurement: Measurement) -> None:
 
 def _stated(evidence: Evidence) -> Given:
     """What the file states of the rig, by flat name of the simulator's parameters."""
-    if evidence.system == "gear_pair":
-        return first_gear_pair(evidence).given
+    return by_trait(evidence.base, STATED, "nominal model")(evidence)
+
+
+def _of_gears(evidence: Evidence) -> Given:
+    return first_gear_pair(evidence).given
+
+
+def _of_a_spring(evidence: Evidence) -> Given:
     free, given, _ = linear_model(evidence.fit, evidence.known)
     return given | {parameter.name: parameter.start for parameter in free}
+
+
+STATED = {Trait.TEETH: _of_gears, Trait.REST: _of_a_spring}
 
 
 def _free(model: Model, given: Given, names: Sequence[str]) -> tuple[FreeParameter, ...]:

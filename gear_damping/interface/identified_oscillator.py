@@ -7,7 +7,7 @@ from typing import Any
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome
 from gear_damping.explanation.trials.efficient import weighed
-from gear_damping.identification.observation import Known, fit_record, known_of, require_alike, require_fitted
+from gear_damping.identification.observation import fit_record, has_spring, known_of, require_alike, require_fitted
 from gear_damping.identification.oscillator import Estimate, OscillatorFit, fit_oscillator
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import Segments
@@ -17,6 +17,7 @@ from gear_damping.measurement.record import Channel, Measurement, Record
 from gear_damping.reporting import figures, tables
 from gear_damping.simulation.solver_settings import Progress, Solver
 
+NEWTONS = ("N*s/m", "N/m")  # units of what is not per unit of mass
 MOST_SAMPLES = 200_000  # beyond which the test of what is random takes longer than the fit
 
 
@@ -37,20 +38,22 @@ def linear_fit(measurement: Measurement, progress: Progress | None, solver: Solv
     """
     require_fitted(measurement)
     known = known_of(measurement)
-    spring = known.values.get("stiffness", 1.0) != 0
+    spring = has_spring(known, measurement.base)
     roles = {
-        "fit": [fit_record(r, "oscillator", spring) for r in _fit_on(measurement)],
-        "holdout": [fit_record(r, "oscillator", spring) for r in measurement.with_role("holdout")],
+        "fit": [fit_record(r, measurement.base, spring) for r in _fit_on(measurement)],
+        "holdout": [fit_record(r, measurement.base, spring) for r in measurement.with_role("holdout")],
     }
     require_alike([*roles["fit"], *roles["holdout"]], str(measurement.source))
     channels = {name: c for record in measurement.records for name, c in record.channels.items()}
     channel = channels[roles["fit"][0].observed.name]
     stated = Segments(measurement.segment_s, exact=True) if measurement.segment_s else None
     found = fit_oscillator(roles["fit"], roles["holdout"], progress, solver, known, stated)
-    return Fitted(_weighed(found, roles["fit"], known, channel), roles, channel)
+    return Fitted(_weighed(found, measurement, roles["fit"], channel), roles, channel)
 
 
-def _weighed(found: OscillatorFit, fit: Sequence[FitRecord], known: Known, channel: Channel) -> OscillatorFit:
+def _weighed(
+    found: OscillatorFit, measurement: Measurement, fit: Sequence[FitRecord], channel: Channel
+) -> OscillatorFit:
     """The figures weighed by what is random in the residual, where nothing else is: only then its interval holds."""
     problem, model = found.problem, found.problem.model
     if found.fitted.prediction.residual.numel() > MOST_SAMPLES:
@@ -58,7 +61,8 @@ def _weighed(found: OscillatorFit, fit: Sequence[FitRecord], known: Known, chann
     hypothesis = Hypothesis(model.system, tuple(model.effects), found.given, tuple(problem.free))
     values = {name: float(value) for name, value in problem.unknowns.parameters(found.fitted.shared).items()}
     outcome = Outcome(hypothesis, problem, found.fitted, values, [], [])
-    evidence = Evidence("oscillator", tuple(fit), (), known, channel, False, noise=problem.noise)
+    system = {"system": measurement.system, "base": measurement.base, "known": known_of(measurement)}
+    evidence = Evidence(fit=tuple(fit), holdout=(), channel=channel, one_record=False, noise=problem.noise, **system)
     better = weighed(outcome, replace(evidence, segments=found.segments))
     if better.whitened is None:
         return found
@@ -124,7 +128,8 @@ def _identification(
 def _table(content: dict[str, Any]) -> str:
     named = {key: content[key] for key in ("damping_ratio_percent", "natural_frequency_hz", "log_decrement")}
     rows = estimate_rows({**named, **content["parameters"]}) + residual_rows(content["records"])
-    title = "identified by output error, per unit of mass"
+    is_si = any(entry["unit"] in NEWTONS for entry in content["parameters"].values())
+    title = "identified by output error" + ("" if is_si else ", per unit of mass")
     if content["segment_s"]:
         title += f", in segments of {content['segment_s']:.3g} s"
     return tables.parameter_table(title, rows)

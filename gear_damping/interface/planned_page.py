@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from math import inf, isfinite, pi
 from typing import Any
 
-from gear_damping.identification.test_plan.channels import CHANNELS
+from gear_damping.identification.test_plan.channels import channels_of
 from gear_damping.identification.test_plan.maps import IntervalCurves, IntervalMap
 from gear_damping.identification.test_plan.plan import Precision, TestPlan, ToldTest
 from gear_damping.reporting.figures.test_plan import PlanCurves, PlanMap, PlanPicture
@@ -34,7 +34,7 @@ def content(plan: TestPlan) -> dict[str, Any]:
         },
         "unknown": [{"name": one.name, "deviation_si": one.deviation, "percent": one.percent, "each_test": one.each}
                     for one in plan.asked.unknown],
-        "sensors": [{"name": one.name, "channel": one.sees, "unit": CHANNELS[rig.model.system.name][one.sees],
+        "sensors": [{"name": one.name, "channel": one.sees, "unit": channels_of(rig.model.system)[one.sees],
                      "noise": one.noise, "snr_db": one.snr_db, "offset_unknown": one.offset, "cost": one.cost}
                     for one in plan.asked.sensors],
         "wanted": {"half_interval95_percent_of_ratio": goal.percent, "half_interval95_exponent": goal.exponent,

@@ -3,9 +3,13 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from gear_damping.physics.systems.base import System
 
 ROLES = ("fit", "holdout", "reference")
 SEVERITIES = ("data_problem", "note")
@@ -163,11 +167,12 @@ class Measurement:
     """A rig and what was recorded on it.
 
     Args:
-        system: `gear_pair` or `oscillator`.
+        system: The name of the system.
         parameters: Nominal values of the rig by name, in SI or the rig's own units.
         records: The records in the order of the file.
         source: The measurement.yaml that they were declared in.
         segment_s: Length in s of the segments that records are fitted and scored in; None where the file says none.
+        own_system: The declaration of the system, where it is of a file of one's own.
     """
 
     system: str
@@ -175,6 +180,14 @@ class Measurement:
     records: tuple[Record, ...]
     source: Path
     segment_s: float | None = None
+    own_system: "type[System] | None" = field(default=None, repr=False)
+
+    @property
+    def base(self) -> "type[System]":
+        """The declaration of the system."""
+        from gear_damping.physics.systems.known import system_class
+
+        return self.own_system or system_class(self.system)
 
     @property
     def files(self) -> tuple[Path, ...]:

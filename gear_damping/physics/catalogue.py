@@ -10,12 +10,10 @@ from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.own_files import classes_of, modules_of
 from gear_damping.physics import effects as room
 from gear_damping.physics.effect_files import KEY, load_effects
+from gear_damping.physics.system_files import load_systems
 from gear_damping.physics.systems.base import System
-from gear_damping.physics.systems.gear_pair import GearPair
-from gear_damping.physics.systems.oscillator import Oscillator
+from gear_damping.physics.systems.known import SYSTEMS
 from gear_damping.physics.terms import Effect
-
-SYSTEMS: dict[str, type[System]] = {GearPair.name: GearPair, Oscillator.name: Oscillator}
 
 
 @cache
@@ -46,6 +44,25 @@ def catalogue(plugins: Sequence[str | Path] = ()) -> dict[str, type[Effect]]:
 def _keys_of_systems() -> set[str]:
     """The names that stand beside those of effects in the configuration."""
     return {one.name for system in SYSTEMS.values() for one in (*system.parameters, *system.options)}
+
+
+def system_catalogue(plugins: Sequence[str | Path] = ()) -> dict[str, type[System]]:
+    """Every known system by name, with those of the user's own files added.
+
+    Args:
+        plugins: Python files that each declare systems, effects or both.
+
+    Raises:
+        InputError: a file is missing, cannot be loaded, declares no complete system, or repeats a name.
+    """
+    found = dict(SYSTEMS)
+    for path in map(Path, plugins):
+        own = load_systems(path)
+        repeated = sorted(set(own) & set(found))
+        if repeated:
+            raise InputError(Problem(KEY, f"repeats the name {repeated}", str(path), "give the system a new name"))
+        found |= own
+    return found
 
 
 def effects_in(module: ModuleType) -> dict[str, type[Effect]]:

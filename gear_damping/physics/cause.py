@@ -4,6 +4,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
+from gear_damping.physics.systems.traits import Trait
+
 Experiment = Literal["torque", "speed", "torque_channel", "bearing", "remount", "ring_down", "amplitude", "reversal"]
 
 
@@ -15,16 +17,19 @@ class Rig:
     """What a recipe may depend on: the rig and the records of it.
 
     Args:
-        system: `gear_pair` or `oscillator`.
+        system: The name of the system.
         n_teeth_pinion: Teeth of the pinion; 0 without a mesh.
         n_teeth_gear: Teeth of the gear; 0 without a mesh.
         inputs: Names of the input series that were measured.
         radian: One radian in the unit of the response; None where the response is no angle.
         mesh_harmonics: Harmonics of the mesh that the sampling of at least one record shows.
         lines: Orders of the pinion shaft at which most is left unexplained, the strongest first.
-        frequencies: Of an oscillator, in Hz, at which most is left unexplained away from its own, the strongest first.
+        frequencies: In Hz, at which most is left unexplained away from its own, the strongest first; of a rig without
+            shafts.
         values: Parameters and derived quantities of the system by name, SI; of a mesh the `contact_ratio` too.
         indexed: Whether the angle of all records counts from one mark, so that a tooth has one number.
+        traits: Those of the system.
+        spring: The parameter of the system that is its constant stiffness; None where it has a mesh.
     """
 
     system: str
@@ -37,6 +42,12 @@ class Rig:
     frequencies: tuple[float, ...] = ()
     values: Mapping[str, float] = field(default_factory=dict)
     indexed: bool = True
+    traits: frozenset[Trait] = frozenset()
+    spring: str | None = None
+
+    def has(self, trait: Trait) -> bool:
+        """Whether its system has a trait."""
+        return trait in self.traits
 
     def teeth(self, shaft: str) -> int:
         """Teeth of the gear on a shaft."""
@@ -93,7 +104,7 @@ def where_there_is_a_spring(*recipes: Recipe) -> Callable[[Rig], tuple[Recipe, .
     """Recipes of a law about a place of rest: where nothing pulls the rig back there is none to count from."""
 
     def of_rig(rig: Rig) -> tuple[Recipe, ...]:
-        return recipes if rig.values.get("stiffness", 1.0) > 0 else ()
+        return recipes if rig.values.get(rig.spring, 1.0) > 0 else ()
 
     return of_rig
 

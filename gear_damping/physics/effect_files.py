@@ -14,8 +14,8 @@ from gear_damping.physics import terms
 from gear_damping.physics.cause import Cause, Experiment, Recipe, Rig
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.systems.base import System
-from gear_damping.physics.systems.gear_pair import GearPair
-from gear_damping.physics.systems.oscillator import Oscillator
+from gear_damping.physics.systems.known import SYSTEMS, systems_of
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import Effect, ExtraStates, MeshStiffness
 from gear_damping.units import parse_unit
 
@@ -34,9 +34,10 @@ def load_effects(path: Path) -> dict[str, type[Effect]]:
     Raises:
         InputError: the file is missing, cannot be loaded, declares no effect or one that is not complete.
     """
-    kinds = classes_of(load_module(path, KEY), Effect)
+    module = load_module(path, KEY)
+    kinds = classes_of(module, Effect)
     faults = [f"the class {kind.__name__} {fault}" for kind in kinds for fault in _faults(kind)]
-    if not kinds:
+    if not kinds and not classes_of(module, System):
         faults = ["declares no effect: no class in it derives from a slot of gear_damping.physics.terms"]
     if faults:
         raise InputError([Problem(KEY, fault, str(path), REMEDY) for fault in faults])
@@ -59,8 +60,11 @@ def _faults(kind: type[Effect]) -> Iterator[str]:
             yield f"lacks {attribute}, a text: {meaning}"
         elif attribute == "name" and not text.isidentifier():
             yield f"has the name {text!r}: letters, digits and '_' make a key"
-    if not _all(kind.systems, str) or not set(kind.systems) <= {"gear_pair", "oscillator"}:
-        yield f"goes with the systems {kind.systems!r}: choose from ('gear_pair', 'oscillator')"
+    if not _all(kind.needs, str) or not set(kind.needs) <= set(Trait):
+        yield f"needs {kind.needs!r} of a system: choose from {tuple(map(str, Trait))}"
+        return
+    if hasattr(kind, "systems"):
+        yield f"names systems: say in needs what it needs of one, from {tuple(map(str, Trait))}"
     yield from _parameter_faults(kind)
     yield from cause_faults(kind)
     if issubclass(kind, ExtraStates):
@@ -106,7 +110,7 @@ def cause_faults(kind: type[Effect]) -> Iterator[str]:
     if kind.cause.separated_by not in get_args(Experiment):
         yield f"is separated by {kind.cause.separated_by!r}: choose from {get_args(Experiment)}"
     recipes: list[Recipe] = []
-    for rig in (rig for name in kind.systems for rig in some_rigs(name)):
+    for rig in (rig for name in systems_of(kind) for rig in some_rigs(SYSTEMS[name])):
         try:
             found = kind.cause.recipes_for(rig)
         except Exception as error:  # the user's own code can fail in any way
@@ -120,15 +124,15 @@ def cause_faults(kind: type[Effect]) -> Iterator[str]:
 
 
 @cache
-def some_rigs(system: str) -> tuple[Rig, ...]:
+def some_rigs(kind: type[System]) -> tuple[Rig, ...]:
     """Rigs of a system on which recipes are looked at that depend on the rig."""
-    if system == "oscillator":
-        values = _values(Oscillator(), None)
-        both = {"frequencies": (3.0, 0.1), "values": values}
-        return Rig(system, radian=1.0, **both), Rig(system, inputs=("force",), **both)
-    values = _values(GearPair(), torch.tensor([3e8])) | {"contact_ratio": 1.6}
-    others = {"mesh_harmonics": 4, "values": values}
-    return Rig(system, 20, 40, **others), Rig(system, 17, 43, inputs=("pinion_angle",), lines=(12.0,), **others)
+    name, traits, drive = kind.name, kind.traits, tuple(kind.inputs)[:1]
+    if not kind.has(Trait.TEETH):
+        both = {"frequencies": (3.0, 0.1), "values": _values(kind(), None), "traits": traits, "spring": kind.spring}
+        return Rig(name, radian=1.0, **both), Rig(name, inputs=drive, **both)
+    values = _values(kind(), torch.tensor([3e8])) | {"contact_ratio": 1.6}
+    others = {"mesh_harmonics": 4, "values": values, "traits": traits}
+    return Rig(name, 20, 40, **others), Rig(name, 17, 43, inputs=("pinion_angle",), lines=(12.0,), **others)
 
 
 def _values(system: System, mean_stiffness: torch.Tensor | None) -> dict[str, float]:

@@ -10,6 +10,8 @@ from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.scales import Scales
 from gear_damping.physics.systems.base import System
+from gear_damping.physics.systems.known import systems_of
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import (
     Contact,
     ContactChange,
@@ -152,9 +154,10 @@ def _composition_problems(system: System, effects: Sequence[Effect]) -> list[Pro
     problems = []
     names = [effect.name for effect in effects]
     for effect in effects:
-        if system.name not in effect.systems:
+        if not system.has(*effect.needs):
             rule = f"does not go with the system '{system.name}'"
-            problems.append(Problem(f"simulator.{effect.name}", rule, remedy=f"it needs {' or '.join(effect.systems)}"))
+            fitting = " or ".join(systems_of(type(effect))) or f"a system with {' and '.join(effect.needs)}"
+            problems.append(Problem(f"simulator.{effect.name}", rule, remedy=f"it needs {fitting}"))
         if names.count(effect.name) > 1:
             problems.append(Problem(f"simulator.{effect.name}", "is there twice", remedy="name it once"))
         problems += [
@@ -163,7 +166,7 @@ def _composition_problems(system: System, effects: Sequence[Effect]) -> list[Pro
             if name not in names
         ]
     meshes = sum(isinstance(effect, MeshStiffness) for effect in effects)
-    wanted = 1 if system.name == "gear_pair" else 0
+    wanted = 1 if system.has(Trait.TEETH) else 0
     if meshes != wanted:
         rule = f"a {system.name} has {wanted} mesh stiffness, here there are {meshes}"
         problems.append(Problem("simulator.mesh_stiffness", rule, remedy="choose one form of mesh stiffness"))

@@ -9,6 +9,7 @@ from torch import Tensor
 from gear_damping.physics.moment import Moment, Rotation
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.scales import Scales
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import StiffnessFactor, TransmissionErrorSource, Values
 
 
@@ -24,7 +25,7 @@ class Eccentricity(TransmissionErrorSource, StiffnessFactor):
     options: ClassVar = (
         Option("as_printed", (False, True), False, "the bare number E is added to the stiffness in N/m"),
     )
-    systems: ClassVar = ("gear_pair",)
+    needs: ClassVar = (Trait.SHAFTS, Trait.TEETH)
 
     def to_natural(self, values: Values, scales: Scales) -> dict[str, Tensor]:
         """A length, or as printed a stiffness."""
@@ -58,7 +59,7 @@ class StiffnessModulation(StiffnessFactor):
         Parameter("amplitude", "1", 0.01, "share of the stiffness", 0, 0.9),
         Parameter("phase", "rad", 0.0, "phase at shaft angle zero"),
     )
-    systems: ClassVar = ("gear_pair",)
+    needs: ClassVar = (Trait.SHAFTS, Trait.TEETH)
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
         """Cosine and sine parts."""

@@ -19,6 +19,7 @@ from gear_damping.physics.cause import Cause
 from gear_damping.physics.declared import Declared
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.scales import Scales
+from gear_damping.physics.systems.traits import Trait
 
 Values = Mapping[str, Tensor]
 
@@ -31,7 +32,7 @@ class Effect(Declared, ABC):
 
     equation: ClassVar[str]
     reference: ClassVar[str]
-    systems: ClassVar[tuple[str, ...]] = ("gear_pair", "oscillator")
+    needs: ClassVar[tuple[Trait, ...]] = ()  # traits of a system that it goes with
     dissipative: ClassVar[bool] = False
     requires: ClassVar[tuple[str, ...]] = ()  # names of effects that must be there too
     cause: ClassVar[Cause | None] = None  # what `task=explain` tries and says of it; None: it is no candidate
@@ -58,7 +59,7 @@ class Effect(Declared, ABC):
 class MeshStiffness(Effect):
     """The slot of k(t); a gear pair has exactly one. It has a parameter called `contact_ratio`."""
 
-    systems: ClassVar[tuple[str, ...]] = ("gear_pair",)
+    needs: ClassVar[tuple[Trait, ...]] = (Trait.TEETH,)
 
     @abstractmethod
     def mean(self, values: Values) -> Tensor:

@@ -10,6 +10,7 @@ from torch import Tensor
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.physics.equation import EquationOfMotion
 from gear_damping.physics.model import Model, Prepared
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import ExtraStates
 from gear_damping.simulation.runs import reference_velocity
 
@@ -143,8 +144,8 @@ def coefficients_for(model: Model, values: Values, law: str, ratio: Tensor, velo
 
 def _without_ratio(model: Model, law: str, stiff: bool) -> Problem:
     """Why a damping law cannot carry a damping ratio."""
-    load = "amplitude" if model.system.name == "oscillator" else "pinion_torque"
-    cause = load if stiff else "stiffness"
+    load = "pinion_torque" if model.system.has(Trait.TORQUE) else "amplitude"
+    cause = load if stiff else model.system.spring or "stiffness"
     rule = f"carries no damping ratio: simulator.{cause} is 0 and the ratio is stated at "
     rule += "the velocity amplitude that follows from it" if stiff else "the frequency that follows from it"
     own = f"set the parameters of {law} themselves: simulator.damping_law=null family.spreads.{DAMPING_RATIO}=null"

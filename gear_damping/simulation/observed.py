@@ -5,6 +5,7 @@ from torch import Tensor
 
 from gear_damping.physics.model import Prepared
 from gear_damping.physics.moment import Moment
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import LoadPath
 from gear_damping.simulation.integrate import input_units
 from gear_damping.simulation.runs import ACCELERATION, Runs
@@ -35,7 +36,7 @@ def shaft_motion(runs: Runs) -> dict[str, Tensor]:
     Raises:
         ValueError: the model is not a gear pair.
     """
-    if runs.model.system.name != "gear_pair":
+    if not runs.model.system.has(Trait.SHAFTS):
         raise ValueError(f"shaft_motion needs a gear_pair, this is a {runs.model.system.name}: it has no shafts")
     moves = ACCELERATION in runs.states
     names = [PINION_SPEED, GEAR_SPEED, *([PINION_ACCELERATION, GEAR_ACCELERATION] if moves else [])]

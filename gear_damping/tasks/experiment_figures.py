@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from gear_damping.config.settings import Settings
 from gear_damping.identification.catalogue import make_wavelet
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.reporting import figures
 from gear_damping.simulation.inspect import forces_of
 from gear_damping.simulation.runs import Runs
@@ -20,13 +21,13 @@ SCALOGRAM_SAMPLES = 480  # that a scalogram shows: 12 ms at 40 kHz, some 18 mesh
 def experiment_figures(settings: Settings, runs: Runs, predictions: Mapping[str, Any]) -> dict[str, Figure]:
     """Figures by file name; those of a response show the first run."""
     signal = runs.record(torch.Generator().manual_seed(settings.seed))[0]
-    unit, factor = ("µm", 1e6) if runs.model.system.name == "gear_pair" else ("m", 1.0)
+    unit, factor = ("µm", 1e6) if runs.model.system.has(Trait.TEETH) else ("m", 1.0)
     made = {
         "response": figures.response_figure(runs.time.numpy(), factor * signal.numpy(), unit),
         "scalogram": scalogram(settings, runs, signal),
         "predicted_against_true": figures.predicted_against_true_figure(predictions),
     }
-    if runs.model.system.name == "gear_pair":
+    if runs.model.system.has(Trait.TEETH):
         forces = forces_of(runs, 0)
         made["mesh_stiffness"] = figures.mesh_stiffness_figure(
             runs.angles["mesh_angle"][0].numpy(), forces["stiffness"].numpy()

@@ -10,6 +10,7 @@ from gear_damping.measurement.record import Channel, Quantity, Record
 from gear_damping.measurement.vocabulary import INPUTS, OSCILLATOR_CHANNELS, PARAMETERS
 from gear_damping.physics.effects.torque_variation import TorqueVariation
 from gear_damping.physics.moment import Moment
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import MeshStiffness
 from gear_damping.simulation.inspect import forces_of
 from gear_damping.simulation.runs import Runs
@@ -32,7 +33,7 @@ def recorded_channels(runs: Runs, seed: int) -> Channels:
     """
     generator = torch.Generator().manual_seed(seed)
     channels = {runs.model.system.response: runs.record(generator)}
-    if runs.model.system.name == "oscillator":
+    if not runs.model.system.has(Trait.SHAFTS):
         forces = [forces_of(runs, member) for member in range(len(runs.status))]
         free = torch.stack([one["load"] - one["mesh_force"] for one in forces])
         channels["velocity"] = runs.states["velocity"]
@@ -77,7 +78,7 @@ def as_records(runs: Runs, channels: Channels) -> list[Record]:
     """
     system = runs.model.system
     names = [system.response, *(name for name in channels if name in (*INPUTS, "pinion_angle"))]
-    mode = None if system.name == "oscillator" else system.chosen["gear_torque_mode"]
+    mode = system.chosen["gear_torque_mode"] if system.has(Trait.TORQUE) else None
     if mode == "balanced":
         names.remove("gear_torque")
     units = OWN_UNITS if mode is None else UNITS
@@ -106,11 +107,11 @@ def rig_parameters(settings: Settings) -> dict[str, Quantity]:
     Damping and the effects are what a measurement is taken for: they are not among them.
     """
     simulator = settings.simulator
-    if simulator.model.system.name == "oscillator":
+    if not simulator.model.system.has(Trait.TEETH):
         return {}
     mesh = next(effect.name for effect in simulator.model.effects if isinstance(effect, MeshStiffness))
     found = {}
-    for name, unit in PARAMETERS["gear_pair"].items():
+    for name, unit in PARAMETERS[simulator.model.system.name].items():
         flat = f"{mesh}.{FROM_THE_MESH[name]}" if name in FROM_THE_MESH else name
         declared, value = simulator.model.parameters().get(flat), simulator.given.get(flat)
         if declared is not None and value is not None and value != declared.default:

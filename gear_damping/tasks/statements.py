@@ -9,6 +9,7 @@ import torch
 from gear_damping.config.settings import Settings
 from gear_damping.identification.trainer import Training
 from gear_damping.physics.damping_ratio import log_decrement
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import (
     BearingForce,
     ContactChange,
@@ -44,7 +45,7 @@ def say_budget(settings: Settings, training: Training) -> None:
 def say_runs(settings: Settings, runs: Runs) -> None:
     """What the runs hold: the label in all its forms, at the amplitude that it belongs to."""
     say(_damping(runs, settings.simulator.damping_law))
-    if runs.model.system.name == "gear_pair":
+    if runs.model.system.has(Trait.TEETH):
         _say_stability(runs)
     if runs.n_diverged:
         say(f"{runs.n_diverged} runs diverged and were left out")

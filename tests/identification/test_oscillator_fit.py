@@ -13,6 +13,7 @@ from gear_damping.identification.oscillator import DAMPING, first_frequency, fit
 from gear_damping.identification.output_error.records import FitRecord, Observed
 from gear_damping.measurement.files import data_root
 from gear_damping.measurement.load import load_measurement
+from gear_damping.physics.systems.oscillator import Oscillator
 
 RATE, FREQUENCY, RATIO = 500.0, 20.0, 0.02
 OMEGA = 2 * np.pi * FREQUENCY
@@ -97,7 +98,7 @@ def real(name):
     measurement = load_measurement(conf_folder() / "measurement" / "records" / f"{name}.yaml")
 
     roles = ("fit", "holdout")
-    return [[fit_record(r, "oscillator") for r in measurement.with_role(role)] for role in roles]
+    return [[fit_record(r, Oscillator) for r in measurement.with_role(role)] for role in roles]
 
 
 @pytest.mark.real_record

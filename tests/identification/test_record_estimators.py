@@ -15,6 +15,8 @@ from gear_damping.identification.estimators.base import Recorded, RecordEstimato
 from gear_damping.identification.free_vibration import Turning
 from gear_damping.identification.observation import Known
 from gear_damping.identification.output_error.records import FitRecord, Observed
+from gear_damping.physics.systems.gear_pair import GearPair
+from gear_damping.physics.systems.oscillator import Oscillator
 
 FREQUENCY, RATE = 12.0, 600.0  # Hz: fifty samples a period
 OMEGA = 2 * math.pi * FREQUENCY
@@ -28,7 +30,7 @@ def recorded(values, inputs=None, angle=None, stamps=None, offset=False):
     drives = {name: torch.as_tensor(drive) for name, drive in (inputs or {}).items()}
     observed = Observed("displacement", offset=offset)
     record = FitRecord("run", series, RATE, drives, observed=observed, stamps=stamps)
-    system = "oscillator" if angle is None else "gear_pair"
+    system = Oscillator if angle is None else GearPair
     return Recorded(record, system, Known({}, {}), None if angle is None else Turning(angle, (20, 33)))
 
 

@@ -7,12 +7,13 @@ from dataclasses import dataclass, field
 import torch
 from torch import Tensor
 
-from gear_damping.physics.catalogue import SYSTEMS, builtin_effects
+from gear_damping.physics.catalogue import builtin_effects
 from gear_damping.physics.equation import EquationOfMotion
 from gear_damping.physics.model import Model
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.scales import Scales
 from gear_damping.physics.systems.gear_pair import GearPair
+from gear_damping.physics.systems.known import SYSTEMS, systems_of
 from gear_damping.physics.systems.oscillator import Oscillator
 from gear_damping.physics.terms import Effect, ExtraStates, MeshStiffness, Sensor, Switch
 from gear_damping.units import parse_unit
@@ -89,7 +90,7 @@ class Bench:
     def __post_init__(self) -> None:
         cls = EFFECTS[self.name]
         self.effect: Effect = cls(**self.options)
-        self.kind = "gear_pair" if "gear_pair" in cls.systems else "oscillator"
+        self.kind = "gear_pair" if "gear_pair" in systems_of(cls) else "oscillator"
         names = [*cls.requires, *self.others]
         if self.kind == "gear_pair" and not issubclass(cls, MeshStiffness):
             names.append("fourier_mesh_stiffness")

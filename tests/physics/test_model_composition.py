@@ -11,9 +11,12 @@ from gear_case import GearCase
 from gear_terms import sampled
 
 from gear_damping.errors import InputError
-from gear_damping.physics.catalogue import GearPair, Oscillator, catalogue, effect_class
+from gear_damping.physics.catalogue import catalogue, effect_class
 from gear_damping.physics.equation import EquationOfMotion
 from gear_damping.physics.model import Model
+from gear_damping.physics.systems.gear_pair import GearPair
+from gear_damping.physics.systems.oscillator import Oscillator
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import LoadPath
 
 
@@ -50,7 +53,7 @@ class Clutch(LoadPath):
     """A part between torques and mesh of one's own."""
 
     name = "clutch"
-    systems = ("gear_pair",)
+    needs = (Trait.TORQUE,)
     parameters = ()
 
     def transmitted_load(self, now, p):
@@ -119,6 +122,9 @@ PLUGIN = '''
 """Damping of my own."""
 
 from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.systems.gear_pair import GearPair
+from gear_damping.physics.systems.oscillator import Oscillator
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import DampingForce
 
 

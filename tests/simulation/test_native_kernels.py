@@ -11,6 +11,7 @@ import torch
 from gear_damping.physics.catalogue import builtin_effects, effect_class
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.gear_pair import GearPair
+from gear_damping.physics.systems.known import systems_of
 from gear_damping.physics.systems.oscillator import Oscillator
 from gear_damping.physics.terms import MeshStiffness, Sensor
 from gear_damping.simulation import compilation
@@ -32,7 +33,7 @@ EFFECTS = {name: kind for name, kind in builtin_effects().items() if not issubcl
 def model_with(name):
     kinds = builtin_effects()
     effects = [kinds[name](), *(kinds[other]() for other in kinds[name].requires)]
-    if "gear_pair" not in kinds[name].systems:
+    if "gear_pair" not in systems_of(kinds[name]):
         return Model(Oscillator(), effects), {"stiffness": 1e8, "amplitude": 1e-5, "initial_displacement": 1e-5}
     if not issubclass(kinds[name], MeshStiffness):
         effects.append(kinds["fourier_mesh_stiffness"]())

@@ -12,7 +12,6 @@ from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.evidence.rig_units import unit_of
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.spread import SILENT
-from gear_damping.identification.oscillator import STIFFNESS
 from gear_damping.identification.output_error.problem import set_value
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.uncertainty import QUANTILE
@@ -132,9 +131,9 @@ def damping_ratio(outcome: Outcome, spread: Tensor) -> dict[str, object] | None:
 def _has_no_spring(outcome: Outcome, spread: Tensor) -> bool:
     """Whether a stiffness that was fitted is not told from nothing."""
     for place, parameter in enumerate(outcome.problem.free):
-        if parameter.name == STIFFNESS:
+        if parameter.name == outcome.hypothesis.system.spring:
             half = QUANTILE * float(spread[place, place].clamp(min=0).sqrt())
-            size = 1.0 if parameter.logarithmic else outcome.values[STIFFNESS] / parameter.scale
+            size = 1.0 if parameter.logarithmic else outcome.values[parameter.name] / parameter.scale
             return half > abs(size)
     return False
 

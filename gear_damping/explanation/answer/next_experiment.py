@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.trials.score import Score, collinearity
+from gear_damping.physics.systems.traits import Trait
 
 ALIKE = 0.9  # collinearity from which two effects count as confusable beforehand
 SEPARATES = {
@@ -48,6 +49,7 @@ def next_experiment(names: Sequence[str], evidence: Evidence) -> dict[str, objec
 
 
 def _for_system(kind: str, evidence: Evidence) -> str:
-    if evidence.system == "oscillator":
-        return "ring_down" if "force" not in evidence.fit[0].inputs else "amplitude"
+    if evidence.has(Trait.REST):
+        drive = next(iter(evidence.base.inputs))
+        return "amplitude" if drive in evidence.fit[0].inputs else "ring_down"
     return kind

@@ -9,11 +9,12 @@ from scipy.signal import savgol_filter
 from gear_damping.errors import InputError, Problem
 from gear_damping.identification.observation import response_names
 from gear_damping.measurement.record import Measurement, Record
+from gear_damping.physics.systems.base import System
+from gear_damping.physics.systems.traits import Trait
 
 TURN = 2 * np.pi  # rad in one turn of a shaft
 FEWEST_TURNS = 8  # of the pinion: fewer leave no order between those of a shaft to take the floor from
 FEWEST_SAMPLES = 8  # in a mesh period: its first harmonics are then below half the sampling rate
-DEFAULT_TEETH = (20, 40)  # of the system `gear_pair`
 NAMES = ("n_teeth_pinion", "n_teeth_gear")
 
 
@@ -64,10 +65,10 @@ class Heard:
 
 def is_casing(measurement: Measurement) -> bool:
     """Whether a gear pair was heard through its casing and nothing else was measured of its response."""
-    if measurement.system != "gear_pair":
+    if not measurement.base.has(Trait.TEETH):
         return False
     heard = [_is_casing(record) for record in measurement.records]
-    return any(heard) and not any(_has_response(record) for record in measurement.records)
+    return any(heard) and not any(_has_response(record, measurement.base) for record in measurement.records)
 
 
 def heard_of(measurement: Measurement) -> list[Heard]:
@@ -76,10 +77,9 @@ def heard_of(measurement: Measurement) -> list[Heard]:
     Raises:
         InputError: a record has no shaft angle, is too short, or is sampled too slowly for its mesh.
     """
-    teeth = tuple(
-        round(measurement.parameters[name].value) if name in measurement.parameters else default
-        for name, default in zip(NAMES, DEFAULT_TEETH, strict=True)
-    )
+    usual = {parameter.name: parameter.default for parameter in measurement.base.parameters}
+    stated = {name: quantity.value for name, quantity in measurement.parameters.items()}
+    teeth = tuple(round(stated.get(name, usual[name])) for name in NAMES)
     problems: list[Problem] = []
     made = [_heard(record, teeth, problems) for record in measurement.records if _is_casing(record)]
     if problems:
@@ -92,9 +92,9 @@ def _is_casing(record: Record) -> bool:
     return channel is not None and channel.mounting == "casing"
 
 
-def _has_response(record: Record) -> bool:
+def _has_response(record: Record, base: type[System]) -> bool:
     """Whether a simulation can be compared with the record; a speed beside a casing is what it is heard at."""
-    names = set(response_names(record, "gear_pair"))
+    names = set(response_names(record, base))
     return bool(names - {"pinion_speed"} if _is_casing(record) else names)
 
 

@@ -9,7 +9,7 @@ from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.evidence.shaft import shaft_of
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.measurement.record import Finding, Measurement
-from gear_damping.physics.systems.gear_pair import GearPair
+from gear_damping.physics.systems.traits import Trait
 
 HARMONICS = 4  # of a comb, that stand for all of it: the higher ones are smaller
 FAINT = 0.1  # share of the strongest comb's energy below which the mesh order is absent
@@ -31,12 +31,10 @@ def mesh_order_faults(evidence: Evidence) -> list[Finding]:
     A comb that follows the shaft and holds much of every record is a mesh, unless the declared order stands out of the
     combs about it too: orders of the load, of the other shaft and lines of the structure then lie beside a mesh.
     """
-    if evidence.system != "gear_pair":
-        return []
-    if evidence.channel.name != "transmission_error":
+    if not evidence.has(Trait.TEETH) or evidence.channel.name != evidence.base.response:
         return []
     records = evidence.records
-    teeth = round(evidence.parameters.get("n_teeth_pinion", _declared("n_teeth_pinion")))
+    teeth = round(evidence.parameters.get("n_teeth_pinion", _declared("n_teeth_pinion", evidence)))
     orders = [n for n in range(max(5, round(LEAST_ORDER * teeth)), 2 * teeth) if n == teeth or n % teeth]
     shafts = [shaft_of(record, evidence).angle for record in records]
     series = [record.response.numpy() - float(record.response.mean()) for record in records]
@@ -56,12 +54,12 @@ def mesh_order_faults(evidence: Evidence) -> list[Finding]:
         f"the mesh order {teeth} is absent, while order {orders[at]} stands out: check n_teeth_pinion, the shaft that "
         "pinion_angle belongs to, and its unit"
     )
-    return [Finding("mesh_order_absent", message, channel="transmission_error")]
+    return [Finding("mesh_order_absent", message, channel=evidence.channel.name)]
 
 
-def _declared(name: str) -> float:
-    """The value of a parameter that the gear pair has where nothing is said."""
-    return next(float(parameter.default) for parameter in GearPair.parameters if parameter.name == name)
+def _declared(name: str, evidence: Evidence) -> float:
+    """The value of a parameter that the system has where nothing is said."""
+    return next(float(parameter.default) for parameter in evidence.base.parameters if parameter.name == name)
 
 
 def _shares(series: Sequence[NDArray], shafts: Sequence[NDArray], orders: Sequence[int]) -> NDArray:

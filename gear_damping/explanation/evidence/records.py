@@ -11,6 +11,7 @@ from gear_damping.identification.observation import (
     MESH_PHASE,
     Known,
     fit_record,
+    has_spring,
     known_of,
     require_alike,
     require_fitted,
@@ -20,6 +21,9 @@ from gear_damping.identification.output_error.records import FitRecord, FreePara
 from gear_damping.identification.output_error.segments import WHOLE, Segments, covered, part, shortened
 from gear_damping.measurement.record import Channel, Measurement
 from gear_damping.physics.catalogue import builtin_effects
+from gear_damping.physics.systems.base import System
+from gear_damping.physics.systems.known import system_class
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import Effect
 
 HELD_OUT = 4  # every so many operating conditions one is held out where the file does not say
@@ -32,7 +36,7 @@ class Evidence:
     """Records in the roles that the explanation gives them.
 
     Args:
-        system: `gear_pair` or `oscillator`.
+        system: The name of what was measured.
         fit: Records to fit.
         holdout: Records that are held out; none while they are sealed and not yet opened.
         known: What the file states of the rig, by its names.
@@ -50,6 +54,7 @@ class Evidence:
         is_over: Whether the time for fits is over.
         input_noise: Whether the noise of measured loads was taken out.
         sealed: Whether held-out records take no part in any choice.
+        base: The declaration of the system; that of the package's own one of this name where absent.
     """
 
     system: str
@@ -70,6 +75,20 @@ class Evidence:
     is_over: Callable[[], bool] = lambda: False
     input_noise: bool = False
     sealed: bool = False
+    base: type[System] | None = None
+
+    def __post_init__(self) -> None:
+        if self.base is None:
+            object.__setattr__(self, "base", system_class(self.system))
+
+    def has(self, trait: Trait) -> bool:
+        """Whether the system has a trait."""
+        return self.base.has(trait)
+
+    @property
+    def has_spring(self) -> bool:
+        """Whether something pulls the rig back: the file does not state a stiffness of 0."""
+        return has_spring(self.known, self.base)
 
     @property
     def parameters(self) -> Mapping[str, float]:
@@ -108,7 +127,7 @@ class Evidence:
         Stretches of one record, and records of one free decay, tell a law too little from another that bends to it.
         """
         conditions = {condition_of(record) for record in self.fit}
-        return self.system == "gear_pair" and len(conditions) >= FEWEST_CONDITIONS
+        return self.has(Trait.SHAFTS) and len(conditions) >= FEWEST_CONDITIONS
 
     @property
     def fitted(self) -> list[FitRecord]:
@@ -128,13 +147,13 @@ def evidence_of(measurement: Measurement) -> Evidence:
         InputError: a record lacks a response that can be fitted, or some have an input that others lack.
     """
     require_fitted(measurement)
-    system, known = measurement.system, known_of(measurement)
-    spring = known.values.get("stiffness", 1.0) != 0
+    base, known = measurement.base, known_of(measurement)
+    spring = has_spring(known, base)
     used = [record for record in measurement.records if record.role != "reference"]
-    records = [(fit_record(record, system, spring), record.role) for record in used]
+    records = [(fit_record(record, base, spring), record.role) for record in used]
     modes = {record.gear_torque_mode for record in used} - {None}
     mode = "held" if any("gear_torque" in r.conditions for r, _ in records) else next(iter(modes), "balanced")
-    if system == "oscillator":
+    if base.has(Trait.REST):
         require_alike([record for record, _ in records], str(measurement.source))
     elif mode == "balanced":  # else torques tell how the shafts speed up
         swaying = with_slow_rotation([record for record, _ in records], gear_ratio(known.values))
@@ -142,18 +161,19 @@ def evidence_of(measurement: Measurement) -> Evidence:
     fit, holdout = _roles(records)
     one, silent = not holdout, 0.0
     if one:
-        fit, silent = _audible(fit) if system == "oscillator" else (fit, 0.0)
+        fit, silent = _audible(fit) if base.has(Trait.REST) else (fit, 0.0)
         fit, holdout = _cut(fit)
     return Evidence(
-        system=system,
+        system=measurement.system,
+        base=base,
         fit=tuple(fit),
         holdout=tuple(holdout),
         known=known,
-        channel=used[0].channels[response_names(used[0], system)[0]],
+        channel=used[0].channels[response_names(used[0], base)[0]],
         one_record=one and len(used) == 1,
         gear_torque_mode=mode,
         stated_segments=Segments(measurement.segment_s, exact=True) if measurement.segment_s else WHOLE,
-        has_index=all("pinion_angle" in record.inputs for record, _ in records) or system != "gear_pair",
+        has_index=all("pinion_angle" in record.inputs for record, _ in records) or not base.has(Trait.SHAFTS),
         mesh_index=all(record.mesh_index for record in used),
         silent_s=silent,
     )

@@ -1,8 +1,9 @@
-"""Units of a rig's parameters: SI of a gear pair; of an oscillator per unit of mass, with the response's own unit."""
+"""Units of a rig's parameters: SI where its mass is known, else per unit of mass, with the response's own unit."""
 
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.measurement.record import Channel
 from gear_damping.physics.model import Model
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import Sensor
 from gear_damping.units import parse_unit
 
@@ -18,7 +19,7 @@ def rig_unit(declared: str, evidence: Evidence, recorded: bool = False) -> str:
         evidence: The records.
         recorded: Whether it is of a sensor, which acts on what was recorded: a length is one of that then.
     """
-    if declared == CYCLES or (evidence.system == "gear_pair" and not recorded):
+    if declared == CYCLES or (evidence.has(Trait.MASS) and not recorded):
         return declared
     dimension = parse_unit(declared).dimension
     length, seconds = (evidence.channel.unit, 0) if recorded else _length(evidence.channel)
@@ -39,7 +40,7 @@ def unit_of(flat: str, model: Model, evidence: Evidence) -> str:
 
 
 def length_unit(channel: Channel) -> str:
-    """The unit of an oscillator's displacement, from that of whatever response was recorded."""
+    """The unit of the displacement, from that of whatever response was recorded."""
     length, seconds = _length(channel)
     return f"{length}*{_power('s', seconds)}" if seconds else length
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.physics.systems.gear_pair import teeth_of
+from gear_damping.physics.systems.traits import Trait
 
 Array = NDArray[np.float64]
 
@@ -21,8 +22,8 @@ class Shaft:
 
 
 def shaft_of(record: FitRecord, evidence: Evidence) -> Shaft | None:
-    """The shaft of a record of a gear pair; None for an oscillator."""
-    if evidence.system != "gear_pair":
+    """The shaft of a record; None where none turns."""
+    if not evidence.has(Trait.SHAFTS):
         return None
     pinion, gear = teeth_of(evidence.parameters)
     teeth = (round(pinion), round(gear))

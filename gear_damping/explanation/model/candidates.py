@@ -17,7 +17,6 @@ UNSEEN = 50.0  # times smaller than where it begins, a parameter that has no siz
 ANGLE_SCALE = 0.1  # rad, a step of order one of an angle that is freed
 EXPONENT = "exponent"  # the name of a parameter that is the power of a law
 SHOWN = (EXPONENT, "order", "phase", "sine_frequency", "ramp_start")  # of a variant, in its label
-COVERED_BY_NUISANCE = {"oscillator": {"sensor_offset", "sensor_gain"}, "gear_pair": set()}
 
 
 @dataclass(frozen=True)
@@ -76,13 +75,13 @@ def candidates_for(base: Hypothesis, evidence: Evidence, residuals: Residuals | 
         residuals: What it leaves of them, in whose orders a ripple is sought beyond the low ones.
     """
     there = {effect.name for effect in base.effects}
-    refused = there | COVERED_BY_NUISANCE[base.system.name]
+    refused = there | base.system.covered_by_nuisance
     rig = rig_of(base, evidence, residuals)
     sizes = _Sizes(base, evidence.duration, rig)
     return [
         _candidate(base, kind, recipe, sizes)
         for name, kind in evidence.library.items()
-        if kind.cause and base.system.name in kind.systems and name not in refused and set(kind.requires) <= there
+        if kind.cause and base.system.has(*kind.needs) and name not in refused and set(kind.requires) <= there
         for recipe in kind.cause.recipes_for(rig)
         if all(_value(base, parameter) > 0 for parameter in recipe.replaces)
     ]

@@ -44,10 +44,8 @@ SCANNED = 0.99  # of the cost before: less is no reason for another scan
 LEAST_DAMPING = 1e-5  # of the first guess, N s/m
 
 
-def stated_frequency(evidence: Evidence) -> float:
-    """The natural frequency in Hz that follows from what the file states of the rig."""
-    if evidence.system != "gear_pair":
-        return sqrt(evidence.parameters["stiffness"]) / (2 * pi)
+def stated_mesh_frequency(evidence: Evidence) -> float:
+    """The natural frequency in Hz that follows from what the file states of a gear pair."""
     first = first_gear_pair(evidence)
     return natural_frequency_hz(first.model, first.given)
 
@@ -65,7 +63,7 @@ def first_gear_pair(evidence: Evidence) -> Hypothesis:
     defaults = {p.name: p.default for p in FourierMeshStiffness.parameters}
     high, low = (stated.get(f"{MESH}.{end}", defaults[end]) for end in ("maximum", "minimum"))
     contact_ratio = stated.get(f"{MESH}.contact_ratio") or _contact_ratio(stated)
-    system = GearPair(gear_torque_mode=evidence.gear_torque_mode)
+    system = evidence.base(gear_torque_mode=evidence.gear_torque_mode)
     start = stated | {f"{MESH}.maximum": high, f"{MESH}.minimum": low, f"{MESH}.contact_ratio": contact_ratio}
     derived = Model(system, effects).prepare(Model(system, effects).values(1, **start)).derived
     damping = 2 * ratio * float((derived["mean_stiffness"] * derived["equivalent_mass"])[0]) ** 0.5

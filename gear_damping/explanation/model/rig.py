@@ -12,6 +12,7 @@ from gear_damping.explanation.evidence.rig_units import length_unit
 from gear_damping.explanation.model.hypothesis import Hypothesis
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.physics.cause import Rig
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.units import Dimension, parse_unit
 
 Residuals = Sequence[tuple[FitRecord, Tensor]]
@@ -45,8 +46,9 @@ def rig_of(base: Hypothesis, evidence: Evidence, residuals: Residuals | None = N
     values = {p.name: float(own[p.name][0]) for p in base.system.parameters}
     values |= {name: float(value[0]) for name, value in prepared.derived.items()}
     inputs = tuple(dict.fromkeys(name for record in evidence.fit for name in record.inputs))
-    common = {"system": base.system.name, "inputs": inputs, "values": values}
-    if base.system.name != "gear_pair":
+    common = {"system": base.system.name, "traits": base.system.traits, "values": values}
+    common |= {"spring": base.system.spring, "inputs": inputs}
+    if not base.system.has(Trait.SHAFTS):
         radian = _radian(length_unit(evidence.channel)) if evidence.channel else None
         natural = values["natural_frequency"] / (2 * pi)
         return Rig(radian=radian, frequencies=strongest_frequencies(residuals or (), natural), **common)

@@ -1,6 +1,6 @@
 """Step 3: the nominal simulation at its best, so that wrong parameters do not masquerade as physics."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from math import log, pi
@@ -24,10 +24,11 @@ from gear_damping.explanation.model.nominal_gear_pair import (
 from gear_damping.explanation.statistics.paired import paired_gain
 from gear_damping.explanation.trials.refit import block_samples
 from gear_damping.identification.observation import MESH_PHASE
-from gear_damping.identification.oscillator import DAMPING, GAIN, fit_oscillator, linear_model, linear_oscillator
+from gear_damping.identification.oscillator import DAMPING, fit_oscillator, linear_model, linear_oscillator
 from gear_damping.identification.output_error.angles import STARTS
 from gear_damping.identification.output_error.least_squares import NONE, Rounds
 from gear_damping.identification.output_error.records import SEPARATOR, FreeParameter
+from gear_damping.physics.systems.traits import Trait, by_trait
 from gear_damping.simulation.solver_settings import Solver
 
 LESS_DAMPING = 0.05  # of what was found: what a local minimum takes for damping
@@ -56,7 +57,7 @@ class Calibration:
     Args:
         evidence: The records, with phases of their own where their angles do not count from one mark.
         nominal: The nominal model fitted to them.
-        rough: A gear pair's fit before the shape of its stiffness was freed; None for an oscillator.
+        rough: A gear pair's fit before the shape of its stiffness was freed; None where there are no teeth.
         followed: How many of the records the nominal model was fitted to, where it does not follow the others; else 0.
     """
 
@@ -70,13 +71,10 @@ def calibrated(evidence: Evidence, solver: Solver | None = None) -> Calibration:
     """The nominal model fitted to the evidence.
 
     Raises:
-        InputError: with what is stated of the rig it cannot be simulated.
+        InputError: with what is stated of the rig it cannot be simulated, or nothing is known to fit to its system.
     """
     with _simulable():
-        if evidence.system == "gear_pair":
-            found = _gear_pair(evidence, solver)
-        else:
-            found = _oscillator_calibrated(evidence, solver)
+        found = by_trait(evidence.base, NOMINAL, "nominal model")(evidence, solver)
     if not bool(found.nominal.fitted.prediction.sensitivity.isfinite().all()):
         raise InputError(NOT_FINITE)
     return found
@@ -112,15 +110,16 @@ def _oscillator(evidence: Evidence, solver: Solver | None) -> Outcome:
     """Stiffness, damping, gain; offsets of force and response as nuisances."""
     found = fit_oscillator(evidence.fit, known=evidence.known, segments=evidence.segments)
     free, given, _ = linear_model(evidence.fit, evidence.known)
-    free = [_from_here(parameter, found.given[parameter.name]) for parameter in free]
-    model = linear_oscillator(evidence.fit)
+    gains = evidence.base.gains.values()
+    free = [_from_here(parameter, found.given[parameter.name], parameter.name in gains) for parameter in free]
+    model = linear_oscillator(evidence.fit, evidence.base)
     nominal = Hypothesis(model.system, tuple(model.effects), given, tuple(free))
     return fit_hypothesis(nominal, evidence, solver=solver)
 
 
-def _from_here(parameter: FreeParameter, value: float) -> FreeParameter:
+def _from_here(parameter: FreeParameter, value: float, is_gain: bool) -> FreeParameter:
     """The parameter from a value that was found; a gain keeps its sign."""
-    logarithmic = parameter.logarithmic or (parameter.name == GAIN and value > 0)
+    logarithmic = parameter.logarithmic or (is_gain and value > 0)
     expected = parameter.start if parameter.expected is None and parameter.logarithmic else parameter.expected
     deviation = parameter.deviation
     if logarithmic and not parameter.logarithmic:  # a relative one counts as such
@@ -235,3 +234,10 @@ def _are_in_line(many: Outcome, evidence: Evidence) -> bool:
     slopes = torch.linspace(-pi, pi, SLOPES, dtype=torch.float64) / speeds.abs().max()
     agreement = torch.exp(1j * (phases - slopes.unsqueeze(1) * speeds)).mean(1).abs().max()
     return float(2 * (1 - agreement)) <= IN_LINE**2
+
+
+# how the nominal model of a system is fitted, by the first of these traits that it has
+NOMINAL: dict[Trait, Callable[[Evidence, Solver | None], Calibration]] = {
+    Trait.TEETH: _gear_pair,
+    Trait.REST: _oscillator_calibrated,
+}

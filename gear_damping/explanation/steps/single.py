@@ -10,6 +10,7 @@ from gear_damping.explanation.state import State
 from gear_damping.explanation.trials.refit import Refit, again
 from gear_damping.explanation.trials.score import Score, best_by_effect
 from gear_damping.identification.output_error.least_squares import NONE
+from gear_damping.physics.systems.traits import Trait
 
 FAR = 10.0  # times the cost of the best fit: a law that leaves so much more has not come to rest where it could
 
@@ -55,14 +56,14 @@ def _first_fits(state: State) -> tuple[Refit, ...]:
 
 
 def _from_the_best(fits: Sequence[Refit], state: State) -> list[Refit]:
-    """The fits, of an oscillator's laws those that leave far more than the best one tried again from where that lies.
+    """The fits, about a place of rest those that leave far more than the best one tried again from where that lies.
 
     The nominal model may be a long way off in all that it shares with them, a gain of the force or a damping, and its
     own spring another one: from there some laws come to a place where no step is better.
     """
     bench, nominal = state.bench, state.nominal
     best = min(fits, key=lambda fit: fit.outcome.fitted.cost, default=None)
-    if bench.evidence.system != "oscillator" or best is None:
+    if not bench.evidence.has(Trait.REST) or best is None:
         return list(fits)
     far = {fit.name for fit in fits if fit.outcome.fitted.cost > FAR * best.outcome.fitted.cost}
     if not far or bench.budget.refuses("laws once more, from the best one"):

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from math import ceil
 
 from gear_damping.explanation.evidence.records import SPLIT, Evidence
-from gear_damping.explanation.model.nominal_gear_pair import stated_frequency
+from gear_damping.explanation.model.stated import stated_frequency
 from gear_damping.explanation.trials.refit import FEWEST_BLOCKS
 from gear_damping.identification.oscillator import first_frequency
 from gear_damping.identification.output_error.records import FitRecord
@@ -49,7 +49,7 @@ def died_away(evidence: Evidence) -> str:
 
 def _characteristic(evidence: Evidence) -> tuple[float, str]:
     """Seconds over which the motion forgets itself, and what so many of them are called."""
-    if evidence.system == "oscillator" and evidence.known.values.get("stiffness", 1.0) == 0:
+    if not evidence.has_spring:
         time = max(decorrelation_time(record) for record in evidence.fit)
         return time, f"times of {time:.3g} s, over which the motion forgets itself"
     frequency = _natural_frequency(evidence)
@@ -58,9 +58,7 @@ def _characteristic(evidence: Evidence) -> tuple[float, str]:
 
 def _natural_frequency(evidence: Evidence) -> float:
     """As stated, or as the longest record shows it, in Hz."""
-    if evidence.system == "gear_pair" or "stiffness" in evidence.known.values:
-        return stated_frequency(evidence)
-    return first_frequency(max(evidence.fit, key=lambda record: record.duration))
+    return stated_frequency(evidence) or first_frequency(max(evidence.fit, key=lambda record: record.duration))
 
 
 def _times(records: Sequence[FitRecord], period: float) -> float:

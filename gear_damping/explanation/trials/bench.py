@@ -22,6 +22,7 @@ from gear_damping.explanation.trials.score import Score, contains, scores
 from gear_damping.identification.output_error.least_squares import Rounds
 from gear_damping.identification.output_error.records import FreeParameter
 from gear_damping.identification.output_error.uncertainty import QUANTILE
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.simulation.solver_settings import Solver
 
 LEAST_TAKEN = 0.25  # of what another takes of the fitted records, for a fit to be carried to its end,
@@ -43,7 +44,7 @@ class Bench:
         floor: The noise as it was known before any residual was looked at.
         failed: Why an effect could not be fitted in full, by its name.
         budget: The time that is left.
-        rough: A gear pair's nominal model before the shape of its stiffness was freed; None for an oscillator.
+        rough: A gear pair's nominal model before the shape of its stiffness was freed; None where there are no teeth.
     """
 
     evidence: Evidence
@@ -95,14 +96,14 @@ class Bench:
     def worth(self, ranked: Sequence[Score], outcome: Outcome, share: float = 1.0) -> list[Score]:
         """Those of the candidates beside a model with causes which promise enough of what it leaves beyond noise.
 
-        Fits of oscillators are cheap, and their laws far from linear.
+        About a place of rest fits are cheap, and laws far from linear.
 
         Args:
             ranked: Scores beside it.
             outcome: The model.
             share: Of what is enough as a further cause.
         """
-        if self.evidence.system == "oscillator":
+        if self.evidence.has(Trait.REST):
             return list(ranked)
         least = share * self.settings.least_promise * self.beyond_noise(outcome) / max(outcome.fitted.cost, 1e-300)
         return [score for score in ranked if score.gain >= least or score.candidate.replaced]
@@ -125,7 +126,7 @@ class Bench:
             return ()
         fits: list[Refit] = []
         base = (outcome if outcome.fitted.converged else against).fitted.cost
-        for score in chosen(ranked, self.settings, promise, springs=self.evidence.system == "oscillator"):
+        for score in chosen(ranked, self.settings, promise, springs=self.evidence.has(Trait.REST)):
             if self.budget.refuses(score.candidate.name):
                 continue
             most = max((base - fit.outcome.fitted.cost for fit in fits), default=0.0)
@@ -139,10 +140,9 @@ class Bench:
     def _reach(self, most: float, base: float, against: Outcome) -> float:
         """The cost that another fit has to get below, where one took the `most` of it.
 
-        Laws of an oscillator are far from linear, and what they would come to is not foretold.
+        Without a preload laws are far from linear, and what they would come to is not foretold.
         """
-        is_gear_pair = self.evidence.system == "gear_pair"
-        if is_gear_pair and most >= self.settings.taken_by_all * (base - self.noise_cost(against)):
+        if self.evidence.has(Trait.PRELOAD) and most >= self.settings.taken_by_all * (base - self.noise_cost(against)):
             return RIVALS_LEAVE * (base - most)
         return base - LEAST_TAKEN * most
 

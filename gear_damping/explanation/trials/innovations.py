@@ -18,10 +18,10 @@ from gear_damping.explanation.statistics.load_noise import (
     load_noise,
     recurrence,
 )
-from gear_damping.identification.oscillator import GAIN
 from gear_damping.identification.output_error.problem import OutputErrorProblem
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import part
+from gear_damping.physics.systems.swinging import BASE, FORCE
 
 PIECE = 3.0  # natural periods that the free motion is followed over: it must not have died away
 FEWEST = 6  # samples of a piece, which two states of its own are fitted to
@@ -71,13 +71,13 @@ def known_error(record: FitRecord, outcome: Outcome) -> KnownError | None:
     and its velocity goes on.
     """
     problem, values = outcome.problem, {**outcome.flat_given(), **outcome.values}
-    factors = {"force": values.get(GAIN, 1.0), "base_acceleration": -1.0}  # per unit of mass
-    errors = [factors[name] ** 2 * error.numpy() for name, error in record.input_errors.items()]
-    if not errors or not _is_one_motion(problem) or record.observed.absolute:  # that has the base in itself
+    if not record.input_errors or not _is_one_motion(problem) or record.observed.absolute:  # with the base in it
         return None
     mass, damping, stiffness = linear_of(outcome)
     if stiffness <= 0 or damping <= 0:  # nothing holds its motion, which grows
         return None
+    factors = {FORCE: values.get(outcome.hypothesis.system.gains.get(FORCE), 1.0), BASE: -mass}
+    errors = [factors[name] ** 2 * error.numpy() for name, error in record.input_errors.items()]
     seen, interval = Linear(mass, damping, stiffness, record.observed.derivatives), 1 / record.sampling_rate
     stamps = torch.arange(len(record.response)) if record.stamps is None else record.stamps
     motion, step = moved_by(record.weight**2 * sum(errors), seen, interval)

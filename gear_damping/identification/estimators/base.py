@@ -12,6 +12,7 @@ from gear_damping.identification.free_vibration import FreeVibration, Turning, f
 from gear_damping.identification.networks import DampingNetwork, GaussianNetwork
 from gear_damping.identification.observation import Known
 from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.physics.systems.base import System
 from gear_damping.setting import Setting
 from gear_damping.signals.wavelets.base import ContinuousWavelet
 
@@ -48,13 +49,13 @@ class Recorded:
 
     Args:
         record: Its responses and inputs.
-        system: `gear_pair` or `oscillator`.
+        system: What it was measured on.
         known: What is stated of the rig.
         turning: Of a gear pair, what turns in it; None where no speed is known.
     """
 
     record: FitRecord
-    system: str
+    system: type[System]
     known: Known
     turning: Turning | None = None
 

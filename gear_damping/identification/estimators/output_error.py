@@ -7,6 +7,7 @@ from gear_damping.identification.estimators.base import Recorded, RecordEstimato
 from gear_damping.identification.oscillator import fit_oscillator
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import shortened
+from gear_damping.physics.systems.traits import Trait
 
 OVERDAMPED = 99.9  # % of critical, from which on nothing swings
 ABOVE_NOISE = 3.0  # standard deviations of the residual that an amplitude must have to count
@@ -24,7 +25,7 @@ class OutputError(RecordEstimator):
 
     def estimate(self, recorded: Recorded) -> DampingEstimate:
         """By a fit to this record alone."""
-        if recorded.system != "oscillator":
+        if not recorded.system.has(Trait.REST):
             raise UnsuitedRecord("this fit is for oscillators: task=identify without a model fits gear pairs")
         record = _as_long_as_it_swings(recorded)
         found = fit_oscillator([record], known=recorded.known)

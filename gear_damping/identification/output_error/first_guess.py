@@ -7,6 +7,7 @@ from torch import Tensor
 
 from gear_damping.identification.output_error.records import FitRecord, Observed
 from gear_damping.physics.model import Model
+from gear_damping.physics.systems.traits import Trait
 
 TAIL = 0.25  # of a free decay: where it has come nearest to its rest
 
@@ -66,7 +67,7 @@ def participation(channel: Observed, model: Model, given: Mapping[str, object]) 
         model: The simulator.
         given: Its known values by flat name, in SI.
     """
-    if model.system.name != "gear_pair" or not channel.derivatives:
+    if not model.system.has(Trait.SHAFTS) or not channel.derivatives:
         return 1.0
     values = model.values(1, **given)
     derived = model.prepare(values).derived

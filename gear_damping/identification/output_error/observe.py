@@ -8,6 +8,7 @@ from torch import Tensor
 
 from gear_damping.identification.output_error.records import Filter, Observed
 from gear_damping.physics.record_filter import butterworth_modes, butterworth_response, filtered
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.simulation.observed import motion_of_shaft
 from gear_damping.simulation.runs import Runs
 
@@ -17,7 +18,7 @@ POINTS = 10  # samples of the polynomial between which an uneven stamp lies: 1e-
 
 def motion(runs: Runs, channel: Observed) -> Tensor:
     """The quantity that a channel shows before any sensor, (batch, time)."""
-    if runs.model.system.name == "gear_pair" and channel.derivatives:
+    if runs.model.system.has(Trait.SHAFTS) and channel.derivatives:
         return _shaft_motion(runs, channel)
     name = ("displacement", "velocity", "acceleration")[channel.derivatives]
     shown = runs.states[name]

@@ -5,21 +5,26 @@ from collections.abc import Sequence
 import torch
 from torch import Tensor
 
+from gear_damping.physics.systems.base import System
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.simulation.observed import motion_of_shaft
 from gear_damping.simulation.runs import Runs
 
 RESPONSE = "response"  # stands for the response of the system
-CHANNELS = {
-    "gear_pair": {
-        RESPONSE: "m",
-        "transmission_error": "m",
-        "pinion_speed": "rad/s",
-        "gear_speed": "rad/s",
-        "pinion_acceleration": "rad/s^2",
-        "gear_acceleration": "rad/s^2",
-    },
-    "oscillator": {RESPONSE: "m", "displacement": "m", "velocity": "m/s", "acceleration": "m/s^2"},
-}  # by system, with the SI unit of each
+OF_MOTION = ("m", "m/s", "m/s^2")  # SI units of a motion and its rates
+OF_SHAFTS = {
+    "pinion_speed": "rad/s",
+    "gear_speed": "rad/s",
+    "pinion_acceleration": "rad/s^2",
+    "gear_acceleration": "rad/s^2",
+}
+
+
+def channels_of(system: System) -> dict[str, str]:
+    """What may be seen of a system, with the SI unit of each."""
+    if system.has(Trait.SHAFTS):
+        return {RESPONSE: OF_MOTION[0], system.response: OF_MOTION[0], **OF_SHAFTS}
+    return {RESPONSE: OF_MOTION[0], **dict(zip(system.responses, OF_MOTION, strict=True))}
 
 
 def needs_acceleration(channels: Sequence[str]) -> bool:

@@ -6,9 +6,10 @@ from math import isfinite
 
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.identification.test_plan.asked import PlanCosts, PlanGoal, PlannedSensor, PlannedTests, Unknown
-from gear_damping.identification.test_plan.channels import CHANNELS
+from gear_damping.identification.test_plan.channels import channels_of
 from gear_damping.identification.test_plan.rig import Rig
 from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import HeldLoad
 
 MOST_SENSORS = 6  # 63 ways to choose from them
@@ -52,7 +53,7 @@ def refuse_goal(rig: Rig, goal: PlanGoal) -> None:
         cost = getattr(goal.costs, one.name)
         if not (isfinite(cost) and cost >= 0):
             problems.append(Problem(f"plan.cost.{one.name}", "must be 0 or more", cost))
-    if rig.model.system.name != "gear_pair":
+    if not rig.model.system.has(Trait.SHAFTS):
         for name in ("per_speed", "per_torque"):
             if getattr(goal.costs, name):
                 problems.append(Problem(f"plan.cost.{name}", "has no effect: an oscillator does not turn", None))
@@ -76,7 +77,7 @@ def _of_rig(rig: Rig) -> Iterator[Problem]:
 
 
 def _of_tests(rig: Rig, tests: PlannedTests) -> Iterator[Problem]:
-    gears = rig.model.system.name == "gear_pair"
+    gears = rig.model.system.has(Trait.SHAFTS)
     if not tests.durations:
         yield Problem("plan.durations", "must be given", None, "for example plan.durations=[0.05,0.2]")
     for parameter, name in SPLIT.items():
@@ -104,7 +105,7 @@ def _of_tests(rig: Rig, tests: PlannedTests) -> Iterator[Problem]:
 
 
 def _of_sensors(rig: Rig, sensors: Sequence[PlannedSensor]) -> Iterator[Problem]:
-    known = CHANNELS[rig.model.system.name]
+    known = channels_of(rig.model.system)
     if not 0 < len(sensors) <= MOST_SENSORS:
         yield Problem("plan.sensors", f"must name 1 to {MOST_SENSORS} sensors", len(sensors))
     for sensor in sensors:

@@ -8,6 +8,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.identification.test_plan.rig import Rig
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.simulation.families import extra_states
 from gear_damping.simulation.runs import FINE, effect_state_units
 from gear_damping.simulation.simulate import natural_units, simulate
@@ -39,7 +40,7 @@ def settling_time(rig: Rig, wanted: float | None) -> float:
     """Seconds before a record begins."""
     if wanted is not None:
         return wanted
-    if rig.model.system.name != "gear_pair":
+    if not rig.model.system.has(Trait.PRELOAD):
         return 0.0
     frequency = float(rig.model.prepare(rig.values).derived["natural_frequency"])
     ratio = float(rig.ratio_percent(rig.values)) / 100
@@ -67,7 +68,7 @@ def _run(rig: Rig, values: dict[str, Tensor], count: int, rate: float) -> Begun:
     model, still = rig.model, {name: torch.zeros_like(values[name]) for name in STEADY if name in values}
     before = values | still
     given = model.given | dict(rig.given)
-    if "initial_displacement" not in given and model.system.name == "gear_pair":
+    if "initial_displacement" not in given and model.system.has(Trait.PRELOAD):
         derived = model.prepare(before).derived
         before["initial_displacement"] = derived["mean_load"] / derived["mean_stiffness"]
     solver = replace(rig.solver, acceleration=False, progress=None)

@@ -8,7 +8,7 @@ from torch import Tensor
 from gear_damping.physics.cause import Cause, Recipe, Rig
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
-from gear_damping.physics.shapes import WIDTHS, sign_change_rate
+from gear_damping.physics.shapes import friction_width, sign_change_rate
 from gear_damping.physics.terms import DampingForce, Values
 
 # Where a fit begins, in natural units: small beside the static load and a damping ratio of some percent.
@@ -18,7 +18,7 @@ VISCOUS = {"damping_forward": 0.01, "damping_backward": 0.01}  # where a fit beg
 
 def _switched_on(rig: Rig) -> tuple[Recipe, ...]:
     """Dry friction alone, and with a viscous part that differs too."""
-    within = {"asymmetric_friction.width": WIDTHS[rig.system]}
+    within = {"asymmetric_friction.width": friction_width(rig)}
     return tuple(
         Recipe(strengths, scanned={"width": 0.05, "rest_share": 0.5}, within=within, sharpest=("width",))
         for strengths in (DRY, DRY | VISCOUS)

@@ -8,6 +8,7 @@ from torch import Tensor
 from gear_damping.physics.cause import Cause, Recipe, Rig
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Option, Parameter
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import Contact, Values
 
 DRIVE, COAST = "backlash.drive", "backlash.coast"
@@ -16,8 +17,8 @@ GAPS = (0.01, 0.02, 0.04, 0.08)  # in modules: those of usual gears, from which 
 
 
 def _gaps_of_teeth(rig: Rig) -> tuple[Recipe, ...]:
-    """What is lost in impacts passes for damping as long as the flanks cannot part; an oscillator has no flanks."""
-    sizes = [share * rig.values["module"] for share in GAPS] if rig.system == "gear_pair" else []
+    """What is lost in impacts passes for damping as long as the flanks cannot part; teeth alone have flanks."""
+    sizes = [share * rig.values["module"] for share in GAPS] if rig.has(Trait.TEETH) else []
     stood_in = {"viscous_damping.damping_coefficient": 0.02}
     return tuple(Recipe({"gap": size}, presence=True, in_si=True, stood_in=stood_in) for size in sizes)
 

@@ -8,6 +8,7 @@ from torch import Tensor
 from gear_damping.physics.cause import Cause, Recipe, Rig
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import ExtraStates, TransmissionErrorSource, Values
 
 PLACE, RATE = "bearing_flexibility.displacement", "bearing_flexibility.velocity"
@@ -36,7 +37,7 @@ class BearingFlexibility(ExtraStates, TransmissionErrorSource):
         Parameter("mass", "kg", 2.0, "m_b, pinion and its part of the shaft", 1e-3, 1e4),
         Parameter("damping_ratio", "1", 0.02, "zeta_b, of the bearing alone", 0, 10),
     )
-    systems: ClassVar = ("gear_pair",)
+    needs: ClassVar = (Trait.TEETH,)
     states: ClassVar = {"displacement": "m", "velocity": "m/s"}
     cause: ClassVar = Cause(
         "the flexibility of a bearing",

@@ -8,12 +8,12 @@ from torch import Tensor
 from gear_damping.physics.cause import Cause, Recipe, Rig
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
-from gear_damping.physics.shapes import WIDTHS, sign_change_rate
+from gear_damping.physics.shapes import friction_width, sign_change_rate
 from gear_damping.physics.terms import DampingForce, Values
 
 
 def _switched_on(rig: Rig) -> tuple[Recipe, ...]:
-    within = {"coulomb_friction.width": WIDTHS[rig.system]}
+    within = {"coulomb_friction.width": friction_width(rig)}
     return (Recipe({"force": 0.005}, scanned={"width": 0.05}, within=within, sharpest=("width",)),)
 
 

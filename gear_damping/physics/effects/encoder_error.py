@@ -7,6 +7,7 @@ from torch import Tensor
 
 from gear_damping.physics.cause import Cause
 from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import Recording, Sensor, Values
 
 
@@ -30,7 +31,7 @@ class EncoderError(Sensor):
         Parameter("pinion_line_amplitude", "rad", 0.0, "B1", 0, 0.1),
         Parameter("gear_line_amplitude", "rad", 0.0, "B2", 0, 0.1),
     )
-    systems: ClassVar = ("gear_pair",)
+    needs: ClassVar = (Trait.SHAFTS, Trait.TEETH)
     cause: ClassVar = Cause(
         "an error of the encoders",
         separated_by="remount",

@@ -9,6 +9,7 @@ from gear_damping.physics.cause import Cause, Recipe, Rig
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.shapes import power_of_size
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import DampingForce, ExtraStates, Values
 
 YIELDS = (0.05, 0.2, 0.6)  # amplitudes of the motion
@@ -21,7 +22,7 @@ def _switched_on(rig: Rig) -> tuple[Recipe, ...]:
     within = {"hysteretic_damping.exponent": EXPONENTS}
     return tuple(
         Recipe({"share": 0.02}, scanned={"yield_deflection": size, "exponent": 1.0}, within=within)
-        for size in (YIELDS if rig.system == "oscillator" else PRELOADED)
+        for size in (PRELOADED if rig.has(Trait.PRELOAD) else YIELDS)
     )
 
 

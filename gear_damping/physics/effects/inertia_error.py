@@ -7,6 +7,7 @@ from torch import Tensor
 
 from gear_damping.physics.cause import Cause
 from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import SystemChange, Values
 
 
@@ -17,7 +18,7 @@ class InertiaError(SystemChange):
     equation = "m_e (1 + kappa)"
     reference = "Özgüven & Houser (1988), J. Sound Vib. 121(3)"
     parameters: ClassVar = (Parameter("share", "1", 0.1, "kappa", -0.9, 10),)
-    systems: ClassVar = ("gear_pair",)
+    needs: ClassVar = (Trait.MASS,)
     cause: ClassVar = Cause(
         "a moment of inertia other than the one that was stated",
     )

@@ -8,6 +8,7 @@ from torch import Tensor
 
 from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import ContactChange, Values
 
 LARGEST = 2.0  # contact ratio with two pairs in contact all the time
@@ -23,7 +24,7 @@ class LoadDependentContact(ContactChange):
         Parameter("growth", "1", 0.05, "g, contact ratio added at the reference load", 0, 1),
         Parameter("reference_load", "N", 5321.0, "F_ref; 5321 N is 150 N m on the default pinion", 1e-6, 1e9),
     )
-    systems: ClassVar = ("gear_pair",)
+    needs: ClassVar = (Trait.TEETH, Trait.PRELOAD)
     cause: ClassVar = Cause(
         "a contact ratio that grows with the load",
         (

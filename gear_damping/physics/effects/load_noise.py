@@ -6,6 +6,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import HeldLoad, Values
 
 
@@ -17,7 +18,7 @@ class LoadNoise(HeldLoad):
     equation = "F + w_k on sample k, std(w) = |F0| 10^(-SNR/20)"
     reference = "Yousfi et al. (2026), noise on the load"
     parameters: ClassVar = (Parameter("snr_db", "1", 20.0, "mean load to noise in dB", -40, 200),)
-    systems: ClassVar = ("gear_pair",)
+    needs: ClassVar = (Trait.PRELOAD,)
 
     def draw(self, values: Values, mean_load: Tensor, samples: int, generator: torch.Generator) -> Tensor:
         """One force for each output sample, (batch, samples)."""

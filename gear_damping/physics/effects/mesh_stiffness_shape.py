@@ -8,6 +8,7 @@ from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.shaft_order import periodic
 from gear_damping.physics.shapes import padded, same_length
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import StiffnessFactor, Values
 
 
@@ -21,7 +22,7 @@ class MeshStiffnessShape(StiffnessFactor):
         Parameter("in_phase", "1", (0.0, 0.0), "a_h by harmonic", -1, 1, vector=True),
         Parameter("quadrature", "1", (0.0, 0.0), "b_h by harmonic", -1, 1, vector=True),
     )
-    systems: ClassVar = ("gear_pair",)
+    needs: ClassVar = (Trait.TEETH,)
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
         """The lists, once they are of one length."""

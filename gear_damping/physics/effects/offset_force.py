@@ -7,6 +7,7 @@ from torch import Tensor
 
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import Load, Values
 
 
@@ -17,7 +18,7 @@ class OffsetForce(Load):
     equation = "F + F0"
     reference = "Wigren & Schoukens (2013), European Control Conference"
     parameters: ClassVar = (Parameter("force", "N", 0.0, "F0", -1e18, 1e18),)
-    systems: ClassVar = ("oscillator",)
+    needs: ClassVar = (Trait.REST,)
 
     def load_force(self, now: Moment, p: Values) -> Tensor:
         """The same at every instant."""

@@ -12,6 +12,7 @@ from gear_damping.physics.moment import Moment, Rotation
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.shaft_order import harmonics
 from gear_damping.physics.shapes import padded
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import TransmissionErrorSource, Values
 
 HANDOVERS = (0.05, 1.0)  # of a pitch; two pairs carry for the contact ratio less one
@@ -58,7 +59,7 @@ class PitchError(TransmissionErrorSource):
         Option("shaft", SHAFTS, "pinion", "which of the two gears"),
         Option("form", ("handover", "interpolated"), "handover", "as stated, or trigonometric interpolation"),
     )
-    systems: ClassVar = ("gear_pair",)
+    needs: ClassVar = (Trait.SHAFTS, Trait.TEETH)
     cause: ClassVar = Cause(
         "errors of the pitch, tooth by tooth",
         _by_shaft,

@@ -10,6 +10,7 @@ from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.shaft_order import harmonics
 from gear_damping.physics.shapes import padded, same_length
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import TransmissionErrorSource, Values
 
 MOST_HARMONICS = 4  # beyond these a tooth's profile has little
@@ -31,7 +32,7 @@ class ProfileError(TransmissionErrorSource):
         Parameter("amplitudes", "m", (3e-6, 1e-6), "E_h by harmonic", 0, 1e-3, vector=True),
         Parameter("phases", "rad", (0.0, 0.0), "phi_h by harmonic", vector=True),
     )
-    systems: ClassVar = ("gear_pair",)
+    needs: ClassVar = (Trait.TEETH,)
     cause: ClassVar = Cause(
         "errors of the tooth profile",
         _visible_harmonics,

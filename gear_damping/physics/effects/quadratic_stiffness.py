@@ -7,6 +7,7 @@ from torch import Tensor
 from gear_damping.physics.cause import Cause, Recipe, where_there_is_a_spring
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import ElasticForce, Values
 
 
@@ -17,7 +18,7 @@ class QuadraticStiffness(ElasticForce):
     equation = "N + k2 delta^2"
     reference = "Nayfeh & Mook (1979), Nonlinear Oscillations, Wiley"
     parameters: ClassVar = (Parameter("coefficient", "N/m^2", 0.1, "k2", -1e24, 1e24),)
-    systems: ClassVar = ("oscillator",)
+    needs: ClassVar = (Trait.REST,)
     cause: ClassVar = Cause(
         "a restoring force that differs between the two directions of deflection",
         where_there_is_a_spring(Recipe({"coefficient": 0.02})),

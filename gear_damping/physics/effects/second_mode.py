@@ -10,6 +10,7 @@ from torch import Tensor
 from gear_damping.physics.cause import Cause, Recipe, Rig
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import ExtraStates, Load, Values
 
 PLACE, RATE = "second_mode.displacement", "second_mode.velocity"
@@ -52,7 +53,7 @@ class SecondMode(ExtraStates, Load):
         Parameter("frequency", "Hz", 1.0, "w / 2 pi, of the second mass on its spring alone", 1e-9, 1e9),
         Parameter("damping_ratio", "1", 0.01, "zeta, of the second mass on its spring alone", 0, 10),
     )
-    systems: ClassVar = ("oscillator",)
+    needs: ClassVar = (Trait.REST,)
     states: ClassVar = {"displacement": "m", "velocity": "m/s"}
     cause: ClassVar = Cause("a second mode of the structure", _at_the_lines, separated_by="amplitude")
 

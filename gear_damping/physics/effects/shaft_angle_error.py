@@ -7,6 +7,7 @@ from torch import Tensor
 
 from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import Recording, Sensor, Values
 
 
@@ -20,7 +21,7 @@ class ShaftAngleError(Sensor):
         Parameter("amplitude", "rad", 4.4e-3, "A; the default is 0.25 deg", 0, 0.5),
         Parameter("phase", "rad", 0.0, "phi"),
     )
-    systems: ClassVar = ("gear_pair",)
+    needs: ClassVar = (Trait.SHAFTS,)
     channel = "pinion_angle"
     cause: ClassVar = Cause(
         "an error of the shaft angle",

@@ -9,6 +9,7 @@ from torch import Tensor
 from gear_damping.physics.cause import SHAFTS, Cause, Recipe, Rig
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Option, Parameter
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import ExtraStates, LoadPath, Values
 
 TWIST, RATE = "shaft_torsion.twist", "shaft_torsion.twist_rate"
@@ -59,7 +60,7 @@ class ShaftTorsion(ExtraStates, LoadPath):
         Parameter("motor_inertia", "kg*m^2", 0.01, "J, moment of inertia of the motor, or of the brake", 1e-9, 1e6),
         Parameter("damping_ratio", "1", 0.02, "zeta_s, of the machine against the gears with a rigid mesh", 0, 10),
     )
-    systems: ClassVar = ("gear_pair",)
+    needs: ClassVar = (Trait.SHAFTS, Trait.TEETH, Trait.TORQUE)
     options: ClassVar = (Option("shaft", SHAFTS, "pinion", "whose: a motor on the pinion's, a brake on the gear's"),)
     states: ClassVar = {"twist": "rad", "twist_rate": "rad/s"}
     cause: ClassVar = Cause(

@@ -8,6 +8,7 @@ from torch import Tensor
 from gear_damping.physics.cause import Cause, Recipe, Rig
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import ElasticForce, SystemChange, Values
 
 SIZES = (1.0, 1.3, 2.0)  # of the linear stiffness that swings as fast: the wider the swing, the more
@@ -25,7 +26,7 @@ def _instead_of_a_spring(rig: Rig) -> tuple[Recipe, ...]:
             scanned=free,
             presence=True,
             in_si=rig.radian is not None,
-            replaces={"stiffness": "stiffness"},
+            replaces={rig.spring: "stiffness"} if rig.spring else {},
         )
         for size in SIZES
     )
@@ -44,7 +45,7 @@ class SineRestoring(ElasticForce, SystemChange):
         Parameter("stiffness", "N/m", 1.0, "k, per mass at small angles: g / length of the pendulum", 0, 1e18),
         Parameter("length", "m", 1.0, "l, one radian in the unit of the displacement", 1e-9, 1e9),
     )
-    systems: ClassVar = ("oscillator",)
+    needs: ClassVar = (Trait.REST,)
     cause: ClassVar = Cause(
         "the restoring force of a pendulum",
         _instead_of_a_spring,

@@ -7,6 +7,7 @@ from torch import Tensor
 from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import DampingForce, Values
 
 
@@ -21,7 +22,7 @@ class SqueezeFilmDamping(DampingForce):
         Parameter("damping_coefficient", "N*s/m", 64.5, "c, of the film between flanks that touch", 0, 1e12),
         Parameter("film_thickness", "m", 1e-5, "h0, film that remains between flanks that touch", 1e-8, 1e-2),
     )
-    systems: ClassVar = ("gear_pair",)
+    needs: ClassVar = (Trait.TEETH,)
     dissipative = True
     acts_in_gap = True
     requires: ClassVar = ("backlash",)

@@ -9,6 +9,7 @@ from torch import Tensor
 from gear_damping.physics.cause import SHAFTS, Cause, Recipe, Rig
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Option, Parameter
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import StiffnessFactor, Switch, Values
 
 IN_MESH = "tooth_crack.in_mesh"
@@ -49,7 +50,7 @@ class ToothCrack(StiffnessFactor, Switch):
         Option("shaft", SHAFTS, "pinion", "whose tooth"),
         Option("edges", ("smooth", "switched"), "smooth", "a tanh at either edge, or a jump"),
     )
-    systems: ClassVar = ("gear_pair",)
+    needs: ClassVar = (Trait.SHAFTS, Trait.TEETH)
     cause: ClassVar = Cause(
         "a tooth that is softer than the others",
         _every_tooth,

@@ -9,6 +9,7 @@ from torch import Tensor
 from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import MeshForceFactor, Switch, Values
 
 DOUBLE, APPROACH = "tooth_friction.double", "tooth_friction.approach"
@@ -32,7 +33,7 @@ class ToothFriction(MeshForceFactor, Switch):
         Parameter("friction_coefficient", "1", 0.05, "mu", 0, 1),
         Parameter("pitch_point_shift", "1", 0.0, "mesh periods from the pitch point of standard teeth", -1, 1),
     )
-    systems: ClassVar = ("gear_pair",)
+    needs: ClassVar = (Trait.SHAFTS, Trait.TEETH)
     cause: ClassVar = Cause(
         "the sliding friction of the teeth, which turns round at the pitch point",
         (Recipe({"friction_coefficient": None}),),

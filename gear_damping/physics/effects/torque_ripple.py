@@ -8,6 +8,7 @@ from torch import Tensor
 from gear_damping.physics.cause import Cause, Recipe, Rig
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Option, Parameter
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import Load, LoadFactor, Values
 
 LOW_ORDERS = 6  # of the pinion's shaft, of a motor's torque
@@ -50,7 +51,7 @@ class TorqueRipple(Load, LoadFactor):
         Parameter("phase", "rad", 0.0, "phi"),
     )
     options: ClassVar = (Option("proportional", (False, True), False, "a share of the load instead of a torque"),)
-    systems: ClassVar = ("gear_pair",)
+    needs: ClassVar = (Trait.SHAFTS, Trait.TORQUE)
     cause: ClassVar = Cause(
         "a ripple of the torque that the torque channel does not show",
         _every_order,

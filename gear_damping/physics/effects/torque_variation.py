@@ -10,6 +10,7 @@ from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.shapes import same_length
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import Load, Switch, Values
 
 SHORTEST = 1e-9  # natural time that a ramp takes at least: a ramp that ends where it starts is a step
@@ -32,7 +33,7 @@ class TorqueVariation(Load, Switch):
         Parameter("sine_phase", "rad", 0.0, "phi"),
     )
     options: ClassVar = (Option("form", ("steps", "ramp", "sine"), "steps", "what the torque does"),)
-    systems: ClassVar = ("gear_pair",)
+    needs: ClassVar = (Trait.TORQUE,)
     cause: ClassVar = Cause(
         "a change of the torque during the records that the torque channel does not show",
         (

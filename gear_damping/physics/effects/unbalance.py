@@ -8,6 +8,7 @@ from torch import Tensor
 from gear_damping.physics.cause import SHAFTS, Cause, Recipe
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Option, Parameter
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import BearingForce, Values
 
 
@@ -22,7 +23,7 @@ class Unbalance(BearingForce):
         Parameter("phase", "rad", 0.0, "phi"),
     )
     options: ClassVar = (Option("shaft", SHAFTS, "pinion", "which of the two gears; the bearing is that gear's"),)
-    systems: ClassVar = ("gear_pair",)
+    needs: ClassVar = (Trait.SHAFTS,)
     requires: ClassVar = ("bearing_flexibility",)
     cause: ClassVar = Cause(
         "an unbalance",

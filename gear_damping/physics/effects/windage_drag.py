@@ -7,6 +7,7 @@ from torch import Tensor
 from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.moment import Moment
 from gear_damping.physics.parameter import Parameter
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import Load, Values
 
 
@@ -17,7 +18,7 @@ class WindageDrag(Load):
     equation = "T1 - c_w |omega_1| omega_1"
     reference = "Diab, Ville, Velex & Changenet (2004), J. Mech. Des. 126(5)"
     parameters: ClassVar = (Parameter("coefficient", "N*m*s^2", 4e-6, "c_w; 0.9 N m at 4600 rpm", 0, 1),)
-    systems: ClassVar = ("gear_pair",)
+    needs: ClassVar = (Trait.SHAFTS, Trait.TORQUE)
     cause: ClassVar = Cause(
         "a drag that grows with the square of the speed",
         (Recipe({"coefficient": None}),),

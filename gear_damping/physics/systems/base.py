@@ -9,16 +9,32 @@ from torch import Tensor
 from gear_damping.physics.declared import Declared
 from gear_damping.physics.moment import Moment, Rotation
 from gear_damping.physics.scales import Scales
+from gear_damping.physics.systems.traits import Trait
 
 Values = Mapping[str, Tensor]
 
 
 class System(Declared, ABC):
-    """A single-degree-of-freedom base; effects are added to it as terms."""
+    """A single-degree-of-freedom base; effects are added to it as terms.
+
+    What it declares is all that effects, identification and explanation know of it: they ask for a trait or one of
+    the attributes below, never for a name.
+    """
 
     response: ClassVar[str]  # the channel that displacement is recorded in
-    inputs: ClassVar[dict[str, str]]  # series that may be given, with their SI units
+    inputs: ClassVar[dict[str, str]]  # series that may be given, with their SI units; the one that drives it first
     derived_units: ClassVar[dict[str, str]]
+    traits: ClassVar[frozenset[Trait]]
+    responses: ClassVar[tuple[str, ...]]  # channels that its motion is fitted to, the one that tells most first
+    gains: ClassVar[dict[str, str]] = {}  # inputs whose scale is a parameter, with its name
+    spring: ClassVar[str | None] = None  # the parameter that is its constant stiffness; None where it has a mesh
+    # sensor effects that its nominal fit allows for by offsets and gains of its own: no candidates
+    covered_by_nuisance: ClassVar[frozenset[str]] = frozenset()
+
+    @classmethod
+    def has(cls, *traits: Trait) -> bool:
+        """Whether it has all of these traits."""
+        return cls.traits.issuperset(traits)
 
     def _key(self, name: str) -> str:
         return name  # beside those of effects

@@ -14,6 +14,7 @@ from gear_damping.physics.moment import Moment, Rotation
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.scales import Scales
 from gear_damping.physics.systems.base import System, Values
+from gear_damping.physics.systems.traits import Trait
 
 PRINTED_BASE_CIRCLES = (0.05, 0.11)  # m; the paper's Table 1, truncated base diameters
 PRINTED_MASS = 1.0  # kg; the paper's equation 8 has no mass
@@ -31,6 +32,9 @@ class GearPair(System):
 
     name = "gear_pair"
     response = "transmission_error"
+    responses: ClassVar = ("transmission_error", "acceleration", "gear_speed", "pinion_speed")
+    traits: ClassVar = frozenset({Trait.SHAFTS, Trait.TEETH, Trait.TORQUE, Trait.PRELOAD, Trait.MASS})
+    gains: ClassVar = {"pinion_torque": "torque_gain"}
     parameters: ClassVar = (
         Parameter("n_teeth_pinion", "1", 20, "teeth of the pinion", 5, 500, "paper"),
         Parameter("n_teeth_gear", "1", 40, "teeth of the gear", 5, 1000, "paper"),

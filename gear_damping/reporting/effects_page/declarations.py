@@ -3,6 +3,7 @@
 from math import isfinite
 
 from gear_damping.physics.parameter import Option, Parameter
+from gear_damping.physics.systems.known import systems_of
 from gear_damping.physics.terms import (
     BearingForce,
     Contact,
@@ -52,7 +53,7 @@ def declaration(kind: type[Effect]) -> list[str]:
     """The lines of an effect: what it is, its equation, source, options and parameters."""
     lines = [_sentence(kind.__doc__ or ""), "", f"`{kind.equation}`", ""]
     lines += [f"- acts on: {acts_on(kind)}"]
-    lines += [f"- systems: {', '.join(f'`{name}`' for name in kind.systems)}"]
+    lines += [f"- systems: {', '.join(f'`{name}`' for name in systems_of(kind))}"]
     lines += [f"- dissipates energy: {'yes' if kind.dissipative else 'no'}"]
     lines += [f"- needs: {', '.join(f'`{name}`' for name in kind.requires)}"] if kind.requires else []
     lines += [f"- source: {kind.reference}", ""]

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Mapping, Sequence
 
+from gear_damping.physics.systems.known import systems_of
 from gear_damping.physics.terms import Effect
 from gear_damping.reporting.effects_page import cases
 from gear_damping.reporting.effects_page.declarations import acts_on, declaration
@@ -99,7 +100,7 @@ def without_measurements(text: str) -> str:
 
 def _row(name: str, kind: type[Effect], found: Signature | None) -> str:
     rms = f"{_amount(float(found.residual.std()))} {found.unit}" if found else ""
-    systems = ", ".join(kind.systems).replace("_", " ")
+    systems = ", ".join(systems_of(kind)).replace("_", " ")
     cells: Sequence[str] = (
         f"[`{name}`](#{name})", acts_on(kind), systems, "yes" if kind.dissipative else "no", f"{BEGIN}{rms}{END}",
     )  # fmt: skip

@@ -10,8 +10,11 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from gear_damping.physics.catalogue import SYSTEMS
 from gear_damping.physics.model import Model
+from gear_damping.physics.systems.base import System
+from gear_damping.physics.systems.gear_pair import GearPair
+from gear_damping.physics.systems.oscillator import Oscillator
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import Effect, MeshStiffness, Sensor
 from gear_damping.reporting.effects_page import cases
 from gear_damping.reporting.effects_page.cases import Case, Values
@@ -68,9 +71,9 @@ def signature(kind: type[Effect], known: Kinds, seed: int = 0) -> Signature:
         seed: Of what is drawn (noise).
     """
     case = cases.case_of(kind.name)
-    if "gear_pair" not in kind.systems:
-        return _of_an_oscillator(kind, known, case, seed)
-    return _of_a_gear_pair(kind, known, case, seed)
+    if GearPair.has(*kind.needs):
+        return _of_a_gear_pair(kind, known, case, seed)
+    return _of_an_oscillator(kind, known, case, seed)
 
 
 def _of_a_gear_pair(kind: type[Effect], known: Kinds, case: Case, seed: int) -> Signature:
@@ -81,13 +84,13 @@ def _of_a_gear_pair(kind: type[Effect], known: Kinds, case: Case, seed: int) -> 
     shown = slice(cases.SETTLING * cases.SAMPLES_PER_TURN, None)
     names = dict(cases.NOMINAL)
     grid = _Grid(rate, samples, seed)
-    true = _run("gear_pair", _effects(known, _with(kind, names, case)), given, grid)
+    true = _run(GearPair(), _effects(known, _with(kind, names, case)), given, grid)
     plain = _effects(known, _without(kind, names, case))
-    nominal = _run("gear_pair", plain, given, grid)
+    nominal = _run(GearPair(), plain, given, grid)
     if issubclass(kind, Sensor) and kind.channel == "pinion_angle":
         angle = true.measured("pinion_angle", _generator(seed))
         # The record is that of the true motion; what differs is the simulation that follows the false angle.
-        misled = _run("gear_pair", plain, given, grid, angle)
+        misled = _run(GearPair(), plain, given, grid, angle)
         records = (nominal.record(_generator(seed)), misled.record(_generator(seed)))
     else:
         records = (true.record(_generator(seed)), nominal.record(_generator(seed)))
@@ -104,8 +107,8 @@ def _of_an_oscillator(kind: type[Effect], known: Kinds, case: Case, seed: int) -
     rate, samples = cases.OSCILLATOR_RATE, cases.OSCILLATOR_SAMPLES
     names, given = dict(cases.OSCILLATOR_NOMINAL), dict(cases.OSCILLATOR_GIVEN)
     grid = _Grid(rate, samples, seed)
-    true = _run("oscillator", _effects(known, _with(kind, names, case)), given | dict(case.given), grid)
-    nominal = _run("oscillator", _effects(known, _without(kind, names, case)), given, grid)
+    true = _run(Oscillator(), _effects(known, _with(kind, names, case)), given | dict(case.given), grid)
+    nominal = _run(Oscillator(), _effects(known, _without(kind, names, case)), given, grid)
     measured, without = (run.record(_generator(seed))[0].numpy() for run in (true, nominal))
     natural = float(nominal.derived["natural_frequency"][0]) / (2 * pi)
     return _signature(np.arange(samples) / rate, measured, without, "rad", rate, (None, None, natural))
@@ -151,10 +154,10 @@ def _effects(known: Kinds, chosen: Mapping[str, Values]) -> list[Effect]:
     return [known[name](**values) for name, values in chosen.items()]
 
 
-def _run(system: str, effects: list[Effect], given: Values, grid: _Grid, angle: Tensor | None = None) -> Runs:
-    model = Model(SYSTEMS[system](), effects)
+def _run(system: System, effects: list[Effect], given: Values, grid: _Grid, angle: Tensor | None = None) -> Runs:
+    model = Model(system, effects)
     values = model.values(1, **given)
-    if system == "gear_pair":
+    if system.has(Trait.PRELOAD):
         derived = model.prepare(values).derived
         start = derived["mean_load"] / derived["mean_stiffness"]
         values = values | {"initial_displacement": start}

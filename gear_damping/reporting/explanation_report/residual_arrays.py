@@ -12,6 +12,7 @@ from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.evidence.shaft import Shaft, shaft_of
 from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency_hz
 from gear_damping.explanation.state import State
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.reporting.figures import ForceMap, ForceSurface, ResidualSpectrum
 from gear_damping.signals.spectra import amplitude_spectrum, order_spectrum
 
@@ -87,7 +88,7 @@ def force_surface(outcome: Outcome, evidence: Evidence) -> ForceSurface:
     edges = tuple(np.linspace(v.min(), v.max(), n + 1) for v, n in zip((rate, place), STATE_BINS[::-1], strict=True))
     mean, visits = _binned(rate, place, np.concatenate(_forces(outcome, evidence)), edges)
     v, x = ((e[1:] + e[:-1]) / 2 for e in edges)
-    if evidence.system == "gear_pair":
+    if evidence.has(Trait.MASS):
         return ForceSurface(1e6 * x, v, mean, visits=visits)
     unit, factor = evidence.channel.declared_unit, evidence.channel.declared_factor
     units = {"displacement_unit": unit, "velocity_unit": f"{unit}/s", "force_unit": f"({unit}/s²)"}
