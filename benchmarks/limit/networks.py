@@ -10,10 +10,11 @@ from benchmarks.limit.bench import Bench, settings_of
 from gear_damping.identification.asked import estimates_of
 from gear_damping.identification.datamodule import Material, WindowDataModule
 from gear_damping.identification.known_model.estimate import Estimates
-from gear_damping.identification.lightning_module import EstimatorConfig, load_estimator
+from gear_damping.identification.lightning_module import EstimatorConfig
 from gear_damping.identification.noise import SensorNoise
 from gear_damping.identification.protocols import BY_RUN
 from gear_damping.identification.runs import RunSet
+from gear_damping.identification.saved import load_estimator
 from gear_damping.identification.trainer import Place, Shown, Training, fit_estimator
 from gear_damping.simulation.plan import run_plan
 from gear_damping.tasks.simulated import plan_of, run_set_of

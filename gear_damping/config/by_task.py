@@ -6,6 +6,7 @@ from pathlib import Path
 from gear_damping.config.folders import RESUMABLE, resumable
 from gear_damping.config.light import no_file
 from gear_damping.config.whole import Found, Whole, typed
+from gear_damping.identification.saved import holds_network
 from gear_damping.physics.terms import HeldLoad
 from gear_damping.simulation.families import DAMPING_RATIO
 
@@ -27,8 +28,9 @@ COLLECT = "collect"
 def _checkpoint(whole: Whole) -> Found:
     path = whole["checkpoint"]
     many = whole["task"] == "evaluate" and path is not None and any(Path(path).glob("*/seed_*/best.ckpt"))
-    if path is not None and not many and not Path(path).is_file():
-        yield "checkpoint", no_file(Path(path)), path, "give the path of a best.ckpt"
+    if path is not None and not many and not (Path(path).is_file() or holds_network(Path(path))):
+        rule = "is a folder that holds no network" if Path(path).is_dir() else no_file(Path(path))
+        yield "checkpoint", rule, path, "give the path of a best.ckpt, or of a folder with model.json"
     if whole["task"] == "evaluate" and path is None:
         yield "checkpoint", "task=evaluate needs a trained estimator", None, "checkpoint=…/best.ckpt"
 

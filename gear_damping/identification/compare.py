@@ -15,12 +15,14 @@ from gear_damping.identification.controls import mean_predictor, white_noise_run
 from gear_damping.identification.datamodule import Material, WindowDataModule
 from gear_damping.identification.estimators.base import RecordNetwork
 from gear_damping.identification.lightning_module import EstimatorConfig
-from gear_damping.identification.metrics import means_over_runs, scores
+from gear_damping.identification.metrics import interval_of_rmse, means_over_runs, scores
 from gear_damping.identification.trainer import SHOWN, Place, Shown, Training, fit_estimator, predict_windows
 
 MEAN, WHITE_NOISE = "mean", "white_noise"
 
-Scores = dict[str, float | None]
+INTERVAL = "rmse_interval95"  # stands with each seed: a mean of intervals is none
+
+Scores = dict[str, Any]
 
 
 @dataclass(frozen=True)
@@ -88,8 +90,9 @@ def compare_models(
     Returns:
         Plain data, ready for JSON: `protocol`, `seeds`, `models` and `controls` (name -> `metrics.scores`:
         rmse_percent as {mean, std} over the seeds (std 0 for one seed), the others as means over the seeds
-        (None where undefined), and `per_seed` with the values), and `predictions` of the first seed: name ->
-        true and predicted value of each test window, and of each run with the spread over its windows.
+        (None where undefined), and `per_seed` with the values and the 95 % interval of each error), and
+        `predictions` of the first seed: name -> true and predicted value of each test window, and of each run with
+        the spread over its windows.
 
     Raises:
         ValueError: no models, no seeds, a model named like a control, or what protocol and fits refuse.
@@ -134,7 +137,7 @@ def _one_seed(
     true = data.test_runs.damping_ratio_percent[data.test_window_runs].cpu()
     predicted = torch.full_like(true, mean)
     runs = data.test_window_runs
-    yield MEAN, ({**scores(true, predicted, runs, mean), "epochs": 0}, true, predicted, runs)
+    yield MEAN, (_scored(true, predicted, runs, mean) | {"epochs": 0}, true, predicted, runs)
 
 
 def _fit_and_score(
@@ -147,7 +150,7 @@ def _fit_and_score(
     shown = replace(shared.shown, hparams={"model": name, **shared.shown.hparams})
     fit = fit_estimator(config, data, shared.training, shared.place_of(name), seed=shared.seed, shown=shown)
     true, predicted = predict_windows(fit.estimator, data.test_dataloader())
-    found = scores(true, predicted, data.test_window_runs, mean_predictor(data.training_labels))
+    found = _scored(true, predicted, data.test_window_runs, mean_predictor(data.training_labels))
     announce(
         f"{name}, seed {shared.seed}: test RMSE {found['rmse_percent']:.4f} %, validation "
         f"{fit.best_validation_rmse:.4f} %, {len(fit.history)} epochs"
@@ -155,10 +158,15 @@ def _fit_and_score(
     return {**found, "epochs": fit.epochs}, true, predicted, data.test_window_runs
 
 
+def _scored(true: Tensor, predicted: Tensor, runs: Tensor, mean: float) -> Scores:
+    """Every score of one estimator, with the interval of its error over runs."""
+    return scores(true, predicted, runs, mean) | {INTERVAL: interval_of_rmse(true, predicted, runs)}
+
+
 def _summary(per_seed: Sequence[Scores]) -> dict[str, Any]:
     columns = {name: [found[name] for found in per_seed] for name in per_seed[0]}
     errors = columns["rmse_percent"]
-    summary: dict[str, Any] = {name: _mean(values) for name, values in columns.items()}
+    summary: dict[str, Any] = {name: _mean(values) for name, values in columns.items() if name != INTERVAL}
     spread = stdev(errors) if len(errors) > 1 else 0.0
     summary["rmse_percent"] = {"mean": fmean(errors), "std": spread}
     summary["per_seed"] = columns

@@ -3,7 +3,6 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from math import isnan
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import lightning as L
@@ -236,29 +235,6 @@ class DampingModule(L.LightningModule):
             problems.append(Problem("sampling_rate", rule, sampling_rate, remedy))
         if problems:
             raise InputError(problems)
-
-
-def load_estimator(path: Path | str, plugins: Sequence[str] = ()) -> DampingModule:
-    """The estimator in a checkpoint, ready to predict on the CPU.
-
-    Args:
-        path: The checkpoint.
-        plugins: The user's own estimator files.
-
-    Raises:
-        InputError: the file is missing or is not a checkpoint of an estimator, or of one that no file declares.
-    """
-    options = {"map_location": "cpu", "weights_only": True, "plugins": tuple(plugins)}
-    try:
-        with torch.random.fork_rng(devices=[]):  # a new network draws weights, which the file then replaces
-            module = DampingModule.load_from_checkpoint(path, **options)
-    except InputError:
-        raise
-    except Exception as error:  # a damaged file fails in as many ways as there are readers
-        rule = f"must be a checkpoint of a trained estimator ({type(error).__name__}: {error})"
-        remedy = "give the best.ckpt of a training run"
-        raise InputError(Problem("checkpoint", rule, str(path), remedy)) from error
-    return module.eval()
 
 
 def _front_end(

@@ -5,6 +5,8 @@ from collections.abc import Sequence
 import torch
 from torch import Tensor
 
+RESAMPLES = 1000  # of a bootstrap: the ends of its interval to some per cent of its width
+
 
 def rmse_percent(true: Tensor, predicted: Tensor) -> float:
     """Root of the mean squared error, sqrt(1/N sum e^2), in % of critical."""
@@ -42,6 +44,23 @@ def epochs_to_convergence(validation_errors: Sequence[float]) -> int:
         return 0
     limit = 1.05 * min(validation_errors)
     return next(epoch for epoch, error in enumerate(validation_errors, start=1) if error <= limit)
+
+
+def interval_of_rmse(true: Tensor, predicted: Tensor, runs: Tensor) -> list[float] | None:
+    """95 % interval of `rmse_percent` by the bootstrap over runs, whose windows are no independent witnesses.
+
+    None for one run, which says nothing of others (Efron 1979; percentiles).
+    """
+    _, row = runs.unique(return_inverse=True)
+    count = torch.bincount(row).double()
+    if len(count) < 2:
+        return None
+    squares = torch.zeros(len(count), dtype=torch.float64)
+    squares.index_add_(0, row, (predicted.double() - true.double()).square())
+    generator = torch.Generator().manual_seed(0)
+    drawn = torch.randint(len(count), (RESAMPLES, len(count)), generator=generator)
+    errors = (squares[drawn].sum(1) / count[drawn].sum(1)).sqrt()
+    return errors.quantile(torch.tensor([0.025, 0.975], dtype=torch.float64)).tolist()
 
 
 def means_over_runs(true: Tensor, predicted: Tensor, runs: Tensor) -> tuple[Tensor, Tensor, Tensor]:

@@ -16,13 +16,7 @@ from torch import Tensor
 
 from gear_damping.identification.catalogue import kind_of
 from gear_damping.identification.datamodule import WindowDataModule
-from gear_damping.identification.lightning_module import (
-    CONSTANT,
-    COSINE,
-    DampingModule,
-    EstimatorConfig,
-    load_estimator,
-)
+from gear_damping.identification.lightning_module import CONSTANT, COSINE, DampingModule, EstimatorConfig
 from gear_damping.identification.lightning_support import (
     EpochSeeds,
     EventsLogger,
@@ -35,6 +29,7 @@ from gear_damping.identification.lightning_support import (
     threads,
 )
 from gear_damping.identification.metrics import epochs_to_convergence
+from gear_damping.identification.saved import load_estimator
 from gear_damping.identification.seeding import derived_seed
 from gear_damping.identification.trained_on import TrainedOn
 

@@ -16,14 +16,18 @@ from gear_damping.identification.damping_estimate import DampingCurve, UnsuitedR
 from gear_damping.identification.estimators.base import Recorded, RecordEstimator
 from gear_damping.identification.free_vibration import Turning
 from gear_damping.identification.lightning_module import DampingModule
-from gear_damping.identification.lightning_module import load_estimator as load_module
 from gear_damping.identification.observation import fit_record, fitted_names, has_spring, known_of
 from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.identification.saved import FORMAT as NETWORK
+from gear_damping.identification.saved import description_of, read_description, write_shared
+from gear_damping.identification.saved import load_estimator as load_module
 from gear_damping.measurement.record import Measurement, Record
 from gear_damping.physics.systems.gear_pair import teeth_of
 from gear_damping.physics.systems.traits import Trait
+from gear_damping.reporting.model_card import model_card
 
 FORMAT = "gear_damping.estimator"  # of a file that holds an estimator without weights
+CARD = "model_card.md"
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +72,7 @@ class Estimator(ABC):
 
 
 class NetworkEstimator(Estimator):
-    """A checkpoint that `task=train` left; it holds only for gears like those it was trained on."""
+    """A network that `task=train` left; it holds only for gears like those it was trained on."""
 
     def __init__(self, module: DampingModule) -> None:
         """Hold a trained network."""
@@ -88,6 +92,12 @@ class NetworkEstimator(Estimator):
         if problems:
             raise InputError(problems)
         return {record.name: self._of_record(record, wanted) for record in measurement.records}
+
+    def save(self, folder: Path | str) -> None:
+        """Write `model.safetensors`, `model.json` and a card for sharing; `load_estimator` reads the folder."""
+        write_shared(self.module, Path(folder))
+        card = model_card(description_of(self.module), self.module.network.is_likelihood)
+        (Path(folder) / CARD).write_text(card)
 
     def _unlike(self, measurement: Measurement, channel: str) -> list[Problem]:
         """Why these are no records for this network."""
@@ -183,34 +193,29 @@ def estimator(name: str, *, plugins: Sequence[Path | str] = (), **settings: floa
 
 
 def load_estimator(path: Path | str, plugins: Sequence[str] = ()) -> Estimator:
-    """The estimator of a checkpoint, or of a file that `save` wrote.
+    """The estimator of a checkpoint, of a folder with `model.safetensors`, or of what `save` wrote.
 
     Args:
-        path: The file.
+        path: The file or the folder.
         plugins: Files of one's own that declare estimators: what is saved holds numbers and runs no code.
 
     Raises:
-        InputError: the file is missing, is none of either kind, or of an estimator that no file declares.
+        InputError: a file is missing or damaged, is none of these kinds, or of an estimator that no file declares.
     """
     if Path(path).suffix == ".json":
-        content = _content_of(Path(path))
-        return ClassicalEstimator(record_estimator(content["estimator"], content["settings"], plugins))
+        content = read_description(Path(path))
+        if content.get("format") != NETWORK:
+            return _classical(content, Path(path), plugins)
     return NetworkEstimator(load_module(path, plugins))
 
 
-def _content_of(path: Path) -> dict[str, Any]:
-    """Name and settings as they were saved."""
-    try:
-        content = json.loads(path.read_text())
-    except OSError as error:
-        raise InputError(Problem("checkpoint", f"cannot be read: {error.strerror}", str(path))) from error
-    except ValueError as error:
-        raise InputError(Problem("checkpoint", f"is no JSON: {error}", str(path))) from error
-    is_one = isinstance(content, dict) and content.get("format") == FORMAT
-    if not (is_one and isinstance(content.get("estimator"), str) and isinstance(content.get("settings"), dict)):
+def _classical(content: Mapping[str, Any], path: Path, plugins: Sequence[str]) -> ClassicalEstimator:
+    """The estimator whose name and settings were saved."""
+    name, settings = content.get("estimator"), content.get("settings")
+    if content.get("format") != FORMAT or not isinstance(name, str) or not isinstance(settings, dict):
         rule, remedy = f"is no file of the format {FORMAT}", "give what `save` of an estimator wrote, or a best.ckpt"
         raise InputError(Problem("checkpoint", rule, str(path), remedy))
-    return content
+    return ClassicalEstimator(record_estimator(name, settings, plugins))
 
 
 def _without_channel(measurement: Measurement, channel: str, known: Sequence[str] | None = None) -> list[Problem]:

@@ -15,7 +15,8 @@ from gear_damping.identification.asked import estimates_of
 from gear_damping.identification.bench import CLEAN, Bench, Said, bench, mean_over_seeds
 from gear_damping.identification.known_model.output_error import output_error
 from gear_damping.identification.known_model.unscented_kalman import unscented_kalman
-from gear_damping.identification.lightning_module import DampingModule, load_estimator
+from gear_damping.identification.lightning_module import DampingModule
+from gear_damping.identification.saved import files_of, load_estimator
 from gear_damping.reporting import figures
 from gear_damping.reporting.evaluation import evaluation_figure, evaluation_table, ratio_table
 from gear_damping.simulation.plan import SimulationPlan
@@ -31,7 +32,7 @@ KNOWING = {"output_error": output_error, "unscented_kalman": unscented_kalman}
 def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     """Score networks on runs that they never met; returns the metrics for run.json."""
     paths = _checkpoints(settings.checkpoint)
-    folder.add_inputs(paths)
+    folder.add_inputs(file for path in paths for file in files_of(path))
     modules = {path: load_estimator(path, settings.model.plugins) for path in paths}
     ratio = settings.simulator.damping_ratio_percent
     plan = replace(plan_of(settings), seed=settings.seed + 2 * TEST_SEED, damping_ratio_percent=ratio)
@@ -52,8 +53,8 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
 
 
 def _checkpoints(path: Path) -> list[Path]:
-    """The file, or every network of a training, control included."""
-    return sorted(path.glob(BEST)) if path.is_dir() else [path]
+    """The network, or every one of a training, control included."""
+    return sorted(path.glob(BEST)) or [files_of(path)[0]]
 
 
 def _levels(settings: Settings) -> tuple[float, ...]:

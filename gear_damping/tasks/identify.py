@@ -1,10 +1,12 @@
 """task=identify: damping from measured records, by output error, by estimators of records or by a trained network."""
 
+from collections.abc import Mapping
 from typing import Any
 
 from gear_damping.config.settings import Settings
+from gear_damping.identification.saved import files_of
 from gear_damping.interface.damping import damping
-from gear_damping.interface.estimator import load_estimator
+from gear_damping.interface.estimator import ClassicalEstimator, Estimator, load_estimator
 from gear_damping.interface.identified import Identification, identify, refuse_faults
 from gear_damping.interface.model import Model
 from gear_damping.measurement.load import load_measurement
@@ -23,9 +25,9 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     for finding in measurement.findings:
         statements.say(f"note: {finding.record} {finding.channel}: {finding.message}")
     if settings.checkpoint is not None:
-        return _by_network(settings, measurement, folder)
+        return _by_checkpoint(settings, measurement, folder)
     if settings.model.of_records:
-        return _by_estimators(settings, measurement, folder)
+        return _by_estimators(settings, settings.model.settings, measurement, folder)
     return _written(_fitted(settings, measurement), folder)
 
 
@@ -56,12 +58,13 @@ def _written(found: Identification, folder: RunFolder) -> dict[str, Any]:
     }
 
 
-def _by_estimators(settings: Settings, measurement: Measurement, folder: RunFolder) -> dict[str, Any]:
-    """Every estimator on every record; the mean over the records for run.json."""
-    models = settings.model
+def _by_estimators(
+    settings: Settings, asked: Mapping[str, Any], measurement: Measurement, folder: RunFolder
+) -> dict[str, Any]:
+    """Every estimator (settings by name) on every record; the mean over the records for run.json."""
     laws = {"extended simulation": _fitted(settings, measurement)} if settings.simulator.extended else None
     channel = settings.measurement_channel
-    found = damping(measurement, models.settings, channel=channel, plugins=models.plugins, laws=laws)
+    found = damping(measurement, asked, channel=channel, plugins=settings.model.plugins, laws=laws)
     text = found.table()
     folder.write_json("damping.json", found.content)
     folder.write_text("damping.txt", text)
@@ -70,9 +73,19 @@ def _by_estimators(settings: Settings, measurement: Measurement, folder: RunFold
     return {f"{name}/damping_ratio_percent": mean for name, mean in found.mean_percent.items()}
 
 
-def _by_network(settings: Settings, measurement: Measurement, folder: RunFolder) -> dict[str, Any]:
-    folder.add_inputs([settings.checkpoint])
+def _by_checkpoint(settings: Settings, measurement: Measurement, folder: RunFolder) -> dict[str, Any]:
+    """What was saved: a network, or an estimator that learns nothing."""
     estimator = load_estimator(settings.checkpoint, settings.model.plugins)
+    if isinstance(estimator, ClassicalEstimator):
+        folder.add_inputs([settings.checkpoint])
+        return _by_estimators(settings, {estimator.name: estimator.estimator.values}, measurement, folder)
+    folder.add_inputs(files_of(settings.checkpoint))
+    return _by_network(estimator, settings, measurement, folder)
+
+
+def _by_network(
+    estimator: Estimator, settings: Settings, measurement: Measurement, folder: RunFolder
+) -> dict[str, Any]:
     found = estimator.predict(measurement, settings.measurement_channel)
     mean = sum(one.damping_ratio_percent for one in found.values()) / len(found)
     only = next(iter(found.values())).interval95 if len(found) == 1 else None

@@ -17,6 +17,7 @@ from gear_damping.simulation.runs import Runs
 from gear_damping.tasks import statements
 from gear_damping.tasks.experiment_figures import experiment_figures
 from gear_damping.tasks.run_folder import RunFolder
+from gear_damping.tasks.shared_models import share_models
 from gear_damping.tasks.simulated import plan_of, run_set_of, simulated, test_plan_of
 
 
@@ -46,6 +47,7 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     folder.write_text("results.txt", text)
     statements.say(text)
     statements.say_controls(results)
+    share_models(settings, results, folder)
     _figures(settings, runs, predictions, folder)
     return _metrics(results)
 

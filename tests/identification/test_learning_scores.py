@@ -9,9 +9,10 @@ import torch
 from gear_damping.identification.compare import Repeats, compare_models
 from gear_damping.identification.controls import mean_predictor, white_noise_runs
 from gear_damping.identification.datamodule import Material
-from gear_damping.identification.lightning_module import CWT_LSTM, RAW_LSTM, load_estimator
+from gear_damping.identification.lightning_module import CWT_LSTM, RAW_LSTM
 from gear_damping.identification.metrics import (
     epochs_to_convergence,
+    interval_of_rmse,
     means_over_runs,
     median_relative_error,
     rmse_paper,
@@ -22,6 +23,7 @@ from gear_damping.identification.metrics import (
 from gear_damping.identification.noise import SensorNoise
 from gear_damping.identification.protocols import BY_RUN, PAPER
 from gear_damping.identification.runs import RunSet
+from gear_damping.identification.saved import load_estimator
 from gear_damping.identification.trainer import Place, Training
 
 TRUE = torch.tensor([1.0, 2.0, 4.0, 5.0])
@@ -81,6 +83,19 @@ def test_means_over_runs_by_hand():
     assert found.keys() == KEYS - {"epochs"}
 
 
+def test_the_interval_of_an_error_is_that_of_runs_and_not_of_their_windows():
+    """100 runs with errors of standard normal size: the mean square is known to sqrt(2 / 100)."""
+    errors = torch.randn(100, generator=torch.Generator().manual_seed(3), dtype=torch.float64)
+    for windows in (1, 50):
+        predicted = errors.repeat_interleave(windows)
+        runs = torch.arange(100).repeat_interleave(windows)
+        low, high = interval_of_rmse(torch.zeros_like(predicted), predicted, runs)
+        expected = float(errors.square().std() / 10 / (2 * errors.square().mean().sqrt()))  # by the delta method
+        assert (high - low) / (2 * 1.96) == pytest.approx(expected, rel=0.1)
+        assert low < float(errors.square().mean().sqrt()) < high
+    assert interval_of_rmse(torch.zeros(5), torch.ones(5), torch.zeros(5)) is None
+
+
 def test_the_mean_predictor_says_the_mean_label():
     assert mean_predictor(torch.tensor([0.1, 0.1, 0.4])) == pytest.approx(0.2)
 
@@ -113,6 +128,9 @@ def test_the_comparison_has_every_score_of_every_model_and_control(comparison):
     assert found["controls"].keys() == {"mean", "white_noise"}
     for summary in (*found["models"].values(), *found["controls"].values()):
         assert summary.keys() == KEYS | {"per_seed"}
+        assert summary["per_seed"].keys() == KEYS | {"rmse_interval95"}
+        both = (summary["per_seed"][key] for key in ("rmse_percent", "rmse_interval95"))
+        assert all(low < error < high for error, (low, high) in zip(*both, strict=True))
         values = torch.tensor(summary["per_seed"]["rmse_percent"], dtype=torch.float64)
         assert summary["rmse_percent"]["mean"] == pytest.approx(float(values.mean()))
         assert summary["rmse_percent"]["std"] == pytest.approx(float(values.std()))

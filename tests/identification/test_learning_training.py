@@ -12,11 +12,12 @@ from gear_damping.errors import InputError
 from gear_damping.identification import datamodule as datamodule_file
 from gear_damping.identification.controls import mean_predictor
 from gear_damping.identification.datamodule import Material, WindowDataModule
-from gear_damping.identification.lightning_module import CWT_LSTM, RAW_LSTM, load_estimator
+from gear_damping.identification.lightning_module import CWT_LSTM, RAW_LSTM
 from gear_damping.identification.metrics import rmse_percent
 from gear_damping.identification.noise import SensorNoise
 from gear_damping.identification.protocols import BY_RUN, PAPER_MANY_RUNS
 from gear_damping.identification.runs import RunSet
+from gear_damping.identification.saved import load_estimator
 from gear_damping.identification.trainer import Place, Shown, Training, fit_estimator, predict_windows
 from gear_damping.identification.windows import gather_windows
 

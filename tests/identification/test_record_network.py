@@ -13,11 +13,12 @@ from gear_damping.errors import InputError
 from gear_damping.identification.compare import Repeats, compare_models
 from gear_damping.identification.datamodule import Material, WindowDataModule
 from gear_damping.identification.features import FrameFrontEnd
-from gear_damping.identification.lightning_module import EstimatorConfig, load_estimator
+from gear_damping.identification.lightning_module import EstimatorConfig
 from gear_damping.identification.networks import BINS, LEVELS, RecordLSTM
 from gear_damping.identification.noise import SensorNoise
 from gear_damping.identification.protocols import BY_RUN, PAPER
 from gear_damping.identification.runs import RunSet
+from gear_damping.identification.saved import load_estimator
 from gear_damping.identification.trainer import Place, Training, fit_estimator, predict_windows
 from gear_damping.tasks.command import main
 from gear_damping.tasks.composed import composed

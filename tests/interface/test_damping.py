@@ -87,7 +87,8 @@ def test_one_estimator_with_settings_of_its_own_is_kept_and_found_again(record, 
 
 @pytest.mark.parametrize(
     ("content", "said"),
-    [("{", "is no JSON"), ("[]", "is no file of the format"), (None, "cannot be read"),
+    [("{", "is no JSON"), ("[]", "describes no estimator"), ("{}", "is no file of the format"),
+     (None, "cannot be read"),
      ('{"format": "gear_damping.estimator", "estimator": "wave", "settings": {}}', "no such estimator"),
      ('{"format": "gear_damping.estimator", "estimator": "half_power", "settings": {"draws": 1}}', "must lie within")],
 )  # fmt: skip

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import gear_damping as gd
 from gear_damping.tasks.command import main
 
 ROOT = Path(__file__).parents[2]
@@ -59,6 +60,15 @@ def test_one_from_outside_stands_beside_them(measured, tmp_path):
     low, high = found["energy_fall"]["interval95"]
     assert low < 100 * RATIO < high
     assert str(EXAMPLE) in json.loads((tmp_path / "run" / "run.json").read_text())["inputs"]
+
+
+def test_what_save_left_is_asked_as_its_settings_are(measured, tmp_path):
+    gd.estimator("wavelet_ridge", omega0=9).save(tmp_path / "ridge.json")
+    assert run(measured, tmp_path / "kept", f"checkpoint={tmp_path / 'ridge.json'}") == 0
+    assert run(measured, tmp_path / "typed", "model=wavelet_ridge", "model.omega0=9") == 0
+    kept, typed = (json.loads((tmp_path / name / "damping.json").read_text()) for name in ("kept", "typed"))
+    assert kept["records"] == typed["records"]
+    assert list(kept["records"]["fall"]) == ["wavelet_ridge"]
 
 
 @pytest.mark.parametrize(

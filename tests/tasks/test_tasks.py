@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 import torch
 
-from gear_damping.identification.lightning_module import load_estimator
+from gear_damping.identification.saved import load_estimator
 from gear_damping.measurement.load import load_measurement
+from gear_damping.reporting.numbers import number
 from gear_damping.tasks import dispatch, train
 from gear_damping.tasks.command import main
 
@@ -79,6 +80,52 @@ def test_a_checkpoint_alone_predicts(trained):
     estimator = load_estimator(trained / "cwt_lstm" / "seed_0" / "best.ckpt")
     record = 1e-5 * torch.sin(torch.arange(200) / 3)
     assert 0 < estimator.predict_record(record, 40e3).damping_ratio_percent < 5
+
+
+def test_every_trained_network_can_be_shared_and_says_what_its_checkpoint_says(trained):
+    record = 1e-5 * torch.sin(torch.arange(200) / 3)
+    for place in ("raw_lstm/seed_0", "cwt_lstm/seed_1"):
+        shared, kept = (load_estimator(trained / place / name) for name in ("model.safetensors", "best.ckpt"))
+        found, expected = (one.predict_record(record, 40e3).per_window_percent for one in (shared, kept))
+        assert torch.equal(found, expected)
+    assert not (trained / "white_noise" / "seed_0" / "model.safetensors").exists()  # a control is for nobody
+
+
+def test_a_model_card_says_what_its_run_says(trained):
+    card = (trained / "cwt_lstm" / "seed_1" / "model_card.md").read_text()
+    results, record = json.loads((trained / "results.json").read_text()), record_of(trained)
+    described = json.loads((trained / "cwt_lstm" / "seed_1" / "model.json").read_text())
+    rows = {"cwt_lstm |": results["models"]["cwt_lstm"]}
+    rows |= {f"{name} (control) |": one for name, one in results["controls"].items()}
+    for name, one in rows.items():
+        error, (low, high) = one["per_seed"]["rmse_percent"][1], one["per_seed"]["rmse_interval95"][1]
+        assert f"| {name} {number(error)} | {number(low)} … {number(high)} |" in card
+    for low, high in described["data"]["trained_on"]["ranges"].values():
+        assert f"| {number(low)} | {number(high)} |" in card
+    for said in ("`transmission_error` in m", "40000 Hz", "bench", "| seed | 1 |", record["command"], "license: mit"):
+        assert said in card
+    assert record["git"]["revision"] is None or record["git"]["revision"] in card
+    assert "no better than a network that was fed white noise" in card  # one epoch of twelve runs
+
+
+def test_a_model_card_of_the_papers_protocol_does_not_speak_of_unseen_runs(tmp_path):
+    small = ["model=raw_lstm", "protocol=paper_many_runs", "protocol.windows_per_epoch=64", "simulator.n_samples=160"]
+    assert main([*QUICK, *small, *own(tmp_path)]) == 0
+    card = (tmp_path / "run" / "raw_lstm" / "seed_0" / "model_card.md").read_text()
+    assert "the very runs that it was trained on (`protocol=paper_many_runs`)" in card
+    assert "how well runs are remembered" in card
+    assert "never met" not in card
+
+
+def test_evaluate_asks_a_shared_network(trained, tmp_path):
+    shared = trained / "raw_lstm" / "seed_0" / "model.safetensors"
+    assert main([*QUICK, "task=evaluate", f"checkpoint={shared}", *own(tmp_path)]) == 0
+    assert set(record_of(tmp_path / "run")["inputs"]) == {str(shared), str(shared.with_suffix(".json"))}
+
+
+def test_a_folder_without_a_network_is_no_checkpoint(trained, tmp_path, said):
+    assert main([*QUICK, "task=evaluate", f"checkpoint={trained / 'raw_lstm'}", *own(tmp_path)]) == 1
+    assert "is a folder that holds no network" in said()
 
 
 def test_evaluate_scores_a_checkpoint_on_fresh_runs(trained, tmp_path):

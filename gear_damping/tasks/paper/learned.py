@@ -12,9 +12,10 @@ import torch
 from gear_damping.identification.compare import MEAN, WHITE_NOISE, Repeats, compare_models
 from gear_damping.identification.controls import mean_predictor, white_noise_runs
 from gear_damping.identification.datamodule import Material, WindowDataModule
-from gear_damping.identification.lightning_module import DampingModule, load_estimator
+from gear_damping.identification.lightning_module import DampingModule
 from gear_damping.identification.metrics import means_over_runs, scores
 from gear_damping.identification.runs import RunSet
+from gear_damping.identification.saved import load_estimator
 from gear_damping.identification.trainer import Place, Shown, predict_windows
 from gear_damping.reporting.paper.printed import RATIOS_PERCENT
 from gear_damping.tasks.paper.prepared import Prepared
