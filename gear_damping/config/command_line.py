@@ -24,6 +24,8 @@ NEEDED = {  # what a launcher is made of: its module, and what brings it
 OFF_BY_NULL = ("experiment",)  # groups that may be left out
 SHOWS = ("--cfg", "-c", "--info", "-i", "--resolve", "--version", "--hydra-help", "--shell-completion", "-sc")
 MANY = ("--multirun", "-m")
+COMPLETION = ("--shell-completion", "-sc")
+COMPLETES = {f"{what}={shell}" for what in ("install", "uninstall", "query") for shell in ("bash", "fish", "zsh")}
 FLAGS = (*SHOWS, *MANY, "--run", "-r", "--package", "-p", "--help", "-h")
 TAKES = {  # the words that a flag takes after it; None: any
     **dict.fromkeys(("--cfg", "-c"), ("job", "hydra", "all")),
@@ -56,6 +58,11 @@ class CommandLine:
         """Whether Hydra only shows something and no job runs."""
         return bool(set(SHOWS) & {flag.partition("=")[0] for flag in self.flags})
 
+    @property
+    def shows_what_runs(self) -> bool:
+        """Whether it shows the configuration of the job as it will run, which is then to be right."""
+        return self.shows and "--resolve" in self.flags
+
     def first_job(self) -> list[str]:
         """The overrides with the first value of each sweep."""
         return [_first(override) for override in self.overrides]
@@ -63,6 +70,8 @@ class CommandLine:
 
 def read_command_line(arguments: Sequence[str]) -> CommandLine:
     """Sort the words; wrong are unknown flags, what is no override, and choices that a group does not have."""
+    if set(COMPLETION) & set(arguments):
+        return _read_completion(arguments)
     flags: list[str] = []
     overrides: list[str] = []
     problems: list[Problem] = []
@@ -82,7 +91,20 @@ def read_command_line(arguments: Sequence[str]) -> CommandLine:
             found, override = _read_override(argument, many)
             problems += found
             overrides += override
+    shown = next((flag for flag in flags if flag.partition("=")[0] in SHOWS), None)
+    if many and shown:
+        rule, remedy = f"runs many jobs, and {shown} shows one", "leave it out, and give each key one value"
+        problems.append(Problem(MANY[0], rule, remedy=remedy, source=SOURCE))
     return CommandLine(tuple(flags), tuple(overrides), tuple(problems))
+
+
+def _read_completion(arguments: Sequence[str]) -> CommandLine:
+    """The words by which a shell asks how a command goes on: they are no overrides."""
+    words = [word for word in arguments if word not in COMPLETION]
+    if len(words) == 1 and words[0] in COMPLETES:
+        return CommandLine((COMPLETION[0],), tuple(words), ())
+    rule, remedy = "takes one word: install=bash, or fish or zsh", 'eval "$(gear-damping -sc install=bash)"'
+    return CommandLine((), (), (Problem(COMPLETION[-1], rule, " ".join(words) or None, remedy, SOURCE),))
 
 
 def _unknown_flag(name: str) -> list[Problem]:

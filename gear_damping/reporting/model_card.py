@@ -104,7 +104,7 @@ def _trained(description: Mapping[str, Any], seen: TrainedOn, facts: CardFacts) 
         "sampling rate": f"{data['sampling_rate']:g} Hz",
         "sees at once": f"{data['window']} samples",
         **({"wavelet": _said(wavelet)} if wavelet else {}),
-        "settings": _said(description["settings"]),
+        "settings": _said(description["settings"] or {}),
         **facts.trained,
     }
     ranges = [_range(name, low, high, seen.unit) for name, (low, high) in seen.ranges.items()]

@@ -30,6 +30,7 @@ from gear_damping.tasks.sweep.job import limit_cores, run_swept
 from gear_damping.tasks.wrong_declaration import WRONG_INPUT, say_problems, start_logging
 
 log = logging.getLogger("gear_damping")
+SCRIPT = "gear-damping"  # as pyproject.toml installs it: the shell's completion is for this word
 _codes: list[int] = []
 _CHOOSING = {"task", "experiment", "measurement", "measurement.path"}  # what decides which measurement is read
 
@@ -52,7 +53,7 @@ def main(arguments: Sequence[str]) -> int:
 
 def _problems_of(typed: CommandLine) -> list[Problem]:
     """What is wrong with the configuration; of a sweep, what every job of it shares."""
-    if typed.shows:
+    if typed.shows and not typed.shows_what_runs:
         return []
     swept = swept_keys(typed.overrides) if typed.many else []
     problems = problems_of(typed.first_job(), declared=not _CHOOSING & {*swept})
@@ -93,7 +94,7 @@ def _sweep(typed: CommandLine) -> int:
 def _run(flags: Sequence[str], overrides: Sequence[str]) -> int:
     _codes.clear()
     handlers = list(logging.root.handlers)  # Hydra puts its own in their place
-    old, sys.argv = sys.argv, ["gear_damping", *flags, *overrides]
+    old, sys.argv = sys.argv, [SCRIPT, *flags, *overrides]
     command = hydra.main(version_base="1.3", config_path=str(conf_folder()), config_name="config")(_job)
     try:
         command()
@@ -152,6 +153,8 @@ def help_text() -> str:
         "keys        set with key=value:",
         "  seed, seeds, checkpoint, resume, measurement.path, training.max_epochs, training.batch_size",
         "  simulator.<effect>.<parameter>, simulator.damping_ratio_percent, simulator.solver.accuracy",
-        "  --cfg job   shows the whole configuration with every key",
+        "  values      in SI, or with their unit: 80um, 3kHz, \"4600 rpm\", {value: 80, unit: um}",
+        "  --cfg job   shows the whole configuration with every key; with --resolve as it will run",
+        'completion  eval "$(gear-damping -sc install=bash)", or fish or zsh',
     ]
     return "\n".join(lines)

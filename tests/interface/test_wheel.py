@@ -8,6 +8,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import torch
+
+from gear_damping.identification.lightning_module import DampingModule
+from gear_damping.identification.saved import write_shared
 
 ROOT = Path(__file__).parents[2]
 LINES = """
@@ -24,6 +28,10 @@ assert gd.Model.from_config(model.to_config()) == model
 record = gd.load("measurement.yaml")
 fit = gd.identify(record)
 assert abs(fit.damping_ratio_percent["value"] - 100 * 1.5 / 40) < 0.1
+
+estimator = gd.load_estimator("network")
+assert estimator.module.data["window"] == 30
+estimator.save("again")
 print("AT", gd.__file__)
 """
 
@@ -46,6 +54,13 @@ def run(installed, folder, *arguments):
     return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
 
 
+def shared_network(folder):
+    """A network for sharing, with drawn weights."""
+    data = {"id": "x", "sampling_rate": 500.0, "window": 30, "whole_run": False, "trained_on": None}
+    with torch.random.fork_rng():
+        write_shared(DampingModule("raw_lstm", data), folder)
+
+
 def test_ten_lines_run_in_an_empty_folder(installed, tmp_path):
     time = np.arange(400) / 500.0
     decay = 1e-3 * np.exp(-1.5 * time) * np.cos(40.0 * time)
@@ -54,9 +69,12 @@ def test_ten_lines_run_in_an_empty_folder(installed, tmp_path):
     channels = "{time: {column: t, unit: s}, displacement: {column: x, unit: m}}"
     text = f"system: oscillator\nrecords:\n- {{file: a.csv, channels: {channels}}}\n"
     (tmp_path / "measurement.yaml").write_text(text)
+    shared_network(tmp_path / "network")
     found = run(installed, tmp_path, "-c", LINES)
     assert found.returncode == 0, found.stderr
     assert f"AT {installed}" in found.stdout
+    assert (tmp_path / "again" / "model.json").read_bytes() == (tmp_path / "network" / "model.json").read_bytes()
+    assert "raw_lstm" in (tmp_path / "again" / "model_card.md").read_text()
 
 
 def test_its_command_line_has_its_configuration_with_it(installed, tmp_path):
@@ -65,3 +83,6 @@ def test_its_command_line_has_its_configuration_with_it(installed, tmp_path):
     assert found.returncode == 0, found.stderr
     assert list((tmp_path / "outputs").rglob("runs.npz"))
     assert {path.name for path in tmp_path.iterdir()} == {"outputs"}
+    shown = run(installed, tmp_path, "-m", "gear_damping", "--help")
+    assert "plan, paper, collect" in shown.stdout
+    assert "slurm" in {path.stem for path in (installed / "gear_damping" / "conf" / "hydra" / "launcher").iterdir()}
