@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.interface import identified_gears, identified_oscillator
+from gear_damping.interface.free_parameters import given_numbers
 from gear_damping.interface.model import Model
 from gear_damping.measurement.record import Measurement
 from gear_damping.physics.systems.traits import Trait
@@ -84,7 +85,8 @@ def identify(
         model: What is fitted; the linear oscillator, or the nominal gear pair, where absent.
         free: Its free parameters, by flat name (`backlash.gap`); `damping_ratio` stands for the coefficient of its one
             damping law. Where absent, every number that its effects were given, and an oscillator's stiffness and
-            force gain. Initial states and unknown zeros of channels are always free.
+            force gain. What the file states with an uncertainty is free too, about what it states; initial states and
+            unknown zeros of channels always are.
         say: Told what is found on the way.
         progress: Told (done, total) of the fit of an oscillator.
         solver: Settings of the solver.
@@ -96,7 +98,7 @@ def identify(
     if model is None and free:
         raise InputError(Problem("free", "names parameters of a model", list(free), "give the model too"))
     if model is not None:
-        named = free or identified_gears.given_numbers(model)
+        named = free or given_numbers(model)
         if not named:
             rule = "names nothing to be fitted, and the model was given no values"
             raise InputError(Problem("free", rule, remedy="for example ['damping_ratio']"))

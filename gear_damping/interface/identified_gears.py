@@ -6,7 +6,7 @@ from typing import Any
 
 from torch import Tensor
 
-from gear_damping.errors import InputError, Problem, nearest
+from gear_damping.errors import InputError, Problem
 from gear_damping.explanation.answer.gain import damping_ratio, final_parameters, rmse
 from gear_damping.explanation.answer.unexplained import first_channel
 from gear_damping.explanation.casing.heard import is_casing
@@ -23,10 +23,10 @@ from gear_damping.explanation.trials.bench import Say
 from gear_damping.explanation.trials.efficient import weighed
 from gear_damping.identification.oscillator import linear_model
 from gear_damping.identification.output_error.least_squares import Rounds
-from gear_damping.identification.output_error.records import FitRecord, FreeParameter
+from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.interface.free_parameters import free_parameters
 from gear_damping.interface.identified_page import MOST_PANELS, estimate_rows, panel, residual_rows
 from gear_damping.measurement.record import Measurement
-from gear_damping.physics.damping_ratio import DAMPING_RATIO
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.traits import Trait, by_trait
 from gear_damping.reporting import figures, tables
@@ -68,26 +68,16 @@ def own_fit(measurement: Measurement, model: Model, free: Sequence[str], say: Sa
         rule = f"is a {model.system.name}, the records are those of a {evidence.system}"
         raise InputError(Problem("model", rule, remedy="give a model of the measured system"))
     evidence, noise = with_noise(evidence, measurement, say)
-    given = {k: v for k, v in _stated(evidence).items() if k in model.parameters()} | model.given
-    begun = Hypothesis(model.system, model.effects, given, _free(model, given, free))
+    stated = {k: v for k, v in _stated(evidence).items() if k in model.parameters()}
+    given = stated | model.given
+    moved = free_parameters(model, given, free, stated, evidence.known.uncertainty)
+    begun = Hypothesis(model.system, model.effects, given, moved)
     solver, own = fitting_solver(solver), {}
     if not evidence.has_index:
         evidence = with_own_angles(evidence)
         own = angles_of(begun, evidence, evidence.duration, solver)
     outcome = fit_hypothesis(begun, evidence, Begun(own=own), Rounds(ITERATIONS), solver=solver)
     return Fitted(evidence, noise, weighed(outcome, evidence))
-
-
-def given_numbers(model: Model) -> tuple[str, ...]:
-    """What may be free in a model: numbers that its effects were given, an oscillator's stiffness and force gain."""
-    declared, of_system = model.parameters(), {model.system.spring}
-    if model.system.has(Trait.REST):
-        of_system |= set(model.system.gains.values())
-    return tuple(
-        name
-        for name, value in model.given.items()
-        if not declared[name].vector and value and ("." in name or name in of_system)
-    )
 
 
 def _refuse_casing(measurement: Measurement) -> None:
@@ -114,29 +104,6 @@ def _of_a_spring(evidence: Evidence) -> Given:
 STATED = {Trait.TEETH: _of_gears, Trait.REST: _of_a_spring}
 
 
-def _free(model: Model, given: Given, names: Sequence[str]) -> tuple[FreeParameter, ...]:
-    """Free parameters that begin where the model has them."""
-    declared, found, problems = model.parameters(), [], []
-    for name in names:
-        flat = model.damping_coefficient if name == DAMPING_RATIO and name not in declared else name
-        if flat is None or flat not in declared:
-            remedy = nearest(name, [*declared, DAMPING_RATIO])
-            problems.append(Problem(f"free.{name}", "no such parameter of the model", remedy=remedy))
-            continue
-        start, known = given.get(flat, declared[flat].default), declared[flat]
-        if known.vector or not (start or known.unit == "rad"):
-            rule = "is a list, which is not fitted" if known.vector else "begins at zero, so that its size is unknown"
-            problems.append(Problem(f"free.{name}", rule, remedy="give the model a value that is about right"))
-            continue
-        scale = 1.0 if known.unit == "rad" else abs(float(start))
-        grows = start > 0 and known.lower >= 0
-        bounds = {"lower": known.lower, "upper": known.upper}
-        found.append(FreeParameter(flat, float(start), scale, logarithmic=grows, **bounds))
-    if problems:
-        raise InputError(problems)
-    return tuple(found)
-
-
 def content_of(measurement: Measurement, found: Fitted) -> dict[str, Any]:
     """What stands in identification.json."""
     evidence, outcome = found.evidence, found.outcome
@@ -151,9 +118,7 @@ def content_of(measurement: Measurement, found: Fitted) -> dict[str, Any]:
         "parameters": final_parameters(outcome, spread, evidence),
         "damping_ratio_percent": damping_ratio(outcome, spread),
         "natural_frequency_hz": {"value": natural_frequency_hz(outcome.hypothesis.model, outcome.flat_given())},
-        "residual": {
-            role: {"rmse": rmse(residuals) / factor, "unit": unit} for role, (_, residuals) in roles.items()
-        },
+        "residual": {role: {"rmse": rmse(residuals) / factor, "unit": unit} for role, (_, residuals) in roles.items()},
         "lack_of_fit": {
             "significant": left.significant,
             "excess_percent": left.percent,
