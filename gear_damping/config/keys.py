@@ -56,7 +56,11 @@ SCHEMA: dict[str, Any] = {
         "gradient_clip": Given(Number(0, 1e6, exclusive=True), optional=True),
         "noise_snr_db": Given(Levels(Number(-100, 200), ascend=True), optional=True),
     },
-    "evaluation": {"snr_db": Given(Levels(Number(-100, 200)), optional=True), "known_model": Flag()},
+    "evaluation": {
+        "snr_db": Given(Levels(Number(-100, 200)), optional=True),
+        "known_model": Flag(),
+        "effects": Given(Names(), optional=True),
+    },
     "measurement": {
         "path": Given(Text(), optional=True),
         "channel": Given(Text(), optional=True),

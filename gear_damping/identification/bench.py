@@ -80,8 +80,7 @@ class Bench:
 
     def records(self, rows: Tensor, snr: float) -> Tensor:
         """Noisy records, the same for every estimator, (rows, time)."""
-        key = int(snr) if snr == int(snr) else str(snr)
-        drawn = torch.randn(self.signals.shape, generator=seeded_generator(self.plan.seed, "noise", key))
+        drawn = noise_of(self.signals.shape, self.plan.seed, snr)
         return (self.signals + self.noise(snr)[:, None] * drawn)[rows]
 
     def known(self, rows: Tensor, snr: float) -> KnownRuns:
@@ -94,6 +93,12 @@ class Bench:
         return KnownRuns(
             runs, law, self.ends, *start, self.records(rows, snr), self.noise(snr)[rows], solver=self.plan.solver
         )
+
+
+def noise_of(shape: Sequence[int], seed: int, snr: float) -> Tensor:
+    """White noise of deviation one, the same for all runs of a seed at a level of noise, whatever is in them."""
+    key = int(snr) if snr == int(snr) else str(snr)
+    return torch.randn(tuple(shape), generator=seeded_generator(seed, "noise", key))
 
 
 def bench(plan: SimulationPlan, runs: Runs, levels: Sequence[float], signals: Tensor | None = None) -> Bench:

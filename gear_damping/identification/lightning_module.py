@@ -12,6 +12,7 @@ from torch import Tensor
 from gear_damping.errors import InputError, Problem
 from gear_damping.identification.catalogue import kind_of, make_wavelet
 from gear_damping.identification.estimators.base import LearnedEstimator, RecordNetwork
+from gear_damping.identification.familiarity import Components
 from gear_damping.identification.features import FrontEnd
 from gear_damping.identification.trained_on import TrainedOn
 from gear_damping.identification.windows import gather_windows, window_starts, windows_of_runs
@@ -81,7 +82,8 @@ class DampingModule(L.LightningModule):
         estimator: Its name.
         data: What it is trained on, as plain values: the `id` of the runs, their `sampling_rate` (Hz), the `window`
             that it sees at once (samples), `whole_run` (columns are of the whole run, the paper's protocol, not of the
-            window), and the ranges that it has seen (`trained_on`, of `TrainedOn.plain`; None: not known).
+            window), the ranges that it has seen (`trained_on`, of `TrainedOn.plain`; None: not known), and of the
+            records that it has seen their `record` (samples) and `components` (0 or absent: not known).
         settings: The numbers that it is built by.
         wavelet: Settings of the transform, for those that transform.
         learning_rate: Step of Adam.
@@ -103,6 +105,8 @@ class DampingModule(L.LightningModule):
         made = kind_of(estimator, plugins)(settings or {})
         self.front_end = _front_end(made, data["sampling_rate"], wavelet, plugins)
         self.network = made.network(self.front_end.n_features)
+        components = data.get("components", 0)
+        self.components = Components(data["record"], components) if components else None
         self.history: list[dict[str, float]] = []
         self.schedule = CONSTANT
         self._squares = {"train": _Mean(), "val": _Mean()}

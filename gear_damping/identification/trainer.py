@@ -16,6 +16,7 @@ from torch import Tensor
 
 from gear_damping.identification.catalogue import kind_of
 from gear_damping.identification.datamodule import WindowDataModule
+from gear_damping.identification.familiarity import components_for
 from gear_damping.identification.lightning_module import CONSTANT, COSINE, DampingModule, EstimatorConfig
 from gear_damping.identification.lightning_support import (
     EpochSeeds,
@@ -160,6 +161,7 @@ def fit_estimator(
         module = build_estimator(config, data, training.learning_rate)
         module.schedule = training.schedule
         fit_front_end(module, data)
+        fit_components(module, data)
         finished = resume is not None and _take_over(Path(resume), folder, module, training)
         logger = EventsLogger(folder)
         if not finished:
@@ -183,6 +185,8 @@ def build_estimator(config: EstimatorConfig, data: WindowDataModule, learning_ra
             "window": int(data.protocol.window),
             "whole_run": transforms and config.whole_run_columns and data.protocol.chronological,
             "trained_on": TrainedOn.of(data.run_set, data.split.train[:, 0]).plain(),
+            "record": int(data.run_set.n_samples),
+            "components": components_for(*map(len, _told_apart(data))),
         },
         settings=dict(config.settings),
         wavelet=dict(config.wavelet) if transforms else None,
@@ -201,6 +205,20 @@ def fit_front_end(module: DampingModule, data: WindowDataModule) -> None:
         if module.data["whole_run"]:
             data.use_columns(module.front_end.columns)
         module.front_end.fit_features(data.training_inputs())
+
+
+def fit_components(module: DampingModule, data: WindowDataModule) -> None:
+    """Learn what the records of the training are like, from their runs and from those of validation."""
+    if module.components is not None:
+        own, others = (data.run_set.signals[runs] for runs in _told_apart(data))
+        with torch.no_grad():
+            module.components.fit(own, others, data.noise, data.seed)
+
+
+def _told_apart(data: WindowDataModule) -> tuple[Tensor, Tensor]:
+    """Runs of training and of validation; none where a protocol cuts inside them."""
+    none = torch.zeros(0, dtype=torch.long)
+    return (none, none) if data.protocol.chronological else tuple(part[:, 0].unique() for part in data.split[:2])
 
 
 def _take_over(resume: Path, folder: Path, module: DampingModule, training: Training) -> bool:

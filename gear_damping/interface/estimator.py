@@ -14,6 +14,7 @@ from gear_damping.errors import InputError, Problem
 from gear_damping.identification.catalogue import record_estimator
 from gear_damping.identification.damping_estimate import DampingCurve, UnsuitedRecord
 from gear_damping.identification.estimators.base import Recorded, RecordEstimator
+from gear_damping.identification.familiarity import Familiarity
 from gear_damping.identification.free_vibration import Turning
 from gear_damping.identification.lightning_module import DampingModule
 from gear_damping.identification.observation import fit_record, fitted_names, has_spring, known_of
@@ -37,12 +38,14 @@ class Prediction:
     Args:
         damping_ratio_percent: In % of critical; None where the record does not suit it.
         spread_percent: Of a network, the standard deviation over its windows, which is no interval of confidence.
-        outside: Sentences about what lies outside the ranges that a network was trained on; then it is a guess.
+        outside: Sentences about what a network was not trained on: values outside its ranges, and a record that holds
+            what no run of its training does; then it is a guess.
         interval95: Of the ratio; None of a network of windows.
         frequency_hz: Of the damped vibration.
         amplitudes: Largest and smallest amplitude that the ratio is a mean over, in the unit of the loaded channel.
         curve: The ratio against amplitude, of estimators that tell it.
         unsuited: Why the record does not suit it, and what would.
+        familiarity: How like the runs of a network's training the record is; None where nothing tells it.
     """
 
     damping_ratio_percent: float | None
@@ -53,6 +56,7 @@ class Prediction:
     amplitudes: tuple[float, float] | None = None
     curve: DampingCurve | None = None
     unsuited: str = ""
+    familiarity: Familiarity | None = None
 
 
 class Estimator(ABC):
@@ -110,7 +114,10 @@ class NetworkEstimator(Estimator):
         found = self.module.predict_record(values, record.sampling_rate)
         conditions = {name: quantity.value for name, quantity in record.conditions.items()}
         outside = self.trained_on.outside(values, found.damping_ratio_percent, conditions)
-        return Prediction(*found[:2], outside, interval95=found.interval95)
+        like = None if self.module.components is None else self.module.components(values)
+        if like is not None and like.is_strange:
+            outside = (*outside, like.sentence)
+        return Prediction(*found[:2], outside, interval95=found.interval95, familiarity=like)
 
 
 class ClassicalEstimator(Estimator):

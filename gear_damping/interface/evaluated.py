@@ -39,8 +39,8 @@ class Evaluation:
     Args:
         content: `test_runs`, and `snr_db`: by level of noise `bound_percent`, the root mean square of the bounds, and
             `estimators`: by name `rmse_percent`, `median_relative_error`, `p90_relative_error`, `ratio_to_bound`,
-            `typical_ratio`, `rmse_to_bound`, `skill`, `coverage90`, `answered` (records that suit it), and
-            `seconds_per_record`.
+            `typical_ratio`, `rmse_to_bound`, `skill`, `coverage90`, `answered` (records that suit it),
+            `seconds_per_record`, and of a network that knows its training `strange`, the share of records unlike it.
     """
 
     content: Mapping[str, Any]
@@ -132,11 +132,19 @@ def _level(
         begun = perf_counter()
         said = _said(one, runs, records)
         seconds = (perf_counter() - begun) / len(true)
-        found[name] = _scored(true, said, limit, mean) | {"seconds_per_record": seconds}
+        found[name] = _scored(true, said, limit, mean) | {"seconds_per_record": seconds} | _strange(one, records)
     nothing = Estimates.without_interval(torch.full_like(true, mean))
     found["mean"] = _scored(true, nothing, limit, mean) | {"seconds_per_record": 0.0}
     shown = None if limit is None else float(limit.square().mean().sqrt())
     return {"bound_percent": shown, "estimators": found}
+
+
+def _strange(one: Estimator, records: Tensor) -> dict[str, float]:
+    """The share of records that a network calls unlike its training; nothing where it cannot tell."""
+    like = one.module.components if isinstance(one, NetworkEstimator) else None
+    if like is None or records.shape[1] < like.samples:
+        return {}
+    return {"strange": float(like.strange(records).double().mean())}
 
 
 def _scored(true: Tensor, said: Estimates, limit: Tensor | None, mean: float) -> dict[str, Any]:

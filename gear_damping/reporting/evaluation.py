@@ -11,7 +11,7 @@ from gear_damping.reporting.style import INK, colour_of, legend_above, marker_of
 NO_NOISE = 120.0  # dB
 COLUMNS = (
     "SNR / dB", "bound / %", "estimator", "RMSE / %", "ratio to bound", "typical ratio", "RMSE over bound", "skill",
-    "90 % interval holds", "ms a record",
+    "90 % interval holds", "unlike training", "ms a record",
 )  # fmt: skip
 
 
@@ -24,14 +24,15 @@ def evaluation_table(content: Mapping[str, Any]) -> str:
     rows = [f"| {' | '.join(COLUMNS)} |", "|---" * len(COLUMNS) + "|"]
     for snr, level in content["snr_db"].items():
         for name, found in level["estimators"].items():
-            covered = "–" if found["coverage90"] is None else f"{100 * found['coverage90']:.1f} %"
+            covered = _percent(found["coverage90"])
             ratios = (_to(found[key], "{:.2f}") for key in ("ratio_to_bound", "typical_ratio", "rmse_to_bound"))
             skill, bound = _to(found["skill"], "{:.3f}"), _to(level["bound_percent"], "{:.4f}")
             shown = "no noise" if float(snr) >= NO_NOISE else snr
             error = _to(found["rmse_percent"], "{:.4f}")
             cells = (shown, bound, _named(name, found, content["test_runs"]), error, *ratios, skill, covered)
+            strange = _percent(found.get("strange"))
             taken = f"{1e3 * found['seconds_per_record']:.3g}"
-            rows.append(f"| {' | '.join((*cells, taken))} |")
+            rows.append(f"| {' | '.join((*cells, strange, taken))} |")
     return "\n".join(rows)
 
 
@@ -49,6 +50,27 @@ def ratio_table(content: Mapping[str, Any]) -> str:
             errors = (f"{band['rmse_percent']:.4f}" for band in found["by_damping_ratio"])
             rows.append(f"| {'no noise' if float(snr) >= NO_NOISE else snr} | `{name}` | {' | '.join(errors)} |")
     return "\n".join(rows)
+
+
+def effect_table(content: Mapping[str, Any]) -> list[str]:
+    """Error of networks where the runs have an effect more, a row for each, as Markdown; none where none was asked."""
+    if not content["effects"]:
+        return []
+    columns = ("effect", "SNR / dB", "estimator", "RMSE / %", "median error", "90 % interval holds", "unlike training")
+    rows = [f"| {' | '.join(columns)} |", "|---" * len(columns) + "|"]
+    for effect, levels in content["effects"].items():
+        for snr, estimators in levels.items():
+            for name, one in estimators.items():
+                shown = "no noise" if float(snr) >= NO_NOISE else snr
+                median = f"{100 * one['median_relative_error']:.1f} %"
+                shares = (_percent(one["coverage90"]), _percent(one.get("strange")))
+                cells = (f"`{effect}`", shown, f"`{name}`", f"{one['rmse_percent']:.4f}", median, *shares)
+                rows.append(f"| {' | '.join(cells)} |")
+    return ["\n".join(rows)]
+
+
+def _percent(share: float | None) -> str:
+    return "–" if share is None else f"{100 * share:.1f} %"
 
 
 def _named(name: str, found: Mapping[str, Any], runs: int) -> str:
@@ -80,5 +102,3 @@ def evaluation_figure(content: Mapping[str, Any]) -> Figure:
         axes.set_ylabel("RMSE of the damping ratio / % of critical")
         legend_above(axes)
         return shown
-
-

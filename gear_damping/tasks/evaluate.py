@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
+from statistics import fmean
 from time import perf_counter
 from typing import Any
 
@@ -18,9 +19,10 @@ from gear_damping.identification.known_model.unscented_kalman import unscented_k
 from gear_damping.identification.lightning_module import DampingModule
 from gear_damping.identification.saved import files_of, load_estimator
 from gear_damping.reporting import figures
-from gear_damping.reporting.evaluation import evaluation_figure, evaluation_table, ratio_table
+from gear_damping.reporting.evaluation import effect_table, evaluation_figure, evaluation_table, ratio_table
 from gear_damping.simulation.plan import SimulationPlan
 from gear_damping.tasks import statements
+from gear_damping.tasks.evaluated_effects import asked_with_effects, plans_with, strange_share
 from gear_damping.tasks.run_folder import RunFolder
 from gear_damping.tasks.simulated import TEST_SEED, plan_of, simulated
 
@@ -36,15 +38,17 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     modules = {path: load_estimator(path, settings.model.plugins) for path in paths}
     ratio = settings.simulator.damping_ratio_percent
     plan = replace(plan_of(settings), seed=settings.seed + 2 * TEST_SEED, damping_ratio_percent=ratio)
+    others = plans_with(plan, settings.evaluation["effects"] or ())
     runs = simulated(plan, settings)
     generator = torch.Generator().manual_seed(plan.seed + 2)
     made = bench(plan, runs, _levels(settings), signals=runs.record(generator, skip=(SENSOR_NOISE,)))
     _require_alike(modules, plan, made)
     content = {"family": plan.family.name, "test_runs": len(made), "irregular_runs": int((~made.regular).sum())}
     content["snr_db"] = {f"{snr:g}": _level(made, snr, modules, settings) for snr in made.bounds}
+    content["effects"] = asked_with_effects(others, _by_name(modules), _levels(settings), made.mean_ratio)
     first = _first(content)
     folder.write_json("evaluation.json", {**first, **content})
-    text = f"{evaluation_table(content)}\n\n{ratio_table(content)}"
+    text = "\n\n".join([evaluation_table(content), ratio_table(content), *effect_table(content)])
     folder.write_text("evaluation.txt", text)
     statements.say(text)
     figures.save(evaluation_figure(content), folder.path / "evaluation.png")
@@ -91,7 +95,30 @@ def _level(made: Bench, snr: float, modules: Mapping[Path, DampingModule], setti
         found.setdefault(name, []).append(said)
     limit, kept = made.limit(snr), made.regular
     row = {"bound_percent": None if limit is None else float(limit[kept].square().mean().sqrt())}
-    return row | {"estimators": {name: mean_over_seeds(made, said, snr) for name, said in found.items()}}
+    scored = {name: mean_over_seeds(made, said, snr) for name, said in found.items()}
+    for name, shares in _strange(made, snr, modules).items():
+        scored[name]["strange"] = fmean(shares)
+    return row | {"estimators": scored}
+
+
+def _strange(made: Bench, snr: float, modules: Mapping[Path, DampingModule]) -> dict[str, list[float]]:
+    """The share of the records that a network calls unlike its training, of each seed by estimator."""
+    records = made.records(torch.arange(len(made)), snr)
+    shares = {name: [strange_share(one, records) for one in own] for name, own in _by_name(modules).items()}
+    return {name: own for name, own in shares.items() if None not in own}
+
+
+def _by_name(modules: Mapping[Path, DampingModule]) -> dict[str, list[DampingModule]]:
+    """Networks of several seeds together."""
+    found: dict[str, list[DampingModule]] = {}
+    for path, module in modules.items():
+        found.setdefault(_named(path, module), []).append(module)
+    return found
+
+
+def _named(path: Path, module: DampingModule) -> str:
+    """What a network is called in the tables."""
+    return "white_noise" if path.parent.parent.name == "white_noise" else module.hparams["estimator"]
 
 
 def _asked(
@@ -102,9 +129,7 @@ def _asked(
     for path, module in modules.items():
         begun = perf_counter()
         said = estimates_of(module, records)
-        control = path.parent.parent.name == "white_noise"
-        name = "white_noise" if control else module.hparams["estimator"]
-        yield name, (said, (perf_counter() - begun) / len(rows))
+        yield _named(path, module), (said, (perf_counter() - begun) / len(rows))
     for name, estimate in KNOWING.items() if settings.evaluation["known_model"] else ():
         begun = perf_counter()
         yield name, (estimate(made.known(rows, snr)), (perf_counter() - begun) / len(rows))

@@ -102,11 +102,16 @@ def _by_network(
                 "interval95": one.interval95,
                 "spread_percent": one.spread_percent,  # over windows; of a network of records, its own deviation
                 "outside_training": list(one.outside),
+                "familiarity": one.familiarity and vars(one.familiarity),
             }
             for name, one in found.items()
         },
     }
     folder.write_json("identification.json", content)
+    unknown = [name for name, one in found.items() if one.familiarity is None]
+    if unknown:
+        why = "the network does not say what its training was like, or they are shorter than its runs"
+        statements.say(f"note: whether {', '.join(unknown)} are like the training was not looked at: {why}")
     for name, one in found.items():
         if one.outside:
             statements.say(f"warning: {name} lies outside what the network was trained on: {'; '.join(one.outside)}")

@@ -138,6 +138,7 @@ def test_evaluate_scores_a_checkpoint_on_fresh_runs(trained, tmp_path):
 
 def test_evaluate_asks_every_network_of_a_training_and_what_knows_the_equation(trained, tmp_path):
     asked = [f"checkpoint={trained}", "evaluation.snr_db=[30,10]", "evaluation.known_model=true", "family=bench"]
+    asked.append("evaluation.effects=['torque_variation:ramp',tooth_crack]")
     assert main([*QUICK, "task=evaluate", *asked, *own(tmp_path)]) == 0
     found = json.loads((tmp_path / "run" / "evaluation.json").read_text())
     networks = {"raw_lstm", "cwt_lstm", "white_noise"}
@@ -155,6 +156,13 @@ def test_evaluate_asks_every_network_of_a_training_and_what_knows_the_equation(t
     assert found["snr_db"]["30"]["bound_percent"] < found["snr_db"]["10"]["bound_percent"]
     assert "| SNR / dB | RMSE / % of | 0.1 to 0.225 %" in (tmp_path / "run" / "evaluation.txt").read_text()
     assert (tmp_path / "run" / "evaluation.png").is_file()
+    assert set(found["effects"]) == {"torque_variation:ramp", "tooth_crack"}
+    ramp, crack = (found["effects"][name]["10"] for name in ("torque_variation:ramp", "tooth_crack"))
+    assert set(ramp) == networks | {"mean"}
+    usual = found["snr_db"]["10"]["estimators"]["raw_lstm"]["median_relative_error"]  # the same runs and noise, but
+    assert ramp["raw_lstm"]["median_relative_error"] == pytest.approx(usual, rel=1e-5)  # for a ramp after their end
+    assert crack["raw_lstm"]["median_relative_error"] != pytest.approx(usual, rel=1e-5)
+    assert "| `torque_variation:ramp` | 30 | `raw_lstm` |" in (tmp_path / "run" / "evaluation.txt").read_text()
     assert len(record_of(tmp_path / "run")["inputs"]) == 6
 
 
@@ -165,6 +173,9 @@ def test_evaluate_asks_every_network_of_a_training_and_what_knows_the_equation(t
         (["evaluation.snr_db=[30]", "+simulator.sensor_noise={}"], "takes the place of simulator.sensor_noise"),
         (["evaluation.known_model=true", "experiment=noise"], "no estimator knows it"),
         (["family=none"], "has no range of damping ratios"),
+        (["evaluation.effects=[tooth_crak]"], "did you mean 'tooth_crack'?"),
+        (["evaluation.effects=['torque_variation:ramps']"], "torque_variation has no such form"),
+        (["evaluation.effects=[fourier_mesh_stiffness]"], "evaluation.effects: fourier_mesh_stiffness"),
         (["simulator.sampling_rate=20000"], "was trained at 40000 Hz"),
     ],
 )

@@ -65,6 +65,14 @@ def output_error(known: KnownRuns) -> Estimates:
     return within(low + (high - low) * found.places[0, :, 0], (high - low) * deviation, (low, high))
 
 
+def misfit(known: KnownRuns) -> Tensor:
+    """What the nearest run of the family leaves of each record: root mean square over the noise, (runs,).
+
+    Of the plain search alone: what is far from every run of the family is in the wrong valley of all of them.
+    """
+    return (_found(known, PLAIN).cost[0] / known.records.shape[1]).sqrt()
+
+
 def _found(known: KnownRuns, search: _Search) -> _Points:
     """The lowest point of each run that a search comes to, one start."""
     length, places = known.records.shape[1], torch.zeros(len(search.shares), len(known), 3, dtype=torch.float64)
