@@ -109,9 +109,7 @@ def _resume(whole: Whole) -> Found:
 def _collected(whole: Whole) -> Found:
     """The folder of a sweep, which only its task reads."""
     path, task = whole["sweep"], whole["task"]
-    if task == COLLECT and path is None:
-        yield "sweep", f"task={COLLECT} needs the folder of a sweep", None, "sweep=outputs/sweep/…"
-    elif task != COLLECT and path is not None:
+    if task != COLLECT and path is not None:
         yield "sweep", f"acts in task={COLLECT}, and this is task={task}", path, "leave it out"
 
 

@@ -16,6 +16,7 @@ from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
 from gear_damping.tasks.composed import choices_of, plain, problems_of
 from gear_damping.tasks.dispatch import INTERRUPTED_CODE, OK, run_job
+from gear_damping.tasks.run_index import refresh_index
 from gear_damping.tasks.sweep import callback
 from gear_damping.tasks.sweep.folder import (
     PLACE,
@@ -32,6 +33,7 @@ from gear_damping.tasks.wrong_declaration import WRONG_INPUT, say_problems, star
 log = logging.getLogger("gear_damping")
 SCRIPT = "gear-damping"  # as pyproject.toml installs it: the shell's completion is for this word
 _codes: list[int] = []
+_folders: list[Path] = []  # of the runs of this process that are no jobs of a sweep
 _CHOOSING = {"task", "experiment", "measurement", "measurement.path"}  # what decides which measurement is read
 
 
@@ -46,9 +48,11 @@ def main(arguments: Sequence[str]) -> int:
     if problems:
         say_problems(InputError(problems))
         return WRONG_INPUT
-    if typed.many and not typed.shows:
-        return _sweep(typed)
-    return _run(typed.flags, typed.overrides)
+    _folders.clear()
+    callback.begun.clear()
+    code = _sweep(typed) if typed.many and not typed.shows else _run(typed.flags, typed.overrides)
+    refresh_index([*_folders, *callback.begun])
+    return code
 
 
 def _problems_of(typed: CommandLine) -> list[Problem]:
@@ -76,7 +80,6 @@ def _sweep(typed: CommandLine) -> int:
     if place is not None and (problem := problem_with_place(sweep, Path(place))) is not None:
         say_problems(InputError(problem))
         return WRONG_INPUT
-    callback.begun.clear()
     code = _run(typed.flags, overrides)
     for folder in callback.begun:
         try:
@@ -115,6 +118,7 @@ def _job(config: DictConfig) -> int:
     if own.mode == RunMode.MULTIRUN:
         code = _swept(config, origin, folder)
     else:
+        _folders.append(folder)
         code = run_job(plain(config), origin, folder)
     _codes.append(code)
     return code
@@ -143,7 +147,8 @@ def help_text() -> str:
         "  python -m gear_damping task=inspect measurement.path=PATH/FILE",
         "  python -m gear_damping task=identify measurement.path=PATH/measurement.yaml",
         "  python -m gear_damping experiment=plan",
-        "  python -m gear_damping task=collect sweep=outputs/sweep/…",
+        "  python -m gear_damping task=collect sweep=outputs/sweep/…     # of a sweep, at any time",
+        "  python -m gear_damping task=collect                           # outputs/index.html, of all runs",
         "",
         "task        train (default), simulate, evaluate, identify, explain, inspect, plan, paper, collect",
         "groups      choose with group=choice:",

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from gear_damping.config.measured import INSPECT
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
+from gear_damping.reporting.run_report import REPORTED
 from gear_damping.tasks.own_parts import errors_in, plugins_of
 from gear_damping.tasks.run_folder import FAILED, FINISHED, INTERRUPTED, RunFolder, problem_with_used
 from gear_damping.tasks.wrong_declaration import WRONG_INPUT, say_problems
@@ -42,6 +43,7 @@ def run_job(config: Mapping[str, Any], origin: Origin, folder: Path) -> int:
             settings = _settings(config, origin)
             run_folder.add_inputs(map(Path, plugins_of(config)))
             metrics = task_of(settings)(settings, run_folder)
+            _report(run_folder)
         run_folder.close(FINISHED, metrics)
     except InputError as error:
         return _failed(run_folder, InputError([_placed(problem, config, origin) for problem in error.problems]))
@@ -57,6 +59,14 @@ def run_job(config: Mapping[str, Any], origin: Origin, folder: Path) -> int:
         return WRONG_INPUT
     log.info("everything lies in %s", folder)
     return OK
+
+
+def _report(run_folder: RunFolder) -> None:
+    """Write report.html; what draws and writes it is imported for the tasks that have one."""
+    if run_folder.record["task"] in REPORTED:
+        from gear_damping.reporting.run_report.write import write_report
+
+        write_report(run_folder.path, run_folder.record)
 
 
 def _settings(config: Mapping[str, Any], origin: Origin) -> "Settings | InspectSettings":

@@ -20,6 +20,7 @@ from gear_damping.physics.terms import (
     StiffnessFactor,
     SystemChange,
 )
+from gear_damping.reporting.run_report.training import control_sentences
 from gear_damping.simulation.floquet import floquet_multiplier, has_multiplier
 from gear_damping.simulation.runs import Runs
 
@@ -84,11 +85,5 @@ def _say_stability(runs: Runs) -> None:
 
 def say_controls(results: Mapping[str, Any]) -> None:
     """What the controls say about the networks' figures."""
-    blind = results["controls"]["white_noise"]["rmse_percent"]["mean"]
-    for name, found in results["models"].items():
-        error = found["rmse_percent"]["mean"]
-        if error > 0.95 * blind:
-            say(
-                f"{name} ({error:.4g} %) is no better than a network that was fed white noise ({blind:.4g} %): "
-                "under this protocol its figure says nothing about damping"
-            )
+    for sentence in control_sentences(results):
+        say(sentence)

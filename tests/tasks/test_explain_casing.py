@@ -46,5 +46,5 @@ def test_the_report_shows_orders_turns_and_kurtosis_beside_the_reference(explain
     assert "Unexplained: the casing shows something" in page
     assert "encoder on each shaft" in page
     assert page.count("<img") == 3
-    assert page.count("Grey: the reference, run_1.") == 6  # alternative text and caption of each
+    assert page.count("Grey: the reference, run_1.") == 3  # the caption of each
     assert not re.findall(r"(?:src|href)=\"(?!data:|#)", page)

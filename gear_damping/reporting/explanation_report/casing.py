@@ -10,11 +10,10 @@ from matplotlib.figure import Figure
 from gear_damping.explanation.casing.cycles import SHAFTS
 from gear_damping.explanation.casing.study import Study
 from gear_damping.reporting import figures
-from gear_damping.reporting.explanation_report.data_uri import figure_uri
-from gear_damping.reporting.explanation_report.evidence import Shown
 from gear_damping.reporting.explanation_report.report_input import ReportInput
-from gear_damping.reporting.explanation_report.vocabulary import words
 from gear_damping.reporting.numbers import number, pretty_unit, quantity
+from gear_damping.reporting.page.picture import Picture, figure_uri
+from gear_damping.reporting.page.render import words
 
 Row = tuple[str, ...]
 
@@ -26,7 +25,7 @@ class RecordShown:
     name: str
     findings: list[Row]
     lines: list[Row]
-    figures: list[Shown]
+    figures: list[Picture]
 
 
 @dataclass(frozen=True)
@@ -77,7 +76,7 @@ def _change(entry: Mapping[str, Any]) -> Row:
     )  # fmt: skip
 
 
-def _figures(one: Study, reference: Study | None, findings: list[Mapping[str, Any]]) -> list[Shown]:
+def _figures(one: Study, reference: Study | None, findings: list[Mapping[str, Any]]) -> list[Picture]:
     beside = "" if reference is None else f" Grey: the reference, {reference.heard.name}."
     flagged = {
         entry["shaft"]: entry
@@ -94,11 +93,35 @@ def _figures(one: Study, reference: Study | None, findings: list[Mapping[str, An
     )
     said_kurtosis = "Kurtosis of each turn of the pinion without the mesh: bursts raise it above 3, that of noise."
     said_orders = "The casing over orders: sidebands at a shaft's order beside the mesh harmonics turn with that shaft."
-    return [
-        _shown(_orders(one, reference), said_orders + beside),
-        _shown(figures.casing_turns_figure(turns, unit=pretty_unit(one.heard.unit)), said_turns + beside),
-        _shown(kurtosis, said_kurtosis + beside),
+    unit = pretty_unit(one.heard.unit)
+    drawn = [
+        (_orders(one, reference), said_orders, _alt_of_orders(one, unit)),
+        (figures.casing_turns_figure(turns, unit=unit), said_turns, _alt_of_turns(turns, unit)),
+        (kurtosis, said_kurtosis, _alt_of_kurtosis(one)),
     ]
+    return [Picture(figure_uri(figure), said + beside, alt) for figure, said, alt in drawn]
+
+
+def _alt_of_orders(one: Study, unit: str) -> str:
+    peak = int(np.nanargmax(one.amplitude))
+    return (
+        f"Line chart of the amplitude in {unit} over the order of the pinion; the largest line has "
+        f"{number(float(one.amplitude[peak]), 3)} {unit} at order {number(float(one.orders[peak]), 4)}."
+    )
+
+
+def _alt_of_turns(turns: Mapping[str, figures.Turn], unit: str) -> str:
+    largest = [f"of the {s} {number(float(np.nanmax(np.abs(turn.residual))), 3)} {unit}" for s, turn in turns.items()]
+    shown = ", ".join(largest)
+    return f"Line charts of the residual over one turn of each shaft; the largest departure {shown}."
+
+
+def _alt_of_kurtosis(one: Study) -> str:
+    above = int(np.sum(np.asarray(one.kurtosis) > one.kurtosis_limit))
+    return (
+        f"Kurtosis of each of {len(one.kurtosis)} turns of the pinion; {above} lie above the limit of "
+        f"{number(one.kurtosis_limit, 3)}."
+    )
 
 
 def _orders(one: Study, reference: Study | None) -> Figure:
@@ -119,7 +142,3 @@ def _turn(one: Study, reference: Study | None, shaft: str, entry: Mapping[str, A
         return figures.Turn(own.turn, own.residual, window)
     other = reference.averages[shaft]
     return figures.Turn(own.turn, own.residual, window, other.turn, other.residual)
-
-
-def _shown(figure: Figure, caption: str) -> Shown:
-    return Shown(figure_uri(figure), caption)

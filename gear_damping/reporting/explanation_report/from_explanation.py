@@ -15,18 +15,21 @@ from gear_damping.explanation.state import State
 from gear_damping.reporting.explanation_report.render import render
 from gear_damping.reporting.explanation_report.report_input import ReportInput
 from gear_damping.reporting.explanation_report.residual_arrays import force_map, force_surface, spectrum
-from gear_damping.reporting.explanation_report.vocabulary import words
-from gear_damping.reporting.figures import Overlay
+from gear_damping.reporting.figures import Overlay, overlay_figure, save
 from gear_damping.reporting.numbers import pretty_unit
+from gear_damping.reporting.page.render import words
 
 MOST_OVERLAYS = 2  # records that are drawn in full, the worst first
-REPORT = "report.html"
+REPORT, MAIN_FIGURE = "report.html", "explanation.png"
 
 
 def write_report(folder: Path | str, explanation: Explanation, provenance: Mapping[str, str] | None = None) -> Path:
-    """Write report.html into a run folder; returns its path."""
-    path = Path(folder) / REPORT
-    path.write_text(render(report_input(explanation, provenance)), encoding="utf-8")
+    """Write report.html and its main figure, explanation.png, into a run folder; returns the path of the report."""
+    path, report = Path(folder) / REPORT, report_input(explanation, provenance)
+    path.write_text(render(report), encoding="utf-8")
+    if report.overlays:
+        figure = overlay_figure(report.overlays[0], report.unit, report.quantity)
+        save(figure, path.with_name(MAIN_FIGURE))
     return path
 
 

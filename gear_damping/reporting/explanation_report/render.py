@@ -1,31 +1,17 @@
 """The explanation as one page that needs nothing beside itself."""
 
-import re
-from importlib.resources import files
 from typing import Any
-
-from jinja2 import Environment, PackageLoader, StrictUndefined
-from markupsafe import Markup, escape
 
 from gear_damping.reporting.explanation_report import casing, evidence, rows, sentences, vocabulary
 from gear_damping.reporting.explanation_report.report_input import ReportInput
+from gear_damping.reporting.page.render import render_page
 
 PACKAGE = "gear_damping.reporting.explanation_report"
 
 
 def render(report: ReportInput) -> str:
     """The report as HTML: pictures and style are inside, nothing is fetched, text of the user is escaped."""
-    environment = Environment(
-        loader=PackageLoader(PACKAGE), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    )
-    environment.filters |= {"words": vocabulary.words, "names_marked": names_marked}
-    style = files(PACKAGE).joinpath("templates", "style.css").read_text(encoding="utf-8")
-    return environment.get_template("report.html").render(style=style, **_content(report)).lstrip()
-
-
-def names_marked(text: str) -> Markup:
-    """Text with what stands in backticks set as code; everything else is escaped."""
-    return Markup(re.sub(r"`([^`]+)`", r"<code>\1</code>", str(escape(text))))
+    return render_page(PACKAGE, "explanation.html", **_content(report))
 
 
 def _content(report: ReportInput) -> dict[str, Any]:
@@ -39,7 +25,7 @@ def _content(report: ReportInput) -> dict[str, Any]:
         "noise": sentences.noise_sentences(explanation.get("noise")),
         "calibration": sentences.calibration_sentences(explanation.get("calibration")),
         "rest": rows.unexplained_sentence(report),
-        "equations": dict(report.equations),
+        "equations": {name: f"`{term}`" for name, term in report.equations.items()},
         "provenance": dict(report.provenance),
         "tables": {
             "records": rows.records(report),

@@ -5,8 +5,9 @@ from math import isfinite
 from typing import Any
 
 from gear_damping.reporting.explanation_report.report_input import ReportInput
-from gear_damping.reporting.explanation_report.vocabulary import description, meaning, words
+from gear_damping.reporting.explanation_report.vocabulary import description, meaning
 from gear_damping.reporting.numbers import estimate, number, percent, quantity
+from gear_damping.reporting.page.render import words
 
 ROLES = {"fit": "fitted", "holdout": "held out"}
 FAMILIES = {

@@ -3,11 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from gear_damping.physics.catalogue import builtin_effects
-
-
-def words(name: str) -> str:
-    """The name of an effect or a parameter in words."""
-    return name.replace("_", " ")
+from gear_damping.reporting.page.render import words
 
 
 def description(name: str, own: Mapping[str, str]) -> str:

@@ -6,8 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from gear_damping.errors import InputError, Problem, writing
+from gear_damping.reporting.run_report import REPORT
 from gear_damping.tasks.run_folder import FINISHED, RUNNING, read_record
-from gear_damping.tasks.sweep.folder import NOTE, read_sweep
+from gear_damping.tasks.sweep.folder import NOTE, Sweep, read_sweep
 from gear_damping.tasks.sweep.lease import is_held
 
 TABLE, FIGURE, MAP = "sweep.csv", "sweep.png", "sweep_map.png"
@@ -41,7 +42,9 @@ def summarise(folder: Path) -> Summary:
     Raises:
         InputError: the folder holds no sweep, or a file cannot be written.
     """
-    from gear_damping.reporting import figures, tables  # here, since every command imports this file
+    from gear_damping.reporting import figures, tables  # here, since these take long to import
+    from gear_damping.reporting.run_report.sweep import SweepLeft
+    from gear_damping.reporting.run_report.write import write_sweep_report
 
     sweep = read_sweep(folder)
     if sweep is None:
@@ -62,7 +65,18 @@ def summarise(folder: Path) -> Summary:
     for name, figure in figures.sweep_figures(finished, sweep.keys, (FIGURE, MAP)).items():
         figures.save(figure, folder / name)
         files.append(folder / name)
+    pages = {row["job"]: _page(folder, row["job"]) for row in rows}
+    files.append(write_sweep_report(SweepLeft(folder, sweep.keys, found.jobs, rows, pages, _command(sweep))))
     return replace(found, files=tuple(files))
+
+
+def _page(folder: Path, job: str) -> str:
+    """Where a click on a job leads: to its report, or to its folder."""
+    return f"{job}/{REPORT}" if (folder / job / REPORT).exists() else f"{job}/"
+
+
+def _command(sweep: Sweep) -> str:
+    return " ".join(["python -m gear_damping --multirun", *(word.lstrip("+") for word in sweep.overrides)])
 
 
 def _number(path: Path) -> tuple[int, str]:
