@@ -7,8 +7,8 @@ import sys
 import pytest
 import yaml
 
+from gear_damping.config.keys import TASKS
 from gear_damping.config.locate import groups
-from gear_damping.config.schema import TASKS
 from gear_damping.tasks.command import help_text, main
 
 
