@@ -1,7 +1,7 @@
 """What `explain` says of real measured records whose answer is known from their authors: `make real`.
 
-The records are read from `GEAR_DAMPING_DATA` (default `../shared/data`); none of them is in this repository. Answers are
-kept as they come, so that the same command goes on; writes `docs/real_records.md` and its figure.
+The records are read from `GEAR_DAMPING_DATA` (default `../shared/data`); none of them is in this repository. Answers
+are kept as they come, so that the same command goes on; writes `docs/real_records.md` and its figure.
 """
 
 import argparse
@@ -13,8 +13,8 @@ from typing import Any
 
 from gear_damping.config.locate import conf_folder
 from gear_damping.interface.explained import explain
+from gear_damping.measurement.files import data_root
 from gear_damping.measurement.load import load_measurement
-from gear_damping.measurement.paths import data_root
 from gear_damping.reporting.figures import misfit_figure, save
 from gear_damping.reporting.numbers import estimate, number
 
@@ -45,7 +45,7 @@ SHIP = Filed("ship_roll_21337", frozenset({"power_law_damping"}), frozenset({"cu
 FILED = {
     "Silverbox": Filed("silverbox", frozenset({"cubic_stiffness"})),
     "ship roll 21337": SHIP,
-    "EMPS drive": Filed("emps", FRICTION | {"offset_force"}, frozenset({"asymmetric_friction"})),
+    "EMPS drive": Filed("emps", FRICTION, frozenset({"offset_force", "asymmetric_friction"})),
     "multiarm pendulum": Filed("multiarm", FRICTION | {"sine_restoring"}, frozenset({"power_law_damping"})),
     "pendulum on a motor": Filed("dfki_pendulum", FRICTION | {"sine_restoring"}),
     "seismometer (null)": Filed("seismometer"),
