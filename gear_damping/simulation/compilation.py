@@ -1,8 +1,9 @@
-"""How a model is stepped on this machine: native kernel, kernel fused by torch.compile, or eager."""
+"""How a model is stepped on this machine: native kernel, on a GPU kernels fused by torch.compile, or eager."""
 
 import ctypes
 import logging
 from dataclasses import dataclass
+from typing import get_args
 
 import torch
 from torch import Tensor
@@ -24,39 +25,39 @@ _libraries: dict[int, ctypes.CDLL | None] = {}
 
 @dataclass(frozen=True)
 class Choice:
-    """The engine that was chosen, with what it needs."""
+    """The engine that was chosen: a native library with the members that it steps together, torch.compile, or eager."""
 
-    engine: Engine
     kernel_library: ctypes.CDLL | None = None
     lanes: int = 1
+    is_fused: bool = False
 
     def stepper(self, kernel: Kernel, fixed: Tensor, series: SharedSeries) -> Stepper:
         """A stepper for one batch."""
         if self.kernel_library is not None:
             return NativeStepper(kernel, fixed, series, self.kernel_library, self.lanes)
-        return Stepper(kernel, fixed, series, compiled=self.engine == "fused")
+        return Stepper(kernel, fixed, series, compiled=self.is_fused)
 
 
 def choose(wish: Engine, kernel: Kernel, members: Members, state: Tensor) -> Choice:
     """The engine for a model: what was asked for, or the fastest that this machine has.
 
-    On a CPU that is the native kernel where there is a C++ compiler, on a GPU torch.compile.
+    On a CPU that is the native kernel where there is a C++ compiler, on a GPU torch.compile. On a CPU torch.compile is
+    no choice: it needs the compiler too, and takes some 200 times as long as the native kernel.
 
     Raises:
         RuntimeError: an engine was asked for that this machine does not have.
+        ValueError: there is no such engine.
     """
-    if wish == "auto":
-        wish = "fused" if state.is_cuda else "native"
-        library = None if state.is_cuda else _native(kernel, members, state)
-        if state.is_cuda:
-            return Choice(wish)
-        return Choice("native" if library else "eager", library, _lanes(library))
-    if wish == "native":
-        library = _native(kernel, members, state)
-        if library is None:
-            raise RuntimeError("simulator.solver.engine=native needs a C++ compiler and terms with a native form")
-        return Choice("native", library, _lanes(library))
-    return Choice(wish)
+    if wish not in get_args(Engine):
+        raise ValueError(f"engine must be one of {', '.join(get_args(Engine))}, not {wish!r}")
+    if wish == "eager":
+        return Choice()
+    if wish == "auto" and state.is_cuda:
+        return Choice(is_fused=True)
+    library = _native(kernel, members, state)
+    if library is None and wish == "native":
+        raise RuntimeError("simulator.solver.engine=native needs a C++ compiler and terms with a native form")
+    return Choice(library, _lanes(library))
 
 
 def _lanes(library: ctypes.CDLL | None) -> int:

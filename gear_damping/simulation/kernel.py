@@ -19,7 +19,9 @@ from gear_damping.simulation.layout import Layout
 from gear_damping.simulation.series import Series
 
 WATCHED = (1 / 3, 2 / 3)  # positions inside a step at which a branch that was left is noticed
-SAME_INSTANT = 1e-5  # of the change over 1e-4 of a step: crossings nearer than that are one
+SAME_INSTANT = 1e-5  # of the change over REACH: crossings nearer than that are one
+REACH = 1e-4  # of a step, over which a switch is seen to change: long beside rounding, short beside a curve
+MOST_SHIFT = 1e-2  # of a step, that the last Newton step may move a crossing: the search has come nearer than that
 ROOT_STEPS = 6  # of the bracketed search on the interpolant; one Newton step on the true state follows
 
 
@@ -66,11 +68,6 @@ class Kernel:
     def fused_rates(self) -> Callable:
         """`rates` as one compiled kernel."""
         return _fused(self.rates)
-
-    @property
-    def is_compiled(self) -> bool:
-        """Whether this process has compiled the kernel already."""
-        return "fused_advance" in self.__dict__
 
     def moment(self, u: Tensor, state: Tensor, members: Members) -> tuple[Moment, Tensor, dict, dict]:
         """The moment at position u of the interval, with interval, base and term values."""
@@ -133,14 +130,14 @@ class Kernel:
         state, _ = tsit5.step(rates, ends[0], start, part * length)
         position = start + part * length
         slope = rates(position, state)
-        reach = 1e-4 * length
+        reach = REACH * length
         here = self._signed(position, state, members, locked)
         there = self._signed(position + reach, state + reach * slope, members, locked)
         smallest = here.argmin(0, keepdim=True)
         changes = there - here
         value, change = here.gather(0, smallest)[0], changes.gather(0, smallest)[0]
         shift = torch.where(change.abs() > 0, -value / torch.where(change == 0, 1.0, change) * reach, 0.0)
-        shift = torch.minimum(torch.maximum(shift, -1e-2 * part * length), 1e-2 * (1 - part) * length)
+        shift = torch.minimum(torch.maximum(shift, -MOST_SHIFT * part * length), MOST_SHIFT * (1 - part) * length)
         # Several switches may turn at one instant; one that comes back from rounding does not turn.
         turning = (changes < 0) & ((here <= value) | (here < SAME_INSTANT * changes.abs()))
         return state + shift * slope, position + shift, (locked - turning.to(locked)).abs()

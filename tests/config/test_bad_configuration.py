@@ -27,7 +27,7 @@ FAULTS = {
     "effect_of_the_other_system": (["simulator.sine_restoring={}"], ["sine_restoring", "oscillator"]),
     "law_is_off": (["simulator.damping_law=viscous_damping"], ["damping_law", "power_law_damping"]),
     "solver_key": (["simulator.solver.acuracy=1"], ["simulator.solver.acuracy", "did you mean 'accuracy'"]),
-    "solver_engine": (["simulator.solver.engine=fast"], ["simulator.solver.engine", "auto, native, fused, eager"]),
+    "solver_engine": (["simulator.solver.engine=fast"], ["simulator.solver.engine", "auto, native, eager"]),
     "missing_plugin": (["simulator.plugins=[nope.py]"], ["simulator.plugins", "nope.py", "no such file"]),
     "unknown_choice": (["experiment=backlsh"], ["experiment = 'backlsh'", "did you mean 'backlash'"]),
     "unknown_key": (["sed=3"], ["sed: no such key", "did you mean 'seed'"]),

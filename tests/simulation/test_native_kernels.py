@@ -3,6 +3,7 @@
 import ctypes
 import logging
 import multiprocessing
+import re
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from gear_damping.simulation.kernel import Kernel, Members
 from gear_damping.simulation.layout import Layout
 from gear_damping.simulation.native import build
 from gear_damping.simulation.native.expressions import Program
+from gear_damping.simulation.native.source import crossings, tableau
 from gear_damping.simulation.native.stepper import in_parallel
 from gear_damping.simulation.native.structure import structure_of
 from gear_damping.simulation.native.trace import LANES, UntraceableError, trace
@@ -225,3 +227,25 @@ def test_an_engine_without_kernels_prepares_none(bench_model, monkeypatch):
     monkeypatch.setattr(compilation, "_build", None)
     monkeypatch.setattr(compilation, "_libraries", {})
     prepare_kernels([Planned(model, values(2))], Solver(engine="eager"))
+
+
+SHARED = ("REACH", "MOST_SHIFT", "SAME_INSTANT", "ROOT_STEPS", "MOST_SPLITS", "WATCHED", "NODES", "STAGES", "WEIGHTS")
+OF_FORMULAS = {"0", "1", "0.0", "1.0", "2.0", "3.0"}  # indices, and the coefficients of Hermite's cubic
+OF_THE_MACHINE = {"4", "6", "8"}  # vectors and stages that the compiler unrolls, outputs in a line of the cache
+
+
+def test_the_driver_copies_no_number_of_the_method():
+    """What the eager steps and the kernel have in common is declared once, in Python, and written into the source."""
+    code = re.sub(r"//.*", "", (build.HERE / "driver.cpp").read_text())
+    numbers = set(re.findall(r"(?<![\w.])\d+(?:\.\d+)?(?:e-?\d+)?", code))
+    assert numbers <= OF_FORMULAS | OF_THE_MACHINE
+    generated = tableau() + crossings()
+    for name in SHARED:
+        assert name in code
+        assert re.search(rf"\b{name}\b", generated)
+
+
+def test_an_engine_that_is_not_there_is_refused(bench_model):
+    model, values = bench_model
+    with pytest.raises(ValueError, match="auto, native, eager"):
+        simulate(model, values(2), sampling_rate=40e3, n_samples=5, solver=Solver(engine="fused"))

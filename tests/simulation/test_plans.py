@@ -96,3 +96,18 @@ def test_spreads_and_laws_that_do_not_exist(plan):
         draw_values(plan.model, {}, Family("x", {"pinion_torqe": Spread(0, 1)}), 2, generator)
     with pytest.raises(InputError, match="viscous_damping"):
         draw_values(plan.model, {}, FAMILY, 2, generator, Label("viscous_damping"))
+
+
+@pytest.mark.parametrize("part", ["driver.cpp", "vectors.h", "tsit5.py", "backlash.py"])
+def test_every_source_that_makes_runs_counts_in_their_digest(part, plan, tmp_path, monkeypatch):
+    root = plan_module.SOURCES
+    for file in (one for room in ("physics", "simulation") for one in (root / room).rglob("*")):
+        if file.suffix in (".py", ".cpp", ".h"):
+            (tmp_path / file.relative_to(root)).parent.mkdir(parents=True, exist_ok=True)
+            (tmp_path / file.relative_to(root)).write_bytes(file.read_bytes())
+    before = plan.hash
+    monkeypatch.setattr(plan_module, "SOURCES", tmp_path)
+    assert plan.hash == before  # nothing but these files of the package
+    (changed,) = tmp_path.rglob(part)
+    changed.write_bytes(changed.read_bytes() + b"\n")
+    assert plan.hash != before

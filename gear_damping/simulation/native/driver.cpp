@@ -1,7 +1,8 @@
 // Walks members over output intervals with the region-locked method of Tsitouras (see stepper.py, which
 // does the same in PyTorch). Above this text stand: WIDTH, VECTORS, N_STATE, N_FIXED, N_SERIES, N_SWITCH, N_KEPT,
-// the vector types and functions, the method's NODES, STAGES and WEIGHTS, what crossings are searched with (WATCHED,
-// SAME_INSTANT, ROOT_STEPS, MOST_SPLITS), and the traced functions setup, rates and switches.
+// the vector types and functions, the method's N_STAGE, NODES, STAGES and WEIGHTS, what crossings are searched with
+// (WATCHED, REACH, MOST_SHIFT, SAME_INSTANT, ROOT_STEPS, MOST_SPLITS), and the traced functions setup, rates and
+// switches. No number of the method stands here a second time: tests/simulation/test_native_kernels.py reads them.
 
 struct Block {
   vd P[N_FIXED + 1], S[N_SERIES + 1], L[N_SWITCH + 1], Q[N_KEPT + 1], factor[N_SERIES + 1];
@@ -26,9 +27,9 @@ struct Task {
 // A stage waits for the one before it: M vectors at once keep the processor busy meanwhile.
 template <int M>
 static inline void step(const Task* task, vd start, vd length) {
-  vd k[M][6][N_STATE], inner[N_STATE];
+  vd k[M][N_STAGE][N_STATE], inner[N_STATE];
 #pragma GCC unroll 6
-  for (int stage = 0; stage < 6; ++stage)
+  for (int stage = 0; stage < N_STAGE; ++stage)
 #pragma GCC unroll 4
     for (int m = 0; m < M; ++m) {
       for (int i = 0; i < N_STATE; ++i) {
@@ -41,7 +42,7 @@ static inline void step(const Task* task, vd start, vd length) {
   for (int m = 0; m < M; ++m)
     for (int i = 0; i < N_STATE; ++i) {
       vd sum = vd{};
-      for (int j = 0; j < 6; ++j) sum += WEIGHTS[j] * k[m][j][i];
+      for (int j = 0; j < N_STAGE; ++j) sum += WEIGHTS[j] * k[m][j][i];
       task[m].end[i] = task[m].y[i] + length * sum;
       task[m].first[i] = k[m][0][i];
     }
@@ -126,7 +127,7 @@ static inline void cross(Ends& e, vd& start, vd length, const Block& b, vd* L, v
   vd y[N_STATE], slope[N_STATE], ahead[N_STATE], here[N_SWITCH], there[N_SWITCH];
   const Task task{e.start, &b, L, y, slope};
   step<1>(&task, start, part * length);
-  const vd position = start + part * length, reach = 1e-4 * length;
+  const vd position = start + part * length, reach = REACH * length;
   rates_at(position, y, b, L, slope);
   for (int i = 0; i < N_STATE; ++i) ahead[i] = y[i] + reach * slope[i];
   signed_switches(position, y, b, L, here);
@@ -138,7 +139,7 @@ static inline void cross(Ends& e, vd& start, vd length, const Block& b, vd* L, v
     change = less ? there[w] - here[w] : change;
   }
   vd shift = change != 0.0 ? -value / (change == 0.0 ? vd{} + 1.0 : change) * reach : vd{};
-  shift = v_min(v_max(shift, -1e-2 * part * length), 1e-2 * (1.0 - part) * length);
+  shift = v_min(v_max(shift, -MOST_SHIFT * part * length), MOST_SHIFT * (1.0 - part) * length);
   for (int i = 0; i < N_STATE; ++i) e.start[i] = crossed ? y[i] + shift * slope[i] : e.start[i];
   start = crossed ? position + shift : start;
   for (int w = 0; w < N_SWITCH; ++w) {

@@ -8,7 +8,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.simulation import tsit5
-from gear_damping.simulation.kernel import ROOT_STEPS, SAME_INSTANT, WATCHED, Kernel, Members
+from gear_damping.simulation.kernel import MOST_SHIFT, REACH, ROOT_STEPS, SAME_INSTANT, WATCHED, Kernel, Members
 from gear_damping.simulation.native.emit import Written
 from gear_damping.simulation.native.expressions import Program
 from gear_damping.simulation.native.trace import LANES, trace
@@ -62,11 +62,12 @@ def kernel_source(kernel: Kernel, members: Members, state: Tensor, width: int) -
 
 
 def tableau() -> str:
-    """The coefficients of the method as C++: NODES, STAGES and WEIGHTS."""
+    """The coefficients of the method as C++: N_STAGE, NODES, STAGES and WEIGHTS."""
     count = len(tsit5.NODES)
     rows = ", ".join(_listed([*row, *[0.0] * (count - 1 - len(row))]) for row in tsit5.STAGES)
     return "\n".join(
         [
+            f"static const int N_STAGE = {count};",
             f"static const double NODES[{count}] = {_listed(tsit5.NODES)};",
             f"static const double STAGES[{count}][{count - 1}] = {{{rows}}};",
             f"static const double WEIGHTS[{count}] = {_listed(tsit5.WEIGHTS)};",
@@ -79,7 +80,7 @@ def crossings() -> str:
     return "\n".join(
         [
             f"static const double WATCHED[{len(WATCHED)}] = {_listed(WATCHED)};",
-            f"static const double SAME_INSTANT = {SAME_INSTANT!r};",
+            f"static const double REACH = {REACH!r}, MOST_SHIFT = {MOST_SHIFT!r}, SAME_INSTANT = {SAME_INSTANT!r};",
             f"static const int ROOT_STEPS = {ROOT_STEPS}, MOST_SPLITS = {MOST_SPLITS};",
         ]
     )
