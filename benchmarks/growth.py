@@ -1,4 +1,4 @@
-"""How cost and memory grow with the batch, the record, the effects, the scales and the sensitivities."""
+"""How cost and memory grow with the batch, the record, the effects and the scales."""
 
 import statistics
 
@@ -14,20 +14,11 @@ def everything(quick: bool, say: Said) -> list[dict]:
     lengths = () if quick else (2000, 20_000, 200_000)
     counts = (2,) if quick else (2, 4, 6, 8, 10)
     scales = ((16, 8),) if quick else ((64, 8), (64, 32), (64, 128), (4096, 64))
-    parameters = (0, 1) if quick else (0, 1, 2, 3, 4)
     plans = [("trajectories", {"batch": b, "n_samples": 2000}) for b in batches]
     plans += [("trajectories", {"batch": 16, "n_samples": n}) for n in lengths]
     plans += [("trajectories", {"batch": 256, "n_samples": 2000, "effects": e}) for e in counts]
-    plans += [("sensitivities", {"batch": 256, "n_samples": 2000, "parameters": p}) for p in parameters]
     plans += [("coefficients", {"batch": b, "n_samples": 2000, "n_scales": s}) for b, s in scales]
-    found = [_measured(engine, options, say) for engine, options in plans]
-    return _in_forwards(found)
-
-
-def _in_forwards(rows: list[dict]) -> list[dict]:
-    """The cost of sensitivities as a multiple of the same runs without them."""
-    plain = next((r for r in rows if r.get("parameters") == 0), {}).get("cpu_s")
-    return [r | {"forwards": r["cpu_s"] / plain} if plain and "parameters" in r and "cpu_s" in r else r for r in rows]
+    return [_measured(engine, options, say) for engine, options in plans]
 
 
 def _measured(engine: str, options: dict, say: Said) -> dict:

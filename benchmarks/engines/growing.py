@@ -9,7 +9,6 @@ from gear_damping.physics.model import Model
 from gear_damping.physics.systems.gear_pair import GearPair
 from gear_damping.signals.streaming import iterate_coefficients
 from gear_damping.signals.wavelets import RickerCWT
-from gear_damping.simulation.sensitivities import simulate_sensitivities
 from gear_damping.simulation.simulate import simulate
 from gear_damping.simulation.solver_settings import Solver
 
@@ -19,7 +18,6 @@ MORE = (
     "backlash", "pinion_eccentricity", "gear_eccentricity", "profile_error", "torque_ripple", "coulomb_friction",
     "pinion_stiffness_modulation", "gear_stiffness_modulation",
 )  # fmt: skip
-BY = ("power_law_damping.coefficient", "power_law_damping.exponent", "pinion_torque", "mesh_phase")
 
 
 def trajectories(batch: int, n_samples: int, effects: int = 2) -> Run:
@@ -43,21 +41,6 @@ def trajectories(batch: int, n_samples: int, effects: int = 2) -> Run:
 def _simulated(model: Model, values: dict[str, torch.Tensor], n_samples: int) -> torch.Tensor:
     solver = Solver(substeps=SUBSTEPS)
     return simulate(model, values, sampling_rate=SAMPLING_RATE, n_samples=n_samples, solver=solver).response
-
-
-def sensitivities(batch: int, n_samples: int, parameters: int) -> Run:
-    """Runs with their derivatives by 1 to 4 parameters; 0 parameters: the runs alone."""
-    model, values = assembled(draw(batch))
-    options = {"sampling_rate": SAMPLING_RATE, "n_samples": n_samples, "solver": Solver(substeps=SUBSTEPS)}
-
-    def run() -> None:
-        if parameters:
-            asked = {name: values[name].clone().requires_grad_() for name in BY[:parameters]}
-            simulate_sensitivities(model, values | asked, **options)
-        else:
-            _simulated(model, values, n_samples)
-
-    return run
 
 
 def coefficients(batch: int, n_samples: int, n_scales: int) -> Run:

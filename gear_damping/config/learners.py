@@ -127,7 +127,7 @@ def _own(node: Mapping[str, Any], origin: Origin) -> tuple[tuple[str, ...], dict
 
 
 def _require(node: Mapping[str, Any], name: str, kind: Value, prefix: str, origin: Origin) -> None:
-    """Refuse a node in which a key is missing or wrong, on which all others hang."""
+    """Refuse a node in which a key is missing or wrong, on which all others depend."""
     part = {name: node[name]} if name in node else {}
     problems = problems_with(part, {name: kind}, prefix, origin)
     if problems:

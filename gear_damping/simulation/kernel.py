@@ -43,8 +43,6 @@ class Members:
 class Kernel:
     """Steps of one model; holds no member's data, so that it is compiled once for any batch."""
 
-    derivatives: tuple = ()  # what is walked beside the states, see `sensitivities`
-
     def __init__(self, model: Model, layout: Layout, series: Series, members: Members, state: Tensor) -> None:
         """Learn the names of the switches from some members and their state."""
         self.parts = (model.system, *model.effects)

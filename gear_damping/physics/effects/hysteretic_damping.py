@@ -45,7 +45,7 @@ class HystereticDamping(ExtraStates, DampingForce):
     states: ClassVar = {"deflection": "m"}
     dissipative = True
     cause: ClassVar = Cause(
-        "a hysteretic force, whose loss does not hang on the rate",
+        "a hysteretic force, whose loss does not depend on the rate",
         _switched_on,
         separated_by="speed",
     )

@@ -1,4 +1,4 @@
-"""Writes expressions as C++: what hangs on parameters alone is worked out once per run."""
+"""Writes expressions as C++: what depends on parameters alone is worked out once per run."""
 
 from collections.abc import Sequence
 

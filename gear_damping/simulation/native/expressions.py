@@ -1,7 +1,7 @@
 """Scalar expressions of one member: what a traced tensor program becomes before it is written as C++.
 
 An expression is a number or a numbered value. Equal expressions are one value, numbers are folded,
-and every value knows how often it changes: per run (it hangs on parameters alone) or per stage.
+and every value knows how often it changes: per run (it depends on parameters alone) or per stage.
 """
 
 from __future__ import annotations
@@ -40,7 +40,6 @@ FOLDED = {
     "sign": lambda a: float((a > 0) - (a < 0)), "floor": math.floor,
 }  # fmt: skip
 LARGEST_UNROLLED_POWER = 8  # products that are faster than pow()
-SMALLEST_BASE = 1e-100  # of a power that is divided by its base
 
 
 @dataclass
@@ -101,15 +100,7 @@ def _simplified(program: Program, name: str, a: tuple[Expression, ...]) -> Expre
         return program.apply("mul", a[0], program.apply("div", 1.0, a[1]))
     if name == "pow" and isinstance(a[1], float):
         return _power(program, a[0], a[1])
-    return _lowered_power(program, a) if name == "pow" else None
-
-
-def _lowered_power(program: Program, a: tuple[Expression, ...]) -> Expression | None:
-    """|v|^(n - 1) beside |v|^n, as derivatives have it: a division costs a quarter of a power."""
-    made = program.made.get(a[1])
-    if made is None or made[0] != "sub" or made[1][1] != 1.0 or ("pow", a[0], made[1][0]) not in program.known:
-        return None
-    return program.apply("div", program.known["pow", a[0], made[1][0]], program.apply("maximum", a[0], SMALLEST_BASE))
+    return None
 
 
 def _power(program: Program, base: Expression, exponent: float) -> Expression | None:

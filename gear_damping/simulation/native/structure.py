@@ -25,7 +25,7 @@ def structure_of(kernel: Kernel) -> str | None:
     except (TypeError, OSError):
         return None  # typed in by hand
     own = [_content(path) for path in files if PACKAGE not in path.parents]  # effect files of a user
-    described = repr((parts, kernel.layout.entries, kernel.series.names, kernel.derivatives))
+    described = repr((parts, kernel.layout.entries, kernel.series.names))
     return "\n".join([described, torch.__version__, _package(), *sorted(own)])
 
 
