@@ -4,6 +4,7 @@ Every plain override `key=value` becomes `++key=value`: an effect that is off ha
 unknown key shall meet our own check, which knows the nearest valid one, and not Hydra's first refusal.
 """
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -27,6 +28,7 @@ MANY = ("--multirun", "-m")
 COMPLETION = ("--shell-completion", "-sc")
 COMPLETES = {f"{what}={shell}" for what in ("install", "uninstall", "query") for shell in ("bash", "fish", "zsh")}
 FLAGS = (*SHOWS, *MANY, "--run", "-r", "--package", "-p", "--help", "-h")
+_MICRO = re.compile(r"(?<=\d)(?P<space> *)[µμ](?=[A-Za-z])")  # of 80µm, which Hydra cannot read
 TAKES = {  # the words that a flag takes after it; None: any
     **dict.fromkeys(("--cfg", "-c"), ("job", "hydra", "all")),
     **dict.fromkeys(("--info", "-i"), ("all", "config", "defaults", "defaults-tree", "plugins", "searchpath")),
@@ -116,6 +118,8 @@ def _read_override(argument: str, many: bool) -> tuple[list[Problem], list[str]]
     if "=" not in argument and not argument.startswith("~"):
         remedy = "write key=value, for example experiment=backlash"
         return [Problem(argument, "is not an override", remedy=remedy, source=SOURCE)], []
+    if not {"'", '"'} & set(argument):  # what is quoted is read as it stands
+        argument = _MICRO.sub(r"\g<space>u", argument)
     try:
         parsed = parse(argument)
     except HydraException as error:

@@ -9,6 +9,7 @@ from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.physics.parameter import Parameter
 from gear_damping.schema.values import Number, OneOf, Text
 from gear_damping.simulation.families import DAMPING_RATIO, Family, Spread
+from gear_damping.units import spoken
 
 PLAIN = {
     "name": Text(),
@@ -55,7 +56,10 @@ def _spread(
     kind = _kind(reader, key, node)
     parameter = declared[name]
     unit, own_unit = ("1", None) if kind == "factor" else (parameter.unit, node.get("unit"))
-    low, high = (quantity(value, unit, key, source, own_unit) for value in node[kind])
+    if name == DAMPING_RATIO and kind != "factor":
+        low, high = (_percent(value, key, source, own_unit) for value in node[kind])
+    else:
+        low, high = (quantity(value, unit, key, source, own_unit) for value in node[kind])
     if low > high:
         raise InputError(Problem(key, "the lower end must not lie above the upper", node, "swap them", source))
     nominal = given.get(name, parameter.default) if kind == "factor" else 1.0
@@ -64,6 +68,12 @@ def _spread(
         if any(ends):
             raise InputError([problem for problem in ends if problem])
     return Spread(low, high, relative=kind == "factor")
+
+
+def _percent(value: Any, key: str, source: str, own_unit: str | None) -> float:
+    """A ratio in %: so is a plain number, `0.3 %` is 0.3, and with the unit 1 a share."""
+    has_unit = own_unit or spoken(value) or (isinstance(value, Mapping) and "unit" in value)
+    return quantity(value, "1", key, source, own_unit) * (100 if has_unit else 1)
 
 
 def _kind(reader: Reader, key: str, node: Any) -> str:

@@ -6,7 +6,7 @@ from typing import Any
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.physics.parameter import Parameter
-from gear_damping.units import spoken, to_si
+from gear_damping.units import parse_unit, spoken, to_si
 
 SUFFIXES = {"rpm": "rpm", "deg": "deg", "um": "um", "mm": "mm", "ms": "ms", "khz": "kHz", "hz": "Hz", "percent": "%"}
 
@@ -40,6 +40,25 @@ def quantity(value: Any, expected: str, key: str, source: str, unit: str | None 
         remedy = f"write a number, or {{value: …, unit: {expected}}}"
         raise InputError(Problem(key, rule, value, remedy, source))
     return to_si(float(value), unit, expected, key, source) if unit else float(value)
+
+
+def number_of(key: str, value: Any) -> Any:
+    """The number of a quantity in SI, or in the unit that its key carries; what is no quantity as it is.
+
+    Args:
+        key: Its full key.
+        value: As it was given.
+    """
+    said = spoken(value)
+    if isinstance(value, Mapping) and set(value) == {"value", "unit"}:
+        said = value["value"], value["unit"]
+    if said is None or key.split(".")[0] not in ("simulator", "plan"):
+        return value
+    try:
+        own = SUFFIXES.get(key.rpartition("_")[2], "1")
+        return float(f"{said[0] * parse_unit(said[1]).factor / parse_unit(own).factor:.12g}")
+    except (InputError, TypeError, AttributeError):  # of a job that could not run
+        return value
 
 
 def parameter_value(

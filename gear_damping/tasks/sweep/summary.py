@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from gear_damping.config.quantities import number_of
 from gear_damping.errors import InputError, Problem, writing
 from gear_damping.reporting.run_report import REPORT
 from gear_damping.tasks.run_folder import FINISHED, RUNNING, read_record
@@ -92,7 +93,8 @@ def _row(folder: Path, keys: Sequence[str]) -> dict[str, Any]:
         status = CUT_OFF
     row = {"job": folder.name, "status": status}
     choices = record["choices"]
-    row |= {key: choices[key] if key in choices else _lookup(record["config"], key) for key in keys}
+    given = {key: number_of(key, _lookup(record["config"], key)) for key in keys}
+    row |= {key: choices.get(key, value) for key, value in given.items()}
     metrics = record["metrics"].items()
     row |= {name: ", ".join(map(str, value)) if isinstance(value, list) else value for name, value in metrics}
     row["error"] = record.get("error", "")
