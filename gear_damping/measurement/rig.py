@@ -9,6 +9,7 @@ from gear_damping.measurement.quantities import Measured
 from gear_damping.measurement.record import Quantity
 from gear_damping.schema.mappings import Declared, key
 from gear_damping.schema.values import OneOf, refuse
+from gear_damping.units import spoken
 
 GEAR_TORQUE_MODES = ("balanced", "held")
 _KNOWN = "known, or a prior with its uncertainty"
@@ -21,7 +22,8 @@ class Load(Measured):
 
     def read(self, value: Any, name: str) -> Quantity | str:
         """The word or the quantity in SI."""
-        return OneOf(GEAR_TORQUE_MODES).read(value, name) if isinstance(value, str) else super().read(value, name)
+        is_word = isinstance(value, str) and spoken(value) is None
+        return OneOf(GEAR_TORQUE_MODES).read(value, name) if is_word else super().read(value, name)
 
     def says(self) -> str:
         """The unit and the words."""

@@ -48,6 +48,7 @@ def test_an_unknown_unit_is_refused(text):
     [
         ("80um", (80.0, "um")),
         ("3 kHz", (3.0, "kHz")),
+        ("3 1/s", (3.0, "1/s")),
         ("4600rpm", (4600.0, "rpm")),
         ("-1.5e-3 m/s^2", (-1.5e-3, "m/s^2")),
         (" .3 µm ", (0.3, "µm")),
@@ -60,6 +61,6 @@ def test_a_number_is_told_from_its_unit(text, found):
     assert spoken(text) == found
 
 
-@pytest.mark.parametrize("value", ["5", "1e3", "kg", "1,5 mm", "12:30", "2020-01-01", "", 4.0, None, {"value": 3}])
+@pytest.mark.parametrize("value", ["5", "1e3", "31/s", "kg", "1,5 mm", "12:30", "2020-01-01", "", 4.0, None, {"value": 3}])
 def test_anything_else_is_no_number_with_a_unit(value):
     assert spoken(value) is None

@@ -1,0 +1,51 @@
+"""Every quantity of measurement.yaml is read as it is spoken, as {value, unit} is."""
+
+from typing import get_args
+
+import pytest
+from pydantic import BaseModel
+
+from gear_damping.measurement import layout
+from gear_damping.measurement.fields import Measured
+
+SPOKEN = {  # the text, and what it means, by the unit that is expected
+    "Hz": ("3kHz", 3, "kHz"), "s": ("20 ms", 20, "ms"), "m": ("3mm", 3, "mm"), "rad": ("20deg", 20, "deg"),
+    "kg*m^2": ("0.01 kg*m^2", 0.01, "kg*m^2"), "N/m": ("1e8N/m", 1e8, "N/m"), "kg": ("0.4kg", 0.4, "kg"),
+    "N*m": ("100 Nm", 100, "Nm"), "1/s^2": ("40 1/s^2", 40, "1/s^2"), "1/s": ("3 1/s", 3, "1/s"),
+    "rad/s": ("4600rpm", 4600, "rpm"), "1": ("120 %", 120, "%"), "own": ("2 m/s^2/V", 2, "m/s^2/V"),
+    None: ("3mV", 3, "mV"),
+}  # fmt: skip
+
+
+def kinds(model, seen):
+    """Every kind of quantity below a model, with its place."""
+    if model in seen:
+        return
+    seen.add(model)
+    for name, field in model.model_fields.items():
+        for part in field.metadata:
+            if isinstance(part, Measured):
+                yield f"{model.__name__}.{name}", part
+        stack = [field.annotation]
+        while stack:
+            inner = stack.pop()
+            stack += get_args(inner)
+            if isinstance(inner, type) and issubclass(inner, BaseModel):
+                yield from kinds(inner, seen)
+            elif isinstance(inner, Measured):
+                yield f"{model.__name__}.{name}", inner
+
+
+EVERY = {place: kind for file in layout.FILES.values() for place, kind in kinds(file, set())}
+
+
+def test_there_are_as_many_as_the_page_lists():
+    assert len(EVERY) > 40
+    assert {kind.unit for kind in EVERY.values()} == set(SPOKEN)
+
+
+@pytest.mark.parametrize("place", EVERY)
+def test_it_is_read_as_it_is_spoken(place):
+    kind = EVERY[place]
+    text, value, unit = (25, 25, "1") if kind.whole else SPOKEN[kind.unit]
+    assert kind.read(text, "x") == kind.read({"value": value, "unit": unit}, "x")
