@@ -124,7 +124,7 @@ def _sweep_row(root: Path, folder: Path) -> "IndexRow":
     failed = sum(job["status"] == FAILED for job in jobs)
     total = max(sweep.jobs or 0, len(jobs))
     status = FINISHED if total and finished == total else f"{finished} of {total} jobs"
-    words = [f"{finished} of {total} jobs finished"] + ([f"{failed} failed"] if failed else [])
+    words = [f"{total} jobs"] + ([f"{failed} failed"] if failed else [])
     words.append(f"over {', '.join(sweep.keys)}" if sweep.keys else "")
     common = _common(min(jobs, key=lambda job: str(job.get("started")))) if jobs else {}
     task = f"sweep of {common['task']}" if jobs else "sweep"

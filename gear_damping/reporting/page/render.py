@@ -51,8 +51,9 @@ def names_marked(text: str) -> Markup:
 
 
 def breakable(text: str) -> Markup:
-    """A key or the name of a figure, which may be broken after a dot, a slash or an underscore."""
-    return Markup(re.sub(r"(?<=\w)([./_])(?=\w)", r"\1<wbr>", str(escape(text))))
+    """A key or the name of a figure, which may be broken after a dot or a slash, but not before its unit."""
+    found = re.sub(r"(?<=[A-Za-z])([./])(?=[A-Za-z])", r"\1<wbr>", str(escape(text)))
+    return Markup(found.replace(" / ", "&nbsp;/&nbsp;"))
 
 
 def _source(script: str) -> str:

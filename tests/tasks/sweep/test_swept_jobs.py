@@ -120,7 +120,6 @@ def test_the_table_has_the_figures_of_any_task_and_the_reason_of_what_failed(tmp
 @pytest.mark.parametrize(
     ("words", "rule"),
     [
-        (["task=collect"], "needs the folder of a sweep"),
         (["task=collect", "sweep=tests"], "holds no sweep"),
         (["task=simulate", "sweep=tests"], "acts in task=collect"),
     ],
