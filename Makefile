@@ -11,7 +11,7 @@ PYTEST := $(BIN)/python -m pytest -n auto --dist worksteal
 ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test test-sweeps test-slurm check bench estimators limit window plan-check blind power p-values fuzz docs clean
+.PHONY: help setup run test test-sweeps test-slurm test-pages check bench estimators limit window plan-check blind power p-values fuzz docs clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-11s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -37,6 +37,17 @@ test-sweeps: setup  ## a sweep of 60 jobs whose launcher is killed three times, 
 
 test-slurm: setup  ## the same through a real SLURM, installed and started here (Debian, root), and a job requeued
 	$(BIN)/python -m tests.cluster.slurm $(ARGS)
+
+# The browser's driver has an environment of its own.
+PAGES_VENV := .venv-pages
+$(PAGES_VENV)/.installed: tests/pages/requirements.txt
+	$(PYTHON) -m venv $(PAGES_VENV)
+	$(PAGES_VENV)/bin/pip install --quiet --disable-pip-version-check $(PIP_OPTIONS) -r tests/pages/requirements.txt
+	@touch $@
+
+test-pages: setup $(PAGES_VENV)/.installed  ## short runs, their pages and TensorBoard in a headless Chromium (Debian: chromium, chromium-driver)
+	$(BIN)/python -m tests.pages.material outputs/pages
+	$(PAGES_VENV)/bin/python -m pytest -c tests/pages/pytest.ini --rootdir . --confcutdir tests/pages tests/pages $(ARGS)
 
 check: setup  ## everything `make test` runs and the slow tests
 	$(BIN)/ruff check .
