@@ -6,7 +6,7 @@ import pytest
 from pydantic import BaseModel
 
 from gear_damping.measurement import layout
-from gear_damping.measurement.fields import Measured
+from gear_damping.measurement.quantities import Measured
 
 SPOKEN = {  # the text, and what it means, by the unit that is expected
     "Hz": ("3kHz", 3, "kHz"), "s": ("20 ms", 20, "ms"), "m": ("3mm", 3, "mm"), "rad": ("20deg", 20, "deg"),
