@@ -3,6 +3,7 @@
 import ctypes
 import logging
 from dataclasses import dataclass
+from subprocess import SubprocessError
 from typing import get_args
 
 import torch
@@ -86,7 +87,7 @@ def _build(kernel: Kernel, members: Members, state: Tensor) -> ctypes.CDLL | Non
         with torch.no_grad():
             source = kernel_source(kernel, members, state, build.width_and_options()[0])
         return build.compiled(source, structure)
-    except (UntraceableError, RuntimeError, OSError) as problem:
+    except (UntraceableError, RuntimeError, OSError, SubprocessError) as problem:
         say_once(f"no native kernel for this model, it runs slower with the same results ({problem})")
         return None
 

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import logging
 import math
 import os
 import subprocess
@@ -9,6 +10,7 @@ import sys
 import time
 from collections.abc import Iterable, Mapping
 from datetime import UTC, datetime
+from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
@@ -17,6 +19,7 @@ from gear_damping.config.measured import INSPECT, YAML_SUFFIXES
 from gear_damping.config.source import Origin
 from gear_damping.errors import Problem, writing
 
+log = logging.getLogger("gear_damping")
 RUNNING, FINISHED, FAILED, INTERRUPTED = "running", "finished", "failed", "interrupted"
 EDITED = {"explain": "extended_simulator.yaml", "inspect": "measurement.yaml"}  # what people edit, by task
 PACKAGES = ("gear-damping", "torch", "lightning", "hydra-core", "torchdiffeq", "numpy", "scipy")
@@ -137,10 +140,20 @@ def git_state() -> dict[str, Any]:
     folder = Path(__file__).resolve().parents[2]
     if not (folder / ".git").exists():
         return {"revision": None, "dirty": None}
-    revision, changes = (
-        subprocess.run(["git", "-C", str(folder), *command], capture_output=True, text=True, check=False)
-        for command in (["rev-parse", "HEAD"], ["status", "--porcelain"])
-    )
-    if revision.returncode:
-        return {"revision": None, "dirty": None}
-    return {"revision": revision.stdout.strip(), "dirty": bool(changes.stdout.strip())}
+    try:
+        revision, changes = (
+            subprocess.run(["git", "-C", str(folder), *command], capture_output=True, text=True, check=True).stdout
+            for command in (["rev-parse", "HEAD"], ["status", "--porcelain"])
+        )
+    except OSError as error:
+        return _without_git(f"git cannot be run: {error.strerror}")
+    except subprocess.CalledProcessError as error:
+        return _without_git(f"git fails: {error.stderr.strip().splitlines()[0] if error.stderr.strip() else error}")
+    return {"revision": revision.strip(), "dirty": bool(changes.strip())}
+
+
+@cache
+def _without_git(why: str) -> dict[str, Any]:
+    """Nothing is known of the checkout; said once."""
+    log.warning("%s; run.json states no revision, and a sweep does not notice that the code was changed", why)
+    return {"revision": None, "dirty": None}

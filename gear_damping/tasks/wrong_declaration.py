@@ -62,6 +62,7 @@ def placed(error: InputError, source: str) -> list[Problem]:
 def start_logging() -> None:
     """Say what there is to say on stderr, as plain lines."""
     logging.basicConfig(level=logging.INFO, format="%(message)s", stream=sys.stderr)
+    logging.getLogger("matplotlib").setLevel(logging.WARNING)  # it tells of its fonts
 
 
 def say_problems(error: InputError) -> None:

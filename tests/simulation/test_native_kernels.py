@@ -249,3 +249,54 @@ def test_an_engine_that_is_not_there_is_refused(bench_model):
     model, values = bench_model
     with pytest.raises(ValueError, match="auto, native, eager"):
         simulate(model, values(2), sampling_rate=40e3, n_samples=5, solver=Solver(engine="fused"))
+
+
+@pytest.fixture
+def anew(bench_model, monkeypatch, tmp_path):
+    """Simulate as a new process would, in a machine that the environment describes; what it said is in the log."""
+    model, values = bench_model
+    for name in ("GEAR_DAMPING_CACHE", "XDG_CACHE_HOME"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr(compilation, "_libraries", {})
+    monkeypatch.setattr(compilation, "_said", set())
+    everything = (build.compiler, build._machine, build.width_and_options)
+    for one in everything:
+        one.cache_clear()
+    yield lambda: simulate(model, values(2), sampling_rate=40e3, n_samples=5).response
+    monkeypatch.undo()
+    for one in everything:
+        one.cache_clear()
+
+
+@pytest.mark.usefixtures("compiler")
+def test_a_cache_that_cannot_be_written_to_is_done_without(anew, monkeypatch, tmp_path, caplog):
+    monkeypatch.setenv("GEAR_DAMPING_CACHE", str(tmp_path / "kept"))
+    expected = anew()
+    (tmp_path / "file").touch()  # no folder can be made below it, whoever runs the test
+    monkeypatch.setattr(compilation, "_libraries", {})
+    monkeypatch.setenv("GEAR_DAMPING_CACHE", str(tmp_path / "file"))
+    assert torch.equal(anew(), expected)
+    assert "compiled simulations cannot be kept" in caplog.text
+    assert "GEAR_DAMPING_CACHE=FOLDER names another place" in caplog.text
+    assert "slower" not in caplog.text  # compiled all the same
+
+
+@pytest.mark.usefixtures("compiler")
+def test_a_user_without_a_home_simulates(anew, monkeypatch, caplog):
+    monkeypatch.delenv("HOME", raising=False)
+    monkeypatch.setattr(build.Path, "home", lambda: (_ for _ in ()).throw(RuntimeError("no home directory")))
+    anew()
+    assert "cannot be kept (no home directory)" in caplog.text
+
+
+@pytest.mark.parametrize("script", [None, "#!/bin/sh\nexit 1\n"], ids=["absent", "broken"])
+def test_a_machine_without_a_compiler_that_works_simulates_and_says_so(script, anew, monkeypatch, tmp_path, caplog):
+    monkeypatch.setenv("GEAR_DAMPING_CACHE", str(tmp_path / "kept"))
+    monkeypatch.setenv("PATH", str(tmp_path))
+    if script:
+        (tmp_path / "g++").write_text(script)
+        (tmp_path / "g++").chmod(0o755)
+    anew()
+    said = "no native kernel for this model" if script else "no C++ compiler found"
+    assert said in caplog.text
+    assert "slower" in caplog.text

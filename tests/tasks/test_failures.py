@@ -8,7 +8,7 @@ import resource
 import pytest
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.tasks import dispatch
+from gear_damping.tasks import dispatch, run_folder
 from gear_damping.tasks.command import main
 
 SMALL = ["simulator.n_runs=2", "simulator.n_samples=200", "progress=false"]
@@ -138,3 +138,23 @@ def test_a_problem_found_in_a_task_gets_its_place_only_where_the_key_has_one(tmp
     text = said()
     assert "- simulator: diverged; remedy: x\n" in text
     assert "- seed = 1: is odd (from command line: seed=1)" in text
+
+
+@pytest.mark.parametrize(
+    ("script", "why"),
+    [(None, "git cannot be run: No such file or directory"),
+     ("echo 'fatal: dubious ownership' >&2; exit 128", "git fails: fatal: dubious ownership")],
+    ids=["absent", "refusing"],
+)  # fmt: skip
+def test_a_checkout_without_git_is_run_and_states_no_revision(script, why, tmp_path, monkeypatch, caplog):
+    (tmp_path / "bin").mkdir()
+    if script:
+        (tmp_path / "bin" / "git").write_text(f"#!/bin/sh\n{script}\n")
+        (tmp_path / "bin" / "git").chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path / 'bin'}:/nowhere")
+    monkeypatch.setattr(run_folder, "__file__", str(tmp_path / "a" / "b" / "run_folder.py"))
+    (tmp_path / ".git").mkdir()
+    run_folder._without_git.cache_clear()
+    assert [run_folder.git_state() for _ in range(2)] == 2 * [{"revision": None, "dirty": None}]
+    assert caplog.text.count(why) == 1
+    assert "run.json states no revision" in caplog.text

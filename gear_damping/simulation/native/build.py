@@ -1,5 +1,6 @@
 """Compiles a kernel's source once and keeps it between processes."""
 
+import atexit
 import ctypes
 import hashlib
 import logging
@@ -95,7 +96,31 @@ def _place(structure: str) -> Path:
 
 
 def _kept(key: str) -> Path:
-    return cache_folder() / "kernels" / f"{key}.so"
+    return kernels_folder() / f"{key}.so"
+
+
+def kernels_folder() -> Path:
+    """Where this process has its kernels: in the cache, or in a folder of its own where that cannot be written to."""
+    return _usable(*map(os.environ.get, ("GEAR_DAMPING_CACHE", "XDG_CACHE_HOME", "HOME")))
+
+
+@cache
+def _usable(*named: str | None) -> Path:
+    """The folder by what the environment names; said once where it is not kept."""
+    try:
+        folder = cache_folder() / "kernels"
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return folder
+    except (OSError, RuntimeError) as error:  # RuntimeError: there is no home
+        why = f"{error.filename}: {error.strerror}" if isinstance(error, OSError) else str(error)
+        log.warning(
+            "compiled simulations cannot be kept (%s), so that each process compiles them anew; "
+            "GEAR_DAMPING_CACHE=FOLDER names another place", why
+        )  # fmt: skip
+        own = tempfile.TemporaryDirectory(prefix="gear_damping_")
+        atexit.register(own.cleanup)
+        return Path(own.name)
 
 
 def _digest(*parts: str) -> str:
