@@ -1,5 +1,6 @@
 """One way to say that an input is wrong: every problem at once, each with key, rule and remedy."""
 
+import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -56,3 +57,20 @@ def writing(path: Path) -> Iterator[Path]:
     except OSError as error:
         error.filename = error.filename or str(path)
         raise
+
+
+@contextmanager
+def written_whole(path: Path) -> Iterator[Path]:
+    """A path to write to, which takes the place of `path` in the end; after an error nothing of it is left.
+
+    Raises:
+        OSError: as what writes raises it, with the name of a file.
+    """
+    unfinished = path.with_name(path.name + ".part")
+    with writing(path):
+        try:
+            yield unfinished
+            os.replace(unfinished, path)
+        except BaseException:
+            unfinished.unlink(missing_ok=True)
+            raise

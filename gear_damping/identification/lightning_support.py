@@ -1,6 +1,7 @@
 """What Lightning needs in order to be a quiet, reproducible and interruptible part of a program."""
 
 import ctypes
+import io
 import logging
 import signal
 import sys
@@ -15,7 +16,9 @@ import lightning as L
 import torch
 from lightning.pytorch.callbacks import Callback, EarlyStopping, ModelCheckpoint
 from lightning.pytorch.loggers import TensorBoardLogger
+from lightning.pytorch.plugins.io import TorchCheckpointIO
 
+from gear_damping.errors import written_whole
 from gear_damping.identification.seeding import derived_seed
 
 # Below this batch size a second thread costs more than it brings: LSTM of 60 units on 30 samples, windows
@@ -94,6 +97,19 @@ class PortableCheckpoint(ModelCheckpoint):
         kth = moved(state_dict["kth_best_model_path"])
         changed = {"dirpath": self.dirpath, "best_k_models": best_k, "kth_best_model_path": kth, **paths}
         super().load_state_dict({**state_dict, **changed})
+
+
+class WholeCheckpoints(TorchCheckpointIO):
+    """Checkpoints that are written beside their place and then put there: Lightning goes by way of another disk."""
+
+    def save_checkpoint(self, checkpoint: dict[str, Any], path: str | Path, storage_options: Any = None) -> None:
+        """Write a checkpoint whole or not at all."""
+        path = Path(path)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with written_whole(path) as unfinished, unfinished.open("wb") as file:
+            content = io.BytesIO()  # torch's own writer dies of a full disk without saying why
+            torch.save(checkpoint, content)
+            file.write(content.getbuffer())
 
 
 @contextmanager

@@ -6,7 +6,6 @@ needs its file named beside it.
 
 import hashlib
 import json
-import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -14,7 +13,7 @@ from typing import Any
 import safetensors.torch
 import torch
 
-from gear_damping.errors import InputError, Problem, writing
+from gear_damping.errors import InputError, Problem, written_whole
 from gear_damping.identification.lightning_module import DampingModule
 
 FORMAT = "gear_damping.network"
@@ -84,9 +83,11 @@ def write_shared(module: DampingModule, folder: Path) -> tuple[Path, Path]:
     description, weights = (folder / (STEM + suffix) for suffix in (DESCRIPTION, WEIGHTS))
     tensors = {name: tensor.detach().cpu().contiguous() for name, tensor in module.state_dict().items()}
     content = safetensors.torch.save(tensors, {"format": "pt"})
-    _write(weights, content)
+    with written_whole(weights) as unfinished:
+        unfinished.write_bytes(content)
     said = description_of(module) | {"weights_sha256": hashlib.sha256(content).hexdigest()}
-    _write(description, (json.dumps(said, indent=1) + "\n").encode())
+    with written_whole(description) as unfinished:
+        unfinished.write_text(json.dumps(said, indent=1) + "\n")
     return description, weights
 
 
@@ -105,14 +106,6 @@ def read_description(path: Path) -> dict[str, Any]:
     if not isinstance(content, dict):
         raise InputError(Problem(KEY, "describes no estimator", str(path), "give what `save` of an estimator wrote"))
     return content
-
-
-def _write(path: Path, content: bytes) -> None:
-    """Whole or not at all."""
-    unfinished = path.with_name(path.name + ".part")
-    with writing(path):
-        unfinished.write_bytes(content)
-        os.replace(unfinished, path)
 
 
 def _from_checkpoint(path: Path, plugins: Sequence[str]) -> DampingModule:

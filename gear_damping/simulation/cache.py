@@ -7,7 +7,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from gear_damping.errors import writing
+from gear_damping.errors import written_whole
 from gear_damping.physics.model import Model
 from gear_damping.simulation.runs import Runs
 
@@ -20,12 +20,10 @@ def save_runs(folder: Path, key: str, manifest: dict, runs: Runs) -> Path:
     arrays = {f"{g}/{k}": v.numpy() for g in GROUPS for k, v in getattr(runs, g).items()}
     arrays |= {"status": runs.status.numpy(), "reference_velocity": runs.reference_velocity.numpy()}
     target = folder / f"{key}.npz"
-    unfinished = target.with_suffix(".part.npz")
-    with writing(unfinished):
-        np.savez(unfinished, sampling_rate=runs.sampling_rate, **arrays)
-    unfinished.replace(target)
+    with written_whole(target) as unfinished, unfinished.open("wb") as file:
+        np.savez(file, sampling_rate=runs.sampling_rate, **arrays)
     note = {"hash": key, "n_diverged": runs.n_diverged, "plan": manifest}
-    with writing(target.with_suffix(".json")) as path:
+    with written_whole(target.with_suffix(".json")) as path:
         path.write_text(json.dumps(note, indent=1, sort_keys=True))
     return target
 

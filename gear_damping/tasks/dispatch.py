@@ -116,8 +116,9 @@ def _close(run_folder: RunFolder, status: str, error: str | None = None) -> None
 def _not_written(error: OSError, folder: Path) -> Problem:
     """The problem with a file of the run; one without a name is a file that was being written."""
     rule = error.strerror or str(error)
-    if error.filename is not None:
-        return Problem(str(error.filename), rule, remedy="make room, give the right to it, or name another place")
+    name = error.filename2 or error.filename  # of two, the one that was to be written
+    if name is not None:
+        return Problem(str(name), rule, remedy="make room, give the right to it, or name another place")
     rule = f"a file of the run could not be written: {rule}"
     return Problem("hydra.run.dir", rule, str(folder), "make room there and in data_folder, or name other folders")
 

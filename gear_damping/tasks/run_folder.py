@@ -4,7 +4,6 @@ import hashlib
 import json
 import logging
 import math
-import os
 import subprocess
 import sys
 import time
@@ -17,7 +16,7 @@ from typing import Any
 
 from gear_damping.config.measured import INSPECT, YAML_SUFFIXES
 from gear_damping.config.source import Origin
-from gear_damping.errors import Problem, writing
+from gear_damping.errors import Problem, written_whole
 
 log = logging.getLogger("gear_damping")
 RUNNING, FINISHED, FAILED, INTERRUPTED = "running", "finished", "failed", "interrupted"
@@ -73,8 +72,8 @@ class RunFolder:
         return write_json(self.path / name, content)
 
     def write_text(self, name: str, text: str) -> None:
-        """Write a text into the folder."""
-        with writing(self.path / name) as path:
+        """Write a text into the folder, whole or not at all."""
+        with written_whole(self.path / name) as path:
             path.write_text(text)
 
     def _write(self) -> None:
@@ -107,10 +106,8 @@ def read_record(folder: Path) -> dict[str, Any] | None:
 
 def write_json(path: Path, content: Any) -> Path:
     """Write JSON that any reader understands: numbers that are not finite become null."""
-    unfinished = path.with_name(path.name + ".part")
-    with writing(path):
+    with written_whole(path) as unfinished:
         unfinished.write_text(json.dumps(_plain(content), indent=2, allow_nan=False) + "\n")
-        os.replace(unfinished, path)
     return path
 
 

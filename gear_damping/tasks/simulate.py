@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from gear_damping.config.settings import Settings
-from gear_damping.errors import writing
+from gear_damping.errors import written_whole
 from gear_damping.interface.simulated import run_figure
 from gear_damping.measurement.write import write_measurement
 from gear_damping.reporting import figures
@@ -29,8 +29,8 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     arrays = {name: signal.numpy() for name, signal in channels.items()}
     values = {f"parameters/{name}": value.numpy() for name, value in runs.values.items()}
     ratio = runs.damping_ratio_percent.numpy()
-    with writing(folder.path / "runs.npz") as path:
-        np.savez(path, t=runs.time.numpy(), damping_ratio_percent=ratio, **arrays, **values)
+    with written_whole(folder.path / "runs.npz") as path, path.open("wb") as file:
+        np.savez(file, t=runs.time.numpy(), damping_ratio_percent=ratio, **arrays, **values)
     folder.write_json("manifest.json", {"hash": plan.hash, "n_diverged": runs.n_diverged, "plan": plan.describe()})
     if settings.write_measurement:
         records, system = as_records(runs, channels), runs.model.system.name

@@ -1,6 +1,7 @@
 """Training: learning happens, stops, resumes, is interrupted, and leaves checkpoints that predict alone."""
 
 import logging
+import resource
 import signal
 from dataclasses import replace
 
@@ -13,6 +14,7 @@ from gear_damping.identification import datamodule as datamodule_file
 from gear_damping.identification.controls import mean_predictor
 from gear_damping.identification.datamodule import Material, WindowDataModule
 from gear_damping.identification.lightning_module import CWT_LSTM, RAW_LSTM
+from gear_damping.identification.lightning_support import WholeCheckpoints
 from gear_damping.identification.metrics import rmse_percent
 from gear_damping.identification.noise import SensorNoise
 from gear_damping.identification.protocols import BY_RUN, PAPER_MANY_RUNS
@@ -156,6 +158,21 @@ def test_files_that_are_no_checkpoint_are_refused(content, tmp_path):
         path.write_bytes(content)
     with pytest.raises(InputError, match="must be a checkpoint"):
         load_estimator(path)
+
+
+def test_a_checkpoint_that_finds_no_room_leaves_the_one_before(trained, tmp_path):
+    path, held = tmp_path / "last.ckpt", (trained[0] / "last.ckpt").read_bytes()
+    path.write_bytes(held)
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (2000, limits[1]))
+    try:
+        with pytest.raises(OSError, match="too large") as caught:
+            WholeCheckpoints().save_checkpoint({"weights": torch.zeros(10_000)}, path)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert caught.value.filename == str(path)
+    assert path.read_bytes() == held
+    assert [one.name for one in tmp_path.iterdir()] == ["last.ckpt"]
 
 
 @pytest.mark.parametrize("same_folder", [True, False])

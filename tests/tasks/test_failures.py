@@ -107,6 +107,7 @@ def test_a_file_that_cannot_be_written_is_named(tmp_path, said):
     text = said()
     assert f"{tmp_path / 'data'}{os.sep}" in text
     assert f".npz: {os.strerror(errno.EFBIG)}" in text
+    assert not list((tmp_path / "data").iterdir())  # nothing half-written
     assert json.loads((tmp_path / "run" / "run.json").read_text())["status"] == "failed"
 
 

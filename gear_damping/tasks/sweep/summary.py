@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from gear_damping.config.quantities import number_of
-from gear_damping.errors import InputError, Problem, writing
+from gear_damping.errors import InputError, Problem, written_whole
 from gear_damping.reporting.run_report import REPORT
 from gear_damping.tasks.run_folder import FINISHED, RUNNING, read_record
 from gear_damping.tasks.sweep.folder import NOTE, Sweep, read_sweep
@@ -60,7 +60,7 @@ def summarise(folder: Path) -> Summary:
         replace(sweep, complete=found.is_complete).write(folder)
     if not rows:
         return found
-    with writing(folder / TABLE) as path:
+    with written_whole(folder / TABLE) as path:
         tables.write_csv(rows, path)
     files = [folder / TABLE]
     for name, figure in figures.sweep_figures(finished, sweep.keys, (FIGURE, MAP)).items():
