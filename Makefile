@@ -11,7 +11,7 @@ PYTEST := $(BIN)/python -m pytest -n auto --dist worksteal
 ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test test-sweeps test-slurm test-pages check bench estimators limit window plan-check blind power p-values fuzz docs clean
+.PHONY: help setup run test test-sweeps test-slurm test-pages check bench estimators limit window coverage alarm plan-check blind real power p-values fuzz docs clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-11s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -85,6 +85,12 @@ limit: setup  ## train and evaluate beside the bound, into outputs/limit and doc
 window: setup  ## what one window of 30 samples tells, exactly, beside the networks of windows, into docs/limit.md (40 minutes)
 	$(BIN)/python -m benchmarks.window $(ARGS)
 
+coverage: setup  ## whether the damping's interval holds the truth before and after explain, into docs/coverage.md (resumes)
+	$(BIN)/python -m benchmarks.coverage $(ARGS)
+
+alarm: setup  ## how often a network's alarm sounds on hidden effects and other rigs, into docs/limit.md (resumes)
+	$(BIN)/python -m benchmarks.alarm $(ARGS)
+
 plan-check: setup  ## what test plans promise beside what 1000 simulated tests show, into docs/plan.md (about 15 minutes)
 	$(BIN)/python -m benchmarks.test_plan $(ARGS)
 
@@ -93,6 +99,9 @@ bench: setup  ## time simulation, transforms and training beside other libraries
 
 blind: setup  ## hide effects in measurements, have them explained, write outputs/blind (resumes; 85 minutes at most)
 	$(BIN)/python -m tests.blind $(ARGS)
+
+real: setup  ## what explain says of real records whose answer is known, into docs/real_records.md (10 minutes)
+	$(BIN)/python -m benchmarks.real_records $(ARGS)
 
 power: setup  ## how small an effect is found, beside how small anybody could find it (85 minutes at most, resumes)
 	$(BIN)/python -m tests.blind.power $(ARGS)

@@ -39,15 +39,15 @@ HIDDEN = {
     "speed 0.1 % higher": ["simulator.pinion_speed_rpm=4604.6"],
     "speed 0.5 % higher": ["simulator.pinion_speed_rpm=4623"],
     "no backlash": ["simulator.backlash=null"],
-    "eccentricity of the pinion, 5 um": ["+simulator.pinion_eccentricity={eccentricity: 5.0e-6}"],
+    "eccentricity of the pinion, 5 um": ["+simulator.pinion_eccentricity={amplitude: 5.0e-6}"],
     "profile error, 3 and 1 um": ["+simulator.profile_error={}"],
     "tooth crack": ["+simulator.tooth_crack={}"],
     "dry friction of the mesh": ["+simulator.coulomb_friction={}"],
     "torque ripple": ["+simulator.torque_ripple={}"],
     "other rig: 21 teeth": ["simulator.n_teeth_pinion=21"],
     "other rig: gear of 1.1 times the inertia": ["simulator.inertia_gear=4.95e-3"],
-    "other rig: mesh 1 % stiffer": ["simulator.fourier_mesh_stiffness.maximum=4.04e8",
-                                    "simulator.fourier_mesh_stiffness.minimum=2.02e8"],
+    "other rig: mesh 1 % stiffer": ["+simulator.fourier_mesh_stiffness.maximum=4.04e8",
+                                    "+simulator.fourier_mesh_stiffness.minimum=2.02e8"],
 }  # fmt: skip
 
 

@@ -1,12 +1,20 @@
 """The alarm of a network: records like those of the training pass, others do not, at any level of noise."""
 
 import math
+from pathlib import Path
 
 import pytest
 import torch
 
+from gear_damping.identification.datamodule import Material, WindowDataModule
 from gear_damping.identification.familiarity import LEAST_RUNS, Components, components_for
+from gear_damping.identification.lightning_module import EstimatorConfig
 from gear_damping.identification.noise import SensorNoise
+from gear_damping.identification.protocols import Protocol
+from gear_damping.identification.runs import RunSet
+from gear_damping.identification.trainer import build_estimator, fit_components, fit_front_end
+from gear_damping.interface.estimator import NetworkEstimator
+from gear_damping.measurement.record import Channel, Measurement, Record
 
 SAMPLES, RUNS = 400, 600
 
@@ -56,3 +64,39 @@ def test_one_record_is_told_in_words(components):
 
 def test_too_few_runs_tell_nothing():
     assert components_for(LEAST_RUNS - 1, 500) == components_for(500, LEAST_RUNS - 1) == 0
+
+
+def trained(runs):
+    """A network of windows that has learnt what its records are like, and nothing else."""
+    labels = torch.linspace(0.1, 0.6, runs)
+    run_set = RunSet(decays(runs, 9), labels, 1e3, "decays", {}, "oscillator", "displacement", "m")
+    data = WindowDataModule(Material(run_set, Protocol(validation_fraction=0.4), SensorNoise((10.0, 40.0))))
+    module = build_estimator(EstimatorConfig("raw_lstm"), data, 1e-3)
+    fit_front_end(module, data)
+    fit_components(module, data)
+    return module.eval()
+
+
+def recorded(values):
+    channel = Channel("displacement", values.double().numpy(), "m")
+    stamps = torch.arange(len(values)).double().numpy() / 1e3
+    record = Record("a", Path(), "", None, 1e3, stamps, {channel.name: channel})
+    return Measurement("oscillator", {}, (record,), Path("m.yaml"))
+
+
+def test_a_network_says_so_of_a_record():
+    module = trained(300)
+    values = noisy(decays(1, 10), 30.0, 11)[0]
+    known, other, short = (
+        NetworkEstimator(module).predict(recorded(one))["a"]
+        for one in (values, values + decays(1, 10, second=0.2)[0] - decays(1, 10)[0], values[:-1])
+    )
+    assert not any("no run of the training holds" in sentence for sentence in known.outside)
+    assert other.familiarity.sentence in other.outside
+    assert short.familiarity is None
+
+
+def test_a_network_of_few_runs_does_not_pretend_to_know():
+    module = trained(100)
+    assert module.components is None
+    assert NetworkEstimator(module).predict(recorded(decays(1, 10)[0]))["a"].familiarity is None
