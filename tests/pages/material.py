@@ -22,15 +22,15 @@ def make(folder: Path) -> None:
     _run("train", ["experiment=backlash", *QUICK])
     (training,) = Path("outputs/train/backlash").iterdir()
     quick = [word for word in QUICK if not word.startswith("training")]
-    levels = "evaluation.snr_db=[30,10]"
-    _run("evaluate", ["task=evaluate", "experiment=backlash", f"checkpoint={training}", levels, *quick])
+    asked = ["task=evaluate", "experiment=backlash", f"checkpoint={training}", "evaluation.snr_db=[30,10]"]
+    _run("evaluate", [*asked, *quick])
     rig = ["measurement.path=measurement.yaml", "simulator=oscillator", "family=none", "progress=false"]
     _run("identify", ["task=identify", *rig])
     _run("identify", ["task=identify", "model=classical", "name=classical", *rig], "classical")
     _run("explain", ["task=explain", *rig])
     _run("sweep", ["--multirun", "experiment=noise", "simulator.load_noise.snr_db=1,20", *QUICK])
-    failing = ["measurement.path=decay.csv", "name=failing", "measurement.plugins=[none.py]"]
-    _run("inspect", ["task=inspect", *failing], code=1)
+    failing = ["task=inspect", "measurement.path=decay.csv", "name=failing", "measurement.plugins=[none.py]"]
+    _run("inspect", failing, code=1)
 
 
 def _run(task: str, words: list[str], name: str = "*", code: int = 0) -> None:

@@ -155,6 +155,18 @@ FIT = {
     "damping_ratio_percent": {"value": 0.5, "interval95": [0.4, 0.6], "unit": "%"}, "natural_frequency_hz": None,
     "records": {"a": {"role": "fit", "rmse": 0.1, "unit": "m"}}, "converged": True, "lack_of_fit": None,
 }  # fmt: skip
+UNSUITED = {"damping_ratio_percent": None, "unsuited": "it is too short"}
+CLASSICAL = {
+    "channels": {"a": {"channel": "x", "unit": "m"}},
+    "records": {"a": {"half_power": UNSUITED, "log_decrement": {
+        "damping_ratio_percent": 0.5, "interval95": [0.4, 0.6], "frequency_hz": 1.0, "amplitudes": [2.0, 1.0]}}},
+    "laws": {"a": {"extended simulation": {"damping_ratio_percent": 0.7}}},
+}  # fmt: skip
+NETWORK = {
+    "method": "network", "parameters": {}, "damping_ratio_percent": {"value": 0.5, "interval95": None},
+    "records": {"a": {"damping_ratio_percent": 0.5, "interval95": [0.4, 0.6], "spread_percent": 0.1,
+                      "outside_training": ["sampling rate"]}},
+}  # fmt: skip
 LEFT = {
     "train": ("results.json", results(0.05), "predicted_against_true.png"),
     "evaluate": ("evaluation.json", evaluation(0.05), "evaluation.png"),
@@ -203,6 +215,23 @@ def test_every_report_of_a_run(tmp_path):
         assert problems(page) == [], task
         assert page.count("<img") == 1
         assert "abc, changed" in page
+
+
+def test_an_identification_by_estimators_of_records(tmp_path):
+    (tmp_path / "damping.json").write_text(json.dumps(CLASSICAL))
+    page = run_report("identify", tmp_path)
+    assert problems(page) == []
+    for said in ("0.5 … 0.7 % of critical", "2 … 1 m", "<code>half_power</code> says nothing of a: it is too short.",
+                 "<code>extended simulation</code>"):  # fmt: skip
+        assert said in page
+
+
+def test_an_identification_by_a_network(tmp_path):
+    page = run_report("identify", tmp_path, NETWORK)
+    assert problems(page) == []
+    assert "Damping ratio 0.5 % of critical, by a network." in page
+    assert "Not to be relied on for a" in page
+    assert 'class="verdict doubtful"' in page
 
 
 def test_the_sweep(tmp_path):

@@ -71,8 +71,9 @@ def _overlay(left: Left, content: Mapping[str, Any]) -> list[Picture]:
 
 def _of_estimators(left: Left, content: Mapping[str, Any]) -> RunReport:
     rows, silent = [], {}
-    for record, found in {**content["records"], **_laws(content)}.items():
-        for name, one in found.items():
+    laws = content.get("laws") or {}
+    for record, found in content["records"].items():
+        for name, one in (found | laws.get(record, {})).items():
             if one["damping_ratio_percent"] is None:
                 silent.setdefault((name, one.get("unsuited") or ""), []).append(record)
             else:
@@ -91,15 +92,6 @@ def _of_estimators(left: Left, content: Mapping[str, Any]) -> RunReport:
     caption = "Damping against amplitude. Where it rises or falls, damping is not viscous."
     section = Section("Record by record", notes, [table], left.picture("damping.png", caption, alt))
     return RunReport("Identification", _title(content), [lead], FINE if ratios else DOUBTFUL, [section])
-
-
-def _laws(content: Mapping[str, Any]) -> dict[str, Any]:
-    """Fitted simulations beside the estimators, by record."""
-    found: dict[str, Any] = {}
-    for law, by_record in (content.get("laws") or {}).items():
-        for record, one in by_record.items():
-            found.setdefault(record, dict(content["records"].get(record, {})))[law] = one
-    return found
 
 
 def _told(one: Mapping[str, Any], unit: str) -> tuple[str, ...]:
