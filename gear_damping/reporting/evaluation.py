@@ -47,7 +47,7 @@ def ratio_table(content: Mapping[str, Any]) -> str:
     rows = [f"| SNR / dB | RMSE / % of | {' | '.join(ranges)} |", "|---" * (len(ranges) + 2) + "|"]
     for snr, level in content["snr_db"].items():
         for name, found in level["estimators"].items():
-            errors = (f"{band['rmse_percent']:.4f}" for band in found["by_damping_ratio"])
+            errors = (_to(band["rmse_percent"], "{:.4f}") for band in found["by_damping_ratio"])
             rows.append(f"| {'no noise' if float(snr) >= NO_NOISE else snr} | `{name}` | {' | '.join(errors)} |")
     return "\n".join(rows)
 

@@ -104,7 +104,7 @@ def _rows(results: Mapping[str, Any]) -> list[tuple[str, ...]]:
 
 def _row(name: str, found: Mapping[str, Any], several: bool) -> tuple[str, ...]:
     error, epochs, skill = found["rmse_percent"], found["epochs"], found["skill"]
-    spread = f" ± {error['std']:.4f}" if several else ""
+    spread = f" ± {error['std']:.4f}" if several and error["std"] is not None else ""
     return (
         name,
         number(error["mean"]) + spread,

@@ -263,6 +263,14 @@ def test_a_network_no_better_than_noise_is_said_first(tmp_path):
     assert 'class="verdict doubtful"' in run_report("identify", tmp_path, FIT | {"converged": False})
 
 
+def test_what_is_not_finite_stands_in_a_report_as_a_dash(tmp_path):
+    """JSON knows no such numbers: they are null in what a run leaves."""
+    lost = results(None)
+    lost["models"]["raw_lstm"] |= {"rmse_percent": {"mean": None, "std": None}, "rmse_paper": None, "skill": None}
+    assert "No network says a number." in run_report("train", tmp_path, lost | {"seeds": [0, 1]})
+    assert "no estimator answered" in run_report("evaluate", tmp_path, evaluation(None))
+
+
 def test_the_table_is_that_of_the_terminal(tmp_path):
     found = markdown_table("", tables.results_markdown(results(0.05)))
     assert found.headings == list(tables.COLUMNS)

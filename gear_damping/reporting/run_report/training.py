@@ -42,13 +42,16 @@ def control_sentences(results: Mapping[str, Any]) -> list[str]:
         f"{name} ({error:.4g} %) is no better than a network that was fed white noise ({blind:.4g} %): "
         "under this protocol its figure says nothing about damping"
         for name, error in errors.items()
-        if error > NO_BETTER * blind
+        if error is not None and blind is not None and error > NO_BETTER * blind
     ]
 
 
 def _lead(results: Mapping[str, Any]) -> str:
     errors = {name: found["rmse_percent"]["mean"] for name, found in results["models"].items()}
-    best = min(errors, key=errors.__getitem__)
+    known = {name: error for name, error in errors.items() if error is not None}
+    if not known:
+        return "No network says a number."
+    best = min(known, key=known.__getitem__)
     mean = results["controls"]["mean"]["rmse_percent"]["mean"]
     return (
         f"`{best}` misses the damping ratio of test windows by {number(errors[best])} % of critical (RMSE); always "
