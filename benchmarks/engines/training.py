@@ -54,7 +54,7 @@ def torch_bare(batch_size: int, windows: int, epochs: int, validation: int) -> R
     import torch
 
     from gear_damping.identification.lightning_module import RAW_LSTM
-    from gear_damping.identification.trainer import build_estimator, fit_front_end
+    from gear_damping.identification.untrained import build_estimator, fit_front_end
 
     data = _data(batch_size, windows)
 

@@ -3,6 +3,8 @@
 from collections.abc import Callable
 from pathlib import Path
 
+import torch
+
 from gear_damping.config.folders import RESUMABLE, resumable
 from gear_damping.config.light import no_file
 from gear_damping.config.whole import Found, Whole, typed
@@ -91,6 +93,13 @@ def _evaluated(whole: Whole) -> Found:
         yield "evaluation.snr_db", rule, whole["evaluation"]["snr_db"], "leave one of them out"
 
 
+def _devices(whole: Whole) -> Found:
+    """Processes of one training stand on a GPU each, or all on cores."""
+    count, asked = torch.cuda.device_count(), whole["training"]["devices"]
+    if 0 < count < asked:
+        yield "training.devices", f"exceeds the GPUs of this machine, {count}", asked, f"training.devices={count}"
+
+
 def _noise_twice(whole: Whole) -> Found:
     """The noise of training records is drawn, or is that of the simulated sensor."""
     drawn = whole["training"]["noise_snr_db"]
@@ -145,6 +154,7 @@ BY_TASK: tuple[tuple[tuple[str, ...], Callable[[Whole], Found]], ...] = (
     (("task", "model", "protocol"), _whole_records),
     (("task", "evaluation", "simulator", "family"), _evaluated),
     (("task", "training", "simulator"), _noise_twice),
+    (("training",), _devices),
     (("task", "resume"), _resume),
     (("task", "explain", "ruled_out"), _of_a_search),
     (("task", "sweep"), _collected),

@@ -55,6 +55,7 @@ SCHEMA: dict[str, Any] = {
         "schedule": OneOf(("constant", "cosine")),
         "gradient_clip": Given(Number(0, 1e6, exclusive=True), optional=True),
         "noise_snr_db": Given(Levels(Number(-100, 200), ascend=True), optional=True),
+        "devices": Number(1, 64, whole=True),
     },
     "evaluation": {
         "snr_db": Given(Levels(Number(-100, 200)), optional=True),

@@ -8,6 +8,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.identification.noise import SensorNoise, ac_rms_of_runs, noisy_records
+from gear_damping.identification.processes import WHOLE, Share
 from gear_damping.identification.protocols import Protocol
 from gear_damping.identification.runs import RunSet
 from gear_damping.identification.seeding import seeded_generator
@@ -57,6 +58,7 @@ class WindowBatches:
         seed: Seed of order and noise.
         draw: Windows drawn afresh, without replacement, for each epoch; None gives all in their order.
         epoch: Says which epoch it is.
+        share: The part of every batch that this process takes.
     """
 
     def __init__(
@@ -66,8 +68,10 @@ class WindowBatches:
         seed: int,
         draw: int | None = None,
         epoch: Callable[[], int] = lambda: 0,
+        share: Share = WHOLE,
     ) -> None:
         self.source, self.batch_size, self.seed, self.draw, self.epoch = source, batch_size, seed, draw, epoch
+        self.share = share
         self.n_windows = len(source.index) if draw is None else min(draw, len(source.index))
 
     def __len__(self) -> int:
@@ -77,7 +81,8 @@ class WindowBatches:
         device = self.source.values.device
         noise = seeded_generator(self.seed, "batch noise", self.epoch(), device=device)
         for chosen in self._order().to(device).split(self.batch_size):
-            yield self.source.batch(chosen, noise)
+            inputs, labels = self.source.batch(chosen, noise)
+            yield self.share.part(inputs), self.share.part(labels)
 
     def _order(self) -> Tensor:
         if self.draw is None:
@@ -136,6 +141,7 @@ class WindowDataModule(L.LightningDataModule):
         self.run_set, self.test_runs = material.run_set, material.test_runs or material.run_set
         self.protocol, self.noise = material.protocol, material.noise
         self.batch_size, self.evaluation_batch_size = batch_size, evaluation_batch_size
+        self.share = WHOLE  # of the training batches; every process validates on all runs
         self.split = self.protocol.split(self.run_set, seed, material.test_runs)
         self._sources: dict[tuple[str, torch.device], WindowSource] = {}
         self.use_signals()
@@ -181,7 +187,8 @@ class WindowDataModule(L.LightningDataModule):
         """Batches of the epoch that the trainer is in."""
         source = self._source("train")
         draw = self.protocol.windows_per_epoch or len(source.index)
-        return WindowBatches(source, self.batch_size, self.seed, draw, lambda: self.trainer.current_epoch)
+        epoch = lambda: self.trainer.current_epoch  # noqa: E731 - asked anew at each pass
+        return WindowBatches(source, self.batch_size, self.seed, draw, epoch, self.share)
 
     def val_dataloader(self) -> WindowBatches:
         """All validation windows in their order."""

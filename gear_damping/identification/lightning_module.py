@@ -14,6 +14,7 @@ from gear_damping.identification.catalogue import kind_of, make_wavelet
 from gear_damping.identification.estimators.base import LearnedEstimator, RecordNetwork
 from gear_damping.identification.familiarity import Components
 from gear_damping.identification.features import FrontEnd
+from gear_damping.identification.networks import DampingNetwork
 from gear_damping.identification.trained_on import TrainedOn
 from gear_damping.identification.windows import gather_windows, window_starts, windows_of_runs
 
@@ -131,7 +132,7 @@ class DampingModule(L.LightningModule):
         """Loss of one batch."""
         loss, found = self.network.loss(self.front_end(batch[0]), batch[1])
         self._count("train", loss, found, batch[1])
-        return loss
+        return loss if self.trainer.world_size == 1 else loss * self._weight(loss.detach(), len(found))
 
     def validation_step(self, batch: tuple[Tensor, Tensor], _: int) -> None:
         """Collect the errors, so that the figures are those of the whole set, not a mean over batches."""
@@ -155,8 +156,9 @@ class DampingModule(L.LightningModule):
         Once an epoch: logging each step costs about as much as the step.
         """
         rate = self.trainer.optimizers[0].param_groups[0]["lr"]
-        errors = {part: squares.take() ** 0.5 for part, squares in self._squares.items()}
-        losses = {part: values.take() for part, values in self._losses.items()}
+        many = self.trainer.world_size > 1
+        errors = {part: self._mean(part, squares) ** 0.5 for part, squares in self._squares.items()}
+        losses = {part: self._mean(part, values) for part, values in self._losses.items()}
         shown = losses if self.network.is_likelihood else errors
         epoch = {
             "train_loss": shown["train"],
@@ -167,9 +169,28 @@ class DampingModule(L.LightningModule):
         if self._said:
             self.network.calibrate(*(torch.cat(column) for column in zip(*self._said, strict=True)))
             self._said.clear()
-        self.log_dict({name: epoch[name] for name in ("train_loss", "val_loss", "learning_rate")}, batch_size=1)
-        self.log("val_rmse_percent", errors["val"], batch_size=1, prog_bar=True)
+        self.log_dict({name: epoch[name] for name in ("train_loss", "val_loss", "learning_rate")}, batch_size=1,
+                      sync_dist=many)
+        self.log("val_rmse_percent", errors["val"], batch_size=1, prog_bar=True, sync_dist=many)
         self.history.append(epoch)
+
+    def _weight(self, loss: Tensor, members: int) -> Tensor:
+        """What makes the mean of the gradients of all processes that of the loss of the whole batch.
+
+        Of a mean that is the share of the members, n W / N; of the root of one, L, also L / L of the whole batch.
+        """
+        own = torch.stack([torch.full_like(loss, members), members * loss.square()])
+        number, squares = self.trainer.strategy.reduce(own, reduce_op="sum")
+        share = members * self.trainer.world_size / number
+        is_root = type(self.network).loss is DampingNetwork.loss
+        return share * loss / (squares / number).sqrt() if is_root else share
+
+    def _mean(self, part: str, values: "_Mean") -> float:
+        """The mean of an epoch; of training over what every process saw, each having seen its share."""
+        if part == "train" and self.trainer.world_size > 1:
+            sums = torch.tensor([float(values.total), values.count], device=self.device)
+            values.total, values.count = self.trainer.strategy.reduce(sums, reduce_op="sum").tolist()
+        return values.take()
 
     def configure_optimizers(self) -> dict[str, Any]:
         """Adam, fused into one call for all weights: three times less per step for a network this small."""

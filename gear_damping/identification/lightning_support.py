@@ -45,7 +45,8 @@ class EpochSeeds(Callback):
 
     def on_train_epoch_start(self, trainer: L.Trainer, pl_module: L.LightningModule) -> None:
         """Seed the epoch."""
-        torch.manual_seed(derived_seed(self.seed, "dropout", trainer.current_epoch))
+        own = [] if trainer.global_rank == 0 else [trainer.global_rank]  # each process drops others
+        torch.manual_seed(derived_seed(self.seed, "dropout", trainer.current_epoch, *own))
 
 
 class EventsLogger(TensorBoardLogger):

@@ -12,11 +12,10 @@ import lightning as L
 import torch
 from lightning.pytorch.callbacks import Callback, RichProgressBar
 from lightning.pytorch.plugins.environments import LightningEnvironment
+from lightning.pytorch.strategies import DDPStrategy
 from torch import Tensor
 
-from gear_damping.identification.catalogue import kind_of
-from gear_damping.identification.datamodule import WindowDataModule
-from gear_damping.identification.familiarity import components_for
+from gear_damping.identification.datamodule import Material, WindowDataModule
 from gear_damping.identification.lightning_module import CONSTANT, COSINE, DampingModule, EstimatorConfig
 from gear_damping.identification.lightning_support import (
     EpochSeeds,
@@ -31,9 +30,10 @@ from gear_damping.identification.lightning_support import (
     threads,
 )
 from gear_damping.identification.metrics import epochs_to_convergence
+from gear_damping.identification.processes import Share, in_processes
 from gear_damping.identification.saved import load_estimator
 from gear_damping.identification.seeding import derived_seed
-from gear_damping.identification.trained_on import TrainedOn
+from gear_damping.identification.untrained import build_estimator, fit_components, fit_front_end
 
 SCHEDULES = (CONSTANT, COSINE)
 _MONITOR = "val_loss"  # the RMSE, but of networks with a likelihood
@@ -52,6 +52,7 @@ class Training:
         gradient_clip: Norm that a gradient is cut to; None for none.
         noise_snr_db: Limits between which the sensor noise of each record is drawn, in the place of that of the
             simulator; None: as simulated.
+        devices: Processes that share every batch: on as many GPUs where this machine has them, else on its cores.
     """
 
     max_epochs: int = 40
@@ -61,11 +62,12 @@ class Training:
     schedule: str = CONSTANT
     gradient_clip: float | None = None
     noise_snr_db: tuple[float, float] | None = None
+    devices: int = 1
 
     def __post_init__(self) -> None:
         if self.schedule not in SCHEDULES:
             raise ValueError(f"schedule must be one of {', '.join(SCHEDULES)}, got {self.schedule!r}")
-        for name in ("max_epochs", "batch_size", "patience", "learning_rate"):
+        for name in ("max_epochs", "batch_size", "patience", "learning_rate", "devices"):
             if not getattr(self, name) > 0:
                 raise ValueError(f"{name} must be positive, got {getattr(self, name)!r}")
 
@@ -164,62 +166,42 @@ def fit_estimator(
         fit_front_end(module, data)
         fit_components(module, data)
         finished = resume is not None and _take_over(Path(resume), folder, module, training)
-        logger = EventsLogger(folder)
-        if not finished:
-            trainer = _trainer(training, folder, logger, seed, shown.progress)
-            _fit(trainer, module, data, None if resume is None else folder / "last.ckpt")
+        fit = _Fit(config, training, folder, None if resume is None else folder / "last.ckpt", seed, shown.progress)
+        if not finished and training.devices > 1:
+            in_processes(training.devices, _fit_share, fit, data.material, data.seed)
+        elif not finished:
+            _fit(fit, module, data)
         result = _result(module, folder)
+        logger = EventsLogger(folder)
         table = {"seed": seed, **shown.hparams}
         logger.log_hyperparams(table, {"hp/val_rmse_percent": result.best_validation_rmse})
         logger.finalize("success")
     return result
 
 
-def build_estimator(config: EstimatorConfig, data: WindowDataModule, learning_rate: float) -> DampingModule:
-    """The untrained estimator of a configuration for these windows; it starts at the mean label."""
-    transforms = kind_of(config.estimator, config.plugins).transforms
-    module = DampingModule(
-        estimator=config.estimator,
-        data={
-            "id": str(data.run_set.id),
-            "sampling_rate": float(data.run_set.sampling_rate),
-            "window": int(data.protocol.window),
-            "whole_run": transforms and config.whole_run_columns and data.protocol.chronological,
-            "trained_on": TrainedOn.of(data.run_set, data.split.train[:, 0]).plain(),
-            "record": int(data.run_set.n_samples),
-            "components": components_for(*map(len, _told_apart(data))),
-        },
-        settings=dict(config.settings),
-        wavelet=dict(config.wavelet) if transforms else None,
-        learning_rate=float(learning_rate),
-        plugins=config.plugins,
-    )
-    module.network.begin(data.training_labels)
-    return module
+@dataclass(frozen=True)
+class _Fit:
+    """What every process of a fit needs to know."""
+
+    config: EstimatorConfig
+    training: Training
+    folder: Path
+    checkpoint: Path | None
+    seed: int
+    progress: bool
 
 
-def fit_front_end(module: DampingModule, data: WindowDataModule) -> None:
-    """Fit the normalisation on training windows; give `data` its whole-run columns where they are used."""
-    with torch.no_grad():
-        data.use_signals()
-        module.front_end.fit_signal(data.training_inputs())
-        if module.data["whole_run"]:
-            data.use_columns(module.front_end.columns)
-        module.front_end.fit_features(data.training_inputs())
-
-
-def fit_components(module: DampingModule, data: WindowDataModule) -> None:
-    """Learn what the records of the training are like, from their runs and from those of validation."""
-    if module.components is not None:
-        own, others = (data.run_set.signals[runs] for runs in _told_apart(data))
-        with torch.no_grad():
-            module.components.fit(own, others, data.noise, data.seed)
-
-
-def _told_apart(data: WindowDataModule) -> tuple[Tensor, Tensor]:
-    """Runs of training and of validation; none where a protocol cuts inside them."""
-    none = torch.zeros(0, dtype=torch.long)
-    return (none, none) if data.protocol.chronological else tuple(part[:, 0].unique() for part in data.split[:2])
+def _fit_share(share: Share, fit: _Fit, material: Material, data_seed: int) -> None:
+    """What one of several processes does: the same network, the same batches, of which it takes its share."""
+    data = WindowDataModule(material, seed=data_seed, batch_size=fit.training.batch_size)
+    data.share = share
+    keep_memory()
+    with own_randomness(derived_seed(fit.seed, "weights")), threads(fit.training.batch_size), quiet_lightning():
+        module = build_estimator(fit.config, data, fit.training.learning_rate)
+        module.schedule = fit.training.schedule
+        fit_front_end(module, data)
+        fit_components(module, data)
+        _fit(fit, module, data)
 
 
 def _take_over(resume: Path, folder: Path, module: DampingModule, training: Training) -> bool:
@@ -238,10 +220,12 @@ def _take_over(resume: Path, folder: Path, module: DampingModule, training: Trai
     return len(errors) >= training.max_epochs or since_best >= training.patience
 
 
-def _trainer(training: Training, folder: Path, logger: EventsLogger, seed: int, progress: bool) -> L.Trainer:
-    bar = progress and sys.stderr.isatty()
+def _trainer(fit: _Fit) -> L.Trainer:
+    training, folder = fit.training, fit.folder
+    bar = fit.progress and sys.stderr.isatty()
+    on_gpus = 0 < training.devices <= torch.cuda.device_count()
     callbacks: list[Callback] = [
-        EpochSeeds(seed, folder / "last.ckpt"),
+        EpochSeeds(fit.seed, folder / "last.ckpt"),
         Patience(_MONITOR, patience=training.patience, check_on_train_epoch_end=True),
         PortableCheckpoint(folder, "best", monitor=_MONITOR),
         # A second one: `save_last` of the first would write only where it also finds a new best.
@@ -250,12 +234,13 @@ def _trainer(training: Training, folder: Path, logger: EventsLogger, seed: int, 
     if bar:
         callbacks.append(RichProgressBar(refresh_rate=20, console_kwargs={"stderr": True}))
     return L.Trainer(
-        accelerator="auto",
-        devices=1,
-        # One process: a job's scheduler must not be taken for a cluster to train on.
+        accelerator="auto" if training.devices == 1 or on_gpus else "cpu",
+        devices=training.devices,
+        strategy="auto" if training.devices == 1 else DDPStrategy(process_group_backend="nccl" if on_gpus else "gloo"),
+        # Processes of this machine: a job's scheduler must not be taken for a cluster to train on.
         plugins=[LightningEnvironment(), WholeCheckpoints()],
         max_epochs=training.max_epochs,
-        logger=logger,
+        logger=EventsLogger(folder),
         callbacks=callbacks,
         default_root_dir=folder,
         enable_progress_bar=bar,
@@ -266,10 +251,10 @@ def _trainer(training: Training, folder: Path, logger: EventsLogger, seed: int, 
     )
 
 
-def _fit(trainer: L.Trainer, module: DampingModule, data: WindowDataModule, checkpoint: Path | None) -> None:
+def _fit(fit: _Fit, module: DampingModule, data: WindowDataModule) -> None:
     try:
         with interruptible():
-            trainer.fit(module, datamodule=data, ckpt_path=checkpoint, weights_only=True)
+            _trainer(fit).fit(module, datamodule=data, ckpt_path=fit.checkpoint, weights_only=True)
     finally:
         data.trainer = None  # the data outlives this trainer
 

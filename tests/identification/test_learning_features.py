@@ -13,7 +13,7 @@ from gear_damping.identification.lightning_module import CWT_LSTM, RAW_LSTM, Dam
 from gear_damping.identification.networks import DampingLSTM
 from gear_damping.identification.protocols import BY_RUN, PAPER, PAPER_MANY_RUNS
 from gear_damping.identification.runs import RunSet
-from gear_damping.identification.trainer import build_estimator, fit_front_end
+from gear_damping.identification.untrained import build_estimator, fit_front_end
 from gear_damping.identification.windows import gather_windows
 
 RATE = 1000.0

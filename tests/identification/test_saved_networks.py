@@ -16,7 +16,7 @@ from gear_damping.identification.noise import SensorNoise
 from gear_damping.identification.protocols import BY_RUN
 from gear_damping.identification.runs import RunSet
 from gear_damping.identification.saved import load_estimator, write_shared
-from gear_damping.identification.trainer import build_estimator, fit_front_end
+from gear_damping.identification.untrained import build_estimator, fit_front_end
 
 RICKER = {"kind": "ricker", "frequency_min_hz": 20.0, "frequency_max_hz": 240.0, "n_scales": 4}
 CWT = replace(CWT_LSTM, settings={"hidden_size": 8}, wavelet=RICKER)
