@@ -11,7 +11,7 @@ from gear_damping.config.quantities import split_suffix
 from gear_damping.config.reader import Reader
 from gear_damping.config.source import COMMAND_LINE, Origin
 from gear_damping.errors import InputError, Problem, nearest
-from gear_damping.physics.catalogue import catalogue
+from gear_damping.physics.catalogue import catalogue, system_catalogue
 from gear_damping.physics.model import Model
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.systems.base import System
@@ -56,7 +56,7 @@ class SimulatorSettings:
         damping_ratio_percent: The ratio of the test runs, or None where it is drawn.
         diverged_share: Tolerated share of diverged runs.
         solver: Settings of the solver.
-        plugins: The user's own effect files.
+        plugins: The user's own files of effects and systems.
         extended: The file of an extended simulator that the model came from, or None.
     """
 
@@ -94,11 +94,13 @@ def read_simulator(node: Mapping[str, Any], family: Mapping[str, Any], origin: O
     reader = Reader(origin)
     merged = reader.collect(lambda: with_extended(node, origin, HOW))
     node, reader.origin = merged or (dict(node), origin)
-    plain = reader.plain(node, PLAIN, "simulator.")
+    systems = _systems(node.get("plugins"))
+    choices = {"system": OneOf(tuple(systems))}
+    plain = reader.plain(node, PLAIN | choices, "simulator.")
     solver = _solver(reader, node.get("solver"))
     plugins = _plugins(reader, node.get("plugins") or [])
     known = catalogue(plugins or ())
-    system_class = SYSTEMS.get(plain["system"])
+    system_class = systems.get(plain["system"])
     if system_class is None:
         raise InputError(reader.problems)
     declared = {p.name: p for p in system_class.parameters}
@@ -133,6 +135,14 @@ def _solver(reader: Reader, node: Any) -> dict[str, Any]:
     return reader.plain(node, SOLVER, "simulator.solver.")
 
 
+def _systems(plugins: Any) -> dict[str, type[System]]:
+    """The systems that can be simulated; where a user's file cannot be used, which is said later, the package's own."""
+    try:
+        return system_catalogue(plugins if isinstance(plugins, list) else ())
+    except InputError:
+        return dict(SYSTEMS)
+
+
 def _plugins(reader: Reader, node: Any) -> tuple[str, ...] | None:
     """The user's effect files; None where one of them cannot be used."""
     key, before = "simulator.plugins", len(reader.problems)
@@ -140,9 +150,9 @@ def _plugins(reader: Reader, node: Any) -> tuple[str, ...] | None:
         reader.refuse(key, "must be a list of paths", node, "write [path/to/my_effect.py]")
         return None
     for path in node:
-        reader.collect(lambda path=path: catalogue((path,)))
+        reader.collect(lambda path=path: (catalogue((path,)), system_catalogue((path,))))
     if len(reader.problems) == before:
-        reader.collect(lambda: catalogue(node))
+        reader.collect(lambda: (catalogue(node), system_catalogue(node)))
     return tuple(node) if len(reader.problems) == before else None
 
 

@@ -283,7 +283,7 @@ class Explanation(Part):
     """The file."""
 
     schema_version: int = said("of this list; it grows when a key changes its meaning")
-    system: str = said("what was measured")
+    system: str = said("what was measured: `gear_pair`, `oscillator`, or the name of a system of one's own")
     verdict: Word = said("one word for what was found")
     sentences: list[str] = said("what was found, the most important first; `words` in backticks are names")
     causes: list[Cause] = said("the strongest first; empty: none")

@@ -148,10 +148,9 @@ class Assembler:
                 findings.append(Finding("not_used", message, channel=name, severity="note"))
                 continue
             kept[name] = quantity
-            if self.plan.system == "oscillator":
-                with self.problems.collecting():
-                    unit = self._limit(name, quantity, f"{raw.plan.key}.conditions.{name}")
-                    kept[name] = Quantity(quantity.value * unit.factor, unit.unit, quantity.uncertainty)
+            with self.problems.collecting():
+                unit = self._limit(name, quantity, f"{raw.plan.key}.conditions.{name}")
+                kept[name] = Quantity(quantity.value * unit.factor, unit.unit, quantity.uncertainty)
         return kept
 
     def _torque_settled(self, raw: RawRecord, channels: dict[str, Channel], conditions: dict[str, Quantity]) -> None:

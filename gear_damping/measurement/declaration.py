@@ -2,18 +2,22 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.measurement import layout
 from gear_damping.measurement.channels import AnyChannel, Response, Timed
 from gear_damping.measurement.consistency import inconsistencies
+from gear_damping.measurement.own_system import NONE, file_of, si_units
 from gear_damping.measurement.record import Quantity
-from gear_damping.measurement.vocabulary import CHANNEL_MODELS, PARAMETERS
+from gear_damping.measurement.vocabulary import GEAR_CHANNELS, channels_of, units_of
 from gear_damping.schema.mappings import names, read_declared
 from gear_damping.schema.values import OneOf, Problems
 from gear_damping.units import parse_unit
 
-_SYSTEM = OneOf(layout.SYSTEMS)
+if TYPE_CHECKING:
+    from gear_damping.physics.systems.base import System
+
 _SENSOR = ("coupling", "uncertainty", "polarity", "gain", "mounting", "shaft", "hold")  # kept as they are declared
 _ENCODERS = ("pinion", "gear", "tacho")
 
@@ -60,7 +64,7 @@ class EncoderPlan:
 
 @dataclass(frozen=True)
 class RecordPlan:
-    """A declared record; `conditions` are SI for a gear pair and as declared for an oscillator.
+    """A declared record; `conditions` of a channel's kind are as declared, others SI.
 
     `window` is begin and end in s on the record's own clock, `resample` the rate in Hz that it is to have.
     """
@@ -82,45 +86,59 @@ class RecordPlan:
 
 @dataclass(frozen=True)
 class Plan:
-    """A declared measurement; `own` parameters are in units still to be compared with the channels'."""
+    """A declared measurement; `own` parameters are in units still to be compared with the channels'.
+
+    `si` has the unit that each channel is kept in; None where the rig is kept in the unit of its response.
+    """
 
     system: str
     parameters: Mapping[str, Quantity]
     own: Mapping[str, Quantity]
     records: tuple[RecordPlan, ...]
     segment_s: float | None = None
+    si: Mapping[str, str] | None = None
 
 
 
-
-def declared_plan(content: object, problems: Problems, source: str) -> Plan | None:
+def declared_plan(
+    content: object, problems: Problems, source: str, own: "Mapping[str, type[System]]" = NONE
+) -> Plan | None:
     """The plan that the content of a measurement.yaml declares.
 
     Args:
         content: What the YAML file holds.
         problems: Takes everything that is wrong.
         source: The YAML file, for messages.
+        own: Systems of one's own by name.
 
     Returns:
         The plan without its wrong records, or None where not even the system is known.
     """
-    system = _system(content, problems, source)
+    system = _system(content, problems, source, tuple(own))
     if system is None:
         return None
     before = len(problems)
-    file = read_declared(layout.FILES[system], content, problems, source)
+    file = read_declared(file_of(own[system]) if system in own else layout.FILES[system], content, problems, source)
     if file is None:
         return None
     wrong = {k for k in range(len(file.records)) if any(p.key.startswith(f"records[{k}]") for p in problems[before:])}
     problems += [Problem(p.key, p.rule, p.value, p.remedy, source) for p in inconsistencies(file, wrong)]
-    parameters, own = _parameters(file, system)
+    parameters, in_own_units = _parameters(file)
     records = tuple(
-        _record(record, f"records[{k}]", system, problems, source) for k, record in enumerate(file.records) if record
+        _record(record, f"records[{k}]", problems, source) for k, record in enumerate(file.records) if record
     )
-    return Plan(system, parameters, own, records, file.segments.value if file.segments else None)
+    segment_s = file.segments.value if file.segments else None
+    return Plan(system, parameters, in_own_units, records, segment_s, _kept(file, own.get(system)))
 
 
-def _system(content: object, problems: Problems, source: str) -> str | None:
+def _kept(file: layout.AnyFile, own: "type[System] | None") -> Mapping[str, str] | None:
+    """The SI unit of every channel; None where the rig is kept in units of its own."""
+    if own is not None:
+        return si_units(own)
+    return GEAR_CHANNELS if isinstance(file, layout.GearFile) else None
+
+
+def _system(content: object, problems: Problems, source: str, own: tuple[str, ...]) -> str | None:
     """The system, without which no other key has a meaning; misspelt keys beside it are named too."""
     allowed = tuple(names(layout.GearFile))
     if not isinstance(content, dict):
@@ -134,26 +152,27 @@ def _system(content: object, problems: Problems, source: str) -> str | None:
         problems.append(Problem("system", "is missing", None, remedy, source))
         return None
     try:
-        return _SYSTEM.read(content["system"], "system")
+        return OneOf((*layout.SYSTEMS, *own)).read(content["system"], "system")
     except InputError as error:
         (problem,) = error.problems
         problems.append(Problem("system", problem.rule, problem.value, problem.remedy, source))
         return None
 
 
-def _parameters(file: layout.AnyFile, system: str) -> tuple[dict[str, Quantity], dict[str, Quantity]]:
+def _parameters(file: layout.AnyFile) -> tuple[dict[str, Quantity], dict[str, Quantity]]:
     """Those in SI, and those in units that are still to be compared with the channels'."""
     given = file.parameters
-    found = {} if given is None else {name: getattr(given, name) for name in PARAMETERS[system] if given.given(name)}
-    own = {name: quantity for name, quantity in found.items() if PARAMETERS[system][name] == "own"}
+    units = {} if given is None else units_of(type(given))
+    found = {name: getattr(given, name) for name in units if given.given(name)}
+    own = {name: quantity for name, quantity in found.items() if units[name] == "own"}
     return {name: quantity for name, quantity in found.items() if name not in own}, own
 
 
-def _record(record: layout.AnyRecord, key: str, system: str, problems: Problems, source: str) -> RecordPlan:
-    declared = _declared_channels(record, system)
+def _record(record: layout.AnyRecord, key: str, problems: Problems, source: str) -> RecordPlan:
+    declared = _declared_channels(record)
     conditions, mode = _conditions(record)
     based = "base_acceleration" in declared
-    gear = system == "gear_pair"
+    gear = isinstance(record, layout.GearRecord)
     return RecordPlan(
         key=key,
         name=record.name,
@@ -174,9 +193,10 @@ def _record(record: layout.AnyRecord, key: str, system: str, problems: Problems,
     )
 
 
-def _declared_channels(record: layout.AnyRecord, system: str) -> dict[str, AnyChannel]:
+def _declared_channels(record: layout.AnyRecord) -> dict[str, AnyChannel]:
     """The channels by name, without words that stand for one."""
-    found = {name: getattr(record.channels, name, None) for name in CHANNEL_MODELS[system]}
+    known = {} if record.channels is None else channels_of(type(record.channels))
+    found = {name: getattr(record.channels, name, None) for name in known}
     return {name: channel for name, channel in found.items() if channel is not None and not isinstance(channel, str)}
 
 

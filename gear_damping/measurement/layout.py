@@ -219,26 +219,27 @@ class AnyFile(Declared):
     )
 
 
-_BEGIN = "begin each record with '- file: ...'"
-_RECORDS = Listed("record", _BEGIN)
+BEGIN = "begin each record with '- file: ...'"
+_RECORDS = Listed("record", BEGIN)
 _MEANING, _ACTS = "The records, each with its file.", "values"
-_NOMINAL = "Nominal values of the rig that differ from the defaults."
+NOMINAL = "Nominal values of the rig that differ from the defaults."
 
 
 class GearFile(AnyFile):
     """A measurement of a gear pair."""
 
     title: ClassVar[str] = "a gear_pair"
-    parameters: GearParameters = key(_NOMINAL, "fit")
-    records: Annotated[list[Annotated[GearRecord, Item()]], _RECORDS] = key(_MEANING, _ACTS, missing=_BEGIN)
+    parameters: GearParameters = key(NOMINAL, "fit")
+    records: Annotated[list[Annotated[GearRecord, Item()]], _RECORDS] = key(_MEANING, _ACTS, missing=BEGIN)
 
 
 class OscillatorFile(AnyFile):
     """A measurement of an oscillator."""
 
     title: ClassVar[str] = "an oscillator"
-    parameters: OscillatorParameters = key(_NOMINAL, "fit")
-    records: Annotated[list[Annotated[OscillatorRecord, Item()]], _RECORDS] = key(_MEANING, _ACTS, missing=_BEGIN)
+    parameters: OscillatorParameters = key(NOMINAL, "fit")
+    records: Annotated[list[Annotated[OscillatorRecord, Item()]], _RECORDS] = key(_MEANING, _ACTS, missing=BEGIN)
 
 
+OWN_AS = SYSTEMS[1]  # whose channels a system of one's own has
 FILES: Frozen[str, type[AnyFile]] = Frozen({"gear_pair": GearFile, "oscillator": OscillatorFile})

@@ -14,6 +14,7 @@ from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.declaration import Plan, RecordPlan, declared_plan
 from gear_damping.measurement.files import Files, read_yaml
 from gear_damping.measurement.formats.registry import MAX_BYTES, readers
+from gear_damping.measurement.own_system import own_systems
 from gear_damping.measurement.own_units import UnitSystem
 from gear_damping.measurement.record import Finding, Measurement, Quantity, Record
 from gear_damping.schema.values import Problems
@@ -25,11 +26,12 @@ ONE_RATE = 1e-6  # rates that differ by less are one, written with other digits
 OTHER_RATE = 0.01  # rates that differ by more are said
 
 
-def check_declaration(path: str | Path) -> Plan:
+def check_declaration(path: str | Path, plugins: Sequence[str | Path] = ()) -> Plan:
     """Check a measurement.yaml without opening the files that it names, and without importing what reads them.
 
     Args:
         path: The YAML file.
+        plugins: Files of one's own that declare systems.
 
     Returns:
         What it declares.
@@ -38,13 +40,13 @@ def check_declaration(path: str | Path) -> Plan:
         InputError: everything that is wrong with the YAML, all at once.
     """
     problems, source = Problems(), str(path)
-    plan = declared_plan(read_yaml(Path(path)), problems, source)
+    plan = declared_plan(read_yaml(Path(path)), problems, source, own_systems(plugins))
     if plan is not None:
         _names(plan.records, problems, source)
         declared = list(_units(plan))
-        if plan.system == "gear_pair" or all(unit for _, unit, _ in declared):
+        if plan.si is not None or all(unit for _, unit, _ in declared):
             known = [(name, unit, key) for name, unit, key in declared if unit]
-            units = UnitSystem(plan.system, [(name, unit) for name, unit, _ in known])
+            units = UnitSystem(plan.si, [(name, unit) for name, unit, _ in known])
             _compare_units(plan, units, problems, source)
     problems.raise_any()
     return plan
@@ -58,7 +60,7 @@ def load_measurement(
     Args:
         path: The YAML file; the files in it are relative to its folder.
         max_bytes: Larger files are refused before they are read; the readers' own limit where None.
-        plugins: Files of one's own that read further formats.
+        plugins: Files of one's own that read further formats, or declare systems.
 
     Returns:
         The measurement; what is suspicious in it stands in `findings`.
@@ -71,14 +73,15 @@ def load_measurement(
     path = Path(path)
     content = read_yaml(path)
     problems, source = Problems(), str(path)
-    plan = declared_plan(content, problems, source)
+    systems = own_systems(plugins)
+    plan = declared_plan(content, problems, source, systems)
     if plan is None:
         problems.raise_any()
     files = Files(path.parent, MAX_BYTES if max_bytes is None else max_bytes, readers(plugins))
     raw = _read(plan, files, problems, source)
     declared = [(channel.plan.name, channel.unit) for record in raw for channel in record.channels]
     declared += [(name, quantity.unit) for record in raw for name, quantity in record.plan.conditions.items()]
-    units = UnitSystem(plan.system, declared)
+    units = UnitSystem(plan.si, declared)
     own = _compare_units(plan, units, problems, source)
     names = _names(plan.records, problems, source)
     assembler = Assembler(plan, units, problems, source)
@@ -87,7 +90,8 @@ def load_measurement(
     parameters = {**plan.parameters, **own}
     _refuse_unseen_spring(parameters.get("stiffness"), records, source)
     _refuse_longer_than_records(plan, records, source)
-    return Measurement(plan.system, parameters, _compared(_free(records)), path.resolve(), plan.segment_s)
+    kept, own_system = _compared(_free(records)), systems.get(plan.system)
+    return Measurement(plan.system, parameters, kept, path.resolve(), plan.segment_s, own_system)
 
 
 def _units(plan: Plan) -> Iterable[tuple[str, str | None, str]]:

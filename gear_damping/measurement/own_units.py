@@ -1,15 +1,15 @@
-"""The units that values are kept in: SI for a gear pair, the rig's own for an oscillator.
+"""The units that values are kept in: SI where the mass of the rig is known, else the rig's own.
 
 An oscillator measured in volts or degrees stays in them; its velocity and acceleration are put in
 the displacement's unit per second, and all its records in the units of the first.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.record import Quantity
-from gear_damping.measurement.vocabulary import GEAR_CHANNELS, OSCILLATOR_CHANNELS
+from gear_damping.measurement.vocabulary import OSCILLATOR_CHANNELS
 from gear_damping.units import Dimension, Unit, parse_unit
 
 _PER_SECOND = Dimension(time=-1)  # exponent of a derivative in time
@@ -38,15 +38,15 @@ class UnitSystem:
     """Converts what was declared into the units that are kept.
 
     Args:
-        system: `gear_pair` or `oscillator`.
+        si: The unit that each channel is kept in; None where the rig is kept in the unit of its response.
         declared: Name and unit of every channel, in the order of the file; unknown units are skipped.
     """
 
-    def __init__(self, system: str, declared: Iterable[tuple[str, str]]) -> None:
-        self.system = system
+    def __init__(self, si: Mapping[str, str] | None, declared: Iterable[tuple[str, str]]) -> None:
+        self.si = si
         self._response: _Reference | None = None
         self._force: _Reference | None = None
-        for name, text in declared if system == "oscillator" else ():
+        for name, text in declared if si is None else ():
             if name == _BASE:
                 continue
             try:
@@ -66,8 +66,8 @@ class UnitSystem:
             InputError: the unit is unknown or of another kind than the channel.
         """
         unit = parse_unit(text, key, source)
-        if self.system == "gear_pair":
-            kept = _Reference(parse_unit(GEAR_CHANNELS[name]), GEAR_CHANNELS[name], 0)
+        if self.si is not None:
+            kept = _Reference(parse_unit(self.si[name]), self.si[name], 0)
         else:
             kept = self._oscillator_unit(name, text, unit)
         if unit.dimension != kept.unit.dimension:

@@ -12,8 +12,8 @@ from gear_damping.schema.values import OneOf, refuse
 from gear_damping.units import spoken
 
 GEAR_TORQUE_MODES = ("balanced", "held")
-_KNOWN = "known, or a prior with its uncertainty"
-_START = "start of the fit, or a prior with its uncertainty"
+KNOWN = "known, or a prior with its uncertainty"
+START = "start of the fit, or a prior with its uncertainty"
 
 
 @dataclass(frozen=True)
@@ -41,38 +41,38 @@ class GearParameters(Declared):
         "Teeth of the gear.", "known"
     )
     module: Annotated[Quantity, Measured("m", uncertain=True, within=(1e-4, 0.1))] = key(
-        "Module of the teeth.", _KNOWN
+        "Module of the teeth.", KNOWN
     )
     pressure_angle: Annotated[Quantity, Measured("rad", uncertain=True, within=(0.1, 0.7))] = key(
-        "Pressure angle.", _KNOWN
+        "Pressure angle.", KNOWN
     )
     inertia_pinion: Annotated[Quantity, Measured("kg*m^2", uncertain=True, within=(1e-9, 1e4))] = key(
-        "Inertia of the pinion.", _KNOWN
+        "Inertia of the pinion.", KNOWN
     )
     inertia_gear: Annotated[Quantity, Measured("kg*m^2", uncertain=True, within=(1e-9, 1e5))] = key(
-        "Inertia of the gear.", _KNOWN
+        "Inertia of the gear.", KNOWN
     )
     mesh_stiffness_max: Annotated[Quantity, Measured("N/m", uncertain=True, within=(0, 1e14))] = key(
-        "Mesh stiffness with the larger number of tooth pairs in contact.", _START
+        "Mesh stiffness with the larger number of tooth pairs in contact.", START
     )
     mesh_stiffness_min: Annotated[Quantity, Measured("N/m", uncertain=True, within=(0, 1e14))] = key(
-        "Mesh stiffness with the smaller number.", _START
+        "Mesh stiffness with the smaller number.", START
     )
-    contact_ratio: Annotated[Quantity, Measured("1", uncertain=True, within=(1, 2))] = key("Contact ratio.", _START)
+    contact_ratio: Annotated[Quantity, Measured("1", uncertain=True, within=(1, 2))] = key("Contact ratio.", START)
     damping_ratio: Annotated[Quantity, Measured("1", "not negative", uncertain=True)] = key(
-        "Viscous damping ratio of the mesh.", _START
+        "Viscous damping ratio of the mesh.", START
     )
     equivalent_mass: Annotated[Quantity, Measured("kg", uncertain=True, within=(0, 1e5))] = key(
-        "Mass along the line of action, instead of the two inertias.", _KNOWN
+        "Mass along the line of action, instead of the two inertias.", KNOWN
     )
     backlash_gap: Annotated[Quantity, Measured("m", "not negative", uncertain=True, within=(0, 0.01))] = key(
-        "Whole clearance between the flanks; 0 means none.", _START
+        "Whole clearance between the flanks; 0 means none.", START
     )
     torque_gain: Annotated[Quantity, Measured("1", "not zero", uncertain=True, within=(-1e3, 1e3))] = key(
-        "True torque = torque_gain * read + torque_offset.", _KNOWN
+        "True torque = torque_gain * read + torque_offset.", KNOWN
     )
     torque_offset: Annotated[Quantity, Measured("N*m", "any", uncertain=True, within=(-1e6, 1e6))] = key(
-        "See torque_gain.", _KNOWN
+        "See torque_gain.", KNOWN
     )
 
     @model_validator(mode="after")
@@ -93,16 +93,16 @@ class OscillatorParameters(Declared):
 
     title: ClassVar[str] = "an oscillator"
     stiffness: Annotated[Quantity, Measured("1/s^2", "not negative", uncertain=True)] = key(
-        "Stiffness over mass; 0 means that there is no spring.", _START
+        "Stiffness over mass; 0 means that there is no spring.", START
     )
     damping_coefficient: Annotated[Quantity, Measured("1/s", "not negative", uncertain=True)] = key(
-        "Viscous damping over mass.", _START
+        "Viscous damping over mass.", START
     )
     damping_ratio: Annotated[Quantity, Measured("1", "not negative", uncertain=True)] = key(
-        "Viscous damping over the critical one, instead of damping_coefficient.", _START
+        "Viscous damping over the critical one, instead of damping_coefficient.", START
     )
     force_gain: Annotated[Quantity, Measured("own", "not zero", uncertain=True)] = key(
-        "Acceleration per unit of the force as it was read.", _START
+        "Acceleration per unit of the force as it was read.", START
     )
 
     @model_validator(mode="after")

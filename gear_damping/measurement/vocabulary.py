@@ -10,16 +10,18 @@ SYSTEMS = layout.SYSTEMS
 GEAR_TORQUE_MODES = rig.GEAR_TORQUE_MODES
 
 
-def _channels(model: type[Declared]) -> dict[str, type[AnyChannel]]:
+def channels_of(model: type[Declared]) -> dict[str, type[AnyChannel]]:
+    """The channels that a mapping may hold, by name."""
     found = {name: inner_model(info) for name, info in names(model).items()}
     return {name: kind for name, kind in found.items() if kind and issubclass(kind, AnyChannel)}
 
 
-def _units(model: type[Declared]) -> Frozen[str, str | None]:
+def units_of(model: type[Declared]) -> Frozen[str, str | None]:
+    """The unit of every quantity that a mapping may hold, by name."""
     return Frozen({name: kind_of(info).unit for name, info in names(model).items()})
 
 
-_GEAR, _OSCILLATOR = _channels(layout.GearChannels), _channels(layout.OscillatorChannels)
+_GEAR, _OSCILLATOR = channels_of(layout.GearChannels), channels_of(layout.OscillatorChannels)
 CHANNEL_MODELS = Frozen({"gear_pair": Frozen(_GEAR), "oscillator": Frozen(_OSCILLATOR)})
 CHANNELS = Frozen({system: tuple(models) for system, models in CHANNEL_MODELS.items()})
 # channel -> the SI unit that its values are converted to
@@ -30,4 +32,4 @@ OSCILLATOR_CHANNELS = Frozen({name: kind.derivative for name, kind in _OSCILLATO
 HOLDABLE = tuple(name for name, kind in (_GEAR | _OSCILLATOR).items() if issubclass(kind, Held))
 INPUTS = tuple(name for name, kind in (_GEAR | _OSCILLATOR).items() if kind.is_input)
 # name -> SI unit; "own": in the units that the oscillator was measured in
-PARAMETERS = Frozen({"gear_pair": _units(rig.GearParameters), "oscillator": _units(rig.OscillatorParameters)})
+PARAMETERS = Frozen({"gear_pair": units_of(rig.GearParameters), "oscillator": units_of(rig.OscillatorParameters)})

@@ -3,17 +3,22 @@
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import yaml
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.measurement import layout
 from gear_damping.measurement.declaration import declared_plan
 from gear_damping.measurement.record import Channel, Quantity, Record
 from gear_damping.measurement.staircase import is_staircase
 from gear_damping.measurement.vocabulary import CHANNEL_MODELS, CHANNELS, SYSTEMS
 from gear_damping.schema.mappings import names
 from gear_damping.schema.values import Problems
+
+if TYPE_CHECKING:
+    from gear_damping.physics.systems.base import System
 
 YAML_NAME = "measurement.yaml"
 _FILE_NAME = re.compile(r"^[A-Za-z0-9][\w.-]*$")
@@ -25,15 +30,17 @@ def write_measurement(
     records: Sequence[Record],
     parameters: Mapping[str, Quantity] | None = None,
     segment_s: float | None = None,
+    own: "type[System] | None" = None,
 ) -> Path:
     """Write one CSV file per record and a measurement.yaml beside them.
 
     Args:
         folder: Is made where it does not exist.
-        system: `gear_pair` or `oscillator`.
+        system: The name of the system.
         records: Each with a unique name that can be a file name; `file` and `sha256` are not used.
         parameters: Nominal values of the rig, in SI or the oscillator's own units.
         segment_s: Length of the segments that records are fitted and scored in, in s.
+        own: Its declaration, where it is one of one's own; the file is read with `plugins` then.
 
     Returns:
         The path of the measurement.yaml.
@@ -43,7 +50,7 @@ def write_measurement(
             or an input is missing, or a sensor is stated that its channel cannot have. Nothing is written then.
         ValueError: an unknown system or channel, or names that repeat or cannot be file names.
     """
-    _refuse_names(system, records)
+    _refuse_names(system, records, own)
     folder = Path(folder)
     files = {record.name: folder / f"{record.name}.csv" for record in records}
     taken = [path for path in (*files.values(), folder / YAML_NAME) if path.exists()]
@@ -58,7 +65,7 @@ def write_measurement(
     }
     content = {key: value for key, value in content.items() if value}
     problems = Problems()
-    declared_plan(content, problems, str(folder / YAML_NAME))
+    declared_plan(content, problems, str(folder / YAML_NAME), {} if own is None else {system: own})
     problems.raise_any()
     folder.mkdir(parents=True, exist_ok=True)
     for record in records:
@@ -68,8 +75,8 @@ def write_measurement(
     return folder / YAML_NAME
 
 
-def _refuse_names(system: str, records: Sequence[Record]) -> None:
-    if system not in SYSTEMS:
+def _refuse_names(system: str, records: Sequence[Record], own: "type[System] | None") -> None:
+    if own is None and system not in SYSTEMS:
         raise ValueError(f"system must be one of {SYSTEMS}, not {system!r}")
     names = [record.name for record in records]
     if not names or len(set(names)) < len(names):
@@ -78,7 +85,7 @@ def _refuse_names(system: str, records: Sequence[Record]) -> None:
         if not _FILE_NAME.match(record.name):
             rule = f"the record name {record.name!r} is no file name"
             raise ValueError(f"{rule}; use letters, digits, '_', '-', '.'")
-        unknown = set(record.channels) - set(CHANNELS[system])
+        unknown = set(record.channels) - set(CHANNELS[system] if own is None else (*own.responses, *own.inputs))
         if unknown:
             rule = f"record '{record.name}' has channels {sorted(unknown)} that a {system} lacks"
             raise ValueError(f"{rule}; drop them")
@@ -95,7 +102,7 @@ def _write_csv(path: Path, record: Record) -> None:
 
 
 def _declaration(system: str, record: Record) -> dict[str, object]:
-    models = CHANNEL_MODELS[system]
+    models = CHANNEL_MODELS.get(system, CHANNEL_MODELS[layout.OWN_AS])
     channels: dict[str, object] = {"time": {"column": "time", "unit": "s"}}
     channels |= {name: _channel(channel, tuple(names(models[name]))) for name, channel in record.channels.items()}
     conditions: dict[str, object] = {name: _quantity(value) for name, value in record.conditions.items()}

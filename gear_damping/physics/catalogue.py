@@ -59,8 +59,10 @@ def system_catalogue(plugins: Sequence[str | Path] = ()) -> dict[str, type[Syste
     for path in map(Path, plugins):
         own = load_systems(path)
         repeated = sorted(set(own) & set(found))
+        keys = {one.name for kind in own.values() for one in (*kind.parameters, *kind.options)}
+        repeated += sorted(keys & builtin_effects().keys())
         if repeated:
-            raise InputError(Problem(KEY, f"repeats the name {repeated}", str(path), "give the system a new name"))
+            raise InputError(Problem(KEY, f"repeats the name {repeated}", str(path), "give it a new name"))
         found |= own
     return found
 

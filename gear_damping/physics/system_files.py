@@ -50,7 +50,6 @@ def _faults(kind: type[System]) -> Iterator[str]:
         yield "lacks parameters, a tuple of Parameter(…)"
         return
     names = [one.name for one in (*parameters, *kind.options)]
-    yield from (f"declares {name} twice" for name in sorted({name for name in names if names.count(name) > 1}))
     referred = [kind.spring] if kind.spring or Trait.REST in traits else []
     for name in (*referred, *kind.gains.values()):
         if name not in names:

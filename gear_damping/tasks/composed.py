@@ -80,7 +80,7 @@ def _problems_of_measurement(config: Mapping[str, Any], origin: Origin, declared
     file = measurement_file(path) if isinstance(path, str) else None
     try:
         if declared and file is not None and declares(file, task):
-            check_declaration(file)
+            check_declaration(file, tuple(plugins_of({"measurement": config.get("measurement")})))
     except InputError as error:
         return problems + placed(error, origin.of(PATH))
     return problems if task == INSPECT else []

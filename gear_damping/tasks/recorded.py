@@ -10,6 +10,7 @@ from gear_damping.measurement.record import Channel, Quantity, Record
 from gear_damping.measurement.vocabulary import INPUTS, OSCILLATOR_CHANNELS, PARAMETERS
 from gear_damping.physics.effects.torque_variation import TorqueVariation
 from gear_damping.physics.moment import Moment
+from gear_damping.physics.systems.swinging import MOTION
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import MeshStiffness
 from gear_damping.simulation.inspect import forces_of
@@ -107,11 +108,16 @@ def rig_parameters(settings: Settings) -> dict[str, Quantity]:
     Damping and the effects are what a measurement is taken for: they are not among them.
     """
     simulator = settings.simulator
-    if not simulator.model.system.has(Trait.TEETH):
+    system = simulator.model.system
+    if system.has(Trait.MASS, Trait.REST):
+        unknown = {system.spring, *system.gains.values(), *(parameter.name for parameter in MOTION)}
+        known = [p for p in system.parameters if p.name not in unknown and p.name in simulator.given]
+        return {p.name: Quantity(float(simulator.given[p.name]), p.unit) for p in known}
+    if not system.has(Trait.TEETH):
         return {}
     mesh = next(effect.name for effect in simulator.model.effects if isinstance(effect, MeshStiffness))
     found = {}
-    for name, unit in PARAMETERS[simulator.model.system.name].items():
+    for name, unit in PARAMETERS[system.name].items():
         flat = f"{mesh}.{FROM_THE_MESH[name]}" if name in FROM_THE_MESH else name
         declared, value = simulator.model.parameters().get(flat), simulator.given.get(flat)
         if declared is not None and value is not None and value != declared.default:

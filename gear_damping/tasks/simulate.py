@@ -9,6 +9,7 @@ from gear_damping.config.settings import Settings
 from gear_damping.errors import written_whole
 from gear_damping.interface.simulated import run_figure
 from gear_damping.measurement.write import write_measurement
+from gear_damping.physics.systems.known import SYSTEMS
 from gear_damping.reporting import figures
 from gear_damping.tasks import statements
 from gear_damping.tasks.recorded import as_records, recorded_channels, rig_parameters
@@ -33,8 +34,10 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
         np.savez(file, t=runs.time.numpy(), damping_ratio_percent=ratio, **arrays, **values)
     folder.write_json("manifest.json", {"hash": plan.hash, "n_diverged": runs.n_diverged, "plan": plan.describe()})
     if settings.write_measurement:
-        records, system = as_records(runs, channels), runs.model.system.name
-        path = write_measurement(folder.path / "measurement", system, records, rig_parameters(settings))
+        records, system = as_records(runs, channels), runs.model.system
+        own = None if system.name in SYSTEMS else type(system)
+        rig = rig_parameters(settings)
+        path = write_measurement(folder.path / "measurement", system.name, records, rig, own=own)
         statements.say(f"wrote {path}: measurement.path={path} takes the runs as measured records")
     shown = run_figure(runs, channels[runs.model.system.response])
     figures.save(shown, folder.path / "simulation.png")

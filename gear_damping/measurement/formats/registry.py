@@ -19,7 +19,7 @@ from types import ModuleType
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement import formats as room
 from gear_damping.measurement.formats.table import Table, refuse_size
-from gear_damping.own_files import REMEDY, load_module, modules_of
+from gear_damping.own_files import REMEDY, classes_of, load_module, modules_of
 
 MAX_BYTES = 512 * 1024**2  # of a file: as text and as floats it is several times that in memory
 KEY = "measurement.plugins"
@@ -42,8 +42,12 @@ def readers(plugins: Sequence[str | Path] = ()) -> dict[str, Reader]:
         InputError: a file is missing, cannot be loaded, or is no reader.
     """
     found = dict(builtin_readers())
+    if plugins:
+        from gear_damping.physics.systems.base import System  # imports what takes long
     for path in map(Path, plugins):
         module = load_module(path, KEY)
+        if not hasattr(module, "SUFFIXES") and classes_of(module, System):  # it declares what was measured
+            continue
         faults = _faults(module)
         if faults:
             raise InputError([Problem(KEY, fault, str(path), REMEDY) for fault in faults])
