@@ -10,7 +10,7 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
-from tests.pages.conftest import KINDS, OUTPUTS
+from tests.pages.browser import KINDS, OUTPUTS
 
 WIDTHS, SCHEMES = (390, 1440), ("light", "dark")
 READ = 4.5  # contrast of text (WCAG 2.2, 1.4.3)

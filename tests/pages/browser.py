@@ -1,4 +1,4 @@
-"""A headless Chromium, and the pages of the runs that `tests.pages.material` made."""
+"""Fixtures: a headless Chromium, and the pages of the runs that `tests.pages.material` made."""
 
 import os
 import shutil
