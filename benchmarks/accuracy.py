@@ -41,7 +41,7 @@ def drawn(effect: str, batch: int, seed: int = 0) -> tuple[Model, dict[str, Tens
     """
     generator = torch.Generator().manual_seed(seed)
     added = effect_class(effect)
-    if "gear_pair" not in added.systems:
+    if not GearPair.has(*added.needs):
         model = Model(Oscillator(), [effect_class("viscous_damping")(), added()])
         values = model.values(batch, **{"viscous_damping.damping_coefficient": 0.02})
         values["initial_displacement"] = 0.2 + 0.8 * _share(batch, generator)

@@ -6,6 +6,7 @@ import pytest
 
 from gear_damping.explanation.steps import single
 from gear_damping.explanation.steps.single import FAR
+from gear_damping.physics.systems.known import SYSTEMS
 
 NOMINAL = ("stiffness", "force_gain")
 
@@ -22,7 +23,7 @@ def tried(monkeypatch, fits, found, system="oscillator", spent=False):
     monkeypatch.setattr(single, "settled_at", lambda hypothesis, values: settled.append(values))
     monkeypatch.setattr(single, "fit_hypothesis", lambda *a, **k: SimpleNamespace(is_finite=True))
     bench = SimpleNamespace(
-        evidence=SimpleNamespace(system=system),
+        evidence=SimpleNamespace(has=SYSTEMS[system].has),
         budget=SimpleNamespace(refuses=lambda what: spent),
         solver=None,
         ranked=lambda outcome, names: [one.score for one in fits if one.name in names],

@@ -13,6 +13,7 @@ from gear_damping.explanation.trials.refit import chosen
 from gear_damping.explanation.trials.score import Score, with_other_sizes
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.physics.catalogue import effect_class
+from gear_damping.physics.systems.known import SYSTEMS
 from tests.explanation.decisions.made_up import bench
 
 NOISE, SAMPLES = 1e-3, 800
@@ -20,7 +21,7 @@ NOISE, SAMPLES = 1e-3, 800
 
 def lost(system, response, residual):
     record = FitRecord("a", response, 100.0)
-    evidence = SimpleNamespace(system=system, fitted=[record], noise=NOISE, settings=SearchSettings())
+    evidence = SimpleNamespace(has=SYSTEMS[system].has, fitted=[record], noise=NOISE, settings=SearchSettings())
     return is_lost_by(SimpleNamespace(fit_residuals=[residual]), evidence)
 
 

@@ -13,6 +13,7 @@ from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import State
 from gear_damping.explanation.statistics.family_wise import Effect, Residual, family_wise
 from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.physics.systems.gear_pair import GearPair
 from tests.explanation.decisions.declared import decides
 from tests.explanation.decisions.made_up import bench, left, outcome
 
@@ -77,7 +78,7 @@ def all_is_named(settings: SearchSettings):
 @decides("lost_share", (True, False))
 def lost(settings: SearchSettings):
     response = white(SAMPLES, 5)
-    evidence = SimpleNamespace(system="gear_pair", fitted=[FitRecord("a", response, 100.0)], settings=settings)
+    evidence = SimpleNamespace(has=GearPair.has, fitted=[FitRecord("a", response, 100.0)], settings=settings)
     residuals = (SimpleNamespace(fit_residuals=[response * share**0.5]) for share in (0.8, 0.2))
     return tuple(is_lost_by(nominal, evidence) for nominal in residuals)
 
