@@ -120,7 +120,7 @@ def main() -> None:
             answers[name] = answered(filed)
             kept.write_text(json.dumps(answers, indent=1, allow_nan=False), encoding="utf-8")
         print(f"{name}: {answers[name]['verdict']}, {judged(filed, answers[name])}", flush=True)
-    write({name: answers[name] for name in FILED})
+        write({one: answers[one] for one in FILED if one in answers})  # stopped here, the page has what was asked
 
 
 if __name__ == "__main__":
