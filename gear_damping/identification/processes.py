@@ -2,18 +2,26 @@
 
 import os
 import pickle
+import subprocess
 import sys
 import tempfile
-from collections.abc import Callable
+import threading
+import time
+import traceback
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import torch
 from lightning.pytorch.plugins.environments import LightningEnvironment
 from torch import Tensor
-from torch.multiprocessing.spawn import start_processes
 
+from gear_damping.errors import written_whole
+
+ARGUMENTS, ERROR = "arguments", ".error"  # files by which the processes speak
+LOOK = 0.1  # s between two looks at them
 LOOPBACK = {"linux": "lo", "darwin": "lo0"}  # the processes are of one machine: no other interface is needed
 
 
@@ -40,7 +48,7 @@ WHOLE = Share()
 
 
 def in_processes(count: int, work: Callable[..., None], *arguments: Any) -> None:
-    """Call `work(share, *arguments)` in so many processes at once, and wait for all.
+    """Call `work(share, *arguments)` in so many new processes at once, and wait for all.
 
     Args:
         count: How many.
@@ -52,27 +60,63 @@ def in_processes(count: int, work: Callable[..., None], *arguments: Any) -> None
         KeyboardInterrupt: as it was sent; all of them are ended.
     """
     with tempfile.TemporaryDirectory(prefix="gear_damping_") as folder:
-        kept = Path(folder) / "arguments"  # a file: shared memory is small in many containers
-        kept.write_bytes(pickle.dumps((work, arguments)))
-        context = start_processes(
-            _begin, (count, kept, LightningEnvironment().main_port), count, join=False, start_method="spawn"
-        )
+        kept = Path(folder)
+        (kept / ARGUMENTS).write_bytes(pickle.dumps((work, arguments)))  # shared memory is small in many containers
+        port = LightningEnvironment().main_port
+        begun = [_begun(Share(rank, count), kept, port) for rank in range(count)]
         try:
-            while not context.join():
-                pass
+            while any(process.poll() is None for process in begun):
+                _refuse_failed(begun, kept)
+                time.sleep(LOOK)
+            _refuse_failed(begun, kept)
         finally:
-            for process in context.processes:
-                if process.is_alive():
-                    process.terminate()
-                process.join()
+            for process in begun:
+                process.kill()
+                process.wait()
+                process.stdin.close()
 
 
-def _begin(rank: int, count: int, kept: Path, port: int) -> None:
-    """What a new process does."""
-    world = {"LOCAL_RANK": rank, "NODE_RANK": 0, "WORLD_SIZE": count, "MASTER_ADDR": "127.0.0.1", "MASTER_PORT": port}
-    os.environ.update({name: str(value) for name, value in world.items()})
+def _begun(share: Share, kept: Path, port: int) -> subprocess.Popen:
+    """A new process, which ends when its standard input does. No fork: torch's threads do not live through one."""
+    world = {"LOCAL_RANK": share.rank, "NODE_RANK": 0, "WORLD_SIZE": share.of, "MASTER_ADDR": "127.0.0.1"}
+    own = {name: str(value) for name, value in (world | {"MASTER_PORT": port}).items()}
+    own["PYTHONPATH"] = os.pathsep.join(filter(None, sys.path))
     if sys.platform in LOOPBACK:
-        os.environ.setdefault("GLOO_SOCKET_IFNAME", LOOPBACK[sys.platform])
-    torch.set_num_threads(max(1, torch.get_num_threads() // count))
-    work, arguments = pickle.loads(kept.read_bytes())
-    work(Share(rank, count), *arguments)
+        own["GLOO_SOCKET_IFNAME"] = LOOPBACK[sys.platform]
+    said = None if share.rank == 0 else subprocess.DEVNULL  # what all say is said once
+    words = [sys.executable, "-m", __name__, str(kept), str(share.rank), str(share.of), str(torch.get_num_threads())]
+    return subprocess.Popen(words, env=os.environ | own, stdin=subprocess.PIPE, stdout=said, stderr=said)
+
+
+def _refuse_failed(begun: Sequence[subprocess.Popen], kept: Path) -> None:
+    failed = [rank for rank, process in enumerate(begun) if process.poll() not in (None, 0)]
+    if not failed:
+        return
+    told = sorted(kept.glob(f"*{ERROR}"))  # one that only lost the others tells less
+    said = told[0].read_text() if told else f"exit code {begun[failed[0]].returncode}"
+    raise RuntimeError(f"one of {len(begun)} processes of a training failed:\n{said}")
+
+
+def main(folder: str, *numbers: str) -> None:
+    """What a new process does."""
+    threading.Thread(target=_end_with_the_parent, daemon=True).start()
+    kept, (rank, count, threads) = Path(folder), map(int, numbers)
+    torch.set_num_threads(max(1, threads // count))
+    work, arguments = pickle.loads((kept / ARGUMENTS).read_bytes())
+    try:
+        work(Share(rank, count), *arguments)
+    except Exception:  # for the process that began this one
+        with written_whole(kept / f"{time.time_ns()}_{rank}{ERROR}") as path:
+            path.write_text(traceback.format_exc())
+        os._exit(1)  # the others may never come to where this one is waited for
+
+
+def _end_with_the_parent() -> None:
+    """Two fits would write into one folder, were the parent killed and begun again."""
+    os.read(0, 1)  # nothing is ever written there
+    os._exit(1)
+
+
+if __name__ == "__main__":
+    # By its name, not as `__main__`: what was pickled knows this module so.
+    import_module("gear_damping.identification.processes").main(*sys.argv[1:])

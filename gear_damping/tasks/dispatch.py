@@ -10,6 +10,7 @@ from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Any
 
+from gear_damping.config.folders import resumable
 from gear_damping.config.measured import INSPECT
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
@@ -49,7 +50,7 @@ def run_job(config: Mapping[str, Any], origin: Origin, folder: Path) -> int:
         return _failed(run_folder, InputError([_placed(problem, config, origin) for problem in error.problems]))
     except KeyboardInterrupt:
         _close(run_folder, INTERRUPTED)
-        log.info("interrupted; go on with: resume=%s", folder)
+        log.info("interrupted%s", f"; go on with: resume={folder}" if resumable(config["task"], folder) else "")
         raise
     except Exception as error:
         if isinstance(error, OSError) and error.errno is not None:  # of the machine: a full disk, a missing right
