@@ -14,6 +14,7 @@ from hydra.core.override_parser.types import Override
 from hydra.errors import HydraException
 
 from gear_damping.config.locate import conf_folder, groups
+from gear_damping.config.many_records import PATH, all_named
 from gear_damping.errors import Problem, nearest
 
 SOURCE = "the command line"
@@ -120,6 +121,8 @@ def _read_override(argument: str, many: bool) -> tuple[list[Problem], list[str]]
         return [Problem(argument, "is not an override", remedy=remedy, source=SOURCE)], []
     if not {"'", '"'} & set(argument):  # what is quoted is read as it stands
         argument = _MICRO.sub(r"\g<space>u", argument)
+    if many and argument.startswith(f"{PATH}="):
+        argument = f"{PATH}={all_named(argument.partition('=')[2])}"
     try:
         parsed = parse(argument)
     except HydraException as error:

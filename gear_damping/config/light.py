@@ -73,7 +73,8 @@ def wrong_measurement(config: Mapping[str, Any]) -> Found:
         example = "PATH/FILE" if task == INSPECT else "PATH/measurement.yaml"
         yield "measurement.path", f"task={task} needs a measurement", None, f"measurement.path={example}"
     elif not measurement_file(path).is_file():
-        yield "measurement.path", no_file(measurement_file(path)), path, f"give the path of {kind}"
+        each = ", or --multirun for a job for each measurement in it" if measurement_file(path).is_dir() else ""
+        yield "measurement.path", no_file(measurement_file(path)), path, f"give the path of {kind}{each}"
 
 
 def no_file(path: Path) -> str:

@@ -209,3 +209,12 @@ def test_a_job_has_one_line_with_a_bar_and_the_rest_in_its_log(measured, tmp_pat
     assert "everything lies in" not in said.stderr
     assert "everything lies in" in (tmp_path / "sweep" / "0" / "log.txt").read_text()
     assert "the same command goes on from here" in said.stderr
+
+
+def test_a_pattern_of_files_is_swept_over(measured, tmp_path):
+    sweep = tmp_path / "sweep"
+    words = ["--multirun", "task=inspect", f"measurement.path={measured}/[ab].csv", f"hydra.sweep.dir={sweep}"]
+    assert main(words) == 0
+    rows = rows_of(sweep)
+    assert [row["measurement.path"] for row in rows] == [str(measured / f"{name}.csv") for name in "ab"]
+    assert {row["status"] for row in rows} == {"finished"}
