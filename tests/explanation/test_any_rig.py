@@ -60,6 +60,7 @@ MORE = [("17/51", "ac"), ("25/50", "torque_gain"), ("37/44", "acceleration"), ("
         ("25/43", "speed_uncertain"), ("37/49", "torque_condition"), ("20/52", "full")]  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("rig", "sensors"), [*QUICK, *(pytest.param(*case, marks=pytest.mark.slow) for case in MORE)])
 def test_nothing_is_found_in_a_null_and_its_damping_is_right(rig, sensors):
     assert_null(gears("null", 4, rig, sensors))

@@ -52,6 +52,7 @@ def written(folder, mass_ratio, line=0.0):
     return path
 
 
+@pytest.mark.slow
 def test_a_second_mode_is_named_with_its_mass_and_frequency(tmp_path):
     content = explain(load_measurement(written(tmp_path, 0.05))).content
     assert (content["verdict"], [cause["name"] for cause in content["causes"]]) == ("explained", ["second_mode"])

@@ -79,6 +79,7 @@ def test_the_same_as_differences_of_fourth_order(damping):
         torch.testing.assert_close(found, expected, rtol=near_enough, atol=near_enough * float(expected.abs().max()))
 
 
+@pytest.mark.slow
 def test_contact_loss_against_central_differences():
     model, values = gear_pair(effect_class("backlash")())
     run = {"sampling_rate": 40e3, "n_samples": 40, "solver": Solver(substeps=8, engine="eager")}
@@ -114,6 +115,7 @@ def test_two_networks_of_one_class_are_two_models():
     assert not torch.allclose(first, second)
 
 
+@pytest.mark.slow
 def test_a_network_learns_a_cubic_force():
     """Trained on the response alone, the network takes the place of a hidden cubic stiffness."""
     truth, values = oscillator(effect_class("cubic_stiffness")())
