@@ -13,8 +13,9 @@ from time import monotonic
 from typing import Any
 
 import torch
-from scipy.stats import beta
+from scipy.stats import binomtest
 
+from benchmarks.marked import put
 from gear_damping.config.settings import Settings, read_settings
 from gear_damping.identification.familiarity import Components, components_for
 from gear_damping.identification.known_model.family import KnownRuns, range_of, start_of
@@ -73,8 +74,7 @@ def main() -> None:
     text = table(found, float(components.threshold))
     print(text)
     if asked.page:
-        whole = PAGE.read_text()
-        PAGE.write_text(f"{whole.split(BEFORE)[0]}{BEFORE}\n\n{text}\n\n{AFTER}{whole.split(AFTER)[1]}")
+        put(text, PAGE, BEFORE, AFTER)
 
 
 def _settings(overrides: list[str]) -> Settings:
@@ -136,8 +136,7 @@ def _share(count: int, of: int) -> str:
     """A share with its 95 % interval (Clopper and Pearson)."""
     if not of:
         return "–"
-    low = float(beta.ppf(0.025, count, of - count + 1)) if count else 0.0
-    high = float(beta.ppf(0.975, count + 1, of - count)) if count < of else 1.0
+    low, high = binomtest(count, of).proportion_ci()
     return f"{100 * count / of:.1f} % ({100 * low:.1f} to {100 * high:.1f})"
 
 

@@ -19,9 +19,10 @@ from typing import Any
 
 import numpy as np
 import torch
-from scipy.stats import beta
+from scipy.stats import binomtest
 
 import gear_damping as gd
+from benchmarks.marked import put
 from gear_damping.identification.seeding import seeded_generator
 from gear_damping.measurement.record import Channel, Quantity, Record
 from gear_damping.measurement.write import write_measurement
@@ -207,8 +208,7 @@ def main() -> None:
     text = table(noted())
     print(text)
     if asked.page:
-        whole = PAGE.read_text()
-        PAGE.write_text(f"{whole.split(BEGIN)[0]}{BEGIN}\n\n{text}\n\n{END}{whole.split(END)[1]}")
+        put(text, PAGE, BEGIN, END)
 
 
 def noted() -> list[Case]:
@@ -234,8 +234,7 @@ def _of(found: Sequence[Mapping[str, Any] | None]) -> tuple[str, str]:
     held, of = sum(bool(one and one["holds"]) for one in found), len(found)
     if not of:
         return "–", "–"
-    low = float(beta.ppf(0.025, held, of - held + 1)) if held else 0.0
-    high = float(beta.ppf(0.975, held + 1, of - held)) if held < of else 1.0
+    low, high = binomtest(held, of).proportion_ci()  # of Clopper and Pearson
     told = [one for one in found if one]
     error, half = (float(np.median([abs(one[key]) for one in told])) for key in ("error_percent", "half_percent"))
     return f"{held} of {of} ({100 * low:.0f} to {100 * high:.0f} %)", f"{error:.2g} / {half:.2g} %"

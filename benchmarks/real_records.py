@@ -11,12 +11,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from benchmarks.marked import put
 from gear_damping.config.locate import conf_folder
 from gear_damping.interface.explained import explain
 from gear_damping.measurement.files import data_root
 from gear_damping.measurement.load import load_measurement
 from gear_damping.reporting.figures import misfit_figure, save
 from gear_damping.reporting.numbers import estimate, number
+from gear_damping.reporting.tables import markdown
 
 ROOT = Path(__file__).parents[1]
 PAGE, PICTURE = ROOT / "docs" / "real_records.md", ROOT / "docs" / "figures" / "real_records.png"
@@ -92,17 +94,10 @@ def row(name: str, answer: dict[str, Any]) -> tuple[str, ...]:
     )  # fmt: skip
 
 
-def page(answers: dict[str, dict[str, Any]]) -> str:
-    """The table between the marks of the page."""
-    lines = [HEADER, ("---",) * len(HEADER), *(row(name, answer) for name, answer in answers.items())]
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
-
-
 def write(answers: dict[str, dict[str, Any]]) -> None:
     """Table and figure."""
-    text = PAGE.read_text(encoding="utf-8")
-    head, tail = text.split(BEFORE)[0], text.split(AFTER)[1]
-    PAGE.write_text(f"{head}{BEFORE}\n{page(answers)}\n{AFTER}{tail}", encoding="utf-8")
+    rows = [row(name, answer) for name, answer in answers.items()]
+    put(markdown(HEADER, rows), PAGE, BEFORE, AFTER)
     save(misfit_figure({name: answer["misfit"] for name, answer in answers.items()}), PICTURE)
 
 

@@ -14,6 +14,7 @@ import numpy as np
 import torch
 from scipy.integrate import solve_ivp
 
+from benchmarks.marked import put
 from gear_damping.identification.catalogue import builtin_estimators
 from gear_damping.identification.damping_estimate import UnsuitedRecord
 from gear_damping.identification.estimators.base import Recorded, RecordEstimator
@@ -126,10 +127,7 @@ def main(arguments: list[str] | None = None) -> None:
     for row in rows_quadratic(max(1, chosen.records // 5), kinds["wavelet_ridge"]):
         print(row, flush=True)
         lines.append(row)
-    text = PAGE.read_text()
-    before, rest = text.split(BEFORE)
-    after = rest.split(AFTER)[1]
-    PAGE.write_text(f"{before}{BEFORE}\n\n" + "\n".join(lines) + f"\n\n{AFTER}{after}")
+    put("\n".join(lines), PAGE, BEFORE, AFTER)
 
 
 if __name__ == "__main__":

@@ -12,6 +12,7 @@ from math import pi
 from pathlib import Path
 
 import gear_damping as gd
+from benchmarks.marked import put
 from gear_damping.identification.test_plan.asked import Unknown
 from gear_damping.identification.test_plan.plan import ToldTest
 from gear_damping.identification.test_plan.repeated import Repeated, Shown
@@ -153,9 +154,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     text = table(lines)
     print(text)
     if not chosen.only:
-        page = PAGE.read_text(encoding="utf-8")
-        before, rest = page.split(BEFORE)
-        PAGE.write_text(f"{before}{BEFORE}\n\n{text}\n\n{AFTER}{rest.split(AFTER)[1]}", encoding="utf-8")
+        put(text, PAGE, BEFORE, AFTER)
 
 
 if __name__ == "__main__":

@@ -12,6 +12,7 @@ from typing import Any
 
 import torch
 
+from benchmarks.marked import put
 from gear_damping.config.settings import Settings, read_settings
 from gear_damping.identification.datamodule import Material, WindowDataModule
 from gear_damping.identification.known_model.exact_bayes import window_bayes
@@ -43,8 +44,7 @@ def main() -> None:
     text = table(rows)
     print(text)
     if asked.page:
-        whole = PAGE.read_text()
-        PAGE.write_text(f"{whole.split(BEFORE)[0]}{BEFORE}\n\n{text}\n\n{AFTER}{whole.split(AFTER)[1]}")
+        put(text, PAGE, BEFORE, AFTER)
 
 
 def _kept(snr: int, seed: int, out: Path) -> dict[str, Any]:

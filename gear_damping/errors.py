@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
+from uuid import uuid4
 
 
 @dataclass(frozen=True)
@@ -60,13 +61,18 @@ def writing(path: Path) -> Iterator[Path]:
 
 
 @contextmanager
-def written_whole(path: Path) -> Iterator[Path]:
+def written_whole(path: Path, by_several: bool = False) -> Iterator[Path]:
     """A path to write to, which takes the place of `path` in the end; after an error nothing of it is left.
+
+    Args:
+        path: The file.
+        by_several: Whether other processes may write it at the same time, so that each needs a path of its own.
 
     Raises:
         OSError: as what writes raises it, with the name of a file.
     """
-    unfinished = path.with_name(path.name + ".part")
+    own = f".{uuid4().hex}" if by_several else ""
+    unfinished = path.with_name(f"{path.name}{own}.part")
     with writing(path):
         try:
             yield unfinished

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from benchmarks.marked import put
 from gear_damping.reporting.evaluation import evaluation_figure, evaluation_table
 from gear_damping.reporting.figures import save
 
@@ -14,8 +15,6 @@ BEFORE, AFTER = "<!-- measured by `make limit` -->", "<!-- end -->"
 
 def write(content: Mapping[str, Any]) -> None:
     """Put the table into its place on the page."""
-    text = PAGE.read_text()
-    head, tail = text.split(BEFORE)[0], text.split(AFTER)[1]
     seeds = ", ".join(map(str, content["seeds"]))
     said = (
         f"Family `{content['family']}` with backlash, {content['test_runs']} unseen runs of 2000 samples, of which "
@@ -23,4 +22,4 @@ def write(content: Mapping[str, Any]) -> None:
         f"(those of windows on 4000), seeds {seeds}, means over the seeds."
     )
     save(evaluation_figure(content), FIGURE)
-    PAGE.write_text(f"{head}{BEFORE}\n\n{said}\n\n{evaluation_table(content)}\n\n{AFTER}{tail}")
+    put(f"{said}\n\n{evaluation_table(content)}", PAGE, BEFORE, AFTER)

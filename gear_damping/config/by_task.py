@@ -8,7 +8,7 @@ import torch
 from gear_damping.config.folders import RESUMABLE, resumable
 from gear_damping.config.light import no_file
 from gear_damping.config.whole import Found, Whole, typed
-from gear_damping.identification.saved import holds_network
+from gear_damping.identification.network_files import holds_network
 from gear_damping.physics.terms import HeldLoad
 from gear_damping.simulation.families import DAMPING_RATIO
 

@@ -8,6 +8,8 @@ from torch import Tensor
 from gear_damping.identification.runs import RunSet
 from gear_damping.identification.seeding import seeded_generator
 
+NO_BETTER = 0.95  # of the error of the network that heard noise: from there on a network tells nothing
+
 
 def mean_predictor(training_labels: Tensor) -> float:
     """The one value that the mean predictor always says: the mean of the training labels (%)."""

@@ -15,11 +15,10 @@ import torch
 
 from gear_damping.errors import InputError, Problem, written_whole
 from gear_damping.identification.lightning_module import DampingModule
+from gear_damping.identification.network_files import CHECKPOINT, DESCRIPTION, STEM, WEIGHTS, holds_network
 
 FORMAT = "gear_damping.network"
 VERSION = 1  # of the JSON; a reader refuses later ones
-STEM = "model"  # of the files that are shared
-WEIGHTS, DESCRIPTION, CHECKPOINT = ".safetensors", ".json", "best.ckpt"
 ARGUMENTS = ("estimator", "data", "settings", "wavelet", "learning_rate")  # of DampingModule, which a file may give
 KEY = "checkpoint"
 
@@ -56,11 +55,6 @@ def files_of(path: Path | str) -> tuple[Path, ...]:
     if path.suffix in (WEIGHTS, DESCRIPTION):
         return path.with_suffix(DESCRIPTION), path.with_suffix(WEIGHTS)
     return (path,)
-
-
-def holds_network(folder: Path) -> bool:
-    """Whether a folder is that of a network."""
-    return any((folder / name).is_file() for name in (STEM + DESCRIPTION, CHECKPOINT))
 
 
 def description_of(module: DampingModule) -> dict[str, Any]:

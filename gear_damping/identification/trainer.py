@@ -161,10 +161,7 @@ def fit_estimator(
         for name in ("best.ckpt", "last.ckpt"):  # of an earlier fit: never to be taken for this one's
             (folder / name).unlink(missing_ok=True)
     with own_randomness(derived_seed(seed, "weights")), threads(training.batch_size), quiet_lightning():
-        module = build_estimator(config, data, training.learning_rate)
-        module.schedule = training.schedule
-        fit_front_end(module, data)
-        fit_components(module, data)
+        module = _prepared(config, training, data)
         finished = resume is not None and _take_over(Path(resume), folder, module, training)
         fit = _Fit(config, training, folder, None if resume is None else folder / "last.ckpt", seed, shown.progress)
         if not finished and training.devices > 1:
@@ -197,11 +194,16 @@ def _fit_share(share: Share, fit: _Fit, material: Material, data_seed: int) -> N
     data.share = share
     keep_memory()
     with own_randomness(derived_seed(fit.seed, "weights")), threads(fit.training.batch_size), quiet_lightning():
-        module = build_estimator(fit.config, data, fit.training.learning_rate)
-        module.schedule = fit.training.schedule
-        fit_front_end(module, data)
-        fit_components(module, data)
-        _fit(fit, module, data)
+        _fit(fit, _prepared(fit.config, fit.training, data), data)
+
+
+def _prepared(config: EstimatorConfig, training: Training, data: WindowDataModule) -> DampingModule:
+    """The network before its first epoch."""
+    module = build_estimator(config, data, training.learning_rate)
+    module.schedule = training.schedule
+    fit_front_end(module, data)
+    fit_components(module, data)
+    return module
 
 
 def _take_over(resume: Path, folder: Path, module: DampingModule, training: Training) -> bool:

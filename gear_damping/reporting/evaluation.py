@@ -7,6 +7,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from gear_damping.reporting.style import INK, colour_of, legend_above, marker_of, new_figure, styled
+from gear_damping.reporting.tables import markdown
 
 NO_NOISE = 120.0  # dB
 COLUMNS = (
@@ -21,19 +22,24 @@ def evaluation_table(content: Mapping[str, Any]) -> str:
     Args:
         content: Of `evaluation.json`.
     """
-    rows = [f"| {' | '.join(COLUMNS)} |", "|---" * len(COLUMNS) + "|"]
+    return markdown(COLUMNS, evaluation_rows(content))
+
+
+def evaluation_rows(content: Mapping[str, Any]) -> list[tuple[str, ...]]:
+    """The same below COLUMNS."""
+    rows = []
     for snr, level in content["snr_db"].items():
         for name, found in level["estimators"].items():
             covered = _percent(found["coverage90"])
             ratios = (_to(found[key], "{:.2f}") for key in ("ratio_to_bound", "typical_ratio", "rmse_to_bound"))
             skill, bound = _to(found["skill"], "{:.3f}"), _to(level["bound_percent"], "{:.4f}")
-            shown = "no noise" if float(snr) >= NO_NOISE else snr
+            shown = _shown(snr)
             error = _to(found["rmse_percent"], "{:.4f}")
             cells = (shown, bound, _named(name, found, content["test_runs"]), error, *ratios, skill, covered)
             strange = _percent(found.get("strange"))
             taken = f"{1e3 * found['seconds_per_record']:.3g}"
-            rows.append(f"| {' | '.join((*cells, strange, taken))} |")
-    return "\n".join(rows)
+            rows.append((*cells, strange, taken))
+    return rows
 
 
 def ratio_table(content: Mapping[str, Any]) -> str:
@@ -42,14 +48,19 @@ def ratio_table(content: Mapping[str, Any]) -> str:
     Args:
         content: Of `evaluation.json`.
     """
+    return markdown(*ratio_rows(content))
+
+
+def ratio_rows(content: Mapping[str, Any]) -> tuple[list[str], list[tuple[str, ...]]]:
+    """The same as columns and rows."""
     bands = next(iter(next(iter(content["snr_db"].values()))["estimators"].values()))["by_damping_ratio"]
     ranges = [f"{band['from_percent']:.3g} to {band['to_percent']:.3g} % ({band['runs']} runs)" for band in bands]
-    rows = [f"| SNR / dB | RMSE / % of | {' | '.join(ranges)} |", "|---" * (len(ranges) + 2) + "|"]
+    rows = []
     for snr, level in content["snr_db"].items():
         for name, found in level["estimators"].items():
             errors = (_to(band["rmse_percent"], "{:.4f}") for band in found["by_damping_ratio"])
-            rows.append(f"| {'no noise' if float(snr) >= NO_NOISE else snr} | `{name}` | {' | '.join(errors)} |")
-    return "\n".join(rows)
+            rows.append((_shown(snr), f"`{name}`", *errors))
+    return ["SNR / dB", "RMSE / % of", *ranges], rows
 
 
 def effect_table(content: Mapping[str, Any]) -> list[str]:
@@ -57,16 +68,18 @@ def effect_table(content: Mapping[str, Any]) -> list[str]:
     if not content["effects"]:
         return []
     columns = ("effect", "SNR / dB", "estimator", "RMSE / %", "median error", "90 % interval holds", "unlike training")
-    rows = [f"| {' | '.join(columns)} |", "|---" * len(columns) + "|"]
+    rows = []
     for effect, levels in content["effects"].items():
         for snr, estimators in levels.items():
             for name, one in estimators.items():
-                shown = "no noise" if float(snr) >= NO_NOISE else snr
                 median = f"{100 * one['median_relative_error']:.1f} %"
                 shares = (_percent(one["coverage90"]), _percent(one.get("strange")))
-                cells = (f"`{effect}`", shown, f"`{name}`", f"{one['rmse_percent']:.4f}", median, *shares)
-                rows.append(f"| {' | '.join(cells)} |")
-    return ["\n".join(rows)]
+                rows.append((f"`{effect}`", _shown(snr), f"`{name}`", f"{one['rmse_percent']:.4f}", median, *shares))
+    return [markdown(columns, rows)]
+
+
+def _shown(snr: str) -> str:
+    return "no noise" if float(snr) >= NO_NOISE else snr
 
 
 def _percent(share: float | None) -> str:

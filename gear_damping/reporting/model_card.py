@@ -4,10 +4,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from gear_damping.identification.controls import NO_BETTER
 from gear_damping.identification.trained_on import LABEL, MEAN, ROUNDING, SIZE, TrainedOn
 from gear_damping.reporting.numbers import NOTHING, number, percent, pretty_unit
+from gear_damping.reporting.tables import markdown
 
-NO_BETTER = 0.95  # of the error of a network that heard noise: above it a network has learned nothing that shows
 _RANGES = {LABEL: ("damping ratio", "% of critical"), MEAN: ("mean of the record", ""),
            SIZE: ("root mean square about the mean", ""), "pinion_speed": ("pinion speed", "rad/s"),
            "pinion_torque": ("pinion torque", "N*m")}  # fmt: skip
@@ -79,7 +80,7 @@ def model_card(description: Mapping[str, Any], states_interval: bool, facts: Car
         "When it refuses and when it warns": _refusals(description, seen),
         "How to use it": _USE,
         "Limits": _limits(states_interval),
-        "Where it comes from": _table(("", ""), facts.origin.items()) if facts.origin else "Not noted.",
+        "Where it comes from": markdown(("", ""), facts.origin.items()) if facts.origin else "Not noted.",
         "Licence": "MIT, as that of gear_damping, whose simulated runs are all that it has seen.",
     }
     system = f" of a {seen.system.replace('_', ' ')}" if seen.system else ""
@@ -109,7 +110,7 @@ def _trained(description: Mapping[str, Any], seen: TrainedOn, facts: CardFacts) 
     }
     ranges = [_range(name, low, high, seen.unit) for name, (low, high) in seen.ranges.items()]
     inside = "It has seen these ranges, and simulated runs only:"
-    return f"{_table(('', ''), rows.items())}\n\n{inside}\n\n{_table(('quantity', 'from', 'to', 'unit'), ranges)}"
+    return f"{markdown(('', ''), rows.items())}\n\n{inside}\n\n{markdown(('quantity', 'from', 'to', 'unit'), ranges)}"
 
 
 def _said(settings: Mapping[str, Any]) -> str:
@@ -126,7 +127,7 @@ def _figures(facts: CardFacts) -> str:
     if not facts.scored:
         return "Not known here: `task=evaluate` asks it about fresh runs, beside the bound and the controls."
     head = ("estimator", "RMSE / % of critical", "95 % interval", "median rel. error", "skill")
-    table = _table(head, [_row(one) for one in facts.scored])
+    table = markdown(head, [_row(one) for one in facts.scored])
     return f"{facts.tested}\n\n{table}\n\n{_verdict(facts)}"
 
 
@@ -173,9 +174,3 @@ def _limits(states_interval: bool) -> str:
         "measured record in its training. What a rig does that the simulator does not, it takes for damping. "
         f"{sure}"
     )
-
-
-def _table(head: Sequence[str], rows: Any) -> str:
-    cells = [tuple(str(cell).replace("|", "\\|") for cell in row) for row in rows]
-    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
-    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in cells])

@@ -33,13 +33,24 @@ def results_table(results: Mapping[str, Any]) -> str:
     """
     title = f"{results['experiment']}: protocol {results['protocol']}, family {results['family']}, "
     title += f"seeds {', '.join(map(str, results['seeds']))}"
-    return _text(title, COLUMNS, _rows(results), left=("estimator",))
+    return _text(title, COLUMNS, results_rows(results), left=("estimator",))
 
 
 def results_markdown(results: Mapping[str, Any]) -> str:
     """The same table for a README."""
-    lines = ["| " + " | ".join(COLUMNS) + " |", "|---|" + "---:|" * (len(COLUMNS) - 1)]
-    lines += ["| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |" for row in _rows(results)]
+    return markdown(COLUMNS, results_rows(results), right=len(COLUMNS) - 1)
+
+
+def markdown(columns: Sequence[str], rows: Iterable[Sequence[object]], right: int = 0) -> str:
+    """Any table as Markdown.
+
+    Args:
+        columns: What stands above.
+        rows: Cells; their text is taken as it is.
+        right: How many of the last columns are set flush right.
+    """
+    lines = ["| " + " | ".join(columns) + " |", "|" + "---|" * (len(columns) - right) + "---:|" * right]
+    lines += ["| " + " | ".join(str(cell).replace("|", "\\|") for cell in row) + " |" for row in rows]
     return "\n".join(lines)
 
 
@@ -96,7 +107,8 @@ def write_csv(rows: Sequence[Mapping[str, Any]], path: Path | str) -> Path:
     return path
 
 
-def _rows(results: Mapping[str, Any]) -> list[tuple[str, ...]]:
+def results_rows(results: Mapping[str, Any]) -> list[tuple[str, ...]]:
+    """The rows of an experiment below COLUMNS: networks, then controls."""
     several = len(results["seeds"]) > 1
     groups = (("models", ""), ("controls", " (control)"))
     return [_row(name + mark, found, several) for key, mark in groups for name, found in results[key].items()]

@@ -51,11 +51,10 @@ def _effect(asked: str, known: Mapping[str, type[Effect]]) -> Effect | Problem:
     name, _, form = asked.partition(CHOICE)
     if name not in known:
         return Problem(KEY, "no such effect", name, nearest(name, list(known)))
-    options = {str(choice): option.name for option in known[name].options for choice in option.choices}
-    if form and form not in options:
-        return Problem(KEY, f"{name} has no such form", form, nearest(form, list(options)))
-    choices = {choice: option for option in known[name].options for choice in option.choices if str(choice) == form}
-    return known[name](**{option.name: choice for choice, option in choices.items()})
+    forms = {str(choice): {option.name: choice} for option in known[name].options for choice in option.choices}
+    if form and form not in forms:
+        return Problem(KEY, f"{name} has no such form", form, nearest(form, list(forms)))
+    return known[name](**forms.get(form, {}))
 
 
 def asked_with_effects(

@@ -2,12 +2,11 @@
 
 import logging
 import os
-import uuid
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gear_damping.errors import writing
+from gear_damping.errors import written_whole
 from gear_damping.reporting.headline import headline
 from gear_damping.reporting.run_report import REPORT
 from gear_damping.tasks.run_folder import FAILED, FINISHED, RUNNING, read_record
@@ -55,20 +54,11 @@ def write_index(root: Path) -> int:
     for _ in range(TRIES):
         before = _state(root)
         rows = [row for folder in before if (row := _row(root, folder)) is not None]
-        _replace(root / INDEX, index_page(rows))
+        with written_whole(root / INDEX, by_several=True) as path:
+            path.write_text(index_page(rows), encoding="utf-8")
         if _state(root) == before:
             break
     return len(rows)
-
-
-def _replace(path: Path, text: str) -> None:
-    unfinished = path.with_name(f"{path.name}.{uuid.uuid4().hex}.part")
-    try:
-        with writing(path):
-            unfinished.write_text(text, encoding="utf-8")
-            os.replace(unfinished, path)
-    finally:
-        unfinished.unlink(missing_ok=True)
 
 
 def _state(root: Path) -> dict[Path, int]:

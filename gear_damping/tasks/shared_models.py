@@ -4,7 +4,8 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from gear_damping.config.settings import Settings
-from gear_damping.identification.saved import CHECKPOINT, description_of, load_estimator, write_shared
+from gear_damping.identification.network_files import CHECKPOINT
+from gear_damping.identification.saved import description_of, load_estimator, write_shared
 from gear_damping.reporting.model_card import CardFacts, Scored, model_card
 from gear_damping.tasks.run_folder import RunFolder
 

@@ -12,10 +12,10 @@ import pytest
 from gear_damping.reporting import tables
 from gear_damping.reporting.explanation_report import Overlay, ReportInput, ResidualSpectrum, render
 from gear_damping.reporting.page.render import render_page
-from gear_damping.reporting.page.table import markdown_table
 from gear_damping.reporting.run_index import IndexRow, index_page
 from gear_damping.reporting.run_report import REPORTED
 from gear_damping.reporting.run_report.sweep import SweepLeft
+from gear_damping.reporting.run_report.training import errors_table
 from gear_damping.reporting.run_report.write import write_report, write_sweep_report
 from gear_damping.reporting.style import new_figure, save
 
@@ -272,7 +272,7 @@ def test_what_is_not_finite_stands_in_a_report_as_a_dash(tmp_path):
 
 
 def test_the_table_is_that_of_the_terminal(tmp_path):
-    found = markdown_table("", tables.results_markdown(results(0.05)))
+    found = errors_table(results(0.05))
     assert found.headings == list(tables.COLUMNS)
     assert [row[0] for row in found.rows] == ["raw_lstm", "mean (control)", "white_noise (control)"]
     assert "<th scope=\"row\">raw_lstm</th>" in run_report("train", tmp_path)

@@ -89,14 +89,14 @@ def test_a_run_never_fails_for_its_index(tmp_path, monkeypatch, caplog):
 def test_a_run_that_ends_meanwhile_stands_in_it(tmp_path, monkeypatch):
     """It wrote its index first, and the other would put an older one in its place."""
     run(tmp_path / "train" / "a" / "1")
-    plainly, between = run_index._replace, [lambda: run(tmp_path / "train" / "b" / "2")]
+    plainly, between = run_index.written_whole, [lambda: run(tmp_path / "train" / "b" / "2")]
 
-    def replaced(path, text):
+    def late(path, **how):
         while between:
             between.pop()()
-        plainly(path, text)
+        return plainly(path, **how)
 
-    monkeypatch.setattr(run_index, "_replace", replaced)
+    monkeypatch.setattr(run_index, "written_whole", late)
     assert write_index(tmp_path) == 2
 
 

@@ -36,10 +36,3 @@ class Table:
     def is_number(self, column: int) -> bool:
         """Whether a column is set flush right."""
         return column > 0 if self.numbers is None else column in self.numbers
-
-
-def markdown_table(caption: str, text: str, numbers: Sequence[int] | None = None) -> Table:
-    """The first table that stands as Markdown in a text."""
-    lines = [line for line in text.splitlines() if line.startswith("|")]
-    headings, _, *rows = ([cell.strip() for cell in line.strip("|").split("|")] for line in lines)
-    return Table(caption, headings, rows, numbers)

@@ -4,12 +4,12 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from gear_damping.reporting.evaluation import NO_NOISE, evaluation_table, ratio_table
+from gear_damping.identification.controls import NO_BETTER
+from gear_damping.reporting.evaluation import COLUMNS, NO_NOISE, evaluation_rows, ratio_rows
 from gear_damping.reporting.numbers import number
 from gear_damping.reporting.page.picture import Picture
-from gear_damping.reporting.page.table import markdown_table
+from gear_damping.reporting.page.table import Table
 from gear_damping.reporting.run_report.content import DOUBTFUL, FINE, Left, RunReport, Section
-from gear_damping.reporting.run_report.training import NO_BETTER
 
 CONTROLS = ("mean", "white_noise")
 TEXT_COLUMN = 2  # of the table: the estimator
@@ -23,11 +23,10 @@ BY_RATIO = "RMSE in % of critical by the true damping ratio."
 def report_of(left: Left) -> RunReport:
     """What an evaluation has come to."""
     content = left.read("evaluation.json")
-    whole = markdown_table(TABLE, evaluation_table(content))
-    numbers = [place for place in range(len(whole.headings)) if place != TEXT_COLUMN]
-    whole = markdown_table(TABLE, evaluation_table(content), numbers)
-    by_ratio = markdown_table(BY_RATIO, ratio_table(content))
-    by_ratio = markdown_table(BY_RATIO, ratio_table(content), [0, *range(2, len(by_ratio.headings))])
+    numbers = [place for place in range(len(COLUMNS)) if place != TEXT_COLUMN]
+    whole = Table(TABLE, COLUMNS, evaluation_rows(content), numbers)
+    columns, rows = ratio_rows(content)
+    by_ratio = Table(BY_RATIO, columns, rows, [0, *range(2, len(columns))])
     sections = [
         Section("Errors beside the bound", [_runs(content)], [whole], _against_noise(left, content)),
         Section("By damping ratio", (), [by_ratio], _pairs(left, content)),

@@ -3,13 +3,13 @@
 from collections.abc import Mapping
 from typing import Any
 
+from gear_damping.identification.controls import NO_BETTER
 from gear_damping.reporting.numbers import number, percent
 from gear_damping.reporting.page.picture import Picture
-from gear_damping.reporting.page.table import markdown_table
+from gear_damping.reporting.page.table import Table
 from gear_damping.reporting.run_report.content import DOUBTFUL, FINE, Left, RunReport, Section
-from gear_damping.reporting.tables import results_markdown
+from gear_damping.reporting.tables import COLUMNS, results_rows
 
-NO_BETTER = 0.95  # of the error of the network that heard noise: from there on a network tells nothing
 TABLE = (
     "Errors on test windows. RMSE in % of critical damping; skill is 1 where all is right and 0 where a network is as "
     "good as always saying the mean of the training labels; epochs until the lowest validation error."
@@ -24,7 +24,7 @@ def report_of(left: Left) -> RunReport:
         Section(
             "Errors of the networks and their controls",
             [_protocol(results)],
-            [markdown_table(TABLE, results_markdown(results))],
+            [errors_table(results)],
         ),
         Section("Run by run", pictures=_predictions(left, results)),
         Section("The simulated runs", [_runs(results)], pictures=_response(left)),
@@ -32,6 +32,11 @@ def report_of(left: Left) -> RunReport:
     lead = [_lead(results), *doubts]
     state = DOUBTFUL if len(doubts) == len(results["models"]) else FINE
     return RunReport("Training", f"Training of {left.name}", lead, state, sections)
+
+
+def errors_table(results: Mapping[str, Any]) -> Table:
+    """The table of the terminal."""
+    return Table(TABLE, list(COLUMNS), results_rows(results))
 
 
 def control_sentences(results: Mapping[str, Any]) -> list[str]:

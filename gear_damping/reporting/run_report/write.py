@@ -6,7 +6,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from gear_damping.errors import writing
+from gear_damping.errors import written_whole
 from gear_damping.reporting.page.render import render_page
 from gear_damping.reporting.run_report import REPORT, REPORTED
 from gear_damping.reporting.run_report.content import Left, RunReport
@@ -39,9 +39,9 @@ def write_sweep_report(left: SweepLeft) -> Path:
 
 
 def _write(folder: Path, report: RunReport) -> Path:
-    page = render_page(PACKAGE, "run.html", report=report)
-    with writing(folder / REPORT) as path:
-        path.write_text(page, encoding="utf-8")
+    path, page = folder / REPORT, render_page(PACKAGE, "run.html", report=report)
+    with written_whole(path) as unfinished:
+        unfinished.write_text(page, encoding="utf-8")
     return path
 
 
