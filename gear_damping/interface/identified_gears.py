@@ -24,9 +24,10 @@ from gear_damping.explanation.trials.efficient import weighed
 from gear_damping.identification.oscillator import linear_model
 from gear_damping.identification.output_error.least_squares import Rounds
 from gear_damping.identification.output_error.records import FitRecord
-from gear_damping.interface.free_parameters import free_parameters
+from gear_damping.interface.free_parameters import FLAT, free_parameters
 from gear_damping.interface.identified_page import MOST_PANELS, estimate_rows, panel, residual_rows
 from gear_damping.measurement.record import Measurement
+from gear_damping.physics.damping_ratio import DAMPING_RATIO
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.traits import Trait, by_trait
 from gear_damping.reporting import figures, tables
@@ -59,6 +60,9 @@ def nominal_fit(measurement: Measurement, say: Say, solver: Solver | None) -> Fi
 def own_fit(measurement: Measurement, model: Model, free: Sequence[str], say: Say, solver: Solver | None) -> Fitted:
     """A model of one's own with these parameters free; what it was not given is what the file states of the rig.
 
+    What neither gives keeps the default that the model prints; where it is free, it begins at what `explain` would
+    begin with.
+
     Raises:
         InputError: the model is of another system, a name is unknown, or a free parameter begins at zero.
     """
@@ -68,15 +72,18 @@ def own_fit(measurement: Measurement, model: Model, free: Sequence[str], say: Sa
         rule = f"is a {model.system.name}, the records are those of a {evidence.system}"
         raise InputError(Problem("model", rule, remedy="give a model of the measured system"))
     evidence, noise = with_noise(evidence, measurement, say)
-    stated = {k: v for k, v in _stated(evidence).items() if k in model.parameters()}
-    given = stated | model.given
+    first = {k: v for k, v in _first(evidence).items() if k in model.parameters()}
+    stated = {k: first[k] for k in map(_flat, evidence.parameters) if k in first}
+    names = {model.damping_coefficient if name == DAMPING_RATIO else name for name in free}
+    begun = {name: first[name] for name in names if name in first}
+    given = begun | stated | model.given
     moved = free_parameters(model, given, free, stated, evidence.known.uncertainty)
-    begun = Hypothesis(model.system, model.effects, given, moved)
+    hypothesis = Hypothesis(model.system, model.effects, given, moved)
     solver, own = fitting_solver(solver), {}
     if not evidence.has_index:
         evidence = with_own_angles(evidence)
-        own = angles_of(begun, evidence, evidence.duration, solver)
-    outcome = fit_hypothesis(begun, evidence, Begun(own=own), Rounds(ITERATIONS), solver=solver)
+        own = angles_of(hypothesis, evidence, evidence.duration, solver)
+    outcome = fit_hypothesis(hypothesis, evidence, Begun(own=own), Rounds(ITERATIONS), solver=solver)
     return Fitted(evidence, noise, weighed(outcome, evidence))
 
 
@@ -87,9 +94,14 @@ def _refuse_casing(measurement: Measurement) -> None:
         raise InputError(Problem("records", rule, remedy=remedy, source=str(measurement.source)))
 
 
-def _stated(evidence: Evidence) -> Given:
-    """What the file states of the rig, by flat name of the simulator's parameters."""
-    return by_trait(evidence.base, STATED, "nominal model")(evidence)
+def _flat(name: str) -> str:
+    """A name of the file as the simulator's."""
+    return FLAT.get(name, name)
+
+
+def _first(evidence: Evidence) -> Given:
+    """What the search begins with, by flat name of the simulator's parameters: stated, or a first guess."""
+    return by_trait(evidence.base, FIRST, "nominal model")(evidence)
 
 
 def _of_gears(evidence: Evidence) -> Given:
@@ -101,7 +113,7 @@ def _of_a_spring(evidence: Evidence) -> Given:
     return given | {parameter.name: parameter.start for parameter in free}
 
 
-STATED = {Trait.TEETH: _of_gears, Trait.REST: _of_a_spring}
+FIRST = {Trait.TEETH: _of_gears, Trait.REST: _of_a_spring}
 
 
 def content_of(measurement: Measurement, found: Fitted) -> dict[str, Any]:
