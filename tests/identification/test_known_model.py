@@ -14,8 +14,9 @@ from gear_damping.identification.cramer_rao import cramer_rao
 from gear_damping.identification.evaluation import is_repeatable, scores, with_prior
 from gear_damping.identification.known_model.estimate import Estimates, within
 from gear_damping.identification.known_model.family import KnownRuns, range_of, start_of
-from gear_damping.identification.known_model.output_error import output_error
-from gear_damping.identification.known_model.unscented_kalman import unscented_kalman
+from gear_damping.identification.known_model.multiple_shooting import multiple_shooting
+from gear_damping.identification.known_model.output_error import misfit, output_error
+from gear_damping.identification.known_model.unscented_kalman import smoothed_states, unscented_kalman
 from gear_damping.physics.catalogue import effect_class
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.gear_pair import GearPair
@@ -56,14 +57,19 @@ def decays():
 
 def direct(record):
     """The same posterior by scipy from closed forms: place and deviation of the damping ratio in %."""
+    found = direct_fit(record)
+    return found.x[0], np.sqrt(np.linalg.inv(found.jac.T @ found.jac)[0, 0])
+
+
+def direct_fit(record):
+    """Damping ratio in % and start in deviations, by scipy."""
     time = np.arange(SAMPLES) / RATE
 
     def left(p):
         x = free_decay(time, 1.0, 2 * p[0] / 100 * OMEGA, OMEGA**2, *(CENTRE + SPREAD * p[1:]))[0]
         return np.concatenate([(x - record) / NOISE, p[1:]])
 
-    found = least_squares(left, [2.0, 0.0, 0.0], x_scale=[1, 1, 1], xtol=1e-12, ftol=1e-12)
-    return found.x[0], np.sqrt(np.linalg.inv(found.jac.T @ found.jac)[0, 0])
+    return least_squares(left, [2.0, 0.0, 0.0], x_scale=[1, 1, 1], xtol=1e-12, ftol=1e-12)
 
 
 def test_output_error_finds_what_scipy_finds_in_closed_forms(decays):
@@ -82,6 +88,29 @@ def test_the_filter_finds_the_same_within_its_deviation(decays):
         assert float(said.ratio[number]) == pytest.approx(place, abs=deviation)  # it linearises each sample once
         half = float(said.high[number] - said.low[number]) / 2
         assert half == pytest.approx(1.6449 * deviation, rel=0.15)
+
+
+def test_the_smoothed_motion_is_that_of_the_fit_to_all_samples(decays):
+    ratio, states = smoothed_states(decays)
+    for number, record in enumerate(decays.records.numpy()):
+        place, *start = direct_fit(record).x
+        motion = np.stack(free_decay(np.arange(SAMPLES) / RATE, 1.0, 2 * place / 100 * OMEGA, OMEGA**2,
+                                     *(CENTRE + SPREAD * start)))  # fmt: skip
+        found = (CENTRE + SPREAD * states[number].numpy()).T
+        error = np.abs(found - motion).max(1)
+        assert float(ratio[number]) == pytest.approx(place, rel=0.05)
+        assert error[0] < NOISE / 2  # the filter's are several times that at the start, where it knows no damping
+        assert error[1] < OMEGA * NOISE / 2
+
+
+def test_segments_meet_where_scipy_finds_the_whole_record(decays):
+    """Begun at what was measured, with no velocity at all and a wrong damping."""
+    begun = torch.stack([decays.records - CENTRE[0], torch.zeros_like(decays.records)], -1) / decays.units[:, None]
+    found = multiple_shooting(decays, torch.full((4,), 0.9, dtype=torch.float64), begun)
+    for number, record in enumerate(decays.records.numpy()):
+        place, *start = direct_fit(record).x
+        assert 0.5 + 4.0 * float(found[number, 0]) == pytest.approx(place, rel=2e-3)
+        np.testing.assert_allclose(found[number, 1:], start, atol=0.02)
 
 
 def test_a_start_that_is_known_exactly_is_taken_as_it_is(decays):
@@ -104,10 +133,10 @@ def test_a_cut_normal_distribution_is_that_of_scipy():
         assert float(said.high[number]) == pytest.approx(cut.ppf(0.95), abs=0.02 * size)
 
 
-def gears(n_runs=24, gap=None):
+def gears(n_runs=24, gap=None, torque=(0.8, 1.2)):
     effects = [effect_class("fourier_mesh_stiffness")(), effect_class("power_law_damping")(exponent=2)]
     effects += [effect_class("backlash")(gap=gap)] if gap else []
-    spreads = {DAMPING_RATIO: Spread(0.1, 0.6), "pinion_torque": Spread(0.8, 1.2, relative=True)}
+    spreads = {DAMPING_RATIO: Spread(0.1, 0.6), "pinion_torque": Spread(*torque, relative=True)}
     return SimulationPlan(
         Model(GearPair(), effects),
         {"pinion_torque": 150.0, "pinion_speed": 4600 * math.pi / 30},
@@ -121,7 +150,7 @@ def gears(n_runs=24, gap=None):
 
 
 def test_gear_pairs_are_estimated_as_well_as_the_bound_allows():
-    plan = gears()
+    plan = replace(gears(), n_samples=500)
     runs = run_plan(plan)
     noise = runs.response.std(-1) * 10 ** (-20 / 20)
     drawn = torch.randn(runs.response.shape, generator=torch.Generator().manual_seed(1), dtype=torch.float64)
@@ -134,6 +163,20 @@ def test_gear_pairs_are_estimated_as_well_as_the_bound_allows():
     found = scores(runs.damping_ratio_percent, said, with_prior(bound, (0.1, 0.6)), 0.35)
     assert found["ratio_to_bound"] == pytest.approx(1.0, abs=3 / math.sqrt(2 * 24))
     assert found["coverage90"] >= 0.7
+
+
+def test_where_flanks_part_the_search_goes_astray_and_the_segments_do_not():
+    plan = replace(gears(24, gap=100e-6, torque=(0.6, 0.8)), n_samples=400)
+    runs = run_plan(plan)
+    noise = runs.response.std(-1) * 10 ** (-30 / 20)
+    drawn = torch.randn(runs.response.shape, generator=torch.Generator().manual_seed(1), dtype=torch.float64)
+    records, start = runs.response + noise[:, None] * drawn, start_of(runs, plan.family)
+    known = KnownRuns(runs, plan.damping_law, range_of(plan.family), *start, records, noise, plan.solver)
+    astray = misfit(known) > 1.5
+    assert 1 <= int(astray.sum()) <= 5
+    said = output_error(known.pick(astray))
+    error = (said.ratio - runs.damping_ratio_percent[astray]).abs()
+    assert bool((error < said.high - said.low).all())  # twice the half: 3.3 deviations
 
 
 def test_a_motion_that_no_computation_repeats_has_no_bound():

@@ -1,11 +1,11 @@
 """Output error of many runs at once: damping ratio and start by least squares on simulated responses.
 
-Gauss-Newton steps with Levenberg's damping over growing stretches of the record (Ljung 1999, chapter 10), several
-damping ratios to begin with; more of them, and more slowly, where more is left than the noise. The answer is the mean
-of the distribution that is left, normal within the range.
+Gauss-Newton steps with Levenberg's damping, begun twice: from several damping ratios over growing stretches of the
+record (Ljung 1999, chapter 10), and from the motion of a Kalman smoother by multiple shooting, which finds the valley
+where flanks part and errors of the start grow. The lower one counts. The answer is the mean of the distribution that
+is left, normal within the range.
 """
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import torch
@@ -13,34 +13,17 @@ from torch import Tensor
 
 from gear_damping.identification.known_model.estimate import Estimates, within
 from gear_damping.identification.known_model.family import KnownRuns
+from gear_damping.identification.known_model.multiple_shooting import multiple_shooting
+from gear_damping.identification.known_model.unscented_kalman import smoothed_states
 
-DOUBT = 2.0  # standard deviations of a sum of squares above what noise leaves: then another valley is looked for
 STEP = 1e-4  # of the range, and of a deviation of the start: differences
 FEWER, MORE, FIRST = 0.2, 5.0, 1e-2  # Levenberg's damping after a good and a bad step, and at first
 
 
-@dataclass(frozen=True)
-class _Search:
-    """Where to begin and how to go on.
-
-    Args:
-        shares: Of the range of damping ratios: where the starts lie.
-        stretches: Samples that are looked at one after another, before the whole record.
-        kept: Starts that are left after each stretch, the best ones; one after the whole record.
-    """
-
-    shares: tuple[float, ...]
-    stretches: tuple[int, ...]
-    kept: tuple[int, ...]
-
-
-# Starts over the range of damping ratios, samples of growing stretches, and how many fits go on from each: few starts
-# suffice where the motion forgets (PLAIN), and many are needed where the likelihood has many peaks (CAREFUL).
-PLAIN = _Search((0.1, 0.45, 0.8), (60, 200, 600), (3, 3, 1))
-SIXTEEN = tuple((number + 0.5) / 16 for number in range(16))
-# As many starts as lie in the middle of sixteen equal parts.
-CAREFUL = _Search(SIXTEEN, (60, 100, 170, 300, 500, 850, 1400), (16, 16, 12, 8, 8, 6, 6))
+SHARES = (0.1, 0.45, 0.8)  # of the range of damping ratios: where the search begins
+STRETCHES, KEPT = (60, 200, 600), (3, 3, 1)  # samples looked at one after another, and starts left after each
 STEPS, LAST = 5, 10  # of each stretch, and of the whole record
+BLOCK = 250  # runs smoothed at a time: the smoother keeps 15 numbers of each sample
 
 
 class _Points(NamedTuple):
@@ -53,31 +36,41 @@ class _Points(NamedTuple):
 
 def output_error(known: KnownRuns) -> Estimates:
     """The damping ratio of each run in %, with its 90 % interval."""
-    length = known.records.shape[1]
-    found = _found(known, PLAIN)
-    doubtful = found.cost[0] > length + DOUBT * (2 * length) ** 0.5
-    if bool(doubtful.any()):
-        again = _found(known.pick(doubtful), CAREFUL)
-        better = again.cost[0] < found.cost[0, doubtful]
-        found.places[0, doubtful] = torch.where(better.unsqueeze(-1), again.places[0], found.places[0, doubtful])
-    deviation = torch.linalg.inv(_information(known, found.places))[:, 0, 0].sqrt()
+    places = torch.cat([_lowest(known.pick(rows)) for rows in _blocks(len(known))], 1)
+    deviation = torch.linalg.inv(_information(known, places))[:, 0, 0].sqrt()
     low, high = known.range_percent
-    return within(low + (high - low) * found.places[0, :, 0], (high - low) * deviation, (low, high))
+    return within(low + (high - low) * places[0, :, 0], (high - low) * deviation, (low, high))
+
+
+def _blocks(runs: int) -> list[Tensor]:
+    """Masks of runs that are looked at together, (runs,) each."""
+    number = torch.arange(runs) // BLOCK
+    return [number == block for block in range(int(number[-1]) + 1)]
+
+
+def _lowest(known: KnownRuns) -> Tensor:
+    """The lower one of where the search ends and where multiple shooting ends, (1, runs, 3)."""
+    searched, (ratio, states) = _found(known), smoothed_states(known)
+    low, high = known.range_percent
+    joined = multiple_shooting(known, (ratio - low) / (high - low), states)
+    shot = _walked(known, joined.unsqueeze(0), known.records.shape[1], LAST)
+    both = (torch.cat([getattr(points, name) for points in (searched, shot)]) for name in _Points._fields)
+    return _best(_Points(*both), 1).places
 
 
 def misfit(known: KnownRuns) -> Tensor:
     """What the nearest run of the family leaves of each record: root mean square over the noise, (runs,).
 
-    Of the plain search alone: what is far from every run of the family is in the wrong valley of all of them.
+    Of the search alone: what is far from every run of the family is in the wrong valley of all of them.
     """
-    return (_found(known, PLAIN).cost[0] / known.records.shape[1]).sqrt()
+    return (_found(known).cost[0] / known.records.shape[1]).sqrt()
 
 
-def _found(known: KnownRuns, search: _Search) -> _Points:
-    """The lowest point of each run that a search comes to, one start."""
-    length, places = known.records.shape[1], torch.zeros(len(search.shares), len(known), 3, dtype=torch.float64)
-    places[..., 0] = torch.tensor(search.shares, dtype=torch.float64)[:, None]
-    shorter = [(samples, kept) for samples, kept in zip(search.stretches, search.kept, strict=True) if samples < length]
+def _found(known: KnownRuns) -> _Points:
+    """The lowest point of each run that a search over growing stretches comes to, one start."""
+    length, places = known.records.shape[1], torch.zeros(len(SHARES), len(known), 3, dtype=torch.float64)
+    places[..., 0] = torch.tensor(SHARES, dtype=torch.float64)[:, None]
+    shorter = [(samples, kept) for samples, kept in zip(STRETCHES, KEPT, strict=True) if samples < length]
     for samples, kept in shorter:
         places = _best(_walked(known, places, samples, STEPS), kept).places
     return _best(_walked(known, places, length, LAST), 1)
@@ -138,5 +131,3 @@ def _best(points: _Points, kept: int) -> _Points:
 def _information(known: KnownRuns, places: Tensor) -> Tensor:
     _, slopes = _linearised(known, places, known.records.shape[1])
     return (slopes.mT @ slopes)[0]
-
-

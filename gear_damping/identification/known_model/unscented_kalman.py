@@ -5,6 +5,7 @@ scaling), so that the filter knows the same equation as the simulation.
 """
 
 from math import log, sqrt
+from typing import NamedTuple
 
 import torch
 from torch import Tensor
@@ -20,22 +21,55 @@ WIDEST = 2.0  # of the logarithm, beyond the range on either side: what a sigma 
 
 def unscented_kalman(known: KnownRuns) -> Estimates:
     """The damping ratio of each run in %, with its 90 % interval."""
+    passed = _passed(known)
+    deviation = passed.covariance[:, 2, 2].sqrt()
+    ends = (passed.mean[:, 2] + side * HALF * deviation for side in (-1, 1))
+    centre = passed.mean[:, 2] + deviation**2 / 2
+    return Estimates(*(value.exp().clamp(*known.range_percent) for value in (centre, *ends)))
+
+
+def smoothed_states(known: KnownRuns) -> tuple[Tensor, Tensor]:
+    """The damping ratio of each run in %, (runs,), and the motion that all samples together make likely.
+
+    The motion is displacement and velocity about the centre, in units of the runs, (runs, time, 2): the filter's, gone
+    through backwards (Särkkä 2008).
+    """
+    passed = _passed(known)
+    states = [passed.mean]
+    for before, expected, gain in reversed(passed.steps):
+        states.append(before + (gain @ (states[-1] - expected).unsqueeze(-1)).squeeze(-1))
+    return passed.mean[:, 2].exp().clamp(*known.range_percent), torch.stack(states[::-1], 1)[..., :2]
+
+
+class _Passed(NamedTuple):
+    """After the last sample: mean (runs, 3) and covariance (runs, 3, 3); of each step the mean before it, the mean that
+    was expected after it, and the smoother's gain (runs, 3, 3).
+    """
+
+    mean: Tensor
+    covariance: Tensor
+    steps: list[tuple[Tensor, Tensor, Tensor]]
+
+
+def _passed(known: KnownRuns) -> _Passed:
+    """The filter over all samples."""
     low, high = (log(end) for end in known.range_percent)
     mean = torch.zeros(len(known), SIZE, dtype=torch.float64)
     mean[:, 2] = (low + high) / 2
     covariance = DRIFT * torch.eye(SIZE, dtype=torch.float64).repeat(len(known), 1, 1)
     covariance[:, :2, :2] += torch.diag_embed((known.spread / known.units).square())
     covariance[:, 2, 2] = (high - low) ** 2 / 12
-    weights = _weights()
+    weights, steps = _weights(), []
     for sample in range(known.records.shape[1]):
-        mean, covariance = _corrected(known, sample, mean, covariance)
-        if sample + 1 < known.records.shape[1]:
-            points = _points(mean, covariance)
-            mean, covariance = _moments(_moved(known, points, sample), weights)
-    deviation = covariance[:, 2, 2].sqrt()
-    ends = ((mean[:, 2] + side * HALF * deviation).exp().clamp(*known.range_percent) for side in (-1, 1))
-    centre = (mean[:, 2] + deviation**2 / 2).exp().clamp(*known.range_percent)
-    return Estimates(centre, *ends)
+        before, covariance = _corrected(known, sample, mean, covariance)
+        if sample + 1 == known.records.shape[1]:
+            return _Passed(before, covariance, steps)
+        points = _points(before, covariance)
+        moved = _moved(known, points, sample)
+        mean, covariance = _moments(moved, weights)
+        together = torch.einsum("p,pri,prj->rij", weights[1], points - before, moved - mean)
+        steps.append((before, mean, torch.linalg.solve(covariance, together.mT).mT))
+    raise AssertionError("a record has samples")
 
 
 def _weights() -> tuple[Tensor, Tensor]:
