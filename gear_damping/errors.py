@@ -43,11 +43,19 @@ class InputError(ValueError):
 
 
 def nearest(word: str, choices: Sequence[str]) -> str:
-    """The remedy sentence for a name that is not among `choices`: the nearest one, or the list."""
-    found = get_close_matches(str(word), list(choices), n=1, cutoff=0.5)
+    """The remedy sentence for a name that is not among `choices`: the nearest one, or the list.
+
+    The same words in another order are nearest: of `pinion_inertia` that is `inertia_pinion`, not `inertia_gear`.
+    """
+    found = [choice for choice in choices if _words(choice) == _words(word)]
+    found = found or get_close_matches(str(word), list(choices), n=1, cutoff=0.5)
     if found:
         return f"did you mean '{found[0]}'?"
     return "choose one of " + ", ".join(sorted(choices))
+
+
+def _words(name: object) -> list[str]:
+    return sorted(str(name).split("_"))
 
 
 @contextmanager

@@ -85,6 +85,8 @@ _ALSO = {
 _DIGITS = r"\s*(?P<number>[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?)\s*"
 _NUMBER, _SPOKEN = re.compile(f"^{_DIGITS}$"), re.compile(rf"^{_DIGITS}(?P<unit>([A-Za-zµμ°%]|(?<=\s)1/).*?)\s*$")
 # a power may stand without its sign: m/s2
+_GAP = re.compile(r"(?<=[A-Za-z\d])[ .\-](?=[A-Za-z])")  # what people write between the factors of a product
+_JOINED = re.compile(r"(?<![A-Za-z])(kg|kN|N|lbf)(?=(mm|cm|m|in|ft)([\^\d/]|$))")  # or nothing
 _FACTOR = re.compile(r"^(?P<atom>[A-Za-z%]+|1)((\^(?P<power>-?\d+(\.\d+)?))|(?P<raised>[23]))?$")
 
 
@@ -128,9 +130,18 @@ def _parse_factor(piece: str, text: str, key: str, source: str) -> tuple[Unit, f
     name = _ALSO.get(name, name)
     alone = match and match["raised"] and "/" not in text and "*" not in text  # `V2` may be the name of a channel
     if not match or name not in _ATOMS or alone:
-        remedy = _MEANT.get(name.lower()) or nearest(name, list(_ATOMS))
+        remedy = _MEANT.get(name.lower()) or _as_product(text) or nearest(name, list(_ATOMS))
         raise InputError(Problem(key, f"unknown unit '{text}'", remedy=remedy, source=source))
     return _ATOMS[name], float(match["power"] or match["raised"] or 1)
+
+
+def _as_product(text: str) -> str:
+    """The remedy for a product without its sign, `kgm2` or `kg m^2`; "" where it is none."""
+    product = _JOINED.sub(r"\1*", _GAP.sub("*", text))
+    try:
+        return "" if product == text or not parse_unit(product) else f"write '{product}'"
+    except InputError:
+        return ""
 
 
 def to_si(value: float, unit: str, expected: str, key: str = "value", source: str = "") -> float:

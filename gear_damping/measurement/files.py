@@ -4,6 +4,7 @@ import hashlib
 import os
 import re
 from collections.abc import Mapping
+from difflib import get_close_matches
 from pathlib import Path
 
 import yaml
@@ -19,6 +20,10 @@ _FLOAT = re.compile(
         |[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN))$""",
     re.VERBOSE,
 )
+# What cures a YAML that cannot be read, by a word of the parser's reason; else the two usual mistakes.
+_CURES = {"appears twice": "keep the one that is right", "'\\t'": "indent with spaces, not with tabs"}
+_ALIKE = 0.8  # share of the letters that two names of files must have in common to be taken for one
+_CURE = "mind indentation, and quote texts that hold any of : # [ ] { } ,"
 DATA_VARIABLE = "GEAR_DAMPING_DATA"
 
 
@@ -60,7 +65,7 @@ def read_yaml(path: Path) -> object:
         mark = getattr(error, "problem_mark", None)
         where = f" at line {mark.line + 1}, column {mark.column + 1}" if mark else ""
         reason = getattr(error, "problem", None) or str(error)
-        remedy = "mind indentation, and quote texts that hold ':' or '#'"
+        remedy = next((cure for word, cure in _CURES.items() if word in reason), _CURE)
         raise InputError(Problem(str(path), f"not valid YAML{where}: {reason}", remedy=remedy)) from None
 
 
@@ -91,10 +96,17 @@ def resolve_file(text: str, folder: Path, key: str, source: str) -> Path:
         what = "is a folder, not a file" if path.is_dir() else "no such file"
     except OSError as error:  # a name that no file can bear
         what = error.strerror
-    remedy = f"'file' is relative to {folder}"
+    remedy = f"{_neighbour(path)}'file' is relative to {folder.resolve()}"
     if filled != text:
         remedy = f"set the environment variable {DATA_VARIABLE} to the folder that holds the records"
     raise InputError(Problem(key, f"{what}: {path}", text, remedy, source))
+
+
+def _neighbour(path: Path) -> str:
+    """The file beside it that has nearly the name of a missing one, as the start of a remedy."""
+    beside = [one.name for one in path.parent.iterdir() if one.is_file()] if path.parent.is_dir() else []
+    found = get_close_matches(path.name, beside, n=1, cutoff=_ALIKE)
+    return f"did you mean '{found[0]}'? " if found else ""
 
 
 class Files:

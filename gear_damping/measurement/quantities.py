@@ -119,7 +119,9 @@ class Measured(Value):
             if key == "uncertainty" and not self.uncertain:
                 found.append(Problem(key, NOT_UNCERTAIN, value[key], "leave it out"))
             elif key not in self.keys():
-                found.append(Problem(str(key), "unknown key", None, nearest(str(key), self.keys())))
+                comma = str(key).isdigit() and value[key] is None  # {value: 1200,5} holds a key 5 without a value
+                remedy = "write a decimal point, not a comma" if comma else nearest(str(key), self.keys())
+                found.append(Problem(str(key), "unknown key", None, remedy))
         return found
 
     def _part(self, value: dict, key: str, kind: Value, default: Any, problems: Found) -> Any:

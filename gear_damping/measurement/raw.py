@@ -12,8 +12,9 @@ from gear_damping.measurement.cutting import slower, window_rows
 from gear_damping.measurement.declaration import ChannelPlan, EncoderPlan, RecordPlan, TimePlan
 from gear_damping.measurement.encoders import ReadColumn, shaft_angle
 from gear_damping.measurement.formats.table import Table
-from gear_damping.measurement.time_column import is_time
-from gear_damping.measurement.timebase import TimeBase, stamped_time, steady_time
+from gear_damping.measurement.record import Finding
+from gear_damping.measurement.time_column import is_time, stamped_rate
+from gear_damping.measurement.timebase import RATE_TOLERANCE, TimeBase, stamped_time, steady_time
 from gear_damping.schema.values import Problems
 from gear_damping.units import to_si
 
@@ -164,7 +165,24 @@ class RawReader:
         if rate and clock and abs(rate / clock[1] - 1) > _SAME_RATE:
             rule, remedy = f"the file itself says {clock[1]:g} Hz", "leave sampling_rate out"
             raise InputError(Problem(f"{self.plan.key}.sampling_rate", rule, rate, remedy, self.source))
-        return steady_time(rate or clock[1], self.first, self.stop - self.first, clock[0] if clock else 0.0)
+        base = steady_time(rate or clock[1], self.first, self.stop - self.first, clock[0] if clock else 0.0)
+        return base if clock else replace(base, findings=self._other_rate(rate))
+
+    def _other_rate(self, rate: float) -> tuple[Finding, ...]:
+        """A note where columns of stamps that no channel uses run at other rates than the declared one in Hz."""
+        used = [plan.timing.column for plan in self.plan.channels if plan.timing]
+        used += [plan.column for plan in self.plan.encoders if plan.timestamps]
+        columns = {self.table.index(column, "") for column in used if column is not None}
+        found = []
+        for index in sorted({*range(len(self.table.names))} - columns):
+            if not is_time(self.table.unit(index)):
+                continue
+            with suppress(InputError):  # a column that cannot be read has no rate
+                own = stamped_rate(self.table.unit(index), self.table.values(index)[self.first : self.stop])
+                if own and abs(rate / own - 1) <= RATE_TOLERANCE:
+                    return ()
+                found += [(index, own)] if own else []
+        return tuple(_rate_conflict(rate, self.table.names[index], own) for index, own in found[:1])
 
     def _clock(self) -> tuple[float, float] | None:
         """Start in s and rate in Hz that the file gives for the first column that shares the record's time."""
@@ -245,3 +263,11 @@ class RawReader:
             rule = f"{base.time.size} time stamps for {n} samples"
             raise InputError(Problem(key, rule, None, "name the stamps of this very channel", self.file))
         return base
+
+
+def _rate_conflict(rate: float, column: str, own: float) -> Finding:
+    message = (
+        f"the stamps of column '{column}' run at {own:.6g} Hz and sampling_rate says {rate:.6g} Hz, which was used; "
+        "correct the one that is wrong, or give the column as time"
+    )
+    return Finding("rate_conflict", message, channel="time", severity="note")

@@ -63,6 +63,14 @@ def find_stamps(columns: Sequence[_Column]) -> Stamps | None:
     return None
 
 
+def stamped_rate(unit: str, values: NDArray[np.float64]) -> float | None:
+    """The mean rate in Hz of (n,) values in a unit of time that advance; None of any others."""
+    if values.size < _FEWEST or not np.all(np.isfinite(values)) or np.any(np.diff(values) < 0):
+        return None
+    lasts = float(values[-1] - values[0]) * to_si(1.0, unit, "s")
+    return (values.size - 1) / lasts if lasts > 0 else None
+
+
 def _by_unit(index: int, column: _Column) -> str:
     return "advances, in a unit of time" if is_time(column.unit) and _advances(column) else ""
 

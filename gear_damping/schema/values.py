@@ -3,6 +3,7 @@
 A check raises InputError with keys relative to the value ("" for the value itself).
 """
 
+import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -13,6 +14,8 @@ from pydantic import GetCoreSchemaHandler, ValidationInfo
 from pydantic_core import CoreSchema, core_schema
 
 from gear_damping.errors import InputError, Problem, nearest
+
+_COMMA = re.compile(r"[+-]?\d+,\d+")  # a number with a decimal comma
 
 
 class Problems(list[Problem]):
@@ -129,7 +132,10 @@ class Number(Value):
         """The number as a float; one that counts as an int."""
         kind, words = (int, "a whole number") if self.whole else (int | float, "a number")
         if isinstance(value, bool) or not isinstance(value, kind):
-            refuse(f"must be {words if self.whole else 'a finite number'}", value, f"write {words}")
+            remedy = f"write {words}"
+            if isinstance(value, str) and _COMMA.fullmatch(value.strip()):
+                remedy = f"write {value.strip().replace(',', '.')}, with a decimal point"
+            refuse(f"must be {words if self.whole else 'a finite number'}", value, remedy)
         if not isfinite(value):
             refuse("must be a finite number", value, f"write {words}")
         if not (self.least < value < self.most if self.exclusive else self.least <= value <= self.most):

@@ -212,17 +212,18 @@ def _refuse_ragged(text: _Text, names: tuple[str, ...], first_line: int) -> None
     """Refuse rows of another length than the header's; unnamed columns at its end may be missing."""
     width = len(names)
     least = max((k + 1 for k, name in enumerate(names) if name), default=width)
-    problems, found = [], 0
+    problems, found, commas = [], 0, text.delimiter == ","
     for k, (line, row) in enumerate(_values(text, first_line)):
         if least <= len(row) <= width or (len(row) > width and not any(row[width:])):
             continue
-        found += 1
+        found, commas = found + 1, commas and len(row) == 2 * width
         if found <= SHOWN:
             key = f"{text.path.name}, row {k} (line {line})"
             rule = f"{len(row)} cells where the first line has {width}"
             problems.append(Problem(key, rule, None, "complete the row, or leave it out", str(text.path)))
     if found > SHOWN:
         rule = f"{found - SHOWN} more rows have another number of cells"
-        problems.append(Problem(text.path.name, rule, None, "export the file again"))
+        remedy = "export the file again" + (", with decimal points: a comma also parts its columns" if commas else "")
+        problems.append(Problem(text.path.name, rule, None, remedy))
     if problems:
         raise InputError(problems)

@@ -82,7 +82,7 @@ def _record(cells: np.ndarray, panel: Mapping[str, Any], unit: str, label: str) 
             if limits:
                 axes.set_xlim(limits)
     whole.set(ylabel=f"{label} / {unit}", title=_title(panel))
-    left.set_ylabel(f"residual / {unit}")
+    left.set_ylabel(unit)  # its title says what it is
     if any_finite(residual):
         left.set_title(f"residual, RMSE {float(np.sqrt(np.nanmean(residual**2))):.4g} {unit}", fontsize=9, color=RED)
     else:

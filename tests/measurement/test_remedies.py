@@ -1,0 +1,99 @@
+"""The remedy of a message is the one that cures: the right name, the product with its sign, the decimal point."""
+
+import pytest
+
+from gear_damping.errors import InputError, nearest
+from gear_damping.measurement.load import load_measurement
+from gear_damping.units import parse_unit
+
+
+def test_the_same_words_in_another_order_are_nearest():
+    assert nearest("pinion_inertia", ["inertia_gear", "module", "inertia_pinion"]) == "did you mean 'inertia_pinion'?"
+    assert nearest("inertia_pinio", ["inertia_gear", "module", "inertia_pinion"]) == "did you mean 'inertia_pinion'?"
+
+
+@pytest.mark.parametrize(
+    ("text", "product", "factor"),
+    [
+        ("kgm2", "kg*m2", 1.0), ("kgm^2", "kg*m^2", 1.0), ("kg m^2", "kg*m^2", 1.0), ("kg.m2", "kg*m2", 1.0),
+        ("kgcm2", "kg*cm2", 1e-4), ("Nmm", "N*mm", 1e-3), ("in-lbf", "in*lbf", 0.0254 * 4.4482216152605),
+    ],
+)  # fmt: skip
+def test_a_product_without_its_sign_is_answered_with_one(text, product, factor):
+    with pytest.raises(InputError, match="unknown unit") as caught:
+        parse_unit(text)
+    assert caught.value.problems[0].remedy == f"write '{product}'"
+    assert parse_unit(product).factor == pytest.approx(factor, rel=1e-12)
+
+
+@pytest.mark.parametrize("text", ["mmm", "Nn", "N m x"])
+def test_what_is_no_product_is_answered_with_the_nearest_unit(text):
+    with pytest.raises(InputError) as caught:
+        parse_unit(text)
+    assert "did you mean" in caught.value.problems[0].remedy
+
+
+def test_a_decimal_comma_is_answered_with_the_point(bench):
+    bench.record["conditions"] = {"pinion_speed": {"value": "1200,5", "unit": "rpm"}}
+    assert "remedy: write 1200.5, with a decimal point" in bench.only_problem()
+    bench.record["conditions"] = {"pinion_speed": {"value": 1200, 5: None, "unit": "rpm"}}  # {value: 1200,5, …}
+    assert "remedy: write a decimal point, not a comma" in bench.only_problem()
+
+
+def test_decimal_commas_between_commas_are_told_from_ragged_rows(bench):
+    def remedy(lines: list[str]) -> str:
+        bench.write_lines(lines)
+        return bench.problems(write=False)[-1]
+
+    header = ",".join(bench.columns)
+    assert "with decimal points" in remedy([header, *["0,1,0,2,0,3,0,4"] * 20])
+    assert "with decimal points" not in remedy([header, *["0,1,0,2,0"] * 20])
+
+
+@pytest.mark.parametrize(
+    ("text", "remedy"),
+    [
+        ("system: oscillator\nsystem: gear_pair\n", "keep the one that is right"),
+        ("records:\n\t- file: a.csv\n", "indent with spaces, not with tabs"),
+        ("records: {column: te [um]}\n", "quote texts that hold any of"),
+    ],
+)
+def test_a_yaml_is_cured_by_what_is_wrong_with_it(tmp_path, text, remedy):
+    path = tmp_path / "measurement.yaml"
+    path.write_text(text)
+    with pytest.raises(InputError) as caught:
+        load_measurement(path)
+    assert remedy in caught.value.problems[0].remedy
+
+
+def test_a_missing_file_names_the_one_beside_it(bench):
+    bench.write_csv()
+    bench.record["file"] = "run1.csv"
+    problem = bench.only_problem(write=False)
+    assert "did you mean 'run_1.csv'?" in problem
+    assert f"relative to {bench.folder}" in problem
+    bench.record["file"] = "elsewhere.mat"
+    assert "did you mean" not in bench.only_problem(write=False)
+
+
+def _at_a_rate(bench, kilohertz: float, header: str = "time [s]") -> list[str]:
+    bench.columns = {header: bench.columns["t"], **{k: v for k, v in bench.columns.items() if k != "t"}}
+    bench.write_csv()
+    bench.channels.pop("time", None)
+    bench.record["sampling_rate"] = {"value": kilohertz, "unit": "kHz"}
+    return [finding.kind for finding in bench.load().findings]
+
+
+def test_a_rate_that_the_stamps_of_the_file_contradict_is_said(bench):
+    assert "rate_conflict" in _at_a_rate(bench, 10.0)
+    (found,) = [finding for finding in bench.load().findings if finding.kind == "rate_conflict"]
+    assert "'time [s]' run at 20000 Hz and sampling_rate says 10000 Hz" in found.message
+    assert found.severity == "note"
+
+
+_SILENT = [(20.0, "time [s]"), (20.1, "time [s]"), (10.0, "t"), (10.0, "x [m]")]  # kHz and header
+
+
+@pytest.mark.parametrize(("kilohertz", "header"), _SILENT)
+def test_a_rate_that_nothing_contradicts_is_silent(bench, kilohertz, header):
+    assert "rate_conflict" not in _at_a_rate(bench, kilohertz, header)
