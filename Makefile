@@ -2,7 +2,7 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-# The installer's options, for example PIP_OPTIONS="--index-url <CPU build of torch>" (README, "Install").
+# The installer's options, for example PIP_OPTIONS="--index-url <CPU build of torch>" (README, "Two commands").
 PIP_OPTIONS ?=
 OMP_NUM_THREADS ?= 1
 export OMP_NUM_THREADS

@@ -8,6 +8,8 @@ from difflib import get_close_matches
 from pathlib import Path
 from uuid import uuid4
 
+_LONGEST = 300  # characters of a value in a message, some lines; a whole file may stand where a mapping should
+
 
 @dataclass(frozen=True)
 class Problem:
@@ -28,7 +30,7 @@ class Problem:
     source: str = ""
 
     def __str__(self) -> str:
-        shown = "" if self.value is None else f" = {self.value!r}"
+        shown = "" if self.value is None else f" = {_shortened(repr(self.value))}"
         remedy = f"; remedy: {self.remedy}" if self.remedy else ""
         source = f" (from {self.source})" if self.source else ""
         return f"{self.key}{shown}: {self.rule}{remedy}{source}"
@@ -40,6 +42,10 @@ class InputError(ValueError):
     def __init__(self, problems: Problem | Sequence[Problem]) -> None:
         self.problems = [problems] if isinstance(problems, Problem) else list(problems)
         super().__init__("\n".join(f"- {problem}" for problem in self.problems))
+
+
+def _shortened(text: str) -> str:
+    return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}…"
 
 
 def nearest(word: str, choices: Sequence[str]) -> str:

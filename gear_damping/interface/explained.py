@@ -12,11 +12,14 @@ from gear_damping.explanation import explain as explaining
 from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.explain import NOBODY, Listener
 from gear_damping.explanation.settings import SearchSettings
+from gear_damping.interface.identified import refuse_other
 from gear_damping.interface.model import Model
 from gear_damping.measurement.record import Measurement
 from gear_damping.physics.catalogue import catalogue
 from gear_damping.reporting.explanation_report import render, report_input
 from gear_damping.simulation.solver_settings import Solver
+
+ARGUMENTS = ("minutes", "ruled_out", "plugins", "listener", "solver")  # of `explain`, beside its thresholds
 
 
 class Answer:
@@ -97,8 +100,10 @@ def explain(
     Raises:
         InputError: the measurement cannot be explained, or a name is unknown.
     """
+    refuse_other(measurement)
     known = catalogue(plugins)
-    wrong = [Problem("ruled_out", "no such effect", n, nearest(n, list(known))) for n in ruled_out if n not in known]
+    wrong = _wrong_minutes(minutes)
+    wrong += [Problem("ruled_out", "no such effect", n, nearest(n, list(known))) for n in ruled_out if n not in known]
     wrong += _wrong(thresholds)
     if wrong:
         raise InputError(wrong)
@@ -107,12 +112,18 @@ def explain(
     return Answer(explaining.explain(measurement, listener, solver, library, budget, settings))
 
 
+def _wrong_minutes(minutes: object) -> list[Problem]:
+    if isinstance(minutes, int | float) and not isinstance(minutes, bool) and minutes > 0:
+        return []
+    return [Problem("minutes", "must be a positive number", minutes, "leave it out, or write for example minutes=5")]
+
+
 def _wrong(thresholds: Mapping[str, float]) -> list[Problem]:
     """What is wrong with thresholds: their names, and values out of range."""
     known, problems = {one.name: one.metadata for one in fields(SearchSettings)}, []
     for name, value in thresholds.items():
         if name not in known:
-            problems.append(Problem(name, "no argument and no threshold", remedy=nearest(name, list(known))))
+            problems.append(Problem(name, "no argument and no threshold", remedy=nearest(name, [*known, *ARGUMENTS])))
         elif not known[name]["lower"] <= value <= known[name]["upper"]:
             rule = f"must lie within {known[name]['lower']:g} … {known[name]['upper']:g}"
             problems.append(Problem(name, rule, value, "see conf/explain/default.yaml"))

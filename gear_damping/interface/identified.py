@@ -95,6 +95,7 @@ def identify(
         InputError: the data are damaged, nothing can be fitted, or a name is unknown.
     """
     refuse_faults(measurement)
+    free = [free] if isinstance(free, str) else free
     if model is None and free:
         raise InputError(Problem("free", "names parameters of a model", list(free), "give the model too"))
     if model is not None:
@@ -108,12 +109,24 @@ def identify(
     return Identification(measurement, identified_gears.nominal_fit(measurement, say, solver))
 
 
+def refuse_other(measurement: object) -> None:
+    """Refuse what is no measurement, as the path of one.
+
+    Raises:
+        InputError: it is not what `load` gives.
+    """
+    if not isinstance(measurement, Measurement):
+        rule, remedy = "must be a measurement", "give what gd.load('measurement.yaml') returns"
+        raise InputError(Problem("measurement", rule, measurement, remedy))
+
+
 def refuse_faults(measurement: Measurement) -> None:
     """Damaged data give no damping figure.
 
     Raises:
         InputError: with every fault.
     """
+    refuse_other(measurement)
     found = [finding for finding in measurement.findings if finding.severity == "data_problem"]
     if found:
         raise InputError(

@@ -50,24 +50,27 @@ def read_yaml(path: Path) -> object:
     """The content of a YAML file.
 
     Raises:
-        InputError: no such file, not text, not YAML, or a key appears twice.
+        InputError: no such file, not text, not YAML, no keys, or a key appears twice.
     """
+    data = f"of a file of data, task=inspect measurement.path={path} writes one to start from"
     if not path.is_file():
         remedy = "give the path of a measurement.yaml"
         raise InputError(Problem("measurement.path", "no such file", str(path), remedy))
     try:
-        return yaml.load(path.read_text(encoding="utf-8-sig"), Loader=_Loader)
+        content = yaml.load(path.read_text(encoding="utf-8-sig"), Loader=_Loader)
     except UnicodeDecodeError as error:
-        raise InputError(
-            Problem("measurement.path", "not UTF-8 text", str(path), f"save it as UTF-8 ({error.reason})")
-        ) from None
+        remedy = f"save it as UTF-8 ({error.reason}); {data}"
+        raise InputError(Problem("measurement.path", "not UTF-8 text", str(path), remedy)) from None
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         where = f" at line {mark.line + 1}, column {mark.column + 1}" if mark else ""
         reason = getattr(error, "problem", None) or str(error)
         remedy = next((cure for word, cure in _CURES.items() if word in reason), _CURE)
         raise InputError(Problem(str(path), f"not valid YAML{where}: {reason}", remedy=remedy)) from None
-
+    if isinstance(content, str):
+        rule, remedy = "holds text without keys, which is no measurement.yaml", f"write `key: value` lines; {data}"
+        raise InputError(Problem("measurement.path", rule, str(path), remedy))
+    return content
 
 
 

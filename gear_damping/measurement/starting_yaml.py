@@ -13,7 +13,7 @@ _ENCODERS = ("pinion", "gear", "tacho")
 _COUNTS = {"pinion": "counts_per_revolution", "gear": "counts_per_revolution", "tacho": "pulses_per_revolution"}
 _GEOMETRY = {"n_teeth_pinion": None, "n_teeth_gear": None, "module": "mm", "pressure_angle": "deg"}
 _WITH_TORQUE = {"transmission_error", "pinion_speed", "gear_speed", "gear"}  # responses that need a torque beside them
-_ROLE = "fit, or holdout for a record to be judged by; without it a part is held out by itself"
+_ROLE = "fit, or holdout for a record to be judged by; without it task=explain holds out a part by itself"
 _CASING = "taken as on a casing; on a shaft add mounting: tangential, shaft: pinion and radius: {value: …, unit: mm}"
 
 

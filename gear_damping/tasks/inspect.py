@@ -185,13 +185,15 @@ def _measurement_lines(measurement: Measurement) -> Iterator[str]:
     free = [record.name for record in measurement.with_role(None)]
     if free:
         yield f"  role not said: {', '.join(free)}" + ("" if len(free) < len(measurement.records) else _AUTOMATIC)
+    if not free and not measurement.with_role("fit"):
+        yield "  none is fitted: task=identify and task=explain need a record of role: fit"
     if measurement.segment_s:
         yield f"  segments of exactly {measurement.segment_s:g} s are fitted and scored"
     else:
         yield "  segments: none stated; records are cut only where the system or the model needs it"
 
 
-_AUTOMATIC = "; a part of them is held out by itself"
+_AUTOMATIC = "; task=explain holds out a part of them by itself, and so does task=identify of a gear pair"
 
 
 def _record_lines(record: Record) -> Iterator[str]:

@@ -44,6 +44,13 @@ def test_each_value_of_a_second_key_has_a_panel_of_one_scale():
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["raw_lstm", "mean (control)"]
 
 
+def test_a_panel_tells_two_keys_that_end_alike_apart():
+    sensor = "simulator.sensor_noise.snr_db"
+    found = [{SNR: level, sensor: other, ERROR: 0.1} for level in (1, 10) for other in (20, 40)]
+    panels = figures.sweep_figure(found, SNR, [sensor]).axes
+    assert [axes.get_title(loc="left") for axes in panels] == ["sensor_noise.snr_db = 20", "sensor_noise.snr_db = 40"]
+
+
 def test_a_map_has_each_error_at_its_place_and_a_gap_where_a_job_is_missing():
     found = [row for row in rows() if (row[SNR], row[ZETA]) != (10, 0.3)]
     figure = figures.sweep_map_figure(found, SNR, ZETA)

@@ -35,7 +35,7 @@ def sweep_figure(rows: Sequence[Row], key: str, others: Sequence[str] = ()) -> F
     """
     panels: dict[str, list[Row]] = {}
     for row in rows:
-        panels.setdefault(_others(row, others), []).append(row)
+        panels.setdefault(_others(row, others, key), []).append(row)
     with styled():
         figure, grid = _grid(len(panels))
         _name_axes(figure, grid, key, "test RMSE / % of critical")
@@ -65,7 +65,7 @@ def figures_of_sweep(rows: Sequence[Row], key: str, others: Sequence[str]) -> Fi
         return None
     lines: dict[str, list[Row]] = {}
     for row in sorted(rows, key=lambda row: _place(row.get(key))):
-        lines.setdefault(_others(row, others), []).append(row)
+        lines.setdefault(_others(row, others, key), []).append(row)
     with styled():
         figure, grid = _grid(len(names))
         for axes, name in zip(grid, names, strict=True):
@@ -112,8 +112,11 @@ def _mean(group: Sequence[Row], keys: Sequence[str]) -> Row:
     return found
 
 
-def _others(row: Row, others: Sequence[str]) -> str:
-    return ", ".join(f"{other.rpartition('.')[2]} = {row.get(other)}" for other in others)
+def _others(row: Row, others: Sequence[str], key: str) -> str:
+    """The other swept values by the last part of their keys, and by two parts where that would name two keys."""
+    last = [one.rpartition(".")[2] for one in (key, *others)]
+    parts = {one: 1 if last.count(name) == 1 else 2 for one, name in zip((key, *others), last, strict=True)}
+    return ", ".join(f"{'.'.join(one.split('.')[-parts[one] :])} = {row.get(one)}" for one in others)
 
 
 def _name_axes(figure: Figure, grid: Sequence[Axes], key: str, value: str = "") -> None:

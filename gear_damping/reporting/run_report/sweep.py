@@ -49,7 +49,7 @@ def sweep_report(left: SweepLeft) -> RunReport:
         rows = [(row["job"], row["error"].removeprefix("- ")) for row in failed]
         table = Table("Jobs that failed, with the reason.", ("job", "reason"), rows, [])
         sections.append(Section("What failed", (), [table]))
-    name = left.folder.parent.name
+    name = left.folder.parent.name or left.folder.name
     state = FINE if done == left.jobs else DOUBTFUL
     return RunReport("Sweep", f"Sweep of {name}", lead, state, sections, {"Command": f"`{left.command}`"})
 

@@ -1,0 +1,58 @@
+"""Mistakes in a user's own Python: the message names the argument, the rule and the remedy."""
+
+import numpy as np
+import pytest
+
+import gear_damping as gd
+
+YAML = """
+system: oscillator
+records:
+- file: decay.csv
+  channels: {time: {column: t, unit: s}, displacement: {column: x, unit: m}}
+"""
+
+
+@pytest.fixture
+def record(tmp_path):
+    time = np.arange(200) / 100
+    decay = np.exp(-time) * np.cos(20 * time)
+    np.savetxt(tmp_path / "decay.csv", np.c_[time, decay], delimiter=",", header="t,x", comments="")
+    (tmp_path / "measurement.yaml").write_text(YAML)
+    return gd.load(tmp_path / "measurement.yaml")
+
+
+@pytest.mark.parametrize("ask", [gd.identify, gd.damping, gd.explain])
+def test_a_path_in_the_place_of_a_measurement_is_answered(ask):
+    with pytest.raises(gd.InputError, match=r"measurement = 'a\.yaml': .*; remedy: give what gd\.load"):
+        ask("a.yaml")
+
+
+def test_one_free_name_is_one_name(record):
+    with pytest.raises(gd.InputError, match=r"free = \['damping_ratio'\]"):
+        gd.identify(record, free="damping_ratio")
+
+
+@pytest.mark.parametrize("minutes", ["1", 0, -2, True, float("nan")])
+def test_minutes_are_a_positive_number(record, minutes):
+    with pytest.raises(gd.InputError, match=r"minutes = .*: must be a positive number"):
+        gd.explain(record, minutes=minutes)
+
+
+def test_a_misspelt_argument_is_told_from_a_threshold(record):
+    with pytest.raises(gd.InputError, match=r"minute: .* did you mean 'minutes'"):
+        gd.explain(record, minute=1)
+
+
+def test_a_file_of_data_is_no_declaration(record):
+    data = record.source.parent / "decay.csv"
+    with pytest.raises(gd.InputError, match=r"task=inspect measurement.path=.*decay.csv writes one") as caught:
+        gd.load(data)
+    assert len(str(caught.value)) < 1000
+
+
+def test_a_long_value_is_cut_in_a_message(record):
+    (record.source).write_text(f"system: {'x' * 5000}\nrecords: []\n")
+    with pytest.raises(gd.InputError) as caught:
+        gd.load(record.source)
+    assert len(str(caught.value)) < 2000
