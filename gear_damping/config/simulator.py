@@ -19,12 +19,13 @@ from gear_damping.physics.systems.known import SYSTEMS
 from gear_damping.physics.terms import DampingLaw, Effect, MeshStiffness
 from gear_damping.schema.values import Given, Number, OneOf, Text
 from gear_damping.simulation.families import Family
+from gear_damping.simulation.sampling import N_SAMPLES, SAMPLING_RATE
 from gear_damping.simulation.solver_settings import Engine, Solver
 
 PLAIN = {
     "system": OneOf(tuple(SYSTEMS)),
     "n_runs": Number(1, 10_000_000, whole=True),
-    "n_samples": Number(2, 100_000_000, whole=True),
+    "n_samples": N_SAMPLES,
     "damping_law": Given(Text(), optional=True),
     "damping_ratio_percent": Given(Number(0, 50), optional=True),
     "diverged_share": Number(0, 1),
@@ -36,7 +37,6 @@ SOLVER = {
     "engine": OneOf(get_args(Engine)),
     "chunk": Number(1, 10_000_000, whole=True),
 }
-RATE = Parameter("sampling_rate", "Hz", 40e3, "output samples per second", 1e-9, 1e9)
 HOW = (*(name for name in PLAIN if name != "system"), "solver", "plugins")  # keys that say how to simulate
 SENSOR_NOISE = "sensor_noise"
 
@@ -108,8 +108,9 @@ def read_simulator(node: Mapping[str, Any], family: Mapping[str, Any], origin: O
     chosen = {key: value for key, value in node.items() if key in options}
     system = reader.collect(lambda: system_class(**chosen), "simulator") or system_class()
     given = reader.parameters(node, declared, "simulator.")
-    rate = reader.parameters(node, {RATE.name: RATE}, "simulator.").get(RATE.name, RATE.default)
-    _refuse_unknown(reader, node, known, {**declared, RATE.name: RATE}, options if plugins is not None else None)
+    sampled = {SAMPLING_RATE.name: SAMPLING_RATE}
+    rate = reader.parameters(node, sampled, "simulator.").get(SAMPLING_RATE.name, SAMPLING_RATE.default)
+    _refuse_unknown(reader, node, known, declared | sampled, options if plugins is not None else None)
     effects = [_effect(reader, known[key], value, given) for key, value in node.items() if key in known]
     effects = [effect for effect in effects if effect is not None]
     if plugins is None:  # model, family and damping law may need the effects of a file that cannot be used

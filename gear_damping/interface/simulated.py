@@ -13,14 +13,17 @@ from numpy.typing import ArrayLike, NDArray
 from gear_damping.errors import InputError
 from gear_damping.physics.model import Model
 from gear_damping.reporting import figures
+from gear_damping.schema.values import Number, Problems
 from gear_damping.signals.wavelets.base import ContinuousWavelet
 from gear_damping.signals.wavelets.catalogue import builtin_wavelets
 from gear_damping.simulation.driven import Driven
 from gear_damping.simulation.runs import Runs
+from gear_damping.simulation.sampling import whole_number_problems
 from gear_damping.simulation.simulate import simulate as integrate
 from gear_damping.simulation.solver_settings import Solver
 
 LOWEST, HIGHEST, SCALES = 4.0, 0.4, 32  # periods of the record; share of the sampling rate; frequencies between
+BATCH = Number(1, 10_000_000, whole=True)  # runs of one call
 Array = NDArray[np.float64]
 
 
@@ -151,6 +154,7 @@ def simulate(
     Raises:
         InputError: a name is unknown, or a value out of range.
     """
+    Problems(whole_number_problems("batch", batch, BATCH)).raise_any()
     given = _within_bounds(model, parameters)
     driven = inputs if isinstance(inputs, Driven) else Driven(inputs or {})
     driven = replace(driven, series={name: _rows(value) for name, value in driven.series.items()})

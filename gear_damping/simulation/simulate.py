@@ -21,6 +21,7 @@ from gear_damping.simulation.runs import (
     reference_velocity,
     state_units,
 )
+from gear_damping.simulation.sampling import check_sampling
 from gear_damping.simulation.solver_settings import Solver
 from gear_damping.units import parse_unit
 
@@ -47,8 +48,9 @@ def simulate(
         solver: Settings; the defaults when None.
 
     Raises:
-        InputError: an input is unknown to the system or has the wrong shape.
+        InputError: an input is unknown to the system or has the wrong shape, or nothing can be sampled so.
     """
+    check_sampling(sampling_rate, n_samples)
     driven = inputs if isinstance(inputs, Driven) else Driven(dict(inputs or {}))
     if _is_alone(model, values):
         twins, moved = (

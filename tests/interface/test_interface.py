@@ -256,3 +256,32 @@ def test_what_is_wrong_with_a_question_is_said(record):
     assert "ruled_out = 'cubic_stifness': no such effect; remedy: did you mean 'cubic_stiffness'?" in said
     assert "acepted_t: no argument and no threshold; remedy: did you mean 'accepted_t'?" in said
     assert "level = 2.0: must lie within" in said
+
+
+@pytest.mark.parametrize(
+    ("given", "key", "rule"),
+    [
+        ({"n_samples": 1}, "n_samples", "within 2 and"),  # no interval to integrate over
+        ({"n_samples": 0}, "n_samples", "within 2 and"),
+        ({"n_samples": 1.5}, "n_samples", "whole number"),
+        ({"n_samples": True}, "n_samples", "whole number"),
+        ({"sampling_rate": 0.0}, "sampling_rate", "positive, finite number in Hz"),
+        ({"sampling_rate": float("nan")}, "sampling_rate", "positive, finite number in Hz"),
+        ({"sampling_rate": "40 kHz"}, "sampling_rate", "positive, finite number in Hz"),
+        ({"batch": 0}, "batch", "within 1 and"),
+        ({"batch": 2.0}, "batch", "whole number"),
+    ],
+)
+def test_what_nothing_can_be_sampled_with_is_refused_by_its_name(given, key, rule):
+    with pytest.raises(gd.InputError) as raised:
+        gd.simulate(rig(), **{"sampling_rate": 40e3, "n_samples": 10, **given})
+    [problem] = raised.value.problems
+    assert problem.key == key
+    assert rule in problem.rule
+    assert problem.value is given[key] or problem.value == given[key]
+    assert problem.remedy
+
+
+def test_two_samples_and_counts_of_numpy_are_enough():
+    runs = gd.simulate(rig(), sampling_rate=np.float64(40e3), n_samples=np.int64(2), batch=np.int64(3))
+    assert runs.transmission_error.shape == (3, 2)
