@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from difflib import get_close_matches
+from errno import EDQUOT, EFBIG, ENOSPC, EROFS
 from pathlib import Path
 from uuid import uuid4
 
@@ -65,13 +66,43 @@ def _words(name: object) -> list[str]:
 
 
 @contextmanager
+def reading(path: Path | str, key: str = "file") -> Iterator[Path]:
+    """The path; an OSError in the block is an InputError: this file cannot be read.
+
+    Args:
+        path: What the user named.
+        key: The key that names it.
+
+    Raises:
+        InputError: the file is missing, or the machine does not give it.
+    """
+    try:
+        yield Path(path)
+    except OSError as error:
+        raise InputError(unread(error, path, key)) from error
+
+
+def unread(error: OSError, path: Path | str, key: str, source: str = "") -> Problem:
+    """The problem with a file that the machine does not give."""
+    reason = error.strerror or " ".join(str(error).split())
+    remedy = "see that it is there, is a file, and that you have the right to read it"
+    return Problem(key, f"cannot be read: {reason}", str(path), remedy, source)
+
+
+@contextmanager
 def writing(path: Path) -> Iterator[Path]:
-    """The path; an OSError that names no file, as that of a full disk, names it."""
+    """The path; an OSError names it, as that of a full disk does not, and says that it was met in writing."""
     try:
         yield path
     except OSError as error:
         error.filename = error.filename or str(path)
+        error.written = True
         raise
+
+
+def met_in_writing(error: OSError) -> bool:
+    """Whether it is an unwritable output that an error of the machine tells of."""
+    return getattr(error, "written", False) or error.errno in (ENOSPC, EDQUOT, EROFS, EFBIG)
 
 
 @contextmanager

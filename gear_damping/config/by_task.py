@@ -7,6 +7,7 @@ import torch
 
 from gear_damping.config.folders import RESUMABLE, resumable
 from gear_damping.config.light import no_file
+from gear_damping.config.measured import MEASURED
 from gear_damping.config.whole import Found, Whole, typed
 from gear_damping.identification.network_files import holds_network
 from gear_damping.physics.terms import HeldLoad
@@ -25,6 +26,7 @@ NOT_PLANNED = (
     "write_measurement", "data_folder", "simulator.n_runs", "simulator.n_samples", "simulator.diverged_share",
 )  # how keys begin that a plan does not read; a choice of family may say the rig's speed
 COLLECT = "collect"
+UNMEASURED = ("train", "simulate", "evaluate", COLLECT)  # plan and paper refuse a measurement with their own keys
 
 
 def _checkpoint(whole: Whole) -> Found:
@@ -122,6 +124,14 @@ def _collected(whole: Whole) -> Found:
         yield "sweep", f"acts in task={COLLECT}, and this is task={task}", path, "leave it out"
 
 
+def _of_a_measurement(whole: Whole) -> Found:
+    """A measured record, which other tasks would not look at."""
+    for key, value in typed(whole) if whole["task"] in UNMEASURED else ():
+        if key.startswith("measurement.") or (key == "measurement" and value != "none"):
+            where = ", ".join(f"task={task}" for task in MEASURED)
+            yield key, f"acts in {where}, and this is task={whole['task']}", value, "leave it out"
+
+
 def _of_a_search(whole: Whole) -> Found:
     """What only a search for causes reads would be accepted by other tasks without any effect."""
     for key, value in typed(whole) if whole["task"] != "explain" else ():
@@ -157,6 +167,7 @@ BY_TASK: tuple[tuple[tuple[str, ...], Callable[[Whole], Found]], ...] = (
     (("training",), _devices),
     (("task", "resume"), _resume),
     (("task", "explain", "ruled_out"), _of_a_search),
+    (("task", "measurement"), _of_a_measurement),
     (("task", "sweep"), _collected),
     (("task",), _of_a_plan),
     (("task",), _of_the_paper),

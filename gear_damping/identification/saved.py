@@ -13,7 +13,7 @@ from typing import Any
 import safetensors.torch
 import torch
 
-from gear_damping.errors import InputError, Problem, written_whole
+from gear_damping.errors import InputError, Problem, unread, written_whole
 from gear_damping.identification.lightning_module import DampingModule
 from gear_damping.identification.network_files import CHECKPOINT, DESCRIPTION, STEM, WEIGHTS, holds_network
 
@@ -94,7 +94,7 @@ def read_description(path: Path) -> dict[str, Any]:
     try:
         content = json.loads(path.read_bytes())
     except OSError as error:
-        raise InputError(Problem(KEY, f"cannot be read: {error.strerror}", str(path))) from error
+        raise InputError(unread(error, path, KEY)) from error
     except (ValueError, RecursionError) as error:
         raise InputError(Problem(KEY, f"is no JSON: {error}", str(path))) from error
     if not isinstance(content, dict):

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import yaml
 
-from gear_damping.errors import InputError, Problem
+from gear_damping.errors import InputError, Problem, reading
 from gear_damping.measurement.formats.registry import Reader, read_table
 from gear_damping.measurement.formats.table import Table
 
@@ -50,14 +50,15 @@ def read_yaml(path: Path) -> object:
     """The content of a YAML file.
 
     Raises:
-        InputError: no such file, not text, not YAML, no keys, or a key appears twice.
+        InputError: no such file, one that cannot be read, not text, not YAML, no keys, or a key appears twice.
     """
     data = f"of a file of data, task=inspect measurement.path={path} writes one to start from"
     if not path.is_file():
         remedy = "give the path of a measurement.yaml"
         raise InputError(Problem("measurement.path", "no such file", str(path), remedy))
     try:
-        content = yaml.load(path.read_text(encoding="utf-8-sig"), Loader=_Loader)
+        with reading(path, "measurement.path"):
+            content = yaml.load(path.read_text(encoding="utf-8-sig"), Loader=_Loader)
     except UnicodeDecodeError as error:
         remedy = f"save it as UTF-8 ({error.reason}); {data}"
         raise InputError(Problem("measurement.path", "not UTF-8 text", str(path), remedy)) from None
@@ -71,8 +72,6 @@ def read_yaml(path: Path) -> object:
         rule, remedy = "holds text without keys, which is no measurement.yaml", f"write `key: value` lines; {data}"
         raise InputError(Problem("measurement.path", rule, str(path), remedy))
     return content
-
-
 
 def data_root() -> Path:
     """The folder of measured records: GEAR_DAMPING_DATA, or `shared/data` beside the checkout."""
@@ -130,6 +129,6 @@ class Files:
     def sha256(self, path: Path) -> str:
         """The digest of a file in hexadecimal."""
         if path not in self._digests:
-            with path.open("rb") as file:
+            with reading(path), path.open("rb") as file:
                 self._digests[path] = hashlib.file_digest(file, "sha256").hexdigest()
         return self._digests[path]

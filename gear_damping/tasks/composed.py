@@ -73,16 +73,21 @@ def _problems_of_measurement(config: Mapping[str, Any], origin: Origin, declared
     if task not in MEASURED:
         return []
     from gear_damping.config.light import light_problems
+    from gear_damping.measurement.formats.registry import KEY as PLUGINS
+    from gear_damping.measurement.formats.registry import readers
     from gear_damping.measurement.load import check_declaration
 
     problems = light_problems(config, origin)
     path = (config.get("measurement") or {}).get("path")
     file = measurement_file(path) if isinstance(path, str) else None
+    plugins = tuple(plugins_of({"measurement": config.get("measurement")}))
     try:
+        if plugins:
+            readers(plugins)
         if declared and file is not None and declares(file, task):
-            check_declaration(file, tuple(plugins_of({"measurement": config.get("measurement")})))
+            check_declaration(file, plugins)
     except InputError as error:
-        return problems + placed(error, origin.of(PATH))
+        return problems + placed(error, {key: origin.of(key) for key in (PATH, PLUGINS)})
     return problems if task == INSPECT else []
 
 

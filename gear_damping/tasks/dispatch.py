@@ -3,7 +3,7 @@
 import logging
 import signal
 import traceback
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from gear_damping.config.folders import resumable
 from gear_damping.config.measured import INSPECT
 from gear_damping.config.source import Origin
-from gear_damping.errors import InputError, Problem
+from gear_damping.errors import InputError, Problem, met_in_writing, unread
 from gear_damping.reporting.run_report import REPORTED
 from gear_damping.tasks.own_parts import errors_in, plugins_of
 from gear_damping.tasks.run_folder import FAILED, FINISHED, INTERRUPTED, RunFolder, problem_with_used
@@ -42,7 +42,8 @@ def run_job(config: Mapping[str, Any], origin: Origin, folder: Path) -> int:
     try:
         with errors_in(plugins_of(config), origin.of):
             settings = _settings(config, origin)
-            run_folder.add_inputs(map(Path, plugins_of(config)))
+            for path, key in plugins_of(config).items():
+                run_folder.add_inputs([Path(path)], key)
             metrics = task_of(settings)(settings, run_folder)
             _report(run_folder)
         run_folder.close(FINISHED, metrics)
@@ -54,7 +55,7 @@ def run_job(config: Mapping[str, Any], origin: Origin, folder: Path) -> int:
         raise
     except Exception as error:
         if isinstance(error, OSError) and error.errno is not None:  # of the machine: a full disk, a missing right
-            return _failed(run_folder, InputError(_not_written(error, folder)))
+            return _failed(run_folder, InputError(_of_the_machine(error, folder, config, origin)))
         _close(run_folder, FAILED, f"{type(error).__name__}: {error}")
         log.error("%s\n%s", traceback.format_exc(), _whose(plugins_of(config)))
         return WRONG_INPUT
@@ -114,8 +115,32 @@ def _close(run_folder: RunFolder, status: str, error: str | None = None) -> None
         log.error("run.json could not be brought up to date: %s", again)
 
 
+def _of_the_machine(error: OSError, folder: Path, config: Mapping[str, Any], origin: Origin) -> Problem:
+    """The problem with a file: an output where it was met in writing, an input where the configuration names it."""
+    if met_in_writing(error):
+        return _not_written(error, folder)
+    name, reason = error.filename, error.strerror or str(error)
+    keys = [] if name is None else [key for key, value in _named(config) if Path(value) == Path(str(name))]
+    if keys:
+        return unread(error, str(name), keys[0], origin.of(keys[0]))
+    remedy = "see that it is there, and that you have the right to it"
+    return Problem("file", f"cannot be read or written: {reason}", None if name is None else str(name), remedy)
+
+
+def _named(node: Any, key: str = "") -> Iterator[tuple[str, str]]:
+    """Every text of a configuration with its key; those of a list have that of the list."""
+    if isinstance(node, Mapping):
+        for name, value in node.items():
+            yield from _named(value, f"{key}.{name}".lstrip("."))
+    elif isinstance(node, list):
+        for value in node:
+            yield from _named(value, key)
+    elif isinstance(node, str):
+        yield key, node
+
+
 def _not_written(error: OSError, folder: Path) -> Problem:
-    """The problem with a file of the run; one without a name is a file that was being written."""
+    """The problem with an output; one without a name is a file of the run."""
     rule = error.strerror or str(error)
     name = error.filename2 or error.filename  # of two, the one that was to be written
     if name is not None:

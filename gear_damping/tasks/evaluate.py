@@ -34,7 +34,7 @@ KNOWING = {"output_error": output_error, "unscented_kalman": unscented_kalman}
 def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     """Score networks on runs that they never met; returns the metrics for run.json."""
     paths = _checkpoints(settings.checkpoint)
-    folder.add_inputs(file for path in paths for file in files_of(path))
+    folder.add_inputs((file for path in paths for file in files_of(path)), "checkpoint")
     modules = {path: load_estimator(path, settings.model.plugins) for path in paths}
     ratio = settings.simulator.damping_ratio_percent
     plan = replace(plan_of(settings), seed=settings.seed + 2 * TEST_SEED, damping_ratio_percent=ratio)

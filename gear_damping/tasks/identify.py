@@ -77,9 +77,9 @@ def _by_checkpoint(settings: Settings, measurement: Measurement, folder: RunFold
     """What was saved: a network, or an estimator that learns nothing."""
     estimator = load_estimator(settings.checkpoint, settings.model.plugins)
     if isinstance(estimator, ClassicalEstimator):
-        folder.add_inputs([settings.checkpoint])
+        folder.add_inputs([settings.checkpoint], "checkpoint")
         return _by_estimators(settings, {estimator.name: estimator.estimator.values}, measurement, folder)
-    folder.add_inputs(files_of(settings.checkpoint))
+    folder.add_inputs(files_of(settings.checkpoint), "checkpoint")
     return _by_network(estimator, settings, measurement, folder)
 
 

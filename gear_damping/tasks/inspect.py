@@ -40,7 +40,7 @@ def run(settings: InspectSettings, folder: RunFolder) -> dict[str, Any]:
 def _bare(path: Path, plugins: Sequence[str], folder: RunFolder) -> dict[str, Any]:
     start = folder.path / YAML_NAME
     found = inspect_table(read_table(path, known=readers(plugins)))
-    folder.add_inputs([path])
+    folder.add_inputs([path], "measurement.path")
     system = system_of(found)
     listed = guesses(found, system[0])
     text = starting_yaml(found, system, listed)

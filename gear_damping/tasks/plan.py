@@ -23,7 +23,7 @@ MOST_SHOWN = 16  # tests on the terminal; plan.txt has all
 def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     """Plan and write; returns the metrics for run.json."""
     asked = settings.plan
-    folder.add_inputs(settings.simulator.files)
+    folder.add_inputs(settings.simulator.files, "simulator.extended")
     with progress_bar("simulating the tests", settings.progress) as progress:
         solver = replace(settings.simulator.solver, progress=progress)
         kept = {"unknown": asked.unknown, "goal": asked.goal, "solver": solver}

@@ -16,7 +16,7 @@ from typing import Any
 
 from gear_damping.config.measured import INSPECT, YAML_SUFFIXES
 from gear_damping.config.source import Origin
-from gear_damping.errors import Problem, written_whole
+from gear_damping.errors import Problem, reading, writing, written_whole
 
 log = logging.getLogger("gear_damping")
 RUNNING, FINISHED, FAILED, INTERRUPTED = "running", "finished", "failed", "interrupted"
@@ -36,7 +36,8 @@ class RunFolder:
             origin: Where its values come from: what was typed, of a sweep for this job, and the choice of each group.
         """
         self.path = path
-        path.mkdir(parents=True, exist_ok=True)
+        with writing(path):
+            path.mkdir(parents=True, exist_ok=True)
         self._begin = time.monotonic()
         self.record: dict[str, Any] = {
             "status": RUNNING,
@@ -54,9 +55,19 @@ class RunFolder:
         }
         self._write()
 
-    def add_inputs(self, paths: Iterable[Path]) -> None:
-        """Note the digests of files that the run reads."""
-        self.record["inputs"] |= {str(path): hashlib.sha256(path.read_bytes()).hexdigest() for path in paths}
+    def add_inputs(self, paths: Iterable[Path], key: str = "file") -> None:
+        """Note the digests of files that the run reads.
+
+        Args:
+            paths: The files.
+            key: The key that names them.
+
+        Raises:
+            InputError: one of them cannot be read.
+        """
+        for path in paths:
+            with reading(path, key):
+                self.record["inputs"][str(path)] = hashlib.sha256(path.read_bytes()).hexdigest()
         self._write()
 
     def close(self, status: str, metrics: Mapping[str, Any] | None = None, error: str | None = None) -> None:

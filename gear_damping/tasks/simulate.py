@@ -23,7 +23,7 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     """Simulate and write; returns the metrics for run.json."""
     # Asked to simulate at a damping ratio, all runs have it; only a training keeps it for its test runs.
     plan = replace(plan_of(settings), damping_ratio_percent=settings.simulator.damping_ratio_percent)
-    folder.add_inputs(settings.simulator.files)
+    folder.add_inputs(settings.simulator.files, "simulator.extended")
     runs = simulated(plan, settings)
     statements.say_runs(settings, runs)
     channels = recorded_channels(runs, plan.seed + NOISE_SEED)

@@ -6,7 +6,7 @@ Only where nothing else of the command can be wrong: otherwise everything that i
 import logging
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -38,7 +38,7 @@ def answered(words: Sequence[str]) -> bool:
         check_declaration(file)
     except InputError as error:
         start_logging()
-        say_problems(InputError(placed(error, f"command line: {PATH}={typed[PATH]}")))
+        say_problems(InputError(placed(error, {PATH: f"command line: {PATH}={typed[PATH]}"})))
         return True
     return False
 
@@ -54,9 +54,14 @@ def _plain_values(words: Sequence[str]) -> dict[str, str] | None:
     return found
 
 
-def placed(error: InputError, source: str) -> list[Problem]:
-    """The problems of a declaration; those with its path come from where that was given."""
-    return [replace(p, source=source) if p.key == PATH and not p.source else p for p in error.problems]
+def placed(error: InputError, sources: Mapping[str, str]) -> list[Problem]:
+    """The problems of a declaration; those with a key of the command come from where that was given.
+
+    Args:
+        error: The problems.
+        sources: Where each such key was given.
+    """
+    return [replace(p, source=p.source or sources.get(p.key, "")) for p in error.problems]
 
 
 def start_logging() -> None:

@@ -19,6 +19,8 @@ def test_choice_is_valid(group, choice):
         overrides += ["++simulator.damping_law=null"]
     if group == "model" and choice not in NETWORKS:
         overrides += ["++task=identify", "measurement=ship_roll_21337"]
+    if group == "measurement" and choice != "none":
+        overrides += ["++task=identify"]
     if group == "plan" or choice == "plan":
         overrides += ["++task=plan"]
     settings = read_settings(*composed(overrides))
@@ -36,5 +38,5 @@ def test_every_experiment_begins_with_its_command():
 
 def test_the_measurements_that_come_along_are_found():
     for choice in groups()["measurement"]:
-        settings = read_settings(*composed([f"measurement={choice}"]))
+        settings = read_settings(*composed([f"measurement={choice}", *(["task=identify"] if choice != "none" else [])]))
         assert choice == "none" or settings.measurement_path.is_file()

@@ -7,7 +7,10 @@ import resource
 
 import pytest
 
+from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.files import Files, read_yaml
+from gear_damping.measurement.formats.registry import MAX_BYTES, read_table
 from gear_damping.tasks import dispatch, run_folder
 from gear_damping.tasks.command import main
 
@@ -119,6 +122,92 @@ def test_an_error_of_the_machine_names_the_file_or_the_folder(error, tmp_path, m
     monkeypatch.setattr(dispatch, "task_of", lambda settings: full)
     assert main(["task=simulate", *SMALL, *place(tmp_path)]) == 1
     assert (error.filename or str(tmp_path / "run")) in said()
+
+
+MADE = "make room"  # the remedy of an output that cannot be written
+
+
+@pytest.mark.parametrize("task", ["inspect", "identify", "explain"])
+def test_a_file_of_formats_that_is_missing_is_named_by_its_key(task, tmp_path, said):
+    data = tmp_path / "a.csv"
+    data.write_text("t,x\n0,1\n0.1,2\n")
+    missing = tmp_path / "nowhere.py"
+    words = [f"task={task}", f"measurement.path={data}", f"measurement.plugins=[{missing}]", *place(tmp_path)]
+    assert main(words) == 1
+    text = said()
+    assert f"measurement.plugins = '{missing}': no such file; remedy: give the path of a .py file" in text
+    assert f"(from command line: measurement.plugins=[{missing}])" in text
+    assert MADE not in text
+    assert not (tmp_path / "run").exists()
+
+
+@pytest.mark.parametrize("task", ["train", "simulate", "evaluate", "collect"])
+@pytest.mark.parametrize("word", ["measurement=silverbox", "measurement.plugins=[a.py]", "measurement.channel=force"])
+def test_a_measurement_is_refused_where_nothing_looks_at_it(task, word, tmp_path, said):
+    assert main([f"task={task}", word, "progress=false", *place(tmp_path)]) == 1
+    key, _, value = word.partition("=")
+    assert f"{key} = '{value}': acts in task=identify, task=explain, task=inspect" in said()
+
+
+def test_an_input_that_the_machine_does_not_give_is_named_by_the_key_of_the_configuration(
+    tmp_path, monkeypatch, said
+):
+    """Wherever it is met: no text of reading is that of an output."""
+    path = tmp_path / "extended_simulator.yaml"
+
+    def unreadable(*_):
+        raise PermissionError(errno.EACCES, "Permission denied", str(path))
+
+    monkeypatch.setattr(dispatch, "task_of", lambda settings: unreadable)
+    monkeypatch.setattr(dispatch, "_settings", lambda config, origin: None)
+    assert main(["task=collect", f"sweep={path}", *place(tmp_path)]) == 1
+    text = said()
+    assert f"sweep = '{path}': cannot be read: Permission denied; remedy: see that it is there" in text
+    assert f"(from command line: sweep={path})" in text
+    assert MADE not in text
+
+
+@pytest.mark.parametrize("name", ["other.csv", None])
+def test_an_error_of_the_machine_that_is_not_known_to_be_of_an_output_is_not_said_to_be(
+    name, tmp_path, monkeypatch, said
+):
+    def failing(*_):
+        raise OSError(errno.EIO, "Input/output error", name)
+
+    monkeypatch.setattr(dispatch, "task_of", lambda settings: failing)
+    assert main(["task=simulate", *SMALL, *place(tmp_path)]) == 1
+    text = said()
+    assert "cannot be read or written: Input/output error" in text
+    assert MADE not in text
+    assert name is None or f"file = '{name}'" in text
+
+
+@pytest.mark.parametrize("key", ["measurement.path", "checkpoint"])
+def test_a_file_whose_digest_cannot_be_taken_is_an_input(key, tmp_path):
+    folder = run_folder.RunFolder(tmp_path / "run", {}, Origin())
+    with pytest.raises(InputError) as raised:
+        folder.add_inputs([tmp_path / "gone.csv"], key)
+    [problem] = raised.value.problems
+    assert (problem.key, problem.value) == (key, str(tmp_path / "gone.csv"))
+    assert problem.rule == "cannot be read: No such file or directory"
+
+
+READING = {"yaml": read_yaml, "table": read_table, "digest": lambda path: Files(path.parent, MAX_BYTES).sha256(path)}
+
+
+@pytest.mark.parametrize("reader", READING)
+def test_a_measured_file_that_the_machine_does_not_give_is_an_input(reader, tmp_path, monkeypatch):
+    """Root may read everything: what the machine says is put in the place of a missing right."""
+    path = tmp_path / ("measurement.yaml" if reader == "yaml" else "a.csv")
+    path.write_text("t,x\n0,1\n1,2\n")
+
+    def refused(self, *_, **__):
+        raise PermissionError(errno.EACCES, "Permission denied", str(self))
+
+    for name in ("open", "read_bytes", "read_text"):
+        monkeypatch.setattr(type(path), name, refused)
+    with pytest.raises(InputError, match=r"cannot be read: Permission denied"):
+        READING[reader](path)
 
 
 def test_a_folder_that_is_full_from_the_beginning_is_said(tmp_path, monkeypatch, said):

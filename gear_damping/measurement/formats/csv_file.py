@@ -12,7 +12,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from gear_damping.errors import InputError, Problem
+from gear_damping.errors import InputError, Problem, reading
 from gear_damping.measurement.formats.cells import (
     SHOWN,
     Cells,
@@ -108,7 +108,8 @@ class _Lines:
 
 def _bytes(path: Path, max_bytes: int) -> bytes:
     if path.suffix.lower() != ".gz":
-        return path.read_bytes()
+        with reading(path):
+            return path.read_bytes()
     with unreadable(path, "not a readable gzip file", "pack it again, or unpack it"), gzip.open(path) as file:
         raw = file.read(max_bytes + 1)
         refuse_size(path, len(raw), max_bytes)

@@ -16,7 +16,7 @@ from functools import cache
 from pathlib import Path
 from types import ModuleType
 
-from gear_damping.errors import InputError, Problem
+from gear_damping.errors import InputError, Problem, reading
 from gear_damping.measurement import formats as room
 from gear_damping.measurement.formats.table import Table, refuse_size
 from gear_damping.own_files import REMEDY, classes_of, load_module, modules_of
@@ -82,15 +82,14 @@ def read_table(path: Path, max_bytes: int = MAX_BYTES, known: Mapping[str, Reade
     if suffix not in known:
         remedy = f"known are {', '.join(sorted(known))}; a format of your own: {KEY}=[its file]"
         raise InputError(Problem("file", f"unknown format '{suffix}'", str(path), remedy))
-    size = path.stat().st_size
+    with reading(path), path.open("rb") as file:
+        size = os.fstat(file.fileno()).st_size
     if size == 0:
         raise InputError(Problem("file", "the file is empty", str(path), "export it again"))
     refuse_size(path, size, max_bytes)
     if getattr(sys.modules.get(known[suffix].__module__), "DEADLY", False):
         refuse_deadly(known[suffix], path, max_bytes)
     return known[suffix](path, max_bytes)
-
-
 
 
 def refuse_deadly(read: Callable[[Path, int], Table], path: Path, max_bytes: int) -> None:
