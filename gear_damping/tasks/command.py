@@ -15,7 +15,7 @@ from gear_damping.config.locate import conf_folder, groups
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
 from gear_damping.tasks.composed import choices_of, plain, problems_of
-from gear_damping.tasks.dispatch import INTERRUPTED_CODE, OK, run_job
+from gear_damping.tasks.dispatch import INTERRUPTED_CODE, OK, run_alone
 from gear_damping.tasks.run_index import refresh_index
 from gear_damping.tasks.sweep import callback
 from gear_damping.tasks.sweep.folder import (
@@ -119,7 +119,7 @@ def _job(config: DictConfig) -> int:
         code = _swept(config, origin, folder)
     else:
         _folders.append(folder)
-        code = run_job(plain(config), origin, folder)
+        code = run_alone(plain(config), origin, folder)
     _codes.append(code)
     return code
 

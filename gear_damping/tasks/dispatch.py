@@ -15,6 +15,7 @@ from gear_damping.config.measured import INSPECT
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem, met_in_writing, unread
 from gear_damping.reporting.run_report import REPORTED
+from gear_damping.tasks.lease import leased
 from gear_damping.tasks.own_parts import errors_in, plugins_of
 from gear_damping.tasks.run_folder import FAILED, FINISHED, INTERRUPTED, RunFolder, problem_with_used
 from gear_damping.tasks.wrong_declaration import WRONG_INPUT, say_problems
@@ -25,6 +26,16 @@ if TYPE_CHECKING:
 
 log = logging.getLogger("gear_damping")
 OK, INTERRUPTED_CODE = 0, 130  # exit codes; 128 + SIGINT as shells have it
+
+
+def run_alone(config: Mapping[str, Any], origin: Origin, folder: Path) -> int:
+    """Do one job that is none of a sweep, and hold the lease of its folder meanwhile; returns its exit code."""
+    try:
+        with leased(folder):
+            return run_job(config, origin, folder)
+    except OSError as error:  # of the lease: those of the job were said
+        say_problems(InputError(_not_written(error, folder)))
+        return WRONG_INPUT
 
 
 def run_job(config: Mapping[str, Any], origin: Origin, folder: Path) -> int:

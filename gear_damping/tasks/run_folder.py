@@ -17,9 +17,11 @@ from typing import Any
 from gear_damping.config.measured import INSPECT, YAML_SUFFIXES
 from gear_damping.config.source import Origin
 from gear_damping.errors import Problem, reading, writing, written_whole
+from gear_damping.tasks.lease import is_held
 
 log = logging.getLogger("gear_damping")
 RUNNING, FINISHED, FAILED, INTERRUPTED = "running", "finished", "failed", "interrupted"
+CUT_OFF = "cut off"  # what a run is that says `running` while nobody works on it: run.json itself never says it
 EDITED = {"explain": "extended_simulator.yaml", "inspect": "measurement.yaml"}  # what people edit, by task
 PACKAGES = ("gear-damping", "torch", "lightning", "hydra-core", "torchdiffeq", "numpy", "scipy")
 
@@ -113,6 +115,17 @@ def read_record(folder: Path) -> dict[str, Any] | None:
     except (OSError, ValueError):
         return None
     return found if isinstance(found, dict) and "status" in found else None
+
+
+def status_of(folder: Path, record: Mapping[str, Any]) -> str:
+    """How a run stands: as run.json says, unless its process ended without a word, killed or on a full disk.
+
+    Args:
+        folder: Of the run.
+        record: What its run.json says.
+    """
+    is_dead = record["status"] == RUNNING and not is_held(folder)
+    return CUT_OFF if is_dead else str(record["status"])
 
 
 def write_json(path: Path, content: Any) -> Path:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from gear_damping.errors import written_whole
 from gear_damping.reporting.headline import headline
 from gear_damping.reporting.run_report import REPORT
-from gear_damping.tasks.run_folder import FAILED, FINISHED, RUNNING, read_record
+from gear_damping.tasks.run_folder import CUT_OFF, FAILED, FINISHED, RUNNING, read_record, status_of
 from gear_damping.tasks.sweep.folder import NOTE, read_sweep
 
 if TYPE_CHECKING:
@@ -19,7 +19,6 @@ OUTPUTS = Path("outputs")  # where runs go unless the command says otherwise, as
 INDEX = "index.html"
 RUN = "run.json"
 NOT_SHOWN = ("collect",)  # tasks that only look at other runs
-OPEN = "running or cut off"  # what run.json says of a run whose process was killed is `running`
 MAIN = (  # figures of all tasks, those first that are shown first
     "sweep.png", "evaluation.png", "predicted_against_true.png", "identification.png", "damping.png",
     "explanation.png", "plan_map.png", "simulation.png",
@@ -97,24 +96,25 @@ def _row(root: Path, folder: Path) -> "IndexRow | None":
         return _made(root, folder, {"status": "unreadable", "result": f"{RUN} cannot be read"})
     if record.get("task") in NOT_SHOWN:
         return None
-    status = record["status"]
+    status = status_of(folder, record)
     result = headline(record["metrics"]) if status == FINISHED else _reason(record)
-    shown = OPEN if status == RUNNING else str(status)
-    seconds = record.get("wall_time_s") if status != RUNNING else None
-    return _made(root, folder, _common(record) | {"status": shown, "result": result, "seconds": seconds})
+    seconds = record.get("wall_time_s") if status not in (RUNNING, CUT_OFF) else None
+    return _made(root, folder, _common(record) | {"status": status, "result": result, "seconds": seconds})
 
 
 def _sweep_row(root: Path, folder: Path) -> "IndexRow":
     """A sweep, by what its jobs say of themselves."""
     sweep = read_sweep(folder)
-    jobs = [record for path in folder.glob(f"*/{RUN}") if (record := read_record(path.parent)) is not None]
+    there = [(path.parent, read_record(path.parent)) for path in folder.glob(f"*/{RUN}")]
+    jobs = [record for _, record in there if record is not None]
     if sweep is None:
         return _made(root, folder, {"status": "unreadable", "result": f"{NOTE} cannot be read"})
-    finished = sum(job["status"] == FINISHED for job in jobs)
-    failed = sum(job["status"] == FAILED for job in jobs)
+    states = [status_of(place, record) for place, record in there if record is not None]
+    finished = states.count(FINISHED)
     total = max(sweep.jobs or 0, len(jobs))
     status = FINISHED if total and finished == total else f"{finished} of {total} jobs"
-    words = [f"{total} jobs"] + ([f"{failed} failed"] if failed else [])
+    words = [f"{total} jobs"]
+    words += [f"{states.count(kind)} {kind}" for kind in (FAILED, CUT_OFF, RUNNING) if kind in states]
     words.append(f"over {', '.join(sweep.keys)}" if sweep.keys else "")
     common = _common(min(jobs, key=lambda job: str(job.get("started")))) if jobs else {}
     task = f"sweep of {common['task']}" if jobs else "sweep"

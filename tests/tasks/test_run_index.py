@@ -1,16 +1,29 @@
 """The index of all runs: what it lists, that it never fails a run, and that two that end at once both stand in it."""
 
+import errno
 import json
 import os
 import re
+import subprocess
+import sys
 import threading
 
 import pytest
 
-from gear_damping.tasks import run_index
+from gear_damping.tasks import run_folder, run_index
 from gear_damping.tasks.command import main
+from gear_damping.tasks.lease import leased
 from gear_damping.tasks.run_index import INDEX, refresh_index, write_index
 
+WORKER = """
+import sys, time
+from pathlib import Path
+from gear_damping.tasks.lease import leased
+
+with leased(Path(sys.argv[1])):
+    print("at work", flush=True)
+    time.sleep(600)
+"""
 DECAY = "time,x\n" + "".join(f"{k / 100},{0.9**k}\n" for k in range(100))
 
 
@@ -44,7 +57,7 @@ def test_runs_and_sweeps_are_rows_and_what_only_looks_is_none(tmp_path):
     found = "\n".join(rows(tmp_path))
     for said in (
         "train backlash finished 2 s rmse_percent 0.125, epochs 3", "train noise failed 2 s snr_db: too hot",
-        "train mine running or cut off", "sweep of train noise 1 of 3 jobs 4 s 3 jobs, 1 failed, over seed",
+        "train mine cut off", "sweep of train noise 1 of 3 jobs 4 s 3 jobs, 1 failed, over seed",
     ):  # fmt: skip
         assert said in found
 
@@ -67,6 +80,49 @@ def test_a_damaged_run_is_a_row(tmp_path, text):
     (tmp_path / "sweep" / "b" / "2" / "sweep.json").write_text(text)
     assert write_index(tmp_path) == 2
     assert "\n".join(rows(tmp_path)).count("unreadable") == 2
+
+
+def test_a_run_goes_on_as_long_as_its_process_does(tmp_path):
+    """The one lies in this process, the other in one that was killed over it."""
+    worker = [sys.executable, "-c", WORKER, str(run(tmp_path / "killed" / "1", "running"))]
+    with subprocess.Popen(worker, stdout=subprocess.PIPE) as killed, leased(run(tmp_path / "alive" / "1", "running")):
+        killed.stdout.readline()
+        write_index(tmp_path)
+        assert [row.count("running") for row in rows(tmp_path)] == [1, 1]
+        killed.kill()
+        killed.wait()
+        write_index(tmp_path)
+        found = "\n".join(rows(tmp_path))
+        assert "train alive running" in found
+        assert "train killed cut off" in found
+    assert (tmp_path / "killed" / "1" / "lease.json").exists()  # nobody took it away
+
+
+def test_a_job_that_is_cut_off_is_counted_in_the_row_of_its_sweep(tmp_path):
+    sweep = tmp_path / "sweep" / "noise" / "5"
+    for number, status in enumerate(("finished", "running")):
+        run(sweep / str(number), status)
+    (sweep / "sweep.json").write_text(json.dumps({"overrides": [], "keys": ["seed"], "jobs": 2, "version": "1"}))
+    write_index(tmp_path)
+    assert "1 of 2 jobs 4 s 2 jobs, 1 cut off, over seed" in rows(tmp_path)[0]
+
+
+def test_a_run_that_could_not_say_how_it_ended_is_dead(tmp_path, monkeypatch):
+    """As on a full disk, where run.json keeps what the beginning said: nothing can be written after that."""
+    (tmp_path / "decay.csv").write_text(DECAY)
+    plainly = run_folder.write_json
+
+    def full(path, content):
+        if content["status"] != "running":
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
+        return plainly(path, content)
+
+    monkeypatch.setattr(run_folder, "write_json", full)
+    data, folder = f"measurement.path={tmp_path / 'decay.csv'}", tmp_path / "outputs" / "inspect" / "1"
+    assert main(["task=inspect", data, f"hydra.run.dir={folder}"]) == 1
+    assert json.loads((folder / "run.json").read_text())["status"] == "running"
+    write_index(tmp_path / "outputs")
+    assert "inspect custom cut off" in rows(tmp_path / "outputs")[0]
 
 
 def test_a_run_elsewhere_leaves_no_index(tmp_path):

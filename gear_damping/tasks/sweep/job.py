@@ -12,9 +12,9 @@ from typing import Any
 from gear_damping.config.folders import resumable
 from gear_damping.config.source import Origin
 from gear_damping.tasks.dispatch import OK, run_job
+from gear_damping.tasks.lease import leased
 from gear_damping.tasks.run_folder import EDITED, FINISHED, read_record
 from gear_damping.tasks.sweep.folder import NOT_DECIDING, Place
-from gear_damping.tasks.sweep.lease import leased
 from gear_damping.tasks.sweep.line import line_of
 
 CUT_OFF = ".cut_off"  # what a file of an unfinished job is called from then on

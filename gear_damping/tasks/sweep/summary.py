@@ -8,12 +8,10 @@ from typing import Any
 from gear_damping.config.quantities import number_of
 from gear_damping.errors import InputError, Problem, written_whole
 from gear_damping.reporting.run_report import REPORT
-from gear_damping.tasks.run_folder import FINISHED, RUNNING, read_record
+from gear_damping.tasks.run_folder import FINISHED, read_record, status_of
 from gear_damping.tasks.sweep.folder import NOTE, Sweep, read_sweep
-from gear_damping.tasks.sweep.lease import is_held
 
 TABLE, FIGURE, MAP = "sweep.csv", "sweep.png", "sweep_map.png"
-CUT_OFF = "cut off"  # a job whose process is gone
 NOT_BEGUN = "not begun"
 
 
@@ -88,10 +86,7 @@ def _number(path: Path) -> tuple[int, str]:
 def _row(folder: Path, keys: Sequence[str]) -> dict[str, Any]:
     """Status, swept values, figures and error of a job."""
     record = read_record(folder) or {"status": NOT_BEGUN, "config": {}, "choices": {}, "metrics": {}}
-    status = record["status"]
-    if status == RUNNING and not is_held(folder):
-        status = CUT_OFF
-    row = {"job": folder.name, "status": status}
+    row = {"job": folder.name, "status": status_of(folder, record)}
     choices = record["choices"]
     given = {key: number_of(key, _lookup(record["config"], key)) for key in keys}
     row |= {key: choices.get(key, value) for key, value in given.items()}

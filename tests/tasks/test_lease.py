@@ -9,8 +9,8 @@ import time
 
 import pytest
 
-from gear_damping.tasks.sweep import lease
-from gear_damping.tasks.sweep.lease import NAME, is_held, leased
+from gear_damping.tasks import lease
+from gear_damping.tasks.lease import NAME, is_held, leased
 
 
 @pytest.fixture(autouse=True)
@@ -59,11 +59,15 @@ def test_a_later_process_with_the_same_number_is_another(tmp_path, monkeypatch):
 def test_a_silent_worker_of_another_host_is_replaced_after_a_while(tmp_path):
     noted(tmp_path, host="elsewhere")
     assert is_held(tmp_path)
+    last = (tmp_path / NAME).stat().st_mtime
+    os.utime(tmp_path / NAME, (last - 2, last - 2))  # longer ago than the silence of one that is dead
+    assert not is_held(tmp_path)
     assert seconds_to_take(tmp_path) >= 0.6
 
 
 def test_a_lease_that_was_cut_off_is_replaced_after_a_while(tmp_path):
     (tmp_path / NAME).write_text('{"host": "el')
+    assert is_held(tmp_path)
     assert seconds_to_take(tmp_path) >= 0.6
 
 

@@ -1,7 +1,7 @@
-"""Who works on a job: a file in its folder that is held while the work goes on, and told stale when the worker is gone.
+"""Who works on a run: a file in its folder that is held while the work goes on, and told stale when the worker is gone.
 
 On the host of the worker a process that is gone is dead at once; on another host the file must change (it does every
-few seconds), or the worker counts as dead.
+few seconds), or the worker counts as dead. What run.json of a run without a live worker says last may be `running`.
 """
 
 import json
@@ -28,7 +28,7 @@ def leased(folder: Path) -> Iterator[None]:
     """Hold the lease of a folder; waits while another holds it.
 
     Args:
-        folder: Of the job; made where it is missing.
+        folder: Of the run; made where it is missing.
 
     Raises:
         OSError: it cannot be written.
@@ -48,9 +48,17 @@ def leased(folder: Path) -> Iterator[None]:
 
 
 def is_held(folder: Path) -> bool:
-    """Whether a live process of this host, or any of another, holds the lease of a folder; asks no time."""
-    content = _read(folder / NAME)
-    return content is not None and not _is_gone(content)
+    """Whether somebody alive holds the lease of a folder: told at once, of another host by the age of its last sign."""
+    path = folder / NAME
+    content = _read(path)
+    if content is None:
+        return False
+    holder = _holder(content)
+    if holder and holder["host"] == host():
+        return not _is_gone(content)
+    with suppress(FileNotFoundError):
+        return time.time() - path.stat().st_mtime <= SILENCE
+    return False
 
 
 class _Own:
