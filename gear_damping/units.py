@@ -6,6 +6,7 @@ Unknown units are refused: a guess would be worse.
 """
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from math import pi
@@ -90,6 +91,11 @@ _JOINED = re.compile(r"(?<![A-Za-z])(kg|kN|N|lbf)(?=(mm|cm|m|in|ft)([\^\d/]|$))"
 _FACTOR = re.compile(r"^(?P<atom>[A-Za-z%]+|1)((\^(?P<power>-?\d+(\.\d+)?))|(?P<raised>[23]))?$")
 
 
+DIGITS = 12  # of a converted number: 0.12 mm are 120 um, not 120.00000000000001
+# What a key may end in, and the unit that its plain number is in.
+SUFFIXES = {"rpm": "rpm", "deg": "deg", "um": "um", "mm": "mm", "ms": "ms", "khz": "kHz", "hz": "Hz", "percent": "%"}
+
+
 def unit_names() -> tuple[str, ...]:
     """Every unit that may stand in a product or a quotient."""
     return tuple(_ATOMS)
@@ -122,6 +128,31 @@ def spoken(value: object) -> tuple[float, str] | None:
     """The number and the unit of a text such as `80 um` or `4600rpm`; None for anything else, as a bare number."""
     match = _SPOKEN.match(value) if isinstance(value, str) and not _NUMBER.match(value) else None
     return (float(match["number"]), match["unit"]) if match else None
+
+
+def said_as(value: object) -> tuple[float, str] | None:
+    """The number and the unit of `80 um` or of {value: 80, unit: um}; None for anything else."""
+    if isinstance(value, Mapping):
+        is_whole = set(value) == {"value", "unit"} and type(value["value"]) in (int, float)
+        return (value["value"], str(value["unit"])) if is_whole else None
+    return spoken(value)
+
+
+def number_in(value: object, unit: str, key: str = "") -> object:
+    """The number in `unit` of a quantity, `80 um` or {value, unit}; what is no quantity as it is.
+
+    Args:
+        value: As it was given.
+        unit: What a plain number would be in; any unit of its kind may be said.
+        key: Its key, for messages.
+
+    Raises:
+        InputError: its unit is unknown, or of another kind.
+    """
+    said = said_as(value)
+    if said is None:
+        return value
+    return float(f"{to_si(said[0], said[1], unit, key) / parse_unit(unit).factor:.{DIGITS}g}")
 
 
 def _parse_factor(piece: str, text: str, key: str, source: str) -> tuple[Unit, float]:

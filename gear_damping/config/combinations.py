@@ -8,7 +8,6 @@ import torch
 from gear_damping.config.by_task import BY_TASK
 from gear_damping.config.folders import unusable
 from gear_damping.config.light import wrong_measurement, wrong_name
-from gear_damping.config.quantities import SUFFIXES
 from gear_damping.config.simulator import SimulatorSettings
 from gear_damping.config.source import ORDER, Origin
 from gear_damping.config.whole import Found, Whole
@@ -16,6 +15,7 @@ from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.physics.catalogue import catalogue
 from gear_damping.simulation.families import DAMPING_RATIO, coefficients_for
 from gear_damping.simulation.runs import reference_velocity
+from gear_damping.units import SUFFIXES
 
 SIMULATING = ("train", "simulate", "evaluate", "paper")  # tasks that simulate runs of the configured simulator
 TRAINING = ("train", "paper")  # tasks that train networks

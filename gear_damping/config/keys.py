@@ -8,8 +8,9 @@ from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.reporting.paper.printed import EFFECTS
-from gear_damping.schema.mappings import group, read_declared
+from gear_damping.schema.mappings import group, read_declared, values_of
 from gear_damping.schema.values import Flag, Given, Levels, Names, Number, OneOf, Problems, Text, Value
+from gear_damping.units import SUFFIXES
 
 TASKS = ("train", "simulate", "evaluate", "identify", "explain", "inspect", "plan", "paper", "collect")
 
@@ -17,12 +18,12 @@ TASKS = ("train", "simulate", "evaluate", "identify", "explain", "inspect", "pla
 def _thresholds() -> dict[str, Number]:
     """Of the search, as `SearchSettings` declares them."""
     return {
-        one.name: Number(one.metadata["lower"], one.metadata["upper"], whole=one.type is int)
+        one.name: Number(**one.metadata, whole=one.type is int)
         for one in fields(SearchSettings)
     }
 
 
-_SHARE = Number(0, 1, exclusive=True)  # of the runs: something is left on either side
+_SHARE = Number(0, 1, exclusive=True, unit="1")  # of the runs: something is left on either side
 SCHEMA: dict[str, Any] = {
     "task": OneOf(TASKS),
     "name": Text(),
@@ -34,7 +35,7 @@ SCHEMA: dict[str, Any] = {
     "data_folder": Text(),
     "progress": Flag(),
     "ruled_out": Given(Names(), optional=True),
-    "explain": {"minutes": Number(0, 1e6, exclusive=True)} | _thresholds(),
+    "explain": {"minutes": Number(0, 1e6, exclusive=True, unit="min")} | _thresholds(),
     "write_measurement": Flag(),
     "figures": Given(Names(tuple(EFFECTS)), optional=True),
     "protocol": {
@@ -54,11 +55,11 @@ SCHEMA: dict[str, Any] = {
         "learning_rate": Number(0, 10, exclusive=True),
         "schedule": OneOf(("constant", "cosine")),
         "gradient_clip": Given(Number(0, 1e6, exclusive=True), optional=True),
-        "noise_snr_db": Given(Levels(Number(-100, 200), ascend=True), optional=True),
+        "noise_snr_db": Given(Levels(Number(-100, 200, unit="dB"), ascend=True), optional=True),
         "devices": Number(1, 64, whole=True),
     },
     "evaluation": {
-        "snr_db": Given(Levels(Number(-100, 200)), optional=True),
+        "snr_db": Given(Levels(Number(-100, 200, unit="dB")), optional=True),
         "known_model": Flag(),
         "effects": Given(Names(), optional=True),
     },
@@ -71,15 +72,16 @@ SCHEMA: dict[str, Any] = {
 ELSEWHERE = ("simulator", "family", "model", "wavelet", "plan")  # groups with a check of their own
 
 
-def check(config: Mapping[str, Any], origin: Origin) -> list[Problem]:
-    """Every problem with the keys outside simulator and family."""
-    return problems_with(config, SCHEMA, "", origin, ELSEWHERE)
+def check(config: Mapping[str, Any], origin: Origin) -> tuple[dict[str, Any], list[Problem]]:
+    """The keys outside simulator and family, numbers in the unit of their key, and every problem with them."""
+    found, problems = read_keys(config, SCHEMA, "", origin, ELSEWHERE)
+    return {**config, **{key: value for key, value in found.items() if key not in ELSEWHERE}}, problems
 
 
-def problems_with(
+def read_keys(
     values: Mapping[str, Any], kinds: Mapping[str, Any], prefix: str, origin: Origin, others: Sequence[str] = ()
-) -> list[Problem]:
-    """Every problem with a group of keys.
+) -> tuple[dict[str, Any], list[Problem]]:
+    """The values of a group of keys, without those that are wrong, and every problem with them.
 
     Args:
         values: The group.
@@ -89,14 +91,35 @@ def problems_with(
         others: Keys that are checked elsewhere.
     """
     problems = Problems()
-    read_declared(group(kinds, others), values, problems, origin.of, prefix)
-    return problems
+    found = read_declared(group(kinds, others), values, problems, origin.of, prefix)
+    return ({} if found is None else values_of(found)), problems
+
+
+def unit_of(key: str) -> str | None:
+    """The unit of the plain number under a full key, `1` where it is SI; None where the key has none.
+
+    A key has the unit that its kind declares, or what it ends in. Of a parameter of the simulator or of a plan that
+    ends in none the plain number is SI.
+    """
+    ending = SUFFIXES.get(key.rpartition("_")[2])
+    if ending is not None or key.split(".")[0] in ("simulator", "plan"):
+        return ending or "1"
+    kind: Any = SCHEMA
+    for part in key.split("."):
+        kind = kind.get(part) if isinstance(kind, Mapping) else None
+    kind = kind.kind if isinstance(kind, Given) else kind
+    kind = kind.each if isinstance(kind, Levels) else kind
+    return kind.unit or None if isinstance(kind, Number) else None
 
 
 def problem_with(value: Any, kind: Value, key: str, origin: Origin) -> Problem | None:
     """The problem with one value, or None."""
+    return read_value(value, kind, key, origin)[1]
+
+
+def read_value(value: Any, kind: Value, key: str, origin: Origin) -> tuple[Any, Problem | None]:
+    """One value, a number in the unit of its key, and the problem with it: one of both is None."""
     try:
-        (kind if isinstance(kind, Given) else Given(kind)).read(value, key)
+        return (kind if isinstance(kind, Given) else Given(kind)).read(value, key), None
     except InputError as error:
-        return replace(error.problems[0], key=key, source=origin.of(key))
-    return None
+        return None, replace(error.problems[0], key=key, source=origin.of(key))

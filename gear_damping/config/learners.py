@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from gear_damping.config.keys import problem_with, problems_with
+from gear_damping.config.keys import problem_with, read_keys
 from gear_damping.config.source import COMMAND_LINE, Origin
 from gear_damping.errors import InputError, Problem
 from gear_damping.identification.catalogue import KEY, estimator_catalogue, wavelet_catalogue
@@ -58,10 +58,10 @@ def read_models(node: Mapping[str, Any], origin: Origin) -> ModelSettings:
     settings = {one.name: one for kind in chosen.values() for one in kind.settings}
     given = {name: node.get(name, one.default) for name, one in settings.items()}
     kinds = {"names": names, "plugins": PLUGINS} | _kinds_of(settings.values())
-    problems = problems_with({**node, **given, "plugins": list(plugins) or None}, kinds, "model.", origin)
+    read, problems = read_keys({**node, **given, "plugins": list(plugins) or None}, kinds, "model.", origin)
     if problems:
         raise InputError(problems)
-    own = {name: {one.name: given[one.name] for one in kind.settings} for name, kind in chosen.items()}
+    own = {name: {one.name: read[one.name] for one in kind.settings} for name, kind in chosen.items()}
     networks = {name: kind for name, kind in chosen.items() if issubclass(kind, LearnedEstimator)}
     return ModelSettings(
         own,
@@ -99,10 +99,11 @@ def read_wavelet(node: Mapping[str, Any], plugins: tuple[str, ...], origin: Orig
     ]
     left = {name: value for name, value in node.items() if name not in foreign}
     kinds = {"kind": chosen_kind} | FREQUENCIES | _kinds_of(settings.values())
-    problems += problems_with({**left, **own}, kinds, "wavelet.", origin)
+    read, wrong = read_keys({**left, **own}, kinds, "wavelet.", origin)
+    problems += wrong
     if problems:
         raise InputError(problems)
-    return {**left, **own}
+    return {name: read[name] for name in {**left, **own}}
 
 
 def _without_others(
@@ -129,7 +130,7 @@ def _own(node: Mapping[str, Any], origin: Origin) -> tuple[tuple[str, ...], dict
 def _require(node: Mapping[str, Any], name: str, kind: Value, prefix: str, origin: Origin) -> None:
     """Refuse a node in which a key is missing or wrong, on which all others depend."""
     part = {name: node[name]} if name in node else {}
-    problems = problems_with(part, {name: kind}, prefix, origin)
+    _, problems = read_keys(part, {name: kind}, prefix, origin)
     if problems:
         raise InputError(problems)
 

@@ -49,7 +49,7 @@ def read_inspect_settings(config: Mapping[str, Any], origin: Origin) -> InspectS
 def light_problems(config: Mapping[str, Any], origin: Origin) -> list[Problem]:
     """The problems with the keys outside simulator and family, and with the path of the measurement."""
     plain = {key: value for key, value in config.items() if key != "hydra"}
-    problems = keys.check(plain, origin)
+    _, problems = keys.check(plain, origin)
     wrong = {problem.key.split(".")[0] for problem in problems}
     for needed, check in ((("name",), wrong_name), (("task", "measurement"), wrong_measurement)):
         if not wrong & set(needed):

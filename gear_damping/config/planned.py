@@ -32,7 +32,7 @@ PLAIN = {
 }
 COSTS = {name: Number(0, 1e12) for name in ("per_test", "per_second", "per_speed", "per_torque")}
 SENSOR = {
-    "snr_db": Given(Number(-40, 200), optional=True),
+    "snr_db": Given(Number(-40, 200, unit="dB"), optional=True),
     "channel": Given(Text(), optional=True),
     "offset": Given(Flag(), optional=True),
     "cost": Given(Number(0, 1e12), optional=True),

@@ -1,14 +1,13 @@
-"""Numbers with units in the configuration: the one place where they become SI."""
+"""Numbers with units in the configuration: parameters become SI here, other keys as `schema.values.Number` has it."""
 
 from collections.abc import Mapping, Sequence
 from math import isfinite
 from typing import Any
 
+from gear_damping.config.keys import unit_of
 from gear_damping.errors import InputError, Problem
 from gear_damping.physics.parameter import Parameter
-from gear_damping.units import parse_unit, spoken, to_si
-
-SUFFIXES = {"rpm": "rpm", "deg": "deg", "um": "um", "mm": "mm", "ms": "ms", "khz": "kHz", "hz": "Hz", "percent": "%"}
+from gear_damping.units import DIGITS, SUFFIXES, parse_unit, said_as, spoken, to_si
 
 
 def split_suffix(key: str, known: Mapping[str, Any]) -> tuple[str, str | None]:
@@ -49,15 +48,12 @@ def number_of(key: str, value: Any) -> Any:
         key: Its full key.
         value: As it was given.
     """
-    said = spoken(value)
-    if isinstance(value, Mapping) and set(value) == {"value", "unit"}:
-        said = value["value"], value["unit"]
-    if said is None or key.split(".")[0] not in ("simulator", "plan"):
+    said, own = said_as(value), unit_of(key)
+    if said is None or own is None:
         return value
     try:
-        own = SUFFIXES.get(key.rpartition("_")[2], "1")
-        return float(f"{said[0] * parse_unit(said[1]).factor / parse_unit(own).factor:.12g}")
-    except (InputError, TypeError, AttributeError):  # of a job that could not run
+        return float(f"{said[0] * parse_unit(said[1]).factor / parse_unit(own).factor:.{DIGITS}g}")
+    except InputError:  # of a job that could not run
         return value
 
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from gear_damping.config.keys import problem_with
+from gear_damping.config.keys import read_value
 from gear_damping.config.quantities import parameter_value, split_suffix
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem, nearest
@@ -52,9 +52,8 @@ class Reader:
         """Values of the keys in `kinds`, None where one is wrong."""
         found = {}
         for name, kind in kinds.items():
-            problem = problem_with(node.get(name), kind, prefix + name, self.origin)
+            found[name], problem = read_value(node.get(name), kind, prefix + name, self.origin)
             self.problems += [problem] if problem else []
-            found[name] = None if problem else node.get(name)
         return found
 
     def parameters(self, node: Mapping[str, Any], declared: Mapping[str, Parameter], prefix: str) -> dict[str, Any]:

@@ -61,7 +61,7 @@ def read_settings(config: Mapping[str, Any], origin: Origin) -> Settings:
         InputError: every problem of the whole configuration.
     """
     config = {key: value for key, value in config.items() if key != "hydra"}
-    problems = keys.check(config, origin)
+    config, problems = keys.check(config, origin)
     nodes = {group: config.get(group) for group in keys.ELSEWHERE}
     for group, node in nodes.items():
         if not isinstance(node, Mapping):
@@ -82,6 +82,8 @@ def read_settings(config: Mapping[str, Any], origin: Origin) -> Settings:
     simulator = tried(read_simulator, ["simulator", "family"])
     plan = tried(read_plan, ["plan"], simulator) if simulator and config.get("task") == "plan" else None
     path = (config.get("measurement") or {}).get("path")
+    if wavelet is not None:
+        config["wavelet"] = wavelet  # its numbers are in the unit of their key now
     whole = Whole(config, simulator, origin, models)
     problems += combination_problems(whole, {problem.key for problem in problems})
     if problems:

@@ -7,9 +7,9 @@ its code.
 from dataclasses import dataclass, field
 
 
-def within(value: float, lower: float, upper: float) -> float:
-    """A field with its default and the range that it may be set to."""
-    return field(default=value, metadata={"lower": lower, "upper": upper})
+def within(value: float, lower: float, upper: float, unit: str = "") -> float:
+    """A field with its default, the range that it may be set to, and its unit."""
+    return field(default=value, metadata={"least": lower, "most": upper, "unit": unit})
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class SearchSettings:
     """
 
     level: float = within(0.01, 0.0001, 0.5)
-    least_excess: float = within(0.03, 0, 100)
+    least_excess: float = within(0.03, 0, 100, "%")
     standard_errors: float = within(3.0, 0, 100)
     settled_share: float = within(0.02, 0, 1)
     settled_misfit: float = within(1.2, 1, 1000000.0)
@@ -92,6 +92,6 @@ class SearchSettings:
     taken_by_all: float = within(0.9, 0, 1)
     taken_by_one: float = within(0.5, 0, 1)
     random_misfit: float = within(0.8, 0, 1000)
-    gross_percent: float = within(5.0, 0, 1000000.0)
+    gross_percent: float = within(5.0, 0, 1000000.0, "%")
     homogeneity_tolerance: float = within(0.15, 0, 10)
     homogeneity_level: float = within(0.05, 1e-06, 1)

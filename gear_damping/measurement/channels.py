@@ -74,7 +74,7 @@ class Ranged(AnyChannel):
 class Scaled(AnyChannel):
     """A channel whose gain may be uncertain."""
 
-    uncertainty: Annotated[float, Number(least=0.0)] = key(
+    uncertainty: Annotated[float, Number(least=0.0, unit="1")] = key(
         "Relative standard uncertainty of the gain; 0 means known.", "prior on the gain", 0.0
     )
 

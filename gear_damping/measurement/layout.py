@@ -7,7 +7,7 @@ from pydantic import model_validator
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement import channels as c
-from gear_damping.measurement.quantities import Column, Measured, Rows
+from gear_damping.measurement.quantities import Column, Instant, Measured, Rows
 from gear_damping.measurement.record import ROLES, Quantity
 from gear_damping.measurement.rig import (
     GEAR_TORQUE_MODES,
@@ -136,22 +136,31 @@ class Window(Declared):
     """A stretch of time."""
 
     title: ClassVar[str] = "a window"
-    start: Annotated[float, Number()] = key("First time.", "rows", missing="give the first time", alias="from")
-    stop: Annotated[float, Number()] = key("Last time.", "rows", missing="give the last time", alias="to")
-    unit: Annotated[str, Text()] = key("Unit of both.", "rows", missing="give a unit, for example s")
+    start: Annotated[Quantity | float, Instant()] = key(
+        "First time.", "rows", missing="give the first time", alias="from"
+    )
+    stop: Annotated[Quantity | float, Instant()] = key("Last time.", "rows", missing="give the last time", alias="to")
+    unit: Annotated[str, Text()] = key("Unit of those that are plain numbers, for example s.", "rows")
 
     @model_validator(mode="after")
     def _ordered(self) -> "Window":
-        to_si(1.0, self.unit, "s", "unit")
-        if self.start >= self.stop:
-            refuse("must lie before 'to'", self.start, "exchange the two", "from")
+        plain = [one for one in (self.start, self.stop) if not isinstance(one, Quantity)]
+        if plain and not self.unit:
+            refuse("is missing", None, "give a unit, for example s, or one at each time: 10 ms", "unit")
+        if not plain and self.unit:
+            refuse("has no effect: both times have units of their own", self.unit, "leave it out", "unit")
+        to_si(1.0, self.unit or "s", "s", "unit")
+        first, last = self.seconds
+        if first >= last:
+            refuse("must lie before 'to'", first, "exchange the two", "from")
         return self
 
     @property
     def seconds(self) -> tuple[float, float]:
         """From and to in s."""
-        one = to_si(1.0, self.unit, "s")
-        return self.start * one, self.stop * one
+        one = to_si(1.0, self.unit or "s", "s")
+        first, last = (t.value if isinstance(t, Quantity) else t * one for t in (self.start, self.stop))
+        return first, last
 
 
 class AnyRecord(Declared):

@@ -9,7 +9,7 @@ from typing import Any
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.measurement.record import Quantity
 from gear_damping.schema.values import Number, OneOf, Text, Value, refuse
-from gear_damping.units import parse_unit, spoken, to_si
+from gear_damping.units import parse_unit, said_as, spoken, to_si
 
 ORDERS = (1, 2, 4)  # poles of a Butterworth filter that the simulated sensor has too (`sensor_lowpass`)
 NOT_UNCERTAIN = "has no meaning here: only parameters, conditions and the gain of a channel may be uncertain"
@@ -28,6 +28,20 @@ class Column(Value):
     def says(self) -> str:
         """A column."""
         return "header text, or 0-based index"
+
+
+@dataclass(frozen=True)
+class Instant(Value):
+    """A time: a plain number in the unit that stands beside it, or a quantity."""
+
+    def read(self, value: Any, name: str) -> float | Quantity:
+        """The number, or the quantity in s."""
+        said = said_as(value)
+        return Number().read(value, name) if said is None else Quantity(to_si(*said, "s", ""), "s")
+
+    def says(self) -> str:
+        """Both."""
+        return "number in `unit`, or `{value, unit}`"
 
 
 class Rows(Value):
@@ -96,7 +110,8 @@ class Measured(Value):
         problems = self._unknown(value)
         number = self._part(value, "value", Number(), None, problems)
         unit = self._unit(value, problems)
-        uncertainty = self._part(value, "uncertainty", Number(least=0.0), 0.0, problems) if self.uncertain else 0.0
+        share = Number(least=0.0, unit="1")
+        uncertainty = self._part(value, "uncertainty", share, 0.0, problems) if self.uncertain else 0.0
         more = self.more(value, problems)
         if problems:
             raise InputError(problems)

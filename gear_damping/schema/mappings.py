@@ -127,6 +127,16 @@ def names(model: type[Declared]) -> dict[str, FieldInfo]:
     return {info.alias or name: info for name, info in model.model_fields.items()}
 
 
+def values_of(model: Declared) -> dict[str, Any]:
+    """The values of a mapping by its keys as they are written, groups within it as mappings."""
+    found = {name: getattr(model, own) for own, name in _written(model).items()}
+    return {name: values_of(value) if isinstance(value, Declared) else value for name, value in found.items()}
+
+
+def _written(model: Declared) -> dict[str, str]:
+    return {own: info.alias or own for own, info in type(model).model_fields.items() if own in model.model_fields_set}
+
+
 def inner_model(info: FieldInfo) -> type[Declared] | None:
     """The model of a mapping (or of a list of mappings) under a key; None for a plain value."""
     kinds = [info.annotation]

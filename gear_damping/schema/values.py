@@ -14,6 +14,7 @@ from pydantic import GetCoreSchemaHandler, ValidationInfo
 from pydantic_core import CoreSchema, core_schema
 
 from gear_damping.errors import InputError, Problem, nearest
+from gear_damping.units import SUFFIXES, number_in
 
 _COMMA = re.compile(r"[+-]?\d+,\d+")  # a number with a decimal comma
 
@@ -120,6 +121,8 @@ class Number(Value):
         whole: Whether it counts something.
         exclusive: Whether the bounds themselves are excluded.
         nonzero: Whether 0 is.
+        unit: What it is in; a quantity in any unit of that kind may be given too. Empty: what its key ends in, if that
+            is a unit (`frequency_max_hz`).
     """
 
     least: float = -inf
@@ -127,15 +130,20 @@ class Number(Value):
     whole: bool = False
     exclusive: bool = False
     nonzero: bool = False
+    unit: str = ""
 
     def read(self, value: Any, name: str) -> float:
         """The number as a float; one that counts as an int."""
+        unit = self.unit_of(name)
+        if unit:
+            value = number_in(value, unit)
         kind, words = (int, "a whole number") if self.whole else (int | float, "a number")
+        words += f", or a quantity such as 1 {unit}" if unit not in ("", "1") else ""
         if isinstance(value, bool) or not isinstance(value, kind):
             remedy = f"write {words}"
             if isinstance(value, str) and _COMMA.fullmatch(value.strip()):
                 remedy = f"write {value.strip().replace(',', '.')}, with a decimal point"
-            refuse(f"must be {words if self.whole else 'a finite number'}", value, remedy)
+            refuse(f"must be {'a whole number' if self.whole else 'a finite number'}", value, remedy)
         if not isfinite(value):
             refuse("must be a finite number", value, f"write {words}")
         if not (self.least < value < self.most if self.exclusive else self.least <= value <= self.most):
@@ -147,7 +155,12 @@ class Number(Value):
     def says(self) -> str:
         """The number and its range."""
         bounds = [f"at least {self.least:g}"] if isfinite(self.least) else []
-        return ", ".join(["number", *bounds, *(["not 0"] if self.nonzero else [])])
+        unit = f" in `{self.unit}`" if self.unit not in ("", "1") else ""
+        return ", ".join([f"number{unit}", *bounds, *(["not 0"] if self.nonzero else [])])
+
+    def unit_of(self, name: str) -> str:
+        """The unit of a plain number under a key; empty where it has none."""
+        return self.unit or SUFFIXES.get(name.rpartition("_")[2], "")
 
     def _range(self, value: float) -> tuple[str, float, str]:
         """Rule, value and remedy of a number that lies outside."""
@@ -184,6 +197,9 @@ class Levels(Value):
 
     def read(self, value: Any, name: str) -> list[float]:
         """The numbers."""
+        unit = self.each.unit_of(name)
+        if unit and isinstance(value, list):
+            value = [number_in(one, unit) for one in value]
         words = "two numbers that ascend, [1, 30]" if self.ascend else "a list of different numbers, [30, 20, 10]"
         is_list = _differ(value) or (self.ascend and isinstance(value, list))
         if not is_list or not all(type(one) in (int, float) and isfinite(one) for one in value):

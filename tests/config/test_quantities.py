@@ -3,8 +3,11 @@
 import pytest
 
 from gear_damping.config.command_line import parse, read_command_line
+from gear_damping.config.keys import SCHEMA, read_value, unit_of
 from gear_damping.config.quantities import number_of, quantity
 from gear_damping.config.settings import read_settings
+from gear_damping.config.source import Origin
+from gear_damping.errors import InputError
 from gear_damping.tasks.composed import composed
 
 RPM = 3.14159265 / 30
@@ -76,11 +79,83 @@ def test_lists_and_sensors_of_a_plan_are_quantities():
 
 
 @pytest.mark.parametrize(
+    ("task", "words", "place", "found"),
+    [
+        ("train", ["wavelet.frequency_max_hz=10kHz"], ("wavelet", "frequency_max_hz"), 10e3),
+        ("train", ["wavelet.frequency_min_hz={value: 0.5, unit: kHz}"], ("wavelet", "frequency_min_hz"), 500),
+        ("train", ["training.noise_snr_db=[1 dB, 30dB]"], ("training", "noise_snr_db"), [1, 30]),
+        ("train", ["protocol.test_fraction=20%"], ("protocol", "test_fraction"), 0.2),
+        ("explain", ["explain.minutes=2 min"], ("explain_minutes",), 2),
+        ("explain", ["explain.minutes=90 s"], ("explain_minutes",), 1.5),
+        ("explain", ["explain.minutes={value: 0.5, unit: h}"], ("explain_minutes",), 30),
+        ("explain", ["explain.least_excess=0.05 %"], ("search", "least_excess"), 0.05),
+        ("simulate", ["simulator.damping_ratio_percent=0.3 %"], ("simulator", "damping_ratio_percent"), 0.3),
+        ("simulate", ["simulator.damping_ratio_percent={value: 0.003, unit: '1'}"],
+         ("simulator", "damping_ratio_percent"), 0.3),
+        ("train", ["model=record_cwt_lstm", "model.lowest_hz=1kHz", "model.frame_ms=800us"],
+         ("model", "settings", "record_cwt_lstm"), {"lowest_hz": 1000, "frame_ms": 0.8}),
+    ],
+)  # fmt: skip
+def test_every_key_with_a_unit_is_read_as_it_is_spoken(task, words, place, found):
+    measured = ["measurement=silverbox", "simulator=oscillator", "family=none"] if task == "explain" else []
+    kept = settings(f"task={task}", *measured, *words)
+    for part in place:
+        kept = kept[part] if isinstance(kept, dict) else getattr(kept, part)
+    kept = {name: kept[name] for name in found} if isinstance(found, dict) else kept
+    assert kept == pytest.approx(found)
+
+
+def test_a_plan_is_too():
+    said = ["plan.wanted_percent=12 %", "plan.sensors.response.snr_db=25 dB"]
+    plan = settings("experiment=plan", *said).plan
+    assert plan.goal.percent == pytest.approx(12)
+    assert plan.sensors[0].snr_db == pytest.approx(25)
+
+
+def kinds_with_units(node, prefix=""):
+    """Key, kind and unit of what the schema says to be in a unit."""
+    for name, kind in node.items():
+        if isinstance(kind, dict):
+            yield from kinds_with_units(kind, f"{prefix}{name}.")
+        elif unit := unit_of(prefix + name):
+            yield prefix + name, kind, unit
+
+
+@pytest.mark.parametrize(("key", "kind", "unit"), [*kinds_with_units(SCHEMA)], ids=lambda part: str(part)[:30])
+def test_each_key_that_the_schema_gives_a_unit_reads_it(key, kind, unit):
+    """The same number, plain and with its unit: what is added to the schema is asked here too."""
+    span = [1, 2] if "snr_db" in key else None
+    plain, said = (span, [f"{one} {unit}" for one in span]) if span else (0.5, {"value": 0.5, "unit": unit})
+    read = {words: read_value(given, kind, key, Origin()) for words, given in (("plain", plain), ("said", said))}
+    assert read["said"][1] is None
+    assert read["said"][0] == pytest.approx(read["plain"][0])
+
+
+@pytest.mark.parametrize(
+    ("word", "rule"),
+    [("wavelet.frequency_max_hz=10mm", "the unit 'mm' is not one of the kind of 'Hz'"),
+     ("wavelet.frequency_max_hz=10kHzz", "unknown unit 'kHzz'"),
+     ("wavelet.frequency_max_hz=0 Hz", "strictly between"),
+     ("wavelet.frequency_max_hz=fast", "must be a finite number"),
+     ("training.learning_rate=3 mm", "must be a finite number")],
+)  # fmt: skip
+def test_a_quantity_of_another_kind_is_refused_by_its_key(word, rule):
+    typed = read_command_line(["task=train", word])
+    with pytest.raises(InputError) as raised:
+        read_settings(*composed(typed.overrides))
+    [problem] = raised.value.problems
+    assert problem.key == word.partition("=")[0]
+    assert rule in problem.rule
+    assert problem.source == f"command line: {word}"
+
+
+@pytest.mark.parametrize(
     ("key", "value", "found"),
     [("simulator.backlash.gap", "80um", 8e-5), ("simulator.backlash.gap_um", "0.12mm", 120),
      ("simulator.pinion_speed_rpm", {"value": 50, "unit": "rev/s"}, 3000), ("simulator.backlash.gap", None, None),
      ("simulator.backlash.gap", 1e-4, 1e-4), ("simulator.backlash.gap", "80xx", "80xx"),
-     ("measurement.path", "3m", "3m"), ("simulator.load_noise.snr_db", "30 dB", 30)],
+     ("wavelet.frequency_max_hz", "10kHz", 10e3), ("explain.minutes", "90 s", 1.5), ("model.frame_ms", "2 s", 2000),
+     ("protocol.window", "3 s", "3 s"), ("measurement.path", "3m", "3m"), ("simulator.load_noise.snr_db", "30 dB", 30)],
 )  # fmt: skip
 def test_a_swept_quantity_is_a_number_of_the_table(key, value, found):
     assert number_of(key, value) == (found if found is None or isinstance(found, str) else pytest.approx(found))

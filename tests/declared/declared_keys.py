@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from gear_damping.measurement import layout
-from gear_damping.measurement.quantities import Column, Measured, Rows
+from gear_damping.measurement.quantities import Column, Instant, Measured, Rows
 from gear_damping.schema.mappings import Declared, inner_model, kind_of, names
 from gear_damping.schema.values import Flag, Number, OneOf, Text, Value
 
@@ -54,5 +54,5 @@ def another(value: object, kind: Value, part: str) -> object:
         return not value
     if isinstance(kind, Text):
         return {"data.npz": "other.npz"}.get(value, f"{value}x")
-    assert isinstance(kind, Number | Measured)
+    assert isinstance(kind, Instant | Number | Measured)
     return round(1.1 * value) if isinstance(kind, Measured) and kind.whole else 0.95 * value

@@ -7,6 +7,8 @@ from pydantic import BaseModel
 
 from gear_damping.measurement import layout
 from gear_damping.measurement.quantities import Measured
+from gear_damping.schema.mappings import read_declared
+from gear_damping.schema.values import Problems
 
 SPOKEN = {  # the text, and what it means, by the unit that is expected
     "Hz": ("3kHz", 3, "kHz"), "s": ("20 ms", 20, "ms"), "m": ("3mm", 3, "mm"), "rad": ("20deg", 20, "deg"),
@@ -49,3 +51,34 @@ def test_it_is_read_as_it_is_spoken(place):
     kind = EVERY[place]
     text, value, unit = (25, 25, "1") if kind.whole else SPOKEN[kind.unit]
     assert kind.read(text, "x") == kind.read({"value": value, "unit": unit}, "x")
+
+
+@pytest.mark.parametrize(
+    "window",
+    [{"from": 0.01, "to": 0.2, "unit": "s"}, {"from": 10, "to": 200, "unit": "ms"}, {"from": "10 ms", "to": "0.2 s"},
+     {"from": {"value": 10, "unit": "ms"}, "to": "200ms"}, {"from": "10ms", "to": 0.2, "unit": "s"}],
+)  # fmt: skip
+def test_a_window_is_said_with_its_unit_beside_or_at_each_time(window):
+    problems = Problems()
+    found = read_declared(layout.Window, window, problems, "a.yaml")
+    assert not problems
+    assert found.seconds == pytest.approx((0.01, 0.2))
+
+
+@pytest.mark.parametrize(
+    ("window", "key", "rule"),
+    [({"from": 1, "to": 2}, "unit", "is missing"), ({"from": "1 s", "to": 2}, "unit", "is missing"),
+     ({"from": "1 s", "to": "2 s", "unit": "ms"}, "unit", "has no effect"),
+     ({"from": "1 mm", "to": "2 s"}, "from", "not one of the kind of 's'"),
+     ({"from": "300 ms", "to": "0.2 s"}, "from", "must lie before 'to'"), ({"from": "soon", "to": "2 s"}, "from", "")],
+)  # fmt: skip
+def test_a_window_that_is_none_is_refused_by_its_key(window, key, rule):
+    problems = Problems()
+    read_declared(layout.Window, window, problems, "a.yaml")
+    assert problems[0].key == key
+    assert rule in problems[0].rule
+
+
+def test_a_relative_uncertainty_may_be_in_percent():
+    given = {"value": 1, "unit": "N/m", "uncertainty": "5 %"}
+    assert Measured("N/m", uncertain=True).read(given, "x").uncertainty == 0.05
