@@ -11,12 +11,13 @@ from gear_damping.identification.catalogue import KEY, estimator_catalogue, wave
 from gear_damping.identification.estimators.base import Estimator, LearnedEstimator, RecordEstimator, RecordNetwork
 from gear_damping.schema.values import Flag, Given, Names, Number, OneOf, Value
 from gear_damping.setting import Setting
+from gear_damping.signals.wavelets.base import MOST_SCALES
 
 PLUGINS = Given(Names(), optional=True)
 FREQUENCIES = {
     "frequency_min_hz": Number(0, 1e12, exclusive=True),
     "frequency_max_hz": Number(0, 1e12, exclusive=True),
-    "n_scales": Number(2, 4096, whole=True),
+    "n_scales": Number(2, MOST_SCALES, whole=True),
 }
 
 

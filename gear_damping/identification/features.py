@@ -6,6 +6,7 @@ from math import ceil, pi
 import torch
 from torch import Tensor, nn
 
+from gear_damping.identification.sizes import refuse_cells
 from gear_damping.signals.wavelets.base import ContinuousWavelet
 
 REACH = 4.0  # standard deviations of an envelope at which a wavelet is cut off: 3e-4 of its height
@@ -67,6 +68,9 @@ class FrameFrontEnd(FrontEnd):
         frequencies_hz: Of the wavelets.
         duration: Standard deviation of their envelope, s.
         hop: Between frames, s.
+
+    Raises:
+        ValueError: the wavelets would take more memory than there may be.
     """
 
     def __init__(self, sampling_rate: float, frequencies_hz: Sequence[float], duration: float, hop: float) -> None:
@@ -74,6 +78,7 @@ class FrameFrontEnd(FrontEnd):
         super().__init__()
         self.hop = max(1, round(hop * sampling_rate))
         self.reach = ceil(REACH * duration * sampling_rate)
+        refuse_cells((2 * self.reach + 1) * 2 * len(frequencies_hz), f"wavelets of {1e3 * duration:g} ms")
         time = torch.arange(-self.reach, self.reach + 1, dtype=torch.float64) / sampling_rate
         envelope = torch.exp(-((time / duration) ** 2) / 2)
         turned = 2 * pi * time[:, None] * torch.tensor(frequencies_hz, dtype=torch.float64)

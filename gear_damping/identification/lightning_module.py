@@ -15,6 +15,7 @@ from gear_damping.identification.estimators.base import LearnedEstimator, Record
 from gear_damping.identification.familiarity import Components
 from gear_damping.identification.features import FrontEnd
 from gear_damping.identification.networks import DampingNetwork
+from gear_damping.identification.sizes import MOST_CELLS
 from gear_damping.identification.trained_on import TrainedOn
 from gear_damping.identification.windows import gather_windows, window_starts, windows_of_runs
 
@@ -236,7 +237,8 @@ class DampingModule(L.LightningModule):
         record = self.front_end.columns(values[None]) if self.data["whole_run"] else values[None]
         starts = window_starts(0, len(values), self.data["window"], stride)
         index = windows_of_runs(torch.zeros(1, dtype=torch.long), starts).to(self.device)
-        parts = index.split(_WINDOWS_AT_ONCE)
+        cells = self.data["window"] * self.front_end.n_features
+        parts = index.split(max(1, min(_WINDOWS_AT_ONCE, MOST_CELLS // cells)))
         each = torch.cat([self(gather_windows(record, part, self.data["window"])) for part in parts]).cpu()
         self.train(was_training)
         return RecordPrediction(float(each.mean()), float(each.std(correction=0)), each)

@@ -16,11 +16,13 @@ import torch
 from gear_damping.errors import InputError, Problem, unread, written_whole
 from gear_damping.identification.lightning_module import DampingModule
 from gear_damping.identification.network_files import CHECKPOINT, DESCRIPTION, STEM, WEIGHTS, holds_network
+from gear_damping.identification.sizes import refuse_other_shapes, refuse_window
 
 FORMAT = "gear_damping.network"
 VERSION = 1  # of the JSON; a reader refuses later ones
 ARGUMENTS = ("estimator", "data", "settings", "wavelet", "learning_rate")  # of DampingModule, which a file may give
 KEY = "checkpoint"
+MOST_BYTES = 2**24  # of a JSON: ours hold a few thousand
 
 
 def load_estimator(path: Path | str, plugins: Sequence[str] = ()) -> DampingModule:
@@ -92,6 +94,9 @@ def read_description(path: Path) -> dict[str, Any]:
         InputError: it cannot be read, or is none.
     """
     try:
+        if path.stat().st_size > MOST_BYTES:
+            rule = f"is larger than {MOST_BYTES // 2**20} MiB, and no description is"
+            raise InputError(Problem(KEY, rule, str(path), "give what `save` of an estimator wrote"))
         content = json.loads(path.read_bytes())
     except OSError as error:
         raise InputError(unread(error, path, KEY)) from error
@@ -143,10 +148,24 @@ def _from_shared(description: Path, weights: Path, plugins: Sequence[str]) -> Da
 def _restored(given: Mapping[str, Any], weights: Mapping[str, torch.Tensor], plugins: Sequence[str]) -> DampingModule:
     """The network of these arguments with these weights."""
     arguments = {name: given[name] for name in ARGUMENTS if name in given}
+    _refuse_sizes(arguments, weights, plugins)
     with torch.random.fork_rng(devices=[]):  # a new network draws weights, which the file then replaces
         module = DampingModule(**arguments, plugins=tuple(plugins))
     module.load_state_dict(weights)
     return module.eval()
+
+
+def _refuse_sizes(given: Mapping[str, Any], weights: Mapping[str, torch.Tensor], plugins: Sequence[str]) -> None:
+    """Raise ValueError where the network of these arguments is another than the weights', or too large to predict."""
+    try:
+        with torch.device("meta"):  # takes no memory, whatever sizes are stated
+            stated = DampingModule(**given, plugins=tuple(plugins))
+    except (NotImplementedError, RuntimeError):  # of a network of one's own that looks at its numbers when it is made
+        if not plugins:
+            raise
+        return
+    refuse_window(stated.data["window"], stated.front_end.n_features)
+    refuse_other_shapes(stated.state_dict(), weights)
 
 
 def _said(error: Exception) -> str:

@@ -68,6 +68,10 @@ def edited(content, **changes):
     return json.dumps(json.loads(content) | changes).encode()
 
 
+def with_data(content, **changes):
+    return edited(content, data=json.loads(content)["data"] | changes)
+
+
 WRONG = {
     "cut weights": ("model.safetensors", lambda held: held[:-9], "SHA-256"),
     "no weights": ("model.safetensors", None, "cannot be read: No such file"),
@@ -79,6 +83,24 @@ WRONG = {
     "another format": ("model.json", lambda held: edited(held, format="other"), "is no description of the format"),
     "a later version": ("model.json", lambda held: edited(held, version=2), "reads up to 1"),
     "another size": ("model.json", lambda held: edited(held, settings={"hidden_size": 9}), "does not describe"),
+    "more scales than memory": (
+        "model.json", lambda held: edited(held, wavelet=RICKER | {"n_scales": 100_000}), "n_scales 100000 exceeds"),
+    "a list of scales": (
+        "model.json", lambda held: edited(held, wavelet={"kind": "ricker", "frequencies_hz": [20.0] * 5000}),
+        "frequencies_hz of 5000 scales exceeds 4096"),
+    "other scales": (
+        "model.json", lambda held: edited(held, wavelet=RICKER | {"n_scales": 5}),
+        "front_end.feature_mean is described as (5,), and is (4,) among the weights"),
+    "a long window": ("model.json", lambda held: with_data(held, window=10**9), "a window of 1000000000 samples"),
+    "no window": ("model.json", lambda held: with_data(held, window="all"), "window must be a whole number"),
+    "long components": (
+        "model.json", lambda held: with_data(held, record=20_000, components=20_000),
+        "components.basis is described as (20000, 20000)"),
+    "more units": (
+        "model.json", lambda held: edited(held, settings={"hidden_size": 4096}), "dense.weight is described as"),
+    "more units than there may be": (
+        "model.json", lambda held: edited(held, settings={"hidden_size": 10**6}), "must lie within 1 and 4096"),
+    "a long description": ("model.json", lambda held: held + b" " * 2**24, "is larger than 16 MiB"),
     "an unknown name": ("model.json", lambda held: edited(held, estimator="os.system"), "no such estimator"),
     "no data": ("model.json", lambda held: edited(held, data=None), "does not describe"),
 }
@@ -112,6 +134,25 @@ def test_weights_whose_bytes_are_no_safetensors_are_refused_also_where_the_diges
     (tmp_path / "model.json").write_bytes(said)
     with pytest.raises(InputError, match="does not describe the network"):
         load_estimator(tmp_path)
+
+
+def test_a_bank_of_wavelets_is_no_larger_than_memory(tmp_path):
+    """It is no part of the weights, with which it could be compared."""
+    write_shared(built(WHOLE)[0], tmp_path)
+    held = (tmp_path / "model.json").read_bytes()
+    (tmp_path / "model.json").write_bytes(edited(held, settings={"hidden_size": 8, "frame_ms": 1e6}))
+    with pytest.raises(InputError, match=r"wavelets of 1e\+06 ms would take .* GiB, and 1 are allowed"):
+        load_estimator(tmp_path)
+
+
+@pytest.mark.parametrize("where", ["data", "wavelet"])
+def test_a_checkpoint_is_held_to_the_same_sizes(where, tmp_path):
+    module, _ = built(CWT)
+    hyper = dict(module.hparams)
+    hyper[where] = hyper[where] | {"data": {"window": 10**9}, "wavelet": {"n_scales": 100_000}}[where]
+    torch.save({"hyper_parameters": hyper, "state_dict": module.state_dict(), "history": []}, tmp_path / "a.ckpt")
+    with pytest.raises(InputError, match=r"GiB|exceeds 4096"):
+        load_estimator(tmp_path / "a.ckpt")
 
 
 class Opens:

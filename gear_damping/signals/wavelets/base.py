@@ -12,6 +12,7 @@ from gear_damping.setting import Setting
 from gear_damping.signals.checks import require_positive, require_records
 from gear_damping.signals.operators import dense_matrix, spectrum
 
+MOST_SCALES = 4096  # of one transform: each is a series as long as the record, and a spectrum twice as long
 _OPERATORS_KEPT = 4  # lengths of records whose operators stay in memory
 
 
@@ -170,20 +171,28 @@ def log_spaced_frequencies(minimum_hz: float, maximum_hz: float, n_scales: int) 
     """`n_scales` frequencies (Hz) in equal ratios from minimum to maximum, both included.
 
     Raises:
-        ValueError: a value is missing or not positive, n_scales is below 2, or the limits are swapped.
+        ValueError: a value is missing or not positive, n_scales is below 2 or above 4096, or the limits are swapped.
     """
     if minimum_hz is None or maximum_hz is None or n_scales is None:
         raise ValueError("frequency_min_hz, frequency_max_hz and n_scales belong together: give all three")
     require_positive("frequency_min_hz", minimum_hz)
     if not minimum_hz < maximum_hz:
         raise ValueError(f"frequency_max_hz must exceed frequency_min_hz {minimum_hz!r}, got {maximum_hz!r}")
+    if n_scales > MOST_SCALES:
+        raise ValueError(_too_many(f"n_scales {n_scales!r}"))
     if n_scales < 2:
         raise ValueError(f"n_scales must be at least 2, got {n_scales!r}: give one as frequencies_hz")
     ratio = log(maximum_hz / minimum_hz) / (n_scales - 1)
     return (*(minimum_hz * exp(ratio * i) for i in range(n_scales - 1)), maximum_hz)
 
 
+def _too_many(what: str) -> str:
+    return f"{what} exceeds {MOST_SCALES}: every scale is a series as long as the record in memory, so take fewer"
+
+
 def _checked_frequencies(frequencies_hz: Sequence[float], sampling_rate: float) -> tuple[float, ...]:
+    if len(frequencies_hz) > MOST_SCALES:
+        raise ValueError(_too_many(f"frequencies_hz of {len(frequencies_hz)} scales"))
     frequencies = tuple(float(f) for f in frequencies_hz)
     wrong = [f for f in frequencies if not 0 < f <= sampling_rate / 2]
     if wrong or not frequencies:
