@@ -28,6 +28,7 @@ from gear_damping.tasks.sweep.folder import (
     unfinished,
 )
 from gear_damping.tasks.sweep.job import limit_cores, run_swept
+from gear_damping.tasks.sweep.orphan import end_with_launcher, launching
 from gear_damping.tasks.wrong_declaration import WRONG_INPUT, say_problems, start_logging
 
 log = logging.getLogger("gear_damping")
@@ -80,7 +81,8 @@ def _sweep(typed: CommandLine) -> int:
     if place is not None and (problem := problem_with_place(sweep, Path(place))) is not None:
         say_problems(InputError(problem))
         return WRONG_INPUT
-    code = _run(typed.flags, overrides)
+    with launching():
+        code = _run(typed.flags, overrides)
     for folder in callback.begun:
         try:
             found = summarise(folder)
@@ -128,6 +130,7 @@ def _swept(config: DictConfig, origin: Origin, folder: Path) -> int:
     """One job of a sweep."""
     own = HydraConfig.get()
     limit_cores(own.launcher)
+    end_with_launcher(own.launcher)
     sweep = Path(own.sweep.dir).absolute()
     keys = (read_sweep(sweep) or sweep_of(())).keys
     typed = [word.lstrip("+") for word in own.overrides.task]
