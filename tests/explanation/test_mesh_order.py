@@ -41,6 +41,14 @@ def test_a_wrong_tooth_count_is_found_and_the_right_one_named(declared):
     assert f"mesh order {declared} is absent, while order 25 stands out" in message
 
 
+@pytest.mark.parametrize("teeth", [17, 25, 33])
+@pytest.mark.parametrize("speed", [1.0, 1.5, 2.0])
+def test_a_slow_roll_that_tells_no_orders_apart_blames_no_count(teeth, speed):
+    """A fortieth to a twentieth of a turn: about one tooth, where every order fits as well as the next."""
+    mesh = {teeth: 1.0, 2 * teeth: 0.6, 3 * teeth: 0.3, 4 * teeth: 0.3, 5 * teeth: 0.2, 6 * teeth: 0.1}
+    assert _found(teeth, mesh, speeds=(speed, 1.3 * speed)) == []
+
+
 def test_where_no_count_is_declared_the_rig_of_the_project_is_meant():
     assert _found(None, {20: 1.0, 40: 0.3}) == []
     assert len(_found(None, MESH)) == 1

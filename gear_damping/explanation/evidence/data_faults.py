@@ -35,12 +35,14 @@ def mesh_order_faults(evidence: Evidence) -> list[Finding]:
         return []
     records = evidence.records
     teeth = round(evidence.parameters.get("n_teeth_pinion", _declared("n_teeth_pinion", evidence)))
-    orders = [n for n in range(max(5, round(LEAST_ORDER * teeth)), 2 * teeth) if n == teeth or n % teeth]
     shafts = [shaft_of(record, evidence).angle for record in records]
+    orders = [teeth, *_told_apart(teeth, min(float(np.ptp(angle)) for angle in shafts) / (2 * np.pi))]
+    if len(orders) == 1:
+        return []
     series = [record.response.numpy() - float(record.response.mean()) for record in records]
     shares = _shares(series, shafts, orders)
     combs = shares.sum(2)  # (records, orders)
-    energy, own = combs.sum(0), orders.index(teeth)
+    energy, own = combs.sum(0), 0
     at = int(energy.argmax())
     if energy[own] >= FAINT * energy[at] or combs[:, at].min() < STRONG:
         return []
@@ -55,6 +57,12 @@ def mesh_order_faults(evidence: Evidence) -> list[Finding]:
         "pinion_angle belongs to, and its unit"
     )
     return [Finding("mesh_order_absent", message, channel=evidence.channel.name)]
+
+
+def _told_apart(teeth: int, turns: float) -> list[int]:
+    """Orders that so many turns tell from the mesh: over them, the two part by a whole wave at least."""
+    orders = range(max(5, round(LEAST_ORDER * teeth)), 2 * teeth)
+    return [order for order in orders if order % teeth and abs(order - teeth) * turns >= 1]
 
 
 def _declared(name: str, evidence: Evidence) -> float:
