@@ -8,6 +8,7 @@ from time import monotonic
 
 SEARCH_SHARE = 0.85  # of the time; the rest is for what is under way, for opening held-out records,
 LAST_SHARE = 0.97  # and for seeing whether what was found is what it seems
+MORE = 4  # times the minutes that were too few: the next try should not be too short too
 LOOKS_LEFT = 2.5  # after the search: beside the last cause, once more where one is dropped, and half a one to spare
 
 
@@ -51,7 +52,10 @@ class Budget:
     def sentence(self) -> str:
         """What there was no time for; empty where there was for everything."""
         missing = ", ".join(self.not_tried)
-        said = f"The {self.minutes:g} minutes of the search were over before these were tried: {missing}."
+        said = (
+            f"The {self.minutes:g} minutes of the search were over before these were tried: {missing}. "
+            f"explain.minutes={MORE * self.minutes:g} gives it more."
+        )
         return said if missing else ""
 
     def refuses(self, what: str, is_last: bool = False) -> bool:

@@ -205,7 +205,7 @@ class Candidate(Part):
     name: str = said("the effect")
     promised: float = said("share of the fitted residual that it would take, linearised", "1")
     share: float | None = said("of the squared residual of left-out records that its full fit takes; null: none", "1")
-    status: Literal["established", "suggested", "confusable", "rejected"] = said("what became of it")
+    status: Literal["established", "suggested", "confusable", "rejected", "not_tried"] = said("what became of it")
     at_bound: bool = said("whether its full fit ran into a bound")
     failed: str | None = said("why it could not be fitted")
 

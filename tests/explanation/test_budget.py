@@ -20,6 +20,7 @@ def test_the_search_is_over_before_the_time_is():
         assert made.spent is is_over
         assert made.refuses("pairs of effects") is is_over
     assert "5 minutes" in made.sentence
+    assert made.sentence.endswith("explain.minutes=20 gives it more.")
     assert made.not_tried == ["pairs of effects"]
 
 

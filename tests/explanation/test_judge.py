@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from gear_damping.explanation.answer.content import _candidates
 from gear_damping.explanation.evidence.excess import Excess
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import State
@@ -123,6 +124,24 @@ def test_what_is_visible_and_was_not_tried_is_no_consistency(untried, word):
     found = search()
     found.seen.visible = SimpleNamespace(shows=lambda name: name == "crack")
     assert verdict(found, NOTHING, NOTHING, untried=untried).word == word
+
+
+def test_what_there_was_no_time_for_is_named_and_no_effect_is_said_to_fail():
+    found = search(sensor=100.0)
+    found.seen.visible = SimpleNamespace(shows=lambda name: name == "tooth_crack")
+    said = verdict(found, MUCH, MUCH, untried=("tooth_crack", "pairs of effects"))
+    assert said.word == UNEXPLAINED
+    assert said.sentences[0].endswith("the time was over before its likely cause was tried: tooth_crack.")
+    assert "no effect of the catalogue" not in " ".join(said.sentences)
+
+
+def test_an_effect_that_was_not_tried_is_not_called_rejected():
+    scores = [SimpleNamespace(candidate=SimpleNamespace(name=n), gain=g, failed="") for n, g in
+              (("tooth_crack", 0.3), ("backlash", 0.1))]  # fmt: skip
+    found = SimpleNamespace(first_fits=(), accepted=(), first_scores=scores, nominal=None, failed={})
+    judged = SimpleNamespace(found=found, not_tried=("tooth_crack",), verdict=SimpleNamespace(word=UNEXPLAINED))
+    assert {one["name"]: one["status"] for one in _candidates(judged, None)} == {
+        "tooth_crack": "not_tried", "backlash": "rejected"}  # fmt: skip
 
 
 def test_what_is_left_and_not_random_is_said():

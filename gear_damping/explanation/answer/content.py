@@ -268,7 +268,9 @@ def _candidates(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
     def status(name: str) -> str:
         if name in accepted:
             return statuses(judged.verdict.word)
-        return "confusable" if name in alike else "rejected"
+        if name in alike:
+            return "confusable"
+        return "not_tried" if name in judged.not_tried and name not in taken else "rejected"
 
     bounded = {refit.name for refit in found.first_fits if refit.is_at_bound}
     wild = {name: RAN_AWAY for name, share in taken.items() if share < -1 and name not in accepted}

@@ -173,11 +173,15 @@ def _without_name(found: State, before: Excess, known: Known) -> Verdict:
     is_more = before.misfit > settings.small_misfit
     is_gross = visible and is_more and known.fitted > settings.gross_percent
     missing = (before.significant and (visible or is_more)) or is_gross
+    waiting = [name for name in known.untried if found.seen is not None and found.seen.visible.shows(name)]
+    if missing and waiting:
+        text = f"{_missing(before)}, and the time was over before its likely cause was tried: {', '.join(waiting)}."
+        return Verdict(UNEXPLAINED, (text, *known.unsettled))
     if missing:
         text = f"{_missing(before)}, and no effect of the catalogue is borne out by held-out records."
         looks = (f"What is missing looks like {known.shape}.",) if known.shape else ()
         return Verdict(UNEXPLAINED, (text, *looks, *known.unsettled))
-    if visible and found.seen is not None and any(found.seen.visible.shows(name) for name in known.untried):
+    if visible and waiting:
         text = "Something is visible that is not random, and there was no time to try what it could be."
         return Verdict(UNEXPLAINED, (text, *known.unsettled))
     if known.shape:

@@ -17,6 +17,7 @@ STATUSES = {
     "confusable": (SKY, "///", "confusable with an established one"),
     "suggested": (ORANGE, "...", "suggested"),
     "rejected": (PALE, "", "not borne out"),
+    "not_tried": (PALE, "xxx", "no time to try it"),
 }
 NEEDED = {"color": INK, "linewidth": 1.0, "linestyle": "--"}
 
@@ -28,7 +29,8 @@ def candidates_figure(candidates: Sequence[Mapping[str, Any]], *, needed_share: 
 
     Args:
         candidates: Each with `name`, `share` (1 = the whole excess; below 0 it makes what is left out worse;
-            None or NaN: not fitted) and `status`, one of established, confusable, suggested, rejected.
+            None or NaN: not fitted) and `status`, one of established, confusable, suggested,
+            rejected, not_tried.
         needed_share: Share that a cause must take to be accepted, marked by a line.
 
     Raises:
