@@ -26,6 +26,7 @@ from gear_damping.reporting.style import save
 from gear_damping.tasks.run_folder import EDITED, RunFolder
 
 YAML_NAME, TEXT_NAME, FIGURE_NAME = EDITED["inspect"], "inspection.txt", "inspection.png"
+JSON_NAME = "inspection.json"  # what the report is made of
 say = logging.getLogger("gear_damping").info
 
 
@@ -52,6 +53,7 @@ def _bare(path: Path, plugins: Sequence[str], folder: RunFolder) -> dict[str, An
     wanted = (
         f"fill in its {blanks} {UNKNOWN}, correct its guesses" if blanks else "nothing is left open; check its guesses"
     )
+    folder.write_json(JSON_NAME, _file_content(found, listed) | {"open": blanks})
     say(f"\n{start} declares it: {wanted}, and go on with")
     say(f"  python -m gear_damping task=inspect measurement.path={start}")
     return {"system": system[0], "columns": len(found.columns), "sampling_rate": found.rate, "open": blanks}
@@ -76,6 +78,30 @@ def _file_lines(found: Inspection) -> Iterator[str]:
         yield f"  rows {found.rows[0]} to {found.rows[1] - 1} are the longest stretch in which every value is finite"
 
 
+def _file_content(found: Inspection, listed: Sequence[Guess]) -> dict[str, Any]:
+    """What the lines say, for the page."""
+    notes = [line.strip() for line in _file_lines(found)][1:]
+    columns = [
+        {
+            "column": str(column.reference), "shape": shape, "unit": _unit(column, guess), "kind": column.kind,
+            "guess": f"{guess.channel}: {guess.why}" if guess is not None and guess.channel else "",
+            "looks": [line for line in _looks(column, found) if line],
+        }
+        for column, shape, guess in _told(found, listed)
+    ]  # fmt: skip
+    time, others = f"time: {_time(found)}", {"columns": columns, "rows": found.length, "file": found.table.path.name}
+    return others | {"time": _time(found), "notes": [f"{note}." for note in notes if note != time]}
+
+
+def _told(found: Inspection, listed: Sequence[Guess]) -> Iterator[tuple[Column, str, Guess | None]]:
+    """Every column with its shape and what it may be."""
+    guess_of = {id(guess.column): guess for guess in listed}
+    shapes = {name: " x ".join(map(str, shape)) for name, shape in found.table.shapes if name}
+    for column in found.columns:
+        shape = shapes.get(str(column.reference).split("[")[0], str(column.values.size))
+        yield column, shape, guess_of.get(id(column))
+
+
 def _time(found: Inspection) -> str:
     if found.time is None and found.rate is None:
         return "no column looks like time stamps, and the file says no rate"
@@ -89,13 +115,9 @@ def _time(found: Inspection) -> str:
 
 
 def _column_lines(found: Inspection, listed: Sequence[Guess]) -> Iterator[str]:
-    told = {id(guess.column): guess for guess in listed}
-    shapes = {name: " x ".join(map(str, shape)) for name, shape in found.table.shapes if name}
-    for column in found.columns:
-        shape = shapes.get(str(column.reference).split("[")[0], str(column.values.size))
-        yield f"column '{column.reference}' ({shape}), {_unit(column, told.get(id(column)))}: {column.kind}"
+    for column, shape, guess in _told(found, listed):
+        yield f"column '{column.reference}' ({shape}), {_unit(column, guess)}: {column.kind}"
         yield from (f"    {line}" for line in _looks(column, found) if line)
-        guess = told.get(id(column))
         if guess is not None and guess.channel:
             yield f"    may be {guess.channel}: {guess.why}"
 
@@ -149,24 +171,30 @@ def _curve(label: str, time: np.ndarray, values: np.ndarray, spectrum: Spectrum 
 def _declared(measurement: Measurement, folder: RunFolder) -> dict[str, Any]:
     folder.add_inputs(measurement.files)
     lines = list(_measurement_lines(measurement))
+    content: dict[str, Any] = {"says": [line.strip() for line in lines[1:]], "records": []}
     curves: dict[tuple[str, str], list[Curve]] = {}
     for record in measurement.records:
-        lines += _record_lines(record)
+        own = [*_record_lines(record)]
+        lines += own
+        said: list[tuple[str, str]] = []
         for channel in record.channels.values():
             spectrum = _spectrum(record, channel)
             values = channel.values / channel.declared_factor
-            lines.append(f"    {channel.name}: {_channel(channel, values, spectrum, record.sampling_rate)}")
+            said.append((channel.name, _channel(channel, values, spectrum, record.sampling_rate)))
             drawn = curves.setdefault((channel.name, channel.declared_unit), [])
             drawn.append(_curve(record.name, record.time, values, spectrum))
-        lines += [f"    {said}" for said in _findings(record)]
+        found = [*_findings(record)]
+        lines += [f"    {line}" for line in (*(f"{name}: {text}" for name, text in said), *found)]
+        notes = [line.strip() for line in own[1:]] + found
+        says = own[0].split(": ", 1)[1]
+        content["records"].append({"name": record.name, "says": says, "channels": said, "notes": notes})
     panels = [Panel(*named, tuple(drawn)) for named, drawn in curves.items()]
     save(inspection_figure(panels), folder.path / FIGURE_NAME)
     _say(folder, lines)
-    return {
-        "system": measurement.system,
-        "records": len(measurement.records),
-        "data_problems": sum(finding.severity == "data_problem" for finding in measurement.findings),
-    }
+    faults = sum(finding.severity == "data_problem" for finding in measurement.findings)
+    known = {"file": measurement.source.name, "system": measurement.system, "data_problems": faults}
+    folder.write_json(JSON_NAME, content | known)
+    return {"system": measurement.system, "records": len(measurement.records), "data_problems": faults}
 
 
 def _spectrum(record: Record, channel: Channel) -> Spectrum | None:

@@ -34,7 +34,7 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
         shown = found.simulated(of, count=asked.simulated_tests, joint=joint, seed=settings.seed)
         content["simulated"] = asdict(shown)
         sentences = [*sentences, _said(shown)]
-    folder.write_json("plan.json", content)
+    folder.write_json("plan.json", content | {"sentences": sentences})
     folder.write_text("plan.txt", found.table() + "\n" + "\n".join(sentences) + "\n")
     statements.say(found.table(MOST_SHOWN))
     for sentence in sentences:

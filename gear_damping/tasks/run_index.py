@@ -21,7 +21,7 @@ RUN = "run.json"
 NOT_SHOWN = ("collect",)  # tasks that only look at other runs
 MAIN = (  # figures of all tasks, those first that are shown first
     "sweep.png", "evaluation.png", "predicted_against_true.png", "identification.png", "damping.png",
-    "explanation.png", "plan_map.png", "simulation.png",
+    "explanation.png", "plan_map.png", "simulation.png", "inspection.png", "figure_07.png",
 )  # fmt: skip
 TRIES = 3  # of writing an index, while other runs end in between
 log = logging.getLogger("gear_damping")

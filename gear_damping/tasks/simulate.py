@@ -15,6 +15,7 @@ from gear_damping.tasks import statements
 from gear_damping.tasks.recorded import as_records, recorded_channels, rig_parameters
 from gear_damping.tasks.run_folder import RunFolder
 from gear_damping.tasks.simulated import plan_of, simulated
+from gear_damping.tasks.simulated_summary import summary_of
 
 NOISE_SEED = 2  # added to the seed of the plan for what the sensors add
 
@@ -41,5 +42,6 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
         statements.say(f"wrote {path}: measurement.path={path} takes the runs as measured records")
     shown = run_figure(runs, channels[runs.model.system.response])
     figures.save(shown, folder.path / "simulation.png")
+    folder.write_json("simulation.json", summary_of(runs, plan, channels) | {"measured": settings.write_measurement})
     statements.say(f"wrote {folder.path / 'runs.npz'}: {len(runs.status)} runs of {len(runs.time)} samples")
     return {"n_runs": len(runs.status), "n_diverged": runs.n_diverged}

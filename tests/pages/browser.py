@@ -15,7 +15,7 @@ from selenium.webdriver.chrome.service import Service
 ROOT = Path(__file__).resolve().parents[2]
 OUTPUTS = Path(os.environ.get("GEAR_DAMPING_PAGES", ROOT / "outputs" / "pages")) / "outputs"
 MISSING = "Chromium and its driver are needed: apt-get install chromium chromium-driver"
-KINDS = ("train", "evaluate", "identify", "explain", "sweep", "index")
+KINDS = ("train", "evaluate", "identify", "explain", "sweep", "simulate", "plan", "paper", "inspect", "index")
 OPTIONS = ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--hide-scrollbars")
 STARTED_WITHIN = 120  # s, of TensorBoard
 

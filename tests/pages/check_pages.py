@@ -155,7 +155,7 @@ def test_every_link_of_the_index_leads_to_a_file(show):
     assert all(OUTPUTS.as_posix() in link for link in links)
     said = browser.find_element(By.TAG_NAME, "tbody").text
     assert "failed" in said
-    assert "none.py" in said
+    assert "broken.npz" in said
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -8,10 +8,11 @@ from pathlib import Path
 from gear_damping.tasks.command import main
 
 QUICK = ["training=smoke", "training.max_epochs=2", "simulator.n_runs=16", "simulator.n_samples=200", "progress=false"]
+SHOWN = "figures=[figure_04,figure_05,figure_12,table_1]"
 
 
 def make(folder: Path) -> None:
-    """Train, evaluate, identify, explain and sweep below a folder; what is there already is kept.
+    """One run of every task, and a sweep, below a folder; what is there already is kept.
 
     Raises:
         RuntimeError: a run failed.
@@ -29,8 +30,14 @@ def make(folder: Path) -> None:
     _run("identify", ["task=identify", "model=classical", "name=classical", *rig], "classical")
     _run("explain", ["task=explain", *rig])
     _run("sweep", ["--multirun", "experiment=noise", "simulator.load_noise.snr_db=1,20", *QUICK])
-    failing = ["task=inspect", "measurement.path=decay.csv", "name=failing", "measurement.plugins=[none.py]"]
-    _run("inspect", failing, code=1)
+    _run("simulate", ["task=simulate", "experiment=backlash", "write_measurement=true", *quick])
+    tests = ["plan.speeds_rpm=[1500,4500]", "plan.torques=[75,150]", "plan.most_tests=2"]
+    _run("plan", ["experiment=plan", *tests, "progress=false"])
+    _run("paper", ["experiment=paper_figures", *QUICK, "protocol.windows_per_epoch=64", SHOWN])
+    _run("inspect", ["task=inspect", "measurement.path=decay.csv", "name=bare"], "bare")
+    _run("inspect", ["task=inspect", "measurement.path=measurement.yaml", "name=declared"], "declared")
+    Path("broken.npz").write_text("no archive\n")
+    _run("inspect", ["task=inspect", "measurement.path=broken.npz", "name=failing"], "failing", code=1)
 
 
 def _run(task: str, words: list[str], name: str = "*", code: int = 0) -> None:

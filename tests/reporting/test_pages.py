@@ -6,6 +6,7 @@ from functools import cache
 from html.parser import HTMLParser
 from importlib.resources import files
 from itertools import product
+from pathlib import Path
 
 import pytest
 
@@ -19,6 +20,7 @@ from gear_damping.reporting.run_report.training import errors_table
 from gear_damping.reporting.run_report.write import write_report, write_sweep_report
 from gear_damping.reporting.style import new_figure, save
 
+ROOT = Path(__file__).resolve().parents[2]
 STYLE = files("gear_damping.reporting.page").joinpath("templates", "style.css").read_text(encoding="utf-8")
 TEXT, GROUNDS = ("ink", "pale", "link", "good", "doubt", "bad"), ("paper", "panel")
 READ, SEEN = 4.5, 3.0  # contrast of text, and of a frame around what has the focus (WCAG 2.2, 1.4.3 and 1.4.11)
@@ -167,7 +169,43 @@ NETWORK = {
     "records": {"a": {"damping_ratio_percent": 0.5, "interval95": [0.4, 0.6], "spread_percent": 0.1,
                       "outside_training": ["sampling rate"]}},
 }  # fmt: skip
+SIMULATED = {
+    "system": "gear_pair", "effects": {"backlash": HOSTILE}, "runs": 30, "diverged": 0, "samples": 200,
+    "sampling_rate_hz": 40e3, "duration_s": 5e-3, "response": "transmission_error", "unit": "m",
+    "damping_ratio_percent": [0.1, 0.5], "varied": {"pinion_torque": "N*m"}, "measured": True,
+    "channels": {"transmission_error": {"unit": "m", "low": -1e-6, "high": 6e-5, "mean": 2e-5, "deviation": 9e-6}},
+    "each": [{"damping_ratio_percent": 0.3, "rms": 1.2e-5, "values": {"pinion_torque": 150.0}}] * 30,
+}  # fmt: skip
+HALF = "half_interval95_percent_of_ratio"
+
+
+def told(percent, cost, seconds=0.2):
+    known = {HALF: percent, "half_interval95_exponent": None}
+    free = {HALF: None if percent is None else 2 * percent, "half_interval95_exponent": 0.1}
+    return {"tests": [{"speed_rpm": 1500.0, "torque_nm": 75.0, "duration_s": seconds}], "sensors": ["encoders"],
+            "exponent_known": known, "exponent_unknown": free, "cost": cost}  # fmt: skip
+
+
+PLANNED = {
+    "sentences": ["the cheapest set that knows it: one", "every set was tried"], "wanted": {"exponent_unknown": True},
+    "sensors": [{"name": "encoders", "channel": "transmission_error", "unit": "m", "noise": 5e-6, "snr_db": None,
+                 "offset_unknown": True, "cost": 1}],
+    "tests": [told(None, 9), told(30.0, 7), *[told(20.0, 6)] * 30, told(4.0, 5)], "cheapest": told(4.0, 5),
+    "best": told(4.0, 5), "front": [told(20.0, 3), told(4.0, 5)],
+}  # fmt: skip
+COLUMN = {"column": HOSTILE, "shape": "100", "unit": "unit not known", "kind": "a signal", "guess": "displacement: so",
+          "looks": ["from 1 to 2", "noise 3"]}  # fmt: skip
+INSPECTED = {"file": "a.csv", "rows": 100, "time": "50 Hz, 2 s", "notes": ["time: it is even."], "columns": [COLUMN],
+             "open": 0}  # fmt: skip
+DECLARED = {
+    "file": "a.yaml", "system": "gear_pair", "data_problems": 0, "says": ["fitted: run"],
+    "records": [{"name": "run", "says": "100 samples", "notes": ["note: fine"], "channels": [["velocity", HOSTILE]]}],
+}  # fmt: skip
 LEFT = {
+    "simulate": ("simulation.json", SIMULATED, "simulation.png"),
+    "plan": ("plan.json", PLANNED, "plan_map.png"),
+    "inspect": ("inspection.json", INSPECTED, "inspection.png"),
+    "paper": ("paper.json", None, "figure_12.png"),
     "train": ("results.json", results(0.05), "predicted_against_true.png"),
     "evaluate": ("evaluation.json", evaluation(0.05), "evaluation.png"),
     "identify": ("identification.json", FIT, "identification.png"),
@@ -176,6 +214,7 @@ LEFT = {
 
 def run_report(task, folder, content=None):
     name, usual, figure = LEFT[task]
+    usual = json.loads((ROOT / "docs" / name).read_text()) if usual is None else usual
     (folder / name).write_text(json.dumps(content or usual))
     save(new_figure(1.0, 1.0), folder / figure)
     return write_report(folder, record(task)).read_text()
@@ -215,6 +254,69 @@ def test_every_report_of_a_run(tmp_path):
         assert problems(page) == [], task
         assert page.count("<img") == 1
         assert "abc, changed" in page
+
+
+def rows_of(page, caption):
+    """The cells of each row of the table with this caption."""
+    table = next(one for one in page.split("<table") if caption in one)
+    body = table.partition("<tbody>")[2].partition("</tbody>")[0]
+    cells = [re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row, re.DOTALL) for row in body.split("</tr>") if row.strip()]
+    return [[re.sub(r"<[^>]*>", "", cell).strip() for cell in row] for row in cells]
+
+
+def test_a_simulation_lists_channels_and_runs_in_units_that_suit(tmp_path):
+    page = run_report("simulate", tmp_path)
+    assert "30 runs of 200 samples, 5 ms at 40000 Hz; damping ratio 0.1 … 0.5 % of critical." in page
+    [channel] = rows_of(page, "The channels over all runs")
+    assert channel == ["transmission_error", "-1 µm", "60 µm", "20 µm", "9 µm"]
+    runs = rows_of(page, "What differs from run to run")
+    assert len(runs) == 20
+    assert runs[0] == ["1", "0.3", "150", "12 µm"]
+    assert "10 more runs stand in" in page
+    assert 'class="verdict finished"' in page
+    lost = run_report("simulate", tmp_path, SIMULATED | {"diverged": 2})
+    assert 'class="verdict doubtful"' in lost
+    assert "2 runs diverged and were left out." in lost
+
+
+def test_a_plan_names_the_tests_and_lists_those_first_that_tell_most(tmp_path):
+    page = run_report("plan", tmp_path)
+    assert "The cheapest set that knows it: one." in page
+    assert rows_of(page, "The cheapest set that tells enough, with encoders; cost 5.") == [["1", "1500", "75", "0.2"]]
+    tests = rows_of(page, "What each test tells by itself")
+    assert tests[0] == ["encoders", "1500", "75", "0.2", "4", "8", "0.1", "5"]
+    assert len(tests) == 24
+    assert "9 more stand in" in page
+    assert [row[0] for row in rows_of(page, "Sets none of which")] == ["3", "5"]
+    assert 'class="verdict finished"' in page
+    assert 'class="verdict doubtful"' in run_report("plan", tmp_path, PLANNED | {"cheapest": None})
+
+
+def test_an_inspection_of_a_bare_file_and_of_a_declared_measurement(tmp_path):
+    page = run_report("inspect", tmp_path)
+    assert "a.csv holds 1 column of 100 rows." in page
+    assert "nothing is left open" in page
+    assert rows_of(page, "The columns of the file")[0][1:] == [
+        "100", "unit not known", "a signal", "displacement: so", "from 1 to 2; noise 3"]  # fmt: skip
+    assert "fill in its 3 blanks" in run_report("inspect", tmp_path, INSPECTED | {"open": 3})
+    declared = run_report("inspect", tmp_path, DECLARED)
+    assert problems(declared) == []
+    assert "a.yaml declares 1 record of a gear pair." in declared
+    assert 'class="verdict doubtful"' in run_report("inspect", tmp_path, DECLARED | {"data_problems": 1})
+
+
+def test_a_study_shows_every_table_of_the_page_of_the_paper(tmp_path):
+    """From the numbers of the page itself."""
+    page = run_report("paper", tmp_path)
+    assert "14 figures and tables of Yousfi et al. (2026) are repeated." in page
+    printed = (ROOT / "docs" / "paper.md").read_text()
+    found = rows_of(page, "Figure 12: eccentricity.")
+    assert len(found) >= 4
+    for row in found:
+        assert f"| {' | '.join(row)} |" in printed
+    assert page.count("<table") == 2 + 14  # two over all effects, and one of each figure and table
+    few = record("paper") | {"config": {"name": "x", "figures": ["figure_12", "table_1"]}}
+    assert write_report(tmp_path, few).read_text().count("<table") == 2
 
 
 def test_an_identification_by_estimators_of_records(tmp_path):

@@ -11,6 +11,7 @@ from gear_damping.reporting.page.picture import Picture
 from gear_damping.reporting.page.table import Link, Table
 from gear_damping.reporting.run_report.content import DOUBTFUL, FINE, Left, RunReport, Section
 
+SPREAD = "_std"  # how the name of a deviation over seeds ends: of one seed it is 0, and tells nothing
 MOST_FIGURES = 6  # columns of the table; sweep.csv has all
 
 
@@ -72,7 +73,8 @@ def _table(left: SweepLeft) -> Table:
 def _figures(left: SweepLeft) -> list[str]:
     known = {"job", "status", "error", *left.keys}
     names = list(dict.fromkeys(name for row in left.rows for name in row if name not in known))
-    return ranked(names)[:MOST_FIGURES]
+    spread = [name for name in names if not (name.endswith(SPREAD) and not any(row.get(name) for row in left.rows))]
+    return ranked(spread)[:MOST_FIGURES]
 
 
 def _text(value: Any) -> str:
