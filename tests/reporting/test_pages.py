@@ -310,7 +310,7 @@ def test_a_study_shows_every_table_of_the_page_of_the_paper(tmp_path):
     page = run_report("paper", tmp_path)
     assert "14 figures and tables of Yousfi et al. (2026) are repeated." in page
     printed = (ROOT / "docs" / "paper.md").read_text()
-    found = rows_of(page, "Figure 12: eccentricity.")
+    found = rows_of(page, "Figure 12: eccentricity;")
     assert len(found) >= 4
     for row in found:
         assert f"| {' | '.join(row)} |" in printed

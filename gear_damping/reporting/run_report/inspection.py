@@ -21,7 +21,8 @@ def report_of(left: Left) -> RunReport:
 
 def _of_file(left: Left, content: Mapping[str, Any]) -> RunReport:
     blanks = content["open"]
-    todo = f"fill in its {blanks} blanks, correct its guesses" if blanks else "nothing is left open; check its guesses"
+    open_ones = f"{blanks} blank{'' if blanks == 1 else 's'}"
+    todo = f"fill in its {open_ones}, correct its guesses" if blanks else "nothing is left open; check its guesses"
     lead = [
         f"{content['file']} holds {_counted(content['columns'], 'column')} of {content['rows']} rows.",
         f"Time: {content['time']}.",

@@ -43,14 +43,14 @@ def _over_all(content: Mapping[str, Any]) -> list[Section]:
 
 def _section(left: Left, content: Mapping[str, Any], name: str) -> Section:
     title = f"{name.replace('_0', ' ').replace('_', ' ').capitalize()}: {EFFECTS[name]}"
-    tables = [as_table(TABLES[name](content), f"{title}.")] if name in TABLES else []
-    return Section(title, tables=tables, pictures=_picture(left, name, title, tables))
+    tables = [as_table(TABLES[name](content), f"{title}; printed beside repeated.")] if name in TABLES else []
+    return Section(title, tables=tables, pictures=_picture(left, name, tables))
 
 
-def _picture(left: Left, name: str, title: str, tables: list[Table]) -> list[Picture]:
+def _picture(left: Left, name: str, tables: list[Table]) -> list[Picture]:
     told = [_told(table, row) for table in tables for row in table.rows[:TOLD]]
-    alt = f"{SHOWS.get(name, OF_AN_EFFECT)}. {'; '.join(told)}".rstrip(". ") + "."
-    return left.picture(f"{name}.png", f"{title}, repeated.", alt)
+    caption = f"{SHOWS.get(name, OF_AN_EFFECT)}."
+    return left.picture(f"{name}.png", caption, f"{caption} {'; '.join(told)}".strip())
 
 
 def _told(table: Table, row: Any) -> str:

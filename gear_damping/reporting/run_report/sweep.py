@@ -12,7 +12,7 @@ from gear_damping.reporting.page.table import Link, Table
 from gear_damping.reporting.run_report.content import DOUBTFUL, FINE, Left, RunReport, Section
 
 SPREAD = "_std"  # how the name of a deviation over seeds ends: of one seed it is 0, and tells nothing
-MOST_FIGURES = 6  # columns of the table; sweep.csv has all
+MOST_FIGURES = 5  # columns of the table; sweep.csv has all
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from gear_damping.reporting.page.picture import Picture
 from gear_damping.reporting.page.table import Table
 from gear_damping.reporting.run_report.content import DOUBTFUL, FINE, Left, RunReport, Section
 
-AXES = {"speed_rpm": "speed / rpm", "torque_nm": "torque / N m", "amplitude_m": "amplitude / m"}
+AXES = {"speed_rpm": "speed / rpm", "torque_nm": "torque / N·m", "amplitude_m": "amplitude / m"}
 PERCENT, EXPONENT = "half_interval95_percent_of_ratio", "half_interval95_exponent"
 MOST_TESTS = 24  # rows of the table of tests; plan.txt has all
 
@@ -59,6 +59,11 @@ def _wanted(content: Mapping[str, Any], one: Mapping[str, Any]) -> float | None:
     return (free or one["exponent_known"])[PERCENT]
 
 
+def _mounted(content: Mapping[str, Any], one: Mapping[str, Any]) -> str:
+    """Its sensors; of several that could be mounted, `all` where it has all."""
+    return "all" if 1 < len(one["sensors"]) == len(content["sensors"]) else ", ".join(one["sensors"])
+
+
 def _chosen(content: Mapping[str, Any], chosen: Mapping[str, Any]) -> Table:
     which = "The cheapest set that tells enough" if content["cheapest"] else "The set that tells most"
     rows = [(str(n), *_where(content, test)) for n, test in enumerate(chosen["tests"], start=1)]
@@ -68,7 +73,7 @@ def _chosen(content: Mapping[str, Any], chosen: Mapping[str, Any]) -> Table:
 
 def _sets(content: Mapping[str, Any]) -> Table:
     rows = [
-        (number(one["cost"]), str(len(one["tests"])), *_told(one), ", ".join(one["sensors"]))
+        (number(one["cost"]), str(len(one["tests"])), *_told(one), _mounted(content, one))
         for one in content["front"]
     ]
     precision = _precision(content)
@@ -82,7 +87,7 @@ def _listed(content: Mapping[str, Any]) -> Sequence[Mapping[str, Any]]:
 
 def _tests(content: Mapping[str, Any]) -> Table:
     rows = [
-        (", ".join(one["sensors"]), *_where(content, one["tests"][0]), *_told(one), number(one["cost"]))
+        (_mounted(content, one), *_where(content, one["tests"][0]), *_told(one), number(one["cost"]))
         for one in _listed(content)[:MOST_TESTS]
     ]
     headings = ("sensors", *_headings(content), *_precision(content), "cost")

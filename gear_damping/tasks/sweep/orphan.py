@@ -16,7 +16,7 @@ from gear_damping.tasks.lease import begun
 LAUNCHER = "GEAR_DAMPING_LAUNCHER"  # of the environment: number of the launching process, and when it was started
 ON_THIS_MACHINE = "joblib"  # how the target of a launcher is called whose workers are children of the launching process
 LOOK = 1.0  # s between two looks at the launching process
-ORPHANED = 1  # exit code
+ORPHANED = 1  # exit code of a worker whose launching process is gone; nobody asks for it
 
 
 @contextmanager
