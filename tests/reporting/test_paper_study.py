@@ -4,11 +4,13 @@ import json
 import re
 from math import cos, pi, radians, sqrt
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
-from gear_damping.reporting.paper import printed
+from gear_damping.reporting.paper import effect, printed
 from gear_damping.reporting.paper.cells import as_fraction
 from gear_damping.reporting.paper.page import MARKED, with_tables
 from gear_damping.reporting.paper.physics import Response
@@ -122,6 +124,15 @@ def test_ridges_are_the_maxima_with_their_half_power_width():
     assert high.share == pytest.approx(0.5, rel=0.02)
     half = 0.2 * sqrt(np.log(sqrt(2)))
     assert np.log(low.high_hz / low.low_hz) == pytest.approx(2 * half, rel=0.2)
+
+
+@pytest.mark.parametrize(("error", "end"), [(0.1, 10.0), (60.0, 90.0)])
+def test_no_error_lies_beyond_the_axis(error, end):
+    """Networks that were trained for an epoch or two miss by more than the paper's do."""
+    study = SimpleNamespace(of=lambda effect, protocol: [1], score=lambda *_: Spread.over([error]))
+    axes = Figure().subplots()
+    effect._errors(axes, study, "figure_12", "eccentricity")
+    assert axes.get_xlim()[1] == pytest.approx(end)
 
 
 def test_a_large_picture_becomes_small(tmp_path):

@@ -13,6 +13,8 @@ PROTOCOL_NAMES = {"paper": "one run", "paper_many_runs": "many runs, cut by time
 AS_FRACTION = 100.0  # % of critical that 1 is, where a printed error is a fraction
 OFFSET = 0.17  # rows between the estimators of one protocol
 FLOOR_PERCENT = 5e-5  # of the error axis, in %: what always saying the one label leaves is 0 and lies below
+USUAL_PERCENT = 10.0  # end of the axis of errors, % of critical: what was trained long enough lies below
+ROOM = 1.5  # beyond a larger error, of it
 
 
 def effect_figure(study: Study, name: str, effect: str) -> Figure:
@@ -76,10 +78,12 @@ def _unseen(axes: Axes, network: str, study: Study, effect: str) -> None:
 def _errors(axes: Axes, study: Study, name: str, effect: str) -> None:
     """RMSE (1/N) under every protocol, with the deviation over seeds; printed values in both readings."""
     rows = [protocol for protocol in PROTOCOL_NAMES if study.of(effect, protocol)]
+    most = USUAL_PERCENT
     for row, protocol in enumerate(rows):
         for number, one in enumerate((*NETWORKS, BLIND, MEAN)):
             error = study.score(effect, protocol, one)
             if error is not None and error.mean > 0:
+                most = max(most, ROOM * (error.mean + error.std))
                 place = row + OFFSET * (number - 1.5)
                 look = {"fmt": marker_of(one), "color": colour_of(one), "markersize": 5, "capsize": 2.5}
                 axes.errorbar(error.mean, place, xerr=_bar(error.mean, error.std), **look)
@@ -90,7 +94,7 @@ def _errors(axes: Axes, study: Study, name: str, effect: str) -> None:
         axes.plot(value, place, marker_of(network), color=colour_of(network), markerfacecolor="none", markersize=6)
         axes.plot(AS_FRACTION * value, place, marker_of(network), color=colour_of(network), markersize=6)
     axes.set_yticks(range(printed + 1), labels=[*(PROTOCOL_NAMES[one] for one in rows), "printed"])
-    axes.set(xscale="log", xlabel="RMSE (1/N) / % of critical", ylim=(printed + 0.6, -0.6), xlim=(FLOOR_PERCENT, 10))
+    axes.set(xscale="log", xlabel="RMSE (1/N) / % of critical", ylim=(printed + 0.6, -0.6), xlim=(FLOOR_PERCENT, most))
     axes.set_title("bars: deviation over seeds; printed: hollow if it is in %, full if it is a fraction", fontsize=9.5)
 
 
