@@ -50,10 +50,13 @@ def nominal_fit(measurement: Measurement, say: Say, solver: Solver | None) -> Fi
     """The nominal gear pair as `explain` fits it, where no effect may be a cause.
 
     Raises:
-        InputError: nothing was measured that a simulation can be compared with.
+        InputError: nothing was measured that a simulation can be compared with, or the data are damaged.
     """
     _refuse_casing(measurement)
     found = explain(measurement, Listener(say), solver, library={})
+    if found.found is None:
+        faults = found.content["sentences"][1:]
+        raise InputError([Problem("records", fault, source=str(measurement.source)) for fault in faults])
     return Fitted(found.evidence, found.noise, found.found.outcome)
 
 

@@ -77,3 +77,8 @@ def test_a_line_of_the_structure_is_no_mesh():
 
 def test_one_speed_is_enough_where_the_comb_has_harmonics():
     assert len(_found(23, MESH, speeds=(150.0, 150.0))) == 1
+
+
+@pytest.mark.parametrize(("teeth", "speed"), [(33, 2.0), (20, 3.0)])
+def test_less_than_a_turn_tells_no_order(teeth, speed):
+    assert _found(teeth, {0.5: 5.0, 1: 1.0}, speeds=(speed, speed)) == []
