@@ -5,7 +5,7 @@ import time
 from pathlib import Path
 
 from benchmarks import accuracy, fitting, growth, report, simulating, transforming
-from benchmarks.simulating import Said
+from benchmarks.simulating import Log
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -25,31 +25,31 @@ def main(arguments: list[str] | None = None) -> None:
     print(f"\n{(chosen.folder / 'table.md').read_text()}\nwritten to {chosen.folder}/results.json and table.md")
 
 
-def simulate_smooth(quick: bool, say: Said) -> list[dict]:
+def simulate_smooth(quick: bool, log: Log) -> list[dict]:
     if quick:
-        return simulating.smooth(32, 1, say)
+        return simulating.smooth(32, 1, log)
     large = ("torchdiffeq_dopri5", "diffrax", "diffrax_same_algebra", "numba_rk4")
-    return simulating.smooth(400, 5, say) + simulating.smooth(4096, 3, say, large)
+    return simulating.smooth(400, 5, log) + simulating.smooth(4096, 3, log, large)
 
 
-def simulate_backlash(quick: bool, say: Said) -> list[dict]:
+def simulate_backlash(quick: bool, log: Log) -> list[dict]:
     batch, rounds = (32, 1) if quick else (400, 7)
-    return [row for p in (50, 90) for row in simulating.backlash(batch, rounds, p, say)]
+    return [row for p in (50, 90) for row in simulating.backlash(batch, rounds, p, log)]
 
 
-def limit(quick: bool, say: Said) -> list[dict]:
-    return simulating.limit(32 if quick else 400, 1 if quick else 9, say)
+def limit(quick: bool, log: Log) -> list[dict]:
+    return simulating.limit(32 if quick else 400, 1 if quick else 9, log)
 
 
-def cwt(quick: bool, say: Said) -> list[dict]:
-    return transforming.cwt(8 if quick else 64, 32, 1 if quick else 21, say)
+def cwt(quick: bool, log: Log) -> list[dict]:
+    return transforming.cwt(8 if quick else 64, 32, 1 if quick else 21, log)
 
 
-def train(quick: bool, say: Said) -> list[dict]:
+def train(quick: bool, log: Log) -> list[dict]:
     if quick:
-        return fitting.train(256, 1024, 1, say)
+        return fitting.train(256, 1024, 1, log)
     plans = ((32, 8192), (256, 16384), (1024, 32768))
-    return [row for batch, windows in plans for row in fitting.train(batch, windows, 5, say)]
+    return [row for batch, windows in plans for row in fitting.train(batch, windows, 5, log)]
 
 
 PARTS = {

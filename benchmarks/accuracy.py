@@ -5,14 +5,14 @@ from math import pi
 import torch
 from torch import Tensor
 
-from benchmarks.simulating import Said
+from benchmarks.simulating import Log
 from gear_damping.physics.catalogue import builtin_effects, effect_class
 from gear_damping.physics.model import Model
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.systems.gear_pair import GearPair
 from gear_damping.physics.systems.oscillator import Oscillator
 from gear_damping.physics.terms import MeshStiffness, Sensor
-from gear_damping.simulation.families import Family, Label, Spread, draw_values
+from gear_damping.simulation.prior import Label, Prior, Uniform, draw_values
 from gear_damping.simulation.simulate import simulate
 from gear_damping.simulation.solver_settings import Solver
 
@@ -23,9 +23,9 @@ KEPT = ("exponent", "contact_ratio", "maximum", "minimum", "lines", "order")  # 
 LAW = "power_law_damping"
 NEEDED = {"squeeze_film_damping": ("backlash",), "unbalance": ("bearing_flexibility",)}
 FIELD = {
-    "pinion_torque": Spread(0.7, 1.3, relative=True), "pinion_speed": Spread(157.0, 628.0),
-    "mesh_phase": Spread(0.0, 2 * pi), "damping_ratio_percent": Spread(0.1, 3.0),
-    f"{LAW}.exponent": Spread(1.2, 2.8),
+    "pinion_torque": Uniform(0.7, 1.3, relative=True), "pinion_speed": Uniform(157.0, 628.0),
+    "mesh_phase": Uniform(0.0, 2 * pi), "damping_ratio_percent": Uniform(0.1, 3.0),
+    f"{LAW}.exponent": Uniform(1.2, 2.8),
 }  # fmt: skip
 
 
@@ -45,15 +45,15 @@ def drawn(effect: str, batch: int, seed: int = 0) -> tuple[Model, dict[str, Tens
         model = Model(Oscillator(), [effect_class("viscous_damping")(), added()])
         values = model.values(batch, **{"viscous_damping.damping_coefficient": 0.02})
         values["initial_displacement"] = 0.2 + 0.8 * _share(batch, generator)
-        return model, values | _spread(effect, values, generator)
+        return model, values | _drawn_parameters(effect, values, generator)
     mesh = [] if issubclass(added, MeshStiffness) else ["fourier_mesh_stiffness"]
     names = dict.fromkeys([*mesh, LAW, *NEEDED.get(effect, ()), effect])
     model = Model(GearPair(), [effect_class(name)() for name in names])
-    values, _ = draw_values(model, {}, Family("field", FIELD), batch, generator, Label(LAW))
-    return model, values | ({} if effect == LAW else _spread(effect, values, generator))
+    values, _ = draw_values(model, {}, Prior("field", FIELD), batch, generator, Label(LAW))
+    return model, values | ({} if effect == LAW else _drawn_parameters(effect, values, generator))
 
 
-def _spread(effect: str, values: dict[str, Tensor], generator: torch.Generator) -> dict[str, Tensor]:
+def _drawn_parameters(effect: str, values: dict[str, Tensor], generator: torch.Generator) -> dict[str, Tensor]:
     found = {}
     for parameter in effect_class(effect).parameters:
         name = f"{effect}.{parameter.name}"
@@ -85,22 +85,22 @@ def delivered(effect: str, batch: int, asked: tuple[float, ...], n_samples: int 
     return [(response(Solver(accuracy=a)) - exact).norm(dim=1) / exact.norm(dim=1) for a in asked]
 
 
-def everything(quick: bool, say: Said) -> list[dict]:
+def everything(quick: bool, log: Log) -> list[dict]:
     """Error at the median and the 90th percentile for each effect and each accuracy asked."""
     batch, names = (8, tried_effects()[:2]) if quick else (128, tried_effects())
-    return [_row(name, batch, say) for name in names]
+    return [_row(name, batch, log) for name in names]
 
 
-def _row(effect: str, batch: int, say: Said) -> dict:
+def _row(effect: str, batch: int, log: Log) -> dict:
     try:
         errors = delivered(effect, batch, ASKED)
     except Exception as problem:  # the map shows what fails beside what holds
-        say(f"  {effect}: {type(problem).__name__}: {problem}")
+        log(f"  {effect}: {type(problem).__name__}: {problem}")
         return {"effect": effect, "reason": f"{type(problem).__name__}: {problem}"[:200]}
     row: dict = {"effect": effect}
     for asked, error in zip(ASKED, errors, strict=True):
         row[f"p50 of {asked:g}"] = float(error.median())
         row[f"p90 of {asked:g}"] = float(error.quantile(0.9))
     worst = max(row[f"p90 of {asked:g}"] / asked for asked in ASKED)
-    say(f"  {effect}: p90 at most {worst:.2g} times what was asked")
+    log(f"  {effect}: p90 at most {worst:.2g} times what was asked")
     return row | {"p90 / asked, at most": worst}

@@ -18,7 +18,7 @@ from scipy.stats import binomtest
 from benchmarks.marked import put
 from gear_damping.config.settings import Settings, read_settings
 from gear_damping.identification.familiarity import Components, components_for
-from gear_damping.identification.known_model.family import KnownRuns, range_of, start_of
+from gear_damping.identification.known_model.known_runs import KnownRuns, range_of, start_of
 from gear_damping.identification.known_model.output_error import misfit
 from gear_damping.identification.noise import SensorNoise
 from gear_damping.identification.seeding import seeded_generator
@@ -113,8 +113,8 @@ def _hidden(plan: SimulationPlan, components: Components, overrides: list[str], 
     found = {}
     for snr in SNRS:
         records, noise = _noisy(shown[:kept], snr)
-        start = start_of(nominal, plan.family)
-        known = KnownRuns(nominal, plan.damping_law, range_of(plan.family), *start, records, noise, solver=plan.solver)
+        start = start_of(nominal, plan.prior)
+        known = KnownRuns(nominal, plan.damping_law, range_of(plan.prior), *start, records, noise, solver=plan.solver)
         pairs = zip(misfit(known).tolist(), components.strange(records).tolist(), strict=True)
         found[str(snr)] = [[size, float(strange)] for size, strange in pairs]
     return found

@@ -39,7 +39,7 @@ KINDS = {
 SEED = 90000  # of the first case; the tests draw others
 SPEEDS = {"fit": (2120.0, 3580.0, 4440.0), "holdout": (2850.0,)}  # rpm, where a damping of 0.1 % leaves it stable
 RATE, SAMPLES, SNR_DB = 40e3, 1200, 30.0  # Hz; of a record; of the transmission error
-TORQUE, SPREAD = 150.0, 0.2  # N m of family bench, and how far it varies
+TORQUE, HALF_RANGE = 150.0, 0.2  # N m of family bench, and how far it varies
 RATIOS = (0.1, 0.6)  # % of critical, of family bench
 PERTURBATION = 0.1  # of the start, of static deflection and reference velocity, of family bench
 MODULATION, POWER, TAKEN, SPEED_ERROR = 0.01, 1.8, 2.0, 0.005
@@ -77,7 +77,7 @@ def drawn(kind: str, seed: int) -> Truth:
     """A test with something hidden in it."""
     random = np.random.default_rng([SEED + seed, list(KINDS).index(kind)])
     speeds = np.array([speed for role in SPEEDS.values() for speed in role]) * math.pi / 30
-    torque = TORQUE * random.uniform(1 - SPREAD, 1 + SPREAD, speeds.size)
+    torque = TORQUE * random.uniform(1 - HALF_RANGE, 1 + HALF_RANGE, speeds.size)
     mass, stiffness = _rig()
     pair = gd.GearPair()
     force = TORQUE / float(pair_radius(pair))

@@ -2,12 +2,12 @@
 
 from benchmarks.engines.training import validation_windows
 from benchmarks.harness import OWN, PEERS, Contestant, PeerError, Process, absent, interleave, rows
-from benchmarks.simulating import Said
+from benchmarks.simulating import Log
 
 FEW, MANY = 1, 4  # epochs: what the further ones cost is measured, start-up left out
 
 
-def train(batch: int, windows: int, rounds: int, say: Said) -> list[dict]:
+def train(batch: int, windows: int, rounds: int, log: Log) -> list[dict]:
     """Training windows of the LSTM, with the same validation once an epoch; an item is a training window."""
     options = {"batch_size": batch, "windows": windows, "validation": validation_windows()}
     shorts, longs = [], []
@@ -15,7 +15,7 @@ def train(batch: int, windows: int, rounds: int, say: Said) -> list[dict]:
         try:
             pair = [_started(name, python, options | {"epochs": epochs}, windows) for epochs in (FEW, MANY)]
         except PeerError as problem:
-            say(f"  {name}: left out ({problem})")
+            log(f"  {name}: left out ({problem})")
             pair = [absent(name, problem), absent(name, problem)]
         shorts.append(pair[0])
         longs.append(pair[1])

@@ -118,7 +118,7 @@ def interleave(contestants: list[Contestant], rounds: int) -> None:
 
 
 def rows(work: str, batch: int, contestants: list[Contestant]) -> list[dict]:
-    """The rows of results.json; medians, with half the interquartile range as spread.
+    """The rows of results.json; medians, with half the interquartile range.
 
     Where an engine could not run its figures are None and `reason` says why.
     """
@@ -139,14 +139,14 @@ def _row(work: str, batch: int, contestant: Contestant) -> dict:
         "work": work, "engine": contestant.name, "batch": batch, "error_p90": about.pop("error_p90", None),
         "cpu_ms_per_item": _median(cpu), "wall_ms_per_item": _median(wall), "ratio_to_ours": None,
     }  # fmt: skip
-    return row | {"cpu_spread": spread(cpu), "rounds": len(cpu), **about}
+    return row | {"cpu_spread": half_interquartile(cpu), "rounds": len(cpu), **about}
 
 
 def _median(values: list[float]) -> float | None:
     return statistics.median(values) if values else None
 
 
-def spread(values: list[float]) -> float | None:
+def half_interquartile(values: list[float]) -> float | None:
     """Half the interquartile range, relative to the median."""
     if not values:
         return None

@@ -17,7 +17,7 @@ GAP = 1e-4  # m
 
 
 @dataclass(frozen=True)
-class Members:
+class Batch:
     """SI values, each (batch,); `gap` is 0 for a mesh that never opens."""
 
     torque: np.ndarray
@@ -68,14 +68,14 @@ class Members:
             "t": np.arange(N_SAMPLES) / SAMPLING_RATE * self.rate,
         }
 
-    def first(self, count: int) -> "Members":
-        return Members(*(getattr(self, name)[:count] for name in ARRAYS), self.gap)
+    def first(self, count: int) -> "Batch":
+        return Batch(*(getattr(self, name)[:count] for name in ARRAYS), self.gap)
 
 
 ARRAYS = ("torque", "speed", "alpha", "exponent", "x0")
 
 
-def draw(batch: int, backlash: bool = False, seed: int = 0) -> Members:
+def draw(batch: int, backlash: bool = False, seed: int = 0) -> Batch:
     """A batch; the first members are the same in every batch.
 
     Smooth: damping ratio 0.2 to 3 %, exponent 1.2 to 2.8. Backlash: starts so far from equilibrium that
@@ -83,11 +83,11 @@ def draw(batch: int, backlash: bool = False, seed: int = 0) -> Members:
     """
     shares = np.random.default_rng(seed).random((batch, 5)).T
     torque, speed = 120 + 60 * shares[0], (3000 + 3000 * shares[1]) * pi / 30
-    base = Members(torque, speed, torque * 0, torque * 0, torque * 0, GAP if backlash else 0.0)
+    base = Batch(torque, speed, torque * 0, torque * 0, torque * 0, GAP if backlash else 0.0)
     exponent = np.full(batch, 2.0) if backlash else 1.2 + 1.6 * shares[2]
     ratio = 0.002 + 0.028 * shares[3]
     # Linear damping of this ratio at the velocity amplitude V = rate * length: alpha V^n ~ c V.
     velocity = base.rate * base.length
     alpha = 2 * ratio * sqrt(base.mass * base.stiffness) * velocity ** (1 - exponent)
     start = 2.2 + 0.8 * shares[4] if backlash else 0.9 + 0.2 * shares[4]
-    return Members(torque, speed, alpha, exponent, start * base.length, base.gap)
+    return Batch(torque, speed, alpha, exponent, start * base.length, base.gap)

@@ -6,13 +6,13 @@ from pathlib import Path
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from benchmarks.members import SAMPLING_RATE, Members
+from benchmarks.members import SAMPLING_RATE, Batch
 
 ORACLES = Path(__file__).resolve().parents[1] / "tests" / "oracles"
 RTOL, ATOL = 1e-12, 1e-13
 
 
-def smooth(members: Members) -> np.ndarray:
+def smooth(members: Batch) -> np.ndarray:
     """Displacement / length, (batch, time): every member in one system, so tolerances hold for all together."""
     p = members.natural()
     batch = len(p["a"])
@@ -30,7 +30,7 @@ def smooth(members: Members) -> np.ndarray:
     return found.y[:batch]
 
 
-def backlash(members: Members, n_samples: int) -> np.ndarray:
+def backlash(members: Batch, n_samples: int) -> np.ndarray:
     """Displacement / length, (batch, time), by the event-located reference of the tests."""
     sys.path.insert(0, str(ORACLES))
     import gear_reference

@@ -15,7 +15,7 @@ SCIPY_MEMBERS = 16
 SHARED = 400  # members that an engine with one step size for all is tried on
 SHORT = 200  # outputs of the runs with backlash: their chaos has not begun
 WANTED = 1e-5
-Said = Callable[[str], None]
+Log = Callable[[str], None]
 
 
 @dataclass(frozen=True)
@@ -57,35 +57,35 @@ def backlash_reference() -> np.ndarray:
     return reference.backlash(draw(KEPT, backlash=True), SHORT)
 
 
-def smooth(batch: int, rounds: int, say: Said, peers: tuple[str, ...] | None = None) -> list[dict]:
+def smooth(batch: int, rounds: int, log: Log, peers: tuple[str, ...] | None = None) -> list[dict]:
     """Whole trajectories at an error of at most 1e-5 (90th percentile over 64 members)."""
     plans = [OURS, *(plan for plan in PEER_PLANS if peers is None or plan.name in peers)]
     found = []
     for plan in plans:
         options = {"n_samples": N_SAMPLES, "backlash": False} if plan.name == "ours" else {}
-        found.append(climb(plan, options, smooth_reference(), batch, 90, WANTED, say))
+        found.append(climb(plan, options, smooth_reference(), batch, 90, WANTED, log))
     return contest("simulate_smooth", batch, found, rounds)
 
 
-def backlash(batch: int, rounds: int, percentile: int, say: Said) -> list[dict]:
+def backlash(batch: int, rounds: int, percentile: int, log: Log) -> list[dict]:
     """Short runs with contact loss: ours, and RK4 that knows nothing of contact, at one error.
 
     At the median that error is 1e-5; at the 90th percentile it is what ours has with the same setting.
     """
     options = {"n_samples": SHORT}
-    ours = climb(OURS, options | {"backlash": True}, backlash_reference(), batch, 50, WANTED, say)
+    ours = climb(OURS, options | {"backlash": True}, backlash_reference(), batch, 50, WANTED, log)
     wanted = WANTED if percentile == 50 else ours.about.get("error_p90", WANTED)
-    unaware = climb(UNAWARE, options, backlash_reference(), batch, percentile, wanted, say)
+    unaware = climb(UNAWARE, options, backlash_reference(), batch, percentile, wanted, log)
     found = contest("simulate_backlash", batch, [ours, unaware], rounds)
     return [row | {"equal_error_at": f"p{percentile}", "outputs": SHORT} for row in found]
 
 
-def limit(batch: int, rounds: int, say: Said) -> list[dict]:
+def limit(batch: int, rounds: int, log: Log) -> list[dict]:
     """Ours beside C++ written by hand for this one equation, as it is and with our way of its costly parts."""
     ways = ((), ("cosines",), ("exact_power",), ("cosines", "exact_power"))
-    found = [climb(OURS, {"n_samples": N_SAMPLES, "backlash": False}, smooth_reference(), batch, 90, WANTED, say)]
+    found = [climb(OURS, {"n_samples": N_SAMPLES, "backlash": False}, smooth_reference(), batch, 90, WANTED, log)]
     for way in ways:
-        contestant = climb(TUNED, dict.fromkeys(way, True), smooth_reference(), batch, 90, WANTED, say)
+        contestant = climb(TUNED, dict.fromkeys(way, True), smooth_reference(), batch, 90, WANTED, log)
         contestant.about["with"] = " and ".join(way) or "nothing of ours"
         found.append(contestant)
     kept = ("engine", "with", "batch", "setting", "error_p90", "cpu_ms_per_item", "ratio_to_ours", "reason")
@@ -93,7 +93,7 @@ def limit(batch: int, rounds: int, say: Said) -> list[dict]:
 
 
 def climb(
-    plan: Plan, options: dict, expected: np.ndarray, batch: int, percentile: int, wanted: float, say: Said
+    plan: Plan, options: dict, expected: np.ndarray, batch: int, percentile: int, wanted: float, log: Log
 ) -> Contestant:
     """The engine at the first setting that is exact enough, or at the last.
 
@@ -108,11 +108,11 @@ def climb(
         process = Process(python, plan.module, plan.name, {**options, plan.setting: setting, "batch": items})
         process.run()  # the first one compiles
     except PeerError as problem:
-        say(f"  {plan.name}: left out ({problem})")
+        log(f"  {plan.name}: left out ({problem})")
         return absent(plan.name, problem)
     median, ninety = (float(value) for value in np.percentile(error, [50, 90]))
     about = {"error_p90": ninety, "error_p50": median, "setting": f"{plan.setting} {setting:g}"}
-    say(f"  {plan.name}: {about['setting']}, error p50 {median:.1e}, p90 {ninety:.1e}")
+    log(f"  {plan.name}: {about['setting']}, error p50 {median:.1e}, p90 {ninety:.1e}")
     reached = np.percentile(error, percentile) <= wanted
     return Contestant(plan.name, process, items, about | ({} if reached else {"short_of": wanted}))
 

@@ -9,12 +9,12 @@ from benchmarks import reference
 from benchmarks.engines import own
 from benchmarks.harness import OWN, PEERS, Contestant, PeerError, Process, absent
 from benchmarks.members import N_SAMPLES
-from benchmarks.simulating import Said, contest
+from benchmarks.simulating import Log, contest
 
 COMPARED = 2  # records that are compared with the defining sum
 
 
-def cwt(batch: int, n_scales: int, rounds: int, say: Said) -> list[dict]:
+def cwt(batch: int, n_scales: int, rounds: int, log: Log) -> list[dict]:
     """Ricker coefficients of records of 2000 samples in float32; an item is a million coefficients."""
     items = batch * N_SAMPLES * n_scales / 1e6
     with tempfile.TemporaryDirectory() as folder:
@@ -31,10 +31,10 @@ def cwt(batch: int, n_scales: int, rounds: int, say: Said) -> list[dict]:
             ("ssqueezepy", PEERS, "cwt_peers", peer, "one thread"),
         ]
         expected = direct_sum(np.load(path)[:COMPARED].astype(float), peer["scales"])
-        return contest("cwt", batch, [_contestant(plan, items, expected, say) for plan in plans], rounds)
+        return contest("cwt", batch, [_contestant(plan, items, expected, log) for plan in plans], rounds)
 
 
-def _contestant(plan: tuple, items: float, expected: np.ndarray, say: Said) -> Contestant:
+def _contestant(plan: tuple, items: float, expected: np.ndarray, log: Log) -> Contestant:
     name, python, module, options, setting = plan
     engine = "cwt" if name == "ours" else name
     about = {"setting": setting} if setting else {}
@@ -45,10 +45,10 @@ def _contestant(plan: tuple, items: float, expected: np.ndarray, say: Said) -> C
             return Contestant(name, process, items, about)
         _, result = process.result()
     except PeerError as problem:
-        say(f"  {name}: left out ({problem})")
+        log(f"  {name}: left out ({problem})")
         return absent(name, problem)
     about["error_p90"] = transform_error(result, expected)
-    say(f"  {name}: error {about['error_p90']:.1e}")
+    log(f"  {name}: error {about['error_p90']:.1e}")
     return Contestant(name, process, items, about)
 
 

@@ -16,7 +16,7 @@ from benchmarks.marked import put
 from gear_damping.config.settings import Settings, read_settings
 from gear_damping.identification.datamodule import Material, WindowDataModule
 from gear_damping.identification.known_model.exact_bayes import window_bayes
-from gear_damping.identification.known_model.family import range_of
+from gear_damping.identification.known_model.known_runs import range_of
 from gear_damping.identification.lightning_module import EstimatorConfig
 from gear_damping.identification.noise import SensorNoise
 from gear_damping.identification.protocols import Protocol
@@ -72,7 +72,7 @@ def measured(snr: int, seed: int, folder: Path) -> dict[str, Any]:
     batches = list(data.test_dataloader())
     windows, true = (torch.cat([batch[part] for batch in batches])[:ASKED] for part in (0, 1))
     starts = torch.arange(0, plan.n_samples - protocol.window + 1, protocol.evaluation_stride)
-    ends = range_of(plan.family)
+    ends = range_of(plan.prior)
     bayes = window_bayes(plan, ends, snr, starts, protocol.window).estimate(windows)
     held = (bayes.low <= true) & (true <= bayes.high)
     found |= {"exact_bayes": _rms(bayes.ratio, true), "mean": _rms(torch.full_like(true, sum(ends) / 2), true)}

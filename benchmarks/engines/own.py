@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import torch
 
-from benchmarks.members import GAP, SAMPLING_RATE, Members, draw
+from benchmarks.members import GAP, SAMPLING_RATE, Batch, draw
 from gear_damping.physics.catalogue import effect_class
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.gear_pair import GearPair
@@ -17,7 +17,7 @@ torch.set_num_threads(1)
 Run = Callable[[], np.ndarray | None]
 
 
-def assembled(members: Members) -> tuple[Model, dict[str, torch.Tensor]]:
+def assembled(members: Batch) -> tuple[Model, dict[str, torch.Tensor]]:
     """The package's model of these members."""
     names = ["fourier_mesh_stiffness", "power_law_damping", *(["backlash"] if members.gap else [])]
     model = Model(GearPair(), [effect_class(name)() for name in names])

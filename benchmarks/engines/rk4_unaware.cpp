@@ -29,23 +29,23 @@ static inline void substep(vd (*y)[N_STATE], vd start, double length, const Bloc
     for (int i = 0; i < N_STATE; ++i) y[m][i] += length * sum[m][i];
 }
 
-static inline vd load(const double* rows, long lanes, long row, long lane) {
+static inline vd load(const double* rows, long batch, long row, long member) {
   vd v;
-  for (int l = 0; l < WIDTH; ++l) v[l] = rows[row * lanes + (lane + l < lanes ? lane + l : lanes - 1)];
+  for (int l = 0; l < WIDTH; ++l) v[l] = rows[row * batch + (member + l < batch ? member + l : batch - 1)];
   return v;
 }
 
-// out (N_STATE, lanes, length) gets `count` outputs; lanes that fill no group are repeated.
-extern "C" void walk(long lanes, long count, long substeps, long length, const double* fixed, const double* state,
+// out (N_STATE, batch, length) gets `count` outputs; members that fill no group are repeated.
+extern "C" void walk(long batch, long count, long substeps, long length, const double* fixed, const double* state,
                      double* out) {
   const double part = 1.0 / double(substeps);
-  for (long group = 0; group < lanes; group += WIDTH * VECTORS) {
+  for (long group = 0; group < batch; group += WIDTH * VECTORS) {
     Block b[VECTORS];
     vd y[VECTORS][N_STATE];
     for (int m = 0; m < VECTORS; ++m) {
-      const long lane = group + m * WIDTH;
-      for (int i = 0; i < N_FIXED; ++i) b[m].P[i] = load(fixed, lanes, i, lane);
-      for (int i = 0; i < N_STATE; ++i) y[m][i] = load(state, lanes, i, lane);
+      const long member = group + m * WIDTH;
+      for (int i = 0; i < N_FIXED; ++i) b[m].P[i] = load(fixed, batch, i, member);
+      for (int i = 0; i < N_STATE; ++i) y[m][i] = load(state, batch, i, member);
       setup(b[m].P, b[m].Q);
     }
     for (long n = 0; n < count; ++n) {
@@ -53,8 +53,8 @@ extern "C" void walk(long lanes, long count, long substeps, long length, const d
       for (long s = 0; s < substeps; ++s) substep(y, vd{} + double(s) * part, part, b);
       for (int m = 0; m < VECTORS; ++m)
         for (int i = 0; i < N_STATE; ++i)
-          for (int l = 0; l < WIDTH && group + m * WIDTH + l < lanes; ++l)
-            out[(i * lanes + group + m * WIDTH + l) * length + n] = y[m][i][l];
+          for (int l = 0; l < WIDTH && group + m * WIDTH + l < batch; ++l)
+            out[(i * batch + group + m * WIDTH + l) * length + n] = y[m][i][l];
     }
   }
 }

@@ -22,13 +22,13 @@ static inline vf power(vf v, vf log2_a, vf n) {
   return (vf)(((vi)p + ((vi)shifted << 23)) | sign);
 }
 
-struct Members {
+struct Batch {
   vd a[M], exponent[M], angle[M], speed[M];
   vd y[M], v[M], cosine[M], sine[M], turn_cosine[6][M], turn_sine[6][M];
   vf log2_a[M / 2], n[M / 2];
 };
 
-static inline void step(Members& b, double h, const double* c) {
+static inline void step(Batch& b, double h, const double* c) {
   vd k[6][M], u[6][M];  // rates of v and of y
 #pragma GCC unroll 6
   for (int stage = 0; stage < 6; ++stage) {
@@ -81,7 +81,7 @@ extern "C" void walk(long lanes, long count, long substeps, double interval, con
                      double* out) {
   const double h = interval / double(substeps);
   for (long group = 0; group < lanes; group += LANES) {
-    Members b;
+    Batch b;
     alignas(64) double tile[TILE][LANES];
     for (int l = 0; l < LANES; ++l) {
       const double* own = rows + group + l;

@@ -9,7 +9,7 @@ import torch
 from benchmarks.engines.own import Run, assembled
 from benchmarks.members import SAMPLING_RATE, draw
 from gear_damping.simulation.integrate import initial_states
-from gear_damping.simulation.kernel import Kernel, Members
+from gear_damping.simulation.kernel import Batch, Kernel
 from gear_damping.simulation.layout import Layout
 from gear_damping.simulation.native import build, source
 from gear_damping.simulation.series import Series
@@ -22,7 +22,7 @@ def rk4_unaware(batch: int, n_samples: int, substeps: int, keep: int = 64) -> Ru
     interval = 1 / (SAMPLING_RATE * prepared.scales.time)
     layout, series = Layout(prepared), Series(())
     fixed, start = layout.pack(prepared, interval).contiguous(), initial_states(model, prepared).contiguous()
-    example = Members(fixed, fixed[:0], fixed.new_zeros(()))
+    example = Batch(fixed, fixed[:0], fixed.new_zeros(()))
     kernel = Kernel(model, layout, series, example, start)
     library = _library(source.kernel_source(kernel, example, start, build.width_and_options()[0]))
 

@@ -15,7 +15,7 @@ import torch
 
 from benchmarks.limit import page
 from benchmarks.limit.bench import SNRS, bench
-from benchmarks.limit.networks import NETWORKS, say_of_network, trained
+from benchmarks.limit.networks import NETWORKS, estimates_of_network, trained
 from gear_damping.identification.bench import Bench, mean_over_seeds
 from gear_damping.identification.known_model.estimate import Estimates
 from gear_damping.reporting.evaluation import evaluation_table
@@ -45,27 +45,29 @@ def _works(made: Bench, asked: argparse.Namespace) -> Iterator:
         for name in NETWORKS:
             folder = asked.out / "networks" / name / f"seed_{seed}"
             yield lambda name=name, seed=seed, folder=folder: trained(name, seed, folder, asked.runs)
-            yield from _parts(made, asked, name, seed, lambda rows, snr, f=folder: say_of_network(f, made, rows, snr))
+            yield from _parts(
+                made, asked, name, seed, lambda rows, snr, f=folder: estimates_of_network(f, made, rows, snr)
+            )
     for name, estimate in KNOWING.items():
         yield from _parts(made, asked, name, None, lambda rows, snr, e=estimate: e(made.known(rows, snr)))
 
 
-def _parts(made: Bench, asked: argparse.Namespace, name: str, seed: int | None, say) -> Iterator:
+def _parts(made: Bench, asked: argparse.Namespace, name: str, seed: int | None, estimate) -> Iterator:
     """The parts of an evaluation; those that are kept are not asked again."""
     size = CHUNK if seed is None else len(made)
     for snr in SNRS:
         for number, rows in enumerate(torch.arange(len(made)).split(size)):
             path = _part(asked.out, name, seed, snr) / f"{number}.json"
-            yield lambda path=path, rows=rows, snr=snr: path.exists() or _keep(path, rows, snr, say)
+            yield lambda path=path, rows=rows, snr=snr: path.exists() or _keep(path, rows, snr, estimate)
 
 
 def _part(out: Path, name: str, seed: int | None, snr: int) -> Path:
     return out / "said" / (name if seed is None else f"{name}_{seed}") / str(snr)
 
 
-def _keep(path: Path, rows: torch.Tensor, snr: int, say) -> None:
+def _keep(path: Path, rows: torch.Tensor, snr: int, estimate) -> None:
     begun = time.perf_counter()
-    found: Estimates = say(rows, snr)
+    found: Estimates = estimate(rows, snr)
     seconds = (time.perf_counter() - begun) / len(rows)
     content = {part: getattr(found, part).tolist() for part in ("ratio", "low", "high")} | {"seconds": seconds}
     path.parent.mkdir(parents=True, exist_ok=True)

@@ -58,6 +58,6 @@ def _runs_of(settings, seed: int) -> RunSet:
     return _sets[seed]
 
 
-def say_of_network(folder: Path, made: Bench, rows: Tensor, snr: int) -> Estimates:
+def estimates_of_network(folder: Path, made: Bench, rows: Tensor, snr: int) -> Estimates:
     """What a trained network says of whole records."""
     return estimates_of(load_estimator(folder / "best.ckpt"), made.records(rows, snr))

@@ -41,8 +41,8 @@ def identify(measurement: Path) -> dict[str, tuple[float, tuple[float, float]]]:
     # Logarithmic coordinates, 0 at the first guess; give several rows where one guess may be far off.
     starts = torch.zeros(1, len(free), dtype=torch.float64)
     fitted = fit(problem, starts, Rounds(horizons=[few_periods / records[0].sampling_rate, None]))
-    spread = covariance(problem, fitted, few_periods)
-    return {p.name: interval(lambda z, p=p, i=i: p.value(z[i]), fitted.shared, spread) for i, p in enumerate(free)}
+    covariances = covariance(problem, fitted, few_periods)
+    return {p.name: interval(lambda z, p=p, i=i: p.value(z[i]), fitted.shared, covariances) for i, p in enumerate(free)}
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ from typing import ClassVar
 from torch import Tensor
 
 from gear_damping.physics.cause import Cause, Recipe
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import DampingForce, Values
 
@@ -27,6 +27,6 @@ class ShearThinningDamping(DampingForce):
         separated_by="ring_down",
     )
 
-    def damping_force(self, now: Moment, p: Values) -> Tensor:
+    def damping_force(self, at: Kinematics, p: Values) -> Tensor:
         """The force at this instant, positive where it opposes a positive rate."""
-        return p["damping_coefficient"] * now.delta_rate / (1 + now.delta_rate.abs() / p["thinning_velocity"])
+        return p["damping_coefficient"] * at.delta_rate / (1 + at.delta_rate.abs() / p["thinning_velocity"])

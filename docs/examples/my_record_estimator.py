@@ -29,8 +29,8 @@ class EnergyFall(RecordEstimator):
         count = free.values.size // length
         if count < 4:
             raise UnsuitedRecord("it holds fewer than four means of the energy: record longer")
-        pieces = free.values[: count * length].reshape(count, length)
-        power = np.maximum(pieces.var(axis=1) - free.noise**2, np.finfo(float).tiny)
+        segments = free.values[: count * length].reshape(count, length)
+        power = np.maximum(segments.var(axis=1) - free.noise**2, np.finfo(float).tiny)
         size = np.sqrt(2 * power)
         time = (np.arange(count) + 0.5) * length / free.sampling_rate
         rate = decay_rate(time, np.log(size), 1 / size)

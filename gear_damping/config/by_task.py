@@ -11,7 +11,7 @@ from gear_damping.config.measured import MEASURED
 from gear_damping.config.whole import Found, Whole, typed
 from gear_damping.identification.network_files import holds_network
 from gear_damping.physics.terms import HeldLoad
-from gear_damping.simulation.families import DAMPING_RATIO
+from gear_damping.simulation.prior import DAMPING_RATIO
 
 TAKEN_BY_PAPER = (  # how keys begin that task=paper takes
     "task", "experiment", "name", "seed", "resume", "data_folder", "progress", "figures", "training", "hydra",
@@ -83,7 +83,7 @@ def _evaluated(whole: Whole) -> Found:
     for key, value in typed(whole) if whole["task"] != "evaluate" else ():
         if key.startswith("evaluation."):
             yield key, f"acts in task=evaluate, and this is task={whole['task']}", value, "leave it out"
-    if whole["task"] == "evaluate" and DAMPING_RATIO not in whole.simulator.family.spreads:
+    if whole["task"] == "evaluate" and DAMPING_RATIO not in whole.simulator.family.distributions:
         rule = "has no range of damping ratios, beside which an estimate could be good"
         yield "family", rule, whole.simulator.family.name, "choose family=bench, field or paper"
     drawn = [effect.name for effect in whole.simulator.model.effects if isinstance(effect, HeldLoad)]

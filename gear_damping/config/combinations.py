@@ -13,7 +13,7 @@ from gear_damping.config.source import ORDER, Origin
 from gear_damping.config.whole import Found, Whole
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.physics.catalogue import catalogue
-from gear_damping.simulation.families import DAMPING_RATIO, coefficients_for
+from gear_damping.simulation.prior import DAMPING_RATIO, coefficients_for
 from gear_damping.simulation.runs import reference_velocity
 from gear_damping.units import SUFFIXES
 
@@ -119,10 +119,10 @@ def _test_ratio(whole: Whole) -> Found:
 def _without_effect(whole: Whole) -> Found:
     """Values that were given and that something else decides."""
     simulator = whole.simulator
-    drawn = {} if whole["task"] == PLAN else simulator.family.spreads  # a plan is one for one rig
-    for name, spread in drawn.items():
+    drawn = {} if whole["task"] == PLAN else simulator.family.distributions  # a plan is one for one rig
+    for name, distribution in drawn.items():
         key = None if name == DAMPING_RATIO else _given_on_top(name, whole.origin)
-        if key and not spread.relative:
+        if key and not distribution.relative:
             remedy = f"leave it out, or add family.spreads.{name}=null"
             yield key, "has no effect: the family draws it for every run", simulator.given[name], remedy
     if simulator.damping_law is None:
@@ -157,7 +157,7 @@ def _set_by_ratio(simulator: SimulatorSettings) -> tuple[Iterable[str], list[Pro
 def _ratio_carried(whole: Whole) -> Found:
     """The damping law can carry the damping ratio."""
     simulator = whole.simulator
-    wanted = DAMPING_RATIO in simulator.family.spreads or simulator.damping_ratio_percent is not None
+    wanted = DAMPING_RATIO in simulator.family.distributions or simulator.damping_ratio_percent is not None
     if whole["task"] in SIMULATING and simulator.damping_law is not None and wanted:
         yield from ((p.key, p.rule, p.value, p.remedy) for p in _set_by_ratio(simulator)[1])
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, get_args
 
 from gear_damping.config.extended import with_extended
-from gear_damping.config.families import read_family
+from gear_damping.config.prior import read_prior
 from gear_damping.config.quantities import split_suffix
 from gear_damping.config.reader import Reader
 from gear_damping.config.source import COMMAND_LINE, Origin
@@ -18,7 +18,7 @@ from gear_damping.physics.systems.base import System
 from gear_damping.physics.systems.known import SYSTEMS
 from gear_damping.physics.terms import DampingLaw, Effect, MeshStiffness
 from gear_damping.schema.values import Given, Number, OneOf, Text
-from gear_damping.simulation.families import Family
+from gear_damping.simulation.prior import Prior
 from gear_damping.simulation.sampling import N_SAMPLES, SAMPLING_RATE
 from gear_damping.simulation.solver_settings import Engine, Solver
 
@@ -62,7 +62,7 @@ class SimulatorSettings:
 
     model: Model
     given: dict[str, float | tuple[float, ...]]
-    family: Family
+    family: Prior
     sampling_rate: float
     n_samples: int
     n_runs: int
@@ -117,7 +117,7 @@ def read_simulator(node: Mapping[str, Any], family: Mapping[str, Any], origin: O
         raise InputError(reader.problems)
     model = _model(reader, system, effects, given)
     flat = declared | {f"{effect.name}.{p.name}": p for effect in effects for p in effect.parameters}
-    drawn = read_family(reader, family, flat, given)
+    drawn = read_prior(reader, family, flat, given)
     plain["damping_law"] = _damping_law(reader, plain["damping_law"], effects)
     if reader.problems:
         raise InputError(reader.problems)

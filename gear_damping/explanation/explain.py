@@ -6,12 +6,12 @@ from typing import Any
 
 from torch import Tensor
 
-from gear_damping.explanation.answer import content
+from gear_damping.explanation.answer import report_fields
 from gear_damping.explanation.answer.homogeneity import homogeneity
 from gear_damping.explanation.answer.stand_in import is_untold, shape_without_name, stand_ins, swings_on
 from gear_damping.explanation.budget import Budget
-from gear_damping.explanation.casing.content import CasingStudy, explain_casing
 from gear_damping.explanation.casing.heard import is_casing
+from gear_damping.explanation.casing.report_fields import CasingStudy, explain_casing
 from gear_damping.explanation.evidence.data_faults import data_faults, mesh_order_faults
 from gear_damping.explanation.evidence.excess import ac_energy, excess
 from gear_damping.explanation.evidence.noise import NoiseLevel, Scatter, noise_of, weighted
@@ -26,7 +26,7 @@ from gear_damping.explanation.steps.confirm import Confirmed, confirmed
 from gear_damping.explanation.steps.estimate import estimated
 from gear_damping.explanation.steps.judge import CONSISTENT, Judged, Known, verdict
 from gear_damping.explanation.steps.too_short import died_away, too_short
-from gear_damping.explanation.trials.bench import Bench, Say
+from gear_damping.explanation.trials.bench import Bench, Log
 from gear_damping.identification.decimation import decimated
 from gear_damping.identification.oscillator import linear_model
 from gear_damping.identification.output_error.records import FitRecord
@@ -68,11 +68,11 @@ class Listener:
     """Who is told on the way.
 
     Args:
-        say: What is found, in a line.
+        log: What is found, in a line.
         progress: (done, total) steps.
     """
 
-    say: Say = lambda text: None
+    log: Log = lambda text: None
     progress: Callable[[int, int], None] = lambda done, total: None
 
 
@@ -101,27 +101,27 @@ def explain(
     Raises:
         InputError: a record lacks the channel that its system is explained from.
     """
-    say, step, budget = listener.say, listener.progress, budget or Budget()
+    log, step, budget = listener.log, listener.progress, budget or Budget()
     faults = data_faults(measurement)
     if faults:
-        return Explanation(content.of_faults(measurement, faults))
+        return Explanation(report_fields.of_faults(measurement, faults))
     if is_casing(measurement):
-        found, studies = explain_casing(measurement, say)
-        return Explanation(content.of_casing(measurement, found), casing=studies)
+        found, studies = explain_casing(measurement, log)
+        return Explanation(report_fields.of_casing(measurement, found), casing=studies)
     settings = settings or SearchSettings()
     evidence = replace(evidence_of(measurement), settings=settings, is_over=lambda: budget.spent)
     faults = mesh_order_faults(evidence)
     if faults:
-        return Explanation(content.of_faults(measurement, faults))
+        return Explanation(report_fields.of_faults(measurement, faults))
     evidence = at_useful_rate(evidence if library is None else replace(evidence, library=library))
     notes = [note for note in (died_away(evidence), too_short(evidence)) if note]
     for note in notes:
-        say(note)
+        log(note)
     sealed = evidence.holdout if evidence.can_be_sealed else ()
     evidence = replace(evidence, holdout=(), sealed=True) if sealed else evidence
-    evidence, noise = with_noise(evidence, measurement, say)
+    evidence, noise = with_noise(evidence, measurement, log)
     step(1, STEPS)
-    state = _searched(evidence, noise, say, fitting_solver(solver), budget, lambda: step(2, STEPS))
+    state = _searched(evidence, noise, log, fitting_solver(solver), budget, lambda: step(2, STEPS))
     step(3, STEPS)
     found = confirmed(state, sealed, measurement)
     if found.state.names != state.names:
@@ -131,13 +131,13 @@ def explain(
     judged = _judged(found, notes)
     step(4, STEPS)
     evidence, noise = found.state.bench.evidence, found.noise
-    return Explanation(content.of_search(measurement, evidence, noise, judged), evidence, noise, found.state)
+    return Explanation(report_fields.of_search(measurement, evidence, noise, judged), evidence, noise, found.state)
 
 
-def with_noise(evidence: Evidence, measurement: Measurement, say: Say) -> tuple[Evidence, NoiseLevel]:
+def with_noise(evidence: Evidence, measurement: Measurement, log: Log) -> tuple[Evidence, NoiseLevel]:
     """The evidence with its records weighted by their noise, and that noise."""
     fit, holdout, noise = noise_of(evidence.fit, evidence.holdout, measurement)
-    say(f"noise {noise.value / evidence.channel.declared_factor:.3g} {evidence.channel.declared_unit} ({noise.method})")
+    log(f"noise {noise.value / evidence.channel.declared_factor:.3g} {evidence.channel.declared_unit} ({noise.method})")
     return replace(evidence, fit=weighted(fit, noise), holdout=weighted(holdout, noise), noise=noise.value), noise
 
 
@@ -148,15 +148,15 @@ def fitting_solver(given: Solver | None) -> Solver:
 
 
 def _searched(
-    evidence: Evidence, noise: NoiseLevel, say: Say, solver: Solver, budget: Budget, is_calibrated: Callable[[], None]
+    evidence: Evidence, noise: NoiseLevel, log: Log, solver: Solver, budget: Budget, is_calibrated: Callable[[], None]
 ) -> State:
     """Calibration and search, over whole records as far as these can be predicted from their start."""
     found = calibrated(replace(evidence, segments=first_segments(evidence)), solver)
     nominal, evidence = found.nominal, found.evidence
     noise = replace(noise, scatter=_scatter(nominal, evidence, solver))
-    bench = Bench(evidence, noise, say, solver, noise, budget=budget, rough=found.rough)
+    bench = Bench(evidence, noise, log, solver, noise, budget=budget, rough=found.rough)
     if found.followed:
-        say(f"one model follows {found.followed} of {len(evidence.fit)} records and is calibrated by these")
+        log(f"one model follows {found.followed} of {len(evidence.fit)} records and is calibrated by these")
     _tell(nominal, bench)
     is_calibrated()
     state, is_lost = State(bench, nominal, nominal), is_lost_by(nominal, evidence)
@@ -167,7 +167,7 @@ def _searched(
         return state
     evidence = replace(evidence, segments=segments_of(nominal.hypothesis, evidence))
     why = "the nominal model loses a record" if is_lost else "small errors grow"
-    say(f"{why}: records are predicted in segments of {evidence.segments.seconds:.3g} s")
+    log(f"{why}: records are predicted in segments of {evidence.segments.seconds:.3g} s")
     nominal = recalibrated(found, evidence, solver)
     noise = replace(noise, scatter=_scatter(nominal, evidence, solver))
     bench = replace(bench, evidence=evidence, noise=noise, floor=noise)
@@ -224,7 +224,7 @@ def first_segments(evidence: Evidence) -> Segments:
 def is_lost_by(nominal: Outcome, evidence: Evidence) -> bool:
     """Whether the nominal model leaves more than half of the fitted records, or without shafts anywhere in one.
 
-    A frequency that hangs on the amplitude runs out of step in the middle of a long decay, which over the whole of it
+    A frequency that depends on the amplitude runs out of step in the middle of a long decay, which over the whole of it
     counts for little, and no law looks right from there. Shafts keep a motion in step; a record of it far from
     resonance may hold little but what is hidden.
     """
@@ -273,4 +273,4 @@ def _is_one(state: State) -> bool | None:
 
 def _tell(nominal: Outcome, bench: Bench) -> None:
     left = bench.excess(nominal).percent
-    bench.say(f"the calibrated nominal model leaves {left:.3g} % of the signal's variance beyond the noise")
+    bench.log(f"the calibrated nominal model leaves {left:.3g} % of the signal's variance beyond the noise")

@@ -1,4 +1,4 @@
-"""The order of a search: causes are added one after another as left-out records bear them out, then doubted."""
+"""The order of a search: causes are added one after another as left-out records validate them, then doubted."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -15,15 +15,15 @@ from gear_damping.explanation.trials.bench import Bench
 from gear_damping.explanation.trials.refit import Refit
 
 
-def search(nominal: Outcome, bench: Bench, begun: Sequence[Refit] = ()) -> State:
-    """Extend the nominal model until nothing significant is missing or nothing more is borne out.
+def search(nominal: Outcome, bench: Bench, carried_on: Sequence[Refit] = ()) -> State:
+    """Extend the nominal model until nothing significant is missing or nothing more is validated.
 
     Args:
         nominal: The calibrated model.
         bench: The records, their noise, and where candidates are tried.
-        begun: Full fits to other evidence that are carried on.
+        carried_on: Full fits to other evidence that are carried on.
     """
-    state = _doubted(_extended(looked(State(bench, nominal, nominal, begun=tuple(begun)))))
+    state = _doubted(_extended(looked(State(bench, nominal, nominal, carried_on=tuple(carried_on)))))
     while state.unsized and not bench.budget.refuses("effects in the place of those of no known size"):
         state = _doubted(_extended(looked(state.without_unsized())))
     return beside_the_others(state) if len(state.accepted) > 1 else state
@@ -84,6 +84,6 @@ def _calibrated_anew(state: State, best: Refit) -> State | None:
     settled = bench.without(best.outcome, best.name)
     if not bench.is_as_good(settled, best.outcome):
         return None
-    bench.say(f"what {best.name} seemed to take is taken without it: the fit had not come to rest")
+    bench.log(f"what {best.name} seemed to take is taken without it: the fit had not converged")
     nominal = state.nominal if state.accepted else settled
     return replace(state, outcome=settled, nominal=nominal, calibrations=state.calibrations + 1)

@@ -32,8 +32,8 @@ class SearchSettings:
         rival_t: t below which two explanations are not told apart.
         rival_evidence: Twice the logarithm of the odds below which they are not told apart either: 100 to 1.
         rival_share: Of the best one's gain that a rival needs which fits the other records better.
-        least_share: Of what is left that a cause must take, so that none is named before a larger rest.
-        least_promise: Of what is left that a further effect must promise, linearised, for a full fit: full fits beside
+        least_share: Of what is left that a cause must take, so that none is named before a larger one.
+        least_promise: Of what is left, a further effect's predicted gain for a full fit: full fits beside
             accepted causes took 2.6 times as much at most (60 of them, in hidden cases of seeds 15300 to 15403).
         seen_in_fit: Fall of the fitted cost in noise variances by which a cause is seen: five deviations.
         most_causes: In one answer.
@@ -43,7 +43,7 @@ class SearchSettings:
         pair_bases: Effects beside which a second one is sought.
         pair_seconds: Effects that are fitted in full beside each.
         pair_share: Of what the first cause took by itself, for a rival to be such a base.
-        exchange_share: Of the best promise, for an effect to be tried in the place of a cause.
+        exchange_share: Of the best predicted gain, for an effect to be tried in the place of a cause.
         bent_misfit: Left by a nominal model whose free shape is no good place to begin.
         most_growth: Of an error of the initial state over a record that is predicted from its start.
         determined: Of a parameter, the half of its 95 % interval, for it to be known.
@@ -51,7 +51,7 @@ class SearchSettings:
         told_level: Chance at which strengths that are none would count as told.
         told_alone_level: The same for one of them alone.
         lost_share: Of the variance of a record or of a stretch of it; a model that leaves more has lost it.
-        taken_by_all: Of the excess that causes must take to be established although a rest is left.
+        taken_by_all: Of the excess that causes must take to be established although a residual is left.
         taken_by_one: The same for a cause that stands alone and has one size in all records, or leaves little.
         random_misfit: A nominal model cannot leave less than noise: below it what looks random is more than that.
         gross_percent: % of the fitted records' variance; so much missing is something, whatever held-out records tell.

@@ -17,7 +17,7 @@ FREELY_NAMED = 2  # causes whose size may be anybody's guess when they are accep
 
 @dataclass(frozen=True)
 class Accepted:
-    """A cause that left-out records bear out.
+    """A cause that left-out records validate.
 
     Args:
         name: The effect.
@@ -50,7 +50,7 @@ class State:
         first_scores: The same beside the nominal model.
         rejected: Full fits of the last round that were not accepted.
         first_fits: Full fits of the first round, the best first.
-        begun: Full fits to other evidence that are carried on.
+        carried_on: Full fits to other evidence that are carried on.
         seen: What the residuals of the nominal model hold; None where that was not found out.
         left: What those of the model hold.
         calibrations: How often the nominal model has been calibrated anew.
@@ -65,7 +65,7 @@ class State:
     first_scores: tuple[Score, ...] = ()
     rejected: tuple[Refit, ...] = ()
     first_fits: tuple[Refit, ...] = ()
-    begun: tuple[Refit, ...] = ()
+    carried_on: tuple[Refit, ...] = ()
     seen: Assessment | None = None
     left: Assessment | None = None
     calibrations: int = 0
@@ -106,15 +106,15 @@ class State:
         return len(self.accepted) >= FREELY_NAMED
 
     @property
-    def growth(self) -> float:
+    def error_amplification(self) -> float:
         """How much an error of the initial state grows over a record, by the model or the best of the first round."""
         best = [fit.outcome for fit in self.first_fits[:1] if fit.is_seen_in_fit]
-        return max(outcome.growth for outcome in (self.nominal, self.outcome, *best))
+        return max(outcome.error_amplification for outcome in (self.nominal, self.outcome, *best))
 
     @property
     def is_unpredictable(self) -> bool:
         """Whether records were predicted over more than they can be: nothing of that counts."""
-        return self.growth > self.bench.settings.most_growth and not self.bench.evidence.segments
+        return self.error_amplification > self.bench.settings.most_growth and not self.bench.evidence.segments
 
     def with_cause(self, place: int, cause: Accepted, outcome: Outcome | None = None) -> "State":
         """The same with another cause in one place, and the model that goes with it."""
@@ -128,13 +128,13 @@ class State:
         bench = replace(self.bench, evidence=replace(evidence, library=library))
         first = tuple(score for score in self.first_scores if score.candidate.name not in names)
         outcome = self.outcome if self.accepted else self.nominal
-        return replace(self, bench=bench, outcome=outcome, first_scores=first, begun=(), unsized=frozenset())
+        return replace(self, bench=bench, outcome=outcome, first_scores=first, carried_on=(), unsized=frozenset())
 
     def accepting(self, best: Refit, rivals: tuple[str, ...] = ()) -> "State":
         """The same with a further cause."""
-        outcome = self.bench.at_rest(best.outcome)
+        outcome = self.bench.until_converged(best.outcome)
         share = min(self.share_taken(outcome), 1.0)
-        self.bench.say(f"{best.name} takes {100 * share:.1f} % of the excess on left-out records")
+        self.bench.log(f"{best.name} takes {100 * share:.1f} % of the excess on left-out records")
         return replace(self, outcome=outcome, accepted=(*self.accepted, Accepted(best.name, best, share, rivals)))
 
     def share_taken(self, outcome: Outcome) -> float:

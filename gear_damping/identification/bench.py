@@ -12,7 +12,7 @@ from torch import Tensor
 from gear_damping.identification.cramer_rao import cramer_rao
 from gear_damping.identification.evaluation import is_repeatable, scores, with_prior
 from gear_damping.identification.known_model.estimate import Estimates
-from gear_damping.identification.known_model.family import START, KnownRuns, range_of, start_of
+from gear_damping.identification.known_model.known_runs import START, KnownRuns, range_of, start_of
 from gear_damping.identification.seeding import seeded_generator
 from gear_damping.physics.damping_ratio import DAMPING_RATIO
 from gear_damping.physics.terms import HeldLoad
@@ -54,7 +54,7 @@ class Bench:
     @property
     def ends(self) -> tuple[float, float]:
         """Smallest and largest ratio of the family, %."""
-        return range_of(self.plan.family)
+        return range_of(self.plan.prior)
 
     @property
     def mean_ratio(self) -> float:
@@ -88,7 +88,7 @@ class Bench:
         picked = torch.zeros(len(self), dtype=torch.bool)
         picked[rows] = True
         runs = self.runs.keep(picked)
-        start = start_of(runs, self.plan.family)
+        start = start_of(runs, self.plan.prior)
         law = self.plan.damping_law
         return KnownRuns(
             runs, law, self.ends, *start, self.records(rows, snr), self.noise(snr)[rows], solver=self.plan.solver
@@ -114,10 +114,10 @@ def bench(plan: SimulationPlan, runs: Runs, levels: Sequence[float], signals: Te
     if any(isinstance(effect, HeldLoad) for effect in plan.model.effects):
         every = torch.ones(len(shown), dtype=torch.bool)
         return Bench(plan, runs, dict.fromkeys(levels), every, shown)
-    _, spread = start_of(runs, plan.family)
+    _, deviation = start_of(runs, plan.prior)
     rms = shown.std(-1, correction=0)
     usual = (float(rms.mean()), float(runs.reference_velocity.mean()))
-    sizes = zip(START, spread.mean(0).tolist(), usual, strict=True)
+    sizes = zip(START, deviation.mean(0).tolist(), usual, strict=True)
     known = {name: max(size, EXACT * unit) for name, size, unit in sizes}
     bounds = {
         snr: cramer_rao(runs, [DAMPING_RATIO], rms * 10 ** (-snr / 20), expected=known, solver=plan.solver)

@@ -92,7 +92,7 @@ def compare_models(
         rmse_percent as {mean, std} over the seeds (std 0 for one seed), the others as means over the seeds
         (None where undefined), and `per_seed` with the values and the 95 % interval of each error), and
         `predictions` of the first seed: name -> true and predicted value of each test window, and of each run with
-        the spread over its windows.
+        the standard deviation over its windows.
 
     Raises:
         ValueError: no models, no seeds, a model named like a control, or what protocol and fits refuse.
@@ -167,8 +167,8 @@ def _summary(per_seed: Sequence[Scores]) -> dict[str, Any]:
     columns = {name: [found[name] for found in per_seed] for name in per_seed[0]}
     errors = columns["rmse_percent"]
     summary: dict[str, Any] = {name: _mean(values) for name, values in columns.items() if name != INTERVAL}
-    spread = stdev(errors) if len(errors) > 1 else 0.0
-    summary["rmse_percent"] = {"mean": fmean(errors), "std": spread}
+    deviation = stdev(errors) if len(errors) > 1 else 0.0
+    summary["rmse_percent"] = {"mean": fmean(errors), "std": deviation}
     summary["per_seed"] = columns
     return summary
 
@@ -180,11 +180,11 @@ def _mean(values: Sequence[float | None]) -> float | None:
 
 
 def _plain_predictions(true: Tensor, predicted: Tensor, runs: Tensor) -> dict[str, Any]:
-    label, mean, spread = means_over_runs(true, predicted, runs)
+    label, mean, deviation = means_over_runs(true, predicted, runs)
     return {
         "true": true.tolist(),
         "predicted": predicted.tolist(),
-        "per_run": {"true": label.tolist(), "predicted": mean.tolist(), "spread": spread.tolist()},
+        "per_run": {"true": label.tolist(), "predicted": mean.tolist(), "spread": deviation.tolist()},
     }
 
 

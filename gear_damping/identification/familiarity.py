@@ -127,8 +127,8 @@ def _power(records: Tensor) -> Tensor:
 
 def _directions(scaled: Tensor, count: int, generator: torch.Generator) -> Tensor:
     """The first principal directions, (time, count), by subspace iteration (Halko, Martinsson and Tropp 2011)."""
-    begun = torch.randn(scaled.shape[1], count, generator=generator, dtype=scaled.dtype)
-    basis = torch.linalg.qr(begun).Q
+    random = torch.randn(scaled.shape[1], count, generator=generator, dtype=scaled.dtype)
+    basis = torch.linalg.qr(random).Q
     for _ in range(ITERATIONS):
         basis = torch.linalg.qr(scaled.T @ (scaled @ basis)).Q
     return basis

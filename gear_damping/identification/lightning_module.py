@@ -213,7 +213,7 @@ class DampingModule(L.LightningModule):
     def predict_record(self, values: Tensor, sampling_rate: float, stride: int = 1) -> RecordPrediction:
         """Predict the damping ratio of one record of any length.
 
-        The spread over overlapping windows is no interval of confidence: the windows share samples, and a
+        The deviation over overlapping windows is no interval of confidence: the windows share samples, and a
         network that is sure of itself can be wrong in all of them.
 
         A network of whole records reads its beginning, as long as those that it was trained on.

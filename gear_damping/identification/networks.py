@@ -9,7 +9,7 @@ from torch import Tensor, nn
 
 TINY = 1e-12  # %^2, added below a root: its slope stays finite, and no error is so small
 HIDDEN = 128  # units of the layer between a record's state and what is said of it
-SMALLEST = 3e-3  # of the spread of the labels: what a deviation stays above, so that no run draws all the gradient
+SMALLEST = 3e-3  # of the deviation of the labels: what a deviation stays above, so that no run draws all the gradient
 LEVELS = (0.9, 0.95)  # probabilities that intervals state; 0.9 is the one in tables
 BINS = 8  # of deviations, in each of which intervals are calibrated
 
@@ -127,8 +127,8 @@ class GaussianNetwork(DampingNetwork):
     def distribution(self, features: Tensor) -> tuple[Tensor, Tensor]:
         """Damping ratio and its standard deviation in %, (batch,) each."""
         read = nn.functional.silu(self.hidden(self.dropout(self.state(features))))
-        place, spread = self.dense(read).unbind(-1)
-        deviation = nn.functional.softplus(spread - 2) + SMALLEST
+        place, raw_deviation = self.dense(read).unbind(-1)
+        deviation = nn.functional.softplus(raw_deviation - 2) + SMALLEST
         return self.label_mean + self.label_scale * place, self.label_scale * deviation
 
     def forward(self, features: Tensor) -> Tensor:
@@ -136,7 +136,7 @@ class GaussianNetwork(DampingNetwork):
         return self.distribution(features)[0]
 
     def loss(self, features: Tensor, labels: Tensor) -> tuple[Tensor, Tensor]:
-        """Mean negative log likelihood of the labels, in units of their spread, and the damping ratios."""
+        """Mean negative log likelihood of the labels, in units of their deviation, and the damping ratios."""
         found, deviation = self.distribution(features)
         return self.unlikelihood(found, deviation, labels), found
 

@@ -61,7 +61,7 @@ class OscillatorFit:
         predictions: By record name, the response channels one after another.
         residuals: The same of what is left.
         rmse: By role, `fit` and `holdout` (None without such records), in the unit of the first channel.
-        converged: Whether the search came to rest.
+        converged: Whether the search converged.
         given: Every parameter of the fitted model by flat name.
         own: What single records have of their own, such as offsets, by name.
         problem: The fit's statement.
@@ -112,8 +112,8 @@ def fit_oscillator(
     spring = any(parameter.name == known.system.spring for parameter in free)
     if segments is None:
         segments = WHOLE if spring else Segments(SEGMENT_TIMES * scale)
-    pieces = in_segments(fit_records, segments)
-    problem = OutputErrorProblem(linear_oscillator(fit_records, known.system), given, free, pieces, solver)
+    segmented = in_segments(fit_records, segments)
+    problem = OutputErrorProblem(linear_oscillator(fit_records, known.system), given, free, segmented, solver)
     fitted = _fitted(problem, spring, scale, report)
     samples = max(float((problem.response.weights > 0).sum()), 1.0)
     problem.noise = float(fitted.prediction.residual.square().sum() / samples) ** 0.5
@@ -160,11 +160,11 @@ def linear_model(
     records: Sequence[FitRecord], known: Known = NOTHING
 ) -> tuple[list[FreeParameter], dict[str, float], float]:
     """Free parameters of the linear oscillator with their starts, its given values, and its characteristic time."""
-    stated, spread, system, mass = known.values, _amplitude(records, known.system), known.system, mass_of(known)
+    stated, amplitude, system, mass = known.values, _amplitude(records, known.system), known.system, mass_of(known)
     name, spring = system.spring, stated.get(system.spring, 1.0) > 0
     rate = ((stated[name] / mass) ** 0.5 if stated.get(name) else 2 * pi * first_frequency(records[0])) * spring
     scale = characteristic_time(records, rate, stated.get("damping_coefficient", 0.0) / mass)
-    given = _stated(known) | {"amplitude": spread} | ({} if spring else {name: 0.0, TIME: scale})
+    given = _stated(known) | {"amplitude": amplitude} | ({} if spring else {name: 0.0, TIME: scale})
     free = [FreeParameter(name, rate**2 * mass, logarithmic=True)] if spring else []
     damping = 2 * FIRST_RATIOS[0] * rate * mass if spring else 1 / scale * mass
     if "damping_ratio" in stated and spring:
@@ -177,12 +177,12 @@ def linear_model(
     for drive, of_drive in system.gains.items():
         if drive in records[0].inputs:
             force = torch.cat([record.inputs[drive] for record in records])
-            per_spread = rate**2 * 2 * FIRST_RATIOS[1] if spring else 1 / scale**2
-            size = per_spread * spread * mass / float(force.std().clamp(min=1e-300))
+            per_amplitude = rate**2 * 2 * FIRST_RATIOS[1] if spring else 1 / scale**2
+            size = per_amplitude * amplitude * mass / float(force.std().clamp(min=1e-300))
             gain = stated.get(of_drive, size)
             free.append(FreeParameter(of_drive, gain, scale=abs(gain) or size))
     if records[0].inputs:
-        free.append(FreeParameter(FORCE, 0.0, scale=(rate**2 if spring else 1 / scale**2) * spread * mass))
+        free.append(FreeParameter(FORCE, 0.0, scale=(rate**2 if spring else 1 / scale**2) * amplitude * mass))
     free += [FreeParameter(one, stated[one], abs(stated[one]), logarithmic=stated[one] > 0) for one in _unsure(known)]
     expected = {LAWS.get(one, one): relative for one, relative in known.uncertainty.items() if stated[one]}
     return [expected_about(p, expected.get(p.name)) for p in free], given, scale
@@ -317,7 +317,7 @@ def _horizons(problem: OutputErrorProblem, scale: float) -> list[float | None]:
 
 def estimates(problem: OutputErrorProblem, fitted: Fitted, scale: float) -> dict[str, Estimate]:
     """What a solution says, with 95 % intervals: parameters, damping ratio, frequency, decrement."""
-    spread = covariance(problem, fitted, CORRELATED_PERIODS * scale)
+    covariances = covariance(problem, fitted, CORRELATED_PERIODS * scale)
     place = {parameter.name: i for i, parameter in enumerate(problem.free)}
     system, mass = problem.model.system, _mass(problem)
     stiffness, gain = system.spring, next(iter(system.gains.values()), "")
@@ -340,7 +340,9 @@ def estimates(problem: OutputErrorProblem, fitted: Fitted, scale: float) -> dict
         quantities["log_decrement"] = (lambda s: 2 * pi * ratio(s) / (1 - ratio(s) ** 2).sqrt(), "1")
     if gain in place:
         quantities[gain] = (lambda s: value(gain, s), "response unit / force unit / s^2")
-    found = {name: (interval(function, fitted.shared, spread), unit) for name, (function, unit) in quantities.items()}
+    found = {
+        name: (interval(function, fitted.shared, covariances), unit) for name, (function, unit) in quantities.items()
+    }
     return {name: Estimate(number, bounds, unit) for name, ((number, bounds), unit) in found.items()}
 
 

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.covariance import covariance_of
 from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency_hz
-from gear_damping.explanation.model.spread import spread_of
 from gear_damping.identification.damping_estimate import DampingCurve
 from gear_damping.identification.decay_rate import ratio_percent
 from gear_damping.identification.output_error.uncertainty import QUANTILE
@@ -43,7 +43,7 @@ def damping_law(outcome: Outcome, evidence: Evidence, ends: tuple[float, float])
     factor = (2 * np.pi * frequency) ** evidence.fit[0].observed.derivatives
     grid = np.geomspace(*ends, POINTS)
     free, count = outcome.problem.free, len(hypothesis.common)
-    moves, sizes = _moves(spread_of(outcome, evidence)[:count, :count])
+    moves, sizes = _moves(covariance_of(outcome, evidence)[:count, :count])
     steps = torch.cat([torch.zeros_like(moves[:1]), moves, -moves])
     coordinates = outcome.fitted.shared[:count] + steps
     values = {p.name: p.value(coordinates[:, i]) for i, p in enumerate(free[:count])}
@@ -58,13 +58,13 @@ def damping_law(outcome: Outcome, evidence: Evidence, ends: tuple[float, float])
     return DampingCurve(grid, ratio, np.stack([ratio - half, ratio + half], axis=1), frequencies)
 
 
-def _moves(spread: Tensor) -> tuple[Tensor, Array]:
+def _moves(covariances: Tensor) -> tuple[Tensor, Array]:
     """Small moves (n, n) of the coordinates that are independent of each other, and standard deviations over them.
 
     Parameters that trade against each other may lie far apart along a curved valley, which their covariance does not
     know: the slopes at its bottom are what it is for.
     """
-    sizes, axes = torch.linalg.eigh((spread + spread.T) / 2)
+    sizes, axes = torch.linalg.eigh((covariances + covariances.T) / 2)
     deviations = sizes.clamp(min=0).sqrt()
     steps = (SHARE * deviations).clamp(max=LARGEST)
     return steps.unsqueeze(1) * axes.T, (deviations / steps.clamp(min=SMALLEST)).numpy()

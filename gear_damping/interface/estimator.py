@@ -83,7 +83,7 @@ class NetworkEstimator(Estimator):
         self.module, self.trained_on = module, module.trained_on
 
     def predict(self, measurement: Measurement, channel: str | None = None) -> Mapping[str, Prediction]:
-        """The mean over the windows of every record, with their spread, which is no interval.
+        """The mean over the windows of every record, with their deviation, which is no interval.
 
         Of a network of whole records, what it says of the beginning of each, with its 95 % interval.
 

@@ -43,7 +43,7 @@ class Identification:
 
     @property
     def converged(self) -> bool:
-        """Whether the search came to rest."""
+        """Whether the search converged."""
         return self.content["converged"]
 
     @property
@@ -74,7 +74,7 @@ def identify(
     model: Model | None = None,
     free: Sequence[str] = (),
     *,
-    say: Callable[[str], None] = lambda text: None,
+    log: Callable[[str], None] = lambda text: None,
     progress: Progress | None = None,
     solver: Solver | None = None,
 ) -> Identification:
@@ -87,7 +87,7 @@ def identify(
             damping law. Where absent, every number that its effects were given, and an oscillator's stiffness and
             force gain. What the file states with an uncertainty is free too, about what it states; initial states and
             unknown zeros of channels always are.
-        say: Told what is found on the way.
+        log: Told what is found on the way.
         progress: Told (done, total) of the fit of an oscillator.
         solver: Settings of the solver.
 
@@ -103,10 +103,10 @@ def identify(
         if not named:
             rule = "names nothing to be fitted, and the model was given no values"
             raise InputError(Problem("free", rule, remedy="for example ['damping_ratio']"))
-        return Identification(measurement, identified_gears.own_fit(measurement, model, named, say, solver))
+        return Identification(measurement, identified_gears.own_fit(measurement, model, named, log, solver))
     if measurement.base.has(Trait.REST):
         return Identification(measurement, identified_oscillator.linear_fit(measurement, progress, solver))
-    return Identification(measurement, identified_gears.nominal_fit(measurement, say, solver))
+    return Identification(measurement, identified_gears.nominal_fit(measurement, log, solver))
 
 
 def refuse_other(measurement: object) -> None:

@@ -14,12 +14,12 @@ from gear_damping.explanation.evidence.excess import excess
 from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.evidence.records import Evidence, evidence_of, with_own_angles
 from gear_damping.explanation.explain import Listener, at_useful_rate, explain, fitting_solver, with_noise
-from gear_damping.explanation.model.fitting import Begun, fit_hypothesis
+from gear_damping.explanation.model.covariance import covariance_of
+from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Given, Hypothesis, Outcome, natural_frequency_hz
 from gear_damping.explanation.model.nominal_gear_pair import angles_of, first_gear_pair
-from gear_damping.explanation.model.spread import spread_of
 from gear_damping.explanation.steps.too_short import too_short
-from gear_damping.explanation.trials.bench import Say
+from gear_damping.explanation.trials.bench import Log
 from gear_damping.explanation.trials.efficient import weighed
 from gear_damping.identification.oscillator import linear_model
 from gear_damping.identification.output_error.least_squares import Rounds
@@ -46,21 +46,21 @@ class Fitted:
     outcome: Outcome
 
 
-def nominal_fit(measurement: Measurement, say: Say, solver: Solver | None) -> Fitted:
+def nominal_fit(measurement: Measurement, log: Log, solver: Solver | None) -> Fitted:
     """The nominal gear pair as `explain` fits it, where no effect may be a cause.
 
     Raises:
         InputError: nothing was measured that a simulation can be compared with, or the data are damaged.
     """
     _refuse_casing(measurement)
-    found = explain(measurement, Listener(say), solver, library={})
+    found = explain(measurement, Listener(log), solver, library={})
     if found.found is None:
         faults = found.content["sentences"][1:]
         raise InputError([Problem("records", fault, source=str(measurement.source)) for fault in faults])
     return Fitted(found.evidence, found.noise, found.found.outcome)
 
 
-def own_fit(measurement: Measurement, model: Model, free: Sequence[str], say: Say, solver: Solver | None) -> Fitted:
+def own_fit(measurement: Measurement, model: Model, free: Sequence[str], log: Log, solver: Solver | None) -> Fitted:
     """A model of one's own with these parameters free; what it was not given is what the file states of the rig.
 
     What neither gives keeps the default that the model prints; where it is free, it begins at what `explain` would
@@ -74,19 +74,19 @@ def own_fit(measurement: Measurement, model: Model, free: Sequence[str], say: Sa
     if model.system.name != evidence.system:
         rule = f"is a {model.system.name}, the records are those of a {evidence.system}"
         raise InputError(Problem("model", rule, remedy="give a model of the measured system"))
-    evidence, noise = with_noise(evidence, measurement, say)
+    evidence, noise = with_noise(evidence, measurement, log)
     first = {k: v for k, v in _first(evidence).items() if k in model.parameters()}
     stated = {k: first[k] for k in map(_flat, evidence.parameters) if k in first}
     names = {model.damping_coefficient if name == DAMPING_RATIO else name for name in free}
-    begun = {name: first[name] for name in names if name in first}
-    given = begun | stated | model.given
+    initial = {name: first[name] for name in names if name in first}
+    given = initial | stated | model.given
     moved = free_parameters(model, given, free, stated, evidence.known.uncertainty)
     hypothesis = Hypothesis(model.system, model.effects, given, moved)
     solver, own = fitting_solver(solver), {}
     if not evidence.has_index:
         evidence = with_own_angles(evidence)
         own = angles_of(hypothesis, evidence, evidence.duration, solver)
-    outcome = fit_hypothesis(hypothesis, evidence, Begun(own=own), Rounds(ITERATIONS), solver=solver)
+    outcome = fit_hypothesis(hypothesis, evidence, InitialValues(own=own), Rounds(ITERATIONS), solver=solver)
     return Fitted(evidence, noise, weighed(outcome, evidence))
 
 
@@ -123,15 +123,15 @@ def content_of(measurement: Measurement, found: Fitted) -> dict[str, Any]:
     """What stands in identification.json."""
     evidence, outcome = found.evidence, found.outcome
     unit, factor = evidence.channel.declared_unit, evidence.channel.declared_factor
-    spread = spread_of(outcome, evidence)
+    covariances = covariance_of(outcome, evidence)
     left = excess(outcome.holdout, evidence.held, found.noise)
     roles = {"fit": (evidence.fitted, outcome.fit_residuals), "holdout": (evidence.held, outcome.holdout)}
     return {
         "system": measurement.system,
         "method": "output_error",
         "channels": [channel.name for channel in evidence.fit[0].channels],
-        "parameters": final_parameters(outcome, spread, evidence),
-        "damping_ratio_percent": damping_ratio(outcome, spread),
+        "parameters": final_parameters(outcome, covariances, evidence),
+        "damping_ratio_percent": damping_ratio(outcome, covariances),
         "natural_frequency_hz": {"value": natural_frequency_hz(outcome.hypothesis.model, outcome.flat_given())},
         "residual": {role: {"rmse": rmse(residuals) / factor, "unit": unit} for role, (_, residuals) in roles.items()},
         "lack_of_fit": {

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.cutting import moved
 from gear_damping.measurement.declaration import Plan
+from gear_damping.measurement.declared_units import Conversion, UnitSystem
 from gear_damping.measurement.encoders import FROM_ENCODERS, base_radius, mean_rotation, transmission_error
-from gear_damping.measurement.own_units import Conversion, UnitSystem
 from gear_damping.measurement.raw import RawChannel, RawRecord
 from gear_damping.measurement.record import Channel, Finding, Quantity, Record
 from gear_damping.measurement.record_checks import check_record, tooth_ratio

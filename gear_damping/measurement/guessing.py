@@ -220,7 +220,7 @@ def _prominence(column: Column) -> float:
         return 0.0
     tiny = np.finfo(float).tiny
     swing = float(column.spectrum.density[_LOWEST:].sum() * column.spectrum.frequency[1]) ** 0.5
-    return swing * (swing / max(column.spread, tiny)) ** 2 / max(column.spectrum.noise, column.step, tiny)
+    return swing * (swing / max(column.deviation, tiny)) ** 2 / max(column.spectrum.noise, column.step, tiny)
 
 
 def _derived(listed: list[Guess], found: Inspection) -> list[Guess]:

@@ -51,7 +51,7 @@ class Column:
         return self.values[self.finite[0] : self.finite[1]]
 
     @property
-    def spread(self) -> float:
+    def deviation(self) -> float:
         """The standard deviation about the line through the values."""
         values = self.inside
         place = np.linspace(-1.0, 1.0, values.size)

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.declaration import Plan, RecordPlan, declared_plan
+from gear_damping.measurement.declared_units import UnitSystem
 from gear_damping.measurement.files import Files, read_yaml
 from gear_damping.measurement.formats.registry import MAX_BYTES, readers
 from gear_damping.measurement.own_system import own_systems
-from gear_damping.measurement.own_units import UnitSystem
 from gear_damping.measurement.record import Finding, Measurement, Quantity, Record
 from gear_damping.schema.values import Problems
 

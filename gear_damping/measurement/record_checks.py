@@ -171,8 +171,8 @@ def share_at_stamps(values: NDArray[np.float64], stamps: NDArray[np.float64]) ->
     level = power + median_filter(power, _NEIGHBOURS, mode="nearest") + _SLOPE_ERROR * (due_power + due_power.mean())
     total = float(np.sum(due_power / level))
     share = float(np.sum((due.conj() * seen).real / level)) / total
-    spread = np.sum(due_power * np.abs(seen - share * due) ** 2 / level**2)
-    return share, float(np.sqrt(spread)) / total
+    variance = np.sum(due_power * np.abs(seen - share * due) ** 2 / level**2)
+    return share, float(np.sqrt(variance)) / total
 
 
 def _quiet(values: NDArray) -> NDArray:

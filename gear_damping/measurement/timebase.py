@@ -102,8 +102,8 @@ def stamped_time(stamps: NDArray[np.float64], key: str, source: str, first: int 
     if away <= GRID_TOLERANCE:
         return TimeBase(stamps, rate)
     if away <= SPLINE_TOLERANCE:
-        spread = 100 * float(np.max(np.abs(np.diff(stamps) * rate - 1)))
-        note = f"time steps vary by up to {spread:.2g} %: resampled to a uniform grid at {rate:.6g} Hz"
+        variation = 100 * float(np.max(np.abs(np.diff(stamps) * rate - 1)))
+        note = f"time steps vary by up to {variation:.2g} %: resampled to a uniform grid at {rate:.6g} Hz"
         return TimeBase(grid, rate, stamps=stamps, notes=(note,))
     written = written_in(stamps)
     if written is not None:

@@ -66,21 +66,21 @@ class Recipe:
         scanned: Other parameters with the value that is tried; freed in the full fit.
         within: Narrower bounds by flat name: beyond them it costs steps and shows no more.
         timed: As `scanned` for times and frequencies, in durations of the longest record and cycles of it.
-        beside: Parameters of other effects that are fitted with it; with the value at which the full fit begins,
-            where they have no size yet.
-        stood_in: Parameters, by flat name, that bend far off where the effect is missing, with the factor by which
-            they are moved for further starts of the full fit.
+        jointly_fitted: Parameters of other effects that are fitted with it; with the value at which the full fit
+            begins, where they have no size yet.
+        restart_scaling: Parameters, by flat name, that bend far off where the effect is missing, with the factor by
+            which they are moved for further starts of the full fit.
         sharpest: Parameters, by own name, whose lower bound is where finer steps would cost more and show no more: one
-            that comes to rest there has run into nothing.
+            that converges there has run into nothing.
         fixed: Parameters that stay.
         neutral: Value of the strengths without the effect.
-        presence: The effect has no neutral value (a stiffness that was rigid): it is tried as a whole, at the
+        non_nested: The effect has no neutral value (a stiffness that was rigid): it is tried as a whole, at the
             size of its strength, with everything that is scanned free from the start.
         in_si: Whether the sizes are in SI.
         options: Options of the effect.
         length: Elements of its lists; as declared where absent.
         replaces: Parameters of the system that strengths take over, by own name: the parameter becomes 0 and is no
-            longer free, and the size of the strength counts in what it was. Goes with `presence`.
+            longer free, and the size of the strength counts in what it was. Goes with `non_nested`.
     """
 
     strengths: Mapping[str, float | None]
@@ -88,12 +88,12 @@ class Recipe:
     scanned: Mapping[str, float] = field(default_factory=dict)
     within: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     timed: Mapping[str, float] = field(default_factory=dict)
-    beside: Mapping[str, float | None] = field(default_factory=dict)
-    stood_in: Mapping[str, float] = field(default_factory=dict)
+    jointly_fitted: Mapping[str, float | None] = field(default_factory=dict)
+    restart_scaling: Mapping[str, float] = field(default_factory=dict)
     sharpest: tuple[str, ...] = ()
     fixed: Mapping[str, float] = field(default_factory=dict)
     neutral: float = 0.0
-    presence: bool = False
+    non_nested: bool = False
     in_si: bool = False
     options: Mapping[str, object] = field(default_factory=dict)
     length: int | None = None

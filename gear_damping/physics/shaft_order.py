@@ -6,7 +6,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
-from gear_damping.physics.moment import Moment, Rotation
+from gear_damping.physics.kinematics import Kinematics, Rotation
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.scales import Scales
 from gear_damping.physics.systems.traits import Trait
@@ -36,18 +36,18 @@ class Eccentricity(TransmissionErrorSource, StiffnessFactor):
         """Cosine and sine parts."""
         return cosine_and_sine(values)
 
-    def error(self, now: Moment, p: Values) -> tuple[Tensor, Tensor]:
+    def error(self, at: Kinematics, p: Values) -> tuple[Tensor, Tensor]:
         """E cos(theta + phase) and its rate."""
         if self.chosen["as_printed"]:
-            return torch.zeros_like(now.displacement), torch.zeros_like(now.displacement)
-        turn = getattr(now, self.shaft)
+            return torch.zeros_like(at.displacement), torch.zeros_like(at.displacement)
+        turn = getattr(at, self.shaft)
         return wave(turn, p), wave_rate(turn, p)
 
-    def factor(self, now: Moment, p: Values) -> Tensor:
+    def factor(self, at: Kinematics, p: Values) -> Tensor:
         """1, or as printed (k + E cos(theta + phase)) / k."""
         if not self.chosen["as_printed"]:
-            return torch.ones_like(now.displacement)
-        return 1 + wave(getattr(now, self.shaft), p) / now.stiffness
+            return torch.ones_like(at.displacement)
+        return 1 + wave(getattr(at, self.shaft), p) / at.stiffness
 
 
 class StiffnessModulation(StiffnessFactor):
@@ -65,9 +65,9 @@ class StiffnessModulation(StiffnessFactor):
         """Cosine and sine parts."""
         return cosine_and_sine(values)
 
-    def factor(self, now: Moment, p: Values) -> Tensor:
+    def factor(self, at: Kinematics, p: Values) -> Tensor:
         """1 + amplitude cos(theta + phase)."""
-        return 1 + wave(getattr(now, self.shaft), p)
+        return 1 + wave(getattr(at, self.shaft), p)
 
 
 def cosine_and_sine(values: Values) -> dict[str, Tensor]:

@@ -17,7 +17,7 @@ from torch import Tensor
 
 from gear_damping.physics.cause import Cause
 from gear_damping.physics.declared import Declared
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.scales import Scales
 from gear_damping.physics.systems.traits import Trait
 
@@ -66,7 +66,7 @@ class MeshStiffness(Effect):
         """Mean stiffness over a mesh period, in the units of `values`; shape (batch,)."""
 
     @abstractmethod
-    def stiffness(self, now: Moment, p: Values) -> Tensor:
+    def stiffness(self, at: Kinematics, p: Values) -> Tensor:
         """K at this instant."""
 
 
@@ -74,7 +74,7 @@ class StiffnessFactor(Effect):
     """A factor on the stiffness."""
 
     @abstractmethod
-    def factor(self, now: Moment, p: Values) -> Tensor:
+    def factor(self, at: Kinematics, p: Values) -> Tensor:
         """The factor at this instant, 1 where the effect does nothing."""
 
 
@@ -82,7 +82,7 @@ class TransmissionErrorSource(Effect):
     """A geometric error e that the flanks impose: delta = x - e."""
 
     @abstractmethod
-    def error(self, now: Moment, p: Values) -> tuple[Tensor, Tensor]:
+    def error(self, at: Kinematics, p: Values) -> tuple[Tensor, Tensor]:
         """E and its rate at this instant."""
 
 
@@ -93,7 +93,7 @@ class Switch(Effect):
     """
 
     @abstractmethod
-    def switches(self, now: Moment, p: Values) -> dict[str, Tensor]:
+    def switches(self, at: Kinematics, p: Values) -> dict[str, Tensor]:
         """The switching functions by name; names start with the effect's own."""
 
 
@@ -101,11 +101,11 @@ class Contact(Switch):
     """The slot that turns delta into the deflection of the flanks; absent, contact never ends."""
 
     @abstractmethod
-    def deflect(self, now: Moment, p: Values) -> tuple[Tensor, Tensor]:
+    def deflect(self, at: Kinematics, p: Values) -> tuple[Tensor, Tensor]:
         """The deflection, and 1 where the flanks touch, else 0."""
 
     @abstractmethod
-    def clearances(self, now: Moment, p: Values) -> tuple[Tensor, Tensor]:
+    def clearances(self, at: Kinematics, p: Values) -> tuple[Tensor, Tensor]:
         """Distances of the flanks on the drive side and on the coast side, 0 where they touch."""
 
 
@@ -113,7 +113,7 @@ class ElasticForce(Effect):
     """A restoring force beside k * deflection."""
 
     @abstractmethod
-    def elastic_force(self, now: Moment, p: Values) -> Tensor:
+    def elastic_force(self, at: Kinematics, p: Values) -> Tensor:
         """The force at this instant, positive where it opposes a positive deflection."""
 
 
@@ -124,7 +124,7 @@ class DampingForce(Effect):
     follows_the_rate: ClassVar[bool] = False  # and nothing else: then it has an equivalent damping coefficient
 
     @abstractmethod
-    def damping_force(self, now: Moment, p: Values) -> Tensor:
+    def damping_force(self, at: Kinematics, p: Values) -> Tensor:
         """The force at this instant, positive where it opposes a positive rate."""
 
 
@@ -132,7 +132,7 @@ class Load(Effect):
     """A force added to the load F(t)."""
 
     @abstractmethod
-    def load_force(self, now: Moment, p: Values) -> Tensor:
+    def load_force(self, at: Kinematics, p: Values) -> Tensor:
         """The force at this instant, positive where it presses the drive flanks together."""
 
 
@@ -140,7 +140,7 @@ class LoadFactor(Effect):
     """A factor on the load of the torques; drawn loads come on top."""
 
     @abstractmethod
-    def load_factor(self, now: Moment, p: Values) -> Tensor:
+    def load_factor(self, at: Kinematics, p: Values) -> Tensor:
         """The factor at this instant, 1 where the effect does nothing."""
 
 
@@ -148,15 +148,15 @@ class LoadPath(Effect):
     """What stands between the torques and the mesh."""
 
     @abstractmethod
-    def transmitted_load(self, now: Moment, p: Values) -> Tensor:
-        """The load that reaches the mesh, from `now.drive_load`, the load of the torques."""
+    def transmitted_load(self, at: Kinematics, p: Values) -> Tensor:
+        """The load that reaches the mesh, from `at.drive_load`, the load of the torques."""
 
 
 class BearingForce(Effect):
     """A force on a gear in its bearing, along the line of action."""
 
     @abstractmethod
-    def bearing_force(self, now: Moment, p: Values) -> Tensor:
+    def bearing_force(self, at: Kinematics, p: Values) -> Tensor:
         """The force at this instant, positive where it pushes as the mesh force does."""
 
 
@@ -178,14 +178,14 @@ class MeshForceFactor(Effect):
     """A factor on the whole force between the flanks, N plus damping."""
 
     @abstractmethod
-    def force_factor(self, now: Moment, p: Values) -> Tensor:
+    def force_factor(self, at: Kinematics, p: Values) -> Tensor:
         """The factor at this instant, 1 where the effect does nothing."""
 
 
 class ExtraStates(Effect):
     """An effect with states of its own; combine it with the slots through which they act."""
 
-    states: ClassVar[dict[str, str]]  # name -> SI unit; `now.extra` has them as `effect.state`
+    states: ClassVar[dict[str, str]]  # name -> SI unit; `at.extra` has them as `effect.state`
 
     def decay_time(self, values: Mapping[str, float]) -> float:
         """Seconds in which its free motion falls to 1/e, by own parameters; 0 where it does not swing by itself."""
@@ -197,8 +197,8 @@ class ExtraStates(Effect):
         return dict.fromkeys(self.states, zero)
 
     @abstractmethod
-    def state_rates(self, now: Moment, p: Values) -> dict[str, Tensor]:
-        """Rates of the states, by own name; `now.mesh_force` and `now.load` are known by then."""
+    def state_rates(self, at: Kinematics, p: Values) -> dict[str, Tensor]:
+        """Rates of the states, by own name; `at.mesh_force` and `at.load` are known by then."""
 
 
 class SystemChange(Effect):

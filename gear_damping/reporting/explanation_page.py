@@ -8,7 +8,7 @@ from typing import Any, Literal, Union, get_args, get_origin
 
 from pydantic.fields import FieldInfo
 
-from gear_damping.explanation.schema import Explanation, Part
+from gear_damping.explanation.report_schema import Explanation, Part
 
 HEAD = """# explanation.json
 

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 from numpy.typing import NDArray
 
-from gear_damping.reporting.style import CYCLE, INK, PALE, colour_of, legend_above, new_figure, say_empty, styled
+from gear_damping.reporting.style import CYCLE, INK, PALE, colour_of, legend_above, mark_empty, new_figure, styled
 
 MOST_PANELS = 12  # that can be read on one page
 _ROW, _MARGINS, _WIDTH = 1.7, (0.55, 0.35), 10.0  # inches; below and above the rows
@@ -72,7 +72,7 @@ def inspection_figure(panels: Sequence[Panel], in_seconds: bool = True) -> Figur
         rows[-1][0].set_xlabel("time / s" if in_seconds else "sample")
         rows[-1][1].set_xlabel("frequency / Hz" if in_seconds else "cycles a sample")
         if not shown:
-            say_empty(rows[0][0], "no channel to show")
+            mark_empty(rows[0][0], "no channel to show")
         if len(panels) > len(shown):
             rows[-1][1].set_title(f"{len(panels) - len(shown)} more channels are not drawn", color=PALE)
     return figure
@@ -94,7 +94,7 @@ def _draw_time(axes: Axes, panel: Panel) -> None:
 def _draw_spectrum(axes: Axes, panel: Panel) -> None:
     curves = [curve for curve in panel.curves if curve.frequency is not None and np.any(curve.density > 0)]
     if not curves:
-        say_empty(axes, "no spectrum")
+        mark_empty(axes, "no spectrum")
         return
     for number, curve in enumerate(panel.curves):
         if curve.frequency is None or not np.any(curve.density > 0):

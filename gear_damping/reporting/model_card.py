@@ -167,7 +167,7 @@ def _limits(states_interval: bool) -> str:
     sure = (
         "Its 95 % interval has the width that held the validation runs: on other rigs it may hold fewer."
         if states_interval
-        else "The spread over windows is no interval of confidence."
+        else "The deviation over windows is no interval of confidence."
     )
     return (
         "It holds for gears like those that it was trained on, as the simulator has them, and was held against no "

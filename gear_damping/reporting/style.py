@@ -90,7 +90,7 @@ def legend_above(axes: Axes, handles: list[Artist] | None = None, columns: int =
         axes.legend(handles=handles, ncols=columns, handlelength=1.8, columnspacing=1.4, **place)
 
 
-def say_empty(axes: Axes, words: str = "no finite values to show") -> None:
+def mark_empty(axes: Axes, words: str = "no finite values to show") -> None:
     """Say in the axes that there is nothing to see."""
     axes.text(0.5, 0.5, words, transform=axes.transAxes, ha="center", va="center", color=PALE, fontsize=11)
 

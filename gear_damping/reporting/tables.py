@@ -116,10 +116,10 @@ def results_rows(results: Mapping[str, Any]) -> list[tuple[str, ...]]:
 
 def _row(name: str, found: Mapping[str, Any], several: bool) -> tuple[str, ...]:
     error, epochs, skill = found["rmse_percent"], found["epochs"], found["skill"]
-    spread = f" ± {error['std']:.4f}" if several and error["std"] is not None else ""
+    std = f" ± {error['std']:.4f}" if several and error["std"] is not None else ""
     return (
         name,
-        number(error["mean"]) + spread,
+        number(error["mean"]) + std,
         number(found["rmse_paper"]),
         percent(found["median_relative_error"]),
         NOTHING if skill is None else f"{round(skill, 3) + 0.0:.3f}",

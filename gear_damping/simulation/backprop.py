@@ -13,7 +13,7 @@ from torch.utils.checkpoint import checkpoint
 
 from gear_damping.physics.model import Model
 from gear_damping.simulation.integrate import groups_of, initial_states, input_units
-from gear_damping.simulation.kernel import Kernel, Members
+from gear_damping.simulation.kernel import Batch, Kernel
 from gear_damping.simulation.layout import Layout
 from gear_damping.simulation.series import Series, SharedSeries
 from gear_damping.simulation.simulate import true_inputs
@@ -54,9 +54,9 @@ def simulate_with_gradient(
     packed = series.shared(driving, input_units(model, inputs, prepared), n_samples - 1, interval.shape[0]).for_each()
     with torch.no_grad():
         groups = groups_of(prepared, interval, n_samples - 1, solver)
-        kernel = _GraphKernel(model, layout, series, Members(fixed, packed[0], fixed.new_zeros(())), start)
+        kernel = _GraphKernel(model, layout, series, Batch(fixed, packed[0], fixed.new_zeros(())), start)
     found = [_displacement(kernel, fixed[:, k], packed[:, :, k], start[:, k], n, solver.block) for n, k in groups]
-    order = torch.cat([lanes for _, lanes in groups]).argsort()
+    order = torch.cat([indices for _, indices in groups]).argsort()
     return torch.cat(found)[order] * prepared.scales.length.unsqueeze(1)
 
 
@@ -67,18 +67,18 @@ class _GraphKernel(Kernel):
     down to rounding, would only multiply its noise.
     """
 
-    def _root(self, ends: tuple, start: Tensor, length: Tensor, members: Members, locked: Tensor) -> Tensor:
+    def _root(self, ends: tuple, start: Tensor, length: Tensor, batch: Batch, active_branch: Tensor) -> Tensor:
         with torch.no_grad():
-            return super()._root(ends, start, length, members, locked)
+            return super()._root(ends, start, length, batch, active_branch)
 
 
 class _GraphStepper(Stepper):
     """A stepper whose members of one interval are never overwritten by those of the next."""
 
-    lane_multiple = 1  # a lane that stood twice would count twice in the gradient
+    gathered_multiple = 1  # a member that stood twice would count twice in the gradient
 
-    def members(self, index: int) -> Members:
-        return Members(self.fixed, self.series[index], self.fixed.new_full((), index))
+    def batch(self, index: int) -> Batch:
+        return Batch(self.fixed, self.series[index], self.fixed.new_full((), index))
 
 
 def _displacement(kernel: Kernel, fixed: Tensor, series: Tensor, state: Tensor, substeps: int, block: int) -> Tensor:
@@ -88,16 +88,16 @@ def _displacement(kernel: Kernel, fixed: Tensor, series: Tensor, state: Tensor, 
     with torch.no_grad():
         stepper.start(state)
 
-    def walked(state: Tensor, locked: Tensor, first: int, last: int) -> tuple[Tensor, Tensor, Tensor]:
-        stepper.locked, rows = locked, []
+    def walked(state: Tensor, active_branch: Tensor, first: int, last: int) -> tuple[Tensor, Tensor, Tensor]:
+        stepper.active_branch, rows = active_branch, []
         for index in range(first, last):
             state = stepper.walk(state, index, substeps)
             rows.append(state[0])
-        return state, stepper.locked, torch.stack(rows)
+        return state, stepper.active_branch, torch.stack(rows)
 
-    found, locked = [state[:1]], stepper.locked
+    found, active_branch = [state[:1]], stepper.active_branch
     for first in range(0, intervals, block):
         last = min(first + block, intervals)
-        state, locked, rows = checkpoint(walked, state, locked, first, last, use_reentrant=False)
+        state, active_branch, rows = checkpoint(walked, state, active_branch, first, last, use_reentrant=False)
         found.append(rows)
     return torch.cat(found).T

@@ -9,7 +9,7 @@ from typing import get_args
 import torch
 from torch import Tensor
 
-from gear_damping.simulation.kernel import Kernel, Members, holds_weights
+from gear_damping.simulation.kernel import Batch, Kernel, holds_weights
 from gear_damping.simulation.native import build
 from gear_damping.simulation.native.source import MOST_VECTORS, kernel_source
 from gear_damping.simulation.native.stepper import NativeStepper
@@ -29,17 +29,17 @@ class Choice:
     """The engine that was chosen: a native library with the members that it steps together, torch.compile, or eager."""
 
     kernel_library: ctypes.CDLL | None = None
-    lanes: int = 1
+    group: int = 1
     is_fused: bool = False
 
     def stepper(self, kernel: Kernel, fixed: Tensor, series: SharedSeries) -> Stepper:
         """A stepper for one batch."""
         if self.kernel_library is not None:
-            return NativeStepper(kernel, fixed, series, self.kernel_library, self.lanes)
+            return NativeStepper(kernel, fixed, series, self.kernel_library, self.group)
         return Stepper(kernel, fixed, series, compiled=self.is_fused)
 
 
-def choose(wish: Engine, kernel: Kernel, members: Members, state: Tensor) -> Choice:
+def choose(wish: Engine, kernel: Kernel, batch: Batch, state: Tensor) -> Choice:
     """The engine for a model: what was asked for, or the fastest that this machine has.
 
     On a CPU that is the native kernel where there is a C++ compiler, on a GPU torch.compile. On a CPU torch.compile is
@@ -55,29 +55,29 @@ def choose(wish: Engine, kernel: Kernel, members: Members, state: Tensor) -> Cho
         return Choice()
     if wish == "auto" and state.is_cuda:
         return Choice(is_fused=True)
-    library = _native(kernel, members, state)
+    library = _native(kernel, batch, state)
     if library is None and wish == "native":
         raise RuntimeError("simulator.solver.engine=native needs a C++ compiler and terms with a native form")
-    return Choice(library, _lanes(library))
+    return Choice(library, _group(library))
 
 
-def _lanes(library: ctypes.CDLL | None) -> int:
+def _group(library: ctypes.CDLL | None) -> int:
     """Members that a kernel steps together at most."""
     return 1 if library is None else build.width_and_options()[0] * MOST_VECTORS
 
 
-def _native(kernel: Kernel, members: Members, state: Tensor) -> ctypes.CDLL | None:
+def _native(kernel: Kernel, batch: Batch, state: Tensor) -> ctypes.CDLL | None:
     if id(kernel) not in _libraries:
-        _libraries[id(kernel)] = _build(kernel, members, state)
+        _libraries[id(kernel)] = _build(kernel, batch, state)
     return _libraries[id(kernel)]
 
 
-def _build(kernel: Kernel, members: Members, state: Tensor) -> ctypes.CDLL | None:
+def _build(kernel: Kernel, batch: Batch, state: Tensor) -> ctypes.CDLL | None:
     if any(holds_weights(part) for part in kernel.parts):
-        say_once("an effect that holds a network runs in plain PyTorch, slower than a compiled kernel")
+        log_once("an effect that holds a network runs in plain PyTorch, slower than a compiled kernel")
         return None
     if build.compiler() is None:
-        say_once("no C++ compiler found: simulation runs without native kernels, slower, with the same results")
+        log_once("no C++ compiler found: simulation runs without native kernels, slower, with the same results")
         return None
     try:
         structure = structure_of(kernel)
@@ -85,14 +85,14 @@ def _build(kernel: Kernel, members: Members, state: Tensor) -> ctypes.CDLL | Non
         if found is not None:
             return found
         with torch.no_grad():
-            source = kernel_source(kernel, members, state, build.width_and_options()[0])
+            source = kernel_source(kernel, batch, state, build.width_and_options()[0])
         return build.compiled(source, structure)
     except (UntraceableError, RuntimeError, OSError, SubprocessError) as problem:
-        say_once(f"no native kernel for this model, it runs slower with the same results ({problem})")
+        log_once(f"no native kernel for this model, it runs slower with the same results ({problem})")
         return None
 
 
-def say_once(message: str) -> None:
+def log_once(message: str) -> None:
     """Log a message the first time it comes up in this process."""
     if message not in _said:
         _said.add(message)

@@ -15,12 +15,12 @@ class Driven:
             `force`, `base_acceleration` in m/s^2 (oscillator), `pinion_torque`, `gear_torque` in N m, `pinion_angle`
             in rad, unwrapped.
         held: Names of those that stay at a sample's value until the next one, as a controller puts them out.
-        departures: How far states of effects depart at the start from where their effect puts them, (batch,) in SI
-            by flat name (`shaft_torsion.twist`).
+        initial_perturbations: Of states of effects, from where their effect puts them at the start, (batch,) in SI by
+            flat name (`shaft_torsion.twist`).
         seed: Of drawn loads.
     """
 
     series: Mapping[str, Tensor] = field(default_factory=dict)
     held: Collection[str] = ()
-    departures: Mapping[str, Tensor] = field(default_factory=dict)
+    initial_perturbations: Mapping[str, Tensor] = field(default_factory=dict)
     seed: int = 0

@@ -24,15 +24,15 @@ def forces_of(runs: Runs, member: int) -> dict[str, Tensor]:
     units = state_units(runs.model)
     state = [runs.states[n][member] / scales.unit_of(parse_unit(units[n]).dimension) for n in units]
     given = _inputs(runs, member)
-    now = equation.moment(runs.time / scales.time, tuple(state), given, prepared.base)
-    now.locked = {name: (value >= 0).to(value) for name, value in equation.switches(now, prepared.terms).items()}
-    equation.rates(now, prepared.base, prepared.terms)
-    contact = now.contact if isinstance(now.contact, Tensor) else torch.ones(count)
+    at = equation.kinematics(runs.time / scales.time, tuple(state), given, prepared.base)
+    at.active_branch = {name: (value >= 0).to(value) for name, value in equation.switches(at, prepared.terms).items()}
+    equation.rates(at, prepared.base, prepared.terms)
+    contact = at.contact if isinstance(at.contact, Tensor) else torch.ones(count)
     return {
-        "stiffness": now.stiffness * scales.force / scales.length,
+        "stiffness": at.stiffness * scales.force / scales.length,
         "contact": contact,
-        "mesh_force": now.mesh_force * scales.force,
-        "load": now.load * scales.force,
+        "mesh_force": at.mesh_force * scales.force,
+        "load": at.load * scales.force,
     }
 
 

@@ -11,9 +11,9 @@ from gear_damping.simulation import torchdiffeq_method
 from gear_damping.simulation.accuracy import substeps_for
 from gear_damping.simulation.compilation import choose
 from gear_damping.simulation.driven import Driven
-from gear_damping.simulation.families import extra_states
-from gear_damping.simulation.kernel import Kernel, Members, holds_weights
+from gear_damping.simulation.kernel import Batch, Kernel, holds_weights
 from gear_damping.simulation.layout import Layout
+from gear_damping.simulation.prior import extra_states
 from gear_damping.simulation.series import Series
 from gear_damping.simulation.solver_settings import Progress, Solver
 from gear_damping.simulation.stepper import Stepper
@@ -30,34 +30,34 @@ def integrate(
 ) -> tuple[list[str], Tensor, Tensor | None]:
     """Names of the states, their values (n_state, batch, time), and the acceleration (batch, time) where it is asked.
 
-    In natural units, as the sampling interval, (batch,), the departures and a held load are. Members that need the same
+    In natural units, as the sampling interval, (batch,), perturbations and a held load are. Members that need the same
     number of sub-steps go together, so that no member's answer depends on its batch-mates.
     """
     layout, series = Layout(prepared), Series(tuple(sorted(driven.series)))
-    fixed, start = layout.pack(prepared, interval), initial_states(model, prepared, driven.departures)
+    fixed, start = layout.pack(prepared, interval), initial_states(model, prepared, driven.initial_perturbations)
     units = input_units(model, driven.series, prepared)
     packed = series.shared(driven.series, units, n_samples - 1, interval.shape[0], driven.held).to(fixed.device)
-    example = Members(fixed, packed[0], fixed.new_zeros(()))
+    example = Batch(fixed, packed[0], fixed.new_zeros(()))
     kernel = kernel_of(model, layout, series, example, start)
     choice = choose(solver.engine, kernel, example, start)
     groups = groups_of(prepared, interval, n_samples - 1, solver)
     states = start.new_empty(*start.shape, n_samples)
     accelerations = start.new_empty(start.shape[1], n_samples) if solver.acceleration else None
     names = ["displacement", "velocity", *kernel.equation.extra_names]
-    work, done = sum(n * len(lanes) for n, lanes in groups), 0
-    for n, lanes in groups:
+    work, done = sum(n * len(indices) for n, indices in groups), 0
+    for n, indices in groups:
         whole = len(groups) == 1
-        some = (fixed, packed) if whole else (fixed[:, lanes].contiguous(), packed.of(lanes))
+        some = (fixed, packed) if whole else (fixed[:, indices].contiguous(), packed.of(indices))
         stepper = choice.stepper(kernel, *some)
-        stepper.acceleration = start.new_empty(len(lanes), n_samples) if solver.acceleration else None
-        share = _share(solver.progress, done, n * len(lanes), work)
-        found = solve(stepper, start if whole else start[:, lanes], n_samples, n, share)
+        stepper.acceleration = start.new_empty(len(indices), n_samples) if solver.acceleration else None
+        share = _share(solver.progress, done, n * len(indices), work)
+        found = solve(stepper, start if whole else start[:, indices], n_samples, n, share)
         if whole:
             return names, found, stepper.acceleration
-        states[:, lanes] = found
+        states[:, indices] = found
         if solver.acceleration:
-            accelerations[lanes] = stepper.acceleration
-        done += n * len(lanes)
+            accelerations[indices] = stepper.acceleration
+        done += n * len(indices)
     return names, states, accelerations
 
 
@@ -84,15 +84,17 @@ def groups_of(prepared: Prepared, interval: Tensor, intervals: int, solver: Solv
     else:
         substeps = torch.full(interval.shape, solver.substeps, device=interval.device)
     members = [(int(n), (substeps == n).nonzero().squeeze(1)) for n in substeps.unique()]
-    return [(n, lanes) for n, all_lanes in members for lanes in all_lanes.split(solver.chunk)]
+    return [(n, indices) for n, together in members for indices in together.split(solver.chunk)]
 
 
-def initial_states(model: Model, prepared: Prepared, departures: Mapping[str, Tensor] | None = None) -> Tensor:
+def initial_states(
+    model: Model, prepared: Prepared, initial_perturbations: Mapping[str, Tensor] | None = None
+) -> Tensor:
     """States at the start, (n_state, batch), and how far those of effects depart from theirs, all in natural units."""
     own = [prepared.base["initial_displacement"], prepared.base["initial_velocity"]]
     extra = extra_states(model, prepared)
-    for name, departure in (departures or {}).items():
-        extra[name] = extra[name] + departure
+    for name, perturbation in (initial_perturbations or {}).items():
+        extra[name] = extra[name] + perturbation
     return torch.stack([*own, *extra.values()])
 
 
@@ -106,7 +108,7 @@ def _share(progress: Progress | None, done: int, own: int, work: int) -> Progres
 _kernels: dict[tuple, Kernel] = {}
 
 
-def kernel_of(model: Model, layout: Layout, series: Series, members: Members, start: Tensor) -> Kernel:
+def kernel_of(model: Model, layout: Layout, series: Series, members: Batch, start: Tensor) -> Kernel:
     """The kernel of a model; models of one structure share it, and what was compiled for it."""
     parts = (model.system, *model.effects)
     key = tuple((type(part), tuple(sorted(part.chosen.items())), id(part) * holds_weights(part)) for part in parts)

@@ -12,8 +12,8 @@ import torch
 from torch import Tensor
 
 from gear_damping.physics.equation import EquationOfMotion
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.model import Model
-from gear_damping.physics.moment import Moment
 from gear_damping.simulation import tsit5
 from gear_damping.simulation.layout import Layout
 from gear_damping.simulation.series import Series
@@ -26,8 +26,8 @@ ROOT_STEPS = 6  # of the bracketed search on the interpolant; one Newton step on
 
 
 @dataclass(frozen=True)
-class Members:
-    """What the kernel knows about some members during one output interval.
+class Batch:
+    """What the kernel knows about a batch during one output interval.
 
     Args:
         fixed: Packed parameters, (rows, batch).
@@ -43,14 +43,14 @@ class Members:
 class Kernel:
     """Steps of one model; holds no member's data, so that it is compiled once for any batch."""
 
-    def __init__(self, model: Model, layout: Layout, series: Series, members: Members, state: Tensor) -> None:
+    def __init__(self, model: Model, layout: Layout, series: Series, batch: Batch, state: Tensor) -> None:
         """Learn the names of the switches from some members and their state."""
         self.parts = (model.system, *model.effects)
         self.equation = EquationOfMotion(model)
         self.layout = layout
         self.series = series
-        now, _, _, terms = self.moment(torch.zeros_like(state[0]), state, members)
-        self.switch_names = tuple(self.equation.switches(now, terms))
+        at, _, _, terms = self.kinematics(torch.zeros_like(state[0]), state, batch)
+        self.switch_names = tuple(self.equation.switches(at, terms))
 
     @cached_property
     def fused_advance(self) -> Callable:
@@ -67,26 +67,26 @@ class Kernel:
         """`rates` as one compiled kernel."""
         return _fused(self.rates)
 
-    def moment(self, u: Tensor, state: Tensor, members: Members) -> tuple[Moment, Tensor, dict, dict]:
-        """The moment at position u of the interval, with interval, base and term values."""
-        interval, base, terms = self.layout.unpack(members.fixed)
-        time = (members.index + u) * interval
-        inputs = self.series.at(members.series, u, interval)
-        return self.equation.moment(time, state.unbind(0), inputs, base), interval, base, terms
+    def kinematics(self, u: Tensor, state: Tensor, batch: Batch) -> tuple[Kinematics, Tensor, dict, dict]:
+        """The kinematics at position u of the interval, with interval, base and term values."""
+        interval, base, terms = self.layout.unpack(batch.fixed)
+        time = (batch.index + u) * interval
+        inputs = self.series.at(batch.series, u, interval)
+        return self.equation.kinematics(time, state.unbind(0), inputs, base), interval, base, terms
 
-    def rates(self, u: Tensor, state: Tensor, members: Members, locked: Tensor) -> Tensor:
-        """Rates of the states per output interval, (n_state, batch), on the locked branch."""
-        now, interval, base, terms = self.moment(u, state, members)
-        now.locked = dict(zip(self.switch_names, locked.unbind(0), strict=True))
-        return torch.stack(self.equation.rates(now, base, terms)) * interval
+    def rates(self, u: Tensor, state: Tensor, batch: Batch, active_branch: Tensor) -> Tensor:
+        """Rates of the states per output interval, (n_state, batch), on the active branch."""
+        at, interval, base, terms = self.kinematics(u, state, batch)
+        at.active_branch = dict(zip(self.switch_names, active_branch.unbind(0), strict=True))
+        return torch.stack(self.equation.rates(at, base, terms)) * interval
 
-    def switches(self, u: Tensor, state: Tensor, members: Members) -> Tensor:
+    def switches(self, u: Tensor, state: Tensor, batch: Batch) -> Tensor:
         """Every switching function, (n_switch, batch)."""
-        now, _, _, terms = self.moment(u, state, members)
-        return torch.stack(list(self.equation.switches(now, terms).values()))
+        at, _, _, terms = self.kinematics(u, state, batch)
+        return torch.stack(list(self.equation.switches(at, terms).values()))
 
-    def advance(self, state: Tensor, start: Tensor, length: Tensor, members: Members, locked: Tensor) -> tuple:
-        """One step on the locked branch.
+    def advance(self, state: Tensor, start: Tensor, length: Tensor, batch: Batch, active_branch: Tensor) -> tuple:
+        """One step on the active branch.
 
         Returns:
             State at the end, rates at the start and at the end, and the smallest margin to the edge
@@ -95,42 +95,42 @@ class Kernel:
         """
 
         def rates(u: Tensor, inner: Tensor) -> Tensor:
-            return self.rates(u, inner, members, locked)
+            return self.rates(u, inner, batch, active_branch)
 
         end, first = tsit5.step(rates, state, start, length)
         if not self.switch_names:
             return (end,)
         last = rates(start + length, end)
-        margin = self._margin(start + length, end, members, locked)
+        margin = self._margin(start + length, end, batch, active_branch)
         for part in WATCHED:
             inner = _interpolate(part, length, state, end, first, last)
-            margin = torch.minimum(margin, self._margin(start + part * length, inner, members, locked))
+            margin = torch.minimum(margin, self._margin(start + part * length, inner, batch, active_branch))
         return end, first, last, margin
 
-    def cross(self, ends: tuple, start: Tensor, length: Tensor, members: Members, locked: Tensor) -> tuple:
+    def cross(self, ends: tuple, start: Tensor, length: Tensor, batch: Batch, active_branch: Tensor) -> tuple:
         """The first crossing inside a step that left its branch.
 
         Args:
             ends: State at start and end of that step, rates at start and end.
             start: Position of its start.
             length: Its length.
-            members: The members that crossed.
-            locked: The branch they were on.
+            batch: The members that crossed.
+            active_branch: The branch they were on.
 
         Returns:
             State and position of the crossing, and the branch behind it.
         """
-        part = self._root(ends, start, length, members, locked)
+        part = self._root(ends, start, length, batch, active_branch)
 
         def rates(u: Tensor, inner: Tensor) -> Tensor:
-            return self.rates(u, inner, members, locked)
+            return self.rates(u, inner, batch, active_branch)
 
         state, _ = tsit5.step(rates, ends[0], start, part * length)
         position = start + part * length
         slope = rates(position, state)
         reach = REACH * length
-        here = self._signed(position, state, members, locked)
-        there = self._signed(position + reach, state + reach * slope, members, locked)
+        here = self._signed(position, state, batch, active_branch)
+        there = self._signed(position + reach, state + reach * slope, batch, active_branch)
         smallest = here.argmin(0, keepdim=True)
         changes = there - here
         value, change = here.gather(0, smallest)[0], changes.gather(0, smallest)[0]
@@ -138,14 +138,14 @@ class Kernel:
         shift = torch.minimum(torch.maximum(shift, -MOST_SHIFT * part * length), MOST_SHIFT * (1 - part) * length)
         # Several switches may turn at one instant; one that comes back from rounding does not turn.
         turning = (changes < 0) & ((here <= value) | (here < SAME_INSTANT * changes.abs()))
-        return state + shift * slope, position + shift, (locked - turning.to(locked)).abs()
+        return state + shift * slope, position + shift, (active_branch - turning.to(active_branch)).abs()
 
-    def _root(self, ends: tuple, start: Tensor, length: Tensor, members: Members, locked: Tensor) -> Tensor:
+    def _root(self, ends: tuple, start: Tensor, length: Tensor, batch: Batch, active_branch: Tensor) -> Tensor:
         """Share of the step at which the margin on the interpolant first falls to zero (Illinois)."""
 
         def margin(part: Tensor) -> Tensor:
             inner = _interpolate(part, length, *ends)
-            return self._margin(start + part * length, inner, members, locked)
+            return self._margin(start + part * length, inner, batch, active_branch)
 
         low, high = torch.zeros_like(start), torch.ones_like(start)
         at_low, at_high = margin(low).clamp(min=0), margin(high)
@@ -167,11 +167,11 @@ class Kernel:
             low, high = torch.where(left, low, middle), torch.where(left, middle, high)
         return _secant(low, high, at_low, at_high)
 
-    def _signed(self, u: Tensor, state: Tensor, members: Members, locked: Tensor) -> Tensor:
-        return self.switches(u, state, members) * (2 * locked - 1)
+    def _signed(self, u: Tensor, state: Tensor, batch: Batch, active_branch: Tensor) -> Tensor:
+        return self.switches(u, state, batch) * (2 * active_branch - 1)
 
-    def _margin(self, u: Tensor, state: Tensor, members: Members, locked: Tensor) -> Tensor:
-        return self._signed(u, state, members, locked).amin(0)
+    def _margin(self, u: Tensor, state: Tensor, batch: Batch, active_branch: Tensor) -> Tensor:
+        return self._signed(u, state, batch, active_branch).amin(0)
 
 
 def holds_weights(part: object) -> bool:
@@ -181,17 +181,17 @@ def holds_weights(part: object) -> bool:
 
 
 def _fused(function: Callable) -> Callable:
-    """Compile a function of (..., members, locked); the compiler sees nothing but tensors."""
+    """Compile a function of (..., batch, active_branch); the compiler sees nothing but tensors."""
 
     def flat(*given: Tensor | tuple) -> Tensor | tuple:
-        *front, fixed, series, index, locked = given
-        return function(*front, Members(fixed, series, index), locked)
+        *front, fixed, series, index, active_branch = given
+        return function(*front, Batch(fixed, series, index), active_branch)
 
     compiled = torch.compile(flat, dynamic=True, fullgraph=True)
 
-    def call(*given: Tensor | tuple | Members) -> Tensor | tuple:
-        *front, members, locked = given
-        return compiled(*front, members.fixed, members.series, members.index, locked)
+    def call(*given: Tensor | tuple | Batch) -> Tensor | tuple:
+        *front, batch, active_branch = given
+        return compiled(*front, batch.fixed, batch.series, batch.index, active_branch)
 
     return call
 

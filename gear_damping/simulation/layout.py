@@ -1,6 +1,6 @@
 """Packs what the equation needs of each member into the rows of one tensor, and back.
 
-One tensor of shape (rows, batch) can be gathered by lane and handed to a compiled kernel.
+One tensor of shape (rows, batch) can be gathered by member and handed to a compiled kernel.
 """
 
 from collections.abc import Mapping

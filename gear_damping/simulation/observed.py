@@ -3,8 +3,8 @@
 import torch
 from torch import Tensor
 
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.model import Prepared
-from gear_damping.physics.moment import Moment
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import LoadPath
 from gear_damping.simulation.integrate import input_units
@@ -92,19 +92,19 @@ def _through_shaft(runs: Runs) -> Tensor:
     if not paths:
         return zero
     prepared = runs.model.prepare(runs.values)
-    now = _moment(runs, prepared)
-    now.drive_load = runs.model.system.load(now, prepared.base) + torch.zeros_like(now.displacement)
-    beyond = sum((path.transmitted_load(now, prepared.terms[path.name]) - now.drive_load for path in paths), zero)
+    at = _kinematics(runs, prepared)
+    at.drive_load = runs.model.system.load(at, prepared.base) + torch.zeros_like(at.displacement)
+    beyond = sum((path.transmitted_load(at, prepared.terms[path.name]) - at.drive_load for path in paths), zero)
     return (beyond * prepared.scales.force).T / _participation(runs)[0]
 
 
-def _moment(runs: Runs, prepared: Prepared) -> Moment:
+def _kinematics(runs: Runs, prepared: Prepared) -> Kinematics:
     """Every instant of every run in natural units, (time, batch)."""
     units = natural_units(runs.model, prepared)
     x, v, *extra = (runs.states[name].T / unit for name, unit in units.items())
     given = {n: runs.inputs[n].T / unit for n, unit in input_units(runs.model, runs.inputs, prepared).items()}
     names = list(units)[2:]
-    return Moment(runs.time, x, v, extra=dict(zip(names, extra, strict=True)), inputs=given)
+    return Kinematics(runs.time, x, v, extra=dict(zip(names, extra, strict=True)), inputs=given)
 
 
 def _integral(rate: Tensor, sampling_rate: float) -> Tensor:

@@ -14,7 +14,7 @@ from gear_damping.errors import InputError, Problem
 from gear_damping.physics.model import Model
 from gear_damping.simulation.cache import load_runs, save_runs
 from gear_damping.simulation.driven import Driven
-from gear_damping.simulation.families import Family, Label, draw_values
+from gear_damping.simulation.prior import Label, Prior, draw_values
 from gear_damping.simulation.runs import Runs
 from gear_damping.simulation.simulate import simulate
 from gear_damping.simulation.solver_settings import Progress, Solver
@@ -30,7 +30,7 @@ class SimulationPlan:
     Args:
         model: Base system and effects.
         given: Nominal values that differ from the defaults, SI by flat name.
-        family: What varies from run to run.
+        prior: What varies from run to run.
         n_runs: How many runs.
         sampling_rate: Output samples per second.
         n_samples: Samples of each run.
@@ -44,7 +44,7 @@ class SimulationPlan:
 
     model: Model
     given: Mapping[str, float]
-    family: Family
+    prior: Prior
     n_runs: int
     sampling_rate: float
     n_samples: int
@@ -61,7 +61,7 @@ class SimulationPlan:
         return {
             "model": {part.name: dict(part.chosen) for part in parts},
             "given": {k: list(v) if isinstance(v, Sequence) else v for k, v in sorted(self.given.items())},
-            "family": {**asdict(self.family), "spreads": {k: asdict(v) for k, v in self.family.spreads.items()}},
+            "family": _as_family(self.prior),
             "n_runs": self.n_runs,
             "sampling_rate": self.sampling_rate,
             "n_samples": self.n_samples,
@@ -90,7 +90,7 @@ def run_plan(plan: SimulationPlan, *, folder: Path | None = None, progress: Prog
     """
     generator = torch.Generator().manual_seed(plan.seed)
     label = Label(plan.damping_law, plan.damping_ratio_percent)
-    values, velocity = draw_values(plan.model, plan.given, plan.family, plan.n_runs, generator, label)
+    values, velocity = draw_values(plan.model, plan.given, plan.prior, plan.n_runs, generator, label)
     runs = load_runs(folder, plan.hash, plan.model, values) if folder else None
     if runs is None:
         runs = simulate(
@@ -105,6 +105,12 @@ def run_plan(plan: SimulationPlan, *, folder: Path | None = None, progress: Prog
             save_runs(folder, plan.hash, plan.describe(), runs)
     _refuse_divergence(plan, runs)
     return replace(runs, reference_velocity=velocity).keep(runs.good)
+
+
+def _as_family(prior: Prior) -> dict:
+    """The prior in the words of the configuration."""
+    plain = asdict(prior)
+    return {"spreads" if key == "distributions" else key: value for key, value in plain.items()}
 
 
 def _refuse_divergence(plan: SimulationPlan, runs: Runs) -> None:

@@ -13,7 +13,7 @@ from gear_damping.physics.model import Model
 from gear_damping.physics.terms import HeldLoad
 from gear_damping.simulation.compilation import choose
 from gear_damping.simulation.integrate import initial_states, kernel_of
-from gear_damping.simulation.kernel import Kernel, Members
+from gear_damping.simulation.kernel import Batch, Kernel
 from gear_damping.simulation.layout import Layout
 from gear_damping.simulation.series import Series
 from gear_damping.simulation.solver_settings import Solver
@@ -41,17 +41,17 @@ def prepare_kernels(planned: Sequence[Planned], solver: Solver | None = None) ->
     """
     if (solver or Solver()).engine not in ("auto", "native"):
         return
-    wanted = {id(kernel): (kernel, members, state) for kernel, members, state in map(_kernel, planned)}
+    wanted = {id(kernel): (kernel, batch, state) for kernel, batch, state in map(_kernel, planned)}
     with ThreadPoolExecutor(cpu_count() or 1) as pool:
         list(pool.map(lambda one: choose("auto", *one), wanted.values()))
 
 
-def _kernel(planned: Planned) -> tuple[Kernel, Members, Tensor]:
+def _kernel(planned: Planned) -> tuple[Kernel, Batch, Tensor]:
     """The kernel of a model, with members and states of the right shapes."""
     model, prepared = planned.model, planned.model.prepare(planned.values)
     names = {*planned.inputs, *(HELD_LOAD for effect in model.effects if isinstance(effect, HeldLoad))}
     layout, series = Layout(prepared), Series(tuple(sorted(names)))
     fixed, state = layout.pack(prepared, prepared.scales.time), initial_states(model, prepared)
-    members = Members(fixed, fixed.new_zeros(sum(series.heights), fixed.shape[1]), fixed.new_zeros(()))
+    batch = Batch(fixed, fixed.new_zeros(sum(series.heights), fixed.shape[1]), fixed.new_zeros(()))
     with torch.no_grad():
-        return kernel_of(model, layout, series, members, state), members, state
+        return kernel_of(model, layout, series, batch, state), batch, state

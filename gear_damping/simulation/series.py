@@ -51,9 +51,9 @@ class SharedSeries:
         """What drives every member in one interval, natural units, (rows, batch)."""
         return self.coefficients[interval][:, self.source] * self.factor
 
-    def of(self, lanes: Tensor) -> "SharedSeries":
+    def of(self, indices: Tensor) -> "SharedSeries":
         """That of some members."""
-        return replace(self, source=self.source[lanes], factor=self.factor[:, lanes].contiguous())
+        return replace(self, source=self.source[indices], factor=self.factor[:, indices].contiguous())
 
     def to(self, device: torch.device) -> "SharedSeries":
         """On a device."""

@@ -54,22 +54,23 @@ def simulate(
     driven = inputs if isinstance(inputs, Driven) else Driven(dict(inputs or {}))
     if _is_alone(model, values):
         twins, moved = (
-            {name: value.repeat_interleave(2, -1) for name, value in one.items()} for one in (values, driven.departures)
+            {name: value.repeat_interleave(2, -1) for name, value in one.items()}
+            for one in (values, driven.initial_perturbations)
         )
-        beside = replace(driven, departures=moved)
+        beside = replace(driven, initial_perturbations=moved)
         both = simulate(model, twins, sampling_rate=sampling_rate, n_samples=n_samples, inputs=beside, solver=solver)
         alone = both.keep(torch.tensor([True, False]))
         return replace(alone, n_diverged=int((alone.status == DIVERGED).sum()))
     prepared = model.prepare(values)
     batch = prepared.base["equivalent_mass"].shape[0]
     _check_inputs(model, driven.series, (batch, n_samples))
-    _check_departures(model, driven.departures)
+    _check_initial_perturbations(model, driven.initial_perturbations)
     true = true_inputs(model, values, driven.series, batch)
     scale = natural_units(model, prepared)
     natural = replace(
         driven,
         series=true | _held_loads(model, values, prepared, n_samples - 1, driven.seed),
-        departures={name: value / scale[name] for name, value in driven.departures.items()},
+        initial_perturbations={name: value / scale[name] for name, value in driven.initial_perturbations.items()},
     )
     interval = 1 / (sampling_rate * prepared.scales.time)
     names, states, rates = integrate(model, prepared, natural, interval, n_samples, solver or Solver())
@@ -113,11 +114,11 @@ def _check_inputs(model: Model, inputs: Mapping[str, Tensor], shape: tuple[int, 
         raise InputError(problems)
 
 
-def _check_departures(model: Model, departures: Mapping[str, Tensor]) -> None:
+def _check_initial_perturbations(model: Model, initial_perturbations: Mapping[str, Tensor]) -> None:
     known = list(effect_state_units(model))
     problems = [
-        Problem(f"departures.{name}", "no effect of the model has such a state", remedy=nearest(name, known))
-        for name in departures
+        Problem(f"initial_perturbations.{name}", "no effect of the model has such a state", remedy=nearest(name, known))
+        for name in initial_perturbations
         if name not in known
     ]
     if problems:

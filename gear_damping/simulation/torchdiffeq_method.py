@@ -15,12 +15,12 @@ from torchdiffeq._impl.solvers import FixedGridODESolver
 
 from gear_damping.simulation.stepper import Stepper
 
-METHOD = "region_locked_tsit5"
+METHOD = "active_branch_tsit5"
 KNOWN_VERSIONS = ("0.2.5",)
 OPTIONS = ("stepper", "substeps", "progress")
 
 
-class RegionLockedTsit5(FixedGridODESolver):
+class ActiveBranchTsit5(FixedGridODESolver):
     """Walks the output grid 0, 1, 2, … with a `Stepper`.
 
     Options of `odeint`: `stepper`, `substeps` per output interval, `progress(done, total)` or None.
@@ -64,4 +64,4 @@ def register() -> None:
     if torchdiffeq.__version__ not in KNOWN_VERSIONS:
         wanted = " or ".join(KNOWN_VERSIONS)
         raise RuntimeError(f"torchdiffeq {torchdiffeq.__version__} was never tested here; install {wanted}")
-    importlib.import_module("torchdiffeq._impl.odeint").SOLVERS[METHOD] = RegionLockedTsit5
+    importlib.import_module("torchdiffeq._impl.odeint").SOLVERS[METHOD] = ActiveBranchTsit5

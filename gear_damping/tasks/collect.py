@@ -13,10 +13,10 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     """Write the sweep's files into its own folder, or the index; returns how far the sweep is, or how many runs."""
     if settings.sweep is None:
         count = write_index(OUTPUTS.absolute())
-        statements.say(f"wrote {OUTPUTS / INDEX}: {count} runs and sweeps")
+        statements.log(f"wrote {OUTPUTS / INDEX}: {count} runs and sweeps")
         return {"runs": count}
     found = summarise(settings.sweep)
-    statements.say(f"{found.finished} of {found.jobs} jobs are finished")
+    statements.log(f"{found.finished} of {found.jobs} jobs are finished")
     for path in found.files:
-        statements.say(f"wrote {path}")
+        statements.log(f"wrote {path}")
     return {"jobs": found.jobs, "finished": found.finished}

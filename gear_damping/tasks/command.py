@@ -29,7 +29,7 @@ from gear_damping.tasks.sweep.folder import (
 )
 from gear_damping.tasks.sweep.job import limit_cores, run_swept
 from gear_damping.tasks.sweep.orphan import end_with_launcher, launching
-from gear_damping.tasks.wrong_declaration import WRONG_INPUT, say_problems, start_logging
+from gear_damping.tasks.wrong_declaration import WRONG_INPUT, log_problems, start_logging
 
 log = logging.getLogger("gear_damping")
 SCRIPT = "gear-damping"  # as pyproject.toml installs it: the shell's completion is for this word
@@ -47,7 +47,7 @@ def main(arguments: Sequence[str]) -> int:
     typed = read_command_line(arguments)
     problems = [*typed.problems, *_problems_of(typed)]
     if problems:
-        say_problems(InputError(problems))
+        log_problems(InputError(problems))
         return WRONG_INPUT
     _folders.clear()
     callback.begun.clear()
@@ -79,7 +79,7 @@ def _sweep(typed: CommandLine) -> int:
         log.info("going on with the sweep in %s; %s=… begins another", begun, PLACE)
         overrides.append(f"{PLACE}={begun}")
     if place is not None and (problem := problem_with_place(sweep, Path(place))) is not None:
-        say_problems(InputError(problem))
+        log_problems(InputError(problem))
         return WRONG_INPUT
     with launching():
         code = _run(typed.flags, overrides)
@@ -87,7 +87,7 @@ def _sweep(typed: CommandLine) -> int:
         try:
             found = summarise(folder)
         except InputError as error:
-            say_problems(error)
+            log_problems(error)
             return WRONG_INPUT
         log.info("%d of %d jobs are finished; the sweep lies in %s", found.finished, found.jobs, folder)
         if not found.is_complete:

@@ -18,7 +18,7 @@ from gear_damping.reporting.run_report import REPORTED
 from gear_damping.tasks.lease import leased
 from gear_damping.tasks.own_parts import errors_in, plugins_of
 from gear_damping.tasks.run_folder import FAILED, FINISHED, INTERRUPTED, RunFolder, problem_with_used
-from gear_damping.tasks.wrong_declaration import WRONG_INPUT, say_problems
+from gear_damping.tasks.wrong_declaration import WRONG_INPUT, log_problems
 
 if TYPE_CHECKING:
     from gear_damping.config.light import InspectSettings
@@ -34,7 +34,7 @@ def run_alone(config: Mapping[str, Any], origin: Origin, folder: Path) -> int:
         with leased(folder):
             return run_job(config, origin, folder)
     except OSError as error:  # of the lease: those of the job were said
-        say_problems(InputError(_not_written(error, folder)))
+        log_problems(InputError(_not_written(error, folder)))
         return WRONG_INPUT
 
 
@@ -43,12 +43,12 @@ def run_job(config: Mapping[str, Any], origin: Origin, folder: Path) -> int:
     signal.signal(signal.SIGTERM, _interrupt)
     used = problem_with_used(folder, config)
     if used is not None:
-        say_problems(InputError(used))
+        log_problems(InputError(used))
         return WRONG_INPUT
     try:
         run_folder = RunFolder(folder, config, origin)
     except OSError as error:
-        say_problems(InputError(_not_written(error, folder)))
+        log_problems(InputError(_not_written(error, folder)))
         return WRONG_INPUT
     try:
         with errors_in(plugins_of(config), origin.of):
@@ -113,7 +113,7 @@ def _placed(problem: Problem, config: Mapping[str, Any], origin: Origin) -> Prob
 
 
 def _failed(run_folder: RunFolder, error: InputError) -> int:
-    say_problems(error)
+    log_problems(error)
     _close(run_folder, FAILED, str(error))
     return WRONG_INPUT
 

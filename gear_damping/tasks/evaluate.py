@@ -43,14 +43,14 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     generator = torch.Generator().manual_seed(plan.seed + 2)
     made = bench(plan, runs, _levels(settings), signals=runs.record(generator, skip=(SENSOR_NOISE,)))
     _require_alike(modules, plan, made)
-    content = {"family": plan.family.name, "test_runs": len(made), "irregular_runs": int((~made.regular).sum())}
+    content = {"family": plan.prior.name, "test_runs": len(made), "irregular_runs": int((~made.regular).sum())}
     content["snr_db"] = {f"{snr:g}": _level(made, snr, modules, settings) for snr in made.bounds}
     content["effects"] = asked_with_effects(others, _by_name(modules), _levels(settings), made.mean_ratio)
     first = _first(content)
     folder.write_json("evaluation.json", {**first, **content})
     text = "\n\n".join([evaluation_table(content), ratio_table(content), *effect_table(content)])
     folder.write_text("evaluation.txt", text)
-    statements.say(text)
+    statements.log(text)
     figures.save(evaluation_figure(content), folder.path / "evaluation.png")
     _draw_pairs(made, next(iter(modules.values())), folder)
     return first

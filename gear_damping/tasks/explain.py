@@ -24,7 +24,7 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     measurement = load_measurement(settings.measurement_path, plugins=settings.measurement_plugins)
     folder.add_inputs(measurement.files)
     with progress_bar("explaining", settings.progress) as progress:
-        listener, solver = Listener(statements.say, progress), settings.simulator.solver
+        listener, solver = Listener(statements.log, progress), settings.simulator.solver
         budget = Budget(settings.explain_minutes)
         found = explain(measurement, listener, solver, _library(settings), budget, settings.search)
     folder.write_json("explanation.json", found.content)
@@ -32,8 +32,8 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
         _write_extended(folder.path / EXTENDED, found, measurement)
     write_report(folder.path, found, {"command": folder.record["command"], "measurement": str(measurement.source)})
     for sentence in found.content["sentences"]:
-        statements.say(sentence)
-    statements.say(f"verdict: {found.content['verdict']}; the report is {folder.path / 'report.html'}")
+        statements.log(sentence)
+    statements.log(f"verdict: {found.content['verdict']}; the report is {folder.path / 'report.html'}")
     return _metrics(found.content)
 
 

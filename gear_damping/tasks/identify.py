@@ -23,7 +23,7 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     folder.add_inputs(measurement.files)
     refuse_faults(measurement)
     for finding in measurement.findings:
-        statements.say(f"note: {finding.record} {finding.channel}: {finding.message}")
+        statements.log(f"note: {finding.record} {finding.channel}: {finding.message}")
     if settings.checkpoint is not None:
         return _by_checkpoint(settings, measurement, folder)
     if settings.model.of_records:
@@ -36,7 +36,7 @@ def _fitted(settings: Settings, measurement: Measurement) -> Identification:
     solver = settings.simulator.solver
     model = Model.of_settings(settings.simulator) if settings.simulator.extended else None
     with progress_bar("fitting", settings.progress) as progress:
-        return identify(measurement, model, say=statements.say, progress=progress, solver=solver)
+        return identify(measurement, model, log=statements.log, progress=progress, solver=solver)
 
 
 def _written(found: Identification, folder: RunFolder) -> dict[str, Any]:
@@ -44,9 +44,9 @@ def _written(found: Identification, folder: RunFolder) -> dict[str, Any]:
     content, text = found.content, found.table()
     folder.write_json("identification.json", content)
     folder.write_text("identification.txt", text)
-    statements.say(text)
+    statements.log(text)
     if not found.converged:
-        statements.say("the search did not converge: take the figures as a first guess")
+        statements.log("the search did not converge: take the figures as a first guess")
     figures.save(found.plot(), folder.path / "identification.png")
     ratio, frequency = found.damping_ratio_percent, content["natural_frequency_hz"]
     left = content["residual"]
@@ -68,7 +68,7 @@ def _by_estimators(
     text = found.table()
     folder.write_json("damping.json", found.content)
     folder.write_text("damping.txt", text)
-    statements.say(text)
+    statements.log(text)
     figures.save(found.plot(), folder.path / "damping.png")
     return {f"{name}/damping_ratio_percent": mean for name, mean in found.mean_percent.items()}
 
@@ -111,17 +111,17 @@ def _by_network(
     unknown = [name for name, one in found.items() if one.familiarity is None]
     if unknown:
         why = "the network does not say what its training was like, or they are shorter than its runs"
-        statements.say(f"note: whether {', '.join(unknown)} are like the training was not looked at: {why}")
+        statements.log(f"note: whether {', '.join(unknown)} are like the training was not looked at: {why}")
     for name, one in found.items():
         if one.outside:
-            statements.say(f"warning: {name} lies outside what the network was trained on: {'; '.join(one.outside)}")
+            statements.log(f"warning: {name} lies outside what the network was trained on: {'; '.join(one.outside)}")
     for name, one in found.items():
         if one.interval95:
             low, high = one.interval95
             said = f"damping ratio {one.damping_ratio_percent:.4f} % of critical, 95 % interval {low:.4f} to {high:.4f}"
-            statements.say(f"{name}: {said}")
-    statements.say(f"damping ratio {mean:.4f} % of critical, the mean over {len(found)} records")
+            statements.log(f"{name}: {said}")
+    statements.log(f"damping ratio {mean:.4f} % of critical, the mean over {len(found)} records")
     holds = "holds only for gears like those that the network was trained on"
     sure = all(one.interval95 for one in found.values())
-    statements.say(f"it {holds}" if sure else f"a network of windows gives no interval; what it says {holds}")
+    statements.log(f"it {holds}" if sure else f"a network of windows gives no interval; what it says {holds}")
     return {"damping_ratio_percent": mean}

@@ -27,7 +27,7 @@ from gear_damping.tasks.run_folder import EDITED, RunFolder
 
 YAML_NAME, TEXT_NAME, FIGURE_NAME = EDITED["inspect"], "inspection.txt", "inspection.png"
 JSON_NAME = "inspection.json"  # what the report is made of
-say = logging.getLogger("gear_damping").info
+log = logging.getLogger("gear_damping").info
 
 
 def run(settings: InspectSettings, folder: RunFolder) -> dict[str, Any]:
@@ -48,21 +48,21 @@ def _bare(path: Path, plugins: Sequence[str], folder: RunFolder) -> dict[str, An
     with start.open("x", encoding="utf-8") as file:
         file.write(text)
     save(inspection_figure(list(_panels(found, listed)), found.base is not None), folder.path / FIGURE_NAME)
-    _say(folder, [*_file_lines(found), *_column_lines(found, listed)])
+    _log(folder, [*_file_lines(found), *_column_lines(found, listed)])
     blanks = sum(line.count(UNKNOWN) for line in text.splitlines() if not line.lstrip().startswith("#"))
     wanted = (
         f"fill in its {blanks} {UNKNOWN}, correct its guesses" if blanks else "nothing is left open; check its guesses"
     )
     folder.write_json(JSON_NAME, _file_content(found, listed) | {"open": blanks})
-    say(f"\n{start} declares it: {wanted}, and go on with")
-    say(f"  python -m gear_damping task=inspect measurement.path={start}")
+    log(f"\n{start} declares it: {wanted}, and go on with")
+    log(f"  python -m gear_damping task=inspect measurement.path={start}")
     return {"system": system[0], "columns": len(found.columns), "sampling_rate": found.rate, "open": blanks}
 
 
-def _say(folder: RunFolder, lines: Sequence[str]) -> None:
+def _log(folder: RunFolder, lines: Sequence[str]) -> None:
     text = "\n".join(lines)
     folder.write_text(TEXT_NAME, text + "\n")
-    say(text)
+    log(text)
 
 
 def _file_lines(found: Inspection) -> Iterator[str]:
@@ -190,7 +190,7 @@ def _declared(measurement: Measurement, folder: RunFolder) -> dict[str, Any]:
         content["records"].append({"name": record.name, "says": says, "channels": said, "notes": notes})
     panels = [Panel(*named, tuple(drawn)) for named, drawn in curves.items()]
     save(inspection_figure(panels), folder.path / FIGURE_NAME)
-    _say(folder, lines)
+    _log(folder, lines)
     faults = sum(finding.severity == "data_problem" for finding in measurement.findings)
     known = {"file": measurement.source.name, "system": measurement.system, "data_problems": faults}
     folder.write_json(JSON_NAME, content | known)

@@ -11,7 +11,7 @@ from gear_damping.interface.model import Model
 from gear_damping.interface.planned_page import goal_precision
 from gear_damping.reporting import figures
 from gear_damping.reporting.numbers import number
-from gear_damping.simulation.families import coefficients_for
+from gear_damping.simulation.prior import coefficients_for
 from gear_damping.simulation.runs import reference_velocity
 from gear_damping.tasks import statements
 from gear_damping.tasks.progress import progress_bar
@@ -36,12 +36,12 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
         sentences = [*sentences, _said(shown)]
     folder.write_json("plan.json", content | {"sentences": sentences})
     folder.write_text("plan.txt", found.table() + "\n" + "\n".join(sentences) + "\n")
-    statements.say(found.table(MOST_SHOWN))
+    statements.log(found.table(MOST_SHOWN))
     for sentence in sentences:
-        statements.say(sentence)
-    statements.say("drawing the interval between the tests")
+        statements.log(sentence)
+    statements.log("drawing the interval between the tests")
     figures.save(found.plot(), folder.path / "plan_map.png")
-    statements.say(f"wrote plan.txt with every test, plan.json and plan_map.png into {folder.path}")
+    statements.log(f"wrote plan.txt with every test, plan.json and plan_map.png into {folder.path}")
     best = goal_precision(found.found, found.cheapest or found.best)
     return {"reached": found.cheapest is not None, "percent": best.percent, "cost": (found.cheapest or found.best).cost}
 
@@ -62,4 +62,4 @@ def _said(shown: Repeated) -> str:
     one = shown.damping_ratio
     text = f"{shown.count} simulated and fitted tests of it: standard deviation {number(one.deviation, 3)} % of "
     text += f"critical, promised {number(one.promised, 3)}; the interval holds the truth in {100 * one.covered:.1f} %"
-    return text + (f"; {shown.lost} fits did not come to rest" if shown.lost else "")
+    return text + (f"; {shown.lost} fits did not converge" if shown.lost else "")

@@ -9,7 +9,7 @@ from gear_damping.config.settings import Settings
 from gear_damping.measurement.record import Channel, Quantity, Record
 from gear_damping.measurement.vocabulary import INPUTS, OSCILLATOR_CHANNELS, PARAMETERS
 from gear_damping.physics.effects.torque_variation import TorqueVariation
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.systems.swinging import MOTION
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import MeshStiffness
@@ -65,9 +65,9 @@ def _varied_torque(runs: Runs) -> Tensor:
         return torch.zeros_like(runs.response)
     prepared = runs.model.prepare(runs.values)
     time = runs.time.unsqueeze(1) / prepared.scales.time  # (time, runs): parameters have one value a run
-    now, terms = Moment(time, time * 0, time * 0), prepared.terms[effect.name]
-    now.locked = {name: (value >= 0).to(value) for name, value in effect.switches(now, terms).items()}
-    force = (effect.load_force(now, terms) * prepared.scales.force).expand(time.shape)
+    at, terms = Kinematics(time, time * 0, time * 0), prepared.terms[effect.name]
+    at.active_branch = {name: (value >= 0).to(value) for name, value in effect.switches(at, terms).items()}
+    force = (effect.load_force(at, terms) * prepared.scales.force).expand(time.shape)
     return (force / runs.derived["load_per_pinion_torque"]).T
 
 

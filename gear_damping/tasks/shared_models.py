@@ -45,7 +45,7 @@ def _trained(settings: Settings, results: Mapping[str, Any], seed: int) -> dict[
         "experiment": settings.name,
         "simulated runs": f"{results['n_runs']} of {simulator.n_samples} samples, before some are kept for tests",
         "effects": ", ".join(effect.name for effect in simulator.model.effects),
-        "family": f"{simulator.family.name}: draws {', '.join(simulator.family.spreads) or 'nothing'}",
+        "family": f"{simulator.family.name}: draws {', '.join(simulator.family.distributions) or 'nothing'}",
         "sensor noise": "none" if noise is None else " to ".join(f"{one:g}" for one in levels) + " dB below the signal",
         "seed": str(seed),
     }

@@ -26,7 +26,7 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     plan = replace(plan_of(settings), damping_ratio_percent=settings.simulator.damping_ratio_percent)
     folder.add_inputs(settings.simulator.files, "simulator.extended")
     runs = simulated(plan, settings)
-    statements.say_runs(settings, runs)
+    statements.log_runs(settings, runs)
     channels = recorded_channels(runs, plan.seed + NOISE_SEED)
     arrays = {name: signal.numpy() for name, signal in channels.items()}
     values = {f"parameters/{name}": value.numpy() for name, value in runs.values.items()}
@@ -39,9 +39,9 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
         own = None if system.name in SYSTEMS else type(system)
         rig = rig_parameters(settings)
         path = write_measurement(folder.path / "measurement", system.name, records, rig, own=own)
-        statements.say(f"wrote {path}: measurement.path={path} takes the runs as measured records")
+        statements.log(f"wrote {path}: measurement.path={path} takes the runs as measured records")
     shown = run_figure(runs, channels[runs.model.system.response])
     figures.save(shown, folder.path / "simulation.png")
     folder.write_json("simulation.json", summary_of(runs, plan, channels) | {"measured": settings.write_measurement})
-    statements.say(f"wrote {folder.path / 'runs.npz'}: {len(runs.status)} runs of {len(runs.time)} samples")
+    statements.log(f"wrote {folder.path / 'runs.npz'}: {len(runs.status)} runs of {len(runs.time)} samples")
     return {"n_runs": len(runs.status), "n_diverged": runs.n_diverged}

@@ -24,7 +24,7 @@ def plan_of(settings: Settings) -> SimulationPlan:
     return SimulationPlan(
         model=s.model,
         given=s.given,
-        family=s.family,
+        prior=s.family,
         n_runs=s.n_runs,
         sampling_rate=s.sampling_rate,
         n_samples=s.n_samples,

@@ -4,8 +4,8 @@ from typing import Any
 
 from torch import Tensor
 
-from gear_damping.simulation.families import DAMPING_RATIO
 from gear_damping.simulation.plan import SimulationPlan
+from gear_damping.simulation.prior import DAMPING_RATIO
 from gear_damping.simulation.runs import Runs, effect_state_units
 from gear_damping.tasks.recorded import OWN_UNITS, UNITS, Channels
 
@@ -22,7 +22,7 @@ def summary_of(runs: Runs, plan: SimulationPlan, channels: Channels) -> dict[str
     """
     model, samples = runs.model, len(runs.time)
     declared = model.parameters()
-    varied = [name for name in plan.family.spreads if name != DAMPING_RATIO and name in runs.values]
+    varied = [name for name in plan.prior.distributions if name != DAMPING_RATIO and name in runs.values]
     ratio, response = runs.damping_ratio_percent, channels[model.system.response]
     rms = (response - response.mean(1, keepdim=True)).square().mean(1).sqrt()
     units = UNITS | OWN_UNITS | effect_state_units(model)

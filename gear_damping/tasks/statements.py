@@ -28,28 +28,28 @@ from gear_damping.simulation.runs import Runs
 BESIDE_THE_MESH = (
     BearingForce, ContactChange, ElasticForce, ExtraStates, LoadPath, MeshForceFactor, StiffnessFactor, SystemChange,
 )  # fmt: skip
-say = logging.getLogger("gear_damping").info
+log = logging.getLogger("gear_damping").info
 
 
-def say_budget(settings: Settings, training: Training) -> None:
+def log_budget(settings: Settings, training: Training) -> None:
     """What the run is about to spend."""
     s = settings.simulator
     seeds = f"{settings.seeds} seed" + ("s" if settings.seeds > 1 else "")
     names = ", ".join([*settings.model.names, "white_noise"])
-    say(
+    log(
         f"{settings.name}: {s.n_runs} runs of {s.n_samples} samples, family {s.family.name}, protocol "
         f"{settings.protocol['name']}; {names}, {seeds} from {settings.seed}, at most {training.max_epochs} "
         f"epochs each, batch {training.batch_size}, patience {training.patience}"
     )
 
 
-def say_runs(settings: Settings, runs: Runs) -> None:
+def log_runs(settings: Settings, runs: Runs) -> None:
     """What the runs hold: the label in all its forms, at the amplitude that it belongs to."""
-    say(_damping(runs, settings.simulator.damping_law))
+    log(_damping(runs, settings.simulator.damping_law))
     if runs.model.system.has(Trait.TEETH):
-        _say_stability(runs)
+        _log_stability(runs)
     if runs.n_diverged:
-        say(f"{runs.n_diverged} runs diverged and were left out")
+        log(f"{runs.n_diverged} runs diverged and were left out")
 
 
 def _damping(runs: Runs, law: str | None) -> str:
@@ -71,7 +71,7 @@ def _damping(runs: Runs, law: str | None) -> str:
     return f"{line}, at a velocity amplitude of {float(runs.reference_velocity[0]):.3g} m/s"
 
 
-def _say_stability(runs: Runs) -> None:
+def _log_stability(runs: Runs) -> None:
     """Whether the mesh of the least damped run makes the motion grow, where that mesh has a multiplier."""
     least = int(runs.damping_ratio_percent.argmin())
     if not has_multiplier(runs, least):
@@ -80,10 +80,10 @@ def _say_stability(runs: Runs) -> None:
     growth = "its mesh makes the motion grow until contact is lost" if multiplier > 1 else "stable"
     missing = [effect.name for effect in runs.model.effects if isinstance(effect, BESIDE_THE_MESH)]
     without = f"; of its linear mesh alone, without {', '.join(missing)}" if missing else ""
-    say(f"largest Floquet multiplier of the least damped run: {multiplier:.4f} ({growth}{without})")
+    log(f"largest Floquet multiplier of the least damped run: {multiplier:.4f} ({growth}{without})")
 
 
-def say_controls(results: Mapping[str, Any]) -> None:
+def log_controls(results: Mapping[str, Any]) -> None:
     """What the controls say about the networks' figures."""
     for sentence in control_sentences(results):
-        say(sentence)
+        log(sentence)

@@ -25,10 +25,10 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     """Train and compare; returns the metrics for run.json."""
     plan, other = plan_of(settings), test_plan_of(settings)
     protocol, training = Protocol(**settings.protocol), Training(**settings.training)
-    statements.say_budget(settings, training)
+    statements.log_budget(settings, training)
     runs = simulated(plan, settings)
     test_runs = simulated(other, settings, "simulating test runs") if other else None
-    statements.say_runs(settings, runs)
+    statements.log_runs(settings, runs)
     noise = SensorNoise(training.noise_snr_db or settings.simulator.sensor_noise_db)
     material = Material(run_set_of(runs, plan), protocol, noise, run_set_of(test_runs, other) if other else None)
     results = compare_models(
@@ -37,7 +37,7 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
         Repeats(training, settings.all_seeds),
         Place(folder.path, settings.resume),
         shown=Shown(settings.progress, _hparams(settings)),
-        announce=statements.say,
+        announce=statements.log,
     )
     predictions = results.pop("predictions")
     results = {"experiment": settings.name, "family": settings.simulator.family.name, **results}
@@ -45,8 +45,8 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     folder.write_json("results.json", results)
     text = tables.results_table(results)
     folder.write_text("results.txt", text)
-    statements.say(text)
-    statements.say_controls(results)
+    statements.log(text)
+    statements.log_controls(results)
     share_models(settings, results, folder)
     _figures(settings, runs, predictions, folder)
     return _metrics(results)

@@ -38,7 +38,7 @@ def answered(words: Sequence[str]) -> bool:
         check_declaration(file)
     except InputError as error:
         start_logging()
-        say_problems(InputError(placed(error, {PATH: f"command line: {PATH}={typed[PATH]}"})))
+        log_problems(InputError(placed(error, {PATH: f"command line: {PATH}={typed[PATH]}"})))
         return True
     return False
 
@@ -70,7 +70,7 @@ def start_logging() -> None:
     logging.getLogger("matplotlib").setLevel(logging.WARNING)  # it tells of its fonts
 
 
-def say_problems(error: InputError) -> None:
+def log_problems(error: InputError) -> None:
     """Every problem, one a line."""
     count = len(error.problems)
     log.error("%s\n%s", "This cannot run:" if count == 1 else f"This cannot run, {count} problems:", error)

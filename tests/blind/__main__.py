@@ -44,18 +44,18 @@ def main(given: list[str] | None = None) -> int:
     begin_from(KEPT, options.out / CASES)
     stopped = False
     try:
-        cases = ask(asked, options.out, options.processes, _say, options.minutes, redo=options.redo)
+        cases = ask(asked, options.out, options.processes, _log, options.minutes, redo=options.redo)
     except KeyboardInterrupt:
         stopped, cases = True, done_cases(options.out / CASES)
-        _say("stopped; the cases done so far are kept, and the same command goes on from here")
+        _log("stopped; the cases done so far are kept, and the same command goes on from here")
     if not cases:
         return 130 if stopped else 0
     found = write(cases, options.out, PAGE if options.page else None, " ".join(["make blind", *_shown(given)]))
     if options.page:
         keep(cases, KEPT)
     for claim, row in found["rates"].items():
-        _say(f"{claim}: {row['count']} of {row['n']} ({row['target']}: {row['met']})")
-    _say(f"rates and table: {options.out}")
+        _log(f"{claim}: {row['count']} of {row['n']} ({row['target']}: {row['met']})")
+    _log(f"rates and table: {options.out}")
     return 130 if stopped else 0
 
 
@@ -64,7 +64,7 @@ def _shown(given: list[str] | None) -> list[str]:
     return [f'ARGS="{" ".join(words)}"'] if words else []
 
 
-def _say(text: str) -> None:
+def _log(text: str) -> None:
     print(text, flush=True)
 
 

@@ -25,7 +25,7 @@ NATIVE = ("*.cpp", "*.h")
 ANSWER = ("verdict", "misfit", "damping_ratio_percent", "seconds", "converged")  # what is kept of an answer,
 CAUSE = ("name", "status", "confusable_with", "parameters", "excess_explained")  # and of a cause
 CASES, RATES, TABLE = "cases.jsonl", "rates.json", "table.md"
-Say = Callable[[str], None]
+Log = Callable[[str], None]
 
 
 def engine() -> str:
@@ -107,7 +107,7 @@ def _shortened(answer: dict[str, Any]) -> dict[str, Any]:
 
 
 def ask(
-    questions: Sequence[Question], folder: Path, processes: int, say: Say, minutes: float | None = None,
+    questions: Sequence[Question], folder: Path, processes: int, log: Log, minutes: float | None = None,
     solve: Callable[[Question], dict[str, Any]] = answer, redo: bool = False,
 ) -> list[Case]:
     """Answer the questions that have no answer yet; returns all cases of the folder, old and new.
@@ -119,15 +119,15 @@ def ask(
     old = done_cases(folder / CASES)
     done = {(c["stratum"], c["seed"]) for c in old if not redo or c["engine"] == version}
     waiting = [question for question in questions if question.key not in done]
-    say(f"{len(questions) - len(waiting)} of {len(questions)} cases are done already, {len(waiting)} to do")
+    log(f"{len(questions) - len(waiting)} of {len(questions)} cases are done already, {len(waiting)} to do")
     with (folder / CASES).open("a", encoding="utf-8") as notes:
 
         def note(case: Case, place: int, rate: float) -> None:
             notes.write(json.dumps(case | {"engine": version}) + "\n")
             notes.flush()
-            say(_line(case, place, len(waiting), rate))
+            log(_line(case, place, len(waiting), rate))
 
-        _answer_all(waiting, processes, note, say, minutes, solve)
+        _answer_all(waiting, processes, note, log, minutes, solve)
     return done_cases(folder / CASES)
 
 
@@ -140,7 +140,7 @@ def _line(case: Case, place: int, total: int, seconds_each: float) -> str:
             f"({case['seconds']:.0f} s; {left})")  # fmt: skip
 
 
-def _answer_all(waiting, processes: int, note, say: Say, minutes: float | None, solve) -> None:
+def _answer_all(waiting, processes: int, note, log: Log, minutes: float | None, solve) -> None:
     """Keep the workers busy; on Ctrl-C they are stopped and what is noted stays."""
     begun = time.monotonic()
     queue, place = iter(waiting), 0
@@ -160,7 +160,7 @@ def _answer_all(waiting, processes: int, note, say: Say, minutes: float | None, 
                 if problem is None:
                     note(future.result(), place, (time.monotonic() - begun) / place)
                 else:
-                    say(f"{question.stratum} {question.seed} is left out: {type(problem).__name__}: {problem}")
+                    log(f"{question.stratum} {question.seed} is left out: {type(problem).__name__}: {problem}")
     except BaseException:
         for process in list(getattr(pool, "_processes", {}).values()):
             process.terminate()

@@ -59,14 +59,14 @@ def test_parameters_are_quantities_whatever_unit_their_key_carries():
 def test_a_range_of_damping_ratios_is_in_percent(ends):
     """`0.1 %` had been a hundredth of that."""
     drawn = settings("task=simulate", f"family.spreads.damping_ratio_percent={{uniform: {ends}}}").simulator.family
-    spread = drawn.spreads["damping_ratio_percent"]
-    assert (spread.low, spread.high) == pytest.approx((0.1, 0.4))
+    distribution = drawn.distributions["damping_ratio_percent"]
+    assert (distribution.low, distribution.high) == pytest.approx((0.1, 0.4))
 
 
 def test_ends_of_a_range_are_quantities():
     drawn = settings("task=simulate", "family.spreads.pinion_speed={uniform: [4000rpm, {value: 5000, unit: rpm}]}")
-    spread = drawn.simulator.family.spreads["pinion_speed"]
-    assert (spread.low, spread.high) == pytest.approx((4000 * RPM, 5000 * RPM))
+    distribution = drawn.simulator.family.distributions["pinion_speed"]
+    assert (distribution.low, distribution.high) == pytest.approx((4000 * RPM, 5000 * RPM))
 
 
 def test_lists_and_sensors_of_a_plan_are_quantities():

@@ -33,10 +33,10 @@ def test_an_effect_that_is_off_is_switched_on_by_one_of_its_parameters():
     assert "load_noise" not in [effect.name for effect in off]
 
 
-def test_spreads_have_units():
-    field = settings("family=field").simulator.family.spreads["pinion_speed"]
+def test_distributions_have_units():
+    field = settings("family=field").simulator.family.distributions["pinion_speed"]
     assert field.low == pytest.approx(157.08, rel=1e-4)
-    assert settings().simulator.family.spreads["pinion_torque"].relative
+    assert settings().simulator.family.distributions["pinion_torque"].relative
 
 
 def test_seeds_count_up():

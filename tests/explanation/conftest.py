@@ -10,7 +10,7 @@ import pytest
 from hidden import draw_case, write_case
 
 from gear_damping.explanation.explain import explain
-from gear_damping.explanation.schema import Explanation
+from gear_damping.explanation.report_schema import Explanation
 from gear_damping.measurement.load import load_measurement
 from gear_damping.physics.catalogue import builtin_effects
 

@@ -214,7 +214,7 @@ def test_a_pendulum_takes_the_place_of_the_spring():
     assert [c.hypothesis.given["sine_restoring.stiffness"] for c in found] == pytest.approx([50.0, 65.0, 100.0])
     for candidate in found:
         names = [p.name for p in candidate.hypothesis.free]
-        assert candidate.presence
+        assert candidate.non_nested
         assert candidate.hypothesis.given["stiffness"] == 0
         assert names == [DAMPING, "sine_restoring.stiffness"]
         assert candidate.strengths == (1,)

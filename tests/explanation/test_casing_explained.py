@@ -9,7 +9,7 @@ import yaml
 from casing import draw_case, write_case
 
 from gear_damping.errors import InputError
-from gear_damping.explanation.answer.content import KEYS
+from gear_damping.explanation.answer.report_fields import KEYS
 from gear_damping.explanation.casing.heard import is_casing
 from gear_damping.explanation.explain import explain
 from gear_damping.measurement.load import load_measurement

@@ -71,14 +71,14 @@ def test_a_cause_that_held_out_records_refute_gives_way_to_its_rival():
 
 def test_a_cause_among_others_that_adds_nothing_is_taken_out():
     without = {"needed": model(size=2.0), "idle": model(size=0.0)}
-    found, t = confirm._borne_out(state_of([("needed", ()), ("idle", ())], model(), without=without))
+    found, t = confirm._validated(state_of([("needed", ()), ("idle", ())], model(), without=without))
     assert [cause.name for cause in found.accepted] == ["needed"]
     assert t > SearchSettings().confirmed_t
 
 
 def test_what_adds_nothing_to_predictions_is_no_cause():
     worse = model(size=3.001)
-    found, t = confirm._borne_out(state_of([("named", ())], worse))
+    found, t = confirm._validated(state_of([("named", ())], worse))
     assert (found.accepted, t) == ((), 0.0)
     assert found.outcome is found.nominal
     assert found.rejected[0].name == "named"

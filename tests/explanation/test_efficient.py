@@ -6,9 +6,9 @@ import numpy as np
 import torch
 
 from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.covariance import covariance_of
 from gear_damping.explanation.model.fitting import fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Hypothesis
-from gear_damping.explanation.model.spread import spread_of
 from gear_damping.explanation.trials.assess import assessed
 from gear_damping.explanation.trials.efficient import efficient
 from gear_damping.identification.observation import Known
@@ -54,14 +54,14 @@ def decay(stiffness, damping, start, speed):
 def whole_covariance(stiffness, damping):
     """Of the displacements that the load adds, and the sensor's noise."""
     step, added = one_step(rates(stiffness, damping))
-    spread, found = np.zeros((2, 2)), NOISE**2 * np.eye(SAMPLES)
+    covariances, found = np.zeros((2, 2)), NOISE**2 * np.eye(SAMPLES)
     for at in range(SAMPLES):
-        ahead = spread
+        ahead = covariances
         for later in range(at, SAMPLES):
             found[at, later] += ahead[0, 0]
             found[later, at] = found[at, later]
             ahead = step @ ahead
-        spread = step @ spread @ step.T + LOAD**2 * added
+        covariances = step @ covariances @ step.T + LOAD**2 * added
     return found
 
 
@@ -92,7 +92,8 @@ def weighed(seen):
     better = efficient(plain, assessed(plain, [], evidence).random)
     assert better.values == {p.name: p.start for p in better.hypothesis.free}
     return [
-        (math.log(one.values[COEFFICIENT]), math.sqrt(float(spread_of(one, evidence)[1, 1]))) for one in (plain, better)
+        (math.log(one.values[COEFFICIENT]), math.sqrt(float(covariance_of(one, evidence)[1, 1])))
+        for one in (plain, better)
     ]
 
 

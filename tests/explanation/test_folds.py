@@ -9,12 +9,12 @@ from gear_damping.explanation.statistics.folds import left_out
 SAMPLES, PARAMETERS, FOLDS = 240, 5, 4
 
 
-def problem(seed, spread=1.0):
-    """Columns, residuals and folds; the first column is strong in the first fold by `spread`."""
+def problem(seed, strength=1.0):
+    """Columns, residuals and folds; the first column is strong in the first fold by `strength`."""
     random = np.random.default_rng(seed)
     columns, residual = random.normal(size=(SAMPLES, PARAMETERS)), random.normal(size=SAMPLES)
     folds = np.arange(SAMPLES) * FOLDS // SAMPLES
-    columns[folds == 0, 0] *= spread
+    columns[folds == 0, 0] *= strength
     return columns, residual, folds
 
 

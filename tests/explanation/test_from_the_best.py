@@ -1,4 +1,4 @@
-"""Laws of an oscillator that came to rest far off are tried again from where the best one lies; on made-up fits."""
+"""Laws of an oscillator that converged far off are tried again from where the best one lies; on made-up fits."""
 
 from types import SimpleNamespace
 
@@ -11,8 +11,8 @@ from gear_damping.physics.systems.known import SYSTEMS
 NOMINAL = ("stiffness", "force_gain")
 
 
-def fit(name, cost, presence=True, **values):
-    candidate = SimpleNamespace(name=name, presence=presence)
+def fit(name, cost, non_nested=True, **values):
+    candidate = SimpleNamespace(name=name, non_nested=non_nested)
     outcome = SimpleNamespace(fitted=SimpleNamespace(cost=cost), values=values)
     return SimpleNamespace(name=name, outcome=outcome, score=SimpleNamespace(candidate=candidate))
 

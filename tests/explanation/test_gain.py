@@ -6,9 +6,9 @@ import torch
 
 from gear_damping.explanation.answer.gain import mean_stiffness, parameters_of
 from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.covariance import covariance_of
 from gear_damping.explanation.model.fitting import fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Hypothesis
-from gear_damping.explanation.model.spread import spread_of
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.physics.catalogue import effect_class
 from gear_damping.physics.model import Model
@@ -32,11 +32,11 @@ def test_a_gap_whose_far_flank_is_never_touched_has_its_whole_range_as_interval(
         FreeParameter("backlash.gap", 8e-5, logarithmic=True, lower=0, upper=1e-2),
     )
     outcome = fit_hypothesis(Hypothesis(GearPair(), tuple(effects), given, free), evidence)
-    spread = spread_of(outcome, evidence)
-    gap = parameters_of(outcome, spread, "backlash", evidence)["gap"]
+    covariances = covariance_of(outcome, evidence)
+    gap = parameters_of(outcome, covariances, "backlash", evidence)["gap"]
     declared = model.parameters()["backlash.gap"]
     assert gap["interval95"] == [declared.lower, declared.upper]
-    damping = parameters_of(outcome, spread, "viscous_damping", evidence)["damping_coefficient"]
+    damping = parameters_of(outcome, covariances, "viscous_damping", evidence)["damping_coefficient"]
     low, high = damping["interval95"]
     assert low < 64.5 < high
     assert high - low < 6.0

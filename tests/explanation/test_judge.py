@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from gear_damping.explanation.answer.content import _candidates
+from gear_damping.explanation.answer.report_fields import _candidates
 from gear_damping.explanation.evidence.excess import Excess
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import State
@@ -62,7 +62,7 @@ def test_a_shape_without_a_name_is_no_consistency_and_is_told():
     assert "What is missing looks like a line at 50 Hz." in missing.sentences
 
 
-def test_what_has_run_into_a_bound_is_no_part_of_an_answer_beside_a_rest():
+def test_what_has_run_into_a_bound_is_no_part_of_an_answer_beside_a_residual():
     left = excess_of(3.0, 10.0)
     assert verdict(search(accepted=(cause(at_bound=True),), left=True), MUCH, left, is_one=True).word == UNEXPLAINED
     assert verdict(search(accepted=(cause(at_bound=True),)), MUCH, NOTHING, is_one=True).word == EXPLAINED
@@ -83,7 +83,7 @@ def test_what_stands_in_for_something_else_is_no_answer():
 
 
 @pytest.mark.parametrize(("left", "word"), [(0.5, UNEXPLAINED), (0.0, EXPLAINED)])
-def test_of_what_nobody_could_ask_what_it_stands_in_for_nothing_is_established_beside_a_rest(left, word):
+def test_of_what_nobody_could_ask_what_it_stands_in_for_nothing_is_established_beside_a_residual(left, word):
     found = search(accepted=(cause(), cause("cubic_stiffness")), left=left > 0)
     after = excess_of(left, 2.4 if left else 1.0)
     assert verdict(found, MUCH, after).word == (PARTLY if left else EXPLAINED)
@@ -111,8 +111,8 @@ def test_what_looks_random_and_is_more_than_the_sensor_s_noise_holds_nothing_vis
     ("left", "rest", "word"),
     [(True, 7.0, PARTLY), (False, 7.0, EXPLAINED), (True, 2.0, EXPLAINED), (True, 4.0, EXPLAINED)],
 )
-def test_causes_that_leave_such_a_rest_do_not_explain_all(left, rest, word):
-    """Of 10 % missing beyond the sensor 0.6 % is a rest, 0.3 % is not."""
+def test_causes_that_leave_so_much_do_not_explain_all(left, rest, word):
+    """Of 10 % missing beyond the sensor 0.6 % is a residual, 0.3 % is not."""
     found = search(accepted=(cause(),), left=left, sensor=101.0, rest=rest)
     assert verdict(found, MUCH, excess_of(0.0, 1.0), is_one=True).word == word
 
@@ -161,7 +161,7 @@ def test_a_fall_is_one_of_what_it_is_measured_by():
 
 
 @pytest.mark.parametrize(("is_one", "word"), [(True, PARTLY), (False, UNEXPLAINED)])
-def test_one_cause_with_one_size_may_leave_a_rest(is_one, word):
+def test_one_cause_with_one_size_may_leave_a_residual(is_one, word):
     left = excess_of(3.0, 10.0)
     assert verdict(search(accepted=(cause(),), left=True), MUCH, left, is_one=is_one).word == word
 
@@ -190,7 +190,7 @@ def test_a_share_is_one_of_residuals_where_nothing_was_left_beyond_noise(first, 
 
 @pytest.mark.parametrize(("is_one", "word"), [(True, PARTLY), (None, PARTLY), (False, UNEXPLAINED)])
 @pytest.mark.parametrize("causes", [1, 2])
-def test_a_cause_of_several_sizes_beside_a_rest_stands_in_for_something_else(is_one, word, causes):
+def test_a_cause_of_several_sizes_beside_a_residual_stands_in_for_something_else(is_one, word, causes):
     """However small the rest, and however much of the gap it takes."""
     names = ("coulomb_friction", "cubic_stiffness")[:causes]
     found = search(accepted=tuple(cause(name) for name in names), left=True)

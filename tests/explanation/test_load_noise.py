@@ -108,12 +108,12 @@ def test_innovations_are_those_of_a_kalman_filter(transitions, motion):
     late = (np.arange(FINER) + 0.5) / (RATE * FINER)
     shape = np.stack([late, np.ones(FINER)])
     noise = shape @ shape.T * (load / MASS * (FINER / RATE) ** 0.5 / FINER) ** 2
-    state, spread, expected = np.zeros(2), np.diag([1e-6, 1e3]), []
+    state, covariances, expected = np.zeros(2), np.diag([1e-6, 1e3]), []
     for value, step in zip(seen, transitions, strict=True):
-        variance = spread[0, 0] + SENSOR**2
-        gain = spread[:, 0] / variance
+        variance = covariances[0, 0] + SENSOR**2
+        gain = covariances[:, 0] / variance
         expected.append((value - state[0]) / variance**0.5)
         state = step @ (state + gain * (value - state[0]))
-        spread = step @ (spread - np.outer(gain, spread[0])) @ step.T + noise
+        covariances = step @ (covariances - np.outer(gain, covariances[0])) @ step.T + noise
     found = load_noise(seen, motion).innovations(seen[:, None])[:, 0]
     assert np.corrcoef(found[100:], np.array(expected)[100:])[0, 1] > 0.995

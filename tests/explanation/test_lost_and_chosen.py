@@ -84,13 +84,13 @@ def score(name, gain):
     direction = torch.eye(12, dtype=torch.float64)[len(name) % 12]
     hypothesis = SimpleNamespace(effects=[effect], common=())
     candidate = SimpleNamespace(
-        name=name, options=(), presence=False, replaced=(), hypothesis=hypothesis,
+        name=name, options=(), non_nested=False, replaced=(), hypothesis=hypothesis,
         is_elastic=name.endswith("stiffness"),
     )  # fmt: skip
     return SimpleNamespace(candidate=candidate, gain=gain, direction=direction, columns=direction[:, None])
 
 
-def test_an_elastic_law_is_fitted_whatever_a_linear_score_promises():
+def test_an_elastic_law_is_fitted_whatever_gain_is_predicted():
     names = ("coulomb_friction", "power_law_damping", "sensor_delay", "sensor_drift", "quadratic_stiffness")
     ranked = [score(name, 0.5 / 10**k) for k, name in enumerate(names)]
     assert "quadratic_stiffness" not in {s.candidate.name for s in chosen(ranked, SearchSettings())}
@@ -116,22 +116,22 @@ def test_too_little_to_bet_on_does_not_tell_two_apart(difference, correlation, e
         assert bench.is_as_good(*outcomes) is expected
 
 
-def test_what_is_tried_as_a_whole_is_fitted_whatever_it_promises_at_one_size():
+def test_what_is_tried_as_a_whole_is_fitted_whatever_gain_is_predicted_at_one_size():
     names = ("coulomb_friction", "power_law_damping", "sensor_delay", "sensor_drift", "sensor_saturation")
     ranked = [score(name, 0.5 / 10**k) for k, name in enumerate(names)]
-    ranked[-1].candidate.presence = True
+    ranked[-1].candidate.non_nested = True
     assert "sensor_saturation" not in {s.candidate.name for s in chosen(ranked, SearchSettings())}
     assert "sensor_saturation" in {s.candidate.name for s in chosen(ranked, SearchSettings(), springs=True)}
 
 
 def test_what_is_tried_as_a_whole_begins_at_every_size_of_its_form():
-    def sized(name, form, gain, presence=True):
-        candidate = SimpleNamespace(name=name, options=(("shaft", form),), presence=presence)
+    def sized(name, form, gain, non_nested=True):
+        candidate = SimpleNamespace(name=name, options=(("shaft", form),), non_nested=non_nested)
         direction = torch.ones(2, dtype=torch.float64)
         return Score(candidate, gain, direction, direction, 0.0, direction[:, None])
 
     small, large = sized("shaft_torsion", "pinion", 0.1), sized("shaft_torsion", "pinion", 0.3)
-    other, plain = sized("shaft_torsion", "gear", 0.2), sized("profile_error", "pinion", 0.4, presence=False)
+    other, plain = sized("shaft_torsion", "gear", 0.2), sized("profile_error", "pinion", 0.4, non_nested=False)
     found = with_other_sizes([plain, large, other, small])
     assert [len(one.variants) for one in found] == [0, 1, 0, 1]
     assert found[1].variants[0] is small.candidate

@@ -50,12 +50,12 @@ def test_more_columns_of_the_records_own_are_taken_out_too(drawn, count):
     project = Projector(sensitivity, torch.zeros(SHARED), torch.zeros(SHARED, dtype=torch.float64))
     alone = torch.zeros(RECORDS * TIME + SHARED, 1, dtype=torch.float64)
     alone[:TIME] = more[0, :, :1]
-    found = project.beside_own(more)(signal).numpy()
+    found = project.with_nuisance(more)(signal).numpy()
     own = np.concatenate([np.kron(np.eye(RECORDS)[:, [i]], more[i].numpy()) for i in range(RECORDS)], 1)
     columns = np.concatenate([whole(sensitivity, torch.zeros(SHARED)), np.pad(own, ((0, SHARED), (0, 0)))], 1)
     expected = signal.numpy() - columns @ np.linalg.lstsq(columns, signal.numpy(), rcond=None)[0]
     np.testing.assert_allclose(found, expected, atol=1e-12)
     taken = project.taken_by_own(more, project(signal))
     assert taken == pytest.approx(float(project(signal).square().sum()) - float((expected**2).sum()))
-    assert float(project.beside_own(more)(alone).norm()) < 1e-12 < float(project(alone).norm())
-    assert project.beside_own(more[..., :0]) is project
+    assert float(project.with_nuisance(more)(alone).norm()) < 1e-12 < float(project(alone).norm())
+    assert project.with_nuisance(more[..., :0]) is project

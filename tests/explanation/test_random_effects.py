@@ -1,32 +1,32 @@
-"""The spread between groups against a simulation of it."""
+"""The standard deviation between groups against a simulation of it."""
 
 import numpy as np
 import pytest
 
-from gear_damping.explanation.statistics.random_effects import spread_between, statistic
+from gear_damping.explanation.statistics.random_effects import between_deviation, statistic
 
 
-@pytest.mark.parametrize("spread", [0.0, 0.1, 0.5])
-def test_the_interval_covers_the_spread_that_was_drawn(spread):
+@pytest.mark.parametrize("deviation", [0.0, 0.1, 0.5])
+def test_the_interval_covers_the_deviation_that_was_drawn(deviation):
     rng = np.random.default_rng(40)
     errors = np.array([0.05, 0.1, 0.2, 0.08, 0.12, 0.3])
     covered, found = 0, []
     for _ in range(400):
-        estimates = 1 + spread * rng.normal(size=6) + errors * rng.normal(size=6)
-        one = spread_between(estimates, errors)
-        covered += one.interval95[0] <= spread <= one.interval95[1]
+        estimates = 1 + deviation * rng.normal(size=6) + errors * rng.normal(size=6)
+        one = between_deviation(estimates, errors)
+        covered += one.interval95[0] <= deviation <= one.interval95[1]
         found.append(one.value)
-    most = 1.0 if spread == 0 else 0.98  # at the edge of what is possible half of the error is given away
+    most = 1.0 if deviation == 0 else 0.98  # at the edge of what is possible half of the error is given away
     assert 0.92 <= covered / 400 <= most
-    assert np.median(found) == pytest.approx(spread, abs=0.08)
+    assert np.median(found) == pytest.approx(deviation, abs=0.08)
 
 
-def test_q_without_a_spread_is_that_of_cochran():
+def test_q_without_a_deviation_is_that_of_cochran():
     estimates, errors = [1.0, 1.4, 0.7], [0.1, 0.2, 0.1]
     weights = 1 / np.square(errors)
     mean = np.average(estimates, weights=weights)
     assert statistic(estimates, errors, 0.0) == pytest.approx((weights * (np.array(estimates) - mean) ** 2).sum())
 
 
-def test_estimates_that_agree_have_no_spread():
-    assert spread_between([1.0, 1.01, 0.99], [0.1, 0.1, 0.1]).value == 0
+def test_estimates_that_agree_do_not_deviate():
+    assert between_deviation([1.0, 1.01, 0.99], [0.1, 0.1, 0.1]).value == 0

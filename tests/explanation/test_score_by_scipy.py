@@ -80,17 +80,17 @@ def slopes(outcome, cubic):
     return np.concatenate(residual), np.concatenate(shared), own
 
 
-def beside(columns, signal):
+def orthogonal(columns, signal):
     basis = np.linalg.qr(columns / np.linalg.norm(columns, axis=0))[0]
     return signal - basis @ (basis.T @ signal)
 
 
-def test_a_score_is_the_share_that_its_column_takes_beside_the_nuisance():
+def test_a_score_is_the_share_that_its_column_takes_with_the_nuisance_projected_out():
     outcome, evidence = fitted(with_cubic=False)
     residual, shared, own = slopes(outcome, 0.0)
     nuisance = np.concatenate([shared[:, :2], own], 1)
-    column = beside(nuisance, shared[:, 2])
-    left = beside(nuisance, residual)
+    column = orthogonal(nuisance, shared[:, 2])
+    left = orthogonal(nuisance, residual)
     size = (column @ left) / (column @ column)
     expected = (column @ left) * size / (residual @ residual)
     tried = [c for c in candidates_for(outcome.hypothesis, evidence) if c.name == "cubic_stiffness"]

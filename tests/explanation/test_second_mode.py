@@ -32,7 +32,7 @@ def state_space(mass_ratio):
 def written(folder, mass_ratio, line=0.0):
     """Three records under random forces, smooth between the samples, one of them held out.
 
-    `line`: size of a line in the response, over the spread of it, with another phase in every record.
+    `line`: size of a line in the response, over its standard deviation, with another phase in every record.
     """
     rng, time = np.random.default_rng(5), np.arange(round(SECONDS * RATE)) / RATE
     records = []

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import yaml
 from hidden.oscillator.inputs import NONE
-from hidden.oscillator.laws import lanes
+from hidden.oscillator.laws import members
 from hidden.oscillator.motion import between, move
 
 from gear_damping.explanation.explain import Listener, explain
@@ -19,7 +19,7 @@ KNOBS = {"linear": {}, "dry": {"dry": 0.02, "dry_width": 1e-3}, "cubic": {"cubic
 
 def decay(kind: str, periods: float) -> tuple[np.ndarray, np.ndarray]:
     """Stamps in s and displacement in mm of an oscillator that is let go at one natural amplitude of 1 mm."""
-    motion = move(lanes([{"zeta": RATIO} | KNOBS[kind]]), [NONE], np.array([[1.0], [0.0]]), 2 * np.pi * periods + 1)
+    motion = move(members([{"zeta": RATIO} | KNOBS[kind]]), [NONE], np.array([[1.0], [0.0]]), 2 * np.pi * periods + 1)
     time = np.arange(round(periods * SAMPLES)) / SAMPLES
     noise = NOISE * np.random.default_rng(5).standard_normal(len(time))
     return time / FREQUENCY, START + between(motion, 0, 2 * np.pi * time, 0) + noise

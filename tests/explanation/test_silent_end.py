@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import torch
 from hidden.oscillator.inputs import NONE
-from hidden.oscillator.laws import lanes
+from hidden.oscillator.laws import members
 from hidden.oscillator.motion import between, move
 
 from gear_damping.explanation.evidence.records import evidence_of
@@ -56,7 +56,7 @@ def test_noise_on_a_measured_input_is_no_movement():
 @pytest.mark.parametrize(("knobs", "names"), [({}, set()), ({"cubic": 0.3}, {"cubic_stiffness"})])
 def test_a_long_tail_changes_no_answer(knobs, names, tmp_path):
     periods = 400.0
-    motion = move(lanes([{"zeta": 0.01} | knobs]), [NONE], np.array([[1.0], [0.0]]), 2 * np.pi * periods + 1)
+    motion = move(members([{"zeta": 0.01} | knobs]), [NONE], np.array([[1.0], [0.0]]), 2 * np.pi * periods + 1)
     time = np.arange(round(periods * 25)) / 25
     values = between(motion, 0, 2 * np.pi * time, 0) + NOISE * np.random.default_rng(2).standard_normal(len(time))
     np.savetxt(tmp_path / "d.csv", np.c_[time / FREQUENCY, values], delimiter=",", header="t,x", comments="")

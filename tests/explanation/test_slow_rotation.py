@@ -46,8 +46,8 @@ def fitted(records):
 def test_the_sway_is_found_beside_the_motion_over_the_whole_record_and_in_segments(cuts):
     length = SAMPLES // cuts
     whole = decay()
-    pieces = [part(whole, slice(i * length, (i + 1) * length)) for i in range(cuts)] if cuts > 1 else [whole]
-    found = fitted(pieces)
+    segmented = [part(whole, slice(i * length, (i + 1) * length)) for i in range(cuts)] if cuts > 1 else [whole]
+    found = fitted(segmented)
     assert found["viscous_damping.damping_coefficient"] == pytest.approx(DAMPING, rel=1e-3)
     for k, size in enumerate(SIZES):
         assert found[f"offset.velocity[{k + 1}]@run"] == pytest.approx(size, abs=1e-3)

@@ -78,10 +78,10 @@ def forced():
 def test_a_law_in_the_place_of_a_force_stands_in_for_it(forced):
     (found,) = stand_ins(forced)
     assert found.cause == "cubic_stiffness"
-    assert found.family.startswith("a line at 1.3") or found.family.startswith("a line at 1.4")
+    assert found.alternative.startswith("a line at 1.3") or found.alternative.startswith("a line at 1.4")
     assert found.takes > 0.9 > found.cause_takes
     assert "times the size" in found.why
-    assert found.family in found.sentence
+    assert found.alternative in found.sentence
 
 
 @pytest.mark.parametrize(("records", "numbers"), [(1, 3), (3, 7)])

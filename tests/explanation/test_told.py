@@ -44,7 +44,7 @@ def fitted(cubic, extra):
 
 def told(cubic, extra=("cubic_stiffness.coefficient",)):
     outcome, own, evidence = fitted(cubic, extra)
-    candidate = SimpleNamespace(presence=False, strengths=range(len(own)), hypothesis=SimpleNamespace(common=own))
+    candidate = SimpleNamespace(non_nested=False, strengths=range(len(own)), hypothesis=SimpleNamespace(common=own))
     refit = SimpleNamespace(score=SimpleNamespace(candidate=candidate), name=extra[0].partition(".")[0])
     return is_told(outcome, refit, evidence)
 
@@ -68,10 +68,10 @@ def test_what_is_tried_as_a_whole_needs_a_size_where_the_size_does_something(mov
         problem=SimpleNamespace(free=[parameter]),
         fitted=SimpleNamespace(shared=torch.zeros(1), prediction=SimpleNamespace(sensitivity=sensitivity)),
     )
-    spread = torch.full((1, 1), (half / 1.96) ** 2, dtype=torch.float64)
-    monkeypatch.setattr("gear_damping.explanation.steps.told.spread_of", lambda *_: spread)
+    covariances = torch.full((1, 1), (half / 1.96) ** 2, dtype=torch.float64)
+    monkeypatch.setattr("gear_damping.explanation.steps.told.covariance_of", lambda *_: covariances)
     common = SimpleNamespace(common=[parameter])
-    candidate = SimpleNamespace(presence=True, strengths=[0], hypothesis=common, replaced=())
+    candidate = SimpleNamespace(non_nested=True, strengths=[0], hypothesis=common, replaced=())
     refit = SimpleNamespace(score=SimpleNamespace(candidate=candidate), name="second_mode")
     assert is_told(outcome, refit, SimpleNamespace(noise=NOISE)) is expected
 
@@ -86,10 +86,10 @@ def test_what_took_the_place_of_a_spring_needs_a_shape_of_its_own(moved, half, e
         problem=SimpleNamespace(free=free),
         fitted=SimpleNamespace(shared=torch.zeros(2), prediction=SimpleNamespace(sensitivity=sensitivity)),
     )
-    spread = torch.diag(torch.tensor([1e-4, (half / 1.96) ** 2], dtype=torch.float64))
-    monkeypatch.setattr("gear_damping.explanation.steps.told.spread_of", lambda *_: spread)
+    covariances = torch.diag(torch.tensor([1e-4, (half / 1.96) ** 2], dtype=torch.float64))
+    monkeypatch.setattr("gear_damping.explanation.steps.told.covariance_of", lambda *_: covariances)
     candidate = SimpleNamespace(
-        presence=True, strengths=[0], hypothesis=SimpleNamespace(common=free), replaced=("stiffness",)
+        non_nested=True, strengths=[0], hypothesis=SimpleNamespace(common=free), replaced=("stiffness",)
     )
     refit = SimpleNamespace(score=SimpleNamespace(candidate=candidate), name="sine_restoring")
     assert is_told(outcome, refit, SimpleNamespace(noise=NOISE)) is expected
@@ -102,7 +102,7 @@ def test_a_cause_beside_which_small_changes_run_away_is_dropped():
     assert outcome.is_finite
     assert not astray.is_finite
     said, refit = [], SimpleNamespace(name="cubic_stiffness")
-    bench = SimpleNamespace(evidence=evidence, say=said.append, without=lambda *_: outcome)
+    bench = SimpleNamespace(evidence=evidence, log=said.append, without=lambda *_: outcome)
     state = State(bench, outcome, astray, accepted=(Accepted("cubic_stiffness", refit, 0.5, ()),))
     assert told_of(state).accepted == ()
     assert "its size is not told from none" in said[0]
@@ -126,12 +126,12 @@ def test_what_explains_all_and_is_missed_is_there_whatever_its_size(left, as_goo
     bench = SimpleNamespace(
         evidence=None,
         settings=SearchSettings(),
-        say=lambda text: None,
+        log=lambda text: None,
         without=lambda *_: without,
         is_as_good=lambda *_: as_good,
         excess=lambda one: excess_of(1.0 if one is nominal else left),
     )
-    refit = SimpleNamespace(score=SimpleNamespace(candidate=SimpleNamespace(presence=whole)))
+    refit = SimpleNamespace(score=SimpleNamespace(candidate=SimpleNamespace(non_nested=whole)))
     state = State(bench, nominal, outcome, (Accepted("a", refit, 0.5, ()),))
     found = told_of(state)
     assert bool(found.accepted) is kept

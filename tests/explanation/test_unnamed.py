@@ -90,7 +90,7 @@ def test_a_law_over_the_state_is_one_law_at_every_amplitude(channel):
 
 
 @pytest.mark.parametrize("motions", [lambda: ringing(hidden_mode, 2), delayed])
-def test_what_hangs_on_earlier_motion_is_taken_by_the_family_of_it(motions):
+def test_what_depends_on_earlier_motion_is_taken_by_the_family_of_it(motions):
     found = taken(motions())
     assert max(found, key=found.get) == PAST
     assert found[PAST] > 0.8

@@ -112,7 +112,7 @@ def test_when_time_is_over_a_few_steps_are_all():
     assert not bool(cut.converged[0])
     assert float(cut.cost[0]) > float(whole.cost[0])
     there = problem.linearise(cut.points.shared, cut.points.states)
-    assert torch.allclose(cut.now.residual, there.residual, rtol=1e-9, atol=1e-12)
+    assert torch.allclose(cut.linearised.residual, there.residual, rtol=1e-9, atol=1e-12)
 
 
 def test_every_start_goes_down_by_itself():
@@ -133,14 +133,14 @@ def test_the_sensitivities_at_the_end_are_those_of_the_point(iterations):
     descent.run(iterations)
     there = problem.linearise(descent.points.shared, descent.points.states)
     assert bool(descent.converged[0]) == (iterations == 40)
-    assert torch.allclose(descent.now.residual, there.residual, rtol=1e-9, atol=1e-12)
-    off = (descent.now.sensitivity - there.sensitivity).flatten(0, 2).norm(dim=0)
+    assert torch.allclose(descent.linearised.residual, there.residual, rtol=1e-9, atol=1e-12)
+    off = (descent.linearised.sensitivity - there.sensitivity).flatten(0, 2).norm(dim=0)
     assert bool((off < 1e-3 * there.sensitivity.flatten(0, 2).norm(dim=0)).all())
 
 
 def test_sensitivities_that_lead_astray_are_made_anew():
     descent = begun(problem_of())
-    descent.now.sensitivity[..., 0] *= -1.0
+    descent.linearised.sensitivity[..., 0] *= -1.0
     descent.carried[:] = 1
     descent.run(40)
     right = begun(problem_of())
@@ -152,12 +152,12 @@ def test_sensitivities_that_lead_astray_are_made_anew():
 def test_a_secant_update_says_what_the_step_has_shown_and_keeps_every_other_direction():
     problem = problem_of()
     descent = begun(problem)
-    old = descent.now.sensitivity.clone()
+    old = descent.linearised.sensitivity.clone()
     moves = torch.zeros(1, 2, old.shape[-1], dtype=torch.float64)
     moves[:, 0, :2], moves[:, 1, 1] = torch.tensor([0.02, -0.01]), 0.03
     missed = torch.randn(1, 2, old.shape[2], dtype=torch.float64, generator=torch.Generator().manual_seed(3))
     descent._carry(torch.tensor([0]), missed, moves)
-    change = descent.now.sensitivity - old
+    change = descent.linearised.sensitivity - old
     shown = torch.einsum("srtc,src->srt", change, moves)
     assert torch.allclose(shown, missed, atol=1e-12)
     assert not bool(change[0, 1][:, 0].any())  # no step of the second record in its first column
@@ -168,7 +168,7 @@ def test_a_secant_update_says_what_the_step_has_shown_and_keeps_every_other_dire
 
 
 def lent_by(problem, places, factor=1.0):
-    columns = begun(problem).now.sensitivity[0][..., places]
+    columns = begun(problem).linearised.sensitivity[0][..., places]
     return Lent(places, factor * columns)
 
 
@@ -181,7 +181,7 @@ def test_with_lent_sensitivities_it_ends_where_it_does_with_its_own(factor):
     assert bool(borrowing.converged[0])
     assert float(borrowing.cost[0]) == pytest.approx(float(own.cost[0]), rel=1e-7)
     there = problem.linearise(borrowing.points.shared, borrowing.points.states)
-    off = (borrowing.now.sensitivity - there.sensitivity).flatten(0, 2).norm(dim=0)
+    off = (borrowing.linearised.sensitivity - there.sensitivity).flatten(0, 2).norm(dim=0)
     assert bool((off < 1e-3 * there.sensitivity.flatten(0, 2).norm(dim=0)).all())
 
 

@@ -49,10 +49,10 @@ def test_its_mean_errs_by_what_it_says_and_its_interval_holds_nine_tenths():
     windows, true = drawn(bayes, 8000)
     said = bayes.estimate(windows)
     left = bayes.posterior(windows)
-    promised = left @ bayes.ratios.square() - said.ratio.square()
-    beyond = (said.ratio - true).square() - promised
+    predicted = left @ bayes.ratios.square() - said.ratio.square()
+    beyond = (said.ratio - true).square() - predicted
     assert abs(float(beyond.mean())) < 3 * float(beyond.std()) / 8000**0.5
-    assert float(beyond.std()) / 8000**0.5 < 0.05 * float(promised.mean())  # else the line before says little
+    assert float(beyond.std()) / 8000**0.5 < 0.05 * float(predicted.mean())  # else the line before says little
     held = ((said.low <= true) & (true <= said.high)).double().mean()
     assert float(held) == pytest.approx(0.9, abs=0.02)
     assert float((said.ratio - true).mean()) == pytest.approx(0.0, abs=0.15)

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 import torch
 
-from gear_damping.identification.output_error.holdout import Frozen, _begun_anew, predict_holdout
+from gear_damping.identification.output_error.holdout import Frozen, _restarted, predict_holdout
 from gear_damping.identification.output_error.least_squares import Rounds, fit
 from gear_damping.identification.output_error.problem import OutputErrorProblem
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter, Observed
@@ -69,7 +69,7 @@ def test_a_record_that_runs_away_from_its_first_guess_begins_nearer_to_rest():
     torch.testing.assert_close(safe[1], guess[1])
 
 
-def test_a_record_that_seems_to_have_begun_wrong_is_begun_from_rest():
+def test_a_record_that_seems_to_start_wrong_is_restarted_from_rest():
     """A strongly damped record whose start is far off forgets it; the other one began right and stays as it is."""
     ratio, time = 0.1, torch.arange(800, dtype=torch.float64) / RATE
     decay = torch.exp(-ratio * OMEGA * time) * torch.cos(OMEGA * math.sqrt(1 - ratio**2) * time)
@@ -83,8 +83,8 @@ def test_a_record_that_seems_to_have_begun_wrong_is_begun_from_rest():
     off[1] += 40.0 * (off[1].abs() + 1)
     wrong = fit(problem, shared, Rounds(0), off.unsqueeze(0))
     assert wrong.cost > 100 * right.cost
-    assert _begun_anew(problem, wrong, 20).cost == pytest.approx(right.cost, rel=1e-6)
-    assert _begun_anew(problem, right, 20) is right
+    assert _restarted(problem, wrong, 20).cost == pytest.approx(right.cost, rel=1e-6)
+    assert _restarted(problem, right, 20) is right
 
 
 @pytest.mark.parametrize("off", [-0.012, 0.009])

@@ -13,7 +13,7 @@ from scipy.stats import truncnorm
 from gear_damping.identification.cramer_rao import cramer_rao
 from gear_damping.identification.evaluation import is_repeatable, scores, with_prior
 from gear_damping.identification.known_model.estimate import Estimates, within
-from gear_damping.identification.known_model.family import KnownRuns, range_of, start_of
+from gear_damping.identification.known_model.known_runs import KnownRuns, range_of, start_of
 from gear_damping.identification.known_model.multiple_shooting import multiple_shooting
 from gear_damping.identification.known_model.output_error import misfit, output_error
 from gear_damping.identification.known_model.unscented_kalman import smoothed_states, unscented_kalman
@@ -21,15 +21,15 @@ from gear_damping.physics.catalogue import effect_class
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.gear_pair import GearPair
 from gear_damping.physics.systems.oscillator import Oscillator
-from gear_damping.simulation.families import DAMPING_RATIO, Family, Spread
 from gear_damping.simulation.plan import SimulationPlan, run_plan
+from gear_damping.simulation.prior import DAMPING_RATIO, Prior, Uniform
 from gear_damping.simulation.simulate import simulate
 from gear_damping.simulation.solver_settings import Solver
 
 OMEGA, RATE, SAMPLES, NOISE = 2 * math.pi * 10, 400.0, 300, 2e-3
 RATIOS = torch.tensor([0.8, 1.5, 2.6, 3.7], dtype=torch.float64)
 STARTS = np.array([[0.05, 0.1], [0.045, -0.4], [0.055, 0.3], [0.06, 0.0]])
-CENTRE, SPREAD = np.array([0.05, 0.0]), np.array([0.005, 0.3])
+CENTRE, DEVIATION = np.array([0.05, 0.0]), np.array([0.005, 0.3])
 
 
 @pytest.fixture(scope="module")
@@ -48,7 +48,7 @@ def decays():
         "viscous_damping",
         (0.5, 4.5),
         torch.as_tensor(np.tile(CENTRE, (4, 1))),
-        torch.as_tensor(np.tile(SPREAD, (4, 1))),
+        torch.as_tensor(np.tile(DEVIATION, (4, 1))),
         torch.as_tensor(np.array(series) + noise),
         torch.full((4,), NOISE, dtype=torch.float64),
         Solver(),
@@ -66,7 +66,7 @@ def direct_fit(record):
     time = np.arange(SAMPLES) / RATE
 
     def left(p):
-        x = free_decay(time, 1.0, 2 * p[0] / 100 * OMEGA, OMEGA**2, *(CENTRE + SPREAD * p[1:]))[0]
+        x = free_decay(time, 1.0, 2 * p[0] / 100 * OMEGA, OMEGA**2, *(CENTRE + DEVIATION * p[1:]))[0]
         return np.concatenate([(x - record) / NOISE, p[1:]])
 
     return least_squares(left, [2.0, 0.0, 0.0], x_scale=[1, 1, 1], xtol=1e-12, ftol=1e-12)
@@ -95,8 +95,8 @@ def test_the_smoothed_motion_is_that_of_the_fit_to_all_samples(decays):
     for number, record in enumerate(decays.records.numpy()):
         place, *start = direct_fit(record).x
         motion = np.stack(free_decay(np.arange(SAMPLES) / RATE, 1.0, 2 * place / 100 * OMEGA, OMEGA**2,
-                                     *(CENTRE + SPREAD * start)))  # fmt: skip
-        found = (CENTRE + SPREAD * states[number].numpy()).T
+                                     *(CENTRE + DEVIATION * start)))  # fmt: skip
+        found = (CENTRE + DEVIATION * states[number].numpy()).T
         error = np.abs(found - motion).max(1)
         assert float(ratio[number]) == pytest.approx(place, rel=0.05)
         assert error[0] < NOISE / 2  # the filter's are several times that at the start, where it knows no damping
@@ -115,7 +115,7 @@ def test_segments_meet_where_scipy_finds_the_whole_record(decays):
 
 def test_a_start_that_is_known_exactly_is_taken_as_it_is(decays):
     """Of rest, or of any start that a family does not vary."""
-    known = replace(decays, centre=torch.as_tensor(STARTS), spread=torch.zeros(4, 2, dtype=torch.float64))
+    known = replace(decays, centre=torch.as_tensor(STARTS), deviation=torch.zeros(4, 2, dtype=torch.float64))
     for said in (output_error(known), unscented_kalman(known)):
         half = (said.high - said.low) / 2
         assert bool(((said.ratio - RATIOS).abs() < 2 * half).all())
@@ -136,11 +136,11 @@ def test_a_cut_normal_distribution_is_that_of_scipy():
 def gears(n_runs=24, gap=None, torque=(0.8, 1.2)):
     effects = [effect_class("fourier_mesh_stiffness")(), effect_class("power_law_damping")(exponent=2)]
     effects += [effect_class("backlash")(gap=gap)] if gap else []
-    spreads = {DAMPING_RATIO: Spread(0.1, 0.6), "pinion_torque": Spread(*torque, relative=True)}
+    distributions = {DAMPING_RATIO: Uniform(0.1, 0.6), "pinion_torque": Uniform(*torque, relative=True)}
     return SimulationPlan(
         Model(GearPair(), effects),
         {"pinion_torque": 150.0, "pinion_speed": 4600 * math.pi / 30},
-        Family("bench", spreads),
+        Prior("bench", distributions),
         n_runs,
         40e3,
         1000,
@@ -155,10 +155,10 @@ def test_gear_pairs_are_estimated_as_well_as_the_bound_allows():
     noise = runs.response.std(-1) * 10 ** (-20 / 20)
     drawn = torch.randn(runs.response.shape, generator=torch.Generator().manual_seed(1), dtype=torch.float64)
     records = runs.response + noise[:, None] * drawn
-    centre, spread = start_of(runs, plan.family)
-    law, ends = plan.damping_law, range_of(plan.family)
-    said = output_error(KnownRuns(runs, law, ends, centre, spread, records, noise, plan.solver))
-    expected = dict(zip(("initial_displacement", "initial_velocity"), spread.mean(0).tolist(), strict=True))
+    centre, deviation = start_of(runs, plan.prior)
+    law, ends = plan.damping_law, range_of(plan.prior)
+    said = output_error(KnownRuns(runs, law, ends, centre, deviation, records, noise, plan.solver))
+    expected = dict(zip(("initial_displacement", "initial_velocity"), deviation.mean(0).tolist(), strict=True))
     bound = cramer_rao(runs, ["damping_ratio"], noise, expected=expected).deviation("damping_ratio")
     found = scores(runs.damping_ratio_percent, said, with_prior(bound, (0.1, 0.6)), 0.35)
     assert found["ratio_to_bound"] == pytest.approx(1.0, abs=3 / math.sqrt(2 * 24))
@@ -170,8 +170,8 @@ def test_where_flanks_part_the_search_goes_astray_and_the_segments_do_not():
     runs = run_plan(plan)
     noise = runs.response.std(-1) * 10 ** (-30 / 20)
     drawn = torch.randn(runs.response.shape, generator=torch.Generator().manual_seed(1), dtype=torch.float64)
-    records, start = runs.response + noise[:, None] * drawn, start_of(runs, plan.family)
-    known = KnownRuns(runs, plan.damping_law, range_of(plan.family), *start, records, noise, plan.solver)
+    records, start = runs.response + noise[:, None] * drawn, start_of(runs, plan.prior)
+    known = KnownRuns(runs, plan.damping_law, range_of(plan.prior), *start, records, noise, plan.solver)
     astray = misfit(known) > 1.5
     assert 1 <= int(astray.sum()) <= 5
     said = output_error(known.pick(astray))

@@ -74,10 +74,10 @@ def test_epochs_to_convergence_by_hand():
 
 def test_means_over_runs_by_hand():
     runs = torch.tensor([7, 3, 7, 3])
-    label, mean, spread = means_over_runs(torch.tensor([1.0, 2.0, 1.0, 2.0]), PREDICTED, runs)
+    label, mean, deviation = means_over_runs(torch.tensor([1.0, 2.0, 1.0, 2.0]), PREDICTED, runs)
     assert label.tolist() == [2, 1]
     assert mean.tolist() == [3.5, 1.5]
-    assert spread.tolist() == pytest.approx([0.5, 0.5])
+    assert deviation.tolist() == pytest.approx([0.5, 0.5])
     found = scores(torch.tensor([1.0, 2.0, 1.0, 2.0]), PREDICTED, runs, 1.5)
     assert found["rmse_percent_per_run"] == pytest.approx(((1.5**2 + 0.5**2) / 2) ** 0.5)
     assert found.keys() == KEYS - {"epochs"}

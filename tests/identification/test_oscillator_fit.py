@@ -60,8 +60,8 @@ def test_a_forced_record_is_found_and_the_holdout_predicted():
     assert found.natural_frequency_hz.value == pytest.approx(FREQUENCY, rel=1e-3)
     assert found.damping_ratio_percent.value == pytest.approx(100 * RATIO, rel=1e-2)
     assert found.parameters["force_gain"].value == pytest.approx(3.0, rel=1e-2)
-    spread = float(forced_record(2).response.std())
-    assert found.rmse["holdout"] < 0.02 * spread
+    deviation = float(forced_record(2).response.std())
+    assert found.rmse["holdout"] < 0.02 * deviation
 
 
 def test_intervals_cover_the_truth():

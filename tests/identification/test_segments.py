@@ -1,12 +1,12 @@
-"""Records in pieces, and the linear algebra of what every record has of its own, against dense matrices."""
+"""Records in segments, and the linear algebra of what every record has of its own, against dense matrices."""
 
 import math
 
 import pytest
 import torch
 
-from gear_damping.identification.output_error.normal_equations import normal_equations, own_basis, without_own
-from gear_damping.identification.output_error.problem import OutputErrorProblem, Prediction, growth
+from gear_damping.identification.output_error.normal_equations import normal_equations, nuisance_basis, project_out
+from gear_damping.identification.output_error.problem import OutputErrorProblem, Prediction, error_amplification
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import WHOLE, Segments, covered, in_segments, joined
 from gear_damping.physics.effects.sensor_drift import SensorDrift
@@ -44,7 +44,7 @@ def test_the_step_solves_the_whole_system(prediction):
 def test_what_records_have_of_their_own_is_projected_out(prediction):
     sensitivity = prediction.sensitivity[0].clone()
     sensitivity[1, :, -1] = 0.0  # a state that one record does not show
-    left = without_own(prediction.residual[0].unsqueeze(-1), own_basis(sensitivity, SHARED)).reshape(-1)
+    left = project_out(prediction.residual[0].unsqueeze(-1), nuisance_basis(sensitivity, SHARED)).reshape(-1)
     columns = dense(sensitivity)[:, SHARED:]
     signal = prediction.residual[0].reshape(-1)
     best = torch.linalg.lstsq(columns, signal.unsqueeze(1), driver="gelsd").solution
@@ -57,27 +57,29 @@ def test_segments_hold_every_sample_once_and_say_when_they_begin():
         for name, samples in (("a", torch.arange(103.0)), ("b", torch.arange(50.0)))
     ]
     segments = Segments(0.25)
-    pieces = in_segments(records, segments)
-    assert [len(piece.response) for piece in pieces] == [26, 26, 25, 26, 25, 25]
-    assert all(torch.equal(piece.inputs["pinion_torque"], -piece.response) for piece in pieces)
+    segmented = in_segments(records, segments)
+    assert [len(segment.response) for segment in segmented] == [26, 26, 25, 26, 25, 25]
+    assert all(torch.equal(segment.inputs["pinion_torque"], -segment.response) for segment in segmented)
     # the record counts its own samples, so that a segment's first sample says how many went before
-    assert [piece.begins for piece in pieces] == pytest.approx([float(piece.response[0]) / 100.0 for piece in pieces])
-    padded = torch.nn.utils.rnn.pad_sequence([piece.response for piece in pieces], batch_first=True)
+    assert [segment.begins for segment in segmented] == pytest.approx(
+        [float(segment.response[0]) / 100.0 for segment in segmented]
+    )
+    padded = torch.nn.utils.rnn.pad_sequence([segment.response for segment in segmented], batch_first=True)
     for found, record in zip(joined(padded, records, segments), records, strict=True):
         assert torch.equal(found, record.response)
 
 
 def test_stated_segments_are_exact_and_a_shorter_end_is_left_out():
     record, segments = FitRecord("a", torch.arange(103.0), 100.0), Segments(0.25, exact=True)
-    pieces = in_segments([record], segments)
-    assert [len(piece.response) for piece in pieces] == [25, 25, 25, 25]
+    segmented = in_segments([record], segments)
+    assert [len(segment.response) for segment in segmented] == [25, 25, 25, 25]
     assert torch.equal(covered([record], segments)[0].response, record.response[:100])
 
 
 def test_segments_of_several_channels_are_put_together_by_channel():
     record = FitRecord("a", torch.arange(60.0), 100.0)
-    pieces = [torch.cat([record.response[a:b], -record.response[a:b]]) for a, b in Segments(0.3).ends(record)]
-    (found,) = joined(pieces, [record], Segments(0.3), channels=2)
+    segmented = [torch.cat([record.response[a:b], -record.response[a:b]]) for a, b in Segments(0.3).ends(record)]
+    (found,) = joined(segmented, [record], Segments(0.3), channels=2)
     assert torch.equal(found, torch.cat([record.response, -record.response]))
 
 
@@ -88,12 +90,12 @@ def test_records_stay_whole_without_a_length():
 
 
 @pytest.mark.parametrize(("rate", "expected"), [(-3.0, 1.0), (2.0, math.exp(2.0 * 7 / 8))])
-def test_growth_is_that_of_the_record_that_grows_most(rate, expected):
+def test_error_amplification_is_that_of_the_record_with_the_most(rate, expected):
     time = torch.linspace(0, 1, 8001, dtype=torch.float64)[:-1]
     errors = torch.stack([torch.exp(-time), torch.exp(rate * time)])
     shared = torch.full_like(errors, 1e6)
     sensitivity = torch.stack([shared, errors], -1).unsqueeze(0)
-    assert growth(Prediction(errors.unsqueeze(0), sensitivity), 1) == pytest.approx(expected, rel=1e-6)
+    assert error_amplification(Prediction(errors.unsqueeze(0), sensitivity), 1) == pytest.approx(expected, rel=1e-6)
 
 
 def test_a_drift_goes_on_from_segment_to_segment():

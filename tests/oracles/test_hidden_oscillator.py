@@ -10,7 +10,7 @@ from hidden import oscillator, write_case
 from hidden.oscillator import OSCILLATOR_EFFECTS, draw_oscillator
 from hidden.oscillator.calibrate import linear
 from hidden.oscillator.inputs import KINDS, NONE, drawn
-from hidden.oscillator.laws import Scales, damping, lanes, restoring
+from hidden.oscillator.laws import Scales, damping, members, restoring
 from hidden.oscillator.motion import STEP, between, move, reading
 from scipy.integrate import solve_ivp
 
@@ -19,7 +19,7 @@ START = np.array([[0.8], [0.3]])
 
 
 def moved(knobs, force=NONE, length=LENGTH):
-    p = lanes([knobs])
+    p = members([knobs])
     return move(p, [force], START, length), p
 
 
@@ -54,7 +54,7 @@ def test_energy_is_kept_without_a_loss_and_lost_by_dry_friction_as_the_textbook_
 
 def test_a_pendulum_has_its_period():
     """Large swings last longer: T / T0 = 1 + a^2 / 16 + 11 a^4 / 3072 + ..."""
-    motion = move(lanes([{"zeta": 0.0, "bend": 1.0}]), [NONE], np.array([[1.0], [0.0]]), 14.0)
+    motion = move(members([{"zeta": 0.0, "bend": 1.0}]), [NONE], np.array([[1.0], [0.0]]), 14.0)
     u = motion.state[0, :, 0]
     down = np.flatnonzero((u[:-1] < 0) & (u[1:] >= 0))
     crossing = motion.time[down] - u[down] * STEP / (u[down + 1] - u[down])
@@ -106,7 +106,7 @@ def test_own_units_are_those_of_the_equation_of_motion():
     assert drag == pytest.approx(natural["power_law_damping"]["power"] * abs(v) ** law["exponent"])
     pendulum = own["sine_restoring"]
     torque = pendulum["stiffness"] * pendulum["length"] * math.sin(x / pendulum["length"]) / force
-    assert torque == pytest.approx(float(restoring(lanes([natural["sine_restoring"]]), u)[0]))
+    assert torque == pytest.approx(float(restoring(members([natural["sine_restoring"]]), u)[0]))
 
 
 @pytest.mark.parametrize(

@@ -25,8 +25,8 @@ def at(angle):
     return Turning(angle, angle / 2.0, 20.0 * angle, np.ones_like(angle))
 
 
-def run(*lanes, n=400, **options):
-    return integrate(stack(lanes), n, RATE, **options)
+def run(*members, n=400, **options):
+    return integrate(stack(members), n, RATE, **options)
 
 
 def test_the_mass_is_that_of_both_inertias_seen_along_the_line_of_action():
@@ -81,12 +81,12 @@ def test_the_hysteretic_loss_is_that_of_the_elements_integrated():
     a, knobs = 2e-6, stack([{"hysteresis": 1e7, "yield": 1.5e-6}])
     angle = np.linspace(0, 16 * np.pi, 40_001)
     total = 0.0
-    for spread in (0.5, 1.0, 1.6):
+    for ratio in (0.5, 1.0, 1.6):
         z, loss = 0.0, 0.0
         travel = a * np.cos(angle)
         for i in range(40_000):
             step = travel[i + 1] - travel[i]
-            slope = 1.0 - np.sign(step) * z / (1.5e-6 * spread)
+            slope = 1.0 - np.sign(step) * z / (1.5e-6 * ratio)
             new = z + slope * step
             loss += 0.5 * (z + new) * step if i >= 35_000 else 0.0
             z = new
@@ -155,8 +155,8 @@ def test_a_bearing_in_series_deflects_by_the_load_over_its_stiffness():
 
 
 def test_instruments_delay_scale_and_round():
-    lanes = [EVEN, EVEN | {"delay": 1e-4}, EVEN | {"gain": 1.1, "offset": 1e-6}, EVEN | {"step": 1e-7}]
-    knobs = stack(lanes)
+    members = [EVEN, EVEN | {"delay": 1e-4}, EVEN | {"gain": 1.1, "offset": 1e-6}, EVEN | {"step": 1e-7}]
+    knobs = stack(members)
     path = integrate(knobs, 200, RATE, settle=50, moved=0.2)
     seen = transmission_error(knobs, path)
     assert np.allclose(seen[5:, 1], seen[:-5, 0], atol=1e-12)
@@ -169,15 +169,15 @@ def test_every_effect_changes_the_motion_or_the_channel():
     rng = np.random.default_rng(5)
     base = NEUTRAL | {"viscous": 600.0, "torque": 40.0, "speed": pair.rpm(4000.0)}
     catalogue = HIDDEN | FOREIGN
-    lanes = [base]
+    members = [base]
     for name, effect in catalogue.items():
         knobs = base | dict(effect.given)
         turn = effect.as_modelled or effect.turn
         bearing = catalogue["bearing_flexibility"].turn(catalogue["bearing_flexibility"].draw(rng, 0.01), knobs)
         knobs |= bearing if name == "unbalance" else {}
-        lanes.append(knobs | turn(effect.draw(rng, 0.01), knobs))
-    knobs = stack(lanes)
-    held = np.random.default_rng(6).normal(size=(500, len(lanes)))
+        members.append(knobs | turn(effect.draw(rng, 0.01), knobs))
+    knobs = stack(members)
+    held = np.random.default_rng(6).normal(size=(500, len(members)))
     seen = transmission_error(knobs, integrate(knobs, 500, RATE, 2, held=held, moved=0.3))
     change = np.nan_to_num(np.abs(seen[:, 1:] - seen[:, :1]).max(axis=0), nan=1.0)
     silent = [name for name, moved in zip(catalogue, change, strict=True) if moved < 1e-9]

@@ -9,8 +9,8 @@ from torch import Tensor
 
 from gear_damping.physics.catalogue import builtin_effects
 from gear_damping.physics.equation import EquationOfMotion
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.model import Model
-from gear_damping.physics.moment import Moment
 from gear_damping.physics.scales import Scales
 from gear_damping.physics.systems.gear_pair import GearPair
 from gear_damping.physics.systems.known import SYSTEMS, systems_of
@@ -120,18 +120,18 @@ class Bench:
         """The natural unit of a quantity, in SI."""
         return self.prepared.scales.unit_of(parse_unit(unit).dimension)
 
-    def moment(self, time: Tensor, state: tuple[Tensor, ...], inputs: dict | None = None) -> Moment:
-        """A locked moment from SI: time, displacement, velocity and the states of effects."""
+    def kinematics(self, time: Tensor, state: tuple[Tensor, ...], inputs: dict | None = None) -> Kinematics:
+        """Kinematics on the active branch, from SI: time, displacement, velocity and the states of effects."""
         units = ["m", "m/s"]
         for effect in self.model.effects:
             if isinstance(effect, ExtraStates):
                 units += effect.states.values()
         scaled = tuple(s / self.unit(u) for s, u in zip(state, units, strict=True))
-        now = self.equation.moment(time / self.unit("s"), scaled, inputs or {}, self.prepared.base)
+        at = self.equation.kinematics(time / self.unit("s"), scaled, inputs or {}, self.prepared.base)
         if any(isinstance(e, Switch) for e in self.model.effects):
-            found = self.equation.switches(now, self.prepared.terms)
-            now.locked = {k: (v >= 0).to(v) for k, v in found.items()}
-        return now
+            found = self.equation.switches(at, self.prepared.terms)
+            at.active_branch = {k: (v >= 0).to(v) for k, v in found.items()}
+        return at
 
     def rest_of_state(self) -> tuple[Tensor, ...]:
         """The states of effects at the start, in SI."""
@@ -142,11 +142,11 @@ class Bench:
                 found += [start[k] * self.unit(u) for k, u in effect.states.items()]
         return tuple(found)
 
-    def evaluated(self, seed: int = 0, time: Tensor | None = None) -> Moment:
+    def evaluated(self, seed: int = 0, time: Tensor | None = None) -> Kinematics:
         """A moment of random states with every field filled in."""
-        now = self.moment(self.times() if time is None else time, (*self.random(seed), *self.rest_of_state()))
-        self.equation.rates(now, self.prepared.base, self.prepared.terms)
-        return now
+        at = self.kinematics(self.times() if time is None else time, (*self.random(seed), *self.rest_of_state()))
+        self.equation.rates(at, self.prepared.base, self.prepared.terms)
+        return at
 
     def times(self) -> Tensor:
         """Times spread over some turns, none of them on an edge, in s."""
@@ -160,9 +160,9 @@ class Bench:
         x = torch.where(torch.arange(self.batch) % 3 == 0, x * 16e-6 - 6e-5, x * 16e-6)
         return torch.where(torch.arange(self.batch) % 4 == 1, x - 1.2e-4, x), 0.5 * v
 
-    def acceleration(self, now: Moment) -> Tensor:
+    def acceleration(self, at: Kinematics) -> Tensor:
         """The acceleration in SI."""
-        return self.equation.rates(now, self.prepared.base, self.prepared.terms)[1] * self.unit("m/s^2")
+        return self.equation.rates(at, self.prepared.base, self.prepared.terms)[1] * self.unit("m/s^2")
 
 
 def is_sensor(name: str) -> bool:

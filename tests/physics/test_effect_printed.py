@@ -10,8 +10,8 @@ from gear_terms import sampled
 
 def test_the_printed_power_law_drives_the_motion_where_it_moves_back():
     bench = Bench("power_law_damping", {"as_printed": True}, {"power_law_damping.exponent": 1.5})
-    now = bench.evaluated()
-    force = (bench.effect.damping_force(now, bench.p) * bench.unit("N")).numpy()
+    at = bench.evaluated()
+    force = (bench.effect.damping_force(at, bench.p) * bench.unit("N")).numpy()
     rate = bench.random()[1].numpy()
     np.testing.assert_allclose(force, 131.797425 * np.abs(rate) ** 2.5, rtol=1e-10)
     assert (force * rate < 0).any()
@@ -19,12 +19,12 @@ def test_the_printed_power_law_drives_the_motion_where_it_moves_back():
 
 def test_the_printed_backlash_lies_about_the_middle_of_the_gap_and_damps_in_free_flight():
     bench = Bench("backlash", {"as_printed": True}, {"backlash.gap": 8e-5}, others=("viscous_damping",))
-    now = bench.evaluated()
+    at = bench.evaluated()
     x, v = (s.numpy() for s in bench.random())
     deflection = np.sign(x) * np.maximum(np.abs(x) - 4e-5, 0)
     assert (deflection == 0).any()
     force = sampled(GearCase(), "stiffness", bench.times().numpy()) * deflection + 64.5 * v
-    found = (now.mesh_force * bench.unit("N")).numpy()
+    found = (at.mesh_force * bench.unit("N")).numpy()
     np.testing.assert_allclose(found, force, rtol=1e-9, atol=1e-9 * np.abs(force).max())
 
 
@@ -33,7 +33,7 @@ def test_the_printed_backlash_is_the_other_one_shifted_by_half_the_gap():
     ours, printed = (Bench("backlash", {"as_printed": p}, {"backlash.gap": gap}) for p in (False, True))
     x, v = ours.random()
     forces = [
-        bench.acceleration(bench.moment(bench.times(), (place, v)))
+        bench.acceleration(bench.kinematics(bench.times(), (place, v)))
         for bench, place in ((ours, x), (printed, x + gap / 2))
     ]
     assert torch.allclose(*forces, rtol=1e-9, atol=1e-6)
@@ -43,12 +43,12 @@ def test_the_printed_backlash_is_the_other_one_shifted_by_half_the_gap():
 def test_the_printed_eccentricity_is_added_to_the_stiffness_and_does_nothing(shaft):
     name = f"{shaft}_eccentricity"
     bench = Bench(name, {"as_printed": True}, {f"{name}.amplitude": 1e-3})
-    now = bench.evaluated()
-    error, rate = bench.equation.imposed_error(now, bench.prepared.terms)
+    at = bench.evaluated()
+    error, rate = bench.equation.imposed_error(at, bench.prepared.terms)
     assert not error.any()
     assert not rate.any()
     stiffness = sampled(GearCase(), "stiffness", bench.times().numpy())
-    change = (now.stiffness * bench.unit("N/m")).numpy() / stiffness - 1
+    change = (at.stiffness * bench.unit("N/m")).numpy() / stiffness - 1
     assert np.abs(change).max() < 1e-11
 
 

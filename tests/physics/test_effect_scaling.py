@@ -20,24 +20,24 @@ def test_natural_units_give_the_same_acceleration_as_si(variant):
         given[f"{name}.width"] = natural.own["width"] * natural.prepared.scales.velocity
     plain = Bench(name, options, given, plain=True)
     state = (*natural.random(1), *natural.rest_of_state())
-    found = [bench.acceleration(bench.moment(bench.times(), state)) for bench in (natural, plain)]
+    found = [bench.acceleration(bench.kinematics(bench.times(), state)) for bench in (natural, plain)]
     assert torch.isfinite(found[0]).all()
     size = found[1].abs().max()
     assert ((found[0] - found[1]).abs().max() / size).item() < 1e-11
 
 
-def _rates(bench: Bench, values: dict, state: tuple, locked: dict) -> torch.Tensor:
+def _rates(bench: Bench, values: dict, state: tuple, active_branch: dict) -> torch.Tensor:
     bench.use(values)
-    now = bench.moment(bench.times(), state)
-    now.locked = locked
-    return torch.stack(bench.equation.rates(now, bench.prepared.base, bench.prepared.terms))
+    at = bench.kinematics(bench.times(), state)
+    at.active_branch = active_branch
+    return torch.stack(bench.equation.rates(at, bench.prepared.base, bench.prepared.terms))
 
 
 @pytest.mark.parametrize("variant", TERMS, ids=label)
 def test_forward_derivatives_equal_finite_differences(variant):
     bench = Bench(*variant, others=("viscous_damping",) if variant[0] != "viscous_damping" else ())
     state = (*bench.random(2), *bench.rest_of_state())
-    locked = bench.moment(bench.times(), state).locked
+    active_branch = bench.kinematics(bench.times(), state).active_branch
     values = bench.values
     own = [f"{bench.name}.{p.name}" for p in bench.effect.parameters]
     source = torch.Generator().manual_seed(3)
@@ -50,7 +50,7 @@ def test_forward_derivatives_equal_finite_differences(variant):
 
     def along(size: torch.Tensor) -> torch.Tensor:
         changed = values | {k: values[k] + size * s for k, s in zip(own, steps, strict=True)}
-        return _rates(bench, changed, tuple(s + size * m for s, m in zip(state, moves, strict=True)), locked)
+        return _rates(bench, changed, tuple(s + size * m for s, m in zip(state, moves, strict=True)), active_branch)
 
     zero, one = torch.zeros((), dtype=torch.float64), torch.ones((), dtype=torch.float64)
     _, exact = torch.func.jvp(along, (zero,), (one,))
@@ -67,7 +67,7 @@ def test_derivatives_are_finite_at_rest(variant):
     rest = tuple(0 * s for s in bench.rest_of_state())
 
     def along(x: torch.Tensor, v: torch.Tensor) -> torch.Tensor:
-        return bench.acceleration(bench.moment(zero, (x, v, *rest)))
+        return bench.acceleration(bench.kinematics(zero, (x, v, *rest)))
 
     _, slope = torch.func.jvp(along, (zero, zero), (zero + 1e-6, zero + 1e-2))
     assert torch.isfinite(slope).all()
@@ -82,10 +82,10 @@ def test_a_term_traces_to_a_graph_that_holds_for_other_numbers(variant):
         count = len(bench.rest_of_state())
         own = dict(zip(names, rest[count:], strict=True))
         terms = bench.prepared.terms | {bench.name: own}
-        now = bench.equation.moment(time, (x, v, *rest[:count]), {}, bench.prepared.base)
-        found = bench.equation.switches(now, terms)
-        now.locked = {k: (s >= 0).to(s) for k, s in found.items()}
-        return bench.equation.rates(now, bench.prepared.base, terms)
+        at = bench.equation.kinematics(time, (x, v, *rest[:count]), {}, bench.prepared.base)
+        found = bench.equation.switches(at, terms)
+        at.active_branch = {k: (s >= 0).to(s) for k, s in found.items()}
+        return bench.equation.rates(at, bench.prepared.base, terms)
 
     def arguments(seed: int) -> list[torch.Tensor]:
         state = [s / bench.unit(u) for s, u in zip(bench.random(seed), ("m", "m/s"), strict=True)]
@@ -101,27 +101,27 @@ def test_a_term_traces_to_a_graph_that_holds_for_other_numbers(variant):
 def test_members_do_not_know_of_each_other(variant):
     bench = Bench(*variant)
     state = (*bench.random(4), *bench.rest_of_state())
-    everyone = bench.acceleration(bench.moment(bench.times(), state))
+    everyone = bench.acceleration(bench.kinematics(bench.times(), state))
     order = torch.randperm(BATCH, generator=torch.Generator().manual_seed(5))
     bench.use({k: v[..., order] for k, v in bench.values.items()})
-    shuffled = bench.acceleration(bench.moment(bench.times()[order], tuple(s[order] for s in state)))
+    shuffled = bench.acceleration(bench.kinematics(bench.times()[order], tuple(s[order] for s in state)))
     assert torch.allclose(shuffled, everyone[order], rtol=1e-12, atol=0)
 
 
 def test_an_equation_compiles_without_a_break():
     bench = Bench("backlash", others=("power_law_damping", "pinion_eccentricity", "tooth_friction", "shaft_torsion"))
     state = (*bench.random(6), *bench.rest_of_state())
-    now = bench.moment(bench.times(), state)
-    base, terms, locked = bench.prepared.base, bench.prepared.terms, now.locked
+    at = bench.kinematics(bench.times(), state)
+    base, terms, active_branch = bench.prepared.base, bench.prepared.terms, at.active_branch
 
     def program(time: torch.Tensor, *inner: torch.Tensor) -> torch.Tensor:
-        here = bench.equation.moment(time, inner, {}, base)
-        here.locked = locked
+        here = bench.equation.kinematics(time, inner, {}, base)
+        here.active_branch = active_branch
         return bench.equation.rates(here, base, terms)[1]
 
-    inner = (now.displacement, now.velocity, *now.extra.values())
+    inner = (at.displacement, at.velocity, *at.extra.values())
     compiled = torch.compile(program, backend="aot_eager", fullgraph=True)
-    assert torch.allclose(compiled(now.time, *inner), program(now.time, *inner), rtol=1e-12)
+    assert torch.allclose(compiled(at.time, *inner), program(at.time, *inner), rtol=1e-12)
 
 
 def test_a_term_goes_through_vmap():
@@ -130,9 +130,9 @@ def test_a_term_goes_through_vmap():
 
     def force(coefficient: torch.Tensor) -> torch.Tensor:
         bench.use(bench.values | {"power_law_damping.coefficient": coefficient.expand(BATCH)})
-        now = bench.moment(bench.times(), state)
-        bench.equation.rates(now, bench.prepared.base, bench.prepared.terms)
-        return bench.effect.damping_force(now, bench.p)
+        at = bench.kinematics(bench.times(), state)
+        bench.equation.rates(at, bench.prepared.base, bench.prepared.terms)
+        return bench.effect.damping_force(at, bench.p)
 
     found = torch.func.vmap(force)(torch.tensor([1.0, 2.0], dtype=torch.float64))
     assert torch.allclose(found[1], 2 * found[0], rtol=1e-12)

@@ -21,8 +21,8 @@ def jacobian(bench: Bench) -> np.ndarray:
     scale = torch.stack([bench.unit(u) for u in units])
 
     def rates(state: torch.Tensor) -> torch.Tensor:
-        now = bench.moment(bench.times()[:1], tuple(state))
-        return torch.stack(bench.equation.rates(now, bench.prepared.base, bench.prepared.terms))
+        at = bench.kinematics(bench.times()[:1], tuple(state))
+        return torch.stack(bench.equation.rates(at, bench.prepared.base, bench.prepared.terms))
 
     found = torch.func.jacfwd(rates)(rest)[:, 0, :, 0]
     assert found.shape == (len(names),) * 2
@@ -59,8 +59,8 @@ def test_the_bearing_starts_where_the_mean_load_holds_it():
     place, velocity = bench.rest_of_state()
     assert place.item() == pytest.approx(CASE.mean_load / 5e8, rel=1e-12)
     x = torch.tensor([CASE.mean_load / 3e8 + CASE.mean_load / 5e8], dtype=torch.float64)
-    now = bench.moment(torch.zeros(1, dtype=torch.float64), (x, 0 * x, place, velocity))
-    rates = bench.equation.rates(now, bench.prepared.base, bench.prepared.terms)
+    at = bench.kinematics(torch.zeros(1, dtype=torch.float64), (x, 0 * x, place, velocity))
+    rates = bench.equation.rates(at, bench.prepared.base, bench.prepared.terms)
     assert all(abs(rate.item()) < 1e-12 for rate in rates)
 
 
@@ -69,8 +69,8 @@ def test_unbalance_presses_on_the_bearing():
     bench, without = Bench("unbalance", {}, given), Bench("bearing_flexibility", {}, CONSTANT)
     forces = []
     for here in (bench, without):
-        now = here.moment(here.times(), (*here.random(), *here.rest_of_state()))
-        rate = here.equation.rates(now, here.prepared.base, here.prepared.terms)[3]
+        at = here.kinematics(here.times(), (*here.random(), *here.rest_of_state()))
+        rate = here.equation.rates(at, here.prepared.base, here.prepared.terms)[3]
         forces.append(rate * here.unit("m/s^2") * 2.0)
     angle = 0.2 + CASE.pinion_speed * bench.times().numpy()
     wanted = 3e-5 * CASE.pinion_speed**2 * np.cos(angle + 0.4)
@@ -97,9 +97,9 @@ def test_shaft_torsion_follows_the_torques_on_the_three_bodies(mode):
     bench = Bench("shaft_torsion", {}, given, others=("torque_variation",), system_options=options)
     source = np.random.default_rng(2)
     twist, rate = 0.07 + 0.02 * source.standard_normal(bench.batch), 5 * source.standard_normal(bench.batch)
-    now = bench.moment(bench.times(), (*bench.random(), torch.as_tensor(twist), torch.as_tensor(rate)))
-    rates = bench.equation.rates(now, bench.prepared.base, bench.prepared.terms)
-    time, force = bench.times().numpy(), (now.mesh_force * bench.unit("N")).numpy()
+    at = bench.kinematics(bench.times(), (*bench.random(), torch.as_tensor(twist), torch.as_tensor(rate)))
+    rates = bench.equation.rates(at, bench.prepared.base, bench.prepared.terms)
+    time, force = bench.times().numpy(), (at.mesh_force * bench.unit("N")).numpy()
     r1, r2 = CASE.base_radii
     i1, i2, motor = CASE.inertia_pinion, CASE.inertia_gear, 0.01
     reflected = i1 + i2 * (r1 / r2) ** 2
@@ -134,9 +134,9 @@ def test_torsion_of_the_gears_shaft_follows_the_torques_on_the_three_bodies(mode
     bench = Bench("shaft_torsion", {"shaft": "gear"}, given, system_options=options)
     source = np.random.default_rng(3)
     twist, rate = 0.14 + 0.04 * source.standard_normal(bench.batch), 5 * source.standard_normal(bench.batch)
-    now = bench.moment(bench.times(), (*bench.random(), torch.as_tensor(twist), torch.as_tensor(rate)))
-    rates = bench.equation.rates(now, bench.prepared.base, bench.prepared.terms)
-    force = (now.mesh_force * bench.unit("N")).numpy()
+    at = bench.kinematics(bench.times(), (*bench.random(), torch.as_tensor(twist), torch.as_tensor(rate)))
+    rates = bench.equation.rates(at, bench.prepared.base, bench.prepared.terms)
+    force = (at.mesh_force * bench.unit("N")).numpy()
     r1, r2 = CASE.base_radii
     i1, i2, brake = CASE.inertia_pinion, CASE.inertia_gear, 0.01
     damping = 2 * 0.05 * math.sqrt(2000.0 / (1 / brake + 1 / (i2 + i1 * (r2 / r1) ** 2)))
@@ -153,8 +153,8 @@ def test_torsion_of_the_gears_shaft_follows_the_torques_on_the_three_bodies(mode
 def test_the_shaft_starts_twisted_by_the_mean_torque():
     bench = Bench("shaft_torsion", batch=1)
     assert bench.rest_of_state()[0].item() == pytest.approx(150.0 / 2000.0, rel=1e-12)
-    now = bench.evaluated()
-    assert (now.load * bench.unit("N")).item() == pytest.approx(CASE.mean_load, rel=1e-9)
+    at = bench.evaluated()
+    assert (at.load * bench.unit("N")).item() == pytest.approx(CASE.mean_load, rel=1e-9)
 
 
 def hysteresis_cycle(amplitude: float, cycle_time: float, steps: int = 4000) -> tuple[np.ndarray, np.ndarray]:
@@ -166,8 +166,8 @@ def hysteresis_cycle(amplitude: float, cycle_time: float, steps: int = 4000) -> 
     def rate(time: float, z: torch.Tensor) -> torch.Tensor:
         x, v = amplitude * math.sin(omega * time), amplitude * omega * math.cos(omega * time)
         state = (torch.full_like(z, x), torch.full_like(z, v), z)
-        now = bench.moment(torch.zeros_like(z), state)
-        return bench.equation.rates(now, bench.prepared.base, bench.prepared.terms)[2]
+        at = bench.kinematics(torch.zeros_like(z), state)
+        return bench.equation.rates(at, bench.prepared.base, bench.prepared.terms)[2]
 
     found = []
     for n in range(2 * steps):
@@ -191,10 +191,10 @@ def test_hysteresis_gives_back_less_than_it_stored():
     source = torch.Generator().manual_seed(4)
     bench = Bench("hysteretic_damping", batch=500)
     z = 2e-6 * (2 * torch.rand(500, generator=source, dtype=torch.float64) - 1)
-    now = bench.moment(bench.times(), (*bench.random(), z))
-    rates = bench.equation.rates(now, bench.prepared.base, bench.prepared.terms)
-    stored = bench.effect.damping_force(now, bench.p) * rates[2]  # d/dt of stiffness z^2 / 2
-    lost = bench.effect.damping_force(now, bench.p) * now.delta_rate - stored
+    at = bench.kinematics(bench.times(), (*bench.random(), z))
+    rates = bench.equation.rates(at, bench.prepared.base, bench.prepared.terms)
+    stored = bench.effect.damping_force(at, bench.p) * rates[2]  # d/dt of stiffness z^2 / 2
+    lost = bench.effect.damping_force(at, bench.p) * at.delta_rate - stored
     assert (lost >= -1e-15).all()
     assert (lost > 0).any()
 
@@ -202,8 +202,8 @@ def test_hysteresis_gives_back_less_than_it_stored():
 def test_hysteresis_relaxes_while_the_teeth_are_apart():
     bench = Bench("hysteretic_damping", others=("backlash",), batch=1)
     z = torch.tensor([1.5e-6], dtype=torch.float64)
-    now = bench.moment(bench.times(), (torch.full_like(z, -3e-5), torch.full_like(z, 0.3), z))
-    rate = bench.equation.rates(now, bench.prepared.base, bench.prepared.terms)[2] * bench.unit("m/s")
+    at = bench.kinematics(bench.times(), (torch.full_like(z, -3e-5), torch.full_like(z, 0.3), z))
+    rate = bench.equation.rates(at, bench.prepared.base, bench.prepared.terms)[2] * bench.unit("m/s")
     assert rate.item() == pytest.approx(-1.5e-6 * CASE.natural_frequency, rel=1e-9)
 
 

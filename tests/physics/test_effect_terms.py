@@ -51,8 +51,8 @@ def test_edges_take_up_the_load_over_a_share_of_the_mesh_period():
         + 2e8 * ramp.mean()
         + sum((line * np.exp(2j * np.pi * h * turns)).real for h, line in enumerate(lines, start=1))
     )
-    now = bench.evaluated(time=torch.as_tensor(turns * CASE.mesh_period))
-    close(now.stiffness * bench.unit("N/m"), wanted, 1e-8)
+    at = bench.evaluated(time=torch.as_tensor(turns * CASE.mesh_period))
+    close(at.stiffness * bench.unit("N/m"), wanted, 1e-8)
 
 
 def test_rectangular_mesh_stiffness():
@@ -69,8 +69,8 @@ def test_rectangular_mesh_stiffness():
 def test_the_mean_of_the_mesh_stiffness_is_its_time_mean(name):
     bench = Bench(name, batch=5000)
     period = CASE.mesh_period
-    now = bench.evaluated(time=(torch.arange(5000, dtype=torch.float64) + 0.5) / 5000 * period)
-    found = (now.stiffness * bench.unit("N/m")).mean()
+    at = bench.evaluated(time=(torch.arange(5000, dtype=torch.float64) + 0.5) / 5000 * period)
+    found = (at.stiffness * bench.unit("N/m")).mean()
     assert found.item() == pytest.approx(bench.prepared.derived["mean_stiffness"][0].item(), rel=1e-9)
 
 
@@ -83,8 +83,8 @@ def test_stiffness_modulation(shaft):
 
 
 def errors(bench: Bench) -> tuple[torch.Tensor, torch.Tensor]:
-    now = bench.evaluated()
-    e, rate = bench.equation.imposed_error(now, bench.prepared.terms)
+    at = bench.evaluated()
+    e, rate = bench.equation.imposed_error(at, bench.prepared.terms)
     return e * bench.unit("m"), rate * bench.unit("m/s")
 
 
@@ -110,8 +110,8 @@ def test_the_rate_of_an_error_is_its_derivative_in_time(name):
     rate = errors(bench)[1]
     ends = []
     for shift in (-width, width):
-        now = bench.moment(bench.times() + shift, bench.random())
-        ends.append(bench.equation.imposed_error(now, bench.prepared.terms)[0] * bench.unit("m"))
+        at = bench.kinematics(bench.times() + shift, bench.random())
+        ends.append(bench.equation.imposed_error(at, bench.prepared.terms)[0] * bench.unit("m"))
     close(rate, (ends[1] - ends[0]).numpy() / (2 * width), 1e-6)
 
 
@@ -124,8 +124,8 @@ def test_pitch_error_goes_through_its_values_without_mean_and_first_order(shaft,
     given = {"pitch_error.values": values.tolist(), f"n_teeth_{shaft}": teeth, "pitch_error.phase": 0.5}
     bench = Bench("pitch_error", {"shaft": shaft, "form": "interpolated"}, given, batch=teeth)
     speed = 4600 * math.pi / 30 * (1.0 if shaft == "pinion" else 0.5)
-    now = bench.evaluated(time=torch.as_tensor((angle + 2 * np.pi - 0.5) / speed))
-    found = bench.equation.imposed_error(now, bench.prepared.terms)[0] * bench.unit("m")
+    at = bench.evaluated(time=torch.as_tensor((angle + 2 * np.pi - 0.5) / speed))
+    found = bench.equation.imposed_error(at, bench.prepared.terms)[0] * bench.unit("m")
     close(found, values - values.mean() - first)
 
 
@@ -148,8 +148,8 @@ def test_pitch_error_is_that_of_the_tooth_in_mesh_and_hands_over(shaft, teeth, s
     bench = Bench("pitch_error", {"shaft": shaft}, given, batch=teeth * fine)
     speed = 4600 * math.pi / 30 * (1.0 if shaft == "pinion" else 0.5)
     angle = 2 * np.pi * (np.arange(teeth * fine) + 1) / (teeth * fine) + 2 * np.pi - 0.3
-    now = bench.evaluated(time=torch.as_tensor(angle / speed))
-    found = bench.equation.imposed_error(now, bench.prepared.terms)[0] * bench.unit("m")
+    at = bench.evaluated(time=torch.as_tensor(angle / speed))
+    found = bench.equation.imposed_error(at, bench.prepared.terms)[0] * bench.unit("m")
     close(found, expected.reshape(-1), 5e-3)  # of sums over small steps
 
 
@@ -198,11 +198,11 @@ def test_a_proportional_ripple_scales_the_varying_torque_but_not_the_drawn_load(
     given = {"torque_ripple.share": 0.1, "torque_ripple.order": 2.0, "torque_ripple.phase": 0.2}
     bench = Bench("torque_ripple", {"proportional": True}, TURNED | given, others=("torque_variation",))
     drawn = torch.linspace(-1, 1, bench.batch, dtype=torch.float64) * 100
-    now = bench.moment(bench.times(), bench.random(), {"held_load": drawn / bench.unit("N")})
-    bench.equation.rates(now, bench.prepared.base, bench.prepared.terms)
+    at = bench.kinematics(bench.times(), bench.random(), {"held_load": drawn / bench.unit("N")})
+    bench.equation.rates(at, bench.prepared.base, bench.prepared.terms)
     steps = ((0.0125, 30.0), (0.025, -45.0), (0.0375, 30.0))
     case = replace(CASE, torque_steps=steps, ripple=(Ripple(0.1, 2.0, 0.2, proportional=True),))
-    close(now.load * bench.unit("N"), sampled(case, "load", bench.times().numpy()) + drawn.numpy())
+    close(at.load * bench.unit("N"), sampled(case, "load", bench.times().numpy()) + drawn.numpy())
 
 
 def test_windage_drag_takes_from_the_torque_and_turns_with_the_rotation():
@@ -231,12 +231,12 @@ DAMPING = {
 def test_damping_forces(name):
     given = {"power_law_damping.exponent": 1.7} if name == "power_law_damping" else {}
     bench = Bench(name, {}, given, others=("backlash", "pinion_eccentricity"))
-    now = bench.evaluated()
-    assert not torch.allclose(now.delta_rate, now.velocity, rtol=1e-3)
-    assert not torch.allclose(now.deflection, now.delta, rtol=1e-3)
+    at = bench.evaluated()
+    assert not torch.allclose(at.delta_rate, at.velocity, rtol=1e-3)
+    assert not torch.allclose(at.deflection, at.delta, rtol=1e-3)
     p = {k: v.numpy() for k, v in bench.own.items()}
-    found = bench.effect.damping_force(now, bench.p) * bench.unit("N")
-    deflection, rate = (now.deflection * bench.unit("m")).numpy(), (now.delta_rate * bench.unit("m/s")).numpy()
+    found = bench.effect.damping_force(at, bench.p) * bench.unit("N")
+    deflection, rate = (at.deflection * bench.unit("m")).numpy(), (at.delta_rate * bench.unit("m/s")).numpy()
     scale = CASE.natural_frequency * replace(CASE, torque=150.0).static_deflection
     close(found, DAMPING[name](p, deflection, rate, scale))
 
@@ -247,9 +247,9 @@ def test_asymmetric_friction_has_its_own_values_in_each_direction():
     bench = Bench("asymmetric_friction", {}, given)
     fast = torch.linspace(0.3, 1.0, bench.batch, dtype=torch.float64)
     for v, force, damping in ((fast, 20.0, 40.0), (-fast, -10.0, 90.0)):
-        now = bench.moment(bench.times(), (torch.full_like(v, 1e-5), v))
-        bench.equation.rates(now, bench.prepared.base, bench.prepared.terms)
-        close(bench.effect.damping_force(now, bench.p) * bench.unit("N"), force + damping * v.numpy())
+        at = bench.kinematics(bench.times(), (torch.full_like(v, 1e-5), v))
+        bench.equation.rates(at, bench.prepared.base, bench.prepared.terms)
+        close(bench.effect.damping_force(at, bench.p) * bench.unit("N"), force + damping * v.numpy())
 
 
 @pytest.mark.parametrize("rest", [0.0, 0.4, 1.0])
@@ -260,9 +260,9 @@ def test_asymmetric_friction_at_rest_is_a_share_of_the_mean_of_both_forces(rest)
     given |= {"asymmetric_friction.width": width, "asymmetric_friction.rest_share": rest}
     bench = Bench("asymmetric_friction", {}, given)
     v = torch.linspace(-0.3, 0.3, bench.batch, dtype=torch.float64)
-    now = bench.moment(bench.times(), (torch.full_like(v, 1e-5), v))
-    bench.equation.rates(now, bench.prepared.base, bench.prepared.terms)
-    found = bench.effect.damping_force(now, bench.p) * bench.unit("N")
+    at = bench.kinematics(bench.times(), (torch.full_like(v, 1e-5), v))
+    bench.equation.rates(at, bench.prepared.base, bench.prepared.terms)
+    found = bench.effect.damping_force(at, bench.p) * bench.unit("N")
     scale = CASE.natural_frequency * replace(CASE, torque=150.0).static_deflection
     ahead = 1 / (1 + np.exp(-2 * v.numpy() / (width * scale)))
     convex = force["forward"] * ahead - force["backward"] * (1 - ahead)
@@ -273,7 +273,7 @@ def test_asymmetric_friction_at_rest_is_a_share_of_the_mean_of_both_forces(rest)
 def test_squeeze_film_damping_acts_across_the_gap():
     given = {"backlash.gap": 1e-4, "squeeze_film_damping.film_thickness": 8e-6}
     bench = Bench("squeeze_film_damping", {}, given)
-    now = bench.evaluated()
+    at = bench.evaluated()
     x, v = (s.numpy() for s in bench.random())
     drive, coast = np.maximum(-x, 0), np.maximum(x + 1e-4, 0)
     assert (drive > 0).any()
@@ -281,8 +281,8 @@ def test_squeeze_film_damping_acts_across_the_gap():
     assert (drive == 0).any()
     h = 8e-6
     force = 64.5 * v * ((h / (h + drive)) ** 3 + (h / (h + coast)) ** 3)
-    close(bench.effect.damping_force(now, bench.p) * bench.unit("N"), force)
-    close((now.mesh_force - now.normal_force) * bench.unit("N"), force, 1e-9)
+    close(bench.effect.damping_force(at, bench.p) * bench.unit("N"), force)
+    close((at.mesh_force - at.normal_force) * bench.unit("N"), force, 1e-9)
 
 
 ELASTIC = {
@@ -296,19 +296,19 @@ ELASTIC = {
 def test_elastic_forces(name):
     given = {"sine_restoring.length": 0.7, "amplitude": 2.0} if name == "sine_restoring" else {}
     bench = Bench(name, {}, given, others=("backlash",))
-    now = bench.evaluated()
-    assert bench.kind == "oscillator" or not torch.allclose(now.deflection, now.delta, rtol=1e-3)
-    wanted = ELASTIC[name]({k: v.numpy() for k, v in bench.own.items()}, (now.deflection * bench.unit("m")).numpy())
-    close(bench.effect.elastic_force(now, bench.p) * bench.unit("N"), wanted)
+    at = bench.evaluated()
+    assert bench.kind == "oscillator" or not torch.allclose(at.deflection, at.delta, rtol=1e-3)
+    wanted = ELASTIC[name]({k: v.numpy() for k, v in bench.own.items()}, (at.deflection * bench.unit("m")).numpy())
+    close(bench.effect.elastic_force(at, bench.p) * bench.unit("N"), wanted)
 
 
 def test_hertz_stiffness():
     bench = Bench("hertz_stiffness", {}, {"hertz_stiffness.exponent": 0.5}, others=("backlash",))
-    now = bench.evaluated()
+    at = bench.evaluated()
     x = bench.random()[0].numpy()
     d = np.where(x > 0, x, np.minimum(x + 1e-4, 0))
     force = sampled(GearCase(), "stiffness", bench.times().numpy()) * d * (np.abs(d) / 1.66e-5) ** 0.5
-    close(now.normal_force * bench.unit("N"), force)
+    close(at.normal_force * bench.unit("N"), force)
 
 
 @pytest.mark.parametrize("shaft", ["pinion", "gear"])
@@ -340,13 +340,13 @@ def test_a_crack_with_smooth_edges_takes_its_whole_depth_in_the_middle_of_the_co
 
 def test_backlash_has_two_flanks_and_damps_in_contact_only():
     bench = Bench("backlash", {}, {"backlash.gap": 8e-5}, others=("viscous_damping",))
-    now = bench.evaluated()
+    at = bench.evaluated()
     x, v = (s.numpy() for s in bench.random())
     deflection = np.where(x > 0, x, np.where(x < -8e-5, x + 8e-5, 0.0))
     assert {-1.0, 0.0, 1.0} == set(np.sign(deflection))
     force = sampled(GearCase(), "stiffness", bench.times().numpy()) * deflection
-    close(now.mesh_force * bench.unit("N"), force + 64.5 * v * (deflection != 0))
-    drive, coast = (h * bench.unit("m") for h in now.clearances)
+    close(at.mesh_force * bench.unit("N"), force + 64.5 * v * (deflection != 0))
+    drive, coast = (h * bench.unit("m") for h in at.clearances)
     close(drive, np.maximum(-x, 0))
     close(coast, np.maximum(x + 8e-5, 0))
 
@@ -358,7 +358,7 @@ def test_backlash_has_two_flanks_and_damps_in_contact_only():
 )
 def test_a_dissipative_force_never_drives_the_motion(name, seed):
     bench = Bench(name)
-    now = bench.evaluated(seed)
-    power = bench.effect.damping_force(now, bench.p) * now.delta_rate
+    at = bench.evaluated(seed)
+    power = bench.effect.damping_force(at, bench.p) * at.delta_rate
     assert (power >= 0).all()
     assert (power > 0).any()

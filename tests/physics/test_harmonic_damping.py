@@ -7,7 +7,7 @@ from scipy.integrate import quad
 
 from gear_damping.physics.damping_ratio import harmonic_damping_coefficient
 from gear_damping.physics.effects.asymmetric_friction import AsymmetricFriction
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.kinematics import Kinematics
 
 SPEED = torch.tensor([0.3, 2.0], dtype=torch.float64)
 
@@ -33,7 +33,7 @@ def test_of_two_directions_the_mean_counts():
     terms["steepness"] = torch.full((2,), 1 / 0.05, dtype=torch.float64)
 
     def force(rate):
-        return AsymmetricFriction().damping_force(Moment(rate, rate, rate, delta_rate=rate), terms)
+        return AsymmetricFriction().damping_force(Kinematics(rate, rate, rate, delta_rate=rate), terms)
 
     def of_hand(speed):
         dry = quad(lambda a: 3.0 * np.tanh(speed * np.cos(a) / 0.05) * np.cos(a), 0, 2 * np.pi, limit=400)[0]

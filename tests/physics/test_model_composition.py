@@ -56,8 +56,8 @@ class Clutch(LoadPath):
     needs = (Trait.TORQUE,)
     parameters = ()
 
-    def transmitted_load(self, now, p):
-        return now.drive_load / 2
+    def transmitted_load(self, at, p):
+        return at.drive_load / 2
 
 
 def test_two_effects_that_would_undo_each_other_are_refused():
@@ -105,10 +105,10 @@ def test_the_contact_grows_with_the_load_on_both_sides(mesh):
     time = torch.linspace(1e-6, 2.9 * case.mesh_period, 50, dtype=torch.float64)
     zero = torch.zeros_like(time)
     equation = EquationOfMotion(grown)
-    now = equation.moment(time / prepared.scales.time, (zero, zero), {}, prepared.base)
-    now.locked = {k: (v >= 0).to(v) for k, v in equation.switches(now, prepared.terms).items()}
-    equation.rates(now, prepared.base, prepared.terms)
-    found = now.stiffness * prepared.scales.force / prepared.scales.length
+    at = equation.kinematics(time / prepared.scales.time, (zero, zero), {}, prepared.base)
+    at.active_branch = {k: (v >= 0).to(v) for k, v in equation.switches(at, prepared.terms).items()}
+    equation.rates(at, prepared.base, prepared.terms)
+    found = at.stiffness * prepared.scales.force / prepared.scales.length
     np.testing.assert_allclose(found.numpy(), sampled(case, "stiffness", time.numpy()), rtol=1e-10)
 
 
@@ -137,9 +137,9 @@ class MyDamping(DampingForce):
     parameters = (Parameter("coefficient", "N*s^3/m^3", 2.0, "a", 0, 1e12),)
     dissipative = True
 
-    def damping_force(self, now, p):
+    def damping_force(self, at, p):
         """The force at this instant."""
-        return p["coefficient"] * now.delta_rate**3
+        return p["coefficient"] * at.delta_rate**3
 '''
 
 
@@ -157,8 +157,8 @@ def test_a_plugin_adds_an_effect_that_works_like_any_other(plugin):
     prepared = own.prepare(values)
     equation = EquationOfMotion(own)
     v = torch.tensor([0.5, -2.0], dtype=torch.float64)
-    now = equation.moment(torch.zeros(2), (0 * v, v / prepared.scales.velocity), {}, prepared.base)
-    rates = equation.rates(now, prepared.base, prepared.terms)
+    at = equation.kinematics(torch.zeros(2), (0 * v, v / prepared.scales.velocity), {}, prepared.base)
+    rates = equation.rates(at, prepared.base, prepared.terms)
     found = rates[1] * prepared.scales.length / prepared.scales.time**2
     assert torch.allclose(found, -0.3 * v**3, rtol=1e-12)
     assert "my_damping" not in catalogue()

@@ -49,8 +49,8 @@ def factors(case: GearCase, options: dict, batch: int = 301) -> tuple[np.ndarray
     }
     bench = Bench("tooth_friction", {}, given | options, batch=batch)
     time = torch.linspace(0, 3 * case.mesh_period, batch, dtype=torch.float64)
-    now = bench.evaluated(time=time)
-    return bench.effect.force_factor(now, bench.p).numpy(), now.mesh.angle.numpy()
+    at = bench.evaluated(time=time)
+    return bench.effect.force_factor(at, bench.p).numpy(), at.mesh.angle.numpy()
 
 
 CASES = {
@@ -81,8 +81,8 @@ def test_the_force_steps_by_twice_mu_tan_alpha_at_the_pitch_point():
     case = GearCase()
     bench = Bench("tooth_friction", {}, {"tooth_friction.friction_coefficient": MU}, batch=2)
     shares = torch.tensor([-1e-9, 1e-9], dtype=torch.float64)
-    now = bench.evaluated(time=(pitch_point(case) + shares) * case.mesh_period)
-    before, after = bench.effect.force_factor(now, bench.p).tolist()
+    at = bench.evaluated(time=(pitch_point(case) + shares) * case.mesh_period)
+    before, after = bench.effect.force_factor(at, bench.p).tolist()
     assert after - before == pytest.approx(2 * MU * math.tan(case.pressure_angle), rel=1e-6)
 
 
@@ -91,11 +91,11 @@ def test_a_region_continues_smoothly_beyond_its_edge():
     bench = Bench("tooth_friction", {}, {}, batch=3)
     for edge in (0.0, 0.6, pitch_point(case)):
         shares = torch.tensor([-2e-3, -1e-3, 1e-3], dtype=torch.float64)
-        now = bench.moment((edge + 1 + shares) * case.mesh_period, bench.random())
-        locked = {k: v[:1].expand(3) for k, v in now.locked.items()}
-        assert any((v[0] != v[2]).item() for v in now.locked.values())
-        now.locked = locked
-        found = bench.effect.force_factor(now, bench.p)
+        at = bench.kinematics((edge + 1 + shares) * case.mesh_period, bench.random())
+        active_branch = {k: v[:1].expand(3) for k, v in at.active_branch.items()}
+        assert any((v[0] != v[2]).item() for v in at.active_branch.values())
+        at.active_branch = active_branch
+        found = bench.effect.force_factor(at, bench.p)
         assert (found[2] - found[1]).item() == pytest.approx(2 * (found[1] - found[0]).item(), rel=1e-6, abs=1e-12)
 
 
@@ -105,7 +105,7 @@ def test_contact_that_grows_with_load_moves_the_zones_but_not_the_pitch_point():
     given |= {"load_dependent_contact.reference_load": GearCase().mean_load}
     bench = Bench("tooth_friction", {}, given, others=("load_dependent_contact",), batch=200)
     time = torch.linspace(1e-6, 3.1 * case.mesh_period, 200, dtype=torch.float64)
-    now = bench.evaluated(time=time)
-    found = bench.effect.force_factor(now, bench.p).numpy()
-    wanted = [exact_factor(case, a, 1.0, lead=0.05 * math.pi) for a in now.mesh.angle.tolist()]
+    at = bench.evaluated(time=time)
+    found = bench.effect.force_factor(at, bench.p).numpy()
+    wanted = [exact_factor(case, a, 1.0, lead=0.05 * math.pi) for a in at.mesh.angle.tolist()]
     np.testing.assert_allclose(found, wanted, rtol=1e-10)

@@ -6,7 +6,7 @@ import pytest
 from pydantic import ValidationError
 
 import gear_damping
-from gear_damping.explanation.schema import KEYS, Explanation
+from gear_damping.explanation.report_schema import KEYS, Explanation
 from gear_damping.reporting.explanation_page import main, page
 
 DOCS = Path(gear_damping.__file__).parents[1] / "docs"

@@ -6,7 +6,7 @@ import pytest
 from matplotlib.text import Text
 
 from gear_damping.reporting import figures
-from gear_damping.reporting.figures.marks import harmonics, spread
+from gear_damping.reporting.figures.marks import harmonics, spaced
 from gear_damping.reporting.style import new_figure
 
 RATE, SHAFT, TEETH, SAMPLES = 6400.0, 20.0, 20, 3200  # ten turns of the pinion
@@ -225,8 +225,8 @@ def test_candidates_are_ordered_by_what_they_explain():
 def test_marks_lie_on_harmonics_and_names_keep_their_distance():
     assert harmonics(20, 65) == [20, 40, 60]
     assert harmonics(None, 65) == []
-    assert spread([0.1, 0.11, 0.5], 0.1) == pytest.approx([0.1, 0.2, 0.5])
-    assert spread([0.98, 0.99], 0.1) == pytest.approx([0.9, 1.0])
+    assert spaced([0.1, 0.11, 0.5], 0.1) == pytest.approx([0.1, 0.2, 0.5])
+    assert spaced([0.98, 0.99], 0.1) == pytest.approx([0.9, 1.0])
 
 
 def test_the_look_stays_out_of_the_users_own_figures():

@@ -64,26 +64,26 @@ class Page(HTMLParser):
         self._check(tag, found)
 
     def _check(self, tag, found):
-        say = self.problems.append
+        complain = self.problems.append
         if tag == "html" and found.get("lang") != "en":
-            say("no language")
+            complain("no language")
         if tag == "img" and len(found.get("alt") or "") < 20:
-            say(f"an image without an alternative text: {found.get('alt')!r}")
+            complain(f"an image without an alternative text: {found.get('alt')!r}")
         for key in ("src", "href", "srcset", "action", "poster"):
             if re.match(r"\s*(\w+:)?//|javascript:", found.get(key) or ""):
-                say(f"fetches {found[key]}")
+                complain(f"fetches {found[key]}")
         if any(key.startswith("on") for key in found) or "style" in found:
-            say(f"{tag} has a script or a style of its own")
+            complain(f"{tag} has a script or a style of its own")
         if tag == "table":
             self.of_table = {"caption": False, "col": False, "row": False}
         if tag == "caption" and self.of_table:
             self.of_table["caption"] = True
         if tag == "th" and self.of_table:
-            say("a heading without scope") if found.get("scope") not in ("col", "row") else None
+            complain("a heading without scope") if found.get("scope") not in ("col", "row") else None
             self.of_table[found.get("scope", "col")] = True
         if tag == "div" and "scroll" in (found.get("class") or "").split():
             named = found.get("aria-labelledby") and found.get("role") == "region"
-            say("a scrolling region without focus or name") if not named or found.get("tabindex") != "0" else None
+            complain("a scrolling region without focus or name") if not named or found.get("tabindex") != "0" else None
 
     def handle_endtag(self, tag):
         if not self.open or self.open.pop() != tag:

@@ -14,7 +14,7 @@ from gear_damping.reporting.paper import effect, printed
 from gear_damping.reporting.paper.cells import as_fraction
 from gear_damping.reporting.paper.page import MARKED, with_tables
 from gear_damping.reporting.paper.physics import Response
-from gear_damping.reporting.paper.study import Spread
+from gear_damping.reporting.paper.study import MeanAndStd
 from gear_damping.reporting.smaller import smaller_png
 
 ROOT = Path(__file__).parents[2]
@@ -107,10 +107,10 @@ def test_the_numbers_are_of_three_seeds_and_of_every_effect(found):
     assert {"baseline", "eccentricity", "backlash", "torque"} | noises <= under_both
 
 
-def test_a_spread_is_that_of_its_values():
-    one = Spread.over([1.0, 2.0, 6.0])
+def test_mean_and_std_are_those_of_its_values():
+    one = MeanAndStd.over([1.0, 2.0, 6.0])
     assert (one.mean, one.std) == (3.0, pytest.approx(sqrt(7)))
-    assert Spread.over([2.0]).std == 0
+    assert MeanAndStd.over([2.0]).std == 0
     assert as_fraction({"mean": 0.0819, "std": 0.0012, "values": (0, 1)}) == "(8.19 ± 0.12)·10⁻⁴"
 
 
@@ -129,7 +129,7 @@ def test_ridges_are_the_maxima_with_their_half_power_width():
 @pytest.mark.parametrize(("error", "end"), [(0.1, 10.0), (60.0, 90.0)])
 def test_no_error_lies_beyond_the_axis(error, end):
     """Networks that were trained for an epoch or two miss by more than the paper's do."""
-    study = SimpleNamespace(of=lambda effect, protocol: [1], score=lambda *_: Spread.over([error]))
+    study = SimpleNamespace(of=lambda effect, protocol: [1], score=lambda *_: MeanAndStd.over([error]))
     axes = Figure().subplots()
     effect._errors(axes, study, "figure_12", "eccentricity")
     assert axes.get_xlim()[1] == pytest.approx(end)

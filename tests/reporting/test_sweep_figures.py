@@ -21,7 +21,7 @@ def rows(levels=(1, 10), ratios=(0.1, 0.2, 0.3), seeds=(0,)):
     ]
 
 
-def test_seeds_become_a_mean_and_a_spread():
+def test_seeds_become_a_mean_and_a_standard_deviation():
     found, keys = over_seeds(rows(seeds=(0, 1, 5)), [SNR, SEED, ZETA])
     assert keys == [SNR, ZETA]
     assert len(found) == 6

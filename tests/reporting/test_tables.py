@@ -41,7 +41,7 @@ def test_results_have_a_row_for_each_estimator_and_say_what_was_compared(results
     assert max(map(len, lines)) <= 100
 
 
-def test_one_seed_has_no_spread(results):
+def test_one_seed_has_no_standard_deviation(results):
     text = results_table(results | {"seeds": [3]})
     assert "±" not in text
     assert "seeds 3" in text

@@ -68,7 +68,7 @@ def test_native_equals_torch(name):
 
 
 def test_members_of_other_steps_keep_their_own(bench_model):
-    """More lanes than a vector has, in two groups of sub-steps and several blocks of outputs."""
+    """More members than a vector has lanes, in two groups of sub-steps and several blocks of outputs."""
     model, values = bench_model
     given = values(21)
     given["inertia_pinion"] = given["inertia_pinion"] * torch.tensor([1.0, 0.02, 1.0]).repeat(7)

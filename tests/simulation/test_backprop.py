@@ -32,9 +32,9 @@ class NetworkForce(ElasticForce):
             layers = (torch.nn.Linear(1, 8), torch.nn.Tanh(), torch.nn.Linear(8, 1, bias=False))
             self.network = torch.nn.Sequential(*layers).double()
 
-    def elastic_force(self, now, p) -> Tensor:
+    def elastic_force(self, at, p) -> Tensor:
         rest = self.network(torch.zeros(1, 1, dtype=torch.float64))
-        return (self.network(now.deflection.unsqueeze(-1)) - rest).squeeze(-1)
+        return (self.network(at.deflection.unsqueeze(-1)) - rest).squeeze(-1)
 
 
 def oscillator(*effects):

@@ -59,10 +59,10 @@ def test_energy_of_the_equation_is_kinetic_plus_elastic(bench_model):
     equation = EquationOfMotion(model)
     zero = torch.zeros(3, dtype=torch.float64)
     state = (zero + 0.5, zero + 2.0)
-    now = equation.moment(zero, state, {}, prepared.base)
-    now.locked = {name: (g >= 0).double() for name, g in equation.switches(now, prepared.terms).items()}
-    found = equation.energy(now, prepared.base, prepared.terms)
-    stiffness = now.stiffness * prepared.scales.force / prepared.scales.length
+    at = equation.kinematics(zero, state, {}, prepared.base)
+    at.active_branch = {name: (g >= 0).double() for name, g in equation.switches(at, prepared.terms).items()}
+    found = equation.energy(at, prepared.base, prepared.terms)
+    stiffness = at.stiffness * prepared.scales.force / prepared.scales.length
     joule = stiffness * (0.5 * prepared.scales.length) ** 2 / 2
     joule = joule + prepared.derived["equivalent_mass"] * (2 * prepared.scales.velocity) ** 2 / 2
     torch.testing.assert_close(found * prepared.scales.force * prepared.scales.length, joule)

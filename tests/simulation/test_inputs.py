@@ -224,6 +224,6 @@ def test_a_recorded_angle_drives_the_pair_without_its_error(bench_model):
     recorded = angle + 5e-3 * torch.cos(angle + 0.7)
     corrected = simulate(wrong, given, inputs={"pinion_angle": recorded}, **run)
     believed = simulate(model, values(2), inputs={"pinion_angle": recorded}, **run)
-    spread = truth.response.std()
-    assert (corrected.response - truth.response).abs().max() < 2e-3 * spread
-    assert (believed.response - truth.response).abs().max() > 2e-2 * spread
+    deviation = truth.response.std()
+    assert (corrected.response - truth.response).abs().max() < 2e-3 * deviation
+    assert (believed.response - truth.response).abs().max() > 2e-2 * deviation

@@ -93,7 +93,7 @@ def test_what_lies_outside_is_the_librarys(evaluate):
     torch.testing.assert_close(turned[2], far.cos(), rtol=0, atol=3e-16, equal_nan=True)
 
 
-def test_a_lane_never_sees_its_neighbours(evaluate):
+def test_a_member_never_sees_its_neighbours(evaluate):
     """A neighbour outside the range changes no bit."""
     base, exponent = numbers(32, 0.1, 3.0), numbers(32, 0.5, 2.5)
     alone = evaluate(base, exponent)

@@ -16,14 +16,14 @@ from gear_damping.physics.systems.known import systems_of
 from gear_damping.physics.systems.oscillator import Oscillator
 from gear_damping.physics.terms import MeshStiffness, Sensor
 from gear_damping.simulation import compilation
-from gear_damping.simulation.kernel import Kernel, Members
+from gear_damping.simulation.kernel import Batch, Kernel
 from gear_damping.simulation.layout import Layout
 from gear_damping.simulation.native import build
 from gear_damping.simulation.native.expressions import Program
 from gear_damping.simulation.native.source import crossings, tableau
 from gear_damping.simulation.native.stepper import in_parallel
 from gear_damping.simulation.native.structure import structure_of
-from gear_damping.simulation.native.trace import LANES, UntraceableError, trace
+from gear_damping.simulation.native.trace import TRACED_BATCH, UntraceableError, trace
 from gear_damping.simulation.prepare import Planned, prepare_kernels
 from gear_damping.simulation.series import Series
 from gear_damping.simulation.simulate import simulate
@@ -88,7 +88,7 @@ def test_without_a_compiler_the_results_are_the_same(bench_model, monkeypatch, c
 
 
 def operations(a, b):
-    """Every operation that the tracer knows, on (2, lanes) and (lanes,)."""
+    """Every operation that the tracer knows, on (2, batch) and (batch,)."""
     mask = (a > 0.2) & ~(b <= 0.7)
     stacked = torch.stack([a[0], b, a[1] - 2])
     return torch.stack(
@@ -109,8 +109,8 @@ def test_every_operation_against_pytorch(tmp_path):
     from gear_damping.simulation.native.emit import Written
 
     generator = torch.Generator().manual_seed(3)
-    a = 0.05 + 0.9 * torch.rand(2, LANES, generator=generator, dtype=torch.float64)
-    b = 0.05 + 0.9 * torch.rand(LANES, generator=generator, dtype=torch.float64)
+    a = 0.05 + 0.9 * torch.rand(2, TRACED_BATCH, generator=generator, dtype=torch.float64)
+    b = 0.05 + 0.9 * torch.rand(TRACED_BATCH, generator=generator, dtype=torch.float64)
     program = Program()
     rows = np.array([[program.input("y[0]", True)], [program.input("y[1]", True)]], dtype=object)
     last = np.array([program.input("y[2]", True)], dtype=object)
@@ -135,7 +135,7 @@ extern "C" void call(const double* in, double* out) {
 
 def test_an_unknown_operation_is_refused_by_name():
     with pytest.raises(UntraceableError, match="erfinv"):
-        trace(torch.erfinv, [torch.zeros(LANES)], [np.array([0.0], dtype=object)], Program())
+        trace(torch.erfinv, [torch.zeros(TRACED_BATCH)], [np.array([0.0], dtype=object)], Program())
 
 
 @pytest.mark.usefixtures("compiler")
@@ -170,8 +170,8 @@ def test_what_decides_a_kernel_is_in_its_key(bench_model):
     for kind in (model, other):
         prepared = kind.prepare({**kind.values(2), **values(2)})
         fixed = Layout(prepared).pack(prepared, prepared.scales.time)
-        members = Members(fixed, fixed[:0], fixed.new_zeros(()))
-        keys.add(structure_of(Kernel(kind, Layout(prepared), Series(()), members, fixed[:2])))
+        batch = Batch(fixed, fixed[:0], fixed.new_zeros(()))
+        keys.add(structure_of(Kernel(kind, Layout(prepared), Series(()), batch, fixed[:2])))
     assert len(keys) == 2
     assert None not in keys
 

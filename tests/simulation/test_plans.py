@@ -11,18 +11,18 @@ from gear_damping.physics.catalogue import effect_class
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.gear_pair import GearPair
 from gear_damping.simulation import plan as plan_module
-from gear_damping.simulation.families import Family, Label, Spread, draw_values
 from gear_damping.simulation.plan import SimulationPlan, run_plan
+from gear_damping.simulation.prior import Label, Prior, Uniform, draw_values
 
-SPREADS = {"damping_ratio_percent": Spread(0.1, 0.6), "pinion_torque": Spread(0.8, 1.2, relative=True)}
-FAMILY = Family("bench", SPREADS)
+DISTRIBUTIONS = {"damping_ratio_percent": Uniform(0.1, 0.6), "pinion_torque": Uniform(0.8, 1.2, relative=True)}
+PRIOR = Prior("bench", DISTRIBUTIONS)
 
 
 @pytest.fixture
 def plan():
     effects = [effect_class(name)() for name in ("fourier_mesh_stiffness", "power_law_damping", "load_noise")]
     return SimulationPlan(
-        Model(GearPair(), effects), {"load_noise.snr_db": 40.0}, FAMILY, 12, 40e3, 60, 5, "power_law_damping"
+        Model(GearPair(), effects), {"load_noise.snr_db": 40.0}, PRIOR, 12, 40e3, 60, 5, "power_law_damping"
     )
 
 
@@ -45,12 +45,12 @@ def test_one_ratio_for_every_run(plan):
 
 def test_static_start_is_near_the_static_deflection_and_rest_is_at_zero(plan):
     generator = torch.Generator().manual_seed(0)
-    values, _ = draw_values(plan.model, plan.given, FAMILY, 400, generator, Label("power_law_damping"))
+    values, _ = draw_values(plan.model, plan.given, PRIOR, 400, generator, Label("power_law_damping"))
     torque = values["pinion_torque"]
     share = values["initial_displacement"] / (torque / 0.0281907786 / 3.2e8)
     assert float(share.mean()) == pytest.approx(1, abs=0.02)
     assert float(share.std()) == pytest.approx(0.1, rel=0.15)
-    rest, _ = draw_values(plan.model, plan.given, replace(FAMILY, start="rest"), 5, generator)
+    rest, _ = draw_values(plan.model, plan.given, replace(PRIOR, start="rest"), 5, generator)
     assert not rest["initial_displacement"].any()
 
 
@@ -90,12 +90,12 @@ def test_too_many_diverged_runs_are_refused(plan):
     assert len(kept.status) == 0
 
 
-def test_spreads_and_laws_that_do_not_exist(plan):
+def test_distributions_and_laws_that_do_not_exist(plan):
     generator = torch.Generator()
     with pytest.raises(InputError, match="pinion_torque"):
-        draw_values(plan.model, {}, Family("x", {"pinion_torqe": Spread(0, 1)}), 2, generator)
+        draw_values(plan.model, {}, Prior("x", {"pinion_torqe": Uniform(0, 1)}), 2, generator)
     with pytest.raises(InputError, match="viscous_damping"):
-        draw_values(plan.model, {}, FAMILY, 2, generator, Label("viscous_damping"))
+        draw_values(plan.model, {}, PRIOR, 2, generator, Label("viscous_damping"))
 
 
 @pytest.mark.parametrize("part", ["driver.cpp", "vectors.h", "tsit5.py", "backlash.py"])

@@ -9,7 +9,7 @@ import torchdiffeq
 from torchdiffeq import odeint
 
 from gear_damping.simulation import torchdiffeq_method
-from gear_damping.simulation.integrate import Members, initial_states, kernel_of
+from gear_damping.simulation.integrate import Batch, initial_states, kernel_of
 from gear_damping.simulation.layout import Layout
 from gear_damping.simulation.series import Series, SharedSeries
 from gear_damping.simulation.simulate import simulate
@@ -30,7 +30,7 @@ def stepper(bench_model):
     layout, series = Layout(prepared), Series(())
     fixed, start = layout.pack(prepared, interval), initial_states(model, prepared)
     empty = fixed.new_zeros(50, 0, 3)
-    kernel = kernel_of(model, layout, series, Members(fixed, empty[0], fixed.new_zeros(())), start)
+    kernel = kernel_of(model, layout, series, Batch(fixed, empty[0], fixed.new_zeros(())), start)
     return Stepper(kernel, fixed, SharedSeries.written_out(empty), compiled=False), start, prepared
 
 

@@ -6,7 +6,7 @@ import re
 import pytest
 from casing import draw_case, write_case
 
-from gear_damping.explanation.schema import Explanation
+from gear_damping.explanation.report_schema import Explanation
 from gear_damping.tasks.command import main
 
 

@@ -8,7 +8,7 @@ import pytest
 import yaml
 from scipy.integrate import solve_ivp
 
-from gear_damping.explanation.schema import Explanation
+from gear_damping.explanation.report_schema import Explanation
 from gear_damping.tasks.command import main
 
 STIFFNESS, DAMPING, CUBIC, NOISE = 900.0, 0.6, -30.0, 2e-4  # 1/s^2, 1/s, 1/(rad^2 s^2), rad

@@ -31,10 +31,10 @@ class OwnDamping(DampingForce):
         {prepare}
         return dict(values)
 
-    def damping_force(self, now, p):
+    def damping_force(self, at, p):
         """{force}"""
         {force}
-        return p["coefficient"] * now.delta_rate
+        return p["coefficient"] * at.delta_rate
 '''
 
 

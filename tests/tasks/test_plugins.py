@@ -166,7 +166,7 @@ BROKEN = {
         lambda text: text.replace('p["thinning_velocity"]', 'p["velocity"]'),
         "line 32, in damping_force",
     ),
-    "wrong_field": (lambda text: text.replace("now.delta_rate.abs", "now.rate.abs"), "no attribute 'rate'"),
+    "wrong_field": (lambda text: text.replace("at.delta_rate.abs", "at.rate.abs"), "no attribute 'rate'"),
 }
 
 

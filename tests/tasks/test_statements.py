@@ -5,9 +5,9 @@ import pytest
 
 from gear_damping.config.settings import read_settings
 from gear_damping.errors import InputError
-from gear_damping.simulation.families import Family, Spread
 from gear_damping.simulation.floquet import floquet_multiplier
 from gear_damping.simulation.plan import run_plan
+from gear_damping.simulation.prior import Prior, Uniform
 from gear_damping.tasks.command import main
 from gear_damping.tasks.composed import composed
 from gear_damping.tasks.simulated import plan_of
@@ -114,7 +114,7 @@ def test_a_ratio_that_no_coefficient_has_is_refused_before_the_run(name, simulat
 
 def test_a_plan_says_it_too():
     plan = plan_of(read_settings(*composed([])))
-    still = Family("still", {"damping_ratio_percent": Spread(0.1, 0.2)})
+    still = Prior("still", {"damping_ratio_percent": Uniform(0.1, 0.2)})
     with pytest.raises(InputError, match=r"simulator\.pinion_torque is 0"):
         run_plan(type(plan)(plan.model, {"pinion_torque": 0.0}, still, 2, 4e4, 20, 0, "power_law_damping"))
 

@@ -7,19 +7,19 @@ from math import pi
 import torch
 from torch import Tensor
 
+from gear_damping.explanation.evidence.declared_units import unit_of
 from gear_damping.explanation.evidence.excess import ac_energy
 from gear_damping.explanation.evidence.records import Evidence
-from gear_damping.explanation.evidence.rig_units import unit_of
+from gear_damping.explanation.model.covariance import SILENT
 from gear_damping.explanation.model.hypothesis import Outcome
-from gear_damping.explanation.model.spread import SILENT
 from gear_damping.identification.output_error.problem import set_value
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.uncertainty import QUANTILE
 from gear_damping.identification.output_error.unknowns import OFFSET, is_of_model
 from gear_damping.physics.damping_ratio import harmonic_damping_coefficient
 from gear_damping.physics.effects.mesh_stiffness_shape import MeshStiffnessShape
+from gear_damping.physics.kinematics import Kinematics, Rotation
 from gear_damping.physics.model import Model, Prepared
-from gear_damping.physics.moment import Moment, Rotation
 from gear_damping.physics.terms import DampingForce, DampingLaw, MeshStiffness
 from gear_damping.simulation.runs import reference_velocity
 
@@ -47,11 +47,13 @@ def rmse(residuals: Sequence[Tensor]) -> float:
 
 def nrmse(residuals: Sequence[Tensor], records: Sequence[FitRecord]) -> float:
     """Root mean square residual over the standard deviation of the channel within records."""
-    spread = sum(ac_energy(record) for record in records)
-    return (sum(float(r.square().sum()) for r in residuals) / max(spread, 1e-300)) ** 0.5
+    energy = sum(ac_energy(record) for record in records)
+    return (sum(float(r.square().sum()) for r in residuals) / max(energy, 1e-300)) ** 0.5
 
 
-def parameters_of(outcome: Outcome, spread: Tensor, cause: str, evidence: Evidence) -> dict[str, dict[str, object]]:
+def parameters_of(
+    outcome: Outcome, covariances: Tensor, cause: str, evidence: Evidence
+) -> dict[str, dict[str, object]]:
     """The fitted parameters of an effect with 95 % intervals, by own name.
 
     Of one that the records say nothing of (a gap whose far flank is never touched) it is its whole range; of one
@@ -64,11 +66,13 @@ def parameters_of(outcome: Outcome, spread: Tensor, cause: str, evidence: Eviden
         if effect != cause:
             continue
         unit = unit_of(parameter.declared_name, outcome.hypothesis.model, evidence)
-        found[own] = _interval(outcome, spread, place, evidence, unit).plain() | {"at_bound": bool(at_bound[place])}
+        found[own] = _interval(outcome, covariances, place, evidence, unit).plain() | {
+            "at_bound": bool(at_bound[place])
+        }
     return found
 
 
-def final_parameters(outcome: Outcome, spread: Tensor, evidence: Evidence) -> dict[str, dict[str, object]]:
+def final_parameters(outcome: Outcome, covariances: Tensor, evidence: Evidence) -> dict[str, dict[str, object]]:
     """Every fitted parameter of a model with its 95 % interval, nuisances and those of single records included."""
     declared, found = outcome.hypothesis.model.parameters(), {}
     for place, parameter in enumerate(outcome.problem.free):
@@ -78,11 +82,11 @@ def final_parameters(outcome: Outcome, spread: Tensor, evidence: Evidence) -> di
             unit = evidence.channel.unit if channel == evidence.channel.name else "own"
         else:
             unit = unit_of(flat, outcome.hypothesis.model, evidence) if flat in declared else "1"
-        found[parameter.name] = _interval(outcome, spread, place, evidence, unit).plain()
+        found[parameter.name] = _interval(outcome, covariances, place, evidence, unit).plain()
     return found
 
 
-def _interval(outcome: Outcome, spread: Tensor, place: int, evidence: Evidence, unit: str) -> Interval:
+def _interval(outcome: Outcome, covariances: Tensor, place: int, evidence: Evidence, unit: str) -> Interval:
     """A fitted parameter with its 95 % interval.
 
     Of one that the records say nothing of it is the whole range; of one that the fit has driven to its bound, it
@@ -90,7 +94,7 @@ def _interval(outcome: Outcome, spread: Tensor, place: int, evidence: Evidence, 
     lower end, and the upper end of the logarithm would be far beyond what the records allow.
     """
     parameter, z = outcome.problem.free[place], outcome.fitted.shared[place]
-    value, half = float(parameter.value(z)), QUANTILE * float(spread[place, place].clamp(min=0).sqrt())
+    value, half = float(parameter.value(z)), QUANTILE * float(covariances[place, place].clamp(min=0).sqrt())
     if parameter.logarithmic and half > 1:
         ends = sorted((0.0, value * (1 + half)))
     else:
@@ -106,7 +110,7 @@ def _interval(outcome: Outcome, spread: Tensor, place: int, evidence: Evidence, 
     return Interval(value, (ends[0], ends[1]), unit)
 
 
-def damping_ratio(outcome: Outcome, spread: Tensor) -> dict[str, object] | None:
+def damping_ratio(outcome: Outcome, covariances: Tensor) -> dict[str, object] | None:
     """The equivalent damping ratio of every damping law together, in % of critical, at its reference velocity.
 
     Dry friction counts with what a harmonic motion of that velocity loses to it. None where there is no linear
@@ -114,7 +118,7 @@ def damping_ratio(outcome: Outcome, spread: Tensor) -> dict[str, object] | None:
     ends at zero.
     """
     problem, shared = outcome.problem, outcome.fitted.shared
-    if _has_no_spring(outcome, spread):
+    if _has_no_spring(outcome, covariances):
         return None
     points = shared.repeat(len(shared) + 1, 1)
     points[1:] += STEP * torch.eye(len(shared), dtype=torch.float64)
@@ -122,17 +126,17 @@ def damping_ratio(outcome: Outcome, spread: Tensor) -> dict[str, object] | None:
     if not bool(ratios.isfinite().all()):
         return None
     slope = (ratios[1:] - ratios[0]) / STEP
-    half = QUANTILE * float((slope @ spread @ slope).clamp(min=0).sqrt())
+    half = QUANTILE * float((slope @ covariances @ slope).clamp(min=0).sqrt())
     value = float(ratios[0])
     ends = (max(value - half, min(value, 0.0)), value + half)
     return Interval(value, ends, "%").plain() | {"reference_velocity": velocity}
 
 
-def _has_no_spring(outcome: Outcome, spread: Tensor) -> bool:
+def _has_no_spring(outcome: Outcome, covariances: Tensor) -> bool:
     """Whether a stiffness that was fitted is not told from nothing."""
     for place, parameter in enumerate(outcome.problem.free):
         if parameter.name == outcome.hypothesis.system.spring:
-            half = QUANTILE * float(spread[place, place].clamp(min=0).sqrt())
+            half = QUANTILE * float(covariances[place, place].clamp(min=0).sqrt())
             size = 1.0 if parameter.logarithmic else outcome.values[parameter.name] / parameter.scale
             return half > abs(size)
     return False
@@ -172,9 +176,9 @@ def mean_stiffness(model: Model, prepared: Prepared) -> Tensor:
     mesh = next(effect for effect in model.effects if isinstance(effect, MeshStiffness))
     none, sums = torch.zeros_like(plain), torch.zeros(2, len(plain), dtype=plain.dtype)
     for angle in torch.arange(PHASES) * (2 * pi / PHASES):
-        now = Moment(none, none, none, mesh=Rotation(none + angle, none))
-        ideal = mesh.stiffness(now, prepared.terms[mesh.name])
-        sums += torch.stack([ideal, ideal * shape.factor(now, prepared.terms[shape.name])])
+        at = Kinematics(none, none, none, mesh=Rotation(none + angle, none))
+        ideal = mesh.stiffness(at, prepared.terms[mesh.name])
+        sums += torch.stack([ideal, ideal * shape.factor(at, prepared.terms[shape.name])])
     return plain * sums[1] / sums[0]
 
 
@@ -183,6 +187,8 @@ def _coefficient(effect: DampingForce, prepared: Prepared, speed: Tensor) -> Ten
     none, scales = torch.zeros_like(speed), prepared.scales
 
     def force(rate: Tensor) -> Tensor:
-        return effect.damping_force(Moment(none, none, rate, delta=none, delta_rate=rate), prepared.terms[effect.name])
+        return effect.damping_force(
+            Kinematics(none, none, rate, delta=none, delta_rate=rate), prepared.terms[effect.name]
+        )
 
     return harmonic_damping_coefficient(force, speed / scales.velocity) * scales.mass / scales.time

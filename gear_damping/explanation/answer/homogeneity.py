@@ -13,8 +13,8 @@ from torch import Tensor
 
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.hypothesis import Outcome, time_scale
-from gear_damping.explanation.statistics.random_effects import spread_between, statistic
-from gear_damping.identification.output_error.normal_equations import own_basis, without_own
+from gear_damping.explanation.statistics.random_effects import between_deviation, statistic
+from gear_damping.identification.output_error.normal_equations import nuisance_basis, project_out
 from gear_damping.identification.output_error.uncertainty import QUANTILE
 
 FEWEST = 3  # records or segments with a share of the information
@@ -52,11 +52,13 @@ class Homogeneity:
 
 
 def homogeneity(outcome: Outcome, cause: str, evidence: Evidence) -> Homogeneity:
-    """Estimates of the first strength of a cause by record, beside every other parameter."""
+    """Estimates of the first strength of a cause by record, every other parameter projected out."""
     place = next(i for i, p in enumerate(outcome.problem.free) if p.name.startswith(cause + "."))
     prediction, problem = outcome.linearisation, outcome.problem
     groups, names = _groups(outcome)
-    columns, residual = _beside(prediction.sensitivity[0], prediction.residual[0], place, problem.n_shared, groups)
+    columns, residual = _orthogonal_columns(
+        prediction.sensitivity[0], prediction.residual[0], place, problem.n_shared, groups
+    )
     energy = columns.square().sum(0)
     kept = (energy > SHARE * energy.sum() / len(names)).nonzero().flatten().tolist()
     strength = _size(outcome, place)
@@ -86,13 +88,13 @@ def by_record(outcome: Outcome, cause: str, evidence: Evidence) -> dict[str, Any
         {"record": r, "value": within(size * one), "interval95": sorted(within(size * (one + e * error)) for e in ends)}
         for r, one, error in zip(test.names, test.estimates, test.errors, strict=True)
     ]
-    spread = spread_between(test.estimates, test.errors) if test.testable else None
+    deviation = between_deviation(test.estimates, test.errors) if test.testable else None
     return {
         "per_record": rows,
         "homogeneous": {
             "parameter": name,
-            "tau_percent": spread and 100 * spread.value,
-            "interval95": spread and [100 * end for end in spread.interval95],
+            "tau_percent": deviation and 100 * deviation.value,
+            "interval95": deviation and [100 * end for end in deviation.interval95],
             "p": test.p,
             "tolerance": evidence.settings.homogeneity_tolerance,
             "level": test.level,
@@ -110,16 +112,18 @@ def _groups(outcome: Outcome) -> tuple[Tensor, list[str]]:
     return torch.arange(len(rows)), [f"{row.record} at {row.begins:.3g} s" for row in rows]
 
 
-def _beside(sensitivity: Tensor, residual: Tensor, place: int, n_shared: int, groups: Tensor) -> tuple[Tensor, Tensor]:
-    """Columns of the strength by group (samples, groups) and the residual, beside every other parameter."""
+def _orthogonal_columns(
+    sensitivity: Tensor, residual: Tensor, place: int, n_shared: int, groups: Tensor
+) -> tuple[Tensor, Tensor]:
+    """Columns of the strength by group (samples, groups) and the residual, every other parameter projected out."""
     count = int(groups.max()) + 1
-    own = own_basis(sensitivity, n_shared)
+    own = nuisance_basis(sensitivity, n_shared)
     split = torch.zeros(*sensitivity.shape[:2], count, dtype=torch.float64)
     split[torch.arange(len(groups)), :, groups] = sensitivity[..., place]
     others = [i for i in range(n_shared) if i != place]
-    rest = without_own(sensitivity[..., others], own).flatten(0, 1)
-    basis = torch.linalg.qr(rest / rest.norm(dim=0).clamp(min=1e-300)).Q
-    columns, left = (without_own(s, own).flatten(0, 1) for s in (split, residual.unsqueeze(-1)))
+    nuisance = project_out(sensitivity[..., others], own).flatten(0, 1)
+    basis = torch.linalg.qr(nuisance / nuisance.norm(dim=0).clamp(min=1e-300)).Q
+    columns, left = (project_out(s, own).flatten(0, 1) for s in (split, residual.unsqueeze(-1)))
     return columns - basis @ (basis.T @ columns), (left - basis @ (basis.T @ left))[:, 0]
 
 

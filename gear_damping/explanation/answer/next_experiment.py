@@ -8,7 +8,7 @@ from gear_damping.physics.systems.traits import Trait
 
 ALIKE = 0.9  # collinearity from which two effects count as confusable beforehand
 SEPARATES = {
-    "torque": "repeat the records at another torque (half and twice): forces that hang on the load scale with it, "
+    "torque": "repeat the records at another torque (half and twice): forces that depend on the load scale with it, "
     "geometric errors do not",
     "speed": "repeat the records at another speed: inertia, windage and delays change with it, stiffness does not",
     "torque_channel": "record the pinion torque: a ripple of the torque shows there, an eccentricity does not",

@@ -32,18 +32,18 @@ INDEPENDENT = 1e-6  # of what a cause adds: less is left of it beside a family t
 
 
 @dataclass(frozen=True)
-class Family:
+class Alternative:
     """Forces or lines without a name.
 
     Args:
         name: What they are called.
         numbers: How many they take.
-        beside: What they leave of a signal that is beside the model's parameters already.
+        project_out: What they leave of a signal out of which the model's parameters are projected already.
     """
 
     name: str
     numbers: int
-    beside: Callable[[Tensor], Tensor]
+    project_out: Callable[[Tensor], Tensor]
 
 
 @dataclass(frozen=True)
@@ -52,14 +52,14 @@ class StandIn:
 
     Args:
         cause: The cause.
-        family: What takes more than it.
+        alternative: What takes more than it.
         takes: Share that this takes of what the model without the cause leaves.
         cause_takes: Share that the cause takes of it.
         why: What gives it away.
     """
 
     cause: str
-    family: str
+    alternative: str
     takes: float
     cause_takes: float
     why: str
@@ -68,7 +68,7 @@ class StandIn:
     def sentence(self) -> str:
         """What is said of it."""
         return (
-            f"but {self.family} takes more ({100 * self.takes:.3g} % of the residuals, `{self.cause}` "
+            f"but {self.alternative} takes more ({100 * self.takes:.3g} % of the residuals, `{self.cause}` "
             f"{100 * self.cause_takes:.3g} %), {self.why}: it stands in for something that has no name here."
         )
 
@@ -152,49 +152,51 @@ def _stand_in(cause: Accepted, state: State) -> StandIn | None:
     block, found = block_of(without, bench.evidence), []
     beyond_noise = 1 - min(bench.noise_cost(without) / total, 1.0)
     least = max(cause_takes, bench.settings.taken_by_one * beyond_noise)
-    for family in _families(without, project, state):
-        left, other = family.beside(residual), family.beside(change)
+    for alternative in _alternatives(without, project, state):
+        left, other = alternative.project_out(residual), alternative.project_out(change)
         takes = 1 - float(left.square().sum()) / total
         if takes <= least:
             continue
         share = float(other.square().sum()) / energy
-        why = f"with {family.numbers} numbers in the place of {free}" if family.numbers < free else ""
-        size = _size_beside(other, left, len(added), share, block, bench.settings)
+        why = f"with {alternative.numbers} numbers in the place of {free}" if alternative.numbers < free else ""
+        size = _size_within(other, left, len(added), share, block, bench.settings)
         if size is not None:
             why = f"and beside it `{cause.name}` has {size:.2g} times the size"
         if why:
-            found.append(StandIn(cause.name, family.name, takes, cause_takes, why))
+            found.append(StandIn(cause.name, alternative.name, takes, cause_takes, why))
     return max(found, key=lambda one: one.takes, default=None)
 
 
-def _size_beside(
+def _size_within(
     change: Tensor, residual: Tensor, samples: int, share: float, block: int, settings: SearchSettings
 ) -> float | None:
     """The size of a cause beside a family, relative to that which was found; None where it may well be the same.
 
     Args:
-        change: What the cause adds beside the family, (samples + n, 1).
-        residual: What the family leaves, (samples + n, 1).
+        change: What the cause adds, the alternative projected out, (samples + n, 1).
+        residual: What the alternative leaves, (samples + n, 1).
         samples: Those of the records.
-        share: Of what the cause adds, that is left beside the family.
+        share: Of what the cause adds, that the alternative leaves.
         block: Samples over which residuals may be correlated.
         settings: Thresholds.
     """
     if share <= INDEPENDENT:
         return None
     size = float((change * residual).sum() / change.square().sum())
-    column, rest = (signal[:samples, 0] for signal in (change, residual - size * change))
+    column, left_over = (signal[:samples, 0] for signal in (change, residual - size * change))
     tolerance = settings.homogeneity_tolerance / share**0.5
-    chance = norm.sf((1 - size) / hypot(float(error_of(column, rest, block)), tolerance))
+    chance = norm.sf((1 - size) / hypot(float(error_of(column, left_over, block)), tolerance))
     return size if chance < settings.homogeneity_level else None
 
 
-def _families(without: Outcome, project: Projector, state: State) -> Iterator[Family]:
+def _alternatives(without: Outcome, project: Projector, state: State) -> Iterator[Alternative]:
     """All of them beside a model."""
     evidence = state.bench.evidence
     for name, columns in unnamed_columns(without, evidence).items():
         basis = orthonormal(project(torch.nn.functional.pad(columns, (0, 0, 0, len(project.expected)))))
-        yield Family(f"some {name}", basis.shape[1], lambda signal, basis=basis: signal - basis @ (basis.T @ signal))
+        yield Alternative(
+            f"some {name}", basis.shape[1], lambda signal, basis=basis: signal - basis @ (basis.T @ signal)
+        )
     line = strongest_line(without, evidence)
     if line is not None:
-        yield Family(line.name, line.degrees, project.beside_own(line.columns))
+        yield Alternative(line.name, line.degrees, project.with_nuisance(line.columns))

@@ -1,4 +1,4 @@
-"""Step 8: what nobody named. Where the leftover lies, and which kind of force would take it."""
+"""Step 8: what nobody named. Where the unexplained residual lies, and which kind of force would take it."""
 
 from collections.abc import Mapping, Sequence
 
@@ -22,8 +22,8 @@ BINS = 16  # of the contact phase
 BURST_KURTOSIS = 6.0  # from here on a residual comes in bursts; a normal one has 3
 
 
-def leftover(outcome: Outcome, evidence: Evidence) -> dict[str, object]:
-    """The leftover of held-out records, as plain values for the file.
+def unexplained_residual(outcome: Outcome, evidence: Evidence) -> dict[str, object]:
+    """The unexplained residual of held-out records, as plain values for the file.
 
     Args:
         outcome: The model at the end of the search.
@@ -64,8 +64,8 @@ def first_channel(residuals: Sequence[Tensor], records: Sequence[FitRecord]) -> 
 def _features(record: FitRecord, outcome: Outcome, evidence: Evidence) -> dict[str, Array]:
     """Columns by family, each (time, n), of order one."""
     response = record.response.numpy()
-    middle, spread = response.mean(), response.std() or 1.0
-    place = (response - middle) / spread
+    middle, deviation = response.mean(), response.std() or 1.0
+    place = (response - middle) / deviation
     rate = np.gradient(response) if record.observed.derivatives == 0 else response
     rate = rate / (rate.std() or 1.0)
     powers = [place**i * rate**j for i in range(STATE_POWERS + 1) for j in range(STATE_POWERS + 1 - i) if i + j]

@@ -96,8 +96,8 @@ def _mesh(study: Study) -> Array:
     return _mean_square(_turns(study.plain.cut, study.heard.teeth[0]).mean(1))
 
 
-def _rest(study: Study) -> Array:
-    return _mean_square(_turns(study.plain.rest, study.heard.teeth[0]))
+def _asynchronous(study: Study) -> Array:
+    return _mean_square(_turns(study.plain.asynchronous, study.heard.teeth[0]))
 
 
 def _kurtosis(study: Study) -> Array:
@@ -132,6 +132,6 @@ _LEVELS = (
     ("level of the mesh", AT_MESH, _mesh, True),
     ("pattern of the pinion's teeth", PINION, _pattern("pinion"), True),
     ("pattern of the gear's teeth", GEAR, _pattern("gear"), True),
-    ("what is not synchronous", ASYNCHRONOUS, _rest, True),
+    ("what is not synchronous", ASYNCHRONOUS, _asynchronous, True),
     ("kurtosis by revolution", ASYNCHRONOUS, _kurtosis, False),
 )

@@ -38,7 +38,7 @@ class Patterns:
         mesh: (t,) the mean mesh cycle.
         pinion: (z1 // 2, t) complex: pattern of the pinion's teeth by tooth frequency 1 … z1 // 2.
         gear: (z2 // 2, t) the same of the gear.
-        rest: (cycles, t) what is not synchronous.
+        asynchronous: (cycles, t) what is not synchronous.
         rate: Samples per second within a cycle.
     """
 
@@ -48,7 +48,7 @@ class Patterns:
     mesh: Array
     pinion: NDArray[np.complex128]
     gear: NDArray[np.complex128]
-    rest: Array
+    asynchronous: Array
     rate: float
 
     @property
@@ -68,7 +68,7 @@ class Patterns:
     def without_mesh(self) -> Array:
         """(cycles, t) all but the mesh and its slow variation."""
         own = [series(self.shaft(s), z)[self.number % z] for s, z in zip(SHAFTS, self.teeth, strict=True)]
-        return self.rest + sum(own)
+        return self.asynchronous + sum(own)
 
 
 def patterns(heard: Heard, whiten: bool = True) -> Patterns:
@@ -86,7 +86,7 @@ def patterns(heard: Heard, whiten: bool = True) -> Patterns:
         cut, _, _ = _cut(heard, whitened(heard.values, (cut - slow).ravel(), heard.rate))
     found = design.solve(cut)
     rate = samples * heard.speed * heard.teeth[0]
-    return Patterns(heard.teeth, first, cut, cut.mean(0), found["pinion"], found["gear"], found["rest"], rate)
+    return Patterns(heard.teeth, first, cut, cut.mean(0), found["pinion"], found["gear"], found["asynchronous"], rate)
 
 
 def _cut(heard: Heard, values: Array) -> tuple[Array, Array, int]:
@@ -157,7 +157,7 @@ class Design:
         if len(self.gear_alone):
             gear[self.gear_alone - 1] = _complex(fitted[b:], self.gear_alone, self.teeth[1])
         pinion = _complex(fitted[a:b], np.arange(1, self.teeth[0] // 2 + 1), self.teeth[0])
-        return {"pinion": pinion, "gear": gear, "rest": cut - every @ fitted}
+        return {"pinion": pinion, "gear": gear, "asynchronous": cut - every @ fitted}
 
 
 def _waves(number: NDArray, frequencies: NDArray, teeth: int) -> Array:

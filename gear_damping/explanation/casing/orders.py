@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 MESH_HARMONICS = 6  # of the mesh that are looked at: higher ones are weak in a casing
 SHAFT_HARMONICS = 3  # sidebands on either side of each
 FLOOR = 50  # lines on either side that give the floor of a line
-BESIDE = 2.0  # orders over which the skirt of a synchronous line reaches
+NEIGHBOURS = 2.0  # orders over which the skirt of a synchronous line reaches
 
 LOWEST = 1.0  # order: below, load and speed drift
 HIGHEST = 0.8  # of half the sampling rate: above, a filter against aliasing leaves no even floor
@@ -90,16 +90,16 @@ def asynchronous(found: Patterns) -> Asynchronous | None:
     A synchronous line has a skirt, because path and load make it vary with the speed. A line counts therefore only
     where it is stronger than the synchronous ones beside it together.
     """
-    window = np.hanning(found.rest.size)
-    power, whole = (np.abs(np.fft.rfft(values.ravel() * window)) ** 2 for values in (found.rest, found.cut))
+    window = np.hanning(found.asynchronous.size)
+    power, whole = (np.abs(np.fft.rfft(values.ravel() * window)) ** 2 for values in (found.asynchronous, found.cut))
     order = np.arange(len(power)) * found.teeth[0] / found.cycles
     free = _free(found, order)
     if free.sum() < 2 * FLOOR:
         return None
-    size = 2 * int(BESIDE / order[1]) + 1
-    beside = size * uniform_filter1d(np.where(free, 0, whole), size, mode="constant")
+    size = 2 * int(NEIGHBOURS / order[1]) + 1
+    neighbours = size * uniform_filter1d(np.where(free, 0, whole), size, mode="constant")
     floor = median_filter(power[free], 2 * FLOOR + 1, mode="nearest") / np.log(2)  # of an exponential distribution
-    ratio = np.where(power[free] > beside[free], power[free] / floor, 0)
+    ratio = np.where(power[free] > neighbours[free], power[free] / floor, 0)
     count, at = len(ratio), int(ratio.argmax())
     if not ratio[at] > 0:
         return None

@@ -88,7 +88,7 @@ def _in_every_turn(whole: Array, gear: Localised, z1: int, draws: int) -> Locali
 def turns_of(found: Patterns, shaft: str) -> Array:
     """(turn, tooth, t) whole turns of a shaft: its pattern without runout, and what is not synchronous."""
     teeth = found.teeth[SHAFTS.index(shaft)]
-    own = found.rest + series(found.shaft(shaft), teeth, RUNOUT + 1)[found.number % teeth]
+    own = found.asynchronous + series(found.shaft(shaft), teeth, RUNOUT + 1)[found.number % teeth]
     turns = len(own) // teeth
     return own[: turns * teeth].reshape(turns, teeth, -1)
 

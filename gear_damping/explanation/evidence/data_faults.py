@@ -46,9 +46,9 @@ def mesh_order_faults(evidence: Evidence) -> list[Finding]:
     at = int(energy.argmax())
     if energy[own] >= FAINT * energy[at] or combs[:, at].min() < STRONG:
         return []
-    rest = [values - _waves(values, angle, orders[at]).sum(1) for values, angle in zip(series, shafts, strict=True)]
-    beside = _shares(rest, shafts, orders).sum((0, 2))
-    if beside[own] >= STANDS_OUT * np.median(beside):
+    left = [values - _waves(values, angle, orders[at]).sum(1) for values, angle in zip(series, shafts, strict=True)]
+    combs_left = _shares(left, shafts, orders).sum((0, 2))
+    if combs_left[own] >= STANDS_OUT * np.median(combs_left):
         return []
     if not (_at_other_speeds(records, shafts) or np.sort(shares[:, at].sum(0))[-2] >= HARMONIC * energy[at]):
         return []

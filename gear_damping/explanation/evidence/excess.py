@@ -65,12 +65,12 @@ def excess(
     beyond = max(mean_square - floor, 0.0) / variance
     error = (1 + beyond) * (2 / effective + 2 / noise.degrees_of_freedom) ** 0.5 * floor
     widened = error if noise.agree else 2 * error
-    spread = (widened**2 + (noise.scatter.deviation * floor) ** 2) ** 0.5
+    standard_error = (widened**2 + (noise.scatter.deviation * floor) ** 2) ** 0.5
     each = {
         record.name: float(residual.square().mean()) / max(floors[record.name], 1e-300)
         for record, residual in zip(records, residuals, strict=True)
     }
-    chance = float(100 * (noise.scatter.expected * floor + settings.standard_errors * spread) / variance)
+    chance = float(100 * (noise.scatter.expected * floor + settings.standard_errors * standard_error) / variance)
     return Excess(100 * (mean_square - floor) / variance, max(settings.least_excess, chance), chance, relative, each)
 
 

@@ -31,10 +31,10 @@ def _unsteady(record: FitRecord) -> tuple[FreeParameter, ...]:
     told = {parameter.name for parameter in record.own}
     rate, varies = 2 * pi / record.duration, VARIES * abs(speed)
     sizes = {"pinion_speed": varies, "pinion_acceleration": varies * rate, "pinion_jerk": varies * rate**2}
-    begun = {"pinion_speed": speed}
+    initial = {"pinion_speed": speed}
     return (
         *record.own,
-        *(_near(name, begun.get(name, 0.0), size) for name, size in sizes.items() if name not in told),
+        *(_near(name, initial.get(name, 0.0), size) for name, size in sizes.items() if name not in told),
     )
 
 

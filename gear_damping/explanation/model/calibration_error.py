@@ -5,7 +5,7 @@ import torch
 from gear_damping.explanation.evidence.noise import Scatter
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.hypothesis import Outcome
-from gear_damping.identification.output_error.normal_equations import own_basis, without_own
+from gear_damping.identification.output_error.normal_equations import nuisance_basis, project_out
 from gear_damping.identification.output_error.problem import OutputErrorProblem
 from gear_damping.identification.output_error.segments import in_segments
 from gear_damping.identification.output_error.uncertainty import noise_covariance
@@ -19,8 +19,8 @@ def calibration_error(nominal: Outcome, evidence: Evidence, solver: Solver | Non
     resonance: the error of a parameter weighs more there.
     """
     hypothesis = nominal.hypothesis
-    pieces = in_segments(evidence.holdout, evidence.segments)
-    problem = OutputErrorProblem(hypothesis.model, hypothesis.given, hypothesis.free, pieces, solver, evidence.noise)
+    segmented = in_segments(evidence.holdout, evidence.segments)
+    problem = OutputErrorProblem(hypothesis.model, hypothesis.given, hypothesis.free, segmented, solver, evidence.noise)
     settled = torch.zeros(1, problem.n_shared, dtype=torch.float64)
     for place, parameter in enumerate(problem.free):
         settled[0, place] = parameter.coordinate(nominal.own[parameter.name]) if parameter.name in nominal.own else 0.0
@@ -28,10 +28,10 @@ def calibration_error(nominal: Outcome, evidence: Evidence, solver: Solver | Non
     if not bool(found.isfinite().all()):
         return Scatter()
     common = min(problem.unknowns.n_common, nominal.problem.unknowns.n_common)
-    beside = without_own(found[..., : problem.n_shared], own_basis(found, problem.n_shared)).flatten(0, 1)
-    basis = torch.linalg.qr(beside[:, problem.unknowns.n_common :]).Q
-    sensitivity = beside[:, :common] - basis @ (basis.T @ beside[:, :common])
-    samples = sum(len(piece.stacked) for piece in pieces)
+    orthogonal = project_out(found[..., : problem.n_shared], nuisance_basis(found, problem.n_shared)).flatten(0, 1)
+    basis = torch.linalg.qr(orthogonal[:, problem.unknowns.n_common :]).Q
+    sensitivity = orthogonal[:, :common] - basis @ (basis.T @ orthogonal[:, :common])
+    samples = sum(len(segment.stacked) for segment in segmented)
     covariance = noise_covariance(nominal.problem, nominal.fitted)[:common, :common]
     shares = sensitivity.T @ sensitivity @ covariance
     shares = shares / (samples * max(evidence.noise, 1e-300) ** 2)

@@ -29,10 +29,10 @@ class Candidate:
         hypothesis: The calibrated model with the effect added and switched off (or present).
         strengths: Places of its strengths among the free parameters.
         phases: Place of the phase by place of its strength.
-        begun: Coordinates at which other parameters begin in the full fit, by their place.
+        initial_values: Coordinates at which other parameters begin in the full fit, by their place.
         moved: How far other parameters are moved for further starts, in coordinates by place.
         later: Free parameters that join in the full fit only.
-        presence: Whether it is tried as a whole.
+        non_nested: Whether it is tried as a whole.
         replaced: Free parameters that it took the place of.
         sharpest: Names of parameters that may rest at their lower bound without having run into it.
         own_phases: Name of the phase by place of its strength, where every record has one of its own.
@@ -45,10 +45,10 @@ class Candidate:
     hypothesis: Hypothesis
     strengths: tuple[int, ...]
     phases: Mapping[int, int]
-    begun: Mapping[int, float]
+    initial_values: Mapping[int, float]
     moved: Mapping[int, float]
     later: tuple[FreeParameter, ...]
-    presence: bool
+    non_nested: bool
     replaced: tuple[FreeParameter, ...] = ()
     sharpest: tuple[str, ...] = ()
     own_phases: Mapping[int, str] = field(default_factory=dict)
@@ -102,8 +102,8 @@ def _value(base: Hypothesis, name: str) -> float:
 
 def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Sizes") -> Candidate:
     replaced = tuple(p for p in base.free if p.name in recipe.replaces)
-    rest = tuple(p for p in base.free if p not in replaced)
-    base = replace(base, free=rest, given=base.given | {p.name: 0.0 for p in replaced})
+    kept = tuple(p for p in base.free if p not in replaced)
+    base = replace(base, free=kept, given=base.given | {p.name: 0.0 for p in replaced})
     effect = kind(**recipe.options)
     given: Given = {}
     for parameter in kind.parameters:
@@ -127,20 +127,22 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Si
                 phases[place] = place + 1
     joining = [(declared, f"{kind.name}.{declared.name}") for declared in _declared(kind, recipe)]
     later = [_freed(declared, flat, given, recipe.within) for declared, flat in joining if flat != own_tooth]
-    if recipe.presence:
+    if recipe.non_nested:
         free, later = [*free, *later], []
-    begun = {}
+    initial_values = {}
     templates = [FreeParameter(phase, 0.0, per_record=True) for phase in own_phases.values()]
     teeth = sizes.rig.teeth(effect.chosen["shaft"]) if own_tooth else 0
     if own_tooth:
         templates = [FreeParameter(own_tooth, 0.0, ANGLE_SCALE, per_record=True, places=teeth)]
-    for name, start in recipe.beside.items():
+    for name, start in recipe.jointly_fitted.items():
         if start is not None:
             given[name] = start / UNSEEN
-            begun[first + len(free)] = log(UNSEEN)
+            initial_values[first + len(free)] = log(UNSEEN)
         if name in given or name in base.given:
             free.append(_freed(base.model.parameters()[name], name, base.given | given, recipe.within))
-    moved = {i: log(recipe.stood_in[p.name]) for i, p in enumerate(base.common) if p.name in recipe.stood_in}
+    moved = {
+        i: log(recipe.restart_scaling[p.name]) for i, p in enumerate(base.common) if p.name in recipe.restart_scaling
+    }
     extended = base.with_effect([effect], given, [*free, *templates], kind.name)
     return Candidate(
         kind.name,
@@ -148,10 +150,10 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Si
         replace(extended, replaced=base.replaced | {kind.name: replaced}),
         tuple(strengths),
         phases,
-        begun,
+        initial_values,
         moved,
         tuple(later),
-        recipe.presence,
+        recipe.non_nested,
         replaced,
         tuple(f"{kind.name}.{name}" for name in recipe.sharpest),
         own_phases,
@@ -192,7 +194,7 @@ class _Sizes:
         self.scales = base.model.prepare(base.model.values(1, **base.given)).scales
 
     def natural(self, kind: type[Effect], parameter: Parameter, value: float, exponent: float = 1.0) -> float:
-        """A value in natural units, in the rig's own; the unit of a power law hangs on its exponent."""
+        """A value in natural units, in the rig's own; the unit of a power law depends on its exponent."""
         if kind.name == "power_law_damping" and parameter.name == "coefficient":
             return value * float(self.scales.force[0] / self.scales.velocity[0] ** exponent)
         return value * float(self.scales.unit_of(parse_unit(parameter.unit).dimension)[0])
@@ -212,7 +214,7 @@ class _Sizes:
         """The value that a parameter has before it is fitted."""
         if parameter.name in recipe.strengths:
             neutral = recipe.neutral
-            if recipe.presence:
+            if recipe.non_nested:
                 return self.size(kind, parameter.name, recipe.strengths[parameter.name], recipe)
             return (neutral,) * (recipe.length or len(parameter.default)) if parameter.vector else neutral
         if parameter.name in recipe.timed:
@@ -230,7 +232,7 @@ def _elements(kind: type[Effect], name: str, size: float, given: Given, recipe: 
     """A free parameter for a strength, or for each element of a list of them."""
     declared = next(p for p in kind.parameters if p.name == name)
     flat, value = f"{kind.name}.{name}", given[f"{kind.name}.{name}"]
-    if recipe.presence:
+    if recipe.non_nested:
         return [_freed(declared, flat, given, recipe.within)]
     if isinstance(value, tuple):
         return [FreeParameter(f"{flat}[{i}]", v, abs(size)) for i, v in enumerate(value)]

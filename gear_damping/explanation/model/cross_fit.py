@@ -9,7 +9,7 @@ from gear_damping.explanation.evidence.noise import Scatter
 from gear_damping.explanation.evidence.records import condition_of
 from gear_damping.explanation.statistics.folds import left_out
 from gear_damping.identification.output_error.least_squares import Fitted
-from gear_damping.identification.output_error.normal_equations import own_basis, without_own
+from gear_damping.identification.output_error.normal_equations import nuisance_basis, project_out
 from gear_damping.identification.output_error.problem import OutputErrorProblem
 
 
@@ -31,13 +31,13 @@ def cross_fitted(problem: OutputErrorProblem, fitted: Fitted) -> CrossFit:
     residual, sensitivity = fitted.prediction.residual[0], fitted.prediction.sensitivity[0]
     if not bool(sensitivity.isfinite().all() & residual.isfinite().all()):
         return CrossFit(residual, Scatter())
-    own = own_basis(sensitivity, problem.n_shared)
-    columns = without_own(sensitivity[..., : problem.n_shared], own).flatten(0, 1)
-    beside = without_own(residual.unsqueeze(-1), own).flatten()
+    own = nuisance_basis(sensitivity, problem.n_shared)
+    columns = project_out(sensitivity[..., : problem.n_shared], own).flatten(0, 1)
+    orthogonal = project_out(residual.unsqueeze(-1), own).flatten()
     expected, slope = problem.expectation(fitted.shared)
     free = (problem.unknowns.at_bound(fitted.shared) == 0).to(columns.dtype)  # what a bound holds is held for all
     folds = folds_of(problem).unsqueeze(1).expand(-1, len(problem.response.channels), -1).flatten()
-    found = left_out(columns * free, beside, folds, slope * free, expected)
+    found = left_out(columns * free, orthogonal, folds, slope * free, expected)
     samples = max(float((problem.response.weights > 0).sum()), 1.0)
     scatter = Scatter(found.expected / samples, found.deviation / samples)
     return CrossFit(found.residuals.reshape(residual.shape), scatter)

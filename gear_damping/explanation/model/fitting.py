@@ -13,7 +13,7 @@ from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, segme
 from gear_damping.explanation.model.opened import opened
 from gear_damping.identification.output_error.descent import Lent
 from gear_damping.identification.output_error.least_squares import Ends, Fitted, Rounds, fit
-from gear_damping.identification.output_error.problem import OutputErrorProblem, growth
+from gear_damping.identification.output_error.problem import OutputErrorProblem, error_amplification
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import in_segments, joined
 from gear_damping.physics.terms import Contact
@@ -25,7 +25,7 @@ TO_THE_END = Ends()  # of its rounds
 
 
 @dataclass(frozen=True)
-class Begun:
+class InitialValues:
     """Where a fit begins.
 
     Args:
@@ -42,7 +42,7 @@ class Begun:
 def fit_hypothesis(
     hypothesis: Hypothesis,
     evidence: Evidence,
-    begun: Begun = Begun(),
+    initial: InitialValues = InitialValues(),
     rounds: Rounds = ROUNDS,
     ends: Ends = TO_THE_END,
     solver: Solver | None = None,
@@ -52,20 +52,20 @@ def fit_hypothesis(
     Args:
         hypothesis: What is fitted; its free parameters start where they say.
         evidence: The records, which also say whether the time for fits is over.
-        begun: Where it begins.
+        initial: Where it begins.
         rounds: How far it goes.
         ends: When it stops before; what is enough, in noise variances.
         solver: Settings of the solver.
     """
     if not evidence.segments and any(isinstance(effect, Contact) for effect in hypothesis.effects):
-        near = _fit_in_segments(hypothesis, evidence, begun.starts, rounds.kept, ends.enough, solver)
-        if near.growth > evidence.settings.most_growth:
+        near = _fit_in_segments(hypothesis, evidence, initial.starts, rounds.kept, ends.enough, solver)
+        if near.error_amplification > evidence.settings.most_growth:
             return near
-        hypothesis, begun = near.hypothesis, replace(begun, starts=None, after=near)
-    pieces, after = in_segments(evidence.fit, evidence.segments), begun.after
-    problem = OutputErrorProblem(hypothesis.model, hypothesis.given, hypothesis.free, pieces, solver, evidence.noise)
-    states, shared = _begin(problem, hypothesis, begun)
-    if evidence.segments:  # short already, and begun from what was measured: another model's states lead astray
+        hypothesis, initial = near.hypothesis, replace(initial, starts=None, after=near)
+    segmented, after = in_segments(evidence.fit, evidence.segments), initial.after
+    problem = OutputErrorProblem(hypothesis.model, hypothesis.given, hypothesis.free, segmented, solver, evidence.noise)
+    states, shared = _begin(problem, hypothesis, initial)
+    if evidence.segments:  # short already, and started from what was measured: another model's states lead astray
         states, rounds = None, replace(rounds, horizons=[None] * len(rounds.horizons))
     ends = replace(ends, enough=ends.enough * evidence.noise**2, is_over=evidence.is_over)
     fitted = fit(problem, shared, rounds, states, ends, None if after is None else lent_from(problem, after))
@@ -77,18 +77,18 @@ def fit_hypothesis(
     return replace(found, left_out=found.holdout, scatter=Scatter())
 
 
-def _begin(problem: OutputErrorProblem, hypothesis: Hypothesis, begun: Begun) -> tuple[Tensor | None, Tensor]:
+def _begin(problem: OutputErrorProblem, hypothesis: Hypothesis, initial: InitialValues) -> tuple[Tensor | None, Tensor]:
     """Initial states (None: from the records) and coordinates, those of single records among them."""
-    starts, after = begun.starts, begun.after
+    starts, after = initial.starts, initial.after
     if starts is None:
         starts = torch.zeros(1, len(hypothesis.common), dtype=torch.float64)
-    states = None if after is None else begun_from(problem, after, len(starts))
+    states = None if after is None else initial_states_from(problem, after, len(starts))
     shared = problem.unknowns.completed(starts)
     if after is not None:
         shared = shared + own_from(problem, after)
     for place, parameter in enumerate(problem.free):
-        if parameter.name in begun.own:
-            shared[:, place] = parameter.coordinate(begun.own[parameter.name])
+        if parameter.name in initial.own:
+            shared[:, place] = parameter.coordinate(initial.own[parameter.name])
     return states, shared
 
 
@@ -110,8 +110,8 @@ def _outcome(settled: Hypothesis, found: Fit, evidence: Evidence) -> Outcome:
         for series in (crossed.residuals, fitted.prediction.residual[0])
         for whole in [joined(series, evidence.fitted, evidence.segments, len(problem.response.channels))]
     ]
-    grown = growth(fitted.prediction, problem.n_shared)
-    return Outcome(settled, problem, fitted, found.values, *left, crossed.scatter, grown)
+    amplification = error_amplification(fitted.prediction, problem.n_shared)
+    return Outcome(settled, problem, fitted, found.values, *left, crossed.scatter, amplification)
 
 
 def _fit_in_segments(
@@ -122,24 +122,24 @@ def _fit_in_segments(
     enough: float,
     solver: Solver | None,
 ) -> Outcome:
-    """A fit to segments of the records, with the growth over whole ones.
+    """A fit to segments of the records, with the error amplification over whole ones.
 
     Where flanks part, the cost over whole records has many minima; over short segments it has few.
     """
     short = replace(evidence, segments=segments_of(hypothesis, evidence))
     rounds = Rounds((ITERATIONS_NEAR, ITERATIONS_NEAR), (None, None), kept)
-    near = fit_hypothesis(hypothesis, short, Begun(starts), rounds, Ends(enough), solver)
-    return replace(near, growth=growth_over(near.hypothesis, evidence.fit, solver))
+    near = fit_hypothesis(hypothesis, short, InitialValues(starts), rounds, Ends(enough), solver)
+    return replace(near, error_amplification=error_amplification_over(near.hypothesis, evidence.fit, solver))
 
 
-def growth_over(hypothesis: Hypothesis, records: Sequence[FitRecord], solver: Solver | None) -> float:
+def error_amplification_over(hypothesis: Hypothesis, records: Sequence[FitRecord], solver: Solver | None) -> float:
     """How much an error of the initial state grows over whole records, in the one where it grows most."""
     problem = OutputErrorProblem(hypothesis.model, hypothesis.given, (), records, solver)
     none = torch.zeros(1, problem.n_shared, dtype=torch.float64)
-    return growth(problem.linearise(none, problem.first_states().unsqueeze(0)), problem.n_shared)
+    return error_amplification(problem.linearise(none, problem.first_states().unsqueeze(0)), problem.n_shared)
 
 
-def begun_from(problem: OutputErrorProblem, after: Outcome, points: int) -> Tensor:
+def initial_states_from(problem: OutputErrorProblem, after: Outcome, points: int) -> Tensor:
     """Initial states of several points of a problem, (points, records, local), from a fit to the same records.
 
     From the records themselves where that fit cut them otherwise.

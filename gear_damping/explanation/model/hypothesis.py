@@ -82,7 +82,7 @@ class Outcome:
             are those of these.
         fit_residuals: Residuals of fitted records.
         scatter: What errors of the parameters add to the residuals that are left out.
-        growth: How much an error of the initial state grows over a record, in the one where it grows most.
+        error_amplification: How much an error of the initial state grows over a record, in the one where it grows most.
         holdout: Residuals of held-out records; empty until they are opened.
         own: What held-out records have of their own, by name.
         whitened: The linearisation made white where what is random hangs together; None where it is white.
@@ -95,7 +95,7 @@ class Outcome:
     left_out: list[Tensor] = field(repr=False)
     fit_residuals: list[Tensor] = field(repr=False)
     scatter: Scatter = field(default_factory=Scatter)
-    growth: float = 0.0
+    error_amplification: float = 0.0
     holdout: list[Tensor] = field(default_factory=list, repr=False)
     own: dict[str, float] = field(default_factory=dict, repr=False)
     whitened: Prediction | None = field(default=None, repr=False)

@@ -7,7 +7,7 @@ from math import ceil, cos, floor, inf, pi, sin, sqrt
 import torch
 
 from gear_damping.explanation.evidence.records import Evidence
-from gear_damping.explanation.model.fitting import Begun, fit_hypothesis
+from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, natural_frequency_hz
 from gear_damping.identification.oscillator import DAMPING, expected_about
 from gear_damping.identification.output_error.angles import angle_bases, harmonics_to_resonance, scanned
@@ -93,19 +93,19 @@ def shaped(rough: Outcome, evidence: Evidence, iterations: int, solver: Solver |
     """
     rounds = Rounds(iterations)
     shaped = _with_shape(rough, evidence, _shape_harmonics(rough, evidence, solver))
-    found = fit_hypothesis(shaped, evidence, Begun(after=rough), rounds, solver=solver)
+    found = fit_hypothesis(shaped, evidence, InitialValues(after=rough), rounds, solver=solver)
     samples = sum(len(record.stacked) for record in evidence.fitted)
     if evidence.has_index or not iterations or found.fitted.cost < SHAPED * samples * evidence.noise**2:
         return found
     angles = angles_of(found.hypothesis, evidence, evidence.duration, solver)
-    again = fit_hypothesis(found.hypothesis, evidence, Begun(own=angles), rounds, solver=solver)
+    again = fit_hypothesis(found.hypothesis, evidence, InitialValues(own=angles), rounds, solver=solver)
     return again if again.fitted.cost < SCANNED * found.fitted.cost else found
 
 
 def angles_of(hypothesis: Hypothesis, evidence: Evidence, horizon: float, solver: Solver | None) -> Mapping[str, float]:
     """The best angle of every record's mesh, of several."""
-    pieces = in_segments(evidence.fit, evidence.segments)
-    problem = OutputErrorProblem(hypothesis.model, hypothesis.given, hypothesis.free, pieces, solver, evidence.noise)
+    segmented = in_segments(evidence.fit, evidence.segments)
+    problem = OutputErrorProblem(hypothesis.model, hypothesis.given, hypothesis.free, segmented, solver, evidence.noise)
     return scanned(problem, torch.zeros(problem.n_shared, dtype=torch.float64), horizon, angle_bases(problem))
 
 
@@ -149,7 +149,7 @@ def _passed_harmonics(rough: Outcome, evidence: Evidence) -> int:
 def _seen_harmonics(rough: Outcome, most: int, evidence: Evidence, solver: Solver | None) -> int:
     """The highest harmonic that the records would show if it had the size that real teeth may give it."""
     hypothesis = _with_shape(rough, evidence, most)
-    probe = fit_hypothesis(hypothesis, evidence, Begun(after=rough), NONE, solver=solver)
+    probe = fit_hypothesis(hypothesis, evidence, InitialValues(after=rough), NONE, solver=solver)
     moved = probe.fitted.prediction.sensitivity[0].square().sum((0, 1))
     seen = [
         _order(p.name)

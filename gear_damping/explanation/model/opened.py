@@ -16,7 +16,7 @@ ASTRAY = 3.0  # times what is left of the fitted records
 
 
 def opened(
-    outcome: Outcome, evidence: Evidence, solver: Solver | None = None, begun: Mapping[str, float] | None = None
+    outcome: Outcome, evidence: Evidence, solver: Solver | None = None, initial: Mapping[str, float] | None = None
 ) -> Outcome:
     """A model with what it leaves of the held-out records, its parameters frozen.
 
@@ -24,19 +24,24 @@ def opened(
         outcome: The fitted model.
         evidence: The records, those held out among them.
         solver: Settings of the solver.
-        begun: Where angles of held-out records begin, by name; they are tried all around where absent.
+        initial: Where angles of held-out records begin, by name; they are tried all around where absent.
     """
     settled = outcome.hypothesis
     scale = slowest_time(settled, evidence)
     own = [parameter for parameter in settled.free if parameter.per_record]
     given = {**settled.given, **settled.gains}
     frozen = Frozen(settled.model, given, own, evidence.noise, solver)
-    held = predict_holdout(frozen, evidence.holdout, scale, evidence.segments, begun)
-    if begun and _is_astray(held.residuals, outcome.fitted, outcome.problem):
+    held = predict_holdout(frozen, evidence.holdout, scale, evidence.segments, initial)
+    if initial and _is_astray(held.residuals, outcome.fitted, outcome.problem):
         # another model's angles may lie in another valley
         anew = predict_holdout(frozen, evidence.holdout, scale, evidence.segments)
         held = min(held, anew, key=lambda one: sum(float(r.square().sum()) for r in one.residuals))
-    return replace(outcome, holdout=held.residuals, own=held.own, growth=max(outcome.growth, held.growth))
+    return replace(
+        outcome,
+        holdout=held.residuals,
+        own=held.own,
+        error_amplification=max(outcome.error_amplification, held.error_amplification),
+    )
 
 
 def _is_astray(held: Sequence[Tensor], fitted: Fitted, problem: OutputErrorProblem) -> bool:

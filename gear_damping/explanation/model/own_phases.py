@@ -1,4 +1,4 @@
-"""Phases that every record has of its own, where no index says how the shafts stand: probed, scored and begun."""
+"""Phases that every record has of its own, where no index says how the shafts stand: probed, scored and started."""
 
 import torch
 from torch import Tensor
@@ -45,12 +45,12 @@ def start_by_record(
     return start, own
 
 
-def teeth_of(candidate: Candidate, beside: Tensor, residual: Tensor, problem: OutputErrorProblem) -> Teeth | None:
+def teeth_of(candidate: Candidate, orthogonal: Tensor, residual: Tensor, problem: OutputErrorProblem) -> Teeth | None:
     """Which tooth is in mesh at the start of each record, for what tells teeth apart where nothing else does."""
     if not candidate.own_tooth:
         return None
     search = one_tooth if len(candidate.strengths) == 1 else every_tooth
-    return search(beside, residual, len(_record_names(problem)))
+    return search(orthogonal, residual, len(_record_names(problem)))
 
 
 def start_of_teeth(

@@ -41,8 +41,8 @@ def one_tooth(columns: Tensor, residual: Tensor, records: int) -> Teeth:
             others = each[each != record]
             among = gram[found[others], others][:, found[others], others]
             own_pull = pull[:, record] + pull[found[others], others].sum()
-            beside = gram[:, record][:, found[others], others].sum(1)
-            found[record] = _taken(own_pull, sizes[:, record] + 2 * beside + among.sum()).argmax()
+            of_others = gram[:, record][:, found[others], others].sum(1)
+            found[record] = _taken(own_pull, sizes[:, record] + 2 * of_others + among.sum()).argmax()
     column = parts[:, found, each].sum(1, keepdim=True)
     strength = (column[:, 0] @ residual / column.square().sum().clamp(min=1e-300)).clamp(min=0)
     return Teeth(found.tolist(), strength.reshape(1), column)

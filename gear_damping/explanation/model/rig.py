@@ -7,8 +7,8 @@ import torch
 from torch import Tensor
 
 from gear_damping.errors import InputError
+from gear_damping.explanation.evidence.declared_units import length_unit
 from gear_damping.explanation.evidence.records import Evidence
-from gear_damping.explanation.evidence.rig_units import length_unit
 from gear_damping.explanation.model.hypothesis import Hypothesis
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.physics.cause import Rig
@@ -63,7 +63,7 @@ def rig_of(base: Hypothesis, evidence: Evidence, residuals: Residuals | None = N
 def strongest_frequencies(residuals: Residuals, natural: float) -> tuple[float, ...]:
     """Frequencies in Hz at which most is left, but for the natural one and its harmonics; the strongest first.
 
-    Where the frequency hangs on the amplitude, what lies between the natural one and that of the motion is the first
+    Where the frequency depends on the amplitude, what lies between the natural one and that of the motion is the first
     mode's too.
 
     Args:
@@ -177,11 +177,11 @@ def _waves(angle: Tensor, orders: Sequence[float]) -> Tensor:
 
 
 def _taken(basis: Tensor, columns: Tensor, left: Tensor) -> Tensor:
-    """Energy that the pair of waves of each order takes beside a basis, (orders,)."""
+    """Energy that the pair of waves of each order takes, a basis projected out, (orders,)."""
     left = left - basis @ (basis.T @ left)
     flat = columns.flatten(1)
-    beside = (flat - basis @ (basis.T @ flat)).reshape(columns.shape)
-    even, odd = beside.unbind(1)
+    orthogonal = (flat - basis @ (basis.T @ flat)).reshape(columns.shape)
+    even, odd = orthogonal.unbind(1)
     # Two columns made orthogonal; what the basis holds already takes nothing.
     scale = columns.square().sum(0).amax(0)
     odd = odd - even * (even * odd).sum(0) / even.square().sum(0).clamp(min=1e-12)

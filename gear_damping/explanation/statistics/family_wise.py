@@ -24,7 +24,7 @@ class Effect:
 
     Args:
         name: What it is called.
-        columns: Orthonormal, beside the nuisance, (samples, n).
+        columns: Orthonormal, nuisance projected out, (samples, n).
         one_sided: Whether only a positive coefficient makes sense; n is then 1.
     """
 
@@ -38,7 +38,7 @@ class Residual:
     """What is looked at.
 
     Args:
-        values: White, beside the nuisance, (samples,).
+        values: White, nuisance projected out, (samples,).
         blocks: Number of the block of every sample, (samples,).
         variance: Of one sample.
         nuisance: Orthonormal columns that were projected out, (samples, m); None: none.
@@ -121,7 +121,7 @@ def family_wise(
     for effect in effects:
         if not effect.columns.shape[1]:
             continue
-        size, effective = _spread(effect.columns, blocks, count)
+        size, effective = _effective_blocks(effect.columns, blocks, count)
         most = max(most, effective)
         sums = _by_block(effect.columns * residual.values.unsqueeze(1), blocks, count)
         if effective < FEWEST_BLOCKS:
@@ -179,7 +179,7 @@ def _by_block(products: Tensor, blocks: Tensor, count: int) -> Tensor:
     return products.new_zeros(count, products.shape[1]).index_add_(0, blocks, products)
 
 
-def _spread(columns: Tensor, blocks: Tensor, count: int) -> tuple[int, float]:
+def _effective_blocks(columns: Tensor, blocks: Tensor, count: int) -> tuple[int, float]:
     """Number of columns, and over how many blocks their energy is spread."""
     energy = _by_block(columns.square(), blocks, count).sum(1)
     share = energy / energy.sum().clamp(min=1e-300)
@@ -187,7 +187,7 @@ def _spread(columns: Tensor, blocks: Tensor, count: int) -> tuple[int, float]:
 
 
 def _leverage(columns: Tensor, nuisance: Tensor, blocks: Tensor, signs: Tensor, size: int) -> Tensor:
-    """What is left of a deviation beside the nuisance, (draws, 1): flipped, the two are not orthogonal."""
+    """What is left of a deviation with the nuisance projected out, (draws, 1): flipped, the two are not orthogonal."""
     count = signs.shape[1]
     taken = torch.zeros(len(signs), dtype=torch.float64)
     for column in columns.unbind(1):

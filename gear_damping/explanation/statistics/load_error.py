@@ -21,7 +21,7 @@ from scipy.optimize import minimize
 from gear_damping.explanation.statistics.load_noise import MEMORY
 
 Array = NDArray[np.float64]
-LONGEST = 800  # samples of a piece whose covariance is factored at once: time goes with their square
+LONGEST = 800  # samples of a segment whose covariance is factored at once: time goes with their square
 PADDED = 8  # lengths of a record over which a motion that dies away slowly is followed
 FINER = 4  # steps between two samples, from which a spline tells the covariance at any lag
 SHARES = (0.1, 2.0)  # of the error that is expected: a fit takes a part of it, and its size is an estimate
@@ -66,11 +66,11 @@ class KnownError:
 
     @cached_property
     def covariances(self) -> tuple[Array, ...]:
-        """Of what it adds to the samples of each piece, (n, n); the same for every residual and level."""
+        """Of what it adds to the samples of each segment, (n, n); the same for every residual and level."""
         lags = self.interval * np.arange(len(self.motion))
         told, found = CubicSpline(lags, self.motion), []
-        for piece in _pieces(len(self.stamps)):
-            stamps = self.stamps[piece]
+        for segment in _segments(len(self.stamps)):
+            stamps = self.stamps[segment]
             found.append(told(np.minimum(np.abs(stamps[:, None] - stamps[None, :]), lags[-1])))
         return tuple(found)
 
@@ -88,7 +88,7 @@ class LoadError:
     """The random part of one record's residual.
 
     Args:
-        factors: Lower Cholesky factors of its covariance, piece by piece.
+        factors: Lower Cholesky factors of its covariance, segment by segment.
         level: Its variance over that.
         sensor: Variance of the sensor's part.
         deviance: Minus twice the logarithm of its likelihood without the first two samples, but for a constant.
@@ -117,9 +117,9 @@ def load_error(residual: Array, known: KnownError) -> LoadError:
     factors = tuple(cholesky(_both(moved, levels), lower=True) for moved in known.covariances)
     white = _white(residual[:, None], factors)[MEMORY:]
     level = max(float((white**2).mean()), 1e-300)
-    spread = np.concatenate([np.log(np.diag(factor)) for factor in factors])[MEMORY:]
+    log_diagonal = np.concatenate([np.log(np.diag(factor)) for factor in factors])[MEMORY:]
     sensor = level * levels.sensor / (1 - levels.pole**2)
-    return LoadError(factors, level, sensor, len(white) * log(level) + 2 * float(spread.sum()))
+    return LoadError(factors, level, sensor, len(white) * log(level) + 2 * float(log_diagonal.sum()))
 
 
 def moved_by(error: Array, linear: Linear, interval: float) -> tuple[Array, float]:
@@ -160,8 +160,8 @@ def _levels(residual: Array, known: KnownError) -> Levels:
         return float((np.log(density) + seen[:fewest] / density).sum())
 
     bounds = [tuple(map(log, SHARES)), tuple(map(log, SENSOR)), POLES]
-    begun = [minimize(deviance, np.array([0.0, 0.0, pole]), bounds=bounds, method="L-BFGS-B") for pole in (0.0, 0.6)]
-    return of(min(begun, key=lambda found: float(found.fun)).x)
+    initial = [minimize(deviance, np.array([0.0, 0.0, pole]), bounds=bounds, method="L-BFGS-B") for pole in (0.0, 0.6)]
+    return of(min(initial, key=lambda found: float(found.fun)).x)
 
 
 def _at_their_stamps(levels: Levels, residual: Array, known: KnownError) -> Levels:
@@ -183,9 +183,9 @@ def _at_their_stamps(levels: Levels, residual: Array, known: KnownError) -> Leve
 
     if largest <= 0:
         return levels
-    begun = np.array([log(levels.share), log(levels.sensor / known.sensor), levels.pole])
-    options = {"maxfev": TRIED, "initial_simplex": begun + SIMPLEX}
-    found = minimize(deviance, begun, method="Nelder-Mead", options=options)
+    initial = np.array([log(levels.share), log(levels.sensor / known.sensor), levels.pole])
+    options = {"maxfev": TRIED, "initial_simplex": initial + SIMPLEX}
+    found = minimize(deviance, initial, method="Nelder-Mead", options=options)
     return of(found.x)
 
 
@@ -197,11 +197,11 @@ def _both(moved: Array, levels: Levels) -> Array:
 
 
 def _white(rows: Array, factors: Sequence[Array]) -> Array:
-    pieces = zip(_pieces(len(rows)), factors, strict=True)
-    return np.concatenate([solve_triangular(f, rows[piece], lower=True, check_finite=False) for piece, f in pieces])
+    parts = zip(_segments(len(rows)), factors, strict=True)
+    return np.concatenate([solve_triangular(f, rows[segment], lower=True, check_finite=False) for segment, f in parts])
 
 
-def _pieces(count: int) -> list[slice]:
+def _segments(count: int) -> list[slice]:
     """Pieces of about equal lengths; that samples of two of them hang together does not count."""
     parts = max(1, -(-count // LONGEST))
     ends = [round(i * count / parts) for i in range(parts + 1)]

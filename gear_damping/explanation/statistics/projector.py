@@ -1,15 +1,15 @@
-"""What a signal holds beside everything that the free parameters of a fit could do."""
+"""The orthogonal complement of everything that the free parameters of a fit could do."""
 
 from copy import copy
 
 import torch
 from torch import Tensor
 
-from gear_damping.identification.output_error.normal_equations import INDEPENDENT, own_basis, without_own
+from gear_damping.identification.output_error.normal_equations import INDEPENDENT, nuisance_basis, project_out
 
 
 class Projector:
-    """Takes out of a signal what the free parameters of a fit could do.
+    """Projects out of a signal what the free parameters of a fit could do.
 
     A signal has the samples of the records one after another, and behind them one for each free parameter: what
     is expected of it.
@@ -24,8 +24,8 @@ class Projector:
             slope: Their slopes, (n,).
         """
         self.sensitivity, self.expected, self.slope = sensitivity, expected, slope
-        self.own = own_basis(sensitivity, len(slope))
-        shared = without_own(sensitivity[..., : len(slope)], self.own).flatten(0, 1)
+        self.own = nuisance_basis(sensitivity, len(slope))
+        shared = project_out(sensitivity[..., : len(slope)], self.own).flatten(0, 1)
         jacobian = torch.cat([shared, torch.diag(slope)])
         norms = jacobian.norm(dim=0).clamp(min=1e-300)
         self.basis = torch.linalg.qr(jacobian / norms).Q
@@ -34,23 +34,23 @@ class Projector:
         """`signal` (samples + n, m) without its part in the span of the sensitivities."""
         samples = len(signal) - len(self.slope)
         rows = signal[:samples].reshape(*self.own.shape[:2], -1)
-        beside = torch.cat([without_own(rows, self.own).flatten(0, 1), signal[samples:]])
-        return beside - self.basis @ (self.basis.T @ beside)
+        orthogonal = torch.cat([project_out(rows, self.own).flatten(0, 1), signal[samples:]])
+        return orthogonal - self.basis @ (self.basis.T @ orthogonal)
 
     @property
     def nuisance(self) -> Tensor:
-        """Orthonormal columns of everything that is taken out, (samples + n, m)."""
+        """Orthonormal columns of everything that is projected out, (samples + n, m)."""
         rows = torch.block_diag(*self.own)
         rows = rows[:, rows.norm(dim=0) > 0]
         return torch.cat([torch.nn.functional.pad(rows, (0, 0, 0, len(self.slope))), self.basis], 1)
 
     def taken_by_own(self, columns: Tensor, signal: Tensor) -> float:
-        """Sum of squares that columns (records, time, l) of every record take of a signal (samples + n, 1) beside it.
+        """Sum of squares that columns (records, time, l) of every record take of a signal (samples + n, 1).
 
         By the normal equations: the columns of different records meet only through what is shared.
         """
         records, width = len(columns), columns.shape[-1]
-        own = without_own(columns, self.own)
+        own = project_out(columns, self.own)
         samples = records * columns.shape[1]
         rows = signal[:samples].reshape(records, -1, 1)
         pull = (own.transpose(1, 2) @ rows).reshape(-1)
@@ -59,20 +59,20 @@ class Projector:
         gram = torch.block_diag(*(own.transpose(1, 2) @ own)) - between.T @ between
         return float(pull @ (torch.linalg.pinv(gram, rtol=INDEPENDENT, hermitian=True) @ pull))
 
-    def beside_own(self, columns: Tensor) -> "Projector":
+    def with_nuisance(self, columns: Tensor) -> "Projector":
         """With columns (records, time, l) more that every record has of its own.
 
-        What they can do beside the others joins the basis: the old part of it need not be worked out again. Of many
-        short records they are more than all that is shared, which is then worked out anew beside them.
+        Their part that is orthogonal to it joins the basis: the old part of it need not be worked out again. Of many
+        short records they are more than all that is shared, which is then worked out anew with them.
         """
         if not columns.shape[-1]:
             return self
         if len(columns) * columns.shape[-1] > len(self.slope):
             return Projector(torch.cat([self.sensitivity, columns], -1), self.expected, self.slope)
         rows = torch.block_diag(*columns)
-        beside = self(torch.nn.functional.pad(rows, (0, 0, 0, len(self.slope))))
-        own = beside.norm(dim=0) > INDEPENDENT * rows.norm(dim=0)
-        basis, sizes, _ = torch.linalg.svd(beside[:, own] / beside[:, own].norm(dim=0), full_matrices=False)
+        orthogonal = self(torch.nn.functional.pad(rows, (0, 0, 0, len(self.slope))))
+        own = orthogonal.norm(dim=0) > INDEPENDENT * rows.norm(dim=0)
+        basis, sizes, _ = torch.linalg.svd(orthogonal[:, own] / orthogonal[:, own].norm(dim=0), full_matrices=False)
         more = copy(self)
         more.basis = torch.cat([self.basis, basis[:, sizes > INDEPENDENT]], 1)
         return more

@@ -1,7 +1,7 @@
 """How much estimates of one quantity differ beyond their errors.
 
-The spread is that of a random-effects model; its interval is the Q profile (Viechtbauer 2007, Statistics in Medicine
-26): the spreads at which Cochran's Q is no surprise.
+The standard deviation between groups is that of a random-effects model; its interval is the Q profile (Viechtbauer
+2007, Statistics in Medicine 26): the deviations at which Cochran's Q is no surprise.
 """
 
 from collections.abc import Sequence
@@ -11,36 +11,36 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.stats import chi2
 
-CONFIDENCE = 0.95  # of the interval of a spread
-WIDEST = 1e3  # times the largest difference of two estimates: no spread is sought beyond
+CONFIDENCE = 0.95  # of the interval of the deviation
+WIDEST = 1e3  # times the largest difference of two estimates: no deviation is sought beyond
 
 
 @dataclass(frozen=True)
-class Spread:
+class BetweenDeviation:
     """Standard deviation between groups, in the unit of the estimates, with its 95 % interval."""
 
     value: float
     interval95: tuple[float, float]
 
 
-def statistic(estimates: Sequence[float], errors: Sequence[float], spread: float) -> float:
-    """Cochran's Q of estimates whose groups differ by `spread` beside their standard errors."""
-    values, variances = np.asarray(estimates, float), np.square(errors) + spread**2
+def statistic(estimates: Sequence[float], errors: Sequence[float], deviation: float) -> float:
+    """Cochran's Q of estimates whose groups differ by `deviation` beside their standard errors."""
+    values, variances = np.asarray(estimates, float), np.square(errors) + deviation**2
     mean = (values / variances).sum() / (1 / variances).sum()
     return float(((values - mean) ** 2 / variances).sum())
 
 
-def spread_between(estimates: Sequence[float], errors: Sequence[float]) -> Spread:
-    """The spread between groups (n >= 2): the one at which Q is its expectation, and its interval."""
+def between_deviation(estimates: Sequence[float], errors: Sequence[float]) -> BetweenDeviation:
+    """The standard deviation between groups (n >= 2): the one at which Q is its expectation, and its interval."""
     degrees, tail = len(estimates) - 1, (1 - CONFIDENCE) / 2
     levels = (degrees, chi2.isf(tail, degrees), chi2.ppf(tail, degrees))
     value, low, high = (_where(estimates, errors, float(level)) for level in levels)
-    return Spread(value, (low, high))
+    return BetweenDeviation(value, (low, high))
 
 
 def _where(estimates: Sequence[float], errors: Sequence[float], level: float) -> float:
-    """The spread at which Q falls to a level; 0 where it is below that without any."""
+    """The deviation at which Q falls to a level; 0 where it is below that without any."""
     if statistic(estimates, errors, 0.0) <= level:
         return 0.0
     widest = WIDEST * max(float(np.ptp(estimates)), max(errors))
-    return float(brentq(lambda spread: statistic(estimates, errors, spread) - level, 0.0, widest))
+    return float(brentq(lambda deviation: statistic(estimates, errors, deviation) - level, 0.0, widest))

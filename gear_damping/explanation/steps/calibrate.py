@@ -11,7 +11,7 @@ from gear_damping.errors import InputError, Problem
 from gear_damping.explanation.evidence.input_noise import without_input_noise
 from gear_damping.explanation.evidence.records import Evidence, with_own_angles
 from gear_damping.explanation.evidence.unsteady import has_unsteady_shafts, with_unsteady_shafts
-from gear_damping.explanation.model.fitting import Begun, fit_hypothesis
+from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.followed import followed_alone
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, natural_frequency_hz
 from gear_damping.explanation.model.nominal_gear_pair import (
@@ -135,11 +135,11 @@ def recalibrated(calibration: Calibration, evidence: Evidence, solver: Solver | 
     hypothesis = calibration.nominal.hypothesis
     own = _own_of(calibration.nominal)
     if calibration.followed:
-        return fit_hypothesis(hypothesis, evidence, Begun(own=own), NONE, solver=solver)
+        return fit_hypothesis(hypothesis, evidence, InitialValues(own=own), NONE, solver=solver)
     starts = torch.zeros(2, len(hypothesis.common), dtype=torch.float64)
     places = [i for i, parameter in enumerate(hypothesis.free) if parameter.name == DAMPING]
     starts[1, places] = log(LESS_DAMPING)
-    return fit_hypothesis(hypothesis, evidence, Begun(starts, own=own), Rounds(SHAPE_ITERATIONS), solver=solver)
+    return fit_hypothesis(hypothesis, evidence, InitialValues(starts, own=own), Rounds(SHAPE_ITERATIONS), solver=solver)
 
 
 def _gear_pair(evidence: Evidence, solver: Solver | None) -> Calibration:
@@ -152,8 +152,8 @@ def _gear_pair(evidence: Evidence, solver: Solver | None) -> Calibration:
     if followed is not None:
         return Calibration(unsteady, _of_others(*followed, unsteady, solver), rough, len(followed[1].fit))
     if has_unsteady_shafts(unsteady.fit):  # only now: before the teeth have their shape, speeds would bend to it
-        begun, rounds = Begun(after=nominal), Rounds(SHAPE_ITERATIONS)
-        nominal = fit_hypothesis(nominal.hypothesis, unsteady, begun, rounds, solver=solver)
+        initial, rounds = InitialValues(after=nominal), Rounds(SHAPE_ITERATIONS)
+        nominal = fit_hypothesis(nominal.hypothesis, unsteady, initial, rounds, solver=solver)
     return Calibration(unsteady, nominal, rough)
 
 
@@ -168,7 +168,7 @@ def _of_others(found: Outcome, followed: Evidence, evidence: Evidence, solver: S
     others = replace(evidence, fit=tuple(record for record in evidence.fit if record.name not in names))
     own = {} if evidence.has_index else dict(angles_of(found.hypothesis, others, evidence.duration, solver))
     own |= _own_of(found)
-    return fit_hypothesis(found.hypothesis, evidence, Begun(own=own), NONE, solver=solver)
+    return fit_hypothesis(found.hypothesis, evidence, InitialValues(own=own), NONE, solver=solver)
 
 
 def _own_of(found: Outcome) -> dict[str, float]:
@@ -185,16 +185,16 @@ def _rough_gear_pair(evidence: Evidence, solver: Solver | None) -> Outcome:
         starts = torch.zeros(STARTS, len(first.common), dtype=torch.float64)
         places = [i for i, p in enumerate(first.free) if p.name == "mesh_phase"]
         starts[:, places] = torch.linspace(0, 2 * pi, STARTS + 1, dtype=torch.float64)[:-1, None]
-        begun, few = Begun(starts if places else None), replace(rounds, kept=ANGLES_KEPT)
-        return fit_hypothesis(first, evidence, begun, few, solver=solver)
+        initial, few = InitialValues(starts if places else None), replace(rounds, kept=ANGLES_KEPT)
+        return fit_hypothesis(first, evidence, initial, few, solver=solver)
     found: Outcome | None = None
     for _ in range(MOST_SCANS):  # a phase that is wrong makes stiffness and damping wrong, and they the next phase
         hypothesis = first if found is None else found.hypothesis
         tried = []
         for factor in STIFFNESSES:
-            begun = with_stiffness(hypothesis, factor)
-            angles = angles_of(begun, evidence, short, solver)
-            tried.append(fit_hypothesis(begun, evidence, Begun(own=angles), rounds, solver=solver))
+            initial = with_stiffness(hypothesis, factor)
+            angles = angles_of(initial, evidence, short, solver)
+            tried.append(fit_hypothesis(initial, evidence, InitialValues(own=angles), rounds, solver=solver))
         again = min(tried, key=lambda outcome: outcome.fitted.cost)
         is_better = found is None or again.fitted.cost < SCANNED * found.fitted.cost
         found = again if found is None or again.fitted.cost < found.fitted.cost else found

@@ -1,6 +1,6 @@
 """Step 9: held-out records, which took no part in any choice, are opened once.
 
-They tell what the causes are worth on records that nobody has looked at, and whether they are borne out there at all.
+They tell what the causes are worth on records that nobody has looked at, and whether they are validated there at all.
 """
 
 from collections.abc import Sequence
@@ -26,7 +26,7 @@ class Confirmed:
     """A search with what held-out records say of it.
 
     Args:
-        state: Where it ended, with the causes that are borne out; its records hold those held out.
+        state: Where it ended, with the causes that are validated; its records hold those held out.
         noise: Of all records.
         before: What the nominal model leaves of held-out records.
         after: What the extended one does.
@@ -41,7 +41,7 @@ class Confirmed:
 
 
 def confirmed(state: State, sealed: Sequence[FitRecord], measurement: Measurement) -> Confirmed:
-    """The state with its held-out records, without causes that these do not bear out.
+    """The state with its held-out records, without causes that these do not validate.
 
     Args:
         state: Where the search ended.
@@ -57,7 +57,7 @@ def confirmed(state: State, sealed: Sequence[FitRecord], measurement: Measuremen
     scatter = calibration_error(nominal, evidence, bench.solver)
     noise = replace(noise, scatter=scatter)
     extended = opened(state.outcome, evidence, bench.solver, nominal.own) if state.accepted else nominal
-    state, t = _borne_out(_told_apart(replace(state, bench=bench, nominal=nominal, outcome=extended)))
+    state, t = _validated(_told_apart(replace(state, bench=bench, nominal=nominal, outcome=extended)))
     before, after = (excess(one.holdout, evidence.held, noise, bench.settings) for one in (nominal, state.outcome))
     return Confirmed(state, noise, before, after, t)
 
@@ -97,7 +97,7 @@ def _told_apart(state: State) -> State:
         left = tuple(name for name in cause.confusable if name not in rivals or name in kept)
         return state.with_cause(0, replace(cause, confusable=left))
     first = min(inside, key=lambda name: (len(kept[name].hypothesis.free), kept[name].fitted.cost))
-    bench.say(f"held-out records tell {first} from {cause.name}")
+    bench.log(f"held-out records tell {first} from {cause.name}")
     others = tuple(name for name in kept if name != first)
     return state.with_cause(0, Accepted(first, tried[first], cause.share, others), kept[first])
 
@@ -106,8 +106,8 @@ def _held_out_cost(outcome: Outcome) -> float:
     return sum(float(residual.square().sum()) for residual in outcome.holdout)
 
 
-def _borne_out(state: State) -> tuple[State, float]:
-    """The state with the causes that held-out records bear out, and the t of what these add to the prediction."""
+def _validated(state: State) -> tuple[State, float]:
+    """The state with the causes that held-out records validate, and the t of what these add to the prediction."""
     if not state.accepted:
         return state, 0.0
     bench, least = state.bench, state.bench.settings.confirmed_t
@@ -115,12 +115,12 @@ def _borne_out(state: State) -> tuple[State, float]:
         without = bench.without(state.outcome, cause.name)
         without = opened(without, bench.evidence, bench.solver, state.nominal.own)
         if _t(without, state.outcome, state) < least:
-            bench.say(f"{cause.name} is not borne out by held-out records")
+            bench.log(f"{cause.name} is not validated on held-out records")
             kept = tuple(other for other in state.accepted if other is not cause)
             state = replace(state, accepted=kept, outcome=without, rejected=(cause.refit, *state.rejected))
     t = _t(state.nominal, state.outcome, state)
     if t < least:
-        bench.say("held-out records do not bear out what was found")
+        bench.log("held-out records do not validate what was found")
         fits = tuple(cause.refit for cause in state.accepted)
         return replace(state, accepted=(), outcome=state.nominal, rejected=(*fits, *state.rejected)), 0.0
     return state, t

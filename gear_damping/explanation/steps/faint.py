@@ -28,11 +28,11 @@ def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
     fits = [bench.converged(fit, state.outcome) if fit.gain > 0 else fit for fit in fits]
     worth = [fit for fit in fits if _is_worth(fit, state.outcome, seen, bench)]
     state = replace(state, rejected=tuple(fits), first_fits=state.first_fits or tuple(fits))
-    borne_out = [fit for fit in fits if _is_borne_out(fit, state)]
+    validated = [fit for fit in fits if _is_validated(fit, state)]
     if state.needs_known_size:
-        worth, borne_out = ([fit for fit in some if bench.is_determined(fit)] for some in (worth, borne_out))
-    if borne_out:
-        best = min(borne_out, key=lambda fit: fit.outcome.left_out_cost)
+        worth, validated = ([fit for fit in some if bench.is_determined(fit)] for some in (worth, validated))
+    if validated:
+        best = min(validated, key=lambda fit: fit.outcome.left_out_cost)
         return state, *bench.simplest(best, fits)
     if not worth:
         return state, None, ()
@@ -55,7 +55,7 @@ def _is_worth(fit: Refit, before: Outcome, seen: Assessment, bench: Bench) -> bo
     return is_enough and bench.confirmation(before, fit.outcome) >= settings.confirmed_t
 
 
-def _is_borne_out(fit: Refit, state: State) -> bool:
+def _is_validated(fit: Refit, state: State) -> bool:
     """Whether left-out records bear a cause out by their power after all, though it is less than chance may leave.
 
     Where the other records hardly show what one does, as one at resonance, that chance is large.

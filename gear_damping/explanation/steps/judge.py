@@ -36,7 +36,7 @@ class Verdict:
 @dataclass(frozen=True)
 class Judged:
     """A search with what it leaves of held-out records, what it is called, what there was no time for, and how clearly
-    held-out records bear it out.
+    held-out records validate it.
     """
 
     found: State
@@ -96,18 +96,22 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
     taken, said = _taken(found, before, after), _named(found.accepted)
     confused = [cause for cause in found.accepted if cause.confusable]
     classes = [cause for cause in found.accepted if cause.effect.cause.one_class]
-    rest = _is_all(found, before, after) or (not is_visible(found.left) and after.misfit <= settings.small_misfit)
-    beside = (taken.sentence, *_not_told_apart(confused), *known.unsettled)
+    explains_all = _is_all(found, before, after) or (
+        not is_visible(found.left) and after.misfit <= settings.small_misfit
+    )
+    further = (taken.sentence, *_not_told_apart(confused), *known.unsettled)
     if known.stands_in:
         return _not_established(found, before, known, known.stands_in)
     if taken.is_faint and taken.share < settings.least_share:
         return _not_established(found, before, known, NOT_LESS)
-    if not rest and known.is_untold:
+    if not explains_all and known.is_untold:
         return _not_established(found, before, known, UNTOLD)
-    if not rest:
+    if not explains_all:
         if _is_part_named(found, taken.share, after, known):
-            text = f"{missing}. Part of it has a name: {said}. A rest of {after.percent:.3g} % has none."
-            return Verdict(PARTLY, (text, *beside))
+            text = (
+                f"{missing}. Part of it has a name: {said}. An unexplained residual of {after.percent:.3g} % has none."
+            )
+            return Verdict(PARTLY, (text, *further))
         why = OTHER_SIZES if known.is_one is False else "but too much is left for it to be the cause."
         return _not_established(found, before, known, why)
     is_part = known.whole < settings.taken_by_one
@@ -117,13 +121,13 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
         return Verdict(UNEXPLAINED, (text, *known.unsettled))
     if is_part or is_unsteady:  # most of the gap is still there
         text = f"{missing}. Part of it has a name: {said}. What is left looks random, and is more than that."
-        return Verdict(PARTLY, (text, *beside))
+        return Verdict(PARTLY, (text, *further))
     if classes:
-        return Verdict(AMBIGUOUS, (f"{missing}.", *_one_class(classes), *beside, *_small_rest(found, after)))
+        return Verdict(AMBIGUOUS, (f"{missing}.", *_one_class(classes), *further, *_small_residual(found, after)))
     if confused:
-        return Verdict(AMBIGUOUS, (f"{missing}.", *beside, *_small_rest(found, after)))
+        return Verdict(AMBIGUOUS, (f"{missing}.", *further, *_small_residual(found, after)))
     same = _same_record(found.accepted)
-    return Verdict(EXPLAINED, (f"{missing}: {said}.", *beside, *same, *_small_rest(found, after)))
+    return Verdict(EXPLAINED, (f"{missing}: {said}.", *further, *same, *_small_residual(found, after)))
 
 
 def _is_all(found: State, before: Excess, after: Excess) -> bool:
@@ -153,7 +157,7 @@ def _not_established(found: State, before: Excess, known: Known, why: str) -> Ve
 
 
 def _is_part_named(found: State, share: float, after: Excess, known: Known) -> bool:
-    """Whether causes that take a share of what was missing are established although a rest is left.
+    """Whether causes that take a share of what was missing are established although a residual is left.
 
     What has another size in other records, or has run into the end of what it can be, stands in for something else,
     however much it takes.
@@ -178,21 +182,21 @@ def _without_name(found: State, before: Excess, known: Known) -> Verdict:
         text = f"{_missing(before)}, and the time was over before its likely cause was tried: {', '.join(waiting)}."
         return Verdict(UNEXPLAINED, (text, *known.unsettled))
     if missing:
-        text = f"{_missing(before)}, and no effect of the catalogue is borne out by held-out records."
+        text = f"{_missing(before)}, and no effect of the catalogue is validated on held-out records."
         looks = (f"What is missing looks like {known.shape}.",) if known.shape else ()
         return Verdict(UNEXPLAINED, (text, *looks, *known.unsettled))
     if visible and waiting:
         text = "Something is visible that is not random, and there was no time to try what it could be."
         return Verdict(UNEXPLAINED, (text, *known.unsettled))
     if known.shape:
-        text = f"Something is visible that is not random: {known.shape}. No effect of the catalogue is borne out."
+        text = f"Something is visible that is not random: {known.shape}. No effect of the catalogue is validated."
         return Verdict(UNEXPLAINED, (text, *known.unsettled))
     beyond = found.beyond_sensor(found.nominal)
     raised = beyond.misfit > settings.small_misfit and beyond.percent > settings.least_excess
     if visible and raised:  # more than a sensor makes, and not all of it can be random
         text = (
             f"{beyond.percent:.3g} % of the signal's variance looks nearly random, is more than the noise of the "
-            "sensor, and something in it is visible that is not random; no effect of the catalogue is borne out."
+            "sensor, and something in it is visible that is not random; no effect of the catalogue is validated."
         )
         return Verdict(UNEXPLAINED, (text, *known.unsettled))
     text = f"No evidence of an effect that takes more than {before.threshold:.2g} % of the signal's variance."
@@ -206,7 +210,7 @@ def _missing(before: Excess) -> str:
     return f"The simulation misses something, though less than {before.threshold:.2g} % of the signal's variance"
 
 
-def _small_rest(found: State, after: Excess) -> tuple[str, ...]:
+def _small_residual(found: State, after: Excess) -> tuple[str, ...]:
     """What is left and not random, where causes explain nearly all."""
     if not is_visible(found.left) or after.percent <= 0:
         return ()

@@ -1,4 +1,4 @@
-"""Two effects at once, where no single one is accepted or one that was accepted leaves a rest."""
+"""Two effects at once, where no single one is accepted or one that was accepted leaves a residual."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -32,8 +32,8 @@ def with_pair(state: State) -> State | None:
     bench = state.bench
     if state.is_unpredictable or bench.budget.refuses(PAIRS):
         return None
-    beside = _bases([fit for fit in state.rejected if fit.is_seen_in_fit], state)
-    pairs = [Pair(fit, second, False) for fit in beside for second in _seconds(fit, state)]
+    bases = _bases([fit for fit in state.rejected if fit.is_seen_in_fit], state)
+    pairs = [Pair(fit, second, False) for fit in bases for second in _seconds(fit, state)]
     pairs += _instead(state) if len(state.accepted) == 1 else []
     pair = _accepted(pairs, state.current, state)
     if pair is None:
@@ -74,12 +74,12 @@ def _with(pair: Pair, state: State) -> State:
     bench = state.bench
     if pair.replaces:
         former = " and ".join(cause.name for cause in state.accepted)
-        bench.say(f"{pair.first.name} and {pair.second.name} take the place of {former}")
+        bench.log(f"{pair.first.name} and {pair.second.name} take the place of {former}")
         state = replace(state, accepted=(), outcome=state.nominal)
-    outcome = bench.at_rest(pair.second.outcome)
+    outcome = bench.until_converged(pair.second.outcome)
     share = state.share_taken(outcome)
     causes = [Accepted(fit.name, pair.second, share / PAIR, ()) for fit in (pair.first, pair.second)]
-    bench.say(f"{pair.first.name} and {pair.second.name} take {100 * share:.1f} % of the excess on left-out records")
+    bench.log(f"{pair.first.name} and {pair.second.name} take {100 * share:.1f} % of the excess on left-out records")
     return replace(state, outcome=outcome, accepted=(*state.accepted, *causes))
 
 
@@ -96,7 +96,7 @@ def _taken(fit: Refit, state: State) -> float:
 
 
 def _accepted(pairs: Sequence[Pair], current: Excess, state: State) -> Pair | None:
-    """The best pair that is borne out, or of those that do as well the smallest; None without one."""
+    """The best pair that is validated, or of those that do as well the smallest; None without one."""
     bench, settings = state.bench, state.bench.settings
 
     def takes(pair: Pair) -> float:

@@ -31,7 +31,7 @@ def _exchanged_at(state: State, place: int) -> State:
     if fits and fits[0].t > bench.settings.accepted_t and fits[0].is_seen_in_fit:
         best, rivals = bench.simplest(fits[0], fits)
         if best.name != cause.name:
-            bench.say(f"{best.name} takes the place of {cause.name} beside the others")
+            bench.log(f"{best.name} takes the place of {cause.name} beside the others")
         share = cause.share + state.share_taken(best.outcome)
         return state.with_cause(place, Accepted(best.name, best, share, rivals), best.outcome)
     alike = [fit.name for fit in fits if fit.is_seen_in_fit and bench.is_as_good(fit.outcome, before)]
@@ -54,7 +54,7 @@ def _simplified_at(state: State, place: int) -> State:
     fit = bench.full_fit(ranked[0], without) if ranked else None
     if fit is None or not bench.is_as_good(fit.outcome, state.outcome):
         return state
-    bench.say(f"{simpler} does as well as {cause.name}, with fewer parameters")
+    bench.log(f"{simpler} does as well as {cause.name}, with fewer parameters")
     rivals = tuple(name for name in cause.confusable if name != simpler)
     return state.with_cause(place, Accepted(simpler, fit, cause.share, rivals), fit.outcome)
 
@@ -69,7 +69,7 @@ def pruned(state: State) -> State:
         is_needed = bench.paired_gain(without, state.outcome)[1] >= bench.settings.accepted_t
         if is_needed and not _is_enough(without, state):
             continue
-        bench.say(f"{cause.name} is not needed beside the others")
+        bench.log(f"{cause.name} is not needed beside the others")
         first, *others = [other for other in state.accepted if other is not cause]
         first = replace(first, share=first.share + cause.share)
         state = replace(state, outcome=without, accepted=(first, *others))
@@ -104,7 +104,7 @@ def _beside_the_others_at(state: State, place: int) -> State:
     inside = [fit for fit in kept if not fit.is_at_bound]
     if cause.refit.is_at_bound and inside:  # it stands in for another at the end of what it can be
         instead = smallest(inside)
-        bench.say(f"{instead.name} does as well as {cause.name}, which has run into a bound")
+        bench.log(f"{instead.name} does as well as {cause.name}, which has run into a bound")
         others = tuple(fit.name for fit in inside if fit is not instead)
         return state.with_cause(place, Accepted(instead.name, instead, cause.share, others), instead.outcome)
     return state.with_cause(place, replace(cause, confusable=tuple(fit.name for fit in kept)))

@@ -1,9 +1,9 @@
-"""A further cause: the effect that takes most of what is left, where left-out records bear it out."""
+"""A further cause: the effect that takes most of what is left, where left-out records validate it."""
 
 from collections.abc import Sequence
 from dataclasses import replace
 
-from gear_damping.explanation.model.fitting import Begun, fit_hypothesis
+from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Outcome, settled_at
 from gear_damping.explanation.model.nominal_gear_pair import shaped
 from gear_damping.explanation.state import State
@@ -12,11 +12,11 @@ from gear_damping.explanation.trials.score import Score, best_by_effect
 from gear_damping.identification.output_error.least_squares import NONE
 from gear_damping.physics.systems.traits import Trait
 
-FAR = 10.0  # times the cost of the best fit: a law that leaves so much more has not come to rest where it could
+FAR = 10.0  # times the cost of the best fit: a law that leaves so much more has not converged where it could
 
 
 def single_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
-    """The state with the fits that were made, the next cause and its rivals; None where nothing more is borne out."""
+    """The state with the fits that were made, the next cause and its rivals; None where nothing more is validated."""
     bench = state.bench
     if state.accepted:
         fits = bench.full_fits(bench.worth(state.ranked, state.outcome), state.outcome, state.outcome)
@@ -26,7 +26,7 @@ def single_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
     state = replace(state, rejected=fits)
     if state.is_unpredictable:
         return state, None, ()
-    fits = _rivals_at_rest(fits, state)
+    fits = _converged_rivals(fits, state)
     state = replace(state, rejected=fits)
     best = _best(fits, state)
     if best is None or (state.needs_known_size and not bench.is_determined(best)):
@@ -38,16 +38,16 @@ def _first_fits(state: State) -> tuple[Refit, ...]:
     """Full fits of the first round: from the nominal model, and from before its free shape was fitted.
 
     Where much is missing that shape has bent to what it is not made for, so the other place comes first;
-    the second one is tried only where nothing is borne out from the first.
+    the second one is tried only where nothing is validated from the first.
     """
     bench = state.bench
-    fits = [again(refit, state.nominal, bench.evidence, bench.solver) for refit in state.begun]
+    fits = [again(refit, state.nominal, bench.evidence, bench.solver) for refit in state.carried_on]
     is_bent = state.current.misfit >= bench.settings.bent_misfit
     for place in (_unshaped, _shaped) if is_bent else (_shaped, _unshaped):
-        begun = place(state)
-        if begun is None:
+        carried_on = place(state)
+        if carried_on is None:
             continue
-        fits += bench.full_fits(begun[1], begun[0], state.nominal)
+        fits += bench.full_fits(carried_on[1], carried_on[0], state.nominal)
         fits = _from_the_best(fits, state)
         fits.sort(key=lambda fit: fit.outcome.left_out_cost)
         if _best(fits, state):
@@ -70,9 +70,9 @@ def _from_the_best(fits: Sequence[Refit], state: State) -> list[Refit]:
         return list(fits)
     shared = {p.name: best.outcome.values[p.name] for p in nominal.problem.free if p.name in best.outcome.values}
     settled = settled_at(nominal.hypothesis, shared)
-    place = fit_hypothesis(settled, bench.evidence, Begun(after=best.outcome), NONE, solver=bench.solver)
+    place = fit_hypothesis(settled, bench.evidence, InitialValues(after=best.outcome), NONE, solver=bench.solver)
     scores = best_by_effect(bench.ranked(place, far)) if place.is_finite else {}
-    found = [bench.full_fit(score, place, nominal) for score in scores.values() if score.candidate.presence]
+    found = [bench.full_fit(score, place, nominal) for score in scores.values() if score.candidate.non_nested]
     again = {fit.name: fit for fit in found if fit is not None}
     return [min([fit, again.get(fit.name, fit)], key=lambda one: one.outcome.fitted.cost) for fit in fits]
 
@@ -95,7 +95,7 @@ def _unshaped(state: State) -> tuple[Outcome, Sequence[Score]] | None:
     return outcome, bench.ranked(outcome)
 
 
-def _rivals_at_rest(fits: Sequence[Refit], state: State) -> tuple[Refit, ...]:
+def _converged_rivals(fits: Sequence[Refit], state: State) -> tuple[Refit, ...]:
     """The fits, the best ones carried to their ends: what has not converged is no rival yet, and no winner."""
     best, bench = _best(fits, state), state.bench
     if best is None:
@@ -107,7 +107,7 @@ def _rivals_at_rest(fits: Sequence[Refit], state: State) -> tuple[Refit, ...]:
 
 
 def _best(fits: Sequence[Refit], state: State) -> Refit | None:
-    """The best full fit, where left-out records bear it out."""
+    """The best full fit, where left-out records validate it."""
     best = next((fit for fit in fits if fit.is_seen_in_fit), None)
     if best is None:
         return None

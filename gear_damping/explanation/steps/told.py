@@ -11,11 +11,11 @@ from torch import Tensor
 
 from gear_damping.explanation.evidence.excess import is_all
 from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.covariance import CORRELATED_PERIODS, SILENT, covariance_of
 from gear_damping.explanation.model.hypothesis import Outcome, time_scale
-from gear_damping.explanation.model.spread import CORRELATED_PERIODS, SILENT, spread_of
 from gear_damping.explanation.state import State
 from gear_damping.explanation.trials.refit import Refit
-from gear_damping.identification.output_error.normal_equations import own_basis, without_own
+from gear_damping.identification.output_error.normal_equations import nuisance_basis, project_out
 from gear_damping.identification.output_error.uncertainty import QUANTILE, long_run
 
 WITHIN = 1.0  # of a logarithm: the half of its 95 % interval, beyond which no size is known
@@ -35,10 +35,10 @@ def told(state: State) -> State:
         if not runs_away and is_told(state.outcome, cause.refit, bench.evidence):
             continue
         outcome = bench.without(state.outcome, cause.name)
-        is_missed = not runs_away and not cause.refit.score.candidate.presence and _explain_all(state)
+        is_missed = not runs_away and not cause.refit.score.candidate.non_nested and _explain_all(state)
         if is_missed and not bench.is_as_good(outcome, state.outcome):
             continue
-        bench.say(f"{cause.name} lowers the cost, but its size is not told from none")
+        bench.log(f"{cause.name} lowers the cost, but its size is not told from none")
         kept = tuple(other for other in state.accepted if other is not cause)
         rejected, unsized = (cause.refit, *state.rejected), state.unsized | {cause.name}
         state = replace(state, outcome=outcome, accepted=kept, rejected=rejected, unsized=unsized)
@@ -53,9 +53,9 @@ def _explain_all(state: State) -> bool:
 def is_told(outcome: Outcome, refit: Refit, evidence: Evidence) -> bool:
     """Whether the strengths of a cause are told from none, together and, where each does something, one at least alone.
 
-    A Wald test along the strengths that were found: what they change of the prediction beside everything else that is
-    free, against what coloured residuals would do in its direction. The shape of the cause (an exponent, a width) is
-    taken as it was found: beside it a strength may be any and the law still be certain.
+    A Wald test along the strengths that were found: what they change of the prediction, everything else that is free
+    projected out, against what coloured residuals would do in its direction. The shape of the cause (an exponent, a
+    width) is taken as it was found: beside it a strength may be any and the law still be certain.
 
     Args:
         outcome: The model with the cause.
@@ -68,16 +68,16 @@ def is_told(outcome: Outcome, refit: Refit, evidence: Evidence) -> bool:
     places = [i for i, parameter in enumerate(problem.free) if parameter.name in neutral]
     if not places:
         return True
-    if candidate.presence:
+    if candidate.non_nested:
         shape = [i for i, p in enumerate(problem.free) if p.name.startswith(f"{refit.name}.") and i not in places]
         return _are_sized(outcome, places, shape if candidate.replaced else [], evidence)
     away = [float(problem.free[i].value(shared[i])) - neutral[problem.free[i].name] for i in places]
     free = [problem.free[i] for i in places]
     size = torch.tensor([1.0 if p.logarithmic else a / p.scale for p, a in zip(free, away, strict=True)])
     size = size.to(torch.float64)
-    columns = _beside(outcome, places, refit.name)
-    spread = torch.linalg.svdvals(columns / columns.norm(dim=0).clamp(min=1e-300))
-    rank = int((spread > INDEPENDENT * spread[0]).sum())
+    columns = _orthogonal_columns(outcome, places, refit.name)
+    singular_values = torch.linalg.svdvals(columns / columns.norm(dim=0).clamp(min=1e-300))
+    rank = int((singular_values > INDEPENDENT * singular_values[0]).sum())
     seconds = CORRELATED_PERIODS * time_scale(outcome.hypothesis, evidence)
     lags = [round(seconds * record.sampling_rate) for record in problem.records]
     if _statistic(outcome, columns @ size, lags) < float(chi2.ppf(1 - evidence.settings.told_level, max(rank, 1))):
@@ -97,8 +97,8 @@ def _are_sized(outcome: Outcome, places: list[int], shape: list[int], evidence: 
     end of a logarithm. What a size does not move any more (a gap whose far flank is never touched) is no size. What
     took the place of a linear spring is that spring again where nothing of its `shape` (a length) does anything.
     """
-    spread, free = spread_of(outcome, evidence), outcome.problem.free
-    half = QUANTILE * spread.diagonal().clamp(min=0).sqrt()
+    singular_values, free = covariance_of(outcome, evidence), outcome.problem.free
+    half = QUANTILE * singular_values.diagonal().clamp(min=0).sqrt()
     columns = outcome.fitted.prediction.sensitivity.unbind(-1)
     moves = [float(column.norm()) >= SILENT * evidence.noise for column in columns]
     if shape and not any(moves[i] and half[i] <= WITHIN for i in shape):
@@ -106,17 +106,19 @@ def _are_sized(outcome: Outcome, places: list[int], shape: list[int], evidence: 
     return not any(free[i].logarithmic and moves[i] and half[i] > WITHIN for i in places)
 
 
-def _beside(outcome: Outcome, places: list[int], cause: str) -> Tensor:
-    """What the strengths change, (samples, strengths), beside all that is free but the shape of the cause itself."""
+def _orthogonal_columns(outcome: Outcome, places: list[int], cause: str) -> Tensor:
+    """What the strengths change, (samples, strengths), all that is free but the cause's own shape projected out."""
     problem, sensitivity = outcome.problem, outcome.fitted.prediction.sensitivity[0]
-    beside = without_own(sensitivity[..., : problem.n_shared], own_basis(sensitivity, problem.n_shared)).flatten(0, 1)
+    orthogonal = project_out(
+        sensitivity[..., : problem.n_shared], nuisance_basis(sensitivity, problem.n_shared)
+    ).flatten(0, 1)
     others = [i for i, p in enumerate(problem.free) if i not in places and not p.name.startswith(cause + ".")]
-    return _without(beside[:, places], beside[:, others])
+    return _without(orthogonal[:, places], orthogonal[:, others])
 
 
 def _without(columns: Tensor, others: Tensor) -> Tensor:
     """Columns (samples, n) without what other ones (samples, m) could do."""
-    return without_own(columns, torch.linalg.qr(others / others.norm(dim=0).clamp(min=1e-300)).Q)
+    return project_out(columns, torch.linalg.qr(others / others.norm(dim=0).clamp(min=1e-300)).Q)
 
 
 def _statistic(outcome: Outcome, change: Tensor, lags: list[int]) -> float:

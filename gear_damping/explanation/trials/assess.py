@@ -20,7 +20,7 @@ from gear_damping.explanation.trials.unnamed import unnamed_columns
 
 COLUMNS_PER_SAMPLE = 0.2  # at most so many columns are taken out of white noise, whose variance then stays known,
 SHOWN_PER_SAMPLE = 0.05  # and so many before the colour of the noise is fitted, which they take with them
-INDEPENDENT = 1e-6  # of the largest: a direction of an effect beside the nuisance that counts
+INDEPENDENT = 1e-6  # of the largest: a direction of an effect, less the nuisance, that counts
 ALIKE = 1e-6  # of the largest eigenvalue: below it a direction repeats others
 MOST_COLUMNS = 400  # are taken out at once: those that take most, as the time goes with their square
 LONGEST_BLOCK = 2.0  # natural periods, over which a residual is taken to be correlated at most
@@ -38,7 +38,7 @@ class Assessment:
 
     Args:
         visible: The test of what is not random.
-        random: What is; where nothing is visible, all that is left beside the nuisance.
+        random: What is; where nothing is visible, all that is left less the nuisance.
         taken: Share of the residual's energy, whitened or as it is, that effects and families take beyond chance.
     """
 
@@ -50,8 +50,8 @@ class Assessment:
 def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, families: bool = True) -> Assessment | None:
     """What the residuals of the fitted records hold; None beside a model that runs away.
 
-    The random part is what is left beside the nuisance and beside what would take a large part of it, and where
-    something is visible in that, what is left beside all that is; and beside the strongest line where that tells more
+    The random part is what is left with the nuisance and what would take a large part of it projected out, and where
+    something is visible in that, with all that is; and with the strongest line where that tells more
     (Schwarz 1978), which a narrow colour would swallow. Taking out every effect that could be there would
     take the colour of the noise with them, and noise alone would then look like something in short records.
 
@@ -68,7 +68,7 @@ def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, fami
     shapes = unnamed_columns(outcome, evidence) if families else {}
     unnamed = {UNNAMED + name: _padded(columns, project) for name, columns in shapes.items()}
     named = {score.candidate.name: score.columns for score in reversed(scores) if score.columns.shape[1]}
-    beside, count = project(residual), problem.response.weights.numel()
+    orthogonal, count = project(residual), problem.response.weights.numel()
     nameless = cache(lambda: {name: orthonormal(project(columns)) for name, columns in unnamed.items()})
     known, line = cache(lambda: random_loads(outcome)), cache(lambda: strongest_line(outcome, evidence))
 
@@ -76,9 +76,9 @@ def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, fami
 
     def looked_at(random: Random) -> Assessment:
         white = Whitener(random, outcome)
-        if random.is_white:  # all are beside the nuisance as they are
+        if random.is_white:  # out of all the nuisance is projected as they are
             effects = _effects(scores, nameless())
-            return _tested(white.padded(beside)[:, 0], effects, project, white, outcome, evidence.settings.level)
+            return _tested(white.padded(orthogonal)[:, 0], effects, project, white, outcome, evidence.settings.level)
         slopes = white(sensitivity.flatten(0, 1)).reshape(sensitivity.shape)
         whitened = Projector(slopes, project.expected, project.slope)
         seen = whitened(white.padded(residual))[:, 0]
@@ -95,16 +95,16 @@ def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, fami
 
     large = {s.candidate.name for s in scores if s.gain > evidence.settings.random_share}
     taken_out = [columns for name, columns in named.items() if name in large]
-    found = looked_at(random_in(*_without(beside, taken_out, SHOWN_PER_SAMPLE)))
+    found = looked_at(random_in(*_without(orthogonal, taken_out, SHOWN_PER_SAMPLE)))
     if not found.visible:
-        return replace(found, random=random_in(beside, 0.0)) if taken_out else found
+        return replace(found, random=random_in(orthogonal, 0.0)) if taken_out else found
     shown = [columns for name, columns in named.items() if found.visible.shows(name)]
     shown += [columns for name, columns in nameless().items() if found.visible.shows(name)]
-    left, taken = _without(beside, shown, SHOWN_PER_SAMPLE)
+    left, taken = _without(orthogonal, shown, SHOWN_PER_SAMPLE)
     again = looked_at(random_in(left, taken))
     if not again.visible:
-        return replace(again, random=random_in(beside, 0.0))
-    share = 1 - float(left.square().sum()) / max(float(beside.square().sum()), 1e-300) - taken / count
+        return replace(again, random=random_in(orthogonal, 0.0))
+    share = 1 - float(left.square().sum()) / max(float(orthogonal.square().sum()), 1e-300) - taken / count
     return replace(again, taken=max(again.taken, share))  # a colour that is fitted to an effect hides its part
 
 
@@ -113,7 +113,7 @@ def _effects(
 ) -> list[Effect]:
     """Every candidate that does something, and the families without a name, with their columns brought to a form."""
     found = [
-        Effect(s.candidate.name, form(s.columns), bool(s.candidate.presence)) for s in scores if s.columns.shape[1]
+        Effect(s.candidate.name, form(s.columns), bool(s.candidate.non_nested)) for s in scores if s.columns.shape[1]
     ]
     return found + [Effect(name, form(columns)) for name, columns in unnamed.items()]
 
@@ -190,7 +190,7 @@ def orthonormal(columns: Tensor) -> Tensor:
 
 
 def _without(signal: Tensor, bases: Sequence[Tensor], share: float = COLUMNS_PER_SAMPLE) -> tuple[Tensor, float]:
-    """`signal` (samples, 1) beside all bases, or beside those that take most where there are too many; and how many.
+    """`signal` (samples, 1) with all bases projected out, or those that take most if they are too many; and how many.
 
     At most a `share` of as many columns as there are samples is taken out.
     """

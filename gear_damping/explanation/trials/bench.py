@@ -1,4 +1,4 @@
-"""What the search and its second thoughts both do: score, fit in full, compare on left-out records."""
+"""The evaluation of candidates: score, fit in full, compare on left-out records."""
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field, replace
@@ -11,9 +11,9 @@ from gear_damping.explanation.evidence.excess import Excess, excess
 from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.candidates import candidates_for, restored
-from gear_damping.explanation.model.fitting import Begun, fit_hypothesis
+from gear_damping.explanation.model.covariance import covariance_of
+from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome
-from gear_damping.explanation.model.spread import spread_of
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.statistics.paired import confirmation, paired_gain
 from gear_damping.explanation.trials.assess import Assessment, assessed
@@ -27,9 +27,9 @@ from gear_damping.simulation.solver_settings import Solver
 
 LEAST_TAKEN = 0.25  # of what another takes of the fitted records, for a fit to be carried to its end,
 RIVALS_LEAVE = 1.25  # and where that is nearly all that is missing, of what it leaves: only rivals count then
-LAST_ITERATIONS = 60  # of a cause that is accepted before its fit has come to rest
+LAST_ITERATIONS = 60  # of a cause that is accepted before its fit has converged
 SAME = 1e-3  # of the noise variance: a mean difference below it is none
-Say = Callable[[str], None]
+Log = Callable[[str], None]
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Bench:
     Args:
         evidence: The records, with their noise.
         noise: The same in full.
-        say: Told what is found on the way.
+        log: Told what is found on the way.
         solver: Settings of the solver.
         floor: The noise as it was known before any residual was looked at.
         failed: Why an effect could not be fitted in full, by its name.
@@ -49,7 +49,7 @@ class Bench:
 
     evidence: Evidence
     noise: NoiseLevel
-    say: Say
+    log: Log
     solver: Solver | None
     floor: NoiseLevel
     failed: dict[str, str] = field(default_factory=dict)
@@ -94,7 +94,7 @@ class Bench:
         return max(outcome.fitted.cost - self.noise_cost(outcome), 0.0)
 
     def worth(self, ranked: Sequence[Score], outcome: Outcome, share: float = 1.0) -> list[Score]:
-        """Those of the candidates beside a model with causes which promise enough of what it leaves beyond noise.
+        """Those of the candidates beside a model with causes with enough predicted gain of what it leaves beyond noise.
 
         About a place of rest fits are cheap, and laws far from linear.
 
@@ -119,14 +119,19 @@ class Bench:
         return refitted(score, outcome, self.evidence, self.solver, against, reach)
 
     def full_fits(
-        self, ranked: Sequence[Score], outcome: Outcome, against: Outcome, promise: float = 0.0, reach: float = inf
+        self,
+        ranked: Sequence[Score],
+        outcome: Outcome,
+        against: Outcome,
+        predicted_gain: float = 0.0,
+        reach: float = inf,
     ) -> tuple[Refit, ...]:
         """The candidates worth it, fitted in full, the best first; one that will not get below `reach` is given up."""
         if not ranked:
             return ()
         fits: list[Refit] = []
         base = (outcome if outcome.fitted.converged else against).fitted.cost
-        for score in chosen(ranked, self.settings, promise, springs=self.evidence.has(Trait.REST)):
+        for score in chosen(ranked, self.settings, predicted_gain, springs=self.evidence.has(Trait.REST)):
             if self.budget.refuses(score.candidate.name):
                 continue
             most = max((base - fit.outcome.fitted.cost for fit in fits), default=0.0)
@@ -148,22 +153,22 @@ class Bench:
 
     def without(self, outcome: Outcome, name: str) -> Outcome:
         """A model without one of its causes, fitted from where it was."""
-        hypothesis, begun = _without(outcome.hypothesis, name), Begun(after=outcome)
-        return fit_hypothesis(hypothesis, self.evidence, begun, solver=self.solver)
+        hypothesis, initial = _without(outcome.hypothesis, name), InitialValues(after=outcome)
+        return fit_hypothesis(hypothesis, self.evidence, initial, solver=self.solver)
 
-    def at_rest(self, outcome: Outcome) -> Outcome:
-        """A model whose fit is carried on where it had not come to rest."""
+    def until_converged(self, outcome: Outcome) -> Outcome:
+        """A model whose fit is carried on where it had not converged."""
         if outcome.fitted.converged:
             return outcome
-        begun, rounds = Begun(after=outcome), Rounds(LAST_ITERATIONS)
-        further = fit_hypothesis(outcome.hypothesis, self.evidence, begun, rounds, solver=self.solver)
+        initial, rounds = InitialValues(after=outcome), Rounds(LAST_ITERATIONS)
+        further = fit_hypothesis(outcome.hypothesis, self.evidence, initial, rounds, solver=self.solver)
         return further if further.is_finite else outcome
 
     def converged(self, fit: Refit, against: Outcome) -> Refit:
         """A full fit carried on where it had not converged, and held against a model."""
         if fit.outcome.fitted.converged:
             return fit
-        return compared(fit.score, self.at_rest(fit.outcome), against, self.evidence)
+        return compared(fit.score, self.until_converged(fit.outcome), against, self.evidence)
 
     def is_as_good(self, outcome: Outcome, best: Outcome) -> bool:
         """Whether a model is not worse than another by the paired test, or by too little for anybody to bet on it.
@@ -237,11 +242,11 @@ class Bench:
         """
         if self.excess(fit.outcome).misfit <= self.settings.small_misfit:
             return True
-        spread = spread_of(fit.outcome, self.evidence)
+        covariances = covariance_of(fit.outcome, self.evidence)
         problem, shared = fit.outcome.problem, fit.outcome.fitted.shared
         for place, parameter in enumerate(problem.free):
             if parameter.name.startswith(fit.name + "."):
-                half = QUANTILE * float(spread[place, place].clamp(min=0).sqrt())
+                half = QUANTILE * float(covariances[place, place].clamp(min=0).sqrt())
                 size = 1.0 if parameter.logarithmic else abs(float(parameter.value(shared[place])) / parameter.scale)
                 if half <= self.settings.determined * size and not problem.unknowns.at_bound(shared)[place]:
                     return True

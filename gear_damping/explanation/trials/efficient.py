@@ -27,13 +27,13 @@ def efficient(outcome: Outcome, random: Random) -> Outcome:
         return outcome
     problem, fitted = outcome.problem, outcome.fitted
     white = _whitened(outcome, random)
-    begun = Points(fitted.shared.unsqueeze(0), fitted.states.unsqueeze(0))
-    end = newton_step(problem, begun, white, fitted.shared.new_full((1,), SMALLEST_DAMPING))
+    initial = Points(fitted.shared.unsqueeze(0), fitted.states.unsqueeze(0))
+    end = newton_step(problem, initial, white, fitted.shared.new_full((1,), SMALLEST_DAMPING))
     if not bool(end.shared.isfinite().all()):
         return outcome
     shared, states = end.shared[0], end.states[0]
     values = {name: float(value) for name, value in problem.unknowns.parameters(shared).items()}
-    left = white.residual - white.along(moves(problem, begun, end))
+    left = white.residual - white.along(moves(problem, initial, end))
     return replace(
         outcome,
         hypothesis=settled_at(outcome.hypothesis, values),

@@ -23,8 +23,8 @@ from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import part
 from gear_damping.physics.systems.swinging import BASE, FORCE
 
-PIECE = 3.0  # natural periods that the free motion is followed over: it must not have died away
-FEWEST = 6  # samples of a piece, which two states of its own are fitted to
+SEGMENT = 3.0  # natural periods that the free motion is followed over: it must not have died away
+FEWEST = 6  # samples of a segment, which two states of its own are fitted to
 
 
 @dataclass(frozen=True)
@@ -113,27 +113,27 @@ def recurrences(outcome: Outcome) -> list[Recurrence] | None:
 
 
 def _free_motion(outcome: Outcome) -> list[list[Tensor]]:
-    """What the first channel shows of two free motions, (time, 2), of each record piece by piece.
+    """What the first channel shows of two free motions, (time, 2), of each record segment by segment.
 
-    A piece begins two samples before the last one ends: its first two tell how the third follows.
+    A segment begins two samples before the last one ends: its first two tell how the third follows.
     """
     problem, hypothesis = outcome.problem, outcome.hypothesis
     shared, states = outcome.fitted.shared, outcome.fitted.states
     period = 1 / natural_frequency_hz(hypothesis.model, outcome.flat_given())
     motion = problem.motion(shared, states)
-    pieces: list[FitRecord] = []
+    segmented: list[FitRecord] = []
     starts, counts = [], []
     for record, path in zip(problem.records, motion, strict=True):
-        length = max(FEWEST, round(PIECE * period * record.sampling_rate))
+        length = max(FEWEST, round(SEGMENT * period * record.sampling_rate))
         begins = list(range(0, len(record.response) - 2, length - 2))
-        pieces += [part(record, slice(at, min(at + length, len(record.response)))) for at in begins]
+        segmented += [part(record, slice(at, min(at + length, len(record.response)))) for at in begins]
         starts += [path[:, at] for at in begins]
         counts.append(len(begins))
     given = {**hypothesis.given, **hypothesis.gains}
-    short = OutputErrorProblem(hypothesis.model, given, hypothesis.free, pieces, problem.solver, problem.noise)
-    begun = torch.zeros(1, len(pieces), len(short.local), dtype=torch.float64)
-    begun[0, :, :2] = torch.stack(starts) / short.scales[:, :2]
+    short = OutputErrorProblem(hypothesis.model, given, hypothesis.free, segmented, problem.solver, problem.noise)
+    initial = torch.zeros(1, len(segmented), len(short.local), dtype=torch.float64)
+    initial[0, :, :2] = torch.stack(starts) / short.scales[:, :2]
     settled = short.unknowns.own_of(problem.unknowns, shared).unsqueeze(0)
-    found = short.linearise(settled, begun, only=[]).sensitivity[0][..., short.n_shared :]
-    cut = iter([one[: len(piece.response), :2] for one, piece in zip(found, pieces, strict=True)])
+    found = short.linearise(settled, initial, only=[]).sensitivity[0][..., short.n_shared :]
+    cut = iter([one[: len(segment.response), :2] for one, segment in zip(found, segmented, strict=True)])
     return [[next(cut) for _ in range(count)] for count in counts]

@@ -20,7 +20,7 @@ from gear_damping.explanation.model.linear import linear_of
 from gear_damping.explanation.statistics.projector import Projector
 from gear_damping.explanation.trials.motion import motions
 from gear_damping.explanation.trials.score import projected
-from gear_damping.identification.output_error.normal_equations import without_own
+from gear_damping.identification.output_error.normal_equations import project_out
 
 Array = NDArray[np.float64]
 FINE = 4  # places over the width of a line, one turn or cycle in the longest record
@@ -43,7 +43,7 @@ class Line:
         unit: Which of the two.
         hertz: Its frequency in the first record.
         is_force: Whether it changes the deflection of a gear pair in proportion, as a force does.
-        share: Of the residuals beside their model's parameters, that it takes.
+        share: Of the residuals, their model's parameters projected out, that it takes.
         columns: What it would do to every record, (records, samples, 2).
     """
 
@@ -70,11 +70,11 @@ class Line:
     def taken_out_of(self, signal: Tensor) -> Tensor:
         """A signal of all records, (samples,), beside it."""
         rows = signal.reshape(len(self.columns), -1, 1)
-        return without_own(rows, torch.linalg.qr(self.columns).Q).reshape(-1)
+        return project_out(rows, torch.linalg.qr(self.columns).Q).reshape(-1)
 
 
 def strongest_line(outcome: Outcome, evidence: Evidence) -> Line | None:
-    """The line that takes most of what a model leaves beside its own parameters.
+    """The line that takes most of what a model leaves, its own parameters projected out.
 
     None in segments, of which none holds a line of its own, and in records that are too short for one.
     """

@@ -11,7 +11,7 @@ Array = NDArray[np.float64]
 
 
 def motions(outcome: Outcome) -> list[tuple[Array, Array]]:
-    """Deflection and its rate by record, in units of their spread over all of them: a law is one in all records.
+    """Deflection and its rate by record, in units of their root mean square over all: a law is one in all records.
 
     The deflection is counted from rest without load; a stiffness that changes acts on its mean too. Where a channel
     does not tell the mean, it is that under the mean load.
@@ -26,8 +26,8 @@ def motions(outcome: Outcome) -> list[tuple[Array, Array]]:
             share = participation(record.observed, problem.model, problem.given)
             place = place - place.mean() + float(static) * share
         found.append((place, rate))
-    spreads = [float(np.sqrt(np.mean([np.mean(one[part] ** 2) for one in found]))) or 1.0 for part in (0, 1)]
-    return [(place / spreads[0], rate / spreads[1]) for place, rate in found]
+    scales = [float(np.sqrt(np.mean([np.mean(one[part] ** 2) for one in found]))) or 1.0 for part in (0, 1)]
+    return [(place / scales[0], rate / scales[1]) for place, rate in found]
 
 
 def _motion(shown: Array, record: FitRecord) -> tuple[Array, Array]:

@@ -74,7 +74,7 @@ class Random:
 def random_part(
     left: Tensor, taken: float, outcome: Outcome, loads_of: Callable[[], list[RandomLoad] | None]
 ) -> Random:
-    """The random part of what is left beside everything that has a shape.
+    """The random part of what is left, everything that has a shape projected out.
 
     An autoregression of each channel; or, where that tells more (Schwarz 1978), a random load's part of each record
     beside one.
@@ -95,10 +95,10 @@ def random_part(
     kept, least = laws, regressed.deviance(laws)
     if any(law.order for law in laws) and (known := loads_of()) is not None:
         parts = [moved.part(row.numpy()) for row, moved in zip(rows, known, strict=True)]
-        beside = regressed.of(innovations(rows.unsqueeze(-1), parts).squeeze(-1))
-        deviance = sum(part.deviance + PER_LOAD * log(total) for part in parts) + regressed.deviance(beside)
+        whitened = regressed.of(innovations(rows.unsqueeze(-1), parts).squeeze(-1))
+        deviance = sum(part.deviance + PER_LOAD * log(total) for part in parts) + regressed.deviance(whitened)
         if deviance < least:
-            kept, loads, least = beside, tuple(parts), deviance
+            kept, loads, least = whitened, tuple(parts), deviance
     scale = total / max(total - taken - problem.n_shared, 1.0)
     correlation = [laws[int(g)].correlation for g in groups.reshape(-1) if g >= 0]
     by_record = _by_record(rows, weights, outcome, scale)
@@ -173,7 +173,7 @@ class Whitener:
 
     def __call__(self, signal: Tensor) -> Tensor:
         """`signal` (samples, n) white where its random part is, at the noise of the evidence."""
-        rows = self._beside_load(signal.reshape(*self.used.shape, -1))
+        rows = self._with_load(signal.reshape(*self.used.shape, -1))
         found = torch.zeros_like(rows)
         for number, law in enumerate(self.random.laws):
             places = (self.random.groups.reshape(-1) == number).nonzero().flatten()
@@ -181,7 +181,7 @@ class Whitener:
             found[places] = white * self.problem.noise / max(law.innovation, 1e-300) ** 0.5
         return (found * self.used.unsqueeze(-1)).reshape(signal.shape)
 
-    def _beside_load(self, rows: Tensor) -> Tensor:
+    def _with_load(self, rows: Tensor) -> Tensor:
         """Innovations of rows (rows, time, n) where a random load is part of them."""
         if not self.random.loads:
             return rows

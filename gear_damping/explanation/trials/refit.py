@@ -1,4 +1,4 @@
-"""Step 6: the full fit of a candidate, and whether left-out records bear it out."""
+"""Step 6: the full fit of a candidate, and whether left-out records validate it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -9,7 +9,7 @@ from torch import Tensor
 
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.candidates import EXPONENT, Candidate
-from gear_damping.explanation.model.fitting import Begun, fit_hypothesis
+from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, time_scale
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.statistics.paired import paired_gain
@@ -19,8 +19,8 @@ from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.simulation.solver_settings import Solver
 
 NEARLY_COLLINEAR = 0.7  # cosine: half of what one explains the other would
-OTHER_FORM = 0.95  # of what the best form of an effect promises, for a full fit of another form
-LEAST_PROMISE = 0.3  # of the first one's, for a full fit of one that resembles it
+OTHER_FORM = 0.95  # of the predicted gain of an effect's best form, for a full fit of another form
+LEAST_PREDICTED_GAIN = 0.3  # of the first one's, for a full fit of one that resembles it
 BLOCK_TIMES = 6.0  # characteristic times of a block of the paired test,
 FEWEST_BLOCKS = 8  # but at least so many blocks: the variance of fewer is anybody's guess
 SHORTEST_BLOCK = 4  # samples, however short the characteristic time is beside them
@@ -38,7 +38,7 @@ class Refit:
     """A candidate fitted in full.
 
     Args:
-        score: What it promised.
+        score: Its predicted gain.
         outcome: What came of it.
         gain: Mean fall of squared residuals of left-out records.
         t: Its t statistic over blocks.
@@ -80,15 +80,15 @@ def chosen(
 ) -> list[Score]:
     """The candidates worth a full fit: the best variant of the best effects, and who resembles the first.
 
-    Another form of an effect (a filter of another order) is tried too where it promises nearly as much.
+    Another form of an effect (a filter of another order) is tried too where its predicted gain is nearly as large.
 
     Args:
         scores: Every candidate, the best first.
         settings: How many are worth it.
-        least: What it has to promise, as a share of what the first one does.
+        least: Of the first one's predicted gain, that another needs.
         springs: Whether everything far from linear is worth one, as for an oscillator, whose fits are cheap: a law that
             is even in the deflection pulls the frequency by its square, and what is tried as a whole (a sensor that
-            saturates) promises little at a wrong size. No linear score foresees either.
+            saturates) has little gain at a wrong size. No linear score foresees either.
     """
     forms: dict[tuple, Score] = {}
     for score in scores:
@@ -96,7 +96,7 @@ def chosen(
     every = list(forms.values())
     ranked = list(best_by_effect(every).values())
     first = [score for score in ranked[: settings.full_fits] if score.gain >= least * ranked[0].gain]
-    promising = [score for score in ranked[settings.full_fits :] if score.gain > LEAST_PROMISE * ranked[0].gain]
+    promising = [score for score in ranked[settings.full_fits :] if score.gain > LEAST_PREDICTED_GAIN * ranked[0].gain]
     alike = [score for score in promising if collinearity(ranked[0], score) > NEARLY_COLLINEAR]
     instead = [score for score in ranked if score.candidate.replaced]  # adds nothing that could overfit: always tried
     far = [score for score in ranked if springs and score.gain > 0 and _is_far_from_linear(score.candidate)]
@@ -106,7 +106,7 @@ def chosen(
 
 
 def _is_far_from_linear(candidate: Candidate) -> bool:
-    return candidate.is_elastic or bool(candidate.presence)
+    return candidate.is_elastic or bool(candidate.non_nested)
 
 
 def refitted(
@@ -123,11 +123,12 @@ def refitted(
     """
     candidate = score.candidate
     hypothesis = candidate.hypothesis
-    kept, ends = VARIANTS_KEPT if candidate.presence else ONE, Ends(ENOUGH, reach)
+    kept, ends = VARIANTS_KEPT if candidate.non_nested else ONE, Ends(ENOUGH, reach)
     rounds = Rounds((FIRST_ITERATIONS, LAST_ITERATIONS), (FIRST_PART * evidence.duration, None), kept)
-    found = fit_hypothesis(hypothesis, evidence, Begun(_starts(score), outcome, score.own), rounds, ends, solver)
+    initial = InitialValues(_starts(score), outcome, score.own)
+    found = fit_hypothesis(hypothesis, evidence, initial, rounds, ends, solver)
     if candidate.later and found.fitted.cost <= reach:
-        found = fit_hypothesis(_freed(found, candidate), evidence, Begun(after=found), ends=ends, solver=solver)
+        found = fit_hypothesis(_freed(found, candidate), evidence, InitialValues(after=found), ends=ends, solver=solver)
     if not found.is_finite:
         return None
     return compared(score, found, against or outcome, evidence)
@@ -152,7 +153,7 @@ def _freed(found: Outcome, candidate: Candidate) -> Hypothesis:
 
 
 def again(refit: Refit, against: Outcome, evidence: Evidence, solver: Solver | None = None) -> Refit:
-    """A full fit carried on with other evidence, as with the same records in pieces, and held against another model."""
+    """A full fit carried on with other evidence, as with the records in segments, and held against another model."""
     found = fit_hypothesis(refit.outcome.hypothesis, evidence, ends=Ends(ENOUGH), solver=solver)
     return compared(refit.score, found, against, evidence)
 
@@ -166,16 +167,16 @@ def compared(score: Score, found: Outcome, against: Outcome, evidence: Evidence)
 
 def _starts(score: Score) -> Tensor:
     """Coordinates of the starts, (starts, n_free), and those with what stood in for the effect moved back."""
-    starts, moved = _begun_at(score), torch.zeros_like(score.start)
+    starts, moved = _initial_values(score), torch.zeros_like(score.start)
     for place, coordinate in score.candidate.moved.items():
         moved[place] = coordinate
     return torch.cat([starts, starts + moved]) if score.candidate.moved else starts
 
 
-def _begun_at(score: Score) -> Tensor:
+def _initial_values(score: Score) -> Tensor:
     """The linearised optimum and less of it, or every size."""
     candidate = score.candidate
-    if not candidate.presence:
+    if not candidate.non_nested:
         starts = score.start.repeat(2, 1)
         starts[1, list(candidate.strengths)] *= CAUTIOUS
         return starts

@@ -7,7 +7,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.explanation.model.candidates import Candidate
-from gear_damping.explanation.model.fitting import begun_from, own_from
+from gear_damping.explanation.model.fitting import initial_states_from, own_from
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.own_phases import (
     by_record,
@@ -30,7 +30,7 @@ VISIBLE = 5.0  # standard deviations at which an effect counts as visible
 
 @dataclass(frozen=True)
 class Score:
-    """What a candidate promises.
+    """The gain that is predicted of a candidate (score test).
 
     Args:
         candidate: The candidate.
@@ -38,7 +38,7 @@ class Score:
         start: Coordinates of its free parameters at that optimum.
         direction: Unit vector of what it would explain, nuisance projected out.
         smallest: Size of its first strength that would just be visible, in the strength's own unit.
-        columns: Orthonormal basis of what it can do beside the nuisance, (samples, n); of an effect that is tried as
+        columns: Orthonormal basis of what it can do, less the nuisance, (samples, n); of an effect that is tried as
             a whole, what it would add, with its sign.
         variants: Of an effect that is tried as a whole, its other sizes.
         failed: Why it could not be scored; empty where it could.
@@ -82,7 +82,7 @@ class Base:
         outcome: The fitted model.
         project: Takes out what its own parameters could do.
         residual: What it leaves of the fitted records, (samples + n,).
-        beside: The same without what the model's own parameters could do.
+        orthogonal: The same without what the model's own parameters could do.
         predicted: What it predicts of them, (samples,).
         noise: Standard deviation of the noise.
         solver: Settings of the solver.
@@ -91,7 +91,7 @@ class Base:
     outcome: Outcome
     project: Projector
     residual: Tensor
-    beside: Tensor
+    orthogonal: Tensor
     predicted: Tensor
     noise: float
     solver: Solver | None
@@ -108,8 +108,8 @@ def scores(
     if not bool(outcome.fitted.prediction.sensitivity.isfinite().all()):
         return []  # beside a model that runs away nothing can be told
     project, residual = projected(outcome)
-    beside, residual = project(residual)[:, 0], residual[:, 0]
-    base = Base(outcome, project, residual, beside, _predicted(outcome), noise, solver)
+    orthogonal, residual = project(residual)[:, 0], residual[:, 0]
+    base = Base(outcome, project, residual, orthogonal, _predicted(outcome), noise, solver)
     found: list[Score] = []
     groups = _alike(candidates, len(residual))
     hypotheses = [group[0].hypothesis for group in groups]
@@ -128,7 +128,7 @@ def with_other_sizes(ranked: Sequence[Score]) -> list[Score]:
     """
     sizes: dict[tuple, list[Candidate]] = {}
     for candidate in (score.candidate for score in ranked):
-        if candidate.presence:
+        if candidate.non_nested:
             sizes.setdefault((candidate.name, *candidate.options), []).append(candidate)
 
     def others(candidate: Candidate) -> tuple[Candidate, ...]:
@@ -145,7 +145,7 @@ def _alike(candidates: Sequence[Candidate], samples: int) -> list[list[Candidate
         lists = tuple((k, v) for k, v in candidate.hypothesis.given.items() if isinstance(v, tuple))
         own = (*candidate.own_phases.items(), candidate.own_tooth)
         alike = (candidate.name, candidate.options, candidate.hypothesis.free, candidate.strengths, lists, own)
-        groups.setdefault(id(candidate) if candidate.presence else alike, []).append(candidate)
+        groups.setdefault(id(candidate) if candidate.non_nested else alike, []).append(candidate)
     found = []
     for group in groups.values():
         most = max(1, MOST_SAMPLES // (samples * len(_probes(group[0], len(group[0].hypothesis.common))[0])))
@@ -176,17 +176,17 @@ def _score_together(group: Sequence[Candidate], base: Base) -> list[Score]:
     counts = [len(rows) for rows, _ in probes]
     for candidate, rows in zip(group, points.split(counts), strict=True):
         turn_own_phases(rows, candidate, problem)
-    states = begun_from(problem, base.outcome, len(points))
+    states = initial_states_from(problem, base.outcome, len(points))
     found = (problem.predict(points, states) * problem.response.weights).reshape(len(points), -1)
     columns = (found - base.predicted) / torch.cat([steps for _, steps in probes]).unsqueeze(1)
     apart = bool(group[0].own_phases or group[0].own_tooth)
     parts = [by_record(c, problem) if apart else c for c in columns.split(counts)]
     columns = torch.nn.functional.pad(torch.cat(parts), (0, len(base.project.expected))).T
-    beside = base.project(columns)
+    orthogonal = base.project(columns)
     # What the nuisance takes but for rounding is nothing of its own.
-    own = beside.norm(dim=0) > 1e-6 * columns.norm(dim=0).clamp(min=1e-300)
-    beside = torch.where(own | ~columns.isfinite().all(0), beside, torch.zeros_like(beside))
-    split = beside.split([len(part) for part in parts], 1)
+    own = orthogonal.norm(dim=0) > 1e-6 * columns.norm(dim=0).clamp(min=1e-300)
+    orthogonal = torch.where(own | ~columns.isfinite().all(0), orthogonal, torch.zeros_like(orthogonal))
+    split = orthogonal.split([len(part) for part in parts], 1)
     return [_score(one, part, problem, states[:1], base) for one, part in zip(group, split, strict=True)]
 
 
@@ -196,23 +196,23 @@ def _placed_at(rows: Tensor, candidate: Candidate, varied: Sequence[FreeParamete
     return torch.cat([rows, rows.new_tensor(values).expand(len(rows), -1)], 1)
 
 
-def _score(candidate: Candidate, beside: Tensor, problem: OutputErrorProblem, states: Tensor, base: Base) -> Score:
-    """The score of a candidate from what it would change beside the nuisance, (samples + n, columns)."""
+def _score(candidate: Candidate, orthogonal: Tensor, problem: OutputErrorProblem, states: Tensor, base: Base) -> Score:
+    """The score of a candidate from what it would change with the nuisance projected out, (samples + n, columns)."""
     residual, n_free = base.residual, len(candidate.hypothesis.common)
-    if not bool(beside.isfinite().all()):
+    if not bool(orthogonal.isfinite().all()):
         return replace(_unseen(candidate, n_free, len(residual)), failed="its prediction diverged")
-    if not bool(beside.any()):
+    if not bool(orthogonal.any()):
         return _unseen(candidate, n_free, len(residual))
-    basis, spread, _ = torch.linalg.svd(beside, full_matrices=False)
-    teeth = teeth_of(candidate, beside, base.beside, problem)
-    beside = beside if teeth is None else teeth.columns
-    coefficients = _coefficients(beside, residual) if teeth is None else teeth.strengths
-    explained = beside @ coefficients
-    kept = basis[:, spread > 1e-6 * spread[0]]
-    if candidate.presence:  # there is no less than nothing of it: the sign counts
-        kept = beside[:, :1] / beside[:, :1].norm()
-    smallest = VISIBLE * base.noise / float(beside[:, 0].norm().clamp(min=1e-300)) * _unit(candidate)
-    gain = 0.0 if _is_beyond(candidate, coefficients) else _gain(candidate, problem, states, beside, base)
+    basis, singular_values, _ = torch.linalg.svd(orthogonal, full_matrices=False)
+    teeth = teeth_of(candidate, orthogonal, base.orthogonal, problem)
+    orthogonal = orthogonal if teeth is None else teeth.columns
+    coefficients = _coefficients(orthogonal, residual) if teeth is None else teeth.strengths
+    explained = orthogonal @ coefficients
+    kept = basis[:, singular_values > 1e-6 * singular_values[0]]
+    if candidate.non_nested:  # there is no less than nothing of it: the sign counts
+        kept = orthogonal[:, :1] / orthogonal[:, :1].norm()
+    smallest = VISIBLE * base.noise / float(orthogonal[:, 0].norm().clamp(min=1e-300)) * _unit(candidate)
+    gain = 0.0 if _is_beyond(candidate, coefficients) else _gain(candidate, problem, states, orthogonal, base)
     direction = explained / explained.norm().clamp(min=1e-300)
     if teeth is not None:
         at = own_from(problem, base.outcome)
@@ -226,7 +226,7 @@ def _score(candidate: Candidate, beside: Tensor, problem: OutputErrorProblem, st
 
 def _is_beyond(candidate: Candidate, coefficients: Tensor) -> bool:
     """Whether every strength would have to be less than none, of an effect of which there is no less than that."""
-    if candidate.presence or candidate.phases or candidate.own_phases or candidate.own_tooth:
+    if candidate.non_nested or candidate.phases or candidate.own_phases or candidate.own_tooth:
         return False
     own = [candidate.hypothesis.common[place] for place in candidate.strengths]
     return all(p.lower >= p.start for p in own) and bool((coefficients <= 0).all())
@@ -236,24 +236,24 @@ def _coefficients(columns: Tensor, signal: Tensor) -> Tensor:
     return torch.linalg.lstsq(columns, signal.unsqueeze(1), rcond=1e-9, driver="gelsd").solution[:, 0]
 
 
-def _gain(candidate: Candidate, problem: OutputErrorProblem, states: Tensor, beside: Tensor, base: Base) -> float:
+def _gain(candidate: Candidate, problem: OutputErrorProblem, states: Tensor, orthogonal: Tensor, base: Base) -> float:
     """Share of the residual's energy that a candidate would take, linearised.
 
     An effect that is tried as a whole is far from linear: what another size of it would change counts with it, and
     another start of its states; otherwise it would be judged by a size that fits badly.
     """
-    project, residual = base.project, base.beside
+    project, residual = base.project, base.orthogonal
     free = residual.square().sum()
-    if candidate.presence:
+    if candidate.non_nested:
         own = [i for i, p in enumerate(candidate.hypothesis.common) if p.name.startswith(candidate.name + ".")]
         places = [*own, *range(problem.n_shared + 2, problem.n_shared + len(problem.local))]
         slopes = _slopes(problem, places, states, own_from(problem, base.outcome))
-        project = project.beside_own(slopes[..., len(own) :])
+        project = project.with_nuisance(slopes[..., len(own) :])
         sizes = torch.nn.functional.pad(slopes[..., : len(own)].flatten(0, 1), (0, 0, 0, len(project.slope)))
-        residual, beside = project(base.residual.unsqueeze(1))[:, 0], project(torch.cat([beside, sizes], 1))
+        residual, orthogonal = project(base.residual.unsqueeze(1))[:, 0], project(torch.cat([orthogonal, sizes], 1))
         # A difference far below the residual is the integrator's: no size that makes sense would lift it to that.
-        beside = beside[:, beside.norm(dim=0) > NEGLIGIBLE * residual.norm()]
-    left = residual - beside @ _coefficients(beside, residual)
+        orthogonal = orthogonal[:, orthogonal.norm(dim=0) > NEGLIGIBLE * residual.norm()]
+    left = residual - orthogonal @ _coefficients(orthogonal, residual)
     return float((free - left.square().sum()) / base.residual.square().sum())
 
 
@@ -275,7 +275,7 @@ def _unseen(candidate: Candidate, n_free: int, samples: int) -> Score:
 def _unit(candidate: Candidate) -> float:
     """One coordinate of the first strength in its own unit."""
     parameter = candidate.hypothesis.common[candidate.strengths[0]]
-    return abs(parameter.start) if candidate.presence else parameter.scale
+    return abs(parameter.start) if candidate.non_nested else parameter.scale
 
 
 def _probes(candidate: Candidate, n_free: int) -> tuple[Tensor, Tensor]:
@@ -283,7 +283,7 @@ def _probes(candidate: Candidate, n_free: int) -> tuple[Tensor, Tensor]:
     rows, steps = [], []
     for place in candidate.strengths:
         row = torch.zeros(n_free, dtype=torch.float64)
-        if candidate.presence:
+        if candidate.non_nested:
             return torch.zeros(1, n_free, dtype=torch.float64), torch.ones(1, dtype=torch.float64)
         row[place] = PROBE
         repeats = candidate.teeth if candidate.own_tooth and len(candidate.strengths) == 1 else 1
@@ -301,9 +301,9 @@ def _probes(candidate: Candidate, n_free: int) -> tuple[Tensor, Tensor]:
 def _start(candidate: Candidate, coefficients: Tensor, n_free: int) -> Tensor:
     """Coordinates of the linearised optimum: amplitudes and phases from their cosine and sine parts."""
     start = torch.zeros(n_free, dtype=torch.float64)
-    for place, coordinate in candidate.begun.items():
+    for place, coordinate in candidate.initial_values.items():
         start[place] = coordinate
-    if candidate.presence:
+    if candidate.non_nested:
         return start
     column = 0
     for place in candidate.strengths:
@@ -319,7 +319,7 @@ def _start(candidate: Candidate, coefficients: Tensor, n_free: int) -> Tensor:
 
 
 def collinearity(first: Score, second: Score) -> float:
-    """Largest cosine between what two candidates can do beside the nuisance; 1 means not to be told apart."""
+    """Largest cosine between what two candidates can do, less the nuisance; 1 means not to be told apart."""
     if not first.columns.shape[1] or not second.columns.shape[1]:
         return 0.0
     one, other = first.direction, second.columns

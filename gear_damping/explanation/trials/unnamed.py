@@ -65,7 +65,7 @@ class _Common:
         linear: Mass, damping coefficient and stiffness of the model on average.
         speed: Mean speed of the pinion; 0 of an oscillator.
         load: Mean torque on it.
-        force: Spread of a measured force.
+        force: Standard deviation of a measured force.
     """
 
     linear: tuple[float, float, float]
@@ -137,8 +137,8 @@ def _at_shafts(shaft: Shaft, place: Array, rate: Array, moved: object) -> dict[s
         "force at the pinion's order": moved(pinion),
         "force at the gear's order": moved(gear),
         "force at the mesh order": moved(teeth),
-        "force at sidebands of the pinion": moved(_beside(tooth, pinion[: 2 * SIDE_ORDERS])),
-        "force at sidebands of the gear": moved(_beside(tooth, gear[: 2 * SIDE_ORDERS])),
+        "force at sidebands of the pinion": moved(_orthogonal(tooth, pinion[: 2 * SIDE_ORDERS])),
+        "force at sidebands of the gear": moved(_orthogonal(tooth, gear[: 2 * SIDE_ORDERS])),
         "stiffness over the turn": moved([w * place for w in (*pinion[:4], *gear[:4])]),
         "force over mesh phase and motion": moved([w * x for w in tooth for x in (place, rate)]),
     }
@@ -173,7 +173,7 @@ def _remembered(place: Array, rate: float, linear: tuple[float, float, float]) -
     return found
 
 
-def _beside(carriers: Sequence[Array], waves: Sequence[Array]) -> list[Array]:
+def _orthogonal(carriers: Sequence[Array], waves: Sequence[Array]) -> list[Array]:
     """Every carrier modulated by every wave: sidebands of it."""
     return [carrier * wave for carrier in carriers for wave in waves]
 

@@ -51,8 +51,8 @@ class HalfPower(RecordEstimator):
         decay = np.exp((-nepers / seconds + 2j * pi * frequency) * free.time)
         basis = np.stack([decay.real, decay.imag], axis=1)
         model = basis @ np.linalg.lstsq(basis, free.values, rcond=None)[0]
-        spread = max(float(np.std(free.values - model)), free.noise)  # what is no such decay counts as noise
-        low, high = self._quantiles(spread * tones, tones @ model, frequencies, seconds)
+        deviation = max(float(np.std(free.values - model)), free.noise)  # what is no such decay counts as noise
+        low, high = self._quantiles(deviation * tones, tones @ model, frequencies, seconds)
         rates = np.array([nepers, nepers - (high - nepers), nepers - (low - nepers)]) / seconds  # the basic bootstrap
         value, lower, upper = (float(one) for one in ratio_percent(rates, frequency))
         size = float(np.abs(model).max())

@@ -10,8 +10,8 @@ import torch
 from torch import Tensor
 
 from gear_damping.identification.known_model.estimate import LEVEL, Estimates
-from gear_damping.simulation.families import DAMPING_RATIO
 from gear_damping.simulation.plan import SimulationPlan, run_plan
+from gear_damping.simulation.prior import DAMPING_RATIO
 
 GRID = 201  # damping ratios; a window of 30 samples at 30 dB tells them to a hundredth of the range at best
 CHUNK = 16  # windows that are compared at once
@@ -79,10 +79,10 @@ def window_bayes(
     Raises:
         ValueError: the family varies something else, of which a grid would need more dimensions.
     """
-    others = sorted(set(plan.family.spreads) - {DAMPING_RATIO})
-    if others or plan.family.start != "rest":
-        what = ", ".join(others) or f"the start ({plan.family.start})"
-        raise ValueError(f"family {plan.family.name} varies {what} too: choose one that varies the damping ratio alone")
+    others = sorted(set(plan.prior.distributions) - {DAMPING_RATIO})
+    if others or plan.prior.start != "rest":
+        what = ", ".join(others) or f"the start ({plan.prior.start})"
+        raise ValueError(f"family {plan.prior.name} varies {what} too: choose one that varies the damping ratio alone")
     ratios = torch.linspace(*ends, GRID, dtype=torch.float64)
     signals = torch.cat(
         [run_plan(replace(plan, n_runs=1, damping_ratio_percent=float(ratio))).response for ratio in ratios]

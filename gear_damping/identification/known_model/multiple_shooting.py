@@ -10,7 +10,7 @@ from typing import NamedTuple
 import torch
 from torch import Tensor
 
-from gear_damping.identification.known_model.family import START, KnownRuns
+from gear_damping.identification.known_model.known_runs import START, KnownRuns
 
 SEGMENT = 50  # samples: a few natural periods, over which the error of a start hardly grows
 STEPS = 6  # Gauss-Newton steps; from a smoothed motion two or three bring the segments together
@@ -40,7 +40,7 @@ def multiple_shooting(known: KnownRuns, share: Tensor, states: Tensor) -> Tensor
     Returns:
         Share of the range, and the start in its standard deviations, (runs, 3).
     """
-    per_deviation = known.spread / known.units
+    per_deviation = known.deviation / known.units
     nodes = states[:, ::SEGMENT].clone()
     start = torch.where(per_deviation > 0, nodes[:, 0] / per_deviation, torch.zeros_like(per_deviation))
     for _ in range(STEPS):

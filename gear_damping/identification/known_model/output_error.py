@@ -12,7 +12,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.identification.known_model.estimate import Estimates, within
-from gear_damping.identification.known_model.family import KnownRuns
+from gear_damping.identification.known_model.known_runs import KnownRuns
 from gear_damping.identification.known_model.multiple_shooting import multiple_shooting
 from gear_damping.identification.known_model.unscented_kalman import smoothed_states
 

@@ -11,9 +11,9 @@ import torch
 from torch import Tensor
 
 from gear_damping.identification.known_model.estimate import HALF, Estimates
-from gear_damping.identification.known_model.family import KnownRuns
+from gear_damping.identification.known_model.known_runs import KnownRuns
 
-SIZE = 3  # displacement and velocity in units of their spread at the start, and ln(damping ratio)
+SIZE = 3  # displacement and velocity in units of their deviation at the start, and ln(damping ratio)
 ALPHA, BETA, KAPPA = 0.5, 2.0, 0.0  # spread of the sigma points, what is known of a normal distribution, and the rest
 DRIFT = 1e-10  # variance that each sample adds: against rounding
 WIDEST = 2.0  # of the logarithm, beyond the range on either side: what a sigma point may ask of the simulator
@@ -57,7 +57,7 @@ def _passed(known: KnownRuns) -> _Passed:
     mean = torch.zeros(len(known), SIZE, dtype=torch.float64)
     mean[:, 2] = (low + high) / 2
     covariance = DRIFT * torch.eye(SIZE, dtype=torch.float64).repeat(len(known), 1, 1)
-    covariance[:, :2, :2] += torch.diag_embed((known.spread / known.units).square())
+    covariance[:, :2, :2] += torch.diag_embed((known.deviation / known.units).square())
     covariance[:, 2, 2] = (high - low) ** 2 / 12
     weights, steps = _weights(), []
     for sample in range(known.records.shape[1]):
@@ -74,9 +74,9 @@ def _passed(known: KnownRuns) -> _Passed:
 
 def _weights() -> tuple[Tensor, Tensor]:
     """Of the sigma points in the mean and in the covariance, (points,) each."""
-    spread = ALPHA**2 * (SIZE + KAPPA)
-    mean = torch.full((2 * SIZE + 1,), 1 / (2 * spread), dtype=torch.float64)
-    mean[0] = 1 - SIZE / spread
+    scale = ALPHA**2 * (SIZE + KAPPA)
+    mean = torch.full((2 * SIZE + 1,), 1 / (2 * scale), dtype=torch.float64)
+    mean[0] = 1 - SIZE / scale
     covariance = mean.clone()
     covariance[0] += 1 - ALPHA**2 + BETA
     return mean, covariance
@@ -103,10 +103,10 @@ def _corrected(known: KnownRuns, sample: int, mean: Tensor, covariance: Tensor) 
     gain = covariance[:, :, 0] / (covariance[:, 0, 0] + (known.noise / scale) ** 2)[:, None]
     left = torch.eye(SIZE, dtype=torch.float64).repeat(len(mean), 1, 1)
     left[:, :, 0] -= gain
-    spread = left @ covariance @ left.mT + (gain[:, :, None] * gain[:, None, :]) * (known.noise / scale)[
+    posterior = left @ covariance @ left.mT + (gain[:, :, None] * gain[:, None, :]) * (known.noise / scale)[
         :, None, None
     ] ** 2
-    return mean + gain * off[:, None], (spread + spread.mT) / 2
+    return mean + gain * off[:, None], (posterior + posterior.mT) / 2
 
 
 def _moved(known: KnownRuns, points: Tensor, sample: int) -> Tensor:

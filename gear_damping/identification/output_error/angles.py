@@ -6,7 +6,7 @@ from math import ceil, inf, pi
 import torch
 from torch import Tensor
 
-from gear_damping.identification.output_error.normal_equations import own_basis, without_own
+from gear_damping.identification.output_error.normal_equations import nuisance_basis, project_out
 from gear_damping.identification.output_error.problem import OutputErrorProblem
 from gear_damping.identification.output_error.records import SEPARATOR, FitRecord
 from gear_damping.identification.output_error.unknowns import is_of_model
@@ -107,6 +107,6 @@ def _costs(
         residual, sensitivity = prediction.residual[0], prediction.sensitivity[0]
         columns = torch.cat([sensitivity[..., own], sensitivity[..., problem.n_shared :]], -1)
         good = bool(columns.isfinite().all() & residual.isfinite().all())
-        left = without_own(residual.unsqueeze(-1), own_basis(columns, 0)).squeeze(-1) if good else residual
+        left = project_out(residual.unsqueeze(-1), nuisance_basis(columns, 0)).squeeze(-1) if good else residual
         rows.append(left.square().sum(-1).nan_to_num(torch.inf))
     return torch.stack(rows)

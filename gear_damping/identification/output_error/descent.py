@@ -20,14 +20,14 @@ from gear_damping.identification.output_error.step import Points, accelerated, m
 FIRST_DAMPING, LARGEST_DAMPING, SMALLEST_DAMPING = 1e-2, 1e10, 1e-12  # of Levenberg and Marquardt, relative to J'J
 SMALLEST_GAIN = 1e-7  # relative fall of the cost below which a start has converged
 CALM_STEPS = 3  # steps in a row that change the cost by little: one alone may be short
-FORETOLD = 0.5  # of the fall that the linear model promises: with less of it, it is made anew
+FORETOLD = 0.5  # of the fall that the linear model predicts: with less of it, it is made anew
 CARRIED = 4  # steps over which sensitivities are carried along at most
 AT_ONCE = 2e5  # values of the sensitivities: a linearisation of fewer costs hardly more than a trial
 LENT_FOR = 6  # linearisations that borrow at most,
 LENT_DAMPING = 1e3  # and the damping at which borrowing leads no further
 TRIALS = 3  # for each linearisation that a round may take
 SHORT_OF = 2  # linearisations in a row that foretell no success: then a start is given up
-LEAST_TRIALS = 3  # whatever the time: a model without one of its causes is nearly at rest by then
+LEAST_TRIALS = 3  # whatever the time: a model without one of its causes is nearly converged by then
 
 
 @dataclass(frozen=True)
@@ -46,8 +46,8 @@ class Lent:
 class Descent:
     """Starts on their way down over one horizon.
 
-    Every tensor has a row for each start: `points`, `now` (the linearisation at them), `cost`, `damping`, `calm` (steps
-    in a row that changed little), `carried` (steps since the sensitivities were worked out), `made` (linearisations),
+    Every tensor has a row for each start: `points`, `linearised` (at them), `cost`, `damping`, `calm` (steps in a row
+    that changed little), `carried` (steps since the sensitivities were worked out), `made` (linearisations),
     `short` (those in a row from which a start seemed to get neither below `reach` nor below the best start), `strayed`
     (whether a step has failed: where sensitivities are fresh, steps then follow the bend of the response).
     """
@@ -70,11 +70,11 @@ class Descent:
         self.smallest_gain = max(SMALLEST_GAIN, enough / noise_cost if noise_cost > 0 else 0.0)
         self.at_once = samples * len(problem.records) * (problem.n_shared + len(problem.local)) < AT_ONCE
         self.lent = None if self.at_once else lent
-        self.now = problem.linearise(points.shared, points.states, horizon, self._own())
+        self.linearised = problem.linearise(points.shared, points.states, horizon, self._own())
         if self.lent:
             columns = problem.response.cut(self.lent.columns.permute(2, 0, 1), horizon).permute(1, 2, 0)
-            self.now.sensitivity[..., self.lent.places] = columns
-        self.cost = self._cost(points, self.now.residual)
+            self.linearised.sensitivity[..., self.lent.places] = columns
+        self.cost = self._cost(points, self.linearised.residual)
         self.damping = torch.full_like(self.cost, FIRST_DAMPING)
         self.calm, self.made, self.carried, self.short = torch.zeros(4, len(self.cost), dtype=torch.long)
         self.looked_at = self.made - 1
@@ -120,11 +120,11 @@ class Descent:
 
     def _advance(self, left: Tensor) -> None:
         """One trial of some starts."""
-        points, now, fresh = self.points.pick(left), self.now.pick(left), self.carried[left] == 0
-        trial = newton_step(self.problem, points, now, self.damping[left])
+        points, linearised, fresh = self.points.pick(left), self.linearised.pick(left), self.carried[left] == 0
+        trial = newton_step(self.problem, points, linearised, self.damping[left])
         is_known = self.at_once or (not self.lent and bool(fresh.all()))  # the slope, by which the bend is seen
         if is_known and self.strayed[left].any():
-            trial = accelerated(self.problem, points, now, self.damping[left], trial, self.horizon)
+            trial = accelerated(self.problem, points, linearised, self.damping[left], trial, self.horizon)
         seen = self._looked_at(trial)
         old, cost = self.cost[left], self._cost(trial, seen.residual)
         if not self.at_once and not self.lent and (self.reach < inf or len(self.cost) > 1):
@@ -133,16 +133,16 @@ class Descent:
         flat = self._judge(left, gain, better, fresh)
         taken = left[better]
         self.points.put(taken, trial.pick(better))
-        self.now.residual[taken], self.cost[taken] = seen.residual[better], cost[better]
+        self.linearised.residual[taken], self.cost[taken] = seen.residual[better], cost[better]
         if self.at_once:
-            self.now.sensitivity[taken] = seen.sensitivity[better]
+            self.linearised.sensitivity[taken] = seen.sensitivity[better]
             self.made[left] += 1
             return
         changes = moves(self.problem, points, trial)
-        linear = now.along(changes)
-        foretold = old - self._cost(trial, now.residual - linear)
+        linear = linearised.along(changes)
+        foretold = old - self._cost(trial, linearised.residual - linear)
         self.carried[taken] += 1
-        self._carry(taken, (now.residual - seen.residual - linear)[better], changes[better])
+        self._carry(taken, (linearised.residual - seen.residual - linear)[better], changes[better])
         astray = torch.where(better, ~(gain >= FORETOLD * foretold) & ~flat, ~fresh)
         due = astray | (self.carried[left] >= CARRIED) | (self.calm[left] >= CALM_STEPS - 1)
         self._linearise(left[due & (self.carried[left] > 0) & ~self.converged[left]])
@@ -172,28 +172,30 @@ class Descent:
     def _look_ahead(self, fresh: Tensor) -> None:
         """Count in how many linearisations in a row the undamped step would not get below what is to be reached."""
         self.looked_at[fresh] = self.made[fresh]
-        points, now = self.points.pick(fresh), self.now.pick(fresh)
-        end = newton_step(self.problem, points, now, torch.full((len(fresh),), SMALLEST_DAMPING, dtype=torch.float64))
-        linear = now.along(moves(self.problem, points, end))
+        points, linearised = self.points.pick(fresh), self.linearised.pick(fresh)
+        end = newton_step(
+            self.problem, points, linearised, torch.full((len(fresh),), SMALLEST_DAMPING, dtype=torch.float64)
+        )
+        linear = linearised.along(moves(self.problem, points, end))
         best = torch.where(self.cost[fresh] > self.cost.min(), self.cost.min(), inf)  # of another start
-        falls_short = self._cost(end, now.residual - linear) > best.clamp(max=self.reach)
+        falls_short = self._cost(end, linearised.residual - linear) > best.clamp(max=self.reach)
         self.short[fresh] = torch.where(falls_short, self.short[fresh] + 1, 0)
 
     def _carry(self, places: Tensor, missed: Tensor, changes: Tensor) -> None:
         """Broyden's update of the sensitivities, for what the linear model missed of the response's change."""
-        weighed = changes * self.now.sensitivity[places].square().sum(2)
+        weighed = changes * self.linearised.sensitivity[places].square().sum(2)
         length = (weighed * changes).sum(-1, keepdim=True).clamp(min=1e-300)
-        self.now.sensitivity[places] += missed.unsqueeze(-1) * (weighed / length).unsqueeze(2)
+        self.linearised.sensitivity[places] += missed.unsqueeze(-1) * (weighed / length).unsqueeze(2)
 
     def _linearise(self, places: Tensor) -> None:
         """Sensitivities of some starts worked out at their points."""
         if not len(places):
             return
-        points, residual = self.points.pick(places), self.now.residual[places]
+        points, residual = self.points.pick(places), self.linearised.residual[places]
         found = self.problem.linearise(points.shared, points.states, self.horizon, self._own(), residual=residual)
         if self.lent:
-            found.sensitivity[..., self.lent.places] = self.now.sensitivity[places][..., self.lent.places]
-        self.now.sensitivity[places] = found.sensitivity
+            found.sensitivity[..., self.lent.places] = self.linearised.sensitivity[places][..., self.lent.places]
+        self.linearised.sensitivity[places] = found.sensitivity
         self.carried[places] = 0
         self.made[places] += 1
 

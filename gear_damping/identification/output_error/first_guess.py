@@ -26,12 +26,12 @@ def static_deflection(model: Model, given: Mapping[str, object], records: Sequen
 def first_offset(segments: Sequence[FitRecord], channel: Observed, static: float) -> tuple[float, float]:
     """A first guess of a channel's zero, and what counts as a step of order one."""
     values = torch.cat([_samples(record, channel.name) for record in segments])
-    spread = float(values.std().clamp(min=1e-300))
+    deviation = float(values.std().clamp(min=1e-300))
     if channel.derivatives:
-        return float(values.mean()), spread
+        return float(values.mean()), deviation
     decays = channel.name == "displacement" and not segments[0].inputs
     rest = values[-max(2, round(TAIL * len(values))) :] if decays else values
-    return float(rest.mean()) - static, spread
+    return float(rest.mean()) - static, deviation
 
 
 def first_motion(

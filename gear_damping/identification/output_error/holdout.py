@@ -9,8 +9,8 @@ from torch import Tensor
 
 from gear_damping.identification.output_error.angles import angle_bases, scanned, steady_horizon
 from gear_damping.identification.output_error.least_squares import Fitted, Rounds, fit
-from gear_damping.identification.output_error.normal_equations import own_basis, without_own
-from gear_damping.identification.output_error.problem import OutputErrorProblem, Prediction, growth
+from gear_damping.identification.output_error.normal_equations import nuisance_basis, project_out
+from gear_damping.identification.output_error.problem import OutputErrorProblem, Prediction, error_amplification
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.identification.output_error.segments import WHOLE, Segments, covered, in_segments, joined
 from gear_damping.physics.model import Model
@@ -19,7 +19,7 @@ from gear_damping.simulation.solver_settings import Solver
 FIRST_PERIODS = 1.25  # characteristic times at the start of a record that its initial state is first sought in
 FIRST_ITERATIONS, LAST_ITERATIONS = 20, 20  # over a part of the record, and over all of it
 FIRST_PART, MOST_OF_IT = 0.25, 0.75  # of a record; share of what is left in it that a wrong start would leave there
-GROWTH = 3.0  # of a stretch to the next: a speed found over one is that much surer over the next
+STRETCH_RATIO = 3.0  # of a stretch to the next: a speed found over one is that much surer over the next
 
 
 @dataclass(frozen=True)
@@ -29,13 +29,13 @@ class HeldOut:
     Args:
         predictions: The channels of each one after another, (channels * time,).
         residuals: The same of what is left, and without what another initial state would have changed.
-        growth: How much an error of the initial state grew at most, in the record where it grew most.
+        error_amplification: How much an error of the initial state grew at most, in the record where it grew most.
         own: What single records have of their own (offsets, angles), by name.
     """
 
     predictions: list[Tensor]
     residuals: list[Tensor]
-    growth: float
+    error_amplification: float
     own: dict[str, float]
 
 
@@ -63,7 +63,7 @@ def predict_holdout(
     records: Sequence[FitRecord],
     characteristic_s: float,
     segments: Segments = WHOLE,
-    begun: Mapping[str, float] | None = None,
+    initial: Mapping[str, float] | None = None,
 ) -> HeldOut:
     """Predict records.
 
@@ -72,12 +72,12 @@ def predict_holdout(
         records: The records.
         characteristic_s: Time scale of the motion in s: sets the first stretch that the initial state is sought in.
         segments: How they are cut; each segment has an initial state.
-        begun: Where parameters of single records begin, by name; angles that are not among them are tried all around.
+        initial: Where parameters of single records begin, by name; angles that are not among them are tried all around.
     """
-    pieces = in_segments(records, segments)
-    problem = OutputErrorProblem(frozen.model, frozen.given, list(frozen.own), pieces, frozen.solver, frozen.noise)
+    segmented = in_segments(records, segments)
+    problem = OutputErrorProblem(frozen.model, frozen.given, list(frozen.own), segmented, frozen.solver, frozen.noise)
     starts = torch.zeros(1, problem.n_shared, dtype=torch.float64)
-    known = dict(begun or {})
+    known = dict(initial or {})
     for place, parameter in enumerate(problem.free):
         starts[0, place] = parameter.coordinate(known[parameter.name]) if parameter.name in known else 0.0
     unknown = [base for base in angle_bases(problem) if not any(name.startswith(base) for name in known)]
@@ -88,15 +88,17 @@ def predict_holdout(
         starts[0, place] = problem.free[place].coordinate(angle)
     iterations = (*(FIRST_ITERATIONS for _ in horizons[1:]), LAST_ITERATIONS)
     first = fit(problem, starts, Rounds(iterations, horizons), states.unsqueeze(0))
-    found = _begun_anew(problem, first, iterations[-1])
+    found = _restarted(problem, first, iterations[-1])
     prediction, weights = found.prediction, problem.response.weights.clamp(min=1e-300)
     left = prediction.residual[0] / weights
-    beside = _beside_own(prediction, problem.n_shared) / weights
+    projected = _projected_out(prediction, problem.n_shared) / weights
     counted = (problem.response.weights > 0).double()
     kept, channels = covered(records, segments), len(problem.response.channels)
-    whole = [joined(series * counted, kept, segments, channels) for series in (problem.response.values - left, beside)]
+    whole = [
+        joined(series * counted, kept, segments, channels) for series in (problem.response.values - left, projected)
+    ]
     values = {name: float(value) for name, value in problem.unknowns.parameters(found.shared).items()}
-    return HeldOut(*whole, growth(prediction, problem.n_shared), values)
+    return HeldOut(*whole, error_amplification(prediction, problem.n_shared), values)
 
 
 def _horizons(problem: OutputErrorProblem, characteristic_s: float, unknown: Sequence[str]) -> list[float | None]:
@@ -109,14 +111,14 @@ def _horizons(problem: OutputErrorProblem, characteristic_s: float, unknown: Seq
         return [FIRST_PERIODS * characteristic_s, None]
     steady = steady_horizon(problem) if unknown else inf
     longest, found = max(len(record.response) / record.sampling_rate for record in problem.records), []
-    while steady < longest / GROWTH:
+    while steady < longest / STRETCH_RATIO:
         found.append(steady)
-        steady *= GROWTH
+        steady *= STRETCH_RATIO
     return [*found, None]
 
 
-def _begun_anew(problem: OutputErrorProblem, found: Fitted, iterations: int) -> Fitted:
-    """The fit with records that seem to have begun wrong begun from rest, or half way to it, where that is better.
+def _restarted(problem: OutputErrorProblem, found: Fitted, iterations: int) -> Fitted:
+    """The fit with records that seem to start wrong restarted from rest, or half way to it, where that is better.
 
     What is left of such a record lies at its beginning. A displacement that was integrated twice from an acceleration
     may be so far off that no small step leads back.
@@ -133,12 +135,12 @@ def _begun_anew(problem: OutputErrorProblem, found: Fitted, iterations: int) -> 
     return best
 
 
-def _beside_own(found: Prediction, n_shared: int) -> Tensor:
-    """Weighted residuals (records, samples) of one start beside what the initial states could change."""
+def _projected_out(found: Prediction, n_shared: int) -> Tensor:
+    """Weighted residuals (records, samples) of one start, what the initial states could change projected out."""
     residual, sensitivity = found.residual[0], found.sensitivity[0]
     if not bool(sensitivity.isfinite().all() & residual.isfinite().all()):
         return residual
-    return without_own(residual.unsqueeze(-1), own_basis(sensitivity, n_shared)).squeeze(-1)
+    return project_out(residual.unsqueeze(-1), nuisance_basis(sensitivity, n_shared)).squeeze(-1)
 
 
 def rmse(measured: Sequence[Tensor], predicted: Sequence[Tensor]) -> float:

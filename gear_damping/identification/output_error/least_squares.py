@@ -93,7 +93,7 @@ def fit(
     return Fitted(
         chosen.shared[0],
         chosen.states[0],
-        descent.now.pick(best),
+        descent.linearised.pick(best),
         float(descent.cost[best]),
         bool(descent.converged[best]),
     )

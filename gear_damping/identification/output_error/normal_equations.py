@@ -68,7 +68,7 @@ def normal_equations(prediction: Prediction, n_shared: int) -> NormalEquations:
     )
 
 
-def own_basis(sensitivity: Tensor, n_shared: int) -> Tensor:
+def nuisance_basis(sensitivity: Tensor, n_shared: int) -> Tensor:
     """Orthonormal columns that span what every record has of its own, (records, time, l); zero where it is less.
 
     Args:
@@ -81,8 +81,8 @@ def own_basis(sensitivity: Tensor, n_shared: int) -> Tensor:
     return basis * (sizes > INDEPENDENT * sizes.amax(-1, keepdim=True)).unsqueeze(1)
 
 
-def without_own(signal: Tensor, basis: Tensor) -> Tensor:
-    """`signal` (records, time, n) without what the records' own columns could do."""
+def project_out(signal: Tensor, basis: Tensor) -> Tensor:
+    """`signal` (records, time, n) in the orthogonal complement of what the records' own columns could do."""
     return signal - basis @ (basis.transpose(-1, -2) @ signal)
 
 

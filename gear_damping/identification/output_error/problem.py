@@ -27,7 +27,7 @@ from gear_damping.simulation.series import continued
 from gear_damping.simulation.simulate import natural_units, simulate
 from gear_damping.simulation.solver_settings import Solver
 
-STRETCHES = 8  # of a record, over which the growth of an error is followed
+STRETCHES = 8  # of a record, over which the amplification of an error is followed
 PROBED = 64  # samples from which the scale of an initial state of an effect is found
 
 
@@ -106,9 +106,9 @@ class OutputErrorProblem:
         found = []
         for first in first_segments(self.records):
             places = segments_of(self.records, first.record)
-            pieces = [self.records[i] for i in places]
+            its_records = [self.records[i] for i in places]
             for channel in (c for c in first.channels if c.offset):
-                start, scale = first_offset(pieces, channel, float(self.static[places[0]]))
+                start, scale = first_offset(its_records, channel, float(self.static[places[0]]))
                 found.append(FreeParameter(_offset_of(first, channel.name), start, scale))
             for channel in (c for c in first.channels if c.slow):
                 size = channel.slow.deviation
@@ -172,10 +172,10 @@ class OutputErrorProblem:
         return found
 
     def _scales(self) -> Tensor:
-        """Scale of every initial state, (records, local); of an effect's, what moves the response by its spread."""
+        """Scale of every initial state, (records, local); of an effect's, what moves the response by its deviation."""
         own = torch.stack([self._first_motion(record, i)[1] for i, record in enumerate(self.records)])
-        spread = torch.stack([record.response.std().clamp(min=1e-300) for record in self.records])
-        modes = spread.unsqueeze(1).expand(-1, len(self.response.modes))
+        deviation = torch.stack([record.response.std().clamp(min=1e-300) for record in self.records])
+        modes = deviation.unsqueeze(1).expand(-1, len(self.response.modes))
         if not self.extra:
             return torch.cat([own, modes], dim=1)
         units = natural_units(self.model, self.model.prepare(self.model.values(1, **self.given)))
@@ -185,7 +185,7 @@ class OutputErrorProblem:
         states[1:, :, 2 : 2 + len(self.extra)] += torch.eye(len(self.extra), dtype=states.dtype).unsqueeze(1)
         shared = torch.zeros(len(states), self.n_shared, dtype=torch.float64)
         found = self.predict(shared, states, PROBED / max(r.sampling_rate for r in self.records))
-        moved = (found[1:] - found[:1]).square().mean(-1).sqrt().T / spread.unsqueeze(1)
+        moved = (found[1:] - found[:1]).square().mean(-1).sqrt().T / deviation.unsqueeze(1)
         factor = torch.where(moved.isfinite() & (moved > 0), 1 / moved, torch.ones_like(moved))
         return torch.cat([own, steps * factor, modes], dim=1)
 
@@ -299,8 +299,8 @@ class OutputErrorProblem:
         if residual is None:
             steps = torch.cat([torch.zeros_like(steps[:1]), steps])
         at = (shared.unsqueeze(1) + steps[:, : self.n_shared]).flatten(0, 1)
-        begun = (states.unsqueeze(1) + steps[:, None, self.n_shared :]).flatten(0, 1)
-        left = self.residuals(at, begun, horizon).unflatten(0, (starts, -1))
+        initial = (states.unsqueeze(1) + steps[:, None, self.n_shared :]).flatten(0, 1)
+        left = self.residuals(at, initial, horizon).unflatten(0, (starts, -1))
         if residual is None:
             residual, left = left[:, 0], left[:, 1:]
         slopes = (residual.unsqueeze(1) - left) / DIFFERENCE
@@ -328,7 +328,7 @@ def prepare_predictions(
     prepare_kernels([Planned(model, model.values(1, **g), names) for model, g in known for names in driven], solver)
 
 
-def growth(prediction: Prediction, n_shared: int) -> float:
+def error_amplification(prediction: Prediction, n_shared: int) -> float:
     """How much an error of the initial state grows from the beginning of a record, in the record where it grows most.
 
     The largest of several stretches counts, against the first one. Where it exceeds 1, the record can be predicted

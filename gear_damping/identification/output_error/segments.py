@@ -46,18 +46,18 @@ class Segments:
 WHOLE = Segments()
 
 
-def part(record: FitRecord, piece: slice, suffix: str = "") -> FitRecord:
+def part(record: FitRecord, samples: slice, suffix: str = "") -> FitRecord:
     """The samples of a slice of a record, as a record of its own or, without a suffix, a segment of it."""
-    first = piece.start or 0
+    first = samples.start or 0
     stamps, begins = record.stamps, record.begins + first / record.sampling_rate
     if stamps is not None:
-        stamps = stamps[piece] - stamps[first]
+        stamps = stamps[samples] - stamps[first]
         begins = record.begins + float(record.stamps[first]) / record.sampling_rate
     cut = replace(
         record,
-        response=record.response[piece],
-        inputs={name: series[piece] for name, series in record.inputs.items()},
-        others=tuple((channel, values[piece]) for channel, values in record.others),
+        response=record.response[samples],
+        inputs={name: series[samples] for name, series in record.inputs.items()},
+        others=tuple((channel, values[samples]) for channel, values in record.others),
         stamps=stamps,
         begins=begins,
     )

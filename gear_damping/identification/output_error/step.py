@@ -40,21 +40,26 @@ def moves(problem: OutputErrorProblem, old: Points, new: Points) -> Tensor:
     return torch.cat([shared, new.states - old.states], -1)
 
 
-def newton_step(problem: OutputErrorProblem, points: Points, now: Prediction, damping: Tensor) -> Points:
+def newton_step(problem: OutputErrorProblem, points: Points, linearised: Prediction, damping: Tensor) -> Points:
     """The damped step within the bounds; a parameter that is pulled beyond its bound stays there.
 
     One that would go further than the longest step goes just so far, and the others do the best they can beside it:
     cut by themselves, steps leave a narrow valley (the coefficient of a power law, beside its exponent).
     """
     expected, slope = problem.expectation(points.shared)
-    equations = normal_equations(now, problem.n_shared)
+    equations = normal_equations(linearised, problem.n_shared)
     equations = replace(equations, pull=equations.pull + slope * expected)
     free = problem.unknowns.at_bound(points.shared) * equations.pull <= 0
     return _stepped(problem, points, equations, damping, free)
 
 
 def accelerated(
-    problem: OutputErrorProblem, points: Points, now: Prediction, damping: Tensor, first: Points, horizon: float | None
+    problem: OutputErrorProblem,
+    points: Points,
+    linearised: Prediction,
+    damping: Tensor,
+    first: Points,
+    horizon: float | None,
 ) -> Points:
     """The step to `first` with the correction of second order, for how the response bends along it.
 
@@ -63,11 +68,11 @@ def accelerated(
     """
     shared, states = first.shared - points.shared, first.states - points.states
     ahead = Points(points.shared + AHEAD * shared, points.states + AHEAD * states)
-    straight = now.residual - now.along(moves(problem, points, ahead))
+    straight = linearised.residual - linearised.along(moves(problem, points, ahead))
     bend = (problem.residuals(ahead.shared, ahead.states, horizon) - straight) / AHEAD**2
-    equations = normal_equations(replace(now, residual=bend.nan_to_num(0, 0, 0)), problem.n_shared)
+    equations = normal_equations(replace(linearised, residual=bend.nan_to_num(0, 0, 0)), problem.n_shared)
     second = _stepped(problem, points, equations, damping, shared != 0)
-    lengths = now.sensitivity.square().sum(2)
+    lengths = linearised.sensitivity.square().sum(2)
     step, turn = ((moves(problem, points, to).square() * lengths).sum((1, 2)) for to in (first, second))
     small = 4 * turn <= MOST_BENT**2 * step
     shared = problem.unknowns.within(first.shared + second.shared - points.shared)

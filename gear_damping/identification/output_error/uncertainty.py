@@ -10,7 +10,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.identification.output_error.least_squares import Fitted
-from gear_damping.identification.output_error.normal_equations import own_basis, without_own
+from gear_damping.identification.output_error.normal_equations import nuisance_basis, project_out
 from gear_damping.identification.output_error.problem import OutputErrorProblem
 
 QUANTILE = 1.959964  # of a normal variable: 95 % lie within as many standard deviations
@@ -28,8 +28,8 @@ def covariance(problem: OutputErrorProblem, fitted: Fitted, correlated_s: float)
         correlated_s: Seconds over which residuals may be correlated, some natural periods.
     """
     residual = fitted.prediction.residual[0]
-    beside, inverse = _information(problem, fitted)
-    scores = beside * residual.unsqueeze(-1)
+    orthogonal, inverse = _information(problem, fitted)
+    scores = orthogonal * residual.unsqueeze(-1)
     lags = [round(correlated_s * record.sampling_rate) for record in problem.records]
     meat = sum(long_run(one, lag) for one, lag in zip(scores, lags, strict=True))
     parameters = problem.n_shared + len(problem.records) * len(problem.local)
@@ -49,12 +49,12 @@ def noise_covariance(problem: OutputErrorProblem, fitted: Fitted) -> Tensor:
 
 
 def _information(problem: OutputErrorProblem, fitted: Fitted) -> tuple[Tensor, Tensor]:
-    """Sensitivities beside the records' own (records, time, n_shared), and the inverse of their products."""
+    """Sensitivities, the records' own projected out, (records, time, n_shared), and the inverse of their products."""
     sensitivity = fitted.prediction.sensitivity[0]
-    beside = without_own(sensitivity[..., : problem.n_shared], own_basis(sensitivity, problem.n_shared))
-    jacobian = beside.flatten(0, 1)
+    orthogonal = project_out(sensitivity[..., : problem.n_shared], nuisance_basis(sensitivity, problem.n_shared))
+    jacobian = orthogonal.flatten(0, 1)
     expected = problem.expectation(fitted.shared)[1].square()
-    return beside, _inverse(jacobian.T @ jacobian + torch.diag(expected))
+    return orthogonal, _inverse(jacobian.T @ jacobian + torch.diag(expected))
 
 
 def _inverse(information: Tensor) -> Tensor:
@@ -77,12 +77,14 @@ def long_run(scores: Tensor, lags: int) -> Tensor:
     return total
 
 
-def interval(function: Callable[[Tensor], Tensor], shared: Tensor, spread: Tensor) -> tuple[float, tuple[float, float]]:
+def interval(
+    function: Callable[[Tensor], Tensor], shared: Tensor, covariances: Tensor
+) -> tuple[float, tuple[float, float]]:
     """Value and 95 % interval of a quantity that depends on the shared coordinates (delta method)."""
     with torch.enable_grad():
         point = shared.clone().requires_grad_()
         value = function(point)
         (slope,) = torch.autograd.grad(value, point)
-    half = QUANTILE * float((slope @ spread @ slope).clamp(min=0).sqrt())
+    half = QUANTILE * float((slope @ covariances @ slope).clamp(min=0).sqrt())
     middle = float(value.detach())
     return middle, (middle - half, middle + half)

@@ -8,11 +8,11 @@ from torch import Tensor
 
 from gear_damping.identification.test_plan.information import inverse
 from gear_damping.identification.test_plan.slopes import Recorder, slopes
-from gear_damping.identification.test_plan.starts import Begun
+from gear_damping.identification.test_plan.starts import InitialState
 from gear_damping.simulation.solver_settings import Solver
 
 MOST_STEPS = 40  # of a fit; one that is not at rest by then is lost
-AT_REST = 1e-6  # squared length of a step in standard errors: a thousandth of one
+CONVERGED_BELOW = 1e-6  # squared length of a step in standard errors: a thousandth of one
 SHORTER = 0.3  # share of a step that is tried after one that led uphill
 
 
@@ -50,7 +50,7 @@ class TestFit:
     """
 
     recorder: Recorder
-    start: Begun
+    start: InitialState
     scales: Mapping[str, Tensor]
     solver: Solver
     noise: Tensor
@@ -66,13 +66,15 @@ class TestFit:
         """Whitened records and slopes at (fits, unknowns): (fits, channels, time), (fits, unknowns, channels, time)."""
         count = len(at)
         values = {name: value.expand(*value.shape[:-1], count).clone() for name, value in self.start.values.items()}
-        departures = {name: value.expand(count).clone() for name, value in self.start.departures.items()}
+        initial_perturbations = {
+            name: value.expand(count).clone() for name, value in self.start.initial_perturbations.items()
+        }
         scales = {}
         for place, (name, scale) in enumerate(self.scales.items()):
-            where = departures if name in departures else values
+            where = initial_perturbations if name in initial_perturbations else values
             where[name] = shared.moved(name, where[name], scale, at[:, place])
             scales[name] = where[name] if name == shared.coefficient else scale.expand(count)
-        begin = Begun(values, departures, torch.ones(count, dtype=torch.bool))
+        begin = InitialState(values, initial_perturbations, torch.ones(count, dtype=torch.bool))
         both = slopes(self.recorder, begin, scales, self.solver)
         records, found = both.records, both.by
         level = self.noise[:, None, None]
@@ -100,26 +102,26 @@ def fitted(shared: SharedFit, tests: list[TestFit], count: int, generator: torch
     """Draw data and fit them.
 
     Returns:
-        The shared coordinates, (count, shared), and which fits came to rest, (count,).
+        The shared coordinates, (count, shared), and which fits converged, (count,).
     """
     data = _drawn(shared, tests, count, generator)
     best = torch.zeros(count, len(shared.names) + sum(test.own for test in tests), dtype=torch.float64)
     cost, step = torch.full((count,), torch.inf, dtype=torch.float64), torch.zeros_like(best)
-    at_rest, tried = torch.zeros(count, dtype=torch.bool), best.clone()
+    converged, tried = torch.zeros(count, dtype=torch.bool), best.clone()
     for _ in range(MOST_STEPS):
-        active = (~at_rest).nonzero()[:, 0]
+        active = (~converged).nonzero()[:, 0]
         if not len(active):
             break
         found, fresh, length = _system(shared, tests, data.pick(active), tried[active])
         better = found < cost[active]
         good = active[better]
         best[good], cost[good], step[good] = tried[good], found[better], fresh[better]
-        at_rest[good] = length[better] < AT_REST
+        converged[good] = length[better] < CONVERGED_BELOW
         bad = active[~better]
         step[bad] = SHORTER * step[bad]
-        at_rest[bad] |= (step[bad].abs().amax(-1) < AT_REST) & cost[bad].isfinite()
+        converged[bad] |= (step[bad].abs().amax(-1) < CONVERGED_BELOW) & cost[bad].isfinite()
         tried = best + step
-    return best[:, : len(shared.names)], at_rest
+    return best[:, : len(shared.names)], converged
 
 
 def _drawn(shared: SharedFit, tests: list[TestFit], count: int, generator: torch.Generator) -> _Data:

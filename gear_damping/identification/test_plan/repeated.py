@@ -38,7 +38,7 @@ class Repeated:
 
     Args:
         count: Tests, or sets of them, that were simulated and fitted.
-        lost: Of these, fits that did not come to rest: they count as not covered, and for nothing else.
+        lost: Of these, fits that did not converge: they count as not covered, and for nothing else.
         damping_ratio: In % of critical.
         exponent: Of the law, where it was unknown.
     """
@@ -82,8 +82,8 @@ def repeat(
         found.append(fitted(common, tests, len(part), generator))
         if progress:
             progress(int(part[-1]) + 1, count)
-    shared, rests = (torch.cat([one[place] for one in found]) for place in (0, 1))
-    return _shown(surveyed, common, shared[rests], promised, count)
+    shared, converged = (torch.cat([one[place] for one in found]) for place in (0, 1))
+    return _shown(surveyed, common, shared[converged], promised, count)
 
 
 def _shared(surveyed: Survey, joint: bool) -> SharedFit:

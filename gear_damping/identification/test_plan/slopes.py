@@ -8,7 +8,7 @@ from torch import Tensor
 
 from gear_damping.identification.test_plan.channels import needs_acceleration, seen
 from gear_damping.identification.test_plan.rig import Rig
-from gear_damping.identification.test_plan.starts import INITIAL, Begun
+from gear_damping.identification.test_plan.starts import INITIAL, InitialState
 from gear_damping.simulation.accuracy import substeps_for
 from gear_damping.simulation.driven import Driven
 from gear_damping.simulation.runs import FINE
@@ -46,21 +46,23 @@ class Recorder:
             steps = min(steps, own.most_substeps)
         return replace(own, substeps=steps, acceleration=needs_acceleration(self.channels), progress=None)
 
-    def records(self, values: Mapping[str, Tensor], departures: Mapping[str, Tensor], solver: Solver) -> Tensor:
+    def records(
+        self, values: Mapping[str, Tensor], initial_perturbations: Mapping[str, Tensor], solver: Solver
+    ) -> Tensor:
         """What the sensors see without noise, (channels, batch, time); nan where a run diverged."""
         how = {"sampling_rate": self.rate, "n_samples": self.samples, "solver": solver}
-        runs = simulate(self.rig.model, values, inputs=Driven(departures=departures), **how)
+        runs = simulate(self.rig.model, values, inputs=Driven(initial_perturbations=initial_perturbations), **how)
         found = seen(runs, self.channels)
         return torch.where((runs.status == FINE)[None, :, None], found, torch.nan)
 
 
-def scales_of(recorder: Recorder, start: Begun, names: Sequence[str]) -> dict[str, Tensor]:
+def scales_of(recorder: Recorder, start: InitialState, names: Sequence[str]) -> dict[str, Tensor]:
     """What counts as a step of order one, (batch,): a value, a natural unit of a state, 1 for what is 0."""
     prepared = recorder.rig.model.prepare(start.values)
     units = natural_units(recorder.rig.model, prepared)
     found = {}
     for name in names:
-        if name in INITIAL or name in start.departures:
+        if name in INITIAL or name in start.initial_perturbations:
             found[name] = units[INITIAL.get(name, name)]
         else:
             value = start.values[name]
@@ -84,7 +86,7 @@ class Slopes:
     straight: Tensor
 
 
-def slopes(recorder: Recorder, start: Begun, scales: Mapping[str, Tensor], solver: Solver) -> Slopes:
+def slopes(recorder: Recorder, start: InitialState, scales: Mapping[str, Tensor], solver: Solver) -> Slopes:
     """Simulate members and how their records change.
 
     Args:
@@ -95,12 +97,12 @@ def slopes(recorder: Recorder, start: Begun, scales: Mapping[str, Tensor], solve
     """
     batch, count = start.fine.shape[0], 2 * len(scales) + 1
     values = {name: value.repeat(*[1] * (value.ndim - 1), count) for name, value in start.values.items()}
-    departures = {name: value.repeat(count) for name, value in start.departures.items()}
+    initial_perturbations = {name: value.repeat(count) for name, value in start.initial_perturbations.items()}
     for place, (name, scale) in enumerate(scales.items()):
         for side, sign in ((0, 1), (1, -1)):
-            lane = slice((1 + 2 * place + side) * batch, (2 + 2 * place + side) * batch)
-            (departures if name in departures else values)[name][..., lane] += sign * STEP * scale
-    found = recorder.records(values, departures, solver).unflatten(1, (count, batch))
+            part = slice((1 + 2 * place + side) * batch, (2 + 2 * place + side) * batch)
+            (initial_perturbations if name in initial_perturbations else values)[name][..., part] += sign * STEP * scale
+    found = recorder.records(values, initial_perturbations, solver).unflatten(1, (count, batch))
     above, below, middle = found[:, 1::2], found[:, 2::2], found[:, :1]
     change, bend = (above - below).norm(dim=-1), (above + below - 2 * middle).norm(dim=-1)
     straight = (bend <= BENT * torch.maximum(change, LEAST_CHANGE * middle.norm(dim=-1))).all(1).all(0)

@@ -9,7 +9,7 @@ from torch import Tensor
 
 from gear_damping.identification.test_plan.rig import Rig
 from gear_damping.physics.systems.traits import Trait
-from gear_damping.simulation.families import extra_states
+from gear_damping.simulation.prior import extra_states
 from gear_damping.simulation.runs import FINE, effect_state_units
 from gear_damping.simulation.simulate import natural_units, simulate
 
@@ -22,17 +22,17 @@ INITIAL = {"initial_displacement": "displacement", "initial_velocity": "velocity
 
 
 @dataclass(frozen=True)
-class Begun:
+class InitialState:
     """Members at the beginning of their records.
 
     Args:
         values: Parameters with the initial displacement and velocity, (batch,) or (n, batch).
-        departures: How far states of effects depart from where their effect puts them, (batch,) in SI.
+        initial_perturbations: Of states of effects, from where their effect puts them, (batch,) in SI.
         fine: Which members did not diverge before, (batch,).
     """
 
     values: dict[str, Tensor]
-    departures: dict[str, Tensor]
+    initial_perturbations: dict[str, Tensor]
     fine: Tensor
 
 
@@ -48,23 +48,26 @@ def settling_time(rig: Rig, wanted: float | None) -> float:
     return min(max(faded, LEAST_PERIODS * 2 * pi / frequency), LONGEST)
 
 
-def begun(rig: Rig, values: Mapping[str, Tensor], seconds: float, rate: float) -> Begun:
+def initial_state(rig: Rig, values: Mapping[str, Tensor], seconds: float, rate: float) -> InitialState:
     """Members after they have run for so many seconds, from their static deflection where no start was given."""
     batch = values["initial_displacement"].shape[0]
     zero = {name: torch.zeros(batch, dtype=torch.float64) for name in effect_state_units(rig.model)}
     if seconds <= 0:
-        return Begun(dict(values), zero, torch.ones(batch, dtype=torch.bool))
+        return InitialState(dict(values), zero, torch.ones(batch, dtype=torch.bool))
     count = ceil(seconds * rate) + 1
-    pieces = torch.arange(batch).split(max(2, AT_ONCE // count))
-    found = [_run(rig, {n: v[..., piece] for n, v in values.items()}, count, rate) for piece in pieces]
-    return Begun(
+    chunks = torch.arange(batch).split(max(2, AT_ONCE // count))
+    found = [_run(rig, {n: v[..., chunk] for n, v in values.items()}, count, rate) for chunk in chunks]
+    return InitialState(
         {name: torch.cat([one.values[name] for one in found], -1) for name in found[0].values},
-        {name: torch.cat([one.departures[name] for one in found]) for name in found[0].departures},
+        {
+            name: torch.cat([one.initial_perturbations[name] for one in found])
+            for name in found[0].initial_perturbations
+        },
         torch.cat([one.fine for one in found]),
     )
 
 
-def _run(rig: Rig, values: dict[str, Tensor], count: int, rate: float) -> Begun:
+def _run(rig: Rig, values: dict[str, Tensor], count: int, rate: float) -> InitialState:
     model, still = rig.model, {name: torch.zeros_like(values[name]) for name in STEADY if name in values}
     before = values | still
     given = model.given | dict(rig.given)
@@ -80,5 +83,5 @@ def _run(rig: Rig, values: dict[str, Tensor], count: int, rate: float) -> Begun:
     after |= {name: last[state] for name, state in INITIAL.items()}
     prepared = model.prepare(after)
     own, units = extra_states(model, prepared), natural_units(model, prepared)
-    departures = {name: last[name] - own[name] * units[name] for name in own}
-    return Begun(after, departures, runs.status == FINE)
+    initial_perturbations = {name: last[name] - own[name] * units[name] for name in own}
+    return InitialState(after, initial_perturbations, runs.status == FINE)

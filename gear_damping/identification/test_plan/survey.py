@@ -10,7 +10,7 @@ from gear_damping.identification.test_plan.asked import PlannedSensor, PlannedTe
 from gear_damping.identification.test_plan.information import information, shared_information
 from gear_damping.identification.test_plan.rig import Rig, members_at, settings_of
 from gear_damping.identification.test_plan.slopes import STEP, Recorder, scales_of, slopes
-from gear_damping.identification.test_plan.starts import AT_ONCE, INITIAL, Begun, begun, settling_time
+from gear_damping.identification.test_plan.starts import AT_ONCE, INITIAL, InitialState, initial_state, settling_time
 from gear_damping.simulation.runs import effect_state_units
 from gear_damping.simulation.solver_settings import Progress
 
@@ -65,7 +65,7 @@ class Survey:
     own_prior: Tensor
     shared_prior: Tensor
     gradient: Tensor
-    start: Begun
+    start: InitialState
     fine: Tensor
 
     @property
@@ -94,19 +94,19 @@ def survey(
     """Simulate every test with its slopes; those of a setting that differ in length share a simulation."""
     settings, names = settings_of(tests.speeds, tests.torques, tests.amplitudes), names_of(rig, unknown)
     lengths = tuple(sorted(round(duration * tests.sampling_rate) for duration in tests.durations))
-    start = begun(rig, members_at(rig, settings), settling_time(rig, tests.settle), tests.sampling_rate)
+    start = initial_state(rig, members_at(rig, settings), settling_time(rig, tests.settle), tests.sampling_rate)
     recorder = Recorder(rig, tests.sampling_rate, lengths[-1], tuple(sensor.sees for sensor in sensors))
     scales, solver = scales_of(recorder, start, names.all), recorder.solver(start.values)
-    pieces = torch.arange(len(settings)).split(max(1, AT_ONCE // (lengths[-1] * (2 * len(scales) + 1))))
+    chunks = torch.arange(len(settings)).split(max(1, AT_ONCE // (lengths[-1] * (2 * len(scales) + 1))))
     parts, levels, regular = [], [], []
     begins = [names.all.index(name) for name in INITIAL]
-    for number, piece in enumerate(pieces):
-        found = slopes(recorder, picked(start, piece), {n: s[piece] for n, s in scales.items()}, solver)
+    for number, chunk in enumerate(chunks):
+        found = slopes(recorder, picked(start, chunk), {n: s[chunk] for n, s in scales.items()}, solver)
         levels.append(noise_of(sensors, found.records[..., : lengths[0]]))
         regular.append(is_regular(found.by[:, :, begins], lengths) & found.straight[:, None])
         parts.append(information(_with_offsets(found.by, sensors, levels[-1]), levels[-1], list(lengths)))
         if progress:
-            progress(number + 1, len(pieces))
+            progress(number + 1, len(chunks))
     whole, noise = torch.cat(parts, 1), torch.cat(levels, 1)
     fine = start.fine[:, None] & whole.flatten(3).isfinite().all(-1).all(0) & torch.cat(regular)
     whole = torch.where(fine[None, ..., None, None], whole, 0.0)
@@ -127,11 +127,11 @@ def names_of(rig: Rig, unknown: Sequence[Unknown]) -> Names:
     return Names(tuple(shared), tuple(own), {one.name: one for one in unknown})
 
 
-def picked(start: Begun, members: Tensor) -> Begun:
+def picked(start: InitialState, members: Tensor) -> InitialState:
     """Some of the members."""
     values = {name: value[..., members] for name, value in start.values.items()}
-    departures = {name: value[members] for name, value in start.departures.items()}
-    return replace(start, values=values, departures=departures, fine=start.fine[members])
+    initial_perturbations = {name: value[members] for name, value in start.initial_perturbations.items()}
+    return replace(start, values=values, initial_perturbations=initial_perturbations, fine=start.fine[members])
 
 
 def noise_of(sensors: Sequence[PlannedSensor], records: Tensor) -> Tensor:

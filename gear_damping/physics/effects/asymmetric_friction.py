@@ -6,7 +6,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.physics.cause import Cause, Recipe, Rig
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.shapes import friction_width, sign_change_rate
 from gear_damping.physics.terms import DampingForce, Values
@@ -62,9 +62,9 @@ class AsymmetricFriction(DampingForce):
         turning = sign_change_rate(force, values["width"], base["equivalent_mass"])
         return found | {"fastest_rate": torch.maximum(turning, damping / base["equivalent_mass"])}
 
-    def damping_force(self, now: Moment, p: Values) -> Tensor:
+    def damping_force(self, at: Kinematics, p: Values) -> Tensor:
         """The force at this instant."""
-        direction = torch.tanh(now.delta_rate * p["steepness"])
+        direction = torch.tanh(at.delta_rate * p["steepness"])
         even = p["rest_share"] + (1 - p["rest_share"]) * direction.square()
         dry = direction * p["force_mean"] + p["force_half"] * even
-        return dry + now.delta_rate * (p["damping_mean"] + direction * p["damping_half"])
+        return dry + at.delta_rate * (p["damping_mean"] + direction * p["damping_half"])

@@ -6,7 +6,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.physics.cause import Cause, Recipe, Rig
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import Contact, Values
@@ -19,8 +19,8 @@ GAPS = (0.01, 0.02, 0.04, 0.08)  # in modules: those of usual gears, from which 
 def _gaps_of_teeth(rig: Rig) -> tuple[Recipe, ...]:
     """What is lost in impacts passes for damping as long as the flanks cannot part; teeth alone have flanks."""
     sizes = [share * rig.values["module"] for share in GAPS] if rig.has(Trait.TEETH) else []
-    stood_in = {"viscous_damping.damping_coefficient": 0.02}
-    return tuple(Recipe({"gap": size}, presence=True, in_si=True, stood_in=stood_in) for size in sizes)
+    restart_scaling = {"viscous_damping.damping_coefficient": 0.02}
+    return tuple(Recipe({"gap": size}, non_nested=True, in_si=True, restart_scaling=restart_scaling) for size in sizes)
 
 
 class Backlash(Contact):
@@ -43,19 +43,19 @@ class Backlash(Contact):
     def _datum(self, p: Values) -> Tensor:
         return p["gap"] / 2 if self.chosen["as_printed"] else torch.zeros_like(p["gap"])
 
-    def switches(self, now: Moment, p: Values) -> dict[str, Tensor]:
+    def switches(self, at: Kinematics, p: Values) -> dict[str, Tensor]:
         """Depth of the drive flank and of the coast flank."""
-        depth = now.delta - self._datum(p)
+        depth = at.delta - self._datum(p)
         return {DRIVE: depth, COAST: -depth - p["gap"]}
 
-    def clearances(self, now: Moment, p: Values) -> tuple[Tensor, Tensor]:
+    def clearances(self, at: Kinematics, p: Values) -> tuple[Tensor, Tensor]:
         """Distances of the drive flanks and of the coast flanks."""
-        depth = now.delta - self._datum(p)
-        return -depth * (1 - now.locked[DRIVE]), (depth + p["gap"]) * (1 - now.locked[COAST])
+        depth = at.delta - self._datum(p)
+        return -depth * (1 - at.active_branch[DRIVE]), (depth + p["gap"]) * (1 - at.active_branch[COAST])
 
-    def deflect(self, now: Moment, p: Values) -> tuple[Tensor, Tensor]:
-        """Deflection and contact on the locked side."""
-        depth, drive, coast = now.delta - self._datum(p), now.locked[DRIVE], now.locked[COAST]
+    def deflect(self, at: Kinematics, p: Values) -> tuple[Tensor, Tensor]:
+        """Deflection and contact on the active branch."""
+        depth, drive, coast = at.delta - self._datum(p), at.active_branch[DRIVE], at.active_branch[COAST]
         deflection = drive * depth + coast * (depth + p["gap"])
         if self.chosen["as_printed"]:
             return deflection, torch.ones_like(depth)

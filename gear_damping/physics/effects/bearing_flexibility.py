@@ -6,7 +6,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.physics.cause import Cause, Recipe, Rig
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import ExtraStates, TransmissionErrorSource, Values
@@ -20,7 +20,7 @@ HEAVIEST = 100.0  # of it: no pinion with its shaft weighs more
 def _beside_the_mesh(rig: Rig) -> tuple[Recipe, ...]:
     within = {"bearing_flexibility.mass": (0.0, HEAVIEST * rig.values["equivalent_mass"])}
     return tuple(
-        Recipe({"stiffness": k}, presence=True, scanned={"mass": m, "damping_ratio": 0.02}, within=within)
+        Recipe({"stiffness": k}, non_nested=True, scanned={"mass": m, "damping_ratio": 0.02}, within=within)
         for k in STIFFNESSES
         for m in MASSES
     )
@@ -60,11 +60,11 @@ class BearingFlexibility(ExtraStates, TransmissionErrorSource):
         place = base["mean_load"] / p["stiffness"]
         return {"displacement": place, "velocity": torch.zeros_like(place)}
 
-    def error(self, now: Moment, p: Values) -> tuple[Tensor, Tensor]:
+    def error(self, at: Kinematics, p: Values) -> tuple[Tensor, Tensor]:
         """How far the pinion has given way."""
-        return now.extra[PLACE], now.extra[RATE]
+        return at.extra[PLACE], at.extra[RATE]
 
-    def state_rates(self, now: Moment, p: Values) -> dict[str, Tensor]:
+    def state_rates(self, at: Kinematics, p: Values) -> dict[str, Tensor]:
         """Pressed by the mesh force and the forces on the bearing."""
-        force = now.mesh_force + now.bearing_force - p["stiffness"] * now.extra[PLACE] - p["damping"] * now.extra[RATE]
-        return {"displacement": now.extra[RATE], "velocity": force / p["mass"]}
+        force = at.mesh_force + at.bearing_force - p["stiffness"] * at.extra[PLACE] - p["damping"] * at.extra[RATE]
+        return {"displacement": at.extra[RATE], "velocity": force / p["mass"]}

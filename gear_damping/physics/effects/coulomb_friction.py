@@ -6,7 +6,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.physics.cause import Cause, Recipe, Rig
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.shapes import friction_width, sign_change_rate
 from gear_damping.physics.terms import DampingForce, Values
@@ -44,6 +44,6 @@ class CoulombFriction(DampingForce):
             "fastest_rate": sign_change_rate(values["force"], values["width"], base["equivalent_mass"]),
         }
 
-    def damping_force(self, now: Moment, p: Values) -> Tensor:
+    def damping_force(self, at: Kinematics, p: Values) -> Tensor:
         """The force at this instant."""
-        return p["force"] * torch.tanh(now.delta_rate * p["steepness"])
+        return p["force"] * torch.tanh(at.delta_rate * p["steepness"])

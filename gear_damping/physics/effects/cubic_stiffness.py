@@ -6,7 +6,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.physics.cause import Cause, Recipe, where_there_is_a_spring
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import ElasticForce, Values
 
@@ -28,6 +28,6 @@ class CubicStiffness(ElasticForce):
         stiffness = base["mean_stiffness"] + 3 * values["coefficient"].abs()
         return dict(values) | {"fastest_rate": torch.sqrt(stiffness / base["equivalent_mass"])}
 
-    def elastic_force(self, now: Moment, p: Values) -> Tensor:
+    def elastic_force(self, at: Kinematics, p: Values) -> Tensor:
         """The force at this instant."""
-        return p["coefficient"] * now.deflection * now.deflection * now.deflection
+        return p["coefficient"] * at.deflection * at.deflection * at.deflection

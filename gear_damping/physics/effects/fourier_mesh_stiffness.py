@@ -8,7 +8,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.terms import MeshStiffness, Values
 
@@ -59,9 +59,9 @@ class FourierMeshStiffness(MeshStiffness):
             "fastest_rate": RESOLVED * highest,
         }
 
-    def stiffness(self, now: Moment, p: Values) -> Tensor:
+    def stiffness(self, at: Kinematics, p: Values) -> Tensor:
         """Horner's rule in cos(theta_M - centre), Clenshaw's recurrence for long series."""
-        cosine = now.mesh.cos * p["centre_cos"] + now.mesh.sin * p["centre_sin"]
+        cosine = at.mesh.cos * p["centre_cos"] + at.mesh.sin * p["centre_sin"]
         first, *others = p["coefficients"].unbind(0)
         if self._is_short:
             total = others[-1]

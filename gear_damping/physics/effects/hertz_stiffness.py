@@ -6,7 +6,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.physics.cause import Cause, Recipe, where_there_is_a_spring
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.shapes import power_of_size
 from gear_damping.physics.terms import StiffnessFactor, Values
@@ -34,6 +34,6 @@ class HertzStiffness(StiffnessFactor):
         """Where contact is light the curvature of the force has no bound: smaller steps."""
         return dict(values) | {"fastest_rate": torch.full_like(values["exponent"], STEPS_AT_LIGHT_CONTACT)}
 
-    def factor(self, now: Moment, p: Values) -> Tensor:
+    def factor(self, at: Kinematics, p: Values) -> Tensor:
         """(|delta| / delta_0)^p."""
-        return power_of_size(now.deflection / p["reference_deflection"], p["exponent"])
+        return power_of_size(at.deflection / p["reference_deflection"], p["exponent"])

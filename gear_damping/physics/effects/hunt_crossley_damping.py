@@ -5,7 +5,7 @@ from typing import ClassVar
 from torch import Tensor
 
 from gear_damping.physics.cause import Cause, Recipe
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.shapes import power_of_size
 from gear_damping.physics.terms import DampingForce, Values
@@ -37,7 +37,7 @@ class HuntCrossleyDamping(DampingForce):
         (SWITCHED_ON,),
     )
 
-    def damping_force(self, now: Moment, p: Values) -> Tensor:
+    def damping_force(self, at: Kinematics, p: Values) -> Tensor:
         """The force at this instant."""
-        share = power_of_size(now.deflection / p["reference_deflection"], p["exponent"])
-        return p["damping_coefficient"] * share * now.delta_rate
+        share = power_of_size(at.deflection / p["reference_deflection"], p["exponent"])
+        return p["damping_coefficient"] * share * at.delta_rate

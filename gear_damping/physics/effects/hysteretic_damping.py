@@ -6,7 +6,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.physics.cause import Cause, Recipe, Rig
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.shapes import power_of_size
 from gear_damping.physics.systems.traits import Trait
@@ -59,12 +59,12 @@ class HystereticDamping(ExtraStates, DampingForce):
             "fastest_rate": values["exponent"] / values["yield_deflection"] / 3,
         }
 
-    def damping_force(self, now: Moment, p: Values) -> Tensor:
+    def damping_force(self, at: Kinematics, p: Values) -> Tensor:
         """The force at this instant."""
-        return p["stiffness"] * now.extra["hysteretic_damping.deflection"]
+        return p["stiffness"] * at.extra["hysteretic_damping.deflection"]
 
-    def state_rates(self, now: Moment, p: Values) -> dict[str, Tensor]:
+    def state_rates(self, at: Kinematics, p: Values) -> dict[str, Tensor]:
         """Yielding in contact, relaxation out of it."""
-        z, rate = now.extra["hysteretic_damping.deflection"], now.delta_rate
+        z, rate = at.extra["hysteretic_damping.deflection"], at.delta_rate
         yielding = power_of_size(z / p["yield_deflection"], p["exponent"]) * (rate + rate.abs() * torch.sign(z)) / 2
-        return {"deflection": now.contact * (rate - yielding) - (1 - now.contact) * z}
+        return {"deflection": at.contact * (rate - yielding) - (1 - at.contact) * z}

@@ -32,7 +32,7 @@ class LoadDependentContact(ContactChange):
             # calibrated: twice the height and half the growth change the stiffness alike.
             Recipe(
                 {"growth": None},
-                beside={
+                jointly_fitted={
                     "mesh_phase": None,
                     "fourier_mesh_stiffness.contact_ratio": None,
                     "fourier_mesh_stiffness.edge": None,

@@ -4,7 +4,7 @@ from typing import ClassVar
 
 from torch import Tensor
 
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.shaft_order import periodic
 from gear_damping.physics.shapes import padded, same_length
@@ -29,6 +29,6 @@ class MeshStiffnessShape(StiffnessFactor):
         same_length(self.name, values, "in_phase", "quadrature")
         return padded(values)
 
-    def factor(self, now: Moment, p: Values) -> Tensor:
+    def factor(self, at: Kinematics, p: Values) -> Tensor:
         """The factor at this mesh angle."""
-        return 1 + periodic(now.mesh, p["in_phase"], p["quadrature"])
+        return 1 + periodic(at.mesh, p["in_phase"], p["quadrature"])

@@ -5,7 +5,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import Load, Values
@@ -20,6 +20,6 @@ class OffsetForce(Load):
     parameters: ClassVar = (Parameter("force", "N", 0.0, "F0", -1e18, 1e18),)
     needs: ClassVar = (Trait.REST,)
 
-    def load_force(self, now: Moment, p: Values) -> Tensor:
+    def load_force(self, at: Kinematics, p: Values) -> Tensor:
         """The same at every instant."""
-        return p["force"] + torch.zeros_like(now.displacement)
+        return p["force"] + torch.zeros_like(at.displacement)

@@ -8,7 +8,7 @@ from torch import Tensor
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.physics.cause import SHAFTS, Cause, Recipe, Rig
-from gear_damping.physics.moment import Moment, Rotation
+from gear_damping.physics.kinematics import Kinematics, Rotation
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.shaft_order import harmonics
 from gear_damping.physics.shapes import padded
@@ -86,9 +86,9 @@ class PitchError(TransmissionErrorSource):
         known = {name: values[name] for name in ("phase", "handover", "rounding")}
         return padded({"here": own, "following": own.roll(-1, 0)}) | known | counted
 
-    def error(self, now: Moment, p: Values) -> tuple[Tensor, Tensor]:
+    def error(self, at: Kinematics, p: Values) -> tuple[Tensor, Tensor]:
         """The error and its rate."""
-        turn = getattr(now, self.chosen["shaft"])
+        turn = getattr(at, self.chosen["shaft"])
         if self.chosen["form"] == "interpolated":
             return harmonics(turn, p["in_phase"], p["quadrature"])
         return _stepped(turn, p)

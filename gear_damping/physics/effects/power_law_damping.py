@@ -7,7 +7,7 @@ from torch import Tensor
 
 from gear_damping.physics.cause import Cause, Recipe
 from gear_damping.physics.damping_ratio import equivalent_damping_ratio, power_law_coefficient
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.scales import Scales
 from gear_damping.physics.shapes import power_of_size, sign_change_rate
@@ -44,13 +44,13 @@ class PowerLawDamping(DampingLaw):
         coefficient = values["coefficient"] * scales.velocity**power / scales.force
         return {"coefficient": coefficient, "exponent": values["exponent"]}
 
-    def damping_force(self, now: Moment, p: Values) -> Tensor:
+    def damping_force(self, at: Kinematics, p: Values) -> Tensor:
         """The force at this instant."""
-        size = p["coefficient"] * power_of_size(now.delta_rate, p["exponent"])
+        size = p["coefficient"] * power_of_size(at.delta_rate, p["exponent"])
         if self.chosen["as_printed"]:
-            return size * now.delta_rate.abs()
-        rounded = (now.delta_rate.square() + ROUNDED**2) ** ((p["exponent"] - 1) / 2) * now.delta_rate
-        return torch.where(p["exponent"] < 1, p["coefficient"] * rounded, torch.where(now.delta_rate < 0, -size, size))
+            return size * at.delta_rate.abs()
+        rounded = (at.delta_rate.square() + ROUNDED**2) ** ((p["exponent"] - 1) / 2) * at.delta_rate
+        return torch.where(p["exponent"] < 1, p["coefficient"] * rounded, torch.where(at.delta_rate < 0, -size, size))
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
         """With an exponent below 1 the slope at rest is steep: a rate that follows its turn, as of a dry friction.

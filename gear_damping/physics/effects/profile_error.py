@@ -6,7 +6,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.physics.cause import Cause, Recipe, Rig
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.shaft_order import harmonics
 from gear_damping.physics.shapes import padded, same_length
@@ -44,6 +44,6 @@ class ProfileError(TransmissionErrorSource):
         amplitudes, phases = values["amplitudes"], values["phases"]
         return padded({"in_phase": amplitudes * torch.cos(phases), "quadrature": -amplitudes * torch.sin(phases)})
 
-    def error(self, now: Moment, p: Values) -> tuple[Tensor, Tensor]:
+    def error(self, at: Kinematics, p: Values) -> tuple[Tensor, Tensor]:
         """The error and its rate."""
-        return harmonics(now.mesh, p["in_phase"], p["quadrature"])
+        return harmonics(at.mesh, p["in_phase"], p["quadrature"])

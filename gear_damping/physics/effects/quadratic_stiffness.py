@@ -5,7 +5,7 @@ from typing import ClassVar
 from torch import Tensor
 
 from gear_damping.physics.cause import Cause, Recipe, where_there_is_a_spring
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import ElasticForce, Values
@@ -24,6 +24,6 @@ class QuadraticStiffness(ElasticForce):
         where_there_is_a_spring(Recipe({"coefficient": 0.02})),
     )
 
-    def elastic_force(self, now: Moment, p: Values) -> Tensor:
+    def elastic_force(self, at: Kinematics, p: Values) -> Tensor:
         """The force at this instant."""
-        return p["coefficient"] * now.deflection * now.deflection
+        return p["coefficient"] * at.deflection * at.deflection

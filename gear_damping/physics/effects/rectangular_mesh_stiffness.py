@@ -6,7 +6,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import MeshStiffness, Switch, Values
 
@@ -36,11 +36,11 @@ class RectangularMeshStiffness(MeshStiffness, Switch):
         edge = {"centre_cos": torch.cos(centre), "centre_sin": torch.sin(centre), "edge": torch.cos(half)}
         return dict(values) | edge
 
-    def switches(self, now: Moment, p: Values) -> dict[str, Tensor]:
+    def switches(self, at: Kinematics, p: Values) -> dict[str, Tensor]:
         """Positive in double contact: cos(theta_M - centre) - cos(half width)."""
-        cosine = now.mesh.cos * p["centre_cos"] + now.mesh.sin * p["centre_sin"]
+        cosine = at.mesh.cos * p["centre_cos"] + at.mesh.sin * p["centre_sin"]
         return {DOUBLE: cosine - p["edge"]}
 
-    def stiffness(self, now: Moment, p: Values) -> Tensor:
-        """The value on the locked side."""
-        return p["minimum"] + (p["maximum"] - p["minimum"]) * now.locked[DOUBLE]
+    def stiffness(self, at: Kinematics, p: Values) -> Tensor:
+        """The value on the active branch."""
+        return p["minimum"] + (p["maximum"] - p["minimum"]) * at.active_branch[DOUBLE]

@@ -8,7 +8,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.physics.cause import Cause, Recipe, Rig
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import ExtraStates, Load, Values
@@ -25,7 +25,7 @@ def _at_the_lines(rig: Rig) -> tuple[Recipe, ...]:
     return tuple(
         Recipe(
             {"mass_ratio": ratio},
-            presence=True,
+            non_nested=True,
             scanned={"frequency": frequency, "damping_ratio": 0.01},
             within={
                 "second_mode.mass_ratio": (LOW, HIGH),
@@ -69,17 +69,17 @@ class SecondMode(ExtraStates, Load):
         found = {"mass_ratio": values["mass_ratio"], "stiffness": rate.square()}
         return found | {"damping": 2 * values["damping_ratio"] * rate, "slowest_rate": rate, "fastest_rate": fastest}
 
-    def load_force(self, now: Moment, p: Values) -> Tensor:
+    def load_force(self, at: Kinematics, p: Values) -> Tensor:
         """What the second mass pulls at the first."""
-        return p["mass_ratio"] * self._pull(now, p)
+        return p["mass_ratio"] * self._pull(at, p)
 
-    def state_rates(self, now: Moment, p: Values) -> dict[str, Tensor]:
+    def state_rates(self, at: Kinematics, p: Values) -> dict[str, Tensor]:
         """The second mass on its spring, on a base that may move."""
-        rate = -self._pull(now, p)
-        if "base_acceleration" in now.inputs:
-            rate = rate - now.inputs["base_acceleration"]
-        return {"displacement": now.extra[RATE], "velocity": rate}
+        rate = -self._pull(at, p)
+        if "base_acceleration" in at.inputs:
+            rate = rate - at.inputs["base_acceleration"]
+        return {"displacement": at.extra[RATE], "velocity": rate}
 
-    def _pull(self, now: Moment, p: Values) -> Tensor:
-        apart, rate = now.extra[PLACE] - now.displacement, now.extra[RATE] - now.velocity
+    def _pull(self, at: Kinematics, p: Values) -> Tensor:
+        apart, rate = at.extra[PLACE] - at.displacement, at.extra[RATE] - at.velocity
         return p["stiffness"] * apart + p["damping"] * rate

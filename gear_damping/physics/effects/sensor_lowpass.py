@@ -20,7 +20,7 @@ def _switched_on(rig: Rig) -> tuple[Recipe, ...]:
     slowest = SLOWEST / (rig.values.get("characteristic_time", 0.0) or 1.0)
     within = {"sensor_lowpass.cutoff": (slowest, inf)} if coasts else {}
     return tuple(
-        Recipe({"cutoff": size}, presence=True, options={"order": order}, within=within)
+        Recipe({"cutoff": size}, non_nested=True, options={"order": order}, within=within)
         for order in (1, 2)
         for size in (COASTING if coasts else SIZES)
     )

@@ -20,7 +20,7 @@ class SensorSaturation(Sensor):
     position = 80  # in the chain, before the converter
     cause: ClassVar = Cause(
         "a sensor that saturates",
-        tuple(Recipe({"limit": size}, presence=True) for size in (1.8, 1.3, 2.5)),
+        tuple(Recipe({"limit": size}, non_nested=True) for size in (1.8, 1.3, 2.5)),
     )
 
     def measure(self, signal: Tensor, values: Values, recording: Recording) -> Tensor:

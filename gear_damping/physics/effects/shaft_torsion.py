@@ -7,7 +7,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.physics.cause import SHAFTS, Cause, Recipe, Rig
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import ExtraStates, LoadPath, Values
@@ -22,7 +22,7 @@ def _on_either_shaft(rig: Rig) -> tuple[Recipe, ...]:
     return tuple(
         Recipe(
             {"stiffness": k * _mesh_stiffness(rig, shaft)},
-            presence=True,
+            non_nested=True,
             scanned={"motor_inertia": j * _inertia(rig, shaft), "damping_ratio": 0.02},
             in_si=True,
             options={"shaft": shaft},
@@ -103,25 +103,25 @@ class ShaftTorsion(ExtraStates, LoadPath):
         twist = torque / p["stiffness"]
         return {"twist": twist, "twist_rate": torch.zeros_like(twist)}
 
-    def transmitted_load(self, now: Moment, p: Values) -> Tensor:
+    def transmitted_load(self, at: Kinematics, p: Values) -> Tensor:
         """The load with the shaft's torque in place of the motor's."""
-        motor, shaft = self._torques(now, p)
-        return now.drive_load + p["load_per_torque"] * (shaft - motor)
+        motor, shaft = self._torques(at, p)
+        return at.drive_load + p["load_per_torque"] * (shaft - motor)
 
-    def state_rates(self, now: Moment, p: Values) -> dict[str, Tensor]:
+    def state_rates(self, at: Kinematics, p: Values) -> dict[str, Tensor]:
         """The twist between the machine and its gear."""
-        motor, shaft = self._torques(now, p)
-        acceleration = (motor - shaft) / p["motor"] - (shaft - p["radius"] * now.mesh_force) / p["wheel"]
-        return {"twist": now.extra[RATE], "twist_rate": acceleration}
+        motor, shaft = self._torques(at, p)
+        acceleration = (motor - shaft) / p["motor"] - (shaft - p["radius"] * at.mesh_force) / p["wheel"]
+        return {"twist": at.extra[RATE], "twist_rate": acceleration}
 
-    def _torques(self, now: Moment, p: Values) -> tuple[Tensor, Tensor]:
+    def _torques(self, at: Kinematics, p: Values) -> tuple[Tensor, Tensor]:
         """Torque on the machine, from the load of the torques, and torque of the shaft."""
-        gear = now.inputs.get("gear_torque", p["gear_torque"])
+        gear = at.inputs.get("gear_torque", p["gear_torque"])
         if self.chosen["shaft"] == "gear":
-            motor = self._gear_torque(now.drive_load, gear, p)
+            motor = self._gear_torque(at.drive_load, gear, p)
         else:
-            motor = (now.drive_load - p["per_gear_torque"] * gear) / p["per_pinion_torque"]
-        return motor, p["stiffness"] * now.extra[TWIST] + p["damping"] * now.extra[RATE]
+            motor = (at.drive_load - p["per_gear_torque"] * gear) / p["per_pinion_torque"]
+        return motor, p["stiffness"] * at.extra[TWIST] + p["damping"] * at.extra[RATE]
 
     def _gear_torque(self, load: Tensor, held: Tensor, p: Values) -> Tensor:
         """The torque of the brake: what balances the load, or what is held."""

@@ -6,7 +6,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.physics.cause import Cause, Recipe, Rig
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import ElasticForce, SystemChange, Values
@@ -24,7 +24,7 @@ def _instead_of_a_spring(rig: Rig) -> tuple[Recipe, ...]:
             {"stiffness": size},
             fixed=known,
             scanned=free,
-            presence=True,
+            non_nested=True,
             in_si=rig.radian is not None,
             replaces={rig.spring: "stiffness"} if rig.spring else {},
         )
@@ -61,6 +61,6 @@ class SineRestoring(ElasticForce, SystemChange):
         """The parameters, and the rate of small oscillations."""
         return dict(values) | {"fastest_rate": torch.sqrt(base["mean_stiffness"] / base["equivalent_mass"])}
 
-    def elastic_force(self, now: Moment, p: Values) -> Tensor:
+    def elastic_force(self, at: Kinematics, p: Values) -> Tensor:
         """The force at this instant."""
-        return p["stiffness"] * p["length"] * torch.sin(now.deflection / p["length"])
+        return p["stiffness"] * p["length"] * torch.sin(at.deflection / p["length"])

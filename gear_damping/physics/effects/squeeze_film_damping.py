@@ -5,7 +5,7 @@ from typing import ClassVar
 from torch import Tensor
 
 from gear_damping.physics.cause import Cause, Recipe
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import DampingForce, Values
@@ -31,7 +31,7 @@ class SqueezeFilmDamping(DampingForce):
         (Recipe({"damping_coefficient": 0.01}),),
     )
 
-    def damping_force(self, now: Moment, p: Values) -> Tensor:
+    def damping_force(self, at: Kinematics, p: Values) -> Tensor:
         """The force at this instant."""
-        drive, coast = (p["film_thickness"] / (p["film_thickness"] + h.clamp(min=0)) for h in now.clearances)
-        return p["damping_coefficient"] * now.delta_rate * (drive * drive * drive + coast * coast * coast)
+        drive, coast = (p["film_thickness"] / (p["film_thickness"] + h.clamp(min=0)) for h in at.clearances)
+        return p["damping_coefficient"] * at.delta_rate * (drive * drive * drive + coast * coast * coast)

@@ -7,7 +7,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.physics.cause import SHAFTS, Cause, Recipe, Rig
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import StiffnessFactor, Switch, Values
@@ -67,17 +67,17 @@ class ToothCrack(StiffnessFactor, Switch):
             found["depth"] = values["depth"] * 2 / (1 + torch.tanh(steepness * (1 - limit)))
         return found | {"centre_cos": torch.cos(centre), "centre_sin": torch.sin(centre)}
 
-    def _inside(self, now: Moment, p: Values) -> Tensor:
+    def _inside(self, at: Kinematics, p: Values) -> Tensor:
         """Positive while the tooth is in contact."""
-        turn = getattr(now, self.chosen["shaft"])
+        turn = getattr(at, self.chosen["shaft"])
         return turn.cos * p["centre_cos"] + turn.sin * p["centre_sin"] - p["limit"]
 
-    def switches(self, now: Moment, p: Values) -> dict[str, Tensor]:
+    def switches(self, at: Kinematics, p: Values) -> dict[str, Tensor]:
         """One function where the edges are jumps."""
-        return {IN_MESH: self._inside(now, p)} if self.chosen["edges"] == "switched" else {}
+        return {IN_MESH: self._inside(at, p)} if self.chosen["edges"] == "switched" else {}
 
-    def factor(self, now: Moment, p: Values) -> Tensor:
+    def factor(self, at: Kinematics, p: Values) -> Tensor:
         """1 - d in contact, 1 elsewhere."""
         if self.chosen["edges"] == "switched":
-            return 1 - p["depth"] * now.locked[IN_MESH]
-        return 1 - p["depth"] * (1 + torch.tanh(p["steepness"] * self._inside(now, p))) / 2
+            return 1 - p["depth"] * at.active_branch[IN_MESH]
+        return 1 - p["depth"] * (1 + torch.tanh(p["steepness"] * self._inside(at, p))) / 2

@@ -7,7 +7,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.physics.cause import Cause, Recipe
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import MeshForceFactor, Switch, Values
@@ -58,23 +58,23 @@ class ToothFriction(MeshForceFactor, Switch):
             **_zone("approach", half_approach - lead, half_approach),
         }
 
-    def switches(self, now: Moment, p: Values) -> dict[str, Tensor]:
+    def switches(self, at: Kinematics, p: Values) -> dict[str, Tensor]:
         """Positive in double contact, and before the pitch point."""
-        double, approach = (_turned(now, p, zone)[0] - p[f"{zone}_edge"] for zone in ("double", "approach"))
+        double, approach = (_turned(at, p, zone)[0] - p[f"{zone}_edge"] for zone in ("double", "approach"))
         return {DOUBLE: double, APPROACH: approach}
 
-    def force_factor(self, now: Moment, p: Values) -> Tensor:
-        """The factor in the locked region."""
-        double, approach = now.locked[DOUBLE], now.locked[APPROACH]
+    def force_factor(self, at: Kinematics, p: Values) -> Tensor:
+        """The factor on the active branch."""
+        double, approach = at.active_branch[DOUBLE], at.active_branch[APPROACH]
         side = 2 * double - 1  # about the centre of double contact, or of single contact opposite to it
-        cosine, sine = (side * part for part in _turned(now, p, "double"))
+        cosine, sine = (side * part for part in _turned(at, p, "double"))
         offset = 2 * torch.atan(sine / (1 + cosine).clamp(min=1e-12))
         front = (p["double_centre"] + pi * (1 - double) + offset) / (2 * pi)
         arm = p["arm_at_pitch"] + p["slope"] * (front - p["pitch"])
         sign = p["beyond"] + (1 - p["beyond"]) * (2 * approach - 1)
         sign_behind = 2 * p["beyond"] * approach - 1
         arms = (1 - double / 2) * sign * arm + double / 2 * sign_behind * (arm + p["slope"])
-        return 1 - p["friction"] * torch.sign(now.pinion.speed) * arms
+        return 1 - p["friction"] * torch.sign(at.pinion.speed) * arms
 
 
 def _approach(base: Values) -> Tensor:
@@ -94,7 +94,7 @@ def _zone(name: str, centre: Tensor, half: Tensor) -> dict[str, Tensor]:
     }
 
 
-def _turned(now: Moment, p: Values, zone: str) -> tuple[Tensor, Tensor]:
+def _turned(at: Kinematics, p: Values, zone: str) -> tuple[Tensor, Tensor]:
     """Cosine and sine of the mesh angle from the centre of a zone."""
     cosine, sine = p[f"{zone}_cos"], p[f"{zone}_sin"]
-    return now.mesh.cos * cosine + now.mesh.sin * sine, now.mesh.sin * cosine - now.mesh.cos * sine
+    return at.mesh.cos * cosine + at.mesh.sin * sine, at.mesh.sin * cosine - at.mesh.cos * sine

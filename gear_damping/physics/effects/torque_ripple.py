@@ -6,7 +6,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.physics.cause import Cause, Recipe, Rig
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import Load, LoadFactor, Values
@@ -65,13 +65,13 @@ class TorqueRipple(Load, LoadFactor):
         size = values["share"] if self.chosen["proportional"] else force
         return {"size": size, "order": values["order"], "phase": values["phase"]}
 
-    def _wave(self, now: Moment, p: Values) -> Tensor:
-        return p["size"] * torch.cos(p["order"] * now.pinion.angle + p["phase"])
+    def _wave(self, at: Kinematics, p: Values) -> Tensor:
+        return p["size"] * torch.cos(p["order"] * at.pinion.angle + p["phase"])
 
-    def load_force(self, now: Moment, p: Values) -> Tensor:
+    def load_force(self, at: Kinematics, p: Values) -> Tensor:
         """The force at this instant, where it is a torque of its own."""
-        return torch.zeros_like(now.displacement) if self.chosen["proportional"] else self._wave(now, p)
+        return torch.zeros_like(at.displacement) if self.chosen["proportional"] else self._wave(at, p)
 
-    def load_factor(self, now: Moment, p: Values) -> Tensor:
+    def load_factor(self, at: Kinematics, p: Values) -> Tensor:
         """The factor at this instant, where it is a share of the load."""
-        return 1 + self._wave(now, p) if self.chosen["proportional"] else torch.ones_like(now.displacement)
+        return 1 + self._wave(at, p) if self.chosen["proportional"] else torch.ones_like(at.displacement)

@@ -7,7 +7,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.physics.cause import Cause, Recipe
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.shapes import same_length
 from gear_damping.physics.systems.traits import Trait
@@ -72,20 +72,20 @@ class TorqueVariation(Load, Switch):
         times = {"start": values["ramp_start"], "end": values["ramp_start"] + length, "length": length}
         return times | {"force": values["ramp_change"] * per_torque}
 
-    def switches(self, now: Moment, p: Values) -> dict[str, Tensor]:
+    def switches(self, at: Kinematics, p: Values) -> dict[str, Tensor]:
         """Time since each corner."""
         if self.chosen["form"] == "sine":
             return {}
         corners = p["times"].unbind(0) if self.chosen["form"] == "steps" else (p["start"], p["end"])
-        return {f"{self.name}.{i}": now.time - corner for i, corner in enumerate(corners)}
+        return {f"{self.name}.{i}": at.time - corner for i, corner in enumerate(corners)}
 
-    def load_force(self, now: Moment, p: Values) -> Tensor:
+    def load_force(self, at: Kinematics, p: Values) -> Tensor:
         """The force of the torque that was added."""
         form = self.chosen["form"]
         if form == "sine":
-            return p["force"] * torch.sin(p["rate"] * now.time + p["phase"])
+            return p["force"] * torch.sin(p["rate"] * at.time + p["phase"])
         if form == "steps":
-            return sum(now.locked[f"{self.name}.{i}"] * force for i, force in enumerate(p["forces"].unbind(0)))
-        begun, over = now.locked[f"{self.name}.0"], now.locked[f"{self.name}.1"]
-        share = (now.time - p["start"]) / p["length"]
+            return sum(at.active_branch[f"{self.name}.{i}"] * force for i, force in enumerate(p["forces"].unbind(0)))
+        begun, over = at.active_branch[f"{self.name}.0"], at.active_branch[f"{self.name}.1"]
+        share = (at.time - p["start"]) / p["length"]
         return p["force"] * (begun * (1 - over) * share + over)

@@ -6,7 +6,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.physics.cause import SHAFTS, Cause, Recipe
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import BearingForce, Values
@@ -36,8 +36,8 @@ class Unbalance(BearingForce):
         size, phase = values["unbalance"], values["phase"]
         return {"in_phase": size * torch.cos(phase), "quadrature": -size * torch.sin(phase)}
 
-    def bearing_force(self, now: Moment, p: Values) -> Tensor:
+    def bearing_force(self, at: Kinematics, p: Values) -> Tensor:
         """The part along the line of action of the turning force."""
-        turn = getattr(now, self.chosen["shaft"])
+        turn = getattr(at, self.chosen["shaft"])
         part = p["in_phase"] * turn.cos + p["quadrature"] * turn.sin
         return part * turn.speed * turn.speed

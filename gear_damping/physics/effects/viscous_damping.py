@@ -6,7 +6,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.physics.cause import Cause
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import DampingLaw, Values
 
@@ -29,9 +29,9 @@ class ViscousDamping(DampingLaw):
         """The coefficient, and the rate at which it alone brings a velocity to rest."""
         return dict(values) | {"fastest_rate": values["damping_coefficient"] / base["equivalent_mass"]}
 
-    def damping_force(self, now: Moment, p: Values) -> Tensor:
+    def damping_force(self, at: Kinematics, p: Values) -> Tensor:
         """C times the rate."""
-        return p["damping_coefficient"] * now.delta_rate
+        return p["damping_coefficient"] * at.delta_rate
 
     def damping_ratio(self, values: Values, mass: Tensor, stiffness: Tensor, velocity: Tensor) -> Tensor:
         """The same at every amplitude."""

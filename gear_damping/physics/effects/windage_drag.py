@@ -5,7 +5,7 @@ from typing import ClassVar
 from torch import Tensor
 
 from gear_damping.physics.cause import Cause, Recipe
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import Load, Values
@@ -29,6 +29,6 @@ class WindageDrag(Load):
         """The coefficient as a force along the line of action."""
         return {"force": values["coefficient"] * base["load_per_pinion_torque"]}
 
-    def load_force(self, now: Moment, p: Values) -> Tensor:
+    def load_force(self, at: Kinematics, p: Values) -> Tensor:
         """The force at this instant."""
-        return -p["force"] * now.pinion.speed.abs() * now.pinion.speed
+        return -p["force"] * at.pinion.speed.abs() * at.pinion.speed

@@ -7,7 +7,7 @@ from typing import ClassVar
 from torch import Tensor
 
 from gear_damping.physics.declared import Declared
-from gear_damping.physics.moment import Moment, Rotation
+from gear_damping.physics.kinematics import Kinematics, Rotation
 from gear_damping.physics.scales import Scales
 from gear_damping.physics.systems.traits import Trait
 
@@ -48,7 +48,7 @@ class System(Declared, ABC):
         """The natural units of each member."""
 
     @abstractmethod
-    def load(self, now: Moment, p: Values) -> Tensor:
+    def load(self, at: Kinematics, p: Values) -> Tensor:
         """The load F(t) in natural units, from parameters and inputs."""
 
     def stiffness(self, p: Values) -> Tensor:

@@ -10,7 +10,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
-from gear_damping.physics.moment import Moment, Rotation
+from gear_damping.physics.kinematics import Kinematics, Rotation
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.scales import Scales
 from gear_damping.physics.systems.base import System, Values
@@ -110,10 +110,10 @@ class GearPair(System):
         length = torch.where(static > 0, static, torch.full_like(static, UNLOADED_LENGTH))
         return Scales(derived["equivalent_mass"], length, 1 / derived["natural_frequency"])
 
-    def load(self, now: Moment, p: Values) -> Tensor:
+    def load(self, at: Kinematics, p: Values) -> Tensor:
         """F = m_e (r_b1 T1 / I1 + r_b2 T2 / I2), which is T1 / r_b1 when the torques balance."""
-        pinion = _true_torque(now.inputs.get("pinion_torque", p["pinion_torque"]), p)
-        gear = now.inputs.get("gear_torque", p["gear_torque"])
+        pinion = _true_torque(at.inputs.get("pinion_torque", p["pinion_torque"]), p)
+        gear = at.inputs.get("gear_torque", p["gear_torque"])
         return p["load_per_pinion_torque"] * pinion + p["load_per_gear_torque"] * gear
 
     def rotations(self, time: Tensor, inputs: Values, p: Values) -> dict[str, Rotation]:

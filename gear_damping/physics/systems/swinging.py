@@ -5,7 +5,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
-from gear_damping.physics.moment import Moment
+from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.scales import Scales
 from gear_damping.physics.systems.base import System, Values
@@ -70,11 +70,11 @@ class Swinging(System):
         """The constant stiffness."""
         return p[self.spring]
 
-    def load(self, now: Moment, p: Values) -> Tensor:
+    def load(self, at: Kinematics, p: Values) -> Tensor:
         """The measured force times its gain, less what the base's acceleration takes; free decay without either."""
-        load = torch.zeros_like(now.displacement)
-        if FORCE in now.inputs:
-            load = p[self.gains[FORCE]] * now.inputs[FORCE] if FORCE in self.gains else now.inputs[FORCE]
-        if BASE in now.inputs:
-            load = load - p["equivalent_mass"] * now.inputs[BASE]
+        load = torch.zeros_like(at.displacement)
+        if FORCE in at.inputs:
+            load = p[self.gains[FORCE]] * at.inputs[FORCE] if FORCE in self.gains else at.inputs[FORCE]
+        if BASE in at.inputs:
+            load = load - p["equivalent_mass"] * at.inputs[BASE]
         return load

@@ -113,7 +113,7 @@ def _alt_of_orders(one: Study, unit: str) -> str:
 def _alt_of_turns(turns: Mapping[str, figures.Turn], unit: str) -> str:
     largest = [f"of the {s} {number(float(np.nanmax(np.abs(turn.residual))), 3)} {unit}" for s, turn in turns.items()]
     shown = ", ".join(largest)
-    return f"Line charts of the residual over one turn of each shaft; the largest departure {shown}."
+    return f"Line charts of the residual over one turn of each shaft; the largest deviation {shown}."
 
 
 def _alt_of_kurtosis(one: Study) -> str:

@@ -56,7 +56,7 @@ def candidates(report: ReportInput) -> Picture | None:
     figure = figures.candidates_figure(rows, needed_share=report.needed_share)
     caption = (
         "What each effect explains of the excess after its full fit, every condition left out in turn. Only those that "
-        "promised most on the fitted records were fitted in full."
+        "had the largest predicted gain on the fitted records were fitted in full."
     )
     return Picture(figure_uri(figure), caption, alt_texts.candidates(rows, report.needed_share))
 

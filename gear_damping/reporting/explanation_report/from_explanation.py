@@ -9,8 +9,8 @@ import numpy as np
 from gear_damping.explanation.answer.gain import parameters_of
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.explain import Explanation
+from gear_damping.explanation.model.covariance import covariance_of
 from gear_damping.explanation.model.hypothesis import Outcome
-from gear_damping.explanation.model.spread import spread_of
 from gear_damping.explanation.state import State
 from gear_damping.reporting.explanation_report.render import render
 from gear_damping.reporting.explanation_report.report_input import ReportInput
@@ -98,11 +98,11 @@ def _parameters(found: State, evidence: Evidence) -> dict[str, dict[str, Any]]:
 
 
 def _estimates(outcome: Outcome, evidence: Evidence) -> dict[str, Any]:
-    spread = spread_of(outcome, evidence)
+    covariances = covariance_of(outcome, evidence)
     declared = outcome.hypothesis.model.parameters()
     found = {}
     for owner in dict.fromkeys(p.name.partition(".")[0] for p in outcome.problem.free):
         if owner in declared or any(owner == effect.name for effect in outcome.hypothesis.effects):
-            for own, entry in parameters_of(outcome, spread, owner, evidence).items():
+            for own, entry in parameters_of(outcome, covariances, owner, evidence).items():
                 found[f"{owner}, {own}" if own else owner] = entry
     return found

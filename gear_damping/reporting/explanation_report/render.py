@@ -24,7 +24,7 @@ def _content(report: ReportInput) -> dict[str, Any]:
         "next_experiment": sentences.next_experiment_sentences(explanation.get("next_experiment")),
         "noise": sentences.noise_sentences(explanation.get("noise")),
         "calibration": sentences.calibration_sentences(explanation.get("calibration")),
-        "rest": rows.unexplained_sentence(report),
+        "unexplained_residual": rows.unexplained_sentence(report),
         "equations": {name: f"`{term}`" for name, term in report.equations.items()},
         "provenance": dict(report.provenance),
         "tables": {

@@ -1,7 +1,7 @@
 """What the report of an explanation is made of: the content of `explanation.json` and the arrays behind its figures.
 
-`explanation` is a mapping with the keys of `gear_damping.explanation.schema` (docs/explanation.md); one that is absent,
-None or empty leaves its section out. Only `verdict` must be there.
+`explanation` is a mapping with the keys of `gear_damping.explanation.report_schema` (docs/explanation.md); one that is
+absent, None or empty leaves its section out. Only `verdict` must be there.
 
 Units are as in `gear_damping.units`; what is not a number (NaN) counts as not known.
 """
@@ -10,8 +10,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from gear_damping.explanation.casing.content import CasingStudy
-from gear_damping.explanation.schema import VERDICTS
+from gear_damping.explanation.casing.report_fields import CasingStudy
+from gear_damping.explanation.report_schema import VERDICTS
 from gear_damping.reporting.figures import ForceMap, ForceSurface, Overlay, ResidualSpectrum
 
 

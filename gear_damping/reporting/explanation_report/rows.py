@@ -75,22 +75,24 @@ def not_observable(report: ReportInput) -> list[Row]:
 
 def unexplained(report: ReportInput) -> list[Row]:
     """What is known of the rest: feature, share or finding, the largest first."""
-    rest = report.explanation.get("unexplained") or {}
-    rows = [(f"explained by {words(name)}", percent(share, 2)) for name, share in _falling(rest.get("shares"))]
-    rows += [(f"at the order of: {FAMILIES.get(n, words(n))}", percent(s, 2)) for n, s in _falling(rest.get("orders"))]
-    line = rest.get("line")
+    unexplained = report.explanation.get("unexplained") or {}
+    rows = [(f"explained by {words(name)}", percent(share, 2)) for name, share in _falling(unexplained.get("shares"))]
+    rows += [
+        (f"at the order of: {FAMILIES.get(n, words(n))}", percent(s, 2)) for n, s in _falling(unexplained.get("orders"))
+    ]
+    line = unexplained.get("line")
     if line:
         order = f", order {number(line['place'], 3)} of the pinion" if line["unit"] == "order" else ""
         kind = "a force" if line["is_force"] else "a line"
         rows.append((f"explained by {kind} at {number(line['hertz'], 3)} Hz{order}", percent(line["share"], 2)))
-    phase = rest.get("contact_phase") or ()
+    phase = unexplained.get("contact_phase") or ()
     if phase and max(phase) > 0:
         place = (max(range(len(phase)), key=phase.__getitem__) + 0.5) / len(phase)
         rows.append(
             ("strongest at the mesh phase", f"{number(place, 2)} of a period, {number(max(phase), 2)} times the mean")
         )
-    if "kurtosis" in rest:
-        rows.append(("kurtosis (noise: 3)", number(rest["kurtosis"], 3)))
+    if "kurtosis" in unexplained:
+        rows.append(("kurtosis (noise: 3)", number(unexplained["kurtosis"], 3)))
     return rows
 
 

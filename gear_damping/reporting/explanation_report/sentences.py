@@ -29,7 +29,7 @@ def verdict_sentences(explanation: Mapping[str, Any]) -> list[str]:
     headlines = CASING_HEADLINES if explanation.get("casing") else HEADLINES
     told = [headlines[explanation["verdict"]], *(explanation.get("sentences") or ())]
     if explanation["verdict"] == "explained":
-        told.append(rest_sentence(explanation.get("misfit"), explanation.get("visible")))
+        told.append(unexplained_residual_sentence(explanation.get("misfit"), explanation.get("visible")))
     told += [ALL_THE_SAME] if explanation["verdict"] == "consistent" and explanation.get("not_observable") else []
     gain = explanation.get("gain")
     told += [misfit_sentence(explanation.get("misfit")), confirmed_sentence(gain), damping_sentence(gain)]
@@ -45,7 +45,7 @@ def cause_sentences(cause: Mapping[str, Any], own: Mapping[str, str]) -> list[st
     if cause.get("confusable_with"):
         told.append(f"These data do not tell it from {listed(cause['confusable_with'], 'or')}.")
     if cause.get("status") == "suggested":
-        told.append("It is a suggestion only: held-out records do not bear it out.")
+        told.append("It is a suggestion only: held-out records do not validate it.")
     return [sentence for sentence in told if sentence]
 
 
@@ -81,7 +81,7 @@ def _stands_out(p: float, largest: str, level: float) -> str:
     return f"nothing stands out of it that chance would not give (p = {number(p, 2)}; {name} comes first)"
 
 
-def rest_sentence(misfit: Mapping[str, Any] | None, visible: Mapping[str, Any] | None = None) -> str:
+def unexplained_residual_sentence(misfit: Mapping[str, Any] | None, visible: Mapping[str, Any] | None = None) -> str:
     """Whether only noise is left of what was explained."""
     excess = (misfit or {}).get("excess_percent") or {}
     if not _known(excess.get("after")) or not _known(excess.get("threshold")):
@@ -164,13 +164,13 @@ def noise_sentences(noise: Mapping[str, Any] | None) -> list[str]:
 
 
 def calibration_sentences(calibration: Mapping[str, Any] | None) -> list[str]:
-    """How the nominal simulation was calibrated, and whether that came to rest."""
+    """How the nominal simulation was calibrated, and whether that converged."""
     if not calibration:
         return []
     told = [_sentence(step) for step in calibration.get("steps") or ()]
     if calibration.get("converged") is False:
-        return [*told, "The calibration did not come to rest: take every figure here with care."]
-    return [*told, "The calibration came to rest."] if "converged" in calibration else told
+        return [*told, "The calibration did not converge: take every figure here with care."]
+    return [*told, "The calibration converged."] if "converged" in calibration else told
 
 
 def _sentence(text: str) -> str:

@@ -9,14 +9,14 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from gear_damping.reporting.style import BLUE, INK, ORANGE, PALE, SKY, new_figure, say_empty, styled
+from gear_damping.reporting.style import BLUE, INK, ORANGE, PALE, SKY, mark_empty, new_figure, styled
 
 MOST_BARS = 14  # that can be read on one page
 STATUSES = {
     "established": (BLUE, "", "established"),
     "confusable": (SKY, "///", "confusable with an established one"),
     "suggested": (ORANGE, "...", "suggested"),
-    "rejected": (PALE, "", "not borne out"),
+    "rejected": (PALE, "", "not validated"),
     "not_tried": (PALE, "xxx", "no time to try it"),
 }
 NEEDED = {"color": INK, "linewidth": 1.0, "linestyle": "--"}
@@ -44,7 +44,7 @@ def candidates_figure(candidates: Sequence[Mapping[str, Any]], *, needed_share: 
         rest = f"      ({len(left_out)} smaller ones not shown)" if left_out else ""
         axes.set_xlabel(f"share of the excess explained on left-out records / %{rest}")
         if not shown:
-            say_empty(axes, "no candidates were tried")
+            mark_empty(axes, "no candidates were tried")
             return figure
         _bars(axes, shown)
         if needed_share is not None:

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from gear_damping.reporting.figures.arrays import any_finite, series
 from gear_damping.reporting.figures.spectra import spectra_over_orders
-from gear_damping.reporting.style import BLUE, INK, PALE, RED, legend_above, new_figure, say_empty, styled
+from gear_damping.reporting.style import BLUE, INK, PALE, RED, legend_above, mark_empty, new_figure, styled
 
 RECORD = {"color": BLUE, "linewidth": 0.8, "zorder": 3}
 REFERENCE = {"color": PALE, "linewidth": 0.8, "zorder": 2}
@@ -85,7 +85,7 @@ def casing_turns_figure(turns: Mapping[str, Turn], *, unit: str) -> Figure:
 def _turn(axes: Axes, one: Turn) -> None:
     turn, residual = series(turn=one.turn, residual=one.residual)
     if not any_finite(residual):
-        say_empty(axes)
+        mark_empty(axes)
         return
     if one.reference is not None:
         axes.plot(*series(turn=one.reference_turn, reference=one.reference), label="reference", **REFERENCE)
@@ -119,6 +119,6 @@ def casing_kurtosis_figure(values: ArrayLike, limit: float, reference: ArrayLike
         axes.axhline(3, color=INK, linestyle=":", linewidth=0.9, label="noise")
         axes.set(xlabel="turn of the pinion", ylabel="kurtosis")
         if not any_finite(values):
-            say_empty(axes)
+            mark_empty(axes)
         legend_above(axes)
         return figure

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 from numpy.typing import NDArray
 
-from gear_damping.reporting.style import CYCLE, INK, new_figure, say_empty, styled
+from gear_damping.reporting.style import CYCLE, INK, mark_empty, new_figure, styled
 
 Array = NDArray[np.float64]
 MOST_PANELS = 12  # that can be read on one page
@@ -67,7 +67,7 @@ def damping_figure(panels: Sequence[DampingPanel], of: str) -> Figure:
         for axes in grid.flat[len(shown) :]:
             axes.set_visible(False)
         if not shown:
-            say_empty(grid[0][0], "no records to show")
+            mark_empty(grid[0][0], "no records to show")
         for axes, panel in zip(grid.flat, shown, strict=False):
             _panel(axes, panel, names)
         left_out = len(panels) - len(shown)
@@ -85,7 +85,7 @@ def _panel(axes: Axes, panel: DampingPanel, names: Sequence[str]) -> None:
     told = {name: band for name, band in panel.bands.items() if band is not None}
     axes.set_title(panel.record)
     if not told:
-        say_empty(axes, "no estimator tells anything")
+        mark_empty(axes, "no estimator tells anything")
         return
     for name, band in told.items():
         colour = CYCLE[names.index(name) % len(CYCLE)]

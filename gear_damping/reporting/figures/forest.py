@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from gear_damping.reporting.style import BLUE, INK, RED, legend_above, new_figure, say_empty, styled
+from gear_damping.reporting.style import BLUE, INK, RED, legend_above, mark_empty, new_figure, styled
 
 MOST_ROWS = 24  # that can be read on one page
 MARKER, WIDE = 6, 2.0  # points, of a marker and of a line
@@ -27,7 +27,7 @@ def forest_figure(rows: Sequence[Mapping[str, Any]], joint: Mapping[str, Any], *
         left_out = len(rows) - len(shown)
         axes.set_xlabel(quantity + (f"      ({left_out} more records not shown)" if left_out else ""))
         if not shown:
-            say_empty(axes, "no record tells it by itself")
+            mark_empty(axes, "no record tells it by itself")
             return figure
         low, high = joint["interval95"]
         if np.isfinite([low, high]).all():

@@ -8,15 +8,15 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gear_damping.reporting.figures.arrays import Array, any_finite, extent, series
-from gear_damping.reporting.style import BLUE, FAINT, INK, RED, legend_above, new_figure, say_empty, styled
+from gear_damping.reporting.style import BLUE, FAINT, INK, RED, legend_above, mark_empty, new_figure, styled
 
-PIECE_SAMPLES = 120  # in which single cycles are seen
+EXCERPT_SAMPLES = 120  # in which single cycles are seen
 
 
 def identification_figure(
     panels: Sequence[Mapping[str, Any]], unit: str, parameters: Sequence[str], label: str = "response"
 ) -> Figure:
-    """Measured and simulated records, their residuals below, a piece of each at the right, parameters in a box.
+    """Measured and simulated records, their residuals below, an excerpt of each at the right, parameters in a box.
 
     Args:
         panels: For each record `name`, `role` (fit or holdout), `time` (s), `measured` and `simulated`, arrays of
@@ -37,7 +37,7 @@ def identification_figure(
         heights = (2.2, 1) * max(len(panels), 1)
         grid = body.subplots(len(heights), 2, squeeze=False, width_ratios=(2.6, 1), height_ratios=heights)
         if not panels:
-            say_empty(grid[0][0], "no records to show")
+            mark_empty(grid[0][0], "no records to show")
         for number, panel in enumerate(panels):
             _record(grid[2 * number : 2 * number + 2], panel, unit, label)
         body.align_ylabels(grid[:, 0])
@@ -65,13 +65,13 @@ def _title(panel: Mapping[str, Any]) -> str:
 
 
 def _record(cells: np.ndarray, panel: Mapping[str, Any], unit: str, label: str) -> None:
-    """Overlay above, residual below, at the right a piece in which single samples are seen."""
+    """Overlay above, residual below, at the right an excerpt in which single samples are seen."""
     time, measured, simulated = series(**{name: panel[name] for name in ("time", "measured", "simulated")})
     residual = measured - simulated
     (whole, close), (left, left_close) = cells
-    piece = _piece(time)
-    for upper, lower, part in ((whole, left, slice(None)), (close, left_close, piece)):
-        marker = {"marker": ".", "markersize": 4, "linestyle": "none"} if part is piece else {}
+    excerpt = _excerpt(time)
+    for upper, lower, part in ((whole, left, slice(None)), (close, left_close, excerpt)):
+        marker = {"marker": ".", "markersize": 4, "linestyle": "none"} if part is excerpt else {}
         upper.plot(time[part], measured[part], color=INK, linewidth=1.0, label="measured", **marker)
         upper.plot(time[part], simulated[part], color=BLUE, linewidth=0.9, label="simulated")
         lower.plot(time[part], residual[part], color=RED, linewidth=0.8, label="measured - simulated")
@@ -86,9 +86,9 @@ def _record(cells: np.ndarray, panel: Mapping[str, Any], unit: str, label: str) 
     if any_finite(residual):
         left.set_title(f"residual, RMSE {float(np.sqrt(np.nanmean(residual**2))):.4g} {unit}", fontsize=9, color=RED)
     else:
-        say_empty(whole)
+        mark_empty(whole)
 
 
-def _piece(time: Array) -> slice:
+def _excerpt(time: Array) -> slice:
     start = len(time) // 3
-    return slice(start, start + max(10, min(PIECE_SAMPLES, len(time) // 8)))
+    return slice(start, start + max(10, min(EXCERPT_SAMPLES, len(time) // 8)))

@@ -51,7 +51,7 @@ def name_on_right(axes: Axes, marks: Mapping[str, float], gap: float = 0.055) ->
     low, high = np.log(axes.get_ylim())
     heights = {n: (np.log(v) - low) / (high - low) for n, v in marks.items() if low <= np.log(v) <= high}
     ordered = sorted(heights, key=heights.__getitem__)
-    for name, place in zip(ordered, spread([heights[n] for n in ordered], gap), strict=True):
+    for name, place in zip(ordered, spaced([heights[n] for n in ordered], gap), strict=True):
         axes.annotate(
             name,
             xy=(1.0, heights[name]),
@@ -65,7 +65,7 @@ def name_on_right(axes: Axes, marks: Mapping[str, float], gap: float = 0.055) ->
         )
 
 
-def spread(places: Sequence[float], gap: float) -> list[float]:
+def spaced(places: Sequence[float], gap: float) -> list[float]:
     """Ascending places moved apart to at least `gap`, those above pushed up and then all kept below 1."""
     moved = list(places)
     for i in range(1, len(moved)):

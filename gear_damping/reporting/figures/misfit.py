@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullLocator
 
-from gear_damping.reporting.style import BLUE, INK, PALE, RED, legend_above, new_figure, say_empty, styled
+from gear_damping.reporting.style import BLUE, INK, PALE, RED, legend_above, mark_empty, new_figure, styled
 
 MOST_FINE_RANGE = 2000.0  # of an axis with 1, 2, 5 in every decade
 
@@ -27,7 +27,7 @@ def misfit_figure(records: Mapping[str, Mapping[str, float | None]], *, floor: f
         axes = figure.subplots()
         axes.set_xlabel("mean squared residual / noise variance")
         if not np.isfinite([*before, *after]).any():
-            say_empty(axes, "no misfit to show")
+            mark_empty(axes, "no misfit to show")
             return figure
         axes.hlines(places, after, before, color=PALE, linewidth=2, zorder=1)
         axes.plot(before, places, "o", color=RED, label="before (nominal)", markersize=7)

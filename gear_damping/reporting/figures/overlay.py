@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from gear_damping.reporting.figures.arrays import Array, any_finite, extent, series, time_axis
-from gear_damping.reporting.style import BLUE, INK, PALE, RED, SKY, legend_above, new_figure, say_empty, styled
+from gear_damping.reporting.style import BLUE, INK, PALE, RED, SKY, legend_above, mark_empty, new_figure, styled
 
 SHOWN_SAMPLES = 240  # in which two curves can be told apart
 LEAD = 0.1  # share of the stretch before the first of it
@@ -68,8 +68,8 @@ def overlay_figure(
         upper.plot(time[part], measured[part], zorder=3, **MEASURED)
         upper.set(ylabel=f"{quantity} / {unit}")
         upper.tick_params(labelbottom=False)
-        for axes, piece in ((middle, part), (lower, slice(None))):
-            _residuals(axes, time[piece], [r[piece] for r in residuals], looks, shown.noise)
+        for axes, excerpt in ((middle, part), (lower, slice(None))):
+            _residuals(axes, time[excerpt], [r[excerpt] for r in residuals], looks, shown.noise)
             axes.set_ylabel(f"residual / {unit}")
         _limits(upper, time[part])
         for axes in (middle, lower):
@@ -80,7 +80,7 @@ def overlay_figure(
         if shown.noise:
             middle.set_title(f"grey: the noise, ±{NOISE_BAND:g} standard deviations", fontsize=9)
         if not any_finite(*residuals):
-            say_empty(upper)
+            mark_empty(upper)
         figure.align_ylabels()
         legend_above(upper)
         return figure

@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from gear_damping.reporting.figures.arrays import Array, any_finite, extent, series
-from gear_damping.reporting.style import INK, colour_of, marker_of, new_figure, say_empty, styled
+from gear_damping.reporting.style import INK, colour_of, mark_empty, marker_of, new_figure, styled
 
 MEAN = "mean"  # the control that always says one value: a line in every panel instead of a panel
 MOST_COLUMNS = 3  # of panels on one page
@@ -22,7 +22,7 @@ def predicted_against_true_figure(predictions: Mapping[str, Any]) -> Figure:
     """Predicted against true damping ratio of each test run, one panel a model.
 
     Args:
-        predictions: Model -> (true, predicted), or (true, predicted, spread), in % of critical, each of shape
+        predictions: Model -> (true, predicted), or (true, predicted, std), in % of critical, each of shape
             (runs,); or what `compare_models` returns for it, of which `per_run` is shown. `mean` is the
             control that always says one value.
 
@@ -36,7 +36,7 @@ def predicted_against_true_figure(predictions: Mapping[str, Any]) -> Figure:
     with styled():
         figure, grid = _panels(max(len(found), 1))
         if not found:
-            say_empty(grid[0], "no predictions to show")
+            mark_empty(grid[0], "no predictions to show")
         for number, (axes, (name, arrays)) in enumerate(zip(grid, found.items(), strict=False)):
             _panel(axes, name, number, arrays)
             if limits:
@@ -66,24 +66,24 @@ def _panels(count: int) -> tuple[Figure, NDArray[np.object_]]:
 
 
 def _arrays(name: str, pair: Mapping[str, Any] | Sequence[Any]) -> tuple[Array, ...]:
-    """True, predicted and spread (0 where there is none) of a model."""
+    """True, predicted and standard deviation (0 where there is none) of a model."""
     if isinstance(pair, Mapping):
         pair = pair.get("per_run", pair)
         pair = (pair["true"], pair["predicted"], pair.get("spread"))
-    true, predicted, spread = (*pair, None)[:3]
-    spread = np.zeros(np.shape(true)) if spread is None else spread
-    return series(**{f"{name}, true": true, f"{name}, predicted": predicted, f"{name}, spread": spread})
+    true, predicted, std = (*pair, None)[:3]
+    std = np.zeros(np.shape(true)) if std is None else std
+    return series(**{f"{name}, true": true, f"{name}, predicted": predicted, f"{name}, spread": std})
 
 
 def _panel(axes: Axes, name: str, number: int, arrays: tuple[Array, ...]) -> None:
-    true, predicted, spread = arrays
+    true, predicted, std = arrays
     if not any_finite(true + predicted):
         axes.set_title(name)
-        say_empty(axes)
+        mark_empty(axes)
         return
     colour = colour_of(name, number)
-    if np.nansum(spread) > 0:
-        axes.errorbar(true, predicted, yerr=np.nan_to_num(spread), fmt="none", ecolor=colour, alpha=0.35, linewidth=0.8)
+    if np.nansum(std) > 0:
+        axes.errorbar(true, predicted, yerr=np.nan_to_num(std), fmt="none", ecolor=colour, alpha=0.35, linewidth=0.8)
     axes.plot(true, predicted, marker_of(name), markersize=4, color=colour, linestyle="none")
     error = float(np.sqrt(np.nanmean((predicted - true) ** 2)))
     axes.set_title(f"{name}\nRMSE over runs {error:.3g} %")

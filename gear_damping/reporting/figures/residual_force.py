@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from gear_damping.reporting.figures.arrays import Array, any_finite, grid, series
-from gear_damping.reporting.style import BLUE, DIVERGING, FAINT, PALE, new_figure, say_empty, styled
+from gear_damping.reporting.style import BLUE, DIVERGING, FAINT, PALE, mark_empty, new_figure, styled
 
 ROBUST_PERCENTILE = 99.0  # of the sizes; a few outliers may saturate
 NOT_VISITED = "#D9D9D9"
@@ -109,7 +109,7 @@ def _picture(axes: Axes, across: Array, up: Array, force: Array, name: str, belo
     """Draw the bins with symmetric colours; False where there is nothing to draw."""
     axes.grid(visible=False)
     if not any_finite(force) or min(force.shape) < 2:
-        say_empty(axes, "the residual force was not estimated")
+        mark_empty(axes, "the residual force was not estimated")
         return False
     axes.set_facecolor(NOT_VISITED)
     size = float(np.nanpercentile(np.abs(force), ROBUST_PERCENTILE)) or 1e-12

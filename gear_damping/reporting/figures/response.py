@@ -1,11 +1,11 @@
-"""A record over time: the whole of it and a piece that can be read."""
+"""A record over time: the whole of it and an excerpt that can be read."""
 
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from gear_damping.reporting.figures.arrays import any_finite, extent, series, time_axis
-from gear_damping.reporting.style import BLUE, SKY, new_figure, say_empty, styled
+from gear_damping.reporting.style import BLUE, SKY, mark_empty, new_figure, styled
 
 READABLE_SAMPLES = 300  # in which single cycles are seen
 
@@ -34,24 +34,24 @@ def response_figure(
     shown_time, time_label = time_axis(time)
     with styled():
         figure = new_figure(4.6)
-        whole, piece = figure.subplots(2, 1)
+        whole, excerpt = figure.subplots(2, 1)
         stop = min(readable, len(time))
-        for axes, values, width in ((whole, slice(None), 0.7), (piece, slice(0, stop), 1.1)):
+        for axes, values, width in ((whole, slice(None), 0.7), (excerpt, slice(0, stop), 1.1)):
             axes.plot(shown_time[values], signal[values], color=BLUE, linewidth=width)
             axes.set(ylabel=f"{label} / {unit}", xlabel=time_label)
             limits = extent([shown_time[values]])
             if limits:
                 axes.set_xlim(limits)
         if not any_finite(signal):
-            say_empty(whole)
+            mark_empty(whole)
             return figure
         if stop < len(time):
             whole.axvspan(shown_time[0], shown_time[stop - 1], color=SKY, alpha=0.3, linewidth=0)
         whole.set_title(_extremes(signal, unit))
-        piece.set_title("the beginning, shaded above" if stop < len(time) else "")
+        excerpt.set_title("the beginning, shaded above" if stop < len(time) else "")
         return figure
 
 
 def _extremes(signal: np.ndarray, unit: str) -> str:
-    mean, spread = float(np.nanmean(signal)), float(np.nanstd(signal))
-    return f"mean {mean:.4g} {unit}, standard deviation {spread:.3g} {unit}"
+    mean, deviation = float(np.nanmean(signal)), float(np.nanstd(signal))
+    return f"mean {mean:.4g} {unit}, standard deviation {deviation:.3g} {unit}"

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gear_damping.reporting.figures.arrays import Array, grid, series, time_axis
 from gear_damping.reporting.figures.marks import harmonics, name_on_right
-from gear_damping.reporting.style import INK, SEQUENTIAL, new_figure, say_empty, styled
+from gear_damping.reporting.style import INK, SEQUENTIAL, mark_empty, new_figure, styled
 
 DECIBELS = 50  # shown below the peak
 MOST_HARMONICS = 6  # that are marked
@@ -45,7 +45,7 @@ def scalogram_figure(
         axes.set(xlabel=time_label, ylabel="frequency / Hz")
         axes.grid(visible=False)
         if min(size.shape) < 2 or not np.nanmax(np.nan_to_num(size)) > 0:
-            say_empty(axes, "no coefficients to show")
+            mark_empty(axes, "no coefficients to show")
             return figure
         _picture(axes, shown_time, frequencies, size)
         _cone(axes, shown_time, frequencies, affected)

@@ -18,7 +18,7 @@ from gear_damping.reporting.figures.spectra import (
     SHOWN_MESH_HARMONICS,
     draw_spectra,
 )
-from gear_damping.reporting.style import BLUE, new_figure, say_empty, styled
+from gear_damping.reporting.style import BLUE, mark_empty, new_figure, styled
 from gear_damping.signals.envelope import upsample
 from gear_damping.signals.spectra import amplitude_spectrum
 
@@ -93,7 +93,7 @@ def simulation_figure(run: ShownRun) -> Figure:
 def _phase_plane(axes: Axes, signal: Array, velocity: Array) -> None:
     """The orbit; between samples it is interpolated, since a cycle may have few of them."""
     if not np.isfinite(signal + velocity).all() or len(signal) < LEAST_SAMPLES:
-        say_empty(axes, "no orbit: too short or not finite")
+        mark_empty(axes, "no orbit: too short or not finite")
         return
     orbit = upsample(torch.as_tensor(np.stack([signal, velocity])), REFINEMENT).numpy()
     axes.plot(orbit[0], orbit[1], color=BLUE, linewidth=0.5, alpha=0.8)
@@ -107,7 +107,7 @@ def _over_time(axes: Axes, time: Array, signal: Array, name: str) -> None:
     if limits:
         axes.set_xlim(limits)
     if not any_finite(signal):
-        say_empty(axes)
+        mark_empty(axes)
 
 
 def _spectrum(signal: Array, rate: float, shaft: float | None) -> tuple[Array, Array]:

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from gear_damping.reporting.figures.arrays import Array, any_finite, series
 from gear_damping.reporting.figures.marks import mark_orders
-from gear_damping.reporting.style import BLUE, CYCLE, INK, PALE, RED, new_figure, say_empty, styled
+from gear_damping.reporting.style import BLUE, CYCLE, INK, PALE, RED, mark_empty, new_figure, styled
 
 ORDER_LABEL = "order of the pinion shaft"
 FREQUENCY_LABEL = "frequency / Hz"
@@ -63,7 +63,7 @@ def draw_spectra(
     """
     orders, positive = _positive(orders, spectra)
     if len(orders) < 2 or not any_finite(*positive):
-        say_empty(axes, "no spectrum to show")
+        mark_empty(axes, "no spectrum to show")
         return 0.0
     for number, (label, values) in enumerate(zip(spectra, positive, strict=True)):
         look = LOOKS.get(label, {"color": CYCLE[number % len(CYCLE)], "linewidth": 0.9})

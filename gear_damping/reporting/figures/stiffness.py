@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from gear_damping.reporting.figures.arrays import Array, any_finite, series
-from gear_damping.reporting.style import BLUE, INK, SKY, legend_above, new_figure, say_empty, styled
+from gear_damping.reporting.style import BLUE, INK, SKY, legend_above, mark_empty, new_figure, styled
 
 SHOWN_MESH_PERIODS = 3  # in which the edges of a period are seen
 
@@ -37,7 +37,7 @@ def mesh_stiffness_figure(
         axes = figure.subplots()
         axes.set(xlabel="mesh phase / mesh periods", ylabel="mesh stiffness / (N/µm)", xlim=(0, periods))
         if not any_finite(angle + stiffness):
-            say_empty(axes)
+            mark_empty(axes)
             return figure
         phase = angle / (2 * pi)
         phase = phase - np.floor(np.nanmin(phase))

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from gear_damping.reporting.figures.arrays import any_finite
 from gear_damping.reporting.figures.axis_names import swept_axis
-from gear_damping.reporting.style import WIDTH, colour_of, legend_above, marker_of, new_figure, say_empty, styled
+from gear_damping.reporting.style import WIDTH, colour_of, legend_above, mark_empty, marker_of, new_figure, styled
 
 SUFFIX = "/rmse_percent"
 CONTROLS = ("mean", "white_noise")
@@ -25,7 +25,7 @@ Row = Mapping[str, Any]
 
 
 def sweep_figure(rows: Sequence[Row], key: str, others: Sequence[str] = ()) -> Figure:
-    """Test error against the swept value: a line per model with its spread over seeds, controls dashed.
+    """Test error against the swept value: a line per model with its standard deviation over seeds, controls dashed.
 
     Args:
         rows: One row a job, with `key`, `<model>/rmse_percent` and `<model>/rmse_percent_std` (% of critical);
@@ -48,7 +48,7 @@ def sweep_figure(rows: Sequence[Row], key: str, others: Sequence[str] = ()) -> F
                 axes.set_ylim(0, 1.06 * highest)
             _legend(figure, grid)
         else:
-            say_empty(grid[0], "no finished jobs to show")
+            mark_empty(grid[0], "no finished jobs to show")
         return figure
 
 
@@ -73,8 +73,8 @@ def figures_of_sweep(rows: Sequence[Row], key: str, others: Sequence[str]) -> Fi
             for number, (title, found) in enumerate(lines.items()):
                 places = _places(axes, [row.get(key) for row in found])
                 values = np.array([_number(row.get(name)) for row in found])
-                spread = np.nan_to_num([_number(row.get(f"{name}_std")) for row in found])
-                _line(axes, title, colour_of(title, number), places, values, spread)
+                std = np.nan_to_num([_number(row.get(f"{name}_std")) for row in found])
+                _line(axes, title, colour_of(title, number), places, values, std)
         _name_axes(figure, grid, key)
         if len(lines) > 1:
             _legend(figure, grid)
@@ -82,7 +82,7 @@ def figures_of_sweep(rows: Sequence[Row], key: str, others: Sequence[str]) -> Fi
 
 
 def numbers_of(rows: Sequence[Row], keys: Sequence[str]) -> list[str]:
-    """Columns that hold numbers, without the swept ones and spreads."""
+    """Columns that hold numbers, without the swept ones and standard deviations."""
     columns = dict.fromkeys(column for row in rows for column in row)
     return [
         name
@@ -93,7 +93,7 @@ def numbers_of(rows: Sequence[Row], keys: Sequence[str]) -> list[str]:
 
 
 def over_seeds(rows: Sequence[Row], keys: Sequence[str]) -> tuple[list[Row], list[str]]:
-    """The rows with means and spreads over swept seeds, and the other keys."""
+    """The rows with means and standard deviations over swept seeds, and the other keys."""
     if SEED not in keys or len(keys) == 1:
         return list(rows), list(keys)
     others = [key for key in keys if key != SEED]
@@ -156,20 +156,20 @@ def _panel(axes: Axes, rows: Sequence[Row], key: str) -> float:
     highest = 0.0
     for number, name in enumerate(column.removesuffix(SUFFIX) for column in columns):
         mean = np.array([_number(row.get(name + SUFFIX)) for row in ordered])
-        spread = np.nan_to_num([_number(row.get(f"{name}{SUFFIX}_std")) for row in ordered])
+        std = np.nan_to_num([_number(row.get(f"{name}{SUFFIX}_std")) for row in ordered])
         if any_finite(mean):
-            _line(axes, name, colour_of(name, number), places, mean, spread)
-            highest = max(highest, float(np.nanmax(mean + spread)))
+            _line(axes, name, colour_of(name, number), places, mean, std)
+            highest = max(highest, float(np.nanmax(mean + std)))
     return highest
 
 
-def _line(axes: Axes, name: str, colour: str, places: Sequence[float], mean: np.ndarray, spread: np.ndarray) -> None:
+def _line(axes: Axes, name: str, colour: str, places: Sequence[float], mean: np.ndarray, std: np.ndarray) -> None:
     label = f"{name} (control)" if name in CONTROLS else name
     style = "--" if name in CONTROLS else "-"
     look = {"color": colour, "marker": marker_of(name), "markersize": 5, "linestyle": style}
     axes.plot(places, mean, label=label, zorder=2 if name in CONTROLS else 3, **look)
-    if spread.any():
-        axes.fill_between(places, mean - spread, mean + spread, color=colour, alpha=0.15, linewidth=0)
+    if std.any():
+        axes.fill_between(places, mean - std, mean + std, color=colour, alpha=0.15, linewidth=0)
 
 
 def _places(axes: Axes, values: Sequence[Any]) -> list[float]:

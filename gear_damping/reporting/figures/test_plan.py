@@ -10,7 +10,17 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from numpy.typing import NDArray
 
-from gear_damping.reporting.style import CYCLE, FAINT, INK, RED, SEQUENTIAL, legend_above, new_figure, say_empty, styled
+from gear_damping.reporting.style import (
+    CYCLE,
+    FAINT,
+    INK,
+    RED,
+    SEQUENTIAL,
+    legend_above,
+    mark_empty,
+    new_figure,
+    styled,
+)
 
 Array = NDArray[np.float64]
 STEPS = np.array([1.0])  # of a decade, at which contours are drawn
@@ -79,7 +89,7 @@ def test_plan_figure(picture: PlanPicture) -> Figure:
         figure.suptitle(picture.title, fontsize=10, x=0.01, ha="left")
         name = "cheapest set" if picture.reached else "best set"
         if not np.isfinite(picture.shown.percent).any():
-            say_empty(axes, "no test tells anything of the damping")
+            mark_empty(axes, "no test tells anything of the damping")
         elif isinstance(picture.shown, PlanMap):
             _map(figure, axes, picture.shown, picture.wanted, name)
         else:

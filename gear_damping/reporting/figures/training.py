@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from gear_damping.reporting.figures.arrays import any_finite
-from gear_damping.reporting.style import INK, colour_of, legend_above, new_figure, say_empty, styled
+from gear_damping.reporting.style import INK, colour_of, legend_above, mark_empty, new_figure, styled
 
 History = Sequence[Mapping[str, float]]
 TRAINING, VALIDATION, RATE = "train_loss", "val_rmse_percent", "learning_rate"
@@ -32,7 +32,7 @@ def training_figure(histories: Mapping[str, History]) -> Figure:
         errors.set(ylabel="RMSE / % of critical", yscale=_scale(histories))
         steps.set(xlabel="epoch", ylabel="learning rate", yscale="log")
         if not any_finite(*[_column(history, VALIDATION) for history in histories.values()], [np.nan]):
-            say_empty(errors, "no epochs to show")
+            mark_empty(errors, "no epochs to show")
         steps.xaxis.get_major_locator().set_params(integer=True)
         legend_above(errors, _legend(models), columns=6)
         return figure

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from gear_damping.reporting.style import BLUE, INK, PALE, new_figure, say_empty, styled
+from gear_damping.reporting.style import BLUE, INK, PALE, mark_empty, new_figure, styled
 
 MOST_BARS = 16  # that can be read on one page
 UNNAMED = "unnamed: "  # as explanation.json writes it; what explains is not imported to draw
@@ -28,7 +28,7 @@ def visible_figure(statistics: Mapping[str, float], limit: float) -> Figure:
         rest = f"      ({len(rows) - len(shown)} smaller ones not shown)" if len(rows) > len(shown) else ""
         axes.set_xlabel(f"standardised score statistic of what is left{rest}")
         if not shown:
-            say_empty(axes, "nothing was tested")
+            mark_empty(axes, "nothing was tested")
             return figure
         for place, (name, value) in enumerate(shown):
             unnamed = name.startswith(UNNAMED)

@@ -1,4 +1,4 @@
-"""Cells of the tables: a score with its spread over seeds, in the unit of the paper or in % of critical."""
+"""Cells of the tables: a score with its standard deviation over seeds, in the unit of the paper or in % of critical."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from math import floor, log10
@@ -24,24 +24,24 @@ def score(found: Found, effect: str, protocol: str, name: str, which: str = "rms
     return None if each is None else each["scores"][name][which]
 
 
-def in_percent(spread: Mapping[str, Any] | None) -> str:
+def in_percent(scored: Mapping[str, Any] | None) -> str:
     """In % of critical: `0.112 ± 0.003`."""
-    if spread is None:
+    if scored is None:
         return NOTHING
-    return f"{spread['mean']:.3f}{_deviation(spread['std'], 3, spread)}"
+    return f"{scored['mean']:.3f}{_deviation(scored['std'], 3, scored)}"
 
 
-def as_fraction(spread: Mapping[str, Any] | None) -> str:
+def as_fraction(scored: Mapping[str, Any] | None) -> str:
     """As a fraction of critical, the way the paper prints: `(8.1 ± 0.3)·10⁻⁴`."""
-    if spread is None:
+    if scored is None:
         return NOTHING
-    mean, std = spread["mean"] / PERCENT, spread["std"] / PERCENT
+    mean, std = scored["mean"] / PERCENT, scored["std"] / PERCENT
     if mean == 0:
         return "0"
     if mean >= SMALL:
-        return f"{mean:.3f}{_deviation(std, 3, spread)}"
+        return f"{mean:.3f}{_deviation(std, 3, scored)}"
     power = floor(log10(mean))
-    return f"({mean / 10**power:.2f}{_deviation(std / 10**power, 2, spread)})·10{superscript(power)}"
+    return f"({mean / 10**power:.2f}{_deviation(std / 10**power, 2, scored)})·10{superscript(power)}"
 
 
 def printed(name: str, network: str) -> str:
@@ -55,19 +55,19 @@ def printed(name: str, network: str) -> str:
     return f"{value / 10**power:.4g}·10{superscript(power)}"
 
 
-def plain_number(spread: Mapping[str, Any] | None, decimals: int = 2) -> str:
+def plain_number(scored: Mapping[str, Any] | None, decimals: int = 2) -> str:
     """A mean with its deviation."""
-    return NOTHING if spread is None else f"{spread['mean']:.{decimals}f}{_deviation(spread['std'], decimals, spread)}"
+    return NOTHING if scored is None else f"{scored['mean']:.{decimals}f}{_deviation(scored['std'], decimals, scored)}"
 
 
-def percent_of(spread: Mapping[str, Any] | None) -> str:
+def percent_of(scored: Mapping[str, Any] | None) -> str:
     """A share in %."""
-    return NOTHING if spread is None else f"{PERCENT * spread['mean']:.3g} %"
+    return NOTHING if scored is None else f"{PERCENT * scored['mean']:.3g} %"
 
 
-def _deviation(std: float, decimals: int, spread: Mapping[str, Any]) -> str:
+def _deviation(std: float, decimals: int, scored: Mapping[str, Any]) -> str:
     """What stands behind a mean; nothing of one seed."""
-    return f" ± {std:.{decimals}f}" if len(spread["values"]) > 1 else ""
+    return f" ± {std:.{decimals}f}" if len(scored["values"]) > 1 else ""
 
 
 def superscript(power: int) -> str:

@@ -60,11 +60,11 @@ def _one_run(axes: Axes, parts: list[Part]) -> None:
 def _unseen(axes: Axes, network: str, study: Study, effect: str) -> None:
     """Predicted against true of every test run of every seed; bars: deviation over its windows."""
     parts = study.of(effect, "by_run")
-    true, predicted, spread = (
+    true, predicted, std = (
         np.concatenate([part["predictions"][network][key] for part in parts]) for key in ("true", "predicted", "spread")
     )
     colour = colour_of(network)
-    axes.errorbar(true, predicted, yerr=spread, fmt="none", ecolor=colour, alpha=0.22, linewidth=0.7)
+    axes.errorbar(true, predicted, yerr=std, fmt="none", ecolor=colour, alpha=0.22, linewidth=0.7)
     axes.plot(true, predicted, marker_of(network), color=colour, markersize=3, alpha=0.8)
     ends = np.array([0.08, 0.62])
     axes.plot(ends, ends, ":", color=INK, linewidth=1)

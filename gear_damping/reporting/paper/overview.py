@@ -15,7 +15,7 @@ LINE = 120  # characters of a line of text
 CLEAR = 2.0  # standard errors of the mean from which a difference is called one
 
 
-def spread_of(values: Sequence[float]) -> dict[str, Any]:
+def mean_and_std(values: Sequence[float]) -> dict[str, Any]:
     """Mean and deviation."""
     return {"mean": fmean(values), "std": stdev(values) if len(values) > 1 else 0.0, "values": list(values)}
 
@@ -61,7 +61,7 @@ def ratios_together(found: Found, name: str, which: str = "rmse_percent") -> dic
         return None
     squares = [[value**2 for value in one["values"]] for one in each]
     joined = [sum(column) if which == "rmse_paper" else fmean(column) for column in zip(*squares, strict=True)]
-    return spread_of([value**0.5 for value in joined])
+    return mean_and_std([value**0.5 for value in joined])
 
 
 def unseen_ratios(found: Found, name: str, which: str = "rmse_percent") -> dict[str, Any] | None:
@@ -71,7 +71,7 @@ def unseen_ratios(found: Found, name: str, which: str = "rmse_percent") -> dict[
         return None
     squares = [[seed[f"{ratio:g}"][name][which] ** 2 for ratio in RATIOS_PERCENT] for seed in seeds]
     joined = [sum(one) if which == "rmse_paper" else fmean(one) for one in squares]
-    return spread_of([value**0.5 for value in joined])
+    return mean_and_std([value**0.5 for value in joined])
 
 
 def leads_table(found: Found) -> str:
@@ -91,7 +91,7 @@ def _lead(found: Found, effect: str, protocol: str) -> str:
     raw, cwt = (score(found, effect, protocol, name) for name in (RAW, CWT))
     if raw is None or cwt is None:
         return NOTHING
-    leads = spread_of([100 * (1 - c / r) for r, c in zip(raw["values"], cwt["values"], strict=True)])
+    leads = mean_and_std([100 * (1 - c / r) for r, c in zip(raw["values"], cwt["values"], strict=True)])
     error = leads["std"] / len(leads["values"]) ** 0.5
     if len(leads["values"]) == 1:
         return f"{leads['mean']:+.0f} %"

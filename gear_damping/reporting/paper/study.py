@@ -1,4 +1,4 @@
-"""All that a study found: its trainings by effect and protocol, with mean and spread over seeds."""
+"""All that a study found: its trainings by effect and protocol, with mean and standard deviation over seeds."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -17,7 +17,7 @@ Part = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
-class Spread:
+class MeanAndStd:
     """A score over seeds: mean, standard deviation (0 of one seed) and the values."""
 
     mean: float
@@ -25,7 +25,7 @@ class Spread:
     values: tuple[float, ...]
 
     @classmethod
-    def over(cls, values: Sequence[float]) -> "Spread":
+    def over(cls, values: Sequence[float]) -> "MeanAndStd":
         """Of these values, at least one."""
         return cls(fmean(values), stdev(values) if len(values) > 1 else 0.0, tuple(values))
 
@@ -49,16 +49,16 @@ class Study:
         found = [part for part in self.parts if part["effect"] == effect and part["protocol"] == protocol]
         return sorted(found, key=lambda part: part["seed"])
 
-    def score(self, effect: str, protocol: str, name: str, which: str = "rmse_percent") -> Spread | None:
+    def score(self, effect: str, protocol: str, name: str, which: str = "rmse_percent") -> MeanAndStd | None:
         """A score of a network or control over seeds; None where it is not defined."""
         values = [part["scores"][name].get(which) for part in self.of(effect, protocol)]
-        return None if not values or None in values else Spread.over(values)
+        return None if not values or None in values else MeanAndStd.over(values)
 
-    def of_ratio(self, ratio_percent: float, name: str, which: str) -> Spread | None:
+    def of_ratio(self, ratio_percent: float, name: str, which: str) -> MeanAndStd | None:
         """A number of networks that were trained by run, on fresh runs of one ratio (%)."""
         parts = [part for part in self.of("baseline", "by_run") if part.get("by_ratio")]
         values = [part["by_ratio"][f"{ratio_percent:g}"][name][which] for part in parts]
-        return Spread.over(values) if values else None
+        return MeanAndStd.over(values) if values else None
 
     @property
     def cpu_minutes(self) -> float:
@@ -84,8 +84,8 @@ class Study:
         parts = self.of(effect, protocol)
         found: dict[str, Any] = {"seeds": [part["seed"] for part in parts], "n_runs": parts[0]["n_runs"], "scores": {}}
         for name in (*NETWORKS, BLIND, MEAN):
-            spreads = {which: self.score(effect, protocol, name, which) for which in SCORES}
-            found["scores"][name] = {which: None if one is None else asdict(one) for which, one in spreads.items()}
+            scores = {which: self.score(effect, protocol, name, which) for which in SCORES}
+            found["scores"][name] = {which: None if one is None else asdict(one) for which, one in scores.items()}
         if parts[0].get("by_ratio"):
             found["by_ratio"] = [part["by_ratio"] for part in parts]
         return found

@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 
 from gear_damping.reporting.paper.names import one_run_of
 from gear_damping.reporting.paper.printed import RATIOS_PERCENT, SNRS_DB
-from gear_damping.reporting.paper.study import BLIND, MEAN, NETWORKS, Spread, Study
+from gear_damping.reporting.paper.study import BLIND, MEAN, NETWORKS, MeanAndStd, Study
 from gear_damping.reporting.style import INK, colour_of, marker_of, new_figure, styled
 
 TITLES = {"paper": "one run, cut by time (the paper's protocol)", "by_run": "runs that were not trained on"}
@@ -52,7 +52,7 @@ def ratios_figure(study: Study) -> Figure:
         return figure
 
 
-def _of_one_run(study: Study, ratio: float, name: str) -> Spread | None:
+def _of_one_run(study: Study, ratio: float, name: str) -> MeanAndStd | None:
     """What is predicted on the test windows of the run that was trained on, over windows and seeds."""
     parts = study.of(one_run_of(ratio), "paper")
     if not parts:
@@ -61,20 +61,20 @@ def _of_one_run(study: Study, ratio: float, name: str) -> Spread | None:
                         [part["predictions"][name]["spread"][0] for part in parts])
 
 
-def _of_unseen(study: Study, ratio: float, name: str) -> Spread | None:
+def _of_unseen(study: Study, ratio: float, name: str) -> MeanAndStd | None:
     """What is predicted on unseen runs of the ratio, over runs and seeds."""
-    means, spreads = (study.of_ratio(ratio, name, key) for key in ("predicted", "spread"))
-    return None if means is None else _all_windows(means.values, spreads.values)
+    means, deviations = (study.of_ratio(ratio, name, key) for key in ("predicted", "spread"))
+    return None if means is None else _all_windows(means.values, deviations.values)
 
 
-def _all_windows(means: list[float] | tuple[float, ...], spreads: list[float] | tuple[float, ...]) -> Spread:
+def _all_windows(means: list[float] | tuple[float, ...], deviations: list[float] | tuple[float, ...]) -> MeanAndStd:
     """Mean, and deviation within and between seeds together."""
-    within, between = np.mean(np.square(spreads)), np.var(means)
-    return Spread(float(np.mean(means)), float((within + between) ** 0.5), tuple(means))
+    within, between = np.mean(np.square(deviations)), np.var(means)
+    return MeanAndStd(float(np.mean(means)), float((within + between) ** 0.5), tuple(means))
 
 
 def _line(
-    axes: Axes, name: str, places: tuple[float, ...], find: Callable[[float], Spread | None], shift: float = 0.0
+    axes: Axes, name: str, places: tuple[float, ...], find: Callable[[float], MeanAndStd | None], shift: float = 0.0
 ) -> None:
     found = [(place, find(place)) for place in places]
     found = [(place, one) for place, one in found if one is not None]

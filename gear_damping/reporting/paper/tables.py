@@ -95,7 +95,7 @@ def ratio_table(found: Found) -> str:
 
 def _of_ratio(found: Found, ratio: float, one: str) -> Mapping[str, float] | None:
     each = found["learned"].get("baseline", {}).get("by_run", {}).get("by_ratio")
-    return None if each is None else overview.spread_of([seed[f"{ratio:g}"][one]["rmse_percent"] for seed in each])
+    return None if each is None else overview.mean_and_std([seed[f"{ratio:g}"][one]["rmse_percent"] for seed in each])
 
 
 def table_1(found: Found) -> str:

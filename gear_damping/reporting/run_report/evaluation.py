@@ -9,7 +9,7 @@ from gear_damping.reporting.evaluation import COLUMNS, NO_NOISE, evaluation_rows
 from gear_damping.reporting.numbers import number
 from gear_damping.reporting.page.picture import Picture
 from gear_damping.reporting.page.table import Table
-from gear_damping.reporting.run_report.content import DOUBTFUL, FINE, Left, RunReport, Section
+from gear_damping.reporting.run_report.report_schema import DOUBTFUL, FINE, Left, RunReport, Section
 
 CONTROLS = ("mean", "white_noise")
 TEXT_COLUMN = 2  # of the table: the estimator

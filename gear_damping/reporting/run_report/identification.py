@@ -7,7 +7,7 @@ from gear_damping.reporting.numbers import NOTHING, estimate, number, pretty_uni
 from gear_damping.reporting.page.picture import Picture
 from gear_damping.reporting.page.render import words
 from gear_damping.reporting.page.table import Table
-from gear_damping.reporting.run_report.content import DOUBTFUL, FINE, Left, RunReport, Section
+from gear_damping.reporting.run_report.report_schema import DOUBTFUL, FINE, Left, RunReport, Section
 
 ROLES = {"fit": "fitted", "holdout": "held out"}
 SCALARS = ("damping_ratio_percent", "natural_frequency_hz", "log_decrement")
@@ -111,8 +111,8 @@ def _of_network(left: Left, content: Mapping[str, Any]) -> RunReport:
     for name, one in content["records"].items():
         low, high = one.get("interval95") or (None, None)
         interval = NOTHING if low is None else f"{number(low)} … {number(high)}"
-        spread, outside = number(one.get("spread_percent"), 3), ", ".join(one["outside_training"]) or NOTHING
-        rows.append((name, number(one["damping_ratio_percent"]), interval, spread, outside))
+        std, outside = number(one.get("spread_percent"), 3), ", ".join(one["outside_training"]) or NOTHING
+        rows.append((name, number(one["damping_ratio_percent"]), interval, std, outside))
     table = Table("What the network says, in % of critical.", headings, rows, [1, 2, 3])
     apart = [name for name, one in content["records"].items() if one["outside_training"]]
     lead = [f"Damping ratio {estimate(content['damping_ratio_percent'] | {'unit': '%'})} of critical, by a network."]

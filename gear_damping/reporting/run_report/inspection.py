@@ -7,7 +7,7 @@ from gear_damping.reporting.numbers import NOTHING
 from gear_damping.reporting.page.picture import Picture
 from gear_damping.reporting.page.render import words
 from gear_damping.reporting.page.table import Table
-from gear_damping.reporting.run_report.content import DOUBTFUL, FINE, Left, RunReport, Section
+from gear_damping.reporting.run_report.report_schema import DOUBTFUL, FINE, Left, RunReport, Section
 
 NAME = "inspection.json"
 YAML = "measurement.yaml"  # of a bare file: what is written to start from

@@ -8,7 +8,7 @@ from gear_damping.reporting.page.table import Table
 from gear_damping.reporting.paper.page import NUMBERS
 from gear_damping.reporting.paper.printed import EFFECTS
 from gear_damping.reporting.paper.tables import TABLES
-from gear_damping.reporting.run_report.content import FINE, Left, RunReport, Section
+from gear_damping.reporting.run_report.report_schema import FINE, Left, RunReport, Section
 
 ONE_RUN, UNSEEN = "on one run, as the paper cuts it", "on runs that were not trained on"
 SHOWS = {  # what a figure draws, for those who do not see it

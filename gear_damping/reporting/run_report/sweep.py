@@ -9,7 +9,7 @@ from gear_damping.reporting.headline import ranked
 from gear_damping.reporting.numbers import NOTHING, number
 from gear_damping.reporting.page.picture import Picture
 from gear_damping.reporting.page.table import Link, Table
-from gear_damping.reporting.run_report.content import DOUBTFUL, FINE, Left, RunReport, Section
+from gear_damping.reporting.run_report.report_schema import DOUBTFUL, FINE, Left, RunReport, Section
 
 SPREAD = "_std"  # how the name of a deviation over seeds ends: of one seed it is 0, and tells nothing
 MOST_FIGURES = 5  # columns of the table; sweep.csv has all
@@ -88,7 +88,7 @@ def _small_multiples(shown: Left, left: SweepLeft) -> list[Picture]:
     names = [name for name in _figures(left) if any(isinstance(row.get(name), float) for row in left.rows)]
     ends = [f"{name} {_range(row.get(name) for row in left.rows)}" for name in names]
     alt = f"Line charts over {key}: {'; '.join(ends) or 'no figures'}."
-    caption = f"Figures of the jobs against {key}; over seeds means are drawn, with the spread as a band."
+    caption = f"Figures of the jobs against {key}; over seeds means are drawn, with the standard deviation as a band."
     return shown.picture("sweep.png", caption, alt)
 
 

@@ -7,7 +7,7 @@ from typing import Any
 from gear_damping.reporting.numbers import NOTHING, number
 from gear_damping.reporting.page.picture import Picture
 from gear_damping.reporting.page.table import Table
-from gear_damping.reporting.run_report.content import DOUBTFUL, FINE, Left, RunReport, Section
+from gear_damping.reporting.run_report.report_schema import DOUBTFUL, FINE, Left, RunReport, Section
 
 AXES = {"speed_rpm": "speed / rpm", "torque_nm": "torque / N·m", "amplitude_m": "amplitude / m"}
 PERCENT, EXPONENT = "half_interval95_percent_of_ratio", "half_interval95_exponent"

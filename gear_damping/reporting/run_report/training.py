@@ -7,7 +7,7 @@ from gear_damping.identification.controls import NO_BETTER
 from gear_damping.reporting.numbers import number, percent
 from gear_damping.reporting.page.picture import Picture
 from gear_damping.reporting.page.table import Table
-from gear_damping.reporting.run_report.content import DOUBTFUL, FINE, Left, RunReport, Section
+from gear_damping.reporting.run_report.report_schema import DOUBTFUL, FINE, Left, RunReport, Section
 from gear_damping.reporting.tables import COLUMNS, results_rows
 
 TABLE = (

@@ -9,7 +9,7 @@ from typing import Any
 from gear_damping.errors import written_whole
 from gear_damping.reporting.page.render import render_page
 from gear_damping.reporting.run_report import REPORT, REPORTED
-from gear_damping.reporting.run_report.content import Left, RunReport
+from gear_damping.reporting.run_report.report_schema import Left, RunReport
 from gear_damping.reporting.run_report.sweep import SweepLeft, sweep_report
 
 PACKAGE = "gear_damping.reporting.run_report"

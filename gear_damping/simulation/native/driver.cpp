@@ -1,4 +1,4 @@
-// Walks members over output intervals with the region-locked method of Tsitouras (see stepper.py, which
+// Walks members over output intervals with the active-branch method of Tsitouras (see stepper.py, which
 // does the same in PyTorch). Above this text stand: WIDTH, VECTORS, N_STATE, N_FIXED, N_SERIES, N_SWITCH, N_KEPT,
 // the vector types and functions, the method's N_STAGE, NODES, STAGES and WEIGHTS, what crossings are searched with
 // (WATCHED, REACH, MOST_SHIFT, SAME_INSTANT, ROOT_STEPS, MOST_SPLITS), and the traced functions setup, rates and
@@ -121,7 +121,7 @@ static inline vd root(vd start, vd length, const Ends& e, const Block& b, const 
   return secant(low, high, at_low, at_high);
 }
 
-// The first crossing of a step: its state and position, and the branch behind it, for lanes in `crossed`.
+// The first crossing of a step: its state and position, and the branch behind it, for members in `crossed`.
 static inline void cross(Ends& e, vd& start, vd length, const Block& b, vd* L, vm crossed) {
   const vd part = root(start, length, e, b, L);
   vd y[N_STATE], slope[N_STATE], ahead[N_STATE], here[N_SWITCH], there[N_SWITCH];
@@ -188,17 +188,17 @@ static inline void substep(vd (*y)[N_STATE], vd start, vd length, Block* b) {
 #endif
 }
 
-// Lanes of row `row` of a (rows, lanes) array; past the end the last lane is repeated.
-static inline vd load(const double* rows, long lanes, long row, long lane) {
+// Members of row `row` of a (rows, batch) array; past the end the last member is repeated.
+static inline vd load(const double* rows, long batch, long row, long member) {
   vd v;
-  for (int l = 0; l < WIDTH; ++l) v[l] = rows[row * lanes + (lane + l < lanes ? lane + l : lanes - 1)];
+  for (int l = 0; l < WIDTH; ++l) v[l] = rows[row * batch + (member + l < batch ? member + l : batch - 1)];
   return v;
 }
 
-// Which series drive the lanes of a vector, and what they are multiplied with.
-static inline void choose_series(Block& b, const long* source, const double* factor, long lanes, long lane) {
-  for (int l = 0; l < WIDTH; ++l) b.source[l] = source[lane + l < lanes ? lane + l : lanes - 1];
-  for (int i = 0; i < N_SERIES; ++i) b.factor[i] = load(factor, lanes, i, lane);
+// Which series drive the batch of a vector, and what they are multiplied with.
+static inline void choose_series(Block& b, const long* source, const double* factor, long batch, long member) {
+  for (int l = 0; l < WIDTH; ++l) b.source[l] = source[member + l < batch ? member + l : batch - 1];
+  for (int i = 0; i < N_SERIES; ++i) b.factor[i] = load(factor, batch, i, member);
 }
 
 // Those series in the interval whose rows (N_SERIES, sources) these are.
@@ -210,15 +210,15 @@ static inline void drive(Block& b, const double* rows, long sources) {
   }
 }
 
-static inline void store(double* rows, long lanes, long row, long lane, vd v) {
-  for (int l = 0; l < WIDTH && lane + l < lanes; ++l) rows[row * lanes + lane + l] = v[l];
+static inline void store(double* rows, long batch, long row, long member, vd v) {
+  for (int l = 0; l < WIDTH && member + l < batch; ++l) rows[row * batch + member + l] = v[l];
 }
 
-// The last `count` outputs of a vector into its rows of out (N_STATE, lanes, length), from `first` on.
-static inline void flush(double* out, long length, long lanes, long lane, long first, int count, vd (*kept)[N_STATE]) {
+// The last `count` outputs of a vector into its rows of out (N_STATE, batch, length), from `first` on.
+static inline void flush(double* out, long length, long batch, long member, long first, int count, vd (*kept)[N_STATE]) {
   for (int i = 0; i < N_STATE; ++i)
-    for (int l = 0; l < WIDTH && lane + l < lanes; ++l) {
-      double* row = out + (i * lanes + lane + l) * length + first;
+    for (int l = 0; l < WIDTH && member + l < batch; ++l) {
+      double* row = out + (i * batch + member + l) * length + first;
       for (int n = 0; n < count; ++n) row[n] = kept[n][i][l];
     }
 }
@@ -230,21 +230,21 @@ __attribute__((noinline)) static vd acceleration_of(const vd* y, const Block& b)
   return out[1] / b.P[0];
 }
 
-// Walks the M vectors of lanes from `group` on; arguments as for `walk`.
+// Walks the M vectors of members from `group` on; arguments as for `walk`.
 template <int M>
-static void walk_group(long lanes, long group, long first, long count, long substeps, long length, long sources,
+static void walk_group(long batch, long group, long first, long count, long substeps, long length, long sources,
                        const double* fixed, const double* series, const long* source, const double* factor,
                        double* state, double* branch, double* out, double* acceleration) {
   const double part = 1.0 / double(substeps);
   Block b[M];
   vd y[M][N_STATE], kept[M][TILE][N_STATE];
   for (int m = 0; m < M; ++m) {
-    const long lane = group + m * WIDTH;
-    for (int i = 0; i < N_FIXED; ++i) b[m].P[i] = load(fixed, lanes, i, lane);
-    for (int i = 0; i < N_STATE; ++i) y[m][i] = load(state, lanes, i, lane);
-    for (int w = 0; w < N_SWITCH; ++w) b[m].L[w] = load(branch, lanes, w, lane);
+    const long member = group + m * WIDTH;
+    for (int i = 0; i < N_FIXED; ++i) b[m].P[i] = load(fixed, batch, i, member);
+    for (int i = 0; i < N_STATE; ++i) y[m][i] = load(state, batch, i, member);
+    for (int w = 0; w < N_SWITCH; ++w) b[m].L[w] = load(branch, batch, w, member);
     setup(b[m].P, b[m].Q);
-    choose_series(b[m], source, factor, lanes, lane);
+    choose_series(b[m], source, factor, batch, member);
   }
   for (long n = 0; n < count; ++n) {
     for (int m = 0; m < M; ++m) {
@@ -256,32 +256,32 @@ static void walk_group(long lanes, long group, long first, long count, long subs
     for (int m = 0; m < M; ++m) {
       for (int i = 0; i < N_STATE; ++i) kept[m][place][i] = y[m][i];
       if (place == TILE - 1 || n == count - 1)
-        flush(out, length, lanes, group + m * WIDTH, n - place, place + 1, kept[m]);
+        flush(out, length, batch, group + m * WIDTH, n - place, place + 1, kept[m]);
       if (acceleration) {
-        const long lane = group + m * WIDTH;
+        const long member = group + m * WIDTH;
         const vd now = acceleration_of(y[m], b[m]);
-        for (int l = 0; l < WIDTH && lane + l < lanes; ++l) acceleration[(lane + l) * length + n] = now[l];
+        for (int l = 0; l < WIDTH && member + l < batch; ++l) acceleration[(member + l) * length + n] = now[l];
       }
     }
   }
   for (int m = 0; m < M; ++m) {
-    const long lane = group + m * WIDTH;
-    for (int i = 0; i < N_STATE; ++i) store(state, lanes, i, lane, y[m][i]);
-    for (int w = 0; w < N_SWITCH; ++w) store(branch, lanes, w, lane, b[m].L[w]);
+    const long member = group + m * WIDTH;
+    for (int i = 0; i < N_STATE; ++i) store(state, batch, i, member, y[m][i]);
+    for (int w = 0; w < N_SWITCH; ++w) store(branch, batch, w, member, b[m].L[w]);
   }
 }
 
-// fixed (N_FIXED, lanes); series (intervals, N_SERIES, sources), of which source (lanes) drives each lane times factor
-// (N_SERIES, lanes); state (N_STATE, lanes) and branch (N_SWITCH, lanes) are read and left at the last interval; out (N_STATE, lanes, length) gets `count` outputs.
-// acceleration (lanes, length), where not null, gets the rate of the velocity at the same outputs.
-// Lanes `from` to `to` are whole groups of VECTORS vectors, but for the last ones of all.
-extern "C" void walk(long lanes, long from, long to, long first, long count, long substeps, long length, long sources,
+// fixed (N_FIXED, batch); series (intervals, N_SERIES, sources), of which source (batch) drives each member times factor
+// (N_SERIES, batch); state (N_STATE, batch) and branch (N_SWITCH, batch) are read and left at the last interval; out (N_STATE, batch, length) gets `count` outputs.
+// acceleration (batch, length), where not null, gets the rate of the velocity at the same outputs.
+// Members `from` to `to` are whole groups of VECTORS vectors, but for the last ones of all.
+extern "C" void walk(long batch, long from, long to, long first, long count, long substeps, long length, long sources,
                      const double* fixed, const double* series, const long* source, const double* factor,
                      double* state, double* branch, double* out, double* acceleration) {
   for (long group = from; group < to; group += WIDTH * VECTORS) {
-    // a second vector of nothing but repeated lanes would cost as much as the first
-    const auto walked = VECTORS > 1 && lanes - group <= WIDTH ? walk_group<1> : walk_group<VECTORS>;
-    walked(lanes, group, first, count, substeps, length, sources, fixed, series, source, factor, state, branch, out,
+    // a second vector of nothing but repeated members would cost as much as the first
+    const auto walked = VECTORS > 1 && batch - group <= WIDTH ? walk_group<1> : walk_group<VECTORS>;
+    walked(batch, group, first, count, substeps, length, sources, fixed, series, source, factor, state, branch, out,
            acceleration);
   }
 }

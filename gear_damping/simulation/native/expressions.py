@@ -15,7 +15,7 @@ Kind = Literal["number", "mask"]
 
 @dataclass(frozen=True)
 class Value:
-    """A numbered value: a lane's number or truth."""
+    """A numbered value: a member's number or truth."""
 
     index: int
     kind: Kind

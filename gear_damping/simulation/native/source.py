@@ -8,10 +8,10 @@ import torch
 from torch import Tensor
 
 from gear_damping.simulation import tsit5
-from gear_damping.simulation.kernel import MOST_SHIFT, REACH, ROOT_STEPS, SAME_INSTANT, WATCHED, Kernel, Members
+from gear_damping.simulation.kernel import MOST_SHIFT, REACH, ROOT_STEPS, SAME_INSTANT, WATCHED, Batch, Kernel
 from gear_damping.simulation.native.emit import Written
 from gear_damping.simulation.native.expressions import Program
-from gear_damping.simulation.native.trace import LANES, trace
+from gear_damping.simulation.native.trace import TRACED_BATCH, trace
 from gear_damping.simulation.stepper import MOST_SPLITS
 
 HERE = Path(__file__).resolve().parent
@@ -25,12 +25,12 @@ def vectors_of(n_state: int, operations: int) -> int:
     return MOST_VECTORS if n_state <= MOST_STATES_OF_TWO and operations <= MOST_OPERATIONS_OF_TWO else 1
 
 
-def kernel_source(kernel: Kernel, members: Members, state: Tensor, width: int) -> str:
+def kernel_source(kernel: Kernel, batch: Batch, state: Tensor, width: int) -> str:
     """C++ of everything that happens to members of this structure.
 
     Args:
         kernel: The model's steps.
-        members: Some members, of which the first is traced with.
+        batch: A batch, of which the first member is traced with.
         state: Their state.
         width: Lanes of a vector.
 
@@ -38,15 +38,15 @@ def kernel_source(kernel: Kernel, members: Members, state: Tensor, width: int) -
         UntraceableError: a term uses an operation that has no native form.
     """
     program = Program()
-    sizes = (state.shape[0], members.fixed.shape[0], members.series.shape[0], len(kernel.switch_names))
+    sizes = (state.shape[0], batch.fixed.shape[0], batch.series.shape[0], len(kernel.switch_names))
     inputs = _inputs(program, sizes)
-    examples = _examples(members, state, sizes)
+    examples = _examples(batch, state, sizes)
 
-    def rates(u: Tensor, y: Tensor, fixed: Tensor, series: Tensor, index: Tensor, locked: Tensor) -> Tensor:
-        return kernel.rates(u, y, Members(fixed, series, index), locked)
+    def rates(u: Tensor, y: Tensor, fixed: Tensor, series: Tensor, index: Tensor, active_branch: Tensor) -> Tensor:
+        return kernel.rates(u, y, Batch(fixed, series, index), active_branch)
 
-    def switches(u: Tensor, y: Tensor, fixed: Tensor, series: Tensor, index: Tensor, locked: Tensor) -> Tensor:
-        return kernel.switches(u, y, Members(fixed, series, index))
+    def switches(u: Tensor, y: Tensor, fixed: Tensor, series: Tensor, index: Tensor, active_branch: Tensor) -> Tensor:
+        return kernel.switches(u, y, Batch(fixed, series, index))
 
     written = Written(program)
     stage = _flat(trace(rates, examples, inputs, program))
@@ -95,7 +95,7 @@ def _flat(results: list[np.ndarray]) -> list:
 
 
 def _inputs(program: Program, sizes: tuple[int, int, int, int]) -> list[np.ndarray]:
-    """Expressions of u, y, fixed, series, index and locked, in the order of the traced functions."""
+    """Expressions of u, y, fixed, series, index and the active branch, in the order of the traced functions."""
     n_state, n_fixed, n_series, n_switch = sizes
 
     def rows(letter: str, count: int, varies: bool) -> np.ndarray:
@@ -116,10 +116,10 @@ def _inputs(program: Program, sizes: tuple[int, int, int, int]) -> list[np.ndarr
     ]
 
 
-def _examples(members: Members, state: Tensor, sizes: tuple[int, int, int, int]) -> list[Tensor]:
+def _examples(batch: Batch, state: Tensor, sizes: tuple[int, int, int, int]) -> list[Tensor]:
     def first(rows: Tensor) -> Tensor:
-        return rows[:, :1].expand(rows.shape[0], LANES).clone()
+        return rows[:, :1].expand(rows.shape[0], TRACED_BATCH).clone()
 
-    u = torch.zeros(LANES, dtype=state.dtype)
-    locked = torch.ones(sizes[3], LANES, dtype=state.dtype)
-    return [u, first(state), first(members.fixed), first(members.series), torch.zeros((), dtype=state.dtype), locked]
+    u = torch.zeros(TRACED_BATCH, dtype=state.dtype)
+    active_branch = torch.ones(sizes[3], TRACED_BATCH, dtype=state.dtype)
+    return [u, first(state), first(batch.fixed), first(batch.series), torch.zeros((), dtype=state.dtype), active_branch]

@@ -17,29 +17,33 @@ BLOCK = 128  # output intervals between two reports of progress
 
 
 class NativeStepper(Stepper):
-    """Walks a batch with a compiled kernel; lanes are shared out over PyTorch's number of threads."""
+    """Walks a batch with a compiled kernel; members are shared out over PyTorch's number of threads."""
 
-    def __init__(self, kernel: object, fixed: Tensor, series: SharedSeries, library: ctypes.CDLL, lanes: int) -> None:
-        """Prepare a batch; arguments as for `Stepper`, and the kernel's library with the lanes it steps together."""
+    def __init__(self, kernel: object, fixed: Tensor, series: SharedSeries, library: ctypes.CDLL, group: int) -> None:
+        """Prepare a batch; arguments as for `Stepper`, and the kernel's library with the members it steps together."""
         super().__init__(kernel, fixed, series, compiled=False)
-        self.kernel_library, self.group = library, lanes
+        self.kernel_library, self.group = library, group
 
     def run(self, state: Tensor, out: Tensor, substeps: int, report: Callable[[int], None]) -> None:
         """Fill `out` (intervals, n_state, batch), contiguous in time, with the state after each interval."""
-        state, fixed, locked = state.clone().contiguous(), self.fixed.contiguous(), self.locked.contiguous()
+        state, fixed, active_branch = (
+            state.clone().contiguous(),
+            self.fixed.contiguous(),
+            self.active_branch.contiguous(),
+        )
         coefficients, source = self.series.coefficients.contiguous(), self.series.source.contiguous()
         driven, sources = (coefficients, source, self.series.factor.contiguous()), coefficients.shape[2]
-        lanes, total, length = fixed.shape[1], out.shape[0], out.stride(2)
-        if out.stride() != (1, lanes * length, length):
+        batch, total, length = fixed.shape[1], out.shape[0], out.stride(2)
+        if out.stride() != (1, batch * length, length):
             raise ValueError("out must be a view of (n_state, batch, time) in memory: permute it")
         rates = self._acceleration_rows(length)
-        shares = self._shares(lanes)
+        shares = self._shares(batch)
         for first in range(0, total, BLOCK):
             count = min(BLOCK, total - first)
             now = None if rates is None else rates[:, first + 1 :]  # the first column is the start
-            tensors = (fixed, *driven, state, locked, out[first : first + count], now)
+            tensors = (fixed, *driven, state, active_branch, out[first : first + count], now)
             numbers = (first, count, substeps, length, sources)
-            in_parallel(partial(self._walk, lanes, numbers, tensors), shares)
+            in_parallel(partial(self._walk, batch, numbers, tensors), shares)
             report(first + count)
 
     def _acceleration_rows(self, length: int) -> Tensor | None:
@@ -49,16 +53,16 @@ class NativeStepper(Stepper):
         return self.acceleration
 
     def _walk(
-        self, lanes: int, numbers: tuple[int, ...], tensors: tuple[Tensor | None, ...], share: tuple[int, int]
+        self, batch: int, numbers: tuple[int, ...], tensors: tuple[Tensor | None, ...], share: tuple[int, int]
     ) -> None:
         pointers = (ctypes.c_void_p(None if tensor is None else tensor.data_ptr()) for tensor in tensors)
-        self.kernel_library.walk(*(ctypes.c_long(n) for n in (lanes, *share, *numbers)), *pointers)
+        self.kernel_library.walk(*(ctypes.c_long(n) for n in (batch, *share, *numbers)), *pointers)
 
-    def _shares(self, lanes: int) -> list[tuple[int, int]]:
-        """Ranges of lanes, whole groups each, one for each thread that has something to do."""
-        blocks = -(-lanes // self.group)
+    def _shares(self, batch: int) -> list[tuple[int, int]]:
+        """Ranges of members, whole groups each, one for each thread that has something to do."""
+        blocks = -(-batch // self.group)
         threads = max(1, min(torch.get_num_threads(), blocks))
-        edges = [min(lanes, self.group * round(blocks * i / threads)) for i in range(threads + 1)]
+        edges = [min(batch, self.group * round(blocks * i / threads)) for i in range(threads + 1)]
         return [(a, b) for a, b in pairwise(edges) if b > a]
 
 

@@ -1,6 +1,6 @@
 """Reads a tensor program into scalar expressions.
 
-The program is run once for a batch of `LANES` members whose axis is the last one, and watched operation by operation;
+The program is run once for `TRACED_BATCH` members, whose axis is the last one, and watched operation by operation;
 every tensor becomes an array of expressions with that axis cut to length one. (`make_fx` of PyTorch would give the
 same operations, but it imports its compiler for that, which takes longer than everything else together.)
 """
@@ -15,7 +15,7 @@ from torch.utils._pytree import tree_map_only
 
 from gear_damping.simulation.native.expressions import Expression, Program, Value
 
-LANES = 13  # a length that no other axis has
+TRACED_BATCH = 13  # a length that no other axis has
 BINARY = {
     "add": "add", "sub": "sub", "mul": "mul", "div": "div", "pow": "pow", "maximum": "maximum", "minimum": "minimum",
     "gt": "gt", "ge": "ge", "lt": "lt", "le": "le", "eq": "eq", "ne": "ne",
@@ -35,7 +35,7 @@ def trace(function: Callable, examples: Sequence[Tensor], inputs: Sequence[Array
     """The results of `function` as arrays of expressions.
 
     Args:
-        function: Takes and returns tensors whose last axis has LANES members.
+        function: Takes and returns tensors whose last axis has TRACED_BATCH members.
         examples: Tensors to trace with.
         inputs: Expressions that stand for them.
         program: Where the operations go.
@@ -138,7 +138,7 @@ def _filled(number: float) -> Callable:
 
 def _shape(made: Tensor) -> tuple[int, ...]:
     shape = tuple(made.shape)
-    return (*shape[:-1], 1) if shape and shape[-1] == LANES else shape
+    return (*shape[:-1], 1) if shape and shape[-1] == TRACED_BATCH else shape
 
 
 def _sum(program: Program, made: Tensor, a: tuple, k: dict) -> Arrays:

@@ -21,14 +21,14 @@ from gear_damping.tasks.progress import progress_bar
 from gear_damping.tasks.run_folder import RunFolder
 
 OF_THE_MACHINE = ("hydra.run.dir=", "data_folder=", "resume=", "progress=")  # how words begin that decide no number
-say = logging.getLogger("gear_damping").info
+log = logging.getLogger("gear_damping").info
 
 
 def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     """Repeat the figures and tables that are asked for; returns the metrics for run.json."""
     wanted = settings.figures or tuple(EFFECTS)
     ready = [prepared(case, settings) for case in cases(wanted)]
-    _say_budget(settings, ready)
+    _log_budget(settings, ready)
     kept = KeptParts(folder.path, settings.resume)
     physics = physics_of(settings)
     parts = _parts(ready, settings, kept)
@@ -54,15 +54,15 @@ def _parts(ready: list[Prepared], settings: Settings, kept: KeptParts) -> list[P
             part, old = kept.get(name, one.decided_by(seed), lambda fit, one=one, seed=seed: learn(one, seed, fit))
             parts.append(part)
             errors = ", ".join(f"{n} {s['rmse_percent']:.4g}" for n, s in part["scores"].items() if n != MEAN)
-            say(f"{number} of {len(wanted)}: {name}{' (kept)' if old else ''}: RMSE / %: {errors}")
+            log(f"{number} of {len(wanted)}: {name}{' (kept)' if old else ''}: RMSE / %: {errors}")
             progress(number, len(wanted))
     return parts
 
 
-def _say_budget(settings: Settings, ready: list[Prepared]) -> None:
+def _log_budget(settings: Settings, ready: list[Prepared]) -> None:
     """What the study is about to spend."""
     s, t = settings.simulator, settings.training
-    say(
+    log(
         f"{settings.name}: {len(ready)} trainings of two networks and a control, seeds {settings.all_seeds}, at most "
         f"{t['max_epochs']} epochs each; many runs: {s.n_runs} of {s.n_samples} samples, batch {t['batch_size']}, "
         f"patience {t['patience']}, {settings.protocol['windows_per_epoch']} windows an epoch; one run: batch and "

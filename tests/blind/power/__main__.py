@@ -38,10 +38,10 @@ def main(given: list[str] | None = None) -> int:
     asked = power_questions(options.effect or EFFECTS, options.cases, options.seed)
     stopped = False
     try:
-        rows = ask(asked, options.out, options.processes, _say, options.minutes, solve=answered)
+        rows = ask(asked, options.out, options.processes, _log, options.minutes, solve=answered)
     except KeyboardInterrupt:
         stopped, rows = True, done_cases(options.out / CASES)
-        _say("stopped; the cases done so far are kept, and the same command goes on from here")
+        _log("stopped; the cases done so far are kept, and the same command goes on from here")
     if not rows:
         return 130 if stopped else 0
     found = summary(rows, options.seed)
@@ -49,13 +49,13 @@ def main(given: list[str] | None = None) -> int:
         (folder / "power.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
         (folder / "power.md").write_text(markdown(found), encoding="utf-8")
         draw(found, folder / FIGURE)
-        _say(f"wrote {folder / 'power.json'}, power.md and {FIGURE}")
+        _log(f"wrote {folder / 'power.json'}, power.md and {FIGURE}")
     if options.page:
         keep(rows, DOCS / KEPT)
     return 130 if stopped else 0
 
 
-def _say(text: str) -> None:
+def _log(text: str) -> None:
     print(text, flush=True)
 
 

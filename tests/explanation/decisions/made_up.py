@@ -25,13 +25,15 @@ def left(percent: float, misfit: float = 1.0, threshold: float = 0.01, chance: f
 
 def outcome(cost: float = 1.0, squares: float = 1.0, **more: object) -> SimpleNamespace:
     """A fitted model by its sums of squares."""
-    return SimpleNamespace(fitted=SimpleNamespace(cost=cost, converged=True), left_out_cost=squares, growth=1.0, **more)
+    return SimpleNamespace(
+        fitted=SimpleNamespace(cost=cost, converged=True), left_out_cost=squares, error_amplification=1.0, **more
+    )
 
 
 def fit(
     name: str = NAMES[0], cost: float = 0.5, squares: float = 0.5, t: float = 50.0, **more: object
 ) -> SimpleNamespace:
-    """A full fit that conditions left out bear out, unless said otherwise."""
+    """A full fit that conditions left out validate, unless said otherwise."""
     known = {"gain": 1.0, "fit_gain": 1e4, "is_seen_in_fit": True, "is_at_bound": False} | more
     return SimpleNamespace(name=name, outcome=outcome(cost, squares), t=t, **known)
 
@@ -50,7 +52,7 @@ def scored(place: int, gain: float, direction: int | None = None) -> Scored:
     """The score of the effect in this place of `NAMES`, along an axis of its own or along another."""
     axis = torch.eye(len(NAMES), dtype=torch.float64)[place if direction is None else direction]
     hypothesis = SimpleNamespace(effects=[effect_class(NAMES[place])()], common=())
-    known = {"options": (), "presence": False, "replaced": (), "is_elastic": False, "hypothesis": hypothesis}
+    known = {"options": (), "non_nested": False, "replaced": (), "is_elastic": False, "hypothesis": hypothesis}
     return Scored(SimpleNamespace(name=NAMES[place], **known), gain, axis, axis[:, None])
 
 

@@ -85,7 +85,7 @@ def lost(settings: SearchSettings):
 
 @decides("most_growth", (True, False))
 def unpredictable(settings: SearchSettings):
-    grown = (SimpleNamespace(growth=growth) for growth in (5.0, 1.2))
+    grown = (SimpleNamespace(error_amplification=error_amplification) for error_amplification in (5.0, 1.2))
     return tuple(State(bench(settings), one, one).is_unpredictable for one in grown)
 
 
@@ -112,7 +112,7 @@ def of_one_size(shifts: list[float], error: float, settings: SearchSettings) -> 
     evidence = SimpleNamespace(settings=settings, sampling_rate=1.0)
     with (
         patch.object(homogeneity, "_groups", lambda _: (None, [str(k) for k in range(count)])),
-        patch.object(homogeneity, "_beside", lambda *_: (columns, residual)),
+        patch.object(homogeneity, "_orthogonal_columns", lambda *_: (columns, residual)),
         patch.object(homogeneity, "time_scale", lambda *_: 1.0),
     ):
         return homogeneity.homogeneity(model, "a", evidence).holds
@@ -120,11 +120,11 @@ def of_one_size(shifts: list[float], error: float, settings: SearchSettings) -> 
 
 @decides("homogeneity_tolerance", (True, False))
 def one_size_within_a_tolerance(settings: SearchSettings):
-    """Known to a thousandth: strengths of a spread of 12 % and of 50 %."""
+    """Known to a thousandth: strengths of a deviation of 12 % and of 50 %."""
     return tuple(of_one_size([-s, -s / 3, s / 3, s], 1e-3, settings) for s in (0.16, 0.67))
 
 
 @decides("homogeneity_level", (True, False))
 def one_size_beyond_chance(settings: SearchSettings):
-    """Spreads of which chance would make as large ones in 20 % and in 2 %."""
+    """Deviations of which chance would make as large ones in 20 % and in 2 %."""
     return tuple(of_one_size([-s, -s / 3, s / 3, s], 1e-3, settings) for s in (0.217, 0.316))

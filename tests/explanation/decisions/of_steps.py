@@ -137,9 +137,12 @@ def size_is_told(sizes: list[float], apart: float, settings: SearchSettings) -> 
     model = outcome(problem=problem, hypothesis=None)
     model.fitted.shared = torch.zeros(count)
     model.fitted.prediction = SimpleNamespace(residual=residual.reshape(1, 1, -1))
-    candidate = SimpleNamespace(presence=False, strengths=range(count), hypothesis=SimpleNamespace(common=free))
+    candidate = SimpleNamespace(non_nested=False, strengths=range(count), hypothesis=SimpleNamespace(common=free))
     refit = SimpleNamespace(name="a", score=SimpleNamespace(candidate=candidate))
-    with patch.object(told, "_beside", lambda *_: columns), patch.object(told, "time_scale", lambda *_: 0.0):
+    with (
+        patch.object(told, "_orthogonal_columns", lambda *_: columns),
+        patch.object(told, "time_scale", lambda *_: 0.0),
+    ):
         return told.is_told(model, refit, SimpleNamespace(settings=settings, noise=1.0))
 
 
@@ -187,13 +190,13 @@ def fitted_records_miss_something(settings: SearchSettings):
 
 
 @decides("taken_by_all", (PARTLY, UNEXPLAINED))
-def two_causes_leave_a_rest(settings: SearchSettings):
+def two_causes_leave_a_residual(settings: SearchSettings):
     before = left(100.0, 500.0)
     return tuple(said(settings, before, left(rest, 50.0), count=2) for rest in (5.0, 20.0))
 
 
 @decides("taken_by_one", (PARTLY, UNEXPLAINED))
-def one_cause_leaves_a_rest(settings: SearchSettings):
+def one_cause_leaves_a_residual(settings: SearchSettings):
     before = left(100.0, 500.0)
     return tuple(said(settings, before, left(rest, 50.0), is_one=True) for rest in (30.0, 70.0))
 

@@ -18,7 +18,7 @@ HELD = SimpleNamespace(duration=BLOCKS * BLOCK / 100.0, sampling_rate=100.0)
 
 @decides("full_fits", 4)
 def fitted_in_full(settings: SearchSettings):
-    """Of as many effects as there are, each unlike the others and of half the promise of the one before."""
+    """Of as many effects as there are, each unlike the others and of half the predicted gain of the one before."""
     return len(chosen([scored(place, 0.5**place) for place in range(len(NAMES))], settings))
 
 
@@ -29,14 +29,14 @@ def fitted_in_full_of_those_that_look_alike(settings: SearchSettings):
 
 @decides("exchange_share", [NAMES[0], NAMES[1]])
 def tried_in_the_place_of_a_cause(settings: SearchSettings):
-    """Of promises of 1, .8 and .3."""
+    """Of predicted gains of 1, .8 and .3."""
     ranked = [scored(place, gain) for place, gain in enumerate((1.0, 0.8, 0.3))]
     return [score.candidate.name for score in chosen(ranked, settings, settings.exchange_share)]
 
 
 @decides("least_promise", [NAMES[0], NAMES[1]])
 def worth_a_full_fit_beside_causes(settings: SearchSettings):
-    """Of promises of 80, 15 and 5 % of what a model leaves, none of it noise."""
+    """Of predicted gains of 80, 15 and 5 % of what a model leaves, none of it noise."""
     ranked = [scored(place, gain) for place, gain in enumerate((0.8, 0.15, 0.05))]
     return [score.candidate.name for score in bench(settings).worth(ranked, outcome(cost=1.0))]
 
@@ -96,7 +96,7 @@ def determined(settings: SearchSettings):
     found.outcome.fitted.shared = None
     tried, decided = bench(settings, [(found.outcome, left(50.0, 100.0))]), []
     for half in (0.3, 2.0):
-        spread = torch.full((1, 1), (half / QUANTILE) ** 2, dtype=torch.float64)
-        with patch.object(benches, "spread_of", lambda *_, spread=spread: spread):
+        covariances = torch.full((1, 1), (half / QUANTILE) ** 2, dtype=torch.float64)
+        with patch.object(benches, "covariance_of", lambda *_, covariances=covariances: covariances):
             decided.append(tried.is_determined(found))
     return tuple(decided)

@@ -15,11 +15,11 @@ from .invariants import invariants
 from .knobs import Knobs, stack
 from .pair import Rig
 from .setup import Setup
-from .sizing import LADDER, Sized, clean, corrected, lanes_of, path_of, run, size
+from .sizing import LADDER, Sized, clean, corrected, members_of, path_of, run, size
 from .stiffness import Arrays
 
 SIZING_SPAN = 2500  # samples of each record that the size is judged by
-LANES = 2000  # that are integrated together
+LARGEST_BATCH = 2000  # that are integrated together
 SUBSTEPS = 4
 CORRECTIONS = 2  # of the size, where rig or sensors were asked for; such a case is drawn alone
 
@@ -83,13 +83,13 @@ def draw_cases(
 
 def _drawn(drafts: list[Draft]) -> list[HiddenCase]:
     """The cases of drafts that share their rate and length."""
-    cases, group, lanes = [], [], 0
+    cases, group, members = [], [], 0
     for index, one in enumerate(drafts):
         group.append(one)
-        lanes += len(one.records) * (1 + LADDER * len(one.effects))
-        if lanes > LANES or index == len(drafts) - 1:
+        members += len(one.records) * (1 + LADDER * len(one.effects))
+        if members > LARGEST_BATCH or index == len(drafts) - 1:
             cases += _together(group)
-            group, lanes = [], 0
+            group, members = [], 0
     return cases
 
 
@@ -104,25 +104,25 @@ def _together(drafts: list[Draft]) -> list[HiddenCase]:
     cases, first = [], 0
     for one, s in zip(drafts, sized, strict=True):
         own = slice(first, first + len(one.records))
-        cases.append(_case(one, s, lanes_of(knobs, own), path_of(path, own)))
+        cases.append(_case(one, s, members_of(knobs, own), path_of(path, own)))
         first = own.stop
     return cases
 
 
 def _run(drafts: list[Draft], sized: list[Sized]) -> tuple[Arrays, Trajectory]:
-    knobs = stack([lane for one, s in zip(drafts, sized, strict=True) for lane in truth_lanes(one, s.params)])
+    knobs = stack([member for one, s in zip(drafts, sized, strict=True) for member in true_members(one, s.params)])
     return knobs, run(knobs, drafts, [1] * len(drafts), drafts[0].n, SUBSTEPS)
 
 
-def truth_lanes(one: Draft, params: Sequence[dict]) -> list[Knobs]:
+def true_members(one: Draft, params: Sequence[dict]) -> list[Knobs]:
     """The records' knobs with every effect in them."""
-    lanes = []
+    members = []
     for record in one.records:
-        lane = dict(record)
+        member = dict(record)
         for effect, chosen in zip(one.effects, params, strict=True):
-            lane |= effect.turn(chosen, lane)
-        lanes.append(lane)
-    return lanes
+            member |= effect.turn(chosen, member)
+        members.append(member)
+    return members
 
 
 def _case(one: Draft, sized: Sized, knobs: Arrays, path: Trajectory) -> HiddenCase:
@@ -139,7 +139,7 @@ def _case(one: Draft, sized: Sized, knobs: Arrays, path: Trajectory) -> HiddenCa
 def _truth(one: Draft, sized: Sized, path: Trajectory, seen: np.ndarray, sigma: float) -> dict[str, object]:
     basis = sized.basis
     difference = seen[: basis.response.shape[0]] - basis.response
-    misread = sum(p or 0.0 for e, p in zip(one.effects, sized.promised, strict=True) if e.as_modelled)
+    misread = sum(p or 0.0 for e, p in zip(one.effects, sized.predicted, strict=True) if e.as_modelled)
     stiffness = true_mean_stiffness(one.shape)
     rms_rate = float(np.sqrt(np.mean(np.var(path.v, axis=0))))
     return {
@@ -151,10 +151,10 @@ def _truth(one: Draft, sized: Sized, path: Trajectory, seen: np.ndarray, sigma: 
         "first_records": basis.excess(difference, with_added=False),
         "separates": bool(np.any(path.delta < 0.0)), "diverged": bool(np.any(path.diverged)),
         "effects": [
-            {"name": effect.name, "parameters": params, "target_percent": target, "excess_percent": promised,
+            {"name": effect.name, "parameters": params, "target_percent": target, "excess_percent": predicted,
              "invariants": invariants(effect, params, one.records[0], rms_rate)}
-            for effect, params, target, promised in zip(
-                one.effects, sized.params, one.targets, sized.promised, strict=True)
+            for effect, params, target, predicted in zip(
+                one.effects, sized.params, one.targets, sized.predicted, strict=True)
         ],
         "pair": one.rig.name, "natural_frequency": one.rig.natural_frequency, "rate": one.rig.rate,
         "sensors": one.setup.name, "colour": one.setup.colour,

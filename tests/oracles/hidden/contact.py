@@ -1,6 +1,6 @@
-"""The forces between the flanks and the equations of motion of all lanes, as rates of the state.
+"""The forces between the flanks and the equations of motion of all members, as rates of the state.
 
-State rows: x, v; then, where any lane has them, bearing y, y'; shaft twist q, q'; three hysteretic deflections.
+State rows: x, v; then, where any member has them, bearing y, y'; shaft twist q, q'; three hysteretic deflections.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ import numpy as np
 from .knobs import any_on
 from .stiffness import Arrays, mean_stiffness
 
-YIELD_SPREAD = np.array([0.5, 1.0, 1.6])[:, None]  # yields of the three elements over their nominal value
+YIELD_RATIOS = np.array([0.5, 1.0, 1.6])[:, None]  # yields of the three elements over their nominal value
 DRIVE, LOOSE, COAST = 1.0, 0.0, -1.0
 Law = Callable[[Arrays, np.ndarray, np.ndarray], np.ndarray]  # knobs, deflection, rate -> force / N
 
 
 @dataclass
 class Instant:
-    """What acts at one instant whatever the state, each (lane,)."""
+    """What acts at one instant whatever the state, each (member,)."""
 
     stiffness: np.ndarray
     error: np.ndarray
@@ -75,7 +75,7 @@ def contact_damping(p: Arrays, deflection: np.ndarray, rate: np.ndarray) -> np.n
 
 @dataclass
 class Motion:
-    """The right-hand side; `region` (lane,) says which flank touches and is held fixed within a step."""
+    """The right-hand side; `region` (member,) says which flank touches and is held fixed within a step."""
 
     knobs: Arrays
     region: np.ndarray = field(init=False)
@@ -93,30 +93,30 @@ class Motion:
         self.coast_shift = np.where(np.isfinite(p["gap"]), p["gap"], 0.0)
         self.relaxation = np.sqrt(mean_stiffness(p) / p["mass"])
 
-    def of(self, lanes: np.ndarray) -> Motion:
-        """The motion of some of the lanes."""
+    def of(self, members: np.ndarray) -> Motion:
+        """The motion of some of the members."""
         part = copy(self)
-        part.knobs = {name: value[..., lanes] for name, value in self.knobs.items()}
+        part.knobs = {name: value[..., members] for name, value in self.knobs.items()}
         for name in ("region", "coast_shift", "relaxation"):
-            setattr(part, name, getattr(self, name)[lanes])
+            setattr(part, name, getattr(self, name)[members])
         return part
 
-    def start(self, now: Instant, moved: np.ndarray, pushed: np.ndarray) -> np.ndarray:
+    def start(self, at: Instant, moved: np.ndarray, pushed: np.ndarray) -> np.ndarray:
         """State near the static equilibrium: off by `moved` of the deflection and `pushed` of its speed."""
         p = self.knobs
-        y, static = np.zeros((self.rows, *p["mass"].shape)), now.load / mean_stiffness(p)
-        y[0] = static * (1.0 + moved) + now.error + (static < 0.0) * -self.coast_shift
-        y[1] = np.abs(static) * self.relaxation * pushed + now.error_rate
+        y, static = np.zeros((self.rows, *p["mass"].shape)), at.load / mean_stiffness(p)
+        y[0] = static * (1.0 + moved) + at.error + (static < 0.0) * -self.coast_shift
+        y[1] = np.abs(static) * self.relaxation * pushed + at.error_rate
         if self.bearing is not None:
-            y[self.bearing] = p["bearing"] * now.load / p["bearing_stiffness"]
+            y[self.bearing] = p["bearing"] * at.load / p["bearing_stiffness"]
             y[0] += y[self.bearing]
         if self.torsion is not None:
-            y[self.torsion] = p["torsion"] * now.torque / p["torsion_stiffness"]
+            y[self.torsion] = p["torsion"] * at.torque / p["torsion_stiffness"]
         return y
 
-    def approach(self, y: np.ndarray, now: Instant) -> tuple[np.ndarray, np.ndarray]:
+    def approach(self, y: np.ndarray, at: Instant) -> tuple[np.ndarray, np.ndarray]:
         """delta / m and delta' / (m/s)."""
-        delta, rate = y[0] - now.error, y[1] - now.error_rate
+        delta, rate = y[0] - at.error, y[1] - at.error_rate
         if self.bearing is not None:
             delta, rate = delta - y[self.bearing], rate - y[self.bearing + 1]
         return delta, rate
@@ -127,10 +127,10 @@ class Motion:
         found = np.where(delta >= 0.0, DRIVE, np.where(delta <= -self.coast_shift, COAST, LOOSE))
         return np.where(np.isfinite(gap), found, DRIVE)
 
-    def rates(self, y: np.ndarray, now: Instant) -> np.ndarray:
+    def rates(self, y: np.ndarray, at: Instant) -> np.ndarray:
         """The derivative of the state."""
         p = self.knobs
-        delta, rate = self.approach(y, now)
+        delta, rate = self.approach(y, at)
         touching, deflection = 1.0, delta
         if self.gapped:
             touching = np.abs(self.region)
@@ -138,17 +138,17 @@ class Motion:
         damping = sum(law(p, deflection, rate) for law in self.laws)
         if self.rows > self.yielding:
             damping = damping + p["hysteresis"] * y[self.yielding :].mean(axis=0)
-        mesh = self._elastic(deflection, now) + touching * damping
+        mesh = self._elastic(deflection, at) + touching * damping
         if self.filmed:
             mesh = mesh + self._film(delta, rate)
-        mesh = mesh * now.friction
+        mesh = mesh * at.friction
         out = np.empty_like(y)
-        out[0], out[1] = y[1], (now.load - mesh) / p["mass"]
-        self._further(y, now, mesh, rate, touching, out)
+        out[0], out[1] = y[1], (at.load - mesh) / p["mass"]
+        self._further(y, at, mesh, rate, touching, out)
         return out
 
-    def _elastic(self, deflection: np.ndarray, now: Instant) -> np.ndarray:
-        p, k = self.knobs, now.stiffness
+    def _elastic(self, deflection: np.ndarray, at: Instant) -> np.ndarray:
+        p, k = self.knobs, at.stiffness
         if "hertz" in self.curved:
             k = k * ((deflection / p["hertz_at"]) ** 2 + 1e-8) ** (0.5 * p["hertz"])
         force = k * deflection
@@ -160,21 +160,21 @@ class Motion:
         drive, coast = h + np.maximum(-delta, 0.0), h + np.maximum(delta + self.coast_shift, 0.0)
         return self.knobs["film"] * rate * ((h / drive) ** 3 + (h / coast) ** 3)
 
-    def _further(self, y, now: Instant, mesh, rate, touching, out) -> None:
+    def _further(self, y, at: Instant, mesh, rate, touching, out) -> None:
         """Rates of bearing, shaft and hysteresis."""
         p = self.knobs
         if self.bearing is not None:
             place, speed = y[self.bearing], y[self.bearing + 1]
-            force = mesh + now.unbalance - p["bearing_stiffness"] * place - p["bearing_damping"] * speed
+            force = mesh + at.unbalance - p["bearing_stiffness"] * place - p["bearing_damping"] * speed
             out[self.bearing], out[self.bearing + 1] = speed, p["bearing"] * force / p["bearing_mass"]
         if self.torsion is not None:
             twist, speed = y[self.torsion], y[self.torsion + 1]
             shaft = p["torsion_stiffness"] * twist + p["torsion_damping"] * speed
             arm, inertia = p["radius_1"], p["inertia_1"]
-            relative = (now.torque - shaft) / p["motor"] - (shaft - arm * mesh) / inertia
+            relative = (at.torque - shaft) / p["motor"] - (shaft - arm * mesh) / inertia
             out[self.torsion], out[self.torsion + 1] = speed, p["torsion"] * relative
-            out[1] += p["torsion"] * p["joint_mass"] * arm / inertia * (shaft - now.torque) / p["mass"]
+            out[1] += p["torsion"] * p["joint_mass"] * arm / inertia * (shaft - at.torque) / p["mass"]
         if self.rows > self.yielding:
-            z, limit = y[self.yielding :], p["yield"] * YIELD_SPREAD
+            z, limit = y[self.yielding :], p["yield"] * YIELD_RATIOS
             held = rate - np.abs(rate) * z / limit
             out[self.yielding :] = touching * held - (1.0 - touching) * self.relaxation * z

@@ -72,10 +72,10 @@ def _deflection(path: Trajectory, tables: Tables, first: int, count: int, h: flo
 
 def _steps(knobs: Arrays, k: np.ndarray, c: np.ndarray, forces: np.ndarray, h: float):
     """Of every step: its transition matrix (step, 2, 2, record) and its answer to the forces (step, 2, record, s)."""
-    count, _, lanes, parameters = forces.shape
-    y = np.zeros((2, count, lanes, parameters + 2))
+    count, _, members, parameters = forces.shape
+    y = np.zeros((2, count, members, parameters + 2))
     y[0, ..., 0] = y[1, ..., 1] = 1.0
-    forces = np.concatenate([np.zeros((count, 5, lanes, 2)), forces], axis=-1)
+    forces = np.concatenate([np.zeros((count, 5, members, 2)), forces], axis=-1)
     k, c, mass = k[..., None], c[..., None], knobs["mass"][:, None]
 
     def rates(node: int, y: np.ndarray) -> np.ndarray:

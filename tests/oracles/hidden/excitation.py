@@ -15,7 +15,7 @@ TURN = 2.0 * np.pi
 
 @dataclass
 class Turning:
-    """Angles / rad and the pinion's speed / (rad/s), (instant, lane)."""
+    """Angles / rad and the pinion's speed / (rad/s), (instant, member)."""
 
     pinion: np.ndarray
     gear: np.ndarray
@@ -89,8 +89,8 @@ def pitch_steps(knobs: Arrays, at: Turning) -> tuple[np.ndarray, np.ndarray]:
     count = teeth.astype(int)
     turn = np.mod(angle + knobs["pitch_phase"], TURN) * teeth / TURN
     tooth = np.floor(turn).astype(int) % count
-    lane = np.broadcast_to(np.arange(angle.shape[-1]), tooth.shape)
-    here, following = knobs["pitch"][tooth, lane], knobs["pitch"][(tooth + 1) % count, lane]
+    member = np.broadcast_to(np.arange(angle.shape[-1]), tooth.shape)
+    here, following = knobs["pitch"][tooth, member], knobs["pitch"][(tooth + 1) % count, member]
     share = np.clip((turn - np.floor(turn) - 0.5) / knobs["handover"] + 0.5, 0.0, 1.0)
     slope = 140.0 * (share * (1.0 - share)) ** 3 / knobs["handover"] * knobs["teeth_1"] / TURN
     return here + (following - here) * smooth_step(share), (following - here) * slope

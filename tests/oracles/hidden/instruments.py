@@ -44,7 +44,7 @@ def records_of(one: Draft, knobs: Arrays, path: Trajectory, sigma: float) -> tup
     channels["pinion_angle"] = angle + ANGLE_NOISE * noise.normal(size=shape)
     if setup.name != "full":
         channels = _of_setup(one, knobs, path, seen, angle, channels)
-    conditions = [_stated(one, knobs, lane) for lane in range(shape[1])]
+    conditions = [_stated(one, knobs, member) for member in range(shape[1])]
     return tuple(
         HiddenRecord(f"run_{1 + i}", condition, np.arange(shape[0]) / one.rig.rate,
                      {name: values[:, i].copy() for name, values in channels.items()}, conditions[i])
@@ -93,13 +93,13 @@ def shafts(one: Draft, seen: np.ndarray, angle: np.ndarray) -> tuple[np.ndarray,
     return angle + share[0] * seen, angle * one.rig.teeth[0] / one.rig.teeth[1] - share[1] * seen
 
 
-def _stated(one: Draft, knobs: Arrays, lane: int) -> dict[str, float]:
+def _stated(one: Draft, knobs: Arrays, member: int) -> dict[str, float]:
     found = {}
     if one.setup.speed is not None:
         scatter = 0.5 * SPEED_UNCERTAINTY * one.noise.normal() if one.setup.speed == "uncertain" else 0.0
-        found["pinion_speed"] = float(knobs["speed"][lane] * (1.0 + scatter))
+        found["pinion_speed"] = float(knobs["speed"][member] * (1.0 + scatter))
     if one.setup.torque == "condition":
-        found["pinion_torque"] = float(knobs["torque"][lane] * (1.0 + TORQUE_NOISE * one.noise.normal()))
+        found["pinion_torque"] = float(knobs["torque"][member] * (1.0 + TORQUE_NOISE * one.noise.normal()))
     return found
 
 

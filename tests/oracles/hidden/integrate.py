@@ -1,4 +1,4 @@
-"""All lanes at once in fixed steps of sixth order; a step that meets or leaves a flank is cut in two there."""
+"""All members at once in fixed steps of sixth order; a step that meets or leaves a flank is cut in two there."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ DIVERGED = 1e-2  # m
 
 @dataclass
 class Trajectory:
-    """Motion at the sampling instants: time (n,) / s, from before 0 on; the others (n, lane) in SI."""
+    """Motion at the sampling instants: time (n,) / s, from before 0 on; the others (n, member) in SI."""
 
     time: np.ndarray
     x: np.ndarray
@@ -30,19 +30,19 @@ class Trajectory:
 
 @dataclass
 class Tables(Instant):
-    """Excitations at the five nodes of consecutive steps: each (step, node, lane) or a scalar."""
+    """Excitations at the five nodes of consecutive steps: each (step, node, member) or a scalar."""
 
     def at(self, step_index: int, node: int) -> Instant:
         """One instant."""
         here = (step_index, node)
         return Instant(*(v[here] if isinstance(v, np.ndarray) else v for v in vars(self).values()))
 
-    def within(self, step_index: int, lanes: np.ndarray, begin: np.ndarray, length: np.ndarray) -> Tables:
-        """One step of some lanes cut to a part of it, by the polynomial through the five nodes."""
-        weights = _lagrange(begin + NODES[:, None] * length)  # (node, new node, lane)
+    def within(self, step_index: int, members: np.ndarray, begin: np.ndarray, length: np.ndarray) -> Tables:
+        """One step of some members cut to a part of it, by the polynomial through the five nodes."""
+        weights = _lagrange(begin + NODES[:, None] * length)  # (node, new node, member)
 
         def cut(values):
-            return np.einsum("ijl,il->jl", weights, values[step_index][:, lanes])[None]
+            return np.einsum("ijl,il->jl", weights, values[step_index][:, members])[None]
 
         return Tables(*(cut(v) if isinstance(v, np.ndarray) else v for v in vars(self).values()))
 
@@ -56,7 +56,7 @@ def _lagrange(at: np.ndarray) -> np.ndarray:
 
 
 def tabulate(knobs: Arrays, first: float, count: int, h: float, held: np.ndarray | None = None) -> Tables:
-    """Excitations of `count` steps of h from the time `first`; `held` (step, lane) times the load noise is added."""
+    """Excitations of `count` steps of h from the time `first`; `held` (step, member) times the load noise is added."""
     nodes = (first + h * (np.arange(count)[:, None] + NODES[:4])).ravel()
     t = np.append(nodes, first + h * count)[:, None]
     at = turning(knobs, t)
@@ -71,7 +71,7 @@ def tabulate(knobs: Arrays, first: float, count: int, h: float, held: np.ndarray
 
 
 def _by_step(values: np.ndarray) -> np.ndarray:
-    """(4 n + 1, lane) -> (n, 5, lane) with the shared node repeated."""
+    """(4 n + 1, member) -> (n, 5, member) with the shared node repeated."""
     count = values.shape[0] // 4
     inner = values[:-1].reshape(count, 4, -1)
     return np.concatenate([inner, values[4::4][:, None]], axis=1)
@@ -81,23 +81,23 @@ def integrate(
     knobs: Arrays, n_samples: int, rate: float, substeps: int = 4, settle: int = 0,
     moved: np.ndarray | float = 0.0, pushed: np.ndarray | float = 0.0, held: np.ndarray | None = None,
 ) -> Trajectory:
-    """Motion of all lanes at -settle/rate, ..., 0, 1/rate, ..., (n_samples - 1)/rate.
+    """Motion of all members at -settle/rate, ..., 0, 1/rate, ..., (n_samples - 1)/rate.
 
-    moved, pushed: start off the static equilibrium (Motion.start). held: (settle + n_samples, lane), the load
+    moved, pushed: start off the static equilibrium (Motion.start). held: (settle + n_samples, member), the load
     noise of each sample in units of the knob.
     """  # fmt: skip
     motion, h = Motion(knobs), 1.0 / (rate * substeps)
     run = _Run(motion, h, Delayed.of(knobs, h, (settle + n_samples) * substeps + 1))
-    lanes, total = knobs["mass"].size, settle + n_samples - 1
-    block = max(1, CHUNK // (5 * lanes * substeps))
-    kept = np.empty((4, total + 1, lanes))
+    members, total = knobs["mass"].size, settle + n_samples - 1
+    block = max(1, CHUNK // (5 * members * substeps))
+    kept = np.empty((4, total + 1, members))
     for begin in range(0, total + 1, block):
         samples = min(block, total + 1 - begin)
         slow = None if held is None else np.repeat(held[begin : begin + samples], substeps, axis=0)
         tables = tabulate(knobs, (begin - settle) / rate, samples * substeps, h, slow)
         if begin == 0:
             run.begin(tables, moved, pushed)
-        with np.errstate(over="ignore", invalid="ignore"):  # lanes that diverge are named in the trajectory
+        with np.errstate(over="ignore", invalid="ignore"):  # members that diverge are named in the trajectory
             for sample in range(samples):
                 for sub in range(substeps):
                     run.advance(tables, sample * substeps + sub)
@@ -108,15 +108,15 @@ def integrate(
 
 
 class _Run:
-    """The state of all lanes on its way."""
+    """The state of all members on its way."""
 
     def __init__(self, motion: Motion, h: float, delayed: Delayed | None) -> None:
         self.motion, self.h, self.delayed, self.count = motion, h, delayed, 0
 
     def begin(self, tables: Tables, moved, pushed) -> None:
-        now = tables.at(0, 0)
-        self.y = self.motion.start(now, moved, pushed)
-        self.motion.region = self.motion.region_of(self.motion.approach(self.y, now)[0])
+        at = tables.at(0, 0)
+        self.y = self.motion.start(at, moved, pushed)
+        self.motion.region = self.motion.region_of(self.motion.approach(self.y, at)[0])
         self.slopes = np.empty((7, *self.y.shape))
 
     def advance(self, tables: Tables, index: int) -> None:
@@ -138,21 +138,21 @@ class _Run:
                 motion.region = motion.region_of(motion.approach(end, nodes[4])[0])
         self.y, self.count = end, self.count + 1
 
-    def _cut(self, tables: Tables, index: int, lanes: np.ndarray, ends: list[np.ndarray]) -> np.ndarray:
-        """The step of the lanes that change flank: up to the crossing, then on in the region behind it."""
-        part = self.motion.of(lanes)
+    def _cut(self, tables: Tables, index: int, members: np.ndarray, ends: list[np.ndarray]) -> np.ndarray:
+        """The step of the members that change flank: up to the crossing, then on in the region behind it."""
+        part = self.motion.of(members)
         level = np.where(part.region > 0.0, 0.0, -part.coast_shift)
         leaving_gap_upwards = (part.region == 0.0) & (ends[2] > 0.5 * level)
         level = np.where(leaving_gap_upwards, 0.0, level)
         share = _hermite_root(*ends, self.h, level)
         rising = ends[2] > level
-        y = _partial(part, tables, index, lanes, np.zeros_like(share), share, self.y[:, lanes], self.h)
+        y = _partial(part, tables, index, members, np.zeros_like(share), share, self.y[:, members], self.h)
         part.region = np.where(level == 0.0, np.where(rising, 1.0, 0.0), np.where(rising, 0.0, -1.0))
-        return _partial(part, tables, index, lanes, share, 1.0 - share, y, self.h)
+        return _partial(part, tables, index, members, share, 1.0 - share, y, self.h)
 
 
-def _partial(part: Motion, tables: Tables, index: int, lanes, begin, length, y, h) -> np.ndarray:
-    cut = tables.within(index, lanes, begin, length)
+def _partial(part: Motion, tables: Tables, index: int, members, begin, length, y, h) -> np.ndarray:
+    cut = tables.within(index, members, begin, length)
     nodes = [cut.at(0, node) for node in range(5)]
     return step(lambda node, z: part.rates(z, nodes[node]), y, h * length, np.empty((7, *y.shape)))
 
@@ -174,14 +174,14 @@ class Delayed:
     """A force feedback * (x(t - delay) - x0) from the path already travelled."""
 
     def __init__(self, knobs: Arrays, h: float, steps: int) -> None:
-        lanes = knobs["mass"].size
-        self.gain, self.path = knobs["feedback"], np.empty((2, steps, lanes))
+        members = knobs["mass"].size
+        self.gain, self.path = knobs["feedback"], np.empty((2, steps, members))
         self.back = np.maximum(1, np.round(knobs["feedback_delay"] / h)).astype(int)
-        self.lane, self.h = np.arange(lanes), h
+        self.member, self.h = np.arange(members), h
 
     @classmethod
     def of(cls, knobs: Arrays, h: float, steps: int) -> Delayed | None:
-        """None where no lane has feedback."""
+        """None where no member has feedback."""
         return cls(knobs, h, steps) if any_on(knobs, "feedback") else None
 
     def add(self, count: int, y: np.ndarray, nodes: list[Instant]) -> None:
@@ -189,8 +189,8 @@ class Delayed:
         self.path[:, count] = y[:2]
         first = np.maximum(count - self.back, 0)
         second = np.minimum(first + 1, count)
-        (x0, v0), (x1, v1) = self.path[:, first, self.lane], self.path[:, second, self.lane]
-        for u, now in zip(NODES, nodes, strict=True):
+        (x0, v0), (x1, v1) = self.path[:, first, self.member], self.path[:, second, self.member]
+        for u, at in zip(NODES, nodes, strict=True):
             w = 1.0 - u
             x = w * w * (1 + 2 * u) * x0 + u * u * (3 - 2 * u) * x1 + self.h * u * w * (w * v0 - u * v1)
-            now.load = now.load + self.gain * (x - self.path[0, 0])
+            at.load = at.load + self.gain * (x - self.path[0, 0])

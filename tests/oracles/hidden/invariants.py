@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .contact import YIELD_SPREAD, damping_laws
+from .contact import YIELD_RATIOS, damping_laws
 from .effect import Effect, Params
 from .effects_geometry import crack_area
 from .knobs import Knobs, stack
@@ -48,7 +48,7 @@ def memoryless_loss(knobs: Arrays, static: float, amplitude: float, angular_rate
 
 def hysteretic_loss(knobs: Arrays, amplitude: float) -> float:
     """Energy / J of one cycle of the three elements z' = delta' - |delta'| z / z_y; exact."""
-    limit = float(knobs["yield"][0]) * YIELD_SPREAD[:, 0]
+    limit = float(knobs["yield"][0]) * YIELD_RATIOS[:, 0]
     reached = limit * np.tanh(amplitude / limit)
     branch = 2.0 * amplitude * limit - limit * (limit + reached) * (1.0 - np.exp(-2.0 * amplitude / limit))
     return float(knobs["hysteresis"][0] * np.mean(2.0 * branch))

@@ -1,6 +1,6 @@
 """Everything the truth can contain as one flat set of numbers, each with the value at which it is absent.
 
-A lane is one record's motion: one value of every knob. Lanes are stacked to arrays (lane,) or (entry, lane).
+A member is one record's motion: one value of every knob. Members are stacked to arrays (member,) or (entry, member).
 """
 
 from __future__ import annotations
@@ -57,13 +57,13 @@ NEUTRAL: Knobs = {
 }  # fmt: skip
 
 
-def stack(lanes: Sequence[Mapping[str, float | np.ndarray]]) -> dict[str, np.ndarray]:
-    """Lanes, each naming only what differs from NEUTRAL, as arrays with the lane last."""
-    unknown = {name for lane in lanes for name in lane} - set(NEUTRAL)
+def stack(members: Sequence[Mapping[str, float | np.ndarray]]) -> dict[str, np.ndarray]:
+    """Members, each naming only what differs from NEUTRAL, as arrays with the member last."""
+    unknown = {name for member in members for name in member} - set(NEUTRAL)
     if unknown:
         raise KeyError(f"no such knobs: {sorted(unknown)}")
     return {
-        name: np.stack([_entries(lane.get(name, value), value) for lane in lanes], axis=-1)
+        name: np.stack([_entries(member.get(name, value), value) for member in members], axis=-1)
         for name, value in NEUTRAL.items()
     }
 
@@ -75,5 +75,5 @@ def _entries(given: float | np.ndarray, neutral: float | np.ndarray) -> np.ndarr
 
 
 def any_on(knobs: Mapping[str, np.ndarray], *names: str) -> bool:
-    """Whether any lane has one of these knobs away from neutral."""
+    """Whether any member has one of these knobs away from neutral."""
     return any(bool(np.any(knobs[name] != np.asarray(NEUTRAL[name])[..., None])) for name in names)

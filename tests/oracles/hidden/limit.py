@@ -19,7 +19,7 @@ from .draft import Draft, Wanted, draft
 from .effect import Effect, Params, phase
 from .excess import sensitivities
 from .knobs import Knobs, stack
-from .sizing import clean, lanes_of, path_of, run
+from .sizing import clean, members_of, path_of, run
 
 LEVEL, POWER = 0.01, 0.9
 SIZES = np.geomspace(1.0 / 4096.0, 1.0, 9)  # shares of the largest at which an effect is tried
@@ -132,18 +132,18 @@ def _turned(params: Params, rng: np.random.Generator) -> Params:
 
 def _seen(one: Draft, variants: list[list[tuple[Effect, Params]]]) -> tuple[np.ndarray, np.ndarray]:
     """What the sensors see without and with each variant, (n, 1 + variants, record), and the sensitivities."""
-    lanes: list[Knobs] = [*one.records]
+    members: list[Knobs] = [*one.records]
     for variant in variants:
         for record in one.records:
-            lane = dict(record)
+            member = dict(record)
             for effect, params in variant:
-                lane |= dict(effect.given) | (effect.as_modelled or effect.turn)(params, lane | dict(effect.given))
-            lanes.append(lane)
+                member |= dict(effect.given) | (effect.as_modelled or effect.turn)(params, member | dict(effect.given))
+            members.append(member)
     repeats, count = 1 + len(variants), len(one.records)
-    knobs = stack(lanes)
+    knobs = stack(members)
     path = run(knobs, [one], [repeats], one.n, 2)
     base = slice(0, count)
-    columns = sensitivities(lanes_of(knobs, base), path_of(path, base), one.setup.order)
+    columns = sensitivities(members_of(knobs, base), path_of(path, base), one.setup.order)
     return clean(one, knobs, path).reshape(one.n, repeats, count), columns
 
 
@@ -165,8 +165,9 @@ def _cosine(direction: np.ndarray, columns: np.ndarray) -> float:
     columns = columns[:, sizes > 0.0] / sizes[sizes > 0.0]
     if not columns.shape[1] or not np.any(direction):
         return 0.0
-    basis, spread, _ = np.linalg.svd(columns, full_matrices=False)
-    return float(np.linalg.norm(basis[:, spread > DISTINCT * spread[0]].T @ direction) / np.linalg.norm(direction))
+    basis, singular_values, _ = np.linalg.svd(columns, full_matrices=False)
+    basis = basis[:, singular_values > DISTINCT * singular_values[0]]
+    return float(np.linalg.norm(basis.T @ direction) / np.linalg.norm(direction))
 
 
 def _crossing(strength: np.ndarray, wanted: float) -> float:

@@ -14,13 +14,13 @@ FINER = 8  # times the sampling rate at which the low-pass runs
 KNEE = 24.0  # sharpness of the amplifier's saturation
 
 
-def between(path: Trajectory, lane: int, t: np.ndarray, order: int = 0) -> np.ndarray:
-    """x / m, or a derivative, of a lane at any times within its path: quintic through x, x', x'' of both neighbours."""
+def between(path: Trajectory, member: int, t: np.ndarray, order: int = 0) -> np.ndarray:
+    """x / m, or a derivative, of a member at times within its path: quintic through x, x', x'' of both neighbours."""
     h = path.time[1] - path.time[0]
     place = np.clip((t - path.time[0]) / h, 0.0, path.time.size - 1.000001)
     first = np.floor(place).astype(int)
     u = place - first
-    x, v, a = path.x[:, lane], path.v[:, lane] * h, path.a[:, lane] * h * h
+    x, v, a = path.x[:, member], path.v[:, member] * h, path.a[:, member] * h * h
     (x0, v0, a0), (x1, v1, a1) = ((x[i], v[i], a[i]) for i in (first, first + 1))
     rise, speed, bend = x1 - x0 - v0 - 0.5 * a0, v1 - v0 - a0, a1 - a0
     c3, c4, c5 = 10 * rise - 4 * speed + 0.5 * bend, -15 * rise + 7 * speed - bend, 6 * rise - 3 * speed + 0.5 * bend
@@ -32,7 +32,7 @@ def between(path: Trajectory, lane: int, t: np.ndarray, order: int = 0) -> np.nd
 
 
 def transmission_error(knobs: Arrays, path: Trajectory, noise: np.ndarray | float = 0.0) -> np.ndarray:
-    """The channel / m from t = 0 on, (n, lane); `noise` is added before saturation and rounding."""
+    """The channel / m from t = 0 on, (n, member); `noise` is added before saturation and rounding."""
     return response(knobs, path, noise)
 
 
@@ -45,8 +45,8 @@ def response(
     t = path.time[begin:, None]
     y = (path.x, path.v, path.a)[order][begin:].copy()
     late = np.flatnonzero((knobs["delay"] != 0.0) | np.isfinite(knobs["lowpass"]))
-    for lane in late:
-        y[:, lane] = _slow_sensor(path, lane, begin, knobs["delay"][lane], knobs["lowpass"][lane], order)
+    for member in late:
+        y[:, member] = _slow_sensor(path, member, begin, knobs["delay"][member], knobs["lowpass"][member], order)
     y *= factor
     at = turning(knobs, t, wobble=False)
     if order == 0 and any_on(knobs, "encoder_1", "encoder_2"):
@@ -69,18 +69,18 @@ def coupled(y: np.ndarray, corner: float, rate: float) -> np.ndarray:
 
 
 def coloured(white: np.ndarray, correlation: float) -> np.ndarray:
-    """Unit noise (n, lane) whose neighbours are so correlated, from white unit noise."""
+    """Unit noise (n, member) whose neighbours are so correlated, from white unit noise."""
     if correlation == 0.0:
         return white
     level = np.sqrt(1.0 - correlation**2)
     return lfilter([level], [1.0, -correlation], white, axis=0, zi=correlation * white[:1])[0]
 
 
-def _slow_sensor(path: Trajectory, lane: int, begin: int, delay: float, cutoff: float, order: int) -> np.ndarray:
+def _slow_sensor(path: Trajectory, member: int, begin: int, delay: float, cutoff: float, order: int) -> np.ndarray:
     if not np.isfinite(cutoff):
-        return between(path, lane, path.time[begin:] - delay, order)
+        return between(path, member, path.time[begin:] - delay, order)
     h = (path.time[1] - path.time[0]) / FINER
-    fine = between(path, lane, path.time[0] + h * np.arange((path.time.size - 1) * FINER + 1) - delay, order)
+    fine = between(path, member, path.time[0] + h * np.arange((path.time.size - 1) * FINER + 1) - delay, order)
     filtered_by = butter(2, cutoff, fs=1.0 / h, output="sos")
     return sosfilt(filtered_by, fine, zi=sosfilt_zi(filtered_by) * fine[0])[0][begin * FINER :: FINER]
 
@@ -95,7 +95,7 @@ def _digitised(knobs: Arrays, y: np.ndarray) -> np.ndarray:
 
 
 def others(knobs: Arrays, path: Trajectory) -> dict[str, np.ndarray]:
-    """The channels beside the transmission error from t = 0 on, (n, lane) in SI."""
+    """The channels beside the transmission error from t = 0 on, (n, member) in SI."""
     t = path.time[path.time > -1e-12][:, None]
     angle = turning(knobs, t, wobble=False).pinion
     torque, gear_torque = measured_torques(knobs, t)

@@ -53,7 +53,7 @@ class Setup:
     is a channel of it. speed: None, or what a condition says of it: known | uncertain. torque: channel | gain |
     condition. torque_gain, torque_offset / N m: true torque = gain * read + offset. inertia: stated over true.
     colour: correlation of the noise from sample to sample. angle_step: rad, of the encoder. torque_noise: white
-    noise of the measured torque, as a share of its spread.
+    noise of the measured torque, as a share of its deviation.
     """
 
     name: str = "full"

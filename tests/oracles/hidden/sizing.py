@@ -44,18 +44,18 @@ class Sized:
     """The parameters of each effect, the D / % that the trials promise for each (None: not tried), the basis."""
 
     params: list[Params]
-    promised: list[float | None]
+    predicted: list[float | None]
     basis: Basis
     sizes: list[float | None]
 
 
-def lanes_of(knobs: Arrays, own: slice) -> Arrays:
-    """Some of the lanes."""
+def members_of(knobs: Arrays, own: slice) -> Arrays:
+    """Some of the members."""
     return {name: value[..., own] for name, value in knobs.items()}
 
 
 def path_of(path: Trajectory, own: slice) -> Trajectory:
-    """The trajectories of some of the lanes."""
+    """The trajectories of some of the members."""
     inner = {name: getattr(path, name)[:, own] for name in ("x", "v", "a", "delta")}
     return Trajectory(path.time, **inner, diverged=path.diverged[own])
 
@@ -73,16 +73,16 @@ def run(knobs: Arrays, drafts: list[Draft], repeats: list[int], n: int, substeps
 
 def size(drafts: list[Draft], n: int) -> list[Sized]:
     """Run every record without its effects and with each effect at each size on trial, and choose."""
-    lanes = [lane for one in drafts for lane in [*one.records, *_trials(one)]]
+    members = [member for one in drafts for member in [*one.records, *_trials(one)]]
     repeats = [1 + LADDER * sum(target is not None for target in one.targets) for one in drafts]
-    knobs = stack(lanes)
+    knobs = stack(members)
     path = run(knobs, drafts, repeats, n, 2)
     found, first = [], 0
     for one, times in zip(drafts, repeats, strict=True):
         count = len(one.records)
         own, base = slice(first, first + times * count), slice(first, first + count)
-        seen = clean(one, lanes_of(knobs, own), path_of(path, own)).reshape(n, times, count)
-        columns = sensitivities(lanes_of(knobs, base), path_of(path, base), one.setup.order)
+        seen = clean(one, members_of(knobs, own), path_of(path, own)).reshape(n, times, count)
+        columns = sensitivities(members_of(knobs, base), path_of(path, base), one.setup.order)
         if one.setup.corner is not None:
             columns = coupled(columns, one.setup.corner, one.rig.rate)
         basis = Basis(columns, seen[:, 0], one.conditions, one.setup.datum == "absolute")
@@ -101,21 +101,21 @@ def _sizes(least: float) -> np.ndarray:
 
 
 def _trials(one: Draft) -> list[Knobs]:
-    lanes = []
+    members = []
     for effect, params, target in zip(one.effects, one.params, one.targets, strict=True):
         for share in _sizes(effect.least) if target is not None else ():
             turn = effect.as_modelled or effect.turn
-            lanes += [record | turn(effect.at(params, share), record) for record in one.records]
-    return lanes
+            members += [record | turn(effect.at(params, share), record) for record in one.records]
+    return members
 
 
 def _chosen(one: Draft, basis: Basis, differences: np.ndarray) -> Sized:
     """Log-log interpolation of D; the nearest size on trial where the target is out of reach."""
-    chosen, promised, sizes, first = [], [], [], 0
+    chosen, predicted, sizes, first = [], [], [], 0
     for effect, params, target in zip(one.effects, one.params, one.targets, strict=True):
         if target is None:
             chosen.append(params)
-            promised.append(None)
+            predicted.append(None)
             sizes.append(None)
             continue
         left = [basis.excess(differences[:, first + j])["excess_percent"] for j in range(LADDER)]
@@ -127,16 +127,16 @@ def _chosen(one: Draft, basis: Basis, differences: np.ndarray) -> Sized:
         log_size = np.interp(np.log(target), rising, log_sizes)
         sizes.append(float(np.exp(log_size)))
         chosen.append(effect.at(params, sizes[-1]))
-        promised.append(float(np.exp(np.interp(log_size, log_sizes, rising))))
+        predicted.append(float(np.exp(np.interp(log_size, log_sizes, rising))))
         first += LADDER
-    return Sized(chosen, promised, basis, sizes)
+    return Sized(chosen, predicted, basis, sizes)
 
 
 def corrected(one: Draft, sized: Sized, reached: float) -> bool:
     """Change the size of a single effect whose excess the trials, far apart, were wrong about; whether it was."""
     if len(one.effects) != 1 or sized.sizes[0] is None or one.effects[0].as_modelled:
         return False
-    ratio = sized.promised[0] / max(reached, 1e-9)
+    ratio = sized.predicted[0] / max(reached, 1e-9)
     size = min(max(sized.sizes[0] * float(np.clip(ratio, 0.05, 20.0)) ** 0.5, one.effects[0].least), 1.0)
     if not np.isfinite(reached) or 0.75 < ratio < 1.35 or size == sized.sizes[0]:
         return False

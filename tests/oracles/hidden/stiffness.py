@@ -45,7 +45,7 @@ def of_shares(knobs: Arrays, shares: list[np.ndarray]) -> np.ndarray:
 
 
 def mesh_stiffness(knobs: Arrays, mesh_angle: np.ndarray) -> np.ndarray:
-    """k / (N/m) at mesh angles / rad whose last axis is the lane."""
+    """k / (N/m) at mesh angles / rad whose last axis is the member."""
     return of_shares(knobs, carrying(knobs, mesh_angle)[1])
 
 

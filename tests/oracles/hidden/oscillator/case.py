@@ -11,7 +11,7 @@ from ..effect import between as log_uniform
 from ..sensor import coloured
 from .calibrate import Seen, excess
 from .inputs import KINDS, NONE, Input, drawn
-from .laws import OSCILLATOR_EFFECTS, Law, Params, Scales, lanes
+from .laws import OSCILLATOR_EFFECTS, Law, Params, Scales, members
 from .motion import STEP, Motion, move, reading
 
 CHANNELS = ("displacement", "velocity", "acceleration")
@@ -134,16 +134,16 @@ def _draft(stratum, rng, channel, kind, periods, unit) -> _Draft:
 
 
 def _moved(draft: _Draft, trials: list[Params]) -> tuple[Motion, dict[str, np.ndarray]]:
-    """The records with each of these parameters, all lanes together."""
+    """The records with each of these parameters, all members together."""
     count = len(draft.forces)
     knobs = [{"zeta": draft.zeta} | (draft.law.knobs(p) if draft.law else {}) for p in trials]
-    p = lanes([k for k in knobs for _ in range(count)])
+    p = members([k for k in knobs for _ in range(count)])
     start = np.tile(draft.start, len(trials))
     return move(p, draft.forces * len(trials), start, float(draft.lengths.max())), p
 
 
 def _excess(draft: _Draft, motion: Motion, p: dict[str, np.ndarray], first: int) -> float:
-    """Of the lanes from `first` on."""
+    """Of the members from `first` on."""
     responses, forces = [], []
     for i, span in enumerate(draft.lengths):
         t = motion.time[: int(span / STEP)]
@@ -154,7 +154,7 @@ def _excess(draft: _Draft, motion: Motion, p: dict[str, np.ndarray], first: int)
 
 @dataclass
 class _Sized:
-    """Parameters of the effect, the motion with them, lanes of its knobs, and the excess / %."""
+    """Parameters of the effect, the motion with them, members of its knobs, and the excess / %."""
 
     params: Params
     motion: Motion

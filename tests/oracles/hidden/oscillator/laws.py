@@ -8,14 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 
 Params = dict[str, float]
-# what a lane can contain, with the value at which it is absent; natural units
+# what a member can contain, with the value at which it is absent; natural units
 NEUTRAL: dict[str, float] = {
     "zeta": 0.01, "cubic": 0.0, "quadratic": 0.0, "bend": 0.0, "dry": 0.0, "dry_width": 1.0,
     "forward": 0.0, "backward": 0.0, "viscous_forward": 0.0, "viscous_backward": 0.0, "one_way_width": 1.0,
     "power": 0.0, "power_n": 1.0, "rounding": 1e-3, "hysteresis": 0.0, "yield": 1.0, "contact": 0.0, "contact_p": 1.0,
     "delay": 0.0, "lowpass": np.inf, "limit": np.inf, "drift": 0.0,
 }  # fmt: skip
-SPREAD = np.array([0.5, 1.0, 1.6])[:, None]  # yields of the three hysteretic elements over their nominal value
+YIELD_RATIOS = np.array([0.5, 1.0, 1.6])[:, None]  # yields of the three hysteretic elements over their nominal value
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Scales:
 
 @dataclass(frozen=True)
 class Law:
-    """An effect. draw: parameters, natural, at their largest; sizes: powers with which they shrink; knobs: of a lane.
+    """An effect. draw: parameters, natural, at their largest; sizes: powers with which they shrink; knobs: of a member.
 
     own: the parameters by the names and in the units that the truth states. units: those of the channel it needs.
     """
@@ -125,9 +125,11 @@ OSCILLATOR_EFFECTS: dict[str, Law] = dict((
 SENSOR_EFFECTS = tuple(name for name in OSCILLATOR_EFFECTS if name.startswith("sensor_"))
 
 
-def lanes(knobs: list[Params]) -> dict[str, np.ndarray]:
-    """Lanes as arrays (lane,), each naming only what differs from NEUTRAL."""
-    unknown = {name for lane in knobs for name in lane} - set(NEUTRAL)
+def members(knobs: list[Params]) -> dict[str, np.ndarray]:
+    """Members as arrays (member,), each naming only what differs from NEUTRAL."""
+    unknown = {name for member in knobs for name in member} - set(NEUTRAL)
     if unknown:
         raise KeyError(f"no such knobs: {sorted(unknown)}")
-    return {name: np.array([lane.get(name, value) for lane in knobs], dtype=float) for name, value in NEUTRAL.items()}
+    return {
+        name: np.array([member.get(name, value) for member in knobs], dtype=float) for name, value in NEUTRAL.items()
+    }

@@ -6,7 +6,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.simulation.driven import Driven
-from gear_damping.simulation.families import DAMPING_RATIO, Family, coefficients_for
+from gear_damping.simulation.prior import DAMPING_RATIO, Prior, coefficients_for
 from gear_damping.simulation.runs import Runs
 from gear_damping.simulation.simulate import simulate
 from gear_damping.simulation.solver_settings import Solver
@@ -23,7 +23,7 @@ class KnownRuns:
         law: The effect that carries the damping ratio.
         range_percent: Smallest and largest damping ratio, between which any is as likely as another.
         centre: Displacement and velocity at the start that are expected, (runs, 2).
-        spread: Their standard deviations, (runs, 2).
+        deviation: Their standard deviations, (runs, 2).
         records: Noisy responses, (runs, time).
         noise: Standard deviation of the noise, (runs,).
         solver: Settings of the solver.
@@ -33,7 +33,7 @@ class KnownRuns:
     law: str
     range_percent: tuple[float, float]
     centre: Tensor
-    spread: Tensor
+    deviation: Tensor
     records: Tensor
     noise: Tensor
     solver: Solver
@@ -43,14 +43,14 @@ class KnownRuns:
 
     def pick(self, chosen: Tensor) -> "KnownRuns":
         """Those of the runs that a mask (runs,) names."""
-        names = ("centre", "spread", "records", "noise")
+        names = ("centre", "deviation", "records", "noise")
         return replace(self, runs=self.runs.keep(chosen), **{name: getattr(self, name)[chosen] for name in names})
 
     @property
     def units(self) -> Tensor:
-        """What displacement and velocity are counted in, (runs, 2): the spread of the start, or that of the motion."""
+        """What displacement and velocity are counted in, (runs, 2): the deviation of the start, or of the motion."""
         usual = torch.stack([self.records.std(-1), self.runs.reference_velocity], -1)
-        return torch.where(self.spread > 0, self.spread, usual)
+        return torch.where(self.deviation > 0, self.deviation, usual)
 
     def values(
         self, ratio: Tensor, start: Tensor, repeat: int = 1, units: Tensor | None = None
@@ -66,7 +66,7 @@ class KnownRuns:
         found = {name: _repeated(value, repeat) for name, value in self.runs.values.items()}
         velocity = self.runs.reference_velocity.repeat(repeat)
         found |= coefficients_for(self.runs.model, found, self.law, ratio / 100, velocity)
-        places = self.centre.repeat(repeat, 1) + start * (self.spread if units is None else units).repeat(repeat, 1)
+        places = self.centre.repeat(repeat, 1) + start * (self.deviation if units is None else units).repeat(repeat, 1)
         return found | dict(zip(START, places.unbind(-1), strict=True))
 
     def response(self, ratio: Tensor, start: Tensor, samples: int) -> Tensor:
@@ -89,20 +89,20 @@ class KnownRuns:
         )
 
 
-def start_of(runs: Runs, family: Family) -> tuple[Tensor, Tensor]:
+def start_of(runs: Runs, prior: Prior) -> tuple[Tensor, Tensor]:
     """Centre and standard deviation of the start of runs of a family, (runs, 2) each; both 0 of one at rest."""
     static = runs.derived["mean_load"] / runs.derived["mean_stiffness"]
-    if family.start != "static":
+    if prior.start != "static":
         zero = torch.zeros(len(static), 2, dtype=torch.float64)
         return zero, zero
     centre = torch.stack([static, torch.zeros_like(static)], -1)
-    return centre, family.perturbation * torch.stack([static.abs(), runs.reference_velocity], -1)
+    return centre, prior.perturbation * torch.stack([static.abs(), runs.reference_velocity], -1)
 
 
-def range_of(family: Family) -> tuple[float, float]:
+def range_of(prior: Prior) -> tuple[float, float]:
     """Smallest and largest damping ratio of a family, %."""
-    spread = family.spreads[DAMPING_RATIO]
-    return spread.low, spread.high
+    ends = prior.distributions[DAMPING_RATIO]
+    return ends.low, ends.high
 
 
 def _repeated(value: Tensor, count: int) -> Tensor:

@@ -12,7 +12,7 @@ CORRELATED_PERIODS = 3.0  # characteristic times over which residuals may be cor
 SILENT = 0.1  # noise levels that a step of order one moves the records by, in all: less says nothing of a parameter
 
 
-def spread_of(outcome: Outcome, evidence: Evidence) -> Tensor:
+def covariance_of(outcome: Outcome, evidence: Evidence) -> Tensor:
     """Covariance of the fitted coordinates; residuals may be coloured."""
     scale = time_scale(outcome.hypothesis, evidence)
     fitted = replace(outcome.fitted, prediction=outcome.linearisation)

@@ -35,10 +35,10 @@ def model():
     return Model(GearPair(), [FourierMeshStiffness(), BearingFlexibility()])
 
 
-def simulated(**departures):
+def simulated(**initial_perturbations):
     values = model().values(1, initial_displacement=X0, **GIVEN)
-    moved = {name: torch.tensor([value], dtype=torch.float64) for name, value in departures.items()}
-    return simulate(model(), values, sampling_rate=RATE, n_samples=SAMPLES, inputs=Driven(departures=moved))
+    moved = {name: torch.tensor([value], dtype=torch.float64) for name, value in initial_perturbations.items()}
+    return simulate(model(), values, sampling_rate=RATE, n_samples=SAMPLES, inputs=Driven(initial_perturbations=moved))
 
 
 def two_masses():
@@ -60,7 +60,7 @@ def test_a_bearing_begins_where_it_is_told():
     assert np.abs(found.states["displacement"][0].numpy() - expected).max() < 1e-4 * np.abs(expected).max()
 
 
-def test_no_departure_is_where_the_effect_puts_it():
+def test_without_a_perturbation_it_is_where_the_effect_puts_it():
     assert simulated().states[PLACE][0, 0].item() == pytest.approx(REST, rel=1e-9)
 
 

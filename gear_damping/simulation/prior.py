@@ -1,4 +1,4 @@
-"""Families of runs: what varies from run to run, and where the runs start."""
+"""The prior of runs: what varies from run to run, and where the runs start."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -19,7 +19,7 @@ DAMPING_RATIO = "damping_ratio_percent"
 
 
 @dataclass(frozen=True)
-class Spread:
+class Uniform:
     """A uniform distribution; `relative` ones multiply the nominal value."""
 
     low: float
@@ -34,19 +34,19 @@ class Spread:
 
 
 @dataclass(frozen=True)
-class Family:
+class Prior:
     """What varies between runs.
 
     Args:
         name: Its name.
-        spreads: Distribution of each varying parameter by flat name (SI), and of `damping_ratio_percent`.
+        distributions: Distribution of each varying parameter by flat name (SI), and of `damping_ratio_percent`.
         start: `static`: near the static equilibrium; `rest`: at zero, a step of the whole load.
         perturbation: Standard deviation of a `static` start, relative to the static deflection and
             to the reference velocity.
     """
 
     name: str
-    spreads: Mapping[str, Spread] = field(default_factory=dict)
+    distributions: Mapping[str, Uniform] = field(default_factory=dict)
     start: Literal["static", "rest"] = "static"
     perturbation: float = 0.1
 
@@ -57,7 +57,7 @@ class Label:
 
     Args:
         damping_law: The damping effect that carries it; None: as given.
-        damping_ratio_percent: Of every run in %; None: drawn from the family's spread.
+        damping_ratio_percent: Of every run in %; None: drawn from the prior.
     """
 
     damping_law: str | None = None
@@ -67,7 +67,7 @@ class Label:
 def draw_values(
     model: Model,
     given: Mapping[str, float],
-    family: Family,
+    prior: Prior,
     n_runs: int,
     generator: torch.Generator,
     label: Label = Label(),
@@ -77,36 +77,36 @@ def draw_values(
     Args:
         model: Base system and effects.
         given: Nominal values that differ from the defaults, SI by flat name.
-        family: What varies.
+        prior: What varies.
         n_runs: How many runs.
         generator: Source of randomness.
         label: Which law carries which damping ratio.
 
     Raises:
-        InputError: a spread or the damping law names something that the model does not have, or no
+        InputError: a distribution or the damping law names something that the model does not have, or no
             coefficient of the law has a damping ratio.
     """
     values = model.values(n_runs, **given)
-    _check(model, family, label.damping_law, values)
+    _check(model, prior, label.damping_law, values)
     velocity = reference_velocity(model.prepare(values).derived)
-    for name in sorted(family.spreads):
+    for name in sorted(prior.distributions):
         if name != DAMPING_RATIO:
-            values[name] = family.spreads[name].draw(values[name], generator).clone()
-    drawn = family.spreads.get(DAMPING_RATIO, Spread(0, 0)).draw(velocity, generator)
+            values[name] = prior.distributions[name].draw(values[name], generator).clone()
+    drawn = prior.distributions.get(DAMPING_RATIO, Uniform(0, 0)).draw(velocity, generator)
     if label.damping_ratio_percent is not None:
         drawn = torch.full_like(velocity, label.damping_ratio_percent)
-    is_known = DAMPING_RATIO in family.spreads or label.damping_ratio_percent is not None
+    is_known = DAMPING_RATIO in prior.distributions or label.damping_ratio_percent is not None
     if label.damping_law is not None and is_known:
         values |= coefficients_for(model, values, label.damping_law, drawn / 100, velocity)
-    if family.start == "static":
-        _start_static(model, given, values, family.perturbation, velocity, generator)
+    if prior.start == "static":
+        _start_static(model, given, values, prior.perturbation, velocity, generator)
     return values, velocity
 
 
-def _check(model: Model, family: Family, damping_law: str | None, values: Values) -> None:
+def _check(model: Model, prior: Prior, damping_law: str | None, values: Values) -> None:
     problems = [
         Problem(f"family.spreads.{name}", "the model has no such parameter", remedy=nearest(name, list(values)))
-        for name in family.spreads
+        for name in prior.distributions
         if name != DAMPING_RATIO and name not in values
     ]
     laws = [effect.name for effect in model.damping_laws]
@@ -176,8 +176,8 @@ def _imposed(model: Model, prepared: Prepared) -> tuple[Tensor, Tensor]:
     """What the flanks and the states of effects impose at the start, and its rate, natural units."""
     zero = torch.zeros_like(prepared.base["equivalent_mass"])
     equation = EquationOfMotion(model)
-    now = equation.moment(zero, (zero, zero, *extra_states(model, prepared).values()), {}, prepared.base)
-    return equation.imposed_error(now, prepared.terms)
+    at = equation.kinematics(zero, (zero, zero, *extra_states(model, prepared).values()), {}, prepared.base)
+    return equation.imposed_error(at, prepared.terms)
 
 
 def extra_states(model: Model, prepared: Prepared) -> dict[str, Tensor]:

@@ -45,7 +45,7 @@ class Residual(BeforeAfter):
 class Parameter(Part):
     """A fitted parameter."""
 
-    value: float = said("where the fit came to rest", "`unit`")
+    value: float = said("where the fit converged", "`unit`")
     unit: str = said("its unit")
     interval95: Interval95 = said("95 % interval; the whole range where the records say nothing", "`unit`")
     at_bound: bool | None = may_be_left_out(
@@ -65,8 +65,10 @@ class Homogeneous(Part):
     """Whether a cause has one size in all records."""
 
     parameter: str = said("the strength that was compared")
-    tau_percent: float | None = said("spread between records beyond their errors; null: not testable", "% of the value")
-    interval95: Interval95 | None = said("of that spread (Q profile)", "% of the value")
+    tau_percent: float | None = said(
+        "standard deviation between records beyond their errors; null: not testable", "% of the value"
+    )
+    interval95: Interval95 | None = said("of that deviation (Q profile)", "% of the value")
     p: float | None = said("of one size within the tolerance (Cochran's Q); null: not testable")
     tolerance: float = said("what a real cause may differ by between records", "1")
     level: float = said("below it the sizes differ")
@@ -80,7 +82,7 @@ class Cause(Part):
     parameters: dict[str, Parameter] = said("its fitted parameters by own name")
     excess_explained: float = said("share of the excess that it takes on records left out of the fit", "1")
     confusable_with: list[str] = said("effects that these data do not tell from it")
-    status: Literal["established", "suggested"] = said("established: held-out records bear it out")
+    status: Literal["established", "suggested"] = said("established: held-out records validate it")
     fixed: dict[str, float] | None = may_be_left_out(
         "parameters that were tried and not fitted, as the order of a ripple"
     )
@@ -230,7 +232,7 @@ class NextExperiment(Part):
 
 
 class StrongestLine(Part):
-    """The force at one order or frequency that would take most of the rest; its phase is free in every record."""
+    """The force at one order or frequency that would take most of the residual; its phase is free in every record."""
 
     place: float = said("its order, cycles per turn of the pinion, or its frequency", "1 or Hz")
     unit: Literal["order", "Hz"] = said("which of the two it keeps in all records: order of the pinion, or Hz")
@@ -239,7 +241,7 @@ class StrongestLine(Part):
     share: float = said("of the residuals of the fitted records, that it would take", "1")
 
 
-class Leftover(Part):
+class UnexplainedResidual(Part):
     """Where what nobody named lies."""
 
     shares: dict[str, float] = said("of the held-out residual that a family of features would take", "1")
@@ -263,8 +265,8 @@ class Record(Part):
 class Calibration(Part):
     """The calibration of the nominal simulation, before anything was sought."""
 
-    converged: bool = said("whether it came to rest")
-    parameters: dict[str, float] = said("where it came to rest", "SI, or the rig's own units")
+    converged: bool = said("whether it converged")
+    parameters: dict[str, float] = said("where it converged", "SI, or the rig's own units")
     steps: list[str] = said("sentences")
 
 
@@ -298,7 +300,7 @@ class Explanation(Part):
     not_tried: list[str] | None = said("what there was no time for")
     not_observable: list[NotObservable] = said("what could not have been seen")
     next_experiment: NextExperiment | None = said("what would tell more")
-    unexplained: Leftover | None = said("where lies what has no name; null where nothing is missing")
+    unexplained: UnexplainedResidual | None = said("where lies what has no name; null where nothing is missing")
     records: dict[str, Record] = said("by record")
     calibration: Calibration | None = said("of the nominal simulation")
     findings: list[Finding] = said("what was found in the data before anything was fitted")

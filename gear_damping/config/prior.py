@@ -8,7 +8,7 @@ from gear_damping.config.reader import Reader
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.physics.parameter import Parameter
 from gear_damping.schema.values import Number, OneOf, Text
-from gear_damping.simulation.families import DAMPING_RATIO, Family, Spread
+from gear_damping.simulation.prior import DAMPING_RATIO, Prior, Uniform
 from gear_damping.units import spoken
 
 PLAIN = {
@@ -20,10 +20,10 @@ KINDS = ("uniform", "factor")
 RATIO = Parameter(DAMPING_RATIO, "1", 0.3, "equivalent damping ratio in % of critical", 0, 50)
 
 
-def read_family(
+def read_prior(
     reader: Reader, node: Mapping[str, Any], declared: Mapping[str, Parameter], given: Mapping[str, Any]
-) -> Family | None:
-    """The family; problems go to the reader.
+) -> Prior | None:
+    """The prior; problems go to the reader.
 
     Args:
         reader: Collects the problems.
@@ -38,17 +38,19 @@ def read_family(
     if not isinstance(listed, Mapping):
         reader.refuse("family.spreads", "is a group of keys", listed, "give family.spreads.<parameter>")
         return None
-    spreads, declared = {}, {**declared, DAMPING_RATIO: RATIO}
-    for name, spread in listed.items():
-        if spread is not None:
-            found = reader.collect(lambda name=name, spread=spread: _spread(reader, name, spread, declared, given))
-            spreads |= {name: found} if found else {}
-    return Family(spreads=spreads, **plain)
+    distributions, declared = {}, {**declared, DAMPING_RATIO: RATIO}
+    for name, distribution in listed.items():
+        if distribution is not None:
+            found = reader.collect(
+                lambda name=name, distribution=distribution: _distribution(reader, name, distribution, declared, given)
+            )
+            distributions |= {name: found} if found else {}
+    return Prior(distributions=distributions, **plain)
 
 
-def _spread(
+def _distribution(
     reader: Reader, name: str, node: Any, declared: Mapping[str, Parameter], given: Mapping[str, Any]
-) -> Spread:
+) -> Uniform:
     key = f"family.spreads.{name}"
     source = reader.origin.of(key)
     if name not in declared:
@@ -67,7 +69,7 @@ def _spread(
         ends = [parameter.problem(end * nominal, key, source) for end in (low, high)]
         if any(ends):
             raise InputError([problem for problem in ends if problem])
-    return Spread(low, high, relative=kind == "factor")
+    return Uniform(low, high, relative=kind == "factor")
 
 
 def _percent(value: Any, key: str, source: str, own_unit: str | None) -> float:

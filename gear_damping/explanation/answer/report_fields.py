@@ -7,15 +7,15 @@ from typing import Any
 from gear_damping.explanation.answer import gain
 from gear_damping.explanation.answer.homogeneity import by_record
 from gear_damping.explanation.answer.next_experiment import confusable_beforehand, next_experiment
-from gear_damping.explanation.answer.unexplained import leftover
+from gear_damping.explanation.answer.unexplained import unexplained_residual
 from gear_damping.explanation.evidence.data_faults import sentences
+from gear_damping.explanation.evidence.declared_units import rig_unit, unit_of
 from gear_damping.explanation.evidence.excess import ac_energy
 from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.evidence.records import Evidence
-from gear_damping.explanation.evidence.rig_units import rig_unit, unit_of
+from gear_damping.explanation.model.covariance import covariance_of
 from gear_damping.explanation.model.hypothesis import Outcome
-from gear_damping.explanation.model.spread import spread_of
-from gear_damping.explanation.schema import KEYS, SCHEMA_VERSION
+from gear_damping.explanation.report_schema import KEYS, SCHEMA_VERSION
 from gear_damping.explanation.statistics.paired import share_taken
 from gear_damping.explanation.steps.judge import CONSISTENT, DATA_PROBLEM, LARGEST_SET, Judged, statuses
 from gear_damping.explanation.trials.assess import Assessment
@@ -88,7 +88,7 @@ def of_search(measurement: Measurement, evidence: Evidence, noise: NoiseLevel, j
             "holdout": _residual(first.holdout, last.holdout, unit, factor),
             "segment_s": evidence.segments.seconds or None,
         },
-        "parameters": gain.final_parameters(last, spread_of(last, evidence), evidence),
+        "parameters": gain.final_parameters(last, covariance_of(last, evidence), evidence),
         "gain": _gain(judged, evidence, noise),
         "noise": {
             "channel": evidence.channel.name,
@@ -102,7 +102,7 @@ def of_search(measurement: Measurement, evidence: Evidence, noise: NoiseLevel, j
         "not_tried": list(judged.not_tried),
         "not_observable": _not_observable(found.first_scores, names, evidence),
         "next_experiment": next_experiment(names, evidence),
-        "unexplained": None if judged.verdict.word == CONSISTENT else leftover(last, evidence),
+        "unexplained": None if judged.verdict.word == CONSISTENT else unexplained_residual(last, evidence),
         "records": _records(evidence, first, last, factor, unit),
         "calibration": {
             "converged": first.fitted.converged,
@@ -139,8 +139,8 @@ def _random(left: Assessment | None, evidence: Evidence) -> dict[str, Any] | Non
         return None
     records = evidence.fitted
     own = [r.response - r.response.mean() for r in records]
-    spread = sum(float(r.square().sum()) for r in own) / sum(len(r) for r in own)
-    share = left.random.variance / max(spread, 1e-300)
+    variance = sum(float(r.square().sum()) for r in own) / sum(len(r) for r in own)
+    share = left.random.variance / max(variance, 1e-300)
     return {
         "percent": 100 * share,
         "looks_like": _looks_like(left.random),
@@ -166,13 +166,13 @@ def _findings(findings: Sequence[Finding]) -> list[dict[str, Any]]:
 
 def _steps(judged: Judged, evidence: Evidence) -> list[str]:
     before = judged.before
-    rest = "came to rest" if judged.found.nominal.fitted.converged else "did not come to rest: take it with care"
+    ended = "converged" if judged.found.nominal.fitted.converged else "did not converge: take it with care"
     segments = (
         f"These records cannot be predicted from their start alone: they were fitted and scored in segments of "
         f"{evidence.segments.seconds:.3g} s, each from an initial state of its own."
     )
     return [
-        f"The nominal simulation was fitted first, so that no wrong parameter passes for physics; the fit {rest}.",
+        f"The nominal simulation was fitted first, so that no wrong parameter passes for physics; the fit {ended}.",
         f"It leaves {before.percent:.3g} % of the signal's variance beyond the noise on held-out records; "
         f"more than {before.threshold:.2g} % counts as significant.",
         *([segments] if evidence.segments else []),
@@ -182,11 +182,11 @@ def _steps(judged: Judged, evidence: Evidence) -> list[str]:
 def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
     """Accepted causes; where none was, the best of what was tried as a suggestion."""
     found, last = judged.found, judged.found.outcome
-    spread = spread_of(last, evidence)
+    covariances = covariance_of(last, evidence)
     listed = [
         {
             "name": cause.name,
-            "parameters": gain.parameters_of(last, spread, cause.name, evidence),
+            "parameters": gain.parameters_of(last, covariances, cause.name, evidence),
             "excess_explained": cause.share,
             "confusable_with": [*cause.confusable, *cause.effect.cause.looks_like][: LARGEST_SET - 1],
             "status": statuses(judged.verdict.word),
@@ -198,8 +198,8 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
     if not listed and judged.verdict.word != CONSISTENT:
         helping = (r for r in found.rejected if r.gain > 0 and r.is_seen_in_fit)
         for refit in [r for r in helping if _share(r.outcome, found.nominal) > 0][:1]:
-            spread = spread_of(refit.outcome, evidence)
-            own = gain.parameters_of(refit.outcome, spread, refit.name, evidence)
+            covariances = covariance_of(refit.outcome, evidence)
+            own = gain.parameters_of(refit.outcome, covariances, refit.name, evidence)
             alike = confusable_beforehand(found.first_scores, refit.name)[: LARGEST_SET - 1]
             share = _share(refit.outcome, found.nominal)
             listed.append(
@@ -227,10 +227,10 @@ def _residual(before: Sequence, after: Sequence, unit: str, factor: float) -> di
 
 def _gain(judged: Judged, evidence: Evidence, noise: NoiseLevel) -> dict[str, Any]:
     first, last = judged.found.nominal, judged.found.outcome
-    spread = sum(ac_energy(record) for record in evidence.held)
+    energy = sum(ac_energy(record) for record in evidence.held)
     floor = sum(len(r.stacked) * noise.by_record[r.name] ** 2 for r in evidence.held)
     damping = {
-        key: gain.damping_ratio(outcome, spread_of(outcome, evidence))
+        key: gain.damping_ratio(outcome, covariance_of(outcome, evidence))
         for key, outcome in (("before", first), ("after", last))
     }
     whole = all(damping.values())
@@ -241,7 +241,7 @@ def _gain(judged: Judged, evidence: Evidence, noise: NoiseLevel) -> dict[str, An
         "nrmse": {
             "before": gain.nrmse(first.holdout, evidence.held),
             "after": gain.nrmse(last.holdout, evidence.held),
-            "floor": (floor / max(spread, 1e-300)) ** 0.5,
+            "floor": (floor / max(energy, 1e-300)) ** 0.5,
         },
         "damping_ratio_percent": damping if whole else None,
         "confirmed": _confirmed(judged) if judged.found.accepted else None,
@@ -257,7 +257,7 @@ def _confirmed(judged: Judged) -> dict[str, Any]:
 
 
 def _candidates(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
-    """Every effect that was tried: what it promised on fitted records, and what a full fit took of left-out ones."""
+    """Every effect that was tried: its predicted gain on fitted records, and what a full fit took of left-out ones."""
     found = judged.found
     best_last = reversed(found.first_fits)  # of several forms of an effect the best one counts
     taken = {refit.name: _share(refit.outcome, found.nominal) for refit in best_last}

@@ -1,4 +1,4 @@
-"""What a term sees when it is evaluated: state, angles, inputs and locked regions at one instant."""
+"""What a term sees when it is evaluated: state, angles, inputs and active branches at one instant."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -36,8 +36,8 @@ class Rotation:
 
 
 @dataclass
-class Moment:
-    """One instant of a batch, in natural units; every tensor has shape (batch,).
+class Kinematics:
+    """State and kinematics of a batch at one instant, in natural units; every tensor has shape (batch,).
 
     The equation fills the later fields in as it goes, in their order: a term may use those that
     come before its own slot.
@@ -48,7 +48,7 @@ class Moment:
         velocity: Its rate.
         extra: States that effects added, by name.
         inputs: Measured or drawn time series at this instant, by name.
-        locked: Region of each switch, 1 where its function is positive, else 0. Inside a step it
+        active_branch: Of each switch, 1 where its function is positive, else 0. Inside a step it
             is held, so that the step sees one smooth branch.
         pinion: Pinion shaft (gear pair only).
         gear: Gear shaft (gear pair only).
@@ -60,7 +60,7 @@ class Moment:
     velocity: Tensor
     extra: Mapping[str, Tensor] = field(default_factory=dict)
     inputs: Mapping[str, Tensor] = field(default_factory=dict)
-    locked: Mapping[str, Tensor] = field(default_factory=dict)
+    active_branch: Mapping[str, Tensor] = field(default_factory=dict)
     pinion: Rotation | None = None
     gear: Rotation | None = None
     mesh: Rotation | None = None
