@@ -9,7 +9,7 @@ from pathlib import Path
 
 import torch
 
-from gear_damping.identification.oscillator import first_frequency
+from gear_damping.identification.oscillator.first_frequency import first_frequency
 from gear_damping.identification.output_error.least_squares import Rounds, fit
 from gear_damping.identification.output_error.problem import OutputErrorProblem
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter

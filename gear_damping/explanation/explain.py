@@ -28,7 +28,7 @@ from gear_damping.explanation.steps.judge import CONSISTENT, Judged, Known, verd
 from gear_damping.explanation.steps.too_short import died_away, too_short
 from gear_damping.explanation.trials.bench import Bench, Log
 from gear_damping.identification.decimation import decimated
-from gear_damping.identification.oscillator import linear_model
+from gear_damping.identification.oscillator.linear_model import linear_model
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import Segments
 from gear_damping.identification.time_scale import characteristic_time

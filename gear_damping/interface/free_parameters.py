@@ -6,7 +6,7 @@ from dataclasses import replace
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.explanation.model.hypothesis import Given
 from gear_damping.explanation.model.nominal_gear_pair import EXPECTED_SHAPE, MESH, RENAMED, SHAPE
-from gear_damping.identification.oscillator import DAMPING
+from gear_damping.identification.oscillator.linear_model import DAMPING
 from gear_damping.identification.output_error.records import FreeParameter
 from gear_damping.physics.damping_ratio import DAMPING_RATIO
 from gear_damping.physics.model import Model

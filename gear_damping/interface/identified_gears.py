@@ -21,7 +21,7 @@ from gear_damping.explanation.model.nominal_gear_pair import angles_of, first_ge
 from gear_damping.explanation.steps.too_short import too_short
 from gear_damping.explanation.trials.bench import Log
 from gear_damping.explanation.trials.efficient import weighed
-from gear_damping.identification.oscillator import linear_model
+from gear_damping.identification.oscillator.linear_model import linear_model
 from gear_damping.identification.output_error.least_squares import Rounds
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.interface.free_parameters import FLAT, free_parameters

@@ -8,7 +8,8 @@ from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome
 from gear_damping.explanation.trials.efficient import weighed
 from gear_damping.identification.observation import fit_record, has_spring, known_of, require_alike, require_fitted
-from gear_damping.identification.oscillator import Estimate, OscillatorFit, fit_oscillator
+from gear_damping.identification.oscillator.estimates import Estimate
+from gear_damping.identification.oscillator.fit import OscillatorFit, fit_oscillator
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import Segments
 from gear_damping.interface.identified_page import MOST_PANELS, estimate_rows, panel, residual_rows

@@ -8,7 +8,7 @@ import torch
 from scipy.linalg import expm
 
 from gear_damping.identification.decimation import decimated
-from gear_damping.identification.oscillator import fit_oscillator
+from gear_damping.identification.oscillator.fit import fit_oscillator
 from gear_damping.identification.output_error.records import FitRecord, Observed
 
 OMEGA, RATIO, GAIN, RATE = 2 * math.pi * 2.0, 0.05, 30.0, 20.0

@@ -9,7 +9,7 @@ import torch
 from scipy.signal import bilinear, butter, lfilter
 
 from gear_damping.identification.observation import Known
-from gear_damping.identification.oscillator import fit_oscillator
+from gear_damping.identification.oscillator.fit import fit_oscillator
 from gear_damping.identification.output_error.observe import interpolation
 from gear_damping.identification.output_error.records import Filter, FitRecord, Observed
 

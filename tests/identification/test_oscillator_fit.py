@@ -9,7 +9,9 @@ import torch
 from scipy.integrate import solve_ivp
 
 from gear_damping.identification.observation import fit_record
-from gear_damping.identification.oscillator import DAMPING, first_frequency, fit_oscillator
+from gear_damping.identification.oscillator.first_frequency import first_frequency
+from gear_damping.identification.oscillator.fit import fit_oscillator
+from gear_damping.identification.oscillator.linear_model import DAMPING
 from gear_damping.identification.output_error.records import FitRecord, Observed
 from gear_damping.measurement.files import data_root
 from gear_damping.measurement.load import load_measurement

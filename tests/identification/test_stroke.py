@@ -7,7 +7,8 @@ import pytest
 import torch
 from scipy.signal import lsim
 
-from gear_damping.identification.oscillator import first_frequency, fit_oscillator
+from gear_damping.identification.oscillator.first_frequency import first_frequency
+from gear_damping.identification.oscillator.fit import fit_oscillator
 from gear_damping.identification.output_error.records import FitRecord, Observed
 
 RATE, OMEGA, RATIO = 51200.0, 2 * math.pi * 1069.0, 0.04

@@ -8,7 +8,7 @@ from scipy.stats import chi2
 from torch import Tensor
 
 from gear_damping.explanation.evidence.noise import floor_variance
-from gear_damping.identification.oscillator import first_frequency
+from gear_damping.identification.oscillator.first_frequency import first_frequency
 from gear_damping.identification.output_error.records import FitRecord
 
 PERIODS, FEWEST_SAMPLES = 2.0, 64  # of a block: the longer of the two

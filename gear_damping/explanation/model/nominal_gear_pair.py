@@ -9,7 +9,7 @@ import torch
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, natural_frequency_hz
-from gear_damping.identification.oscillator import DAMPING, expected_about
+from gear_damping.identification.oscillator.linear_model import DAMPING, expected_about
 from gear_damping.identification.output_error.angles import angle_bases, harmonics_to_resonance, scanned
 from gear_damping.identification.output_error.least_squares import NONE, Rounds
 from gear_damping.identification.output_error.problem import OutputErrorProblem

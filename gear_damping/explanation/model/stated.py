@@ -4,7 +4,7 @@ from math import pi, sqrt
 
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.nominal_gear_pair import stated_mesh_frequency
-from gear_damping.identification.oscillator import mass_of
+from gear_damping.identification.oscillator.linear_model import mass_of
 from gear_damping.physics.systems.traits import Trait, by_trait
 
 

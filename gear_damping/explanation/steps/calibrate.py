@@ -24,7 +24,8 @@ from gear_damping.explanation.model.nominal_gear_pair import (
 from gear_damping.explanation.statistics.paired import paired_gain
 from gear_damping.explanation.trials.refit import block_samples
 from gear_damping.identification.observation import MESH_PHASE
-from gear_damping.identification.oscillator import DAMPING, fit_oscillator, linear_model, linear_oscillator
+from gear_damping.identification.oscillator.fit import fit_oscillator
+from gear_damping.identification.oscillator.linear_model import DAMPING, linear_model, linear_oscillator
 from gear_damping.identification.output_error.angles import STARTS
 from gear_damping.identification.output_error.least_squares import NONE, Rounds
 from gear_damping.identification.output_error.records import SEPARATOR, FreeParameter

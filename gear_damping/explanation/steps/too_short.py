@@ -6,7 +6,7 @@ from math import ceil
 from gear_damping.explanation.evidence.records import SPLIT, Evidence
 from gear_damping.explanation.model.stated import stated_frequency
 from gear_damping.explanation.trials.refit import FEWEST_BLOCKS
-from gear_damping.identification.oscillator import first_frequency
+from gear_damping.identification.oscillator.first_frequency import first_frequency
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.time_scale import decorrelation_time
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from gear_damping.identification.damping_estimate import DampingEstimate, UnsuitedRecord
 from gear_damping.identification.estimators.base import Recorded, RecordEstimator
-from gear_damping.identification.oscillator import fit_oscillator
+from gear_damping.identification.oscillator.fit import fit_oscillator
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import shortened
 from gear_damping.physics.systems.traits import Trait

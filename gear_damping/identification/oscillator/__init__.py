@@ -1,0 +1,1 @@
+"""The linear oscillator from measured records."""

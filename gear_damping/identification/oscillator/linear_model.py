@@ -1,0 +1,100 @@
+"""The linear oscillator that records are fitted with: its free parameters, their starts, and what is stated of them."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from math import pi
+
+import torch
+
+from gear_damping.identification.observation import Known
+from gear_damping.identification.oscillator.first_frequency import first_frequency
+from gear_damping.identification.output_error.first_guess import first_motion
+from gear_damping.identification.output_error.problem import OutputErrorProblem
+from gear_damping.identification.output_error.records import FitRecord, FreeParameter
+from gear_damping.identification.time_scale import characteristic_time
+from gear_damping.physics.effects.offset_force import OffsetForce
+from gear_damping.physics.effects.viscous_damping import ViscousDamping
+from gear_damping.physics.model import Model
+from gear_damping.physics.systems.base import System
+from gear_damping.physics.systems.oscillator import Oscillator
+
+DAMPING, FORCE = "viscous_damping.damping_coefficient", "offset_force.force"
+TIME = "characteristic_time"
+LAWS = dict.fromkeys(("damping_coefficient", "damping_ratio"), DAMPING)  # words of a file for the viscous damping
+FIRST_RATIOS = (0.01, 0.05, 0.2)  # damping ratios of the starts
+NOTHING = Known({}, {})
+
+
+def linear_oscillator(records: Sequence[FitRecord], system: type[System] = Oscillator) -> Model:
+    """The linear system of these records; one that is driven has a constant force beside its input."""
+    return Model(system(), [ViscousDamping(), *([OffsetForce()] if records[0].inputs else [])])
+
+
+def linear_model(
+    records: Sequence[FitRecord], known: Known = NOTHING
+) -> tuple[list[FreeParameter], dict[str, float], float]:
+    """Free parameters of the linear oscillator with their starts, its given values, and its characteristic time."""
+    stated, amplitude, system, mass = known.values, _amplitude(records, known.system), known.system, mass_of(known)
+    name, spring = system.spring, stated.get(system.spring, 1.0) > 0
+    rate = ((stated[name] / mass) ** 0.5 if stated.get(name) else 2 * pi * first_frequency(records[0])) * spring
+    scale = characteristic_time(records, rate, stated.get("damping_coefficient", 0.0) / mass)
+    given = _stated(known) | {"amplitude": amplitude} | ({} if spring else {name: 0.0, TIME: scale})
+    free = [FreeParameter(name, rate**2 * mass, logarithmic=True)] if spring else []
+    damping = 2 * FIRST_RATIOS[0] * rate * mass if spring else 1 / scale * mass
+    if "damping_ratio" in stated and spring:
+        damping = 2 * stated["damping_ratio"] * rate * mass
+    damping = stated.get("damping_coefficient", damping)
+    if damping > 0:
+        free.append(FreeParameter(DAMPING, damping, logarithmic=True, lower=1e-9 * (rate or 1 / scale) * mass))
+    else:
+        given[DAMPING] = 0.0
+    for drive, of_drive in system.gains.items():
+        if drive in records[0].inputs:
+            force = torch.cat([record.inputs[drive] for record in records])
+            per_amplitude = rate**2 * 2 * FIRST_RATIOS[1] if spring else 1 / scale**2
+            size = per_amplitude * amplitude * mass / float(force.std().clamp(min=1e-300))
+            gain = stated.get(of_drive, size)
+            free.append(FreeParameter(of_drive, gain, scale=abs(gain) or size))
+    if records[0].inputs:
+        free.append(FreeParameter(FORCE, 0.0, scale=(rate**2 if spring else 1 / scale**2) * amplitude * mass))
+    free += [FreeParameter(one, stated[one], abs(stated[one]), logarithmic=stated[one] > 0) for one in _unsure(known)]
+    expected = {LAWS.get(one, one): relative for one, relative in known.uncertainty.items() if stated[one]}
+    return [expected_about(p, expected.get(p.name)) for p in free], given, scale
+
+
+def mass_of(known: Known) -> float:
+    """What moves, from what is stated of a rig; 1 of one that is described per unit of mass."""
+    base = Model(known.system(), ())
+    return float(base.prepare(base.values(1, **_stated(known))).derived["equivalent_mass"][0])
+
+
+def fitted_mass(problem: OutputErrorProblem) -> float:
+    """What moves, from the given values of a fit."""
+    model = problem.model
+    return float(model.prepare(model.values(1, **problem.given)).derived["equivalent_mass"][0])
+
+
+def _stated(known: Known) -> dict[str, float]:
+    """Stated parameters of the system that are no part of the linear fit."""
+    fitted = {known.system.spring, *known.system.gains.values()}
+    own = {parameter.name for parameter in known.system.parameters} - fitted
+    return {name: value for name, value in known.values.items() if name in own}
+
+
+def _unsure(known: Known) -> list[str]:
+    """Those that are stated with an uncertainty."""
+    return [name for name in _stated(known) if name in known.uncertainty and known.values[name]]
+
+
+def expected_about(parameter: FreeParameter, relative: float | None) -> FreeParameter:
+    """The parameter with the expectation that it lies about its start, within a relative uncertainty."""
+    if not relative:
+        return parameter
+    deviation = relative if parameter.logarithmic else relative * abs(parameter.start)
+    return replace(parameter, deviation=deviation, expected=parameter.start)
+
+
+def _amplitude(records: Sequence[FitRecord], system: type[System]) -> float:
+    """Typical displacement, from whatever was recorded."""
+    scales = [first_motion(record, 0.0, 0.0, Model(system(), ()), {})[1][0] for record in records]
+    return float(torch.stack(scales).square().mean().sqrt())
