@@ -10,6 +10,7 @@ from types import ModuleType
 from gear_damping.errors import InputError, Problem
 
 REMEDY = "correct the file"
+_run: dict[Path, tuple[bytes, ModuleType]] = {}  # what each of the user's files held when it was run, and its module
 
 
 def modules_of(room: ModuleType) -> list[ModuleType]:
@@ -20,6 +21,8 @@ def modules_of(room: ModuleType) -> list[ModuleType]:
 def load_module(path: Path, key: str) -> ModuleType:
     """The module of a file that the user named under `key`.
 
+    A file is run once in a process, whoever asks for it, and once more where it has changed since.
+
     Raises:
         InputError: it is missing, is no Python file, or cannot be run.
     """
@@ -27,13 +30,18 @@ def load_module(path: Path, key: str) -> ModuleType:
         raise InputError(Problem(key, "is no Python file", str(path), "give the path of a .py file"))
     if not path.is_file():
         raise InputError(Problem(key, "no such file", str(path), "give the path of a .py file"))
+    place = path.resolve()
     spec = importlib.util.spec_from_file_location(f"gear_damping_plugin_{path.stem}", path)
     module = importlib.util.module_from_spec(spec)
     try:
-        spec.loader.exec_module(module)
+        content = path.read_bytes()
+        if place in _run and _run[place][0] == content:
+            return _run[place][1]
+        exec(compile(content, str(path), "exec"), vars(module))  # by way of no stale bytecode
     except (Exception, SystemExit) as error:  # the user's own code can fail in any way
         rule = f"cannot be loaded: {_place(error, path)}{type(error).__name__}: {' '.join(str(error).split())}"
         raise InputError(Problem(key, rule, str(path), REMEDY)) from error
+    _run[place] = content, module
     return module
 
 

@@ -94,7 +94,7 @@ def _own(plugins: Sequence[str | Path], base: type) -> dict[str, Any]:
     """What the user's own files declare of one kind of part."""
     found: dict[str, Any] = {}
     for path in map(Path, plugins):
-        parts = _parts_of(path, path.stat().st_mtime_ns if path.is_file() else 0)
+        parts = _parts_of(path)
         faults = [f"the class {kind.__name__} {fault}" for kind in parts for fault in _faults(kind)]
         if not parts:
             faults = [f"declares no estimator and no wavelet: derive it from {', '.join(BASES)}"]
@@ -108,9 +108,8 @@ def _own(plugins: Sequence[str | Path], base: type) -> dict[str, Any]:
     return {name: kind for name, kind in found.items() if issubclass(kind, base)}
 
 
-@cache
-def _parts_of(path: Path, changed: int) -> list[Part]:
-    """The parts that a file declares; it is run once, until it has changed."""
+def _parts_of(path: Path) -> list[Part]:
+    """The parts that a file declares."""
     module = load_module(path, KEY)
     return [kind for base in (Estimator, ContinuousWavelet) for kind in classes_of(module, base)]
 

@@ -219,3 +219,15 @@ def test_a_base_that_effects_of_the_file_share_is_none_itself(tmp_path):
 def test_errors_of_the_package_itself_are_not_blamed_on_the_file():
     with pytest.raises(ZeroDivisionError), errors_in({str(EXAMPLE): "simulator.plugins"}):
         raise ZeroDivisionError
+
+
+def test_a_file_is_run_once_in_a_process_until_it_changes(tmp_path):
+    path, notes = tmp_path / "counted.py", tmp_path / "notes"
+    text = EXAMPLE.read_text() + f"\nwith open({str(notes)!r}, 'a') as notes:\n    notes.write('x')\n"
+    path.write_text(text)
+    assert main(decay(tmp_path, plugin=path)) == 0
+    assert notes.read_text() == "x"
+    load_effects(path)
+    path.write_text(text.replace("write('x')", "write('y')"))  # as long as before, and within the same second
+    load_effects(path)
+    assert notes.read_text() == "xy"
