@@ -71,14 +71,14 @@ def test_workers_whose_launcher_is_killed_end(tmp_path):
 @pytest.mark.parametrize(
     ("target", "pid", "watched"),
     [("hydra_plugins.hydra_joblib_launcher.joblib_launcher.JoblibLauncher", 1, True),
-     ("hydra_plugins.hydra_joblib_launcher.joblib_launcher.JoblibLauncher", os.getpid(), False),
+     ("hydra_plugins.hydra_joblib_launcher.joblib_launcher.JoblibLauncher", None, False),
      ("hydra_plugins.hydra_submitit_launcher.submitit_launcher.SlurmLauncher", 1, False)],
 )  # fmt: skip
 def test_only_a_worker_of_this_machine_looks_after_its_launcher(target, pid, watched, monkeypatch):
-    """The workers of a cluster go on, and a launcher that does its jobs itself has nobody to look after."""
+    """The workers of a cluster go on, and a launcher that does its jobs itself (pid: None) has nobody to look after."""
     begun_threads = []
     monkeypatch.setattr(orphan.threading.Thread, "start", lambda thread: begun_threads.append(thread))
-    monkeypatch.setenv(orphan.LAUNCHER, f"{pid} 5")
+    monkeypatch.setenv(orphan.LAUNCHER, f"{pid or os.getpid()} 5")
     orphan._watch.cache_clear()
     for _ in range(2):
         orphan.end_with_launcher({"_target_": target})
