@@ -9,6 +9,7 @@ from time import monotonic
 SEARCH_SHARE = 0.85  # of the time; the rest is for what is under way, for opening held-out records,
 LAST_SHARE = 0.97  # and for seeing whether what was found is what it seems
 MORE = 4  # times the minutes that were too few: the next try should not be too short too
+MOST_KEPT = 0.5  # of the time, for looks that take long: what was looked for is not sought in less than the rest
 LOOKS_LEFT = 2.5  # after the search: beside the last cause, once more where one is dropped, and half a one to spare
 
 
@@ -35,7 +36,7 @@ class Budget:
     @property
     def spent(self) -> bool:
         """Whether the time for the search is over."""
-        kept = LOOKS_LEFT * self._look
+        kept = min(LOOKS_LEFT * self._look, MOST_KEPT * 60 * self.minutes)
         return self._is_over(SEARCH_SHARE) or self.clock() - self._begun + kept > 60 * self.minutes
 
     def _is_over(self, share: float) -> bool:
@@ -53,7 +54,7 @@ class Budget:
         """What there was no time for; empty where there was for everything."""
         missing = ", ".join(self.not_tried)
         said = (
-            f"The {self.minutes:g} minutes of the search were over before these were tried: {missing}. "
+            f"In the {self.minutes:g} minutes of the search there was no time for these: {missing}. "
             f"explain.minutes={MORE * self.minutes:g} gives it more."
         )
         return said if missing else ""

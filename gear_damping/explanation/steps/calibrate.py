@@ -16,6 +16,7 @@ from gear_damping.explanation.model.followed import followed_alone
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, natural_frequency_hz
 from gear_damping.explanation.model.nominal_gear_pair import (
     SCANNED,
+    SHAPED,
     angles_of,
     first_gear_pair,
     shaped,
@@ -41,6 +42,7 @@ MOST_SCANS = 8  # of the records' angles, each followed by a fit
 STIFFNESSES = (1.0, 0.85, 0.92, 1.08, 1.17)  # times where it begins: with a wrong one angles of records are wrong too
 APART = 1.5  # times the cost of a phase for every record: one phase of all leaves that much where there is none; angles
 # that begin anywhere agree that well once in a thousand times, for three records
+EQUIVOCAL = 1.05  # times: less than a twentieth of what the rough wave lacks is what its phases bend to in any records
 FEWEST_PHASES = 4  # of records: two more than a line has numbers
 SLOPES = 201  # of a line that is tried through phases, up to half a mesh period between rest and the highest speed
 IN_LINE = 0.1  # rad, root mean square: four random phases are so near to a line once in 250 times, six once in 10 000
@@ -145,9 +147,9 @@ def recalibrated(calibration: Calibration, evidence: Evidence, solver: Solver | 
 
 def _gear_pair(evidence: Evidence, solver: Solver | None) -> Calibration:
     """Mesh phase by a scan, damping and stiffness, free harmonics of the stiffness, then speeds that vary a little."""
-    evidence, rough = _angles_counted(evidence, solver)
+    evidence, rough, nominal = _angles_counted(evidence, solver)
     rough = rough or _rough_gear_pair(evidence, solver)
-    nominal = shaped(rough, evidence, SHAPE_ITERATIONS, solver)
+    nominal = nominal or shaped(rough, evidence, SHAPE_ITERATIONS, solver)
     followed = followed_alone(nominal, evidence, lambda some: _shaped(some, solver))
     unsteady = with_unsteady_shafts(evidence)
     if followed is not None:
@@ -204,20 +206,36 @@ def _rough_gear_pair(evidence: Evidence, solver: Solver | None) -> Outcome:
     return found
 
 
-def _angles_counted(evidence: Evidence, solver: Solver | None = None) -> tuple[Evidence, Outcome | None]:
+def _angles_counted(
+    evidence: Evidence, solver: Solver | None = None
+) -> tuple[Evidence, Outcome | None, Outcome | None]:
     """The evidence with a phase of its own in every record where their angles do not count from one mark.
 
     An angle that was measured may begin anew in every record, as behind an encoder without an index: then one phase
-    of the mesh does not fit them all. The rough fit that was made to find out comes with it.
+    of the mesh does not fit them all. The rough fit that was made to find out comes with it, and that with the teeth's
+    own shape where it was needed: what the rough wave lacks hides the difference of the two.
     """
     if evidence.has_index and evidence.mesh_index:
-        return evidence, None
+        return evidence, None, None
     apart = with_own_angles(evidence)
     if not evidence.has_index or len(evidence.fit) == 1:
-        return evidence if evidence.has_index else apart, None
+        return evidence if evidence.has_index else apart, None, None
     one, many = (_rough_gear_pair(either, solver) for either in (evidence, apart))
-    is_one = one.fitted.cost <= APART * many.fitted.cost or _are_in_line(many, evidence)
-    return (evidence, one) if is_one else (apart, many)
+    if one.fitted.cost > APART * many.fitted.cost:
+        return (evidence, one, None) if _are_in_line(many, evidence) else (apart, many, None)
+    if one.fitted.cost <= EQUIVOCAL * many.fitted.cost or _leaves_noise(one, evidence):
+        return evidence, one, None
+    own, of_many = (
+        shaped(rough, either, SHAPE_ITERATIONS, solver) for rough, either in ((one, evidence), (many, apart))
+    )
+    is_one = own.fitted.cost <= APART * of_many.fitted.cost or _are_in_line(of_many, evidence)
+    return (evidence, one, own) if is_one else (apart, many, of_many)
+
+
+def _leaves_noise(found: Outcome, evidence: Evidence) -> bool:
+    """Whether a fit leaves hardly more than the noise, so that nothing hides behind what it lacks."""
+    samples = sum(len(record.stacked) for record in evidence.fitted)
+    return found.fitted.cost < SHAPED * samples * evidence.noise**2
 
 
 def _are_in_line(many: Outcome, evidence: Evidence) -> bool:
