@@ -21,7 +21,7 @@ from gear_damping.explanation.model.nominal_gear_pair import angles_of, first_ge
 from gear_damping.explanation.steps.too_short import too_short
 from gear_damping.explanation.trials.bench import Log
 from gear_damping.explanation.trials.efficient import weighed
-from gear_damping.identification.oscillator.linear_model import linear_model
+from gear_damping.identification.oscillator.linear_model import DAMPING, linear_model
 from gear_damping.identification.output_error.least_squares import Rounds
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.interface.free_parameters import FLAT, free_parameters
@@ -76,7 +76,8 @@ def own_fit(measurement: Measurement, model: Model, free: Sequence[str], log: Lo
         raise InputError(Problem("model", rule, remedy="give a model of the measured system"))
     evidence, noise = with_noise(evidence, measurement, log)
     first = {k: v for k, v in _first(evidence).items() if k in model.parameters()}
-    stated = {k: first[k] for k in map(_flat, evidence.parameters) if k in first}
+    stated = {_flat(k): v for k, v in evidence.parameters.items() if _flat(k) in first and _flat(k) != DAMPING}
+    stated |= {DAMPING: first[DAMPING]} if DAMPING_RATIO in evidence.parameters and DAMPING in first else {}
     names = {model.damping_coefficient if name == DAMPING_RATIO else name for name in free}
     initial = {name: first[name] for name in names if name in first}
     given = initial | stated | model.given

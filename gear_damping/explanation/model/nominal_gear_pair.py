@@ -50,8 +50,17 @@ def stated_mesh_frequency(evidence: Evidence) -> float:
     return natural_frequency_hz(first.model, first.given)
 
 
+def is_standing(evidence: Evidence) -> bool:
+    """Whether the shafts stand in all records, so that the teeth that carry never change."""
+    return all(record.conditions.get("pinion_speed") == 0 for record in evidence.fit)
+
+
 def first_gear_pair(evidence: Evidence) -> Hypothesis:
-    """The nominal gear pair with what the file says of it: known, expected, or a start."""
+    """The nominal gear pair with what the file says of it: known, expected, or a start.
+
+    Of a standing one the stiffness is one number, and which teeth carry is not told: a contact ratio of 2 has them all
+    carry always.
+    """
     stated = {RENAMED.get(name, name): value for name, value in evidence.parameters.items()}
     uncertain = {RENAMED.get(name, name): relative for name, relative in evidence.known.uncertainty.items()}
     effects = [FourierMeshStiffness(), ViscousDamping()]
@@ -63,6 +72,11 @@ def first_gear_pair(evidence: Evidence) -> Hypothesis:
     defaults = {p.name: p.default for p in FourierMeshStiffness.parameters}
     high, low = (stated.get(f"{MESH}.{end}", defaults[end]) for end in ("maximum", "minimum"))
     contact_ratio = stated.get(f"{MESH}.contact_ratio") or _contact_ratio(stated)
+    stands = is_standing(evidence)
+    if stands:
+        contact_ratio = 2.0
+        for known in ("minimum", "contact_ratio"):  # of which the records tell nothing
+            uncertain.pop(f"{MESH}.{known}", None)
     system = evidence.base(gear_torque_mode=evidence.gear_torque_mode)
     start = stated | {f"{MESH}.maximum": high, f"{MESH}.minimum": low, f"{MESH}.contact_ratio": contact_ratio}
     derived = Model(system, effects).prepare(Model(system, effects).values(1, **start)).derived
@@ -71,11 +85,11 @@ def first_gear_pair(evidence: Evidence) -> Hypothesis:
         FreeParameter(f"{MESH}.maximum", high, logarithmic=True),
         FreeParameter(f"{MESH}.minimum", low, logarithmic=True),
         FreeParameter(f"{MESH}.contact_ratio", contact_ratio, 0.2, lower=1.02, upper=1.98),
-    ]
+    ][: 1 if stands else 3]
     if damping > 0:
         lower = LEAST_DAMPING * damping
         free = [FreeParameter(DAMPING, damping, logarithmic=True, lower=lower), *free]
-    if evidence.has_index:
+    if evidence.has_index and not stands:
         free = [FreeParameter("mesh_phase", 0.0, deviation=INDEX_ERROR if evidence.mesh_index else inf), *free]
     free = [expected_about(parameter, uncertain.pop(parameter.name, None)) for parameter in free]
     free += [_uncertain(name, stated[name], relative) for name, relative in uncertain.items() if name in stated]

@@ -19,6 +19,7 @@ from gear_damping.explanation.model.nominal_gear_pair import (
     SHAPED,
     angles_of,
     first_gear_pair,
+    is_standing,
     shaped,
     with_stiffness,
 )
@@ -147,6 +148,8 @@ def recalibrated(calibration: Calibration, evidence: Evidence, solver: Solver | 
 
 def _gear_pair(evidence: Evidence, solver: Solver | None) -> Calibration:
     """Mesh phase by a scan, damping and stiffness, free harmonics of the stiffness, then speeds that vary a little."""
+    if is_standing(evidence):
+        return Calibration(evidence, fit_hypothesis(first_gear_pair(evidence), evidence, solver=solver))
     evidence, rough, nominal = _angles_counted(evidence, solver)
     rough = rough or _rough_gear_pair(evidence, solver)
     nominal = nominal or shaped(rough, evidence, SHAPE_ITERATIONS, solver)
