@@ -18,7 +18,7 @@ TASKS = ("train", "simulate", "evaluate", "identify", "explain", "inspect", "pla
 def _thresholds() -> dict[str, Number]:
     """Of the search, as `SearchSettings` declares them."""
     return {
-        one.name: Number(**one.metadata, whole=one.type is int)
+        one.name: Number(one.metadata["lower"], one.metadata["upper"], one.type is int, unit=one.metadata["unit"])
         for one in fields(SearchSettings)
     }
 

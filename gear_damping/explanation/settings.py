@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 def within(value: float, lower: float, upper: float, unit: str = "") -> float:
     """A field with its default, the range that it may be set to, and its unit."""
-    return field(default=value, metadata={"least": lower, "most": upper, "unit": unit})
+    return field(default=value, metadata={"lower": lower, "upper": upper, "unit": unit})
 
 
 @dataclass(frozen=True)

@@ -40,5 +40,5 @@ def test_a_threshold_is_read_by_the_search(name):
 def test_a_threshold_outside_its_range_is_refused(one):
     rule, key, origin = SCHEMA["explain"][one.name], f"explain.{one.name}", Origin({})
     assert problem_with(one.default, rule, key, origin) is None
-    assert problem_with(one.metadata["most"] * 2 + 1, rule, key, origin) is not None
+    assert problem_with(one.metadata["upper"] * 2 + 1, rule, key, origin) is not None
     assert problem_with("much", rule, key, origin) is not None
