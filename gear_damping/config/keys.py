@@ -92,7 +92,14 @@ def read_keys(
     """
     problems = Problems()
     found = read_declared(group(kinds, others), values, problems, origin.of, prefix)
-    return ({} if found is None else values_of(found)), problems
+    return ({} if found is None else _as_given(values, values_of(found))), problems
+
+
+def _as_given(given: Any, read: Any) -> Any:
+    """What was read, a plain number as it was given: 1 is told as 1, not as 1.0."""
+    if isinstance(read, Mapping) and isinstance(given, Mapping):
+        return {name: _as_given(given.get(name), value) for name, value in read.items()}
+    return given if isinstance(given, int | float) else read
 
 
 def unit_of(key: str) -> str | None:
@@ -120,6 +127,6 @@ def problem_with(value: Any, kind: Value, key: str, origin: Origin) -> Problem |
 def read_value(value: Any, kind: Value, key: str, origin: Origin) -> tuple[Any, Problem | None]:
     """One value, a number in the unit of its key, and the problem with it: one of both is None."""
     try:
-        return (kind if isinstance(kind, Given) else Given(kind)).read(value, key), None
+        return _as_given(value, (kind if isinstance(kind, Given) else Given(kind)).read(value, key)), None
     except InputError as error:
         return None, replace(error.problems[0], key=key, source=origin.of(key))

@@ -28,7 +28,7 @@ PLAIN = {
     "n_samples": N_SAMPLES,
     "damping_law": Given(Text(), optional=True),
     "damping_ratio_percent": Given(Number(0, 50), optional=True),
-    "diverged_share": Number(0, 1),
+    "diverged_share": Number(0, 1, unit="1"),
     "extended": Given(Text(), optional=True),
 }
 SOLVER = {

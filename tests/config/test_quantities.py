@@ -112,6 +112,13 @@ def test_a_plan_is_too():
     assert plan.sensors[0].snr_db == pytest.approx(25)
 
 
+@pytest.mark.parametrize("said", ["1", "1.0", "100 %"])
+def test_a_plain_number_is_kept_as_it_was_given(said):
+    """It is told so in messages, and decides the name of a data set."""
+    share = settings("task=simulate", f"simulator.diverged_share={said}").simulator.diverged_share
+    assert str(share) == ("1" if said == "1" else "1.0")
+
+
 def kinds_with_units(node, prefix=""):
     """Key, kind and unit of what the schema says to be in a unit."""
     for name, kind in node.items():
