@@ -100,8 +100,8 @@ def explain(
     Raises:
         InputError: the measurement cannot be explained, or a name is unknown.
     """
-    refuse_other(measurement)
     known = catalogue(plugins)
+    refuse_other(measurement)
     wrong = _wrong_minutes(minutes)
     wrong += [Problem("ruled_out", "no such effect", n, nearest(n, list(known))) for n in ruled_out if n not in known]
     wrong += _wrong(thresholds)

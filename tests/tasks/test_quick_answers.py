@@ -73,7 +73,8 @@ def test_a_yaml_that_is_no_yaml_is_answered_too(tmp_path):
     last, said, _ = answered([*commands, ["task=inspect", "seed=-1"]], tmp_path)
     assert last == "codes [1, 1, 1] loaded []"
     assert "not valid YAML at line 2, column 1" in said
-    assert f"save it as UTF-8 (invalid start byte) (from command line: measurement.path={tmp_path}" in said
+    assert "save it as UTF-8 (invalid start byte)" in said
+    assert f"(from command line: measurement.path={tmp_path}" in said
     assert "seed = -1: " in said
     assert "task=inspect needs a measurement; remedy: measurement.path=PATH/FILE" in said
 
