@@ -17,6 +17,7 @@ STANDS_OUT = 5.0  # times the energy of the middle comb; a mesh order that does 
 STRONG = 0.2  # share of a signal's variance that a comb must have to be another mesh
 HARMONIC = 0.01  # share of a comb's energy that a second harmonic must have
 OTHER_SPEED = 0.05  # relative; speeds that differ by this tell an order from a line of the structure
+FEWEST_TEETH = 4  # that pass in every record: over fewer, every comb of four harmonics fits as well as the next
 LEAST_ORDER = 0.6  # of the tooth count, from which other combs are compared with the mesh
 
 
@@ -36,13 +37,13 @@ def mesh_order_faults(evidence: Evidence) -> list[Finding]:
     records = evidence.records
     teeth = round(evidence.parameters.get("n_teeth_pinion", _declared("n_teeth_pinion", evidence)))
     shafts = [shaft_of(record, evidence).angle for record in records]
-    orders = [teeth, *_told_apart(teeth, min(float(np.ptp(angle)) for angle in shafts) / (2 * np.pi))]
-    if len(orders) == 1:
+    if teeth * min(float(np.ptp(angle)) for angle in shafts) < FEWEST_TEETH * 2 * np.pi:
         return []
+    orders = [n for n in range(max(5, round(LEAST_ORDER * teeth)), 2 * teeth) if n == teeth or n % teeth]
     series = [record.response.numpy() - float(record.response.mean()) for record in records]
     shares = _shares(series, shafts, orders)
     combs = shares.sum(2)  # (records, orders)
-    energy, own = combs.sum(0), 0
+    energy, own = combs.sum(0), orders.index(teeth)
     at = int(energy.argmax())
     if energy[own] >= FAINT * energy[at] or combs[:, at].min() < STRONG:
         return []
@@ -57,12 +58,6 @@ def mesh_order_faults(evidence: Evidence) -> list[Finding]:
         "pinion_angle belongs to, and its unit"
     )
     return [Finding("mesh_order_absent", message, channel=evidence.channel.name)]
-
-
-def _told_apart(teeth: int, turns: float) -> list[int]:
-    """Orders that so many turns tell from the mesh: over them, the two part by a whole wave at least."""
-    orders = range(max(5, round(LEAST_ORDER * teeth)), 2 * teeth)
-    return [order for order in orders if order % teeth and abs(order - teeth) * turns >= 1]
 
 
 def _declared(name: str, evidence: Evidence) -> float:
