@@ -9,7 +9,7 @@ from time import monotonic
 SEARCH_SHARE = 0.85  # of the time; the rest is for what is under way, for opening held-out records,
 LAST_SHARE = 0.97  # and for seeing whether what was found is what it seems
 MORE = 4  # times the minutes that were too few: the next try should not be too short too
-MOST_KEPT = 0.5  # of the time, for looks that take long: what was looked for is not sought in less than the rest
+MOST_KEPT = 0.5  # of the time, for the last looks, however long they take: the other half is for trying causes
 LOOKS_LEFT = 2.5  # after the search: beside the last cause, once more where one is dropped, and half a one to spare
 
 

@@ -76,8 +76,8 @@ def own_fit(measurement: Measurement, model: Model, free: Sequence[str], log: Lo
         raise InputError(Problem("model", rule, remedy="give a model of the measured system"))
     evidence, noise = with_noise(evidence, measurement, log)
     first = {k: v for k, v in _first(evidence).items() if k in model.parameters()}
-    stated = {_flat(k): v for k, v in evidence.parameters.items() if _flat(k) in first and _flat(k) != DAMPING}
-    stated |= {DAMPING: first[DAMPING]} if DAMPING_RATIO in evidence.parameters and DAMPING in first else {}
+    named = {FLAT.get(name, name): value for name, value in evidence.parameters.items()}  # a ratio is no coefficient
+    stated = {name: first[name] if name == DAMPING else value for name, value in named.items() if name in first}
     names = {model.damping_coefficient if name == DAMPING_RATIO else name for name in free}
     initial = {name: first[name] for name in names if name in first}
     given = initial | stated | model.given
@@ -96,11 +96,6 @@ def _refuse_casing(measurement: Measurement) -> None:
         rule = "an accelerometer on a casing tells no damping: its path from the mesh is unknown"
         remedy = "measure a transmission error or a shaft, or choose task=explain for what the casing shows"
         raise InputError(Problem("records", rule, remedy=remedy, source=str(measurement.source)))
-
-
-def _flat(name: str) -> str:
-    """A name of the file as the simulator's."""
-    return FLAT.get(name, name)
 
 
 def _first(evidence: Evidence) -> Given:

@@ -191,6 +191,15 @@ def test_a_model_of_ones_own_is_fitted(record):
     assert fit.plot().axes
 
 
+def test_a_damping_coefficient_that_the_file_states_holds_where_the_model_has_none(record):
+    file = record.source.with_name("damped.yaml")
+    file.write_text(record.source.read_text() + "parameters: {damping_coefficient: 3 1/s}\n")
+    given = gd.load(file)
+    model = gd.Model(gd.Oscillator(stiffness=1500.0), [gd.ViscousDamping(), gd.CubicStiffness(coefficient=1e6)])
+    fit = gd.identify(given, model, free=["stiffness", "cubic_stiffness.coefficient"])
+    assert fit.model.given["viscous_damping.damping_coefficient"] == 3.0
+
+
 @pytest.mark.parametrize(
     ("free", "said"),
     [

@@ -31,6 +31,7 @@ RENAMED = {
     "backlash_gap": "backlash.gap",
     "damping_ratio": DAMPING,
 }
+PHASED = ("mesh_phase", f"{MESH}.minimum", f"{MESH}.contact_ratio")  # what of a mesh shows while teeth change alone
 SHAPE_BAND = 1.6  # harmonics of the stiffness count up to this many natural frequencies, at the slowest record, at
 FEWEST_HARMONICS, MOST_OF_BAND = 6, 20  # of the mesh; how many the resonance lets through is kept within these
 MOST_HARMONICS = 40  # where sensors show them: an accelerometer weighs the highest as the lowest
@@ -72,11 +73,8 @@ def first_gear_pair(evidence: Evidence) -> Hypothesis:
     defaults = {p.name: p.default for p in FourierMeshStiffness.parameters}
     high, low = (stated.get(f"{MESH}.{end}", defaults[end]) for end in ("maximum", "minimum"))
     contact_ratio = stated.get(f"{MESH}.contact_ratio") or _contact_ratio(stated)
-    stands = is_standing(evidence)
-    if stands:
-        contact_ratio = 2.0
-        for known in ("minimum", "contact_ratio"):  # of which the records tell nothing
-            uncertain.pop(f"{MESH}.{known}", None)
+    untold = PHASED if is_standing(evidence) else ()
+    contact_ratio = 2.0 if untold else contact_ratio
     system = evidence.base(gear_torque_mode=evidence.gear_torque_mode)
     start = stated | {f"{MESH}.maximum": high, f"{MESH}.minimum": low, f"{MESH}.contact_ratio": contact_ratio}
     derived = Model(system, effects).prepare(Model(system, effects).values(1, **start)).derived
@@ -85,15 +83,16 @@ def first_gear_pair(evidence: Evidence) -> Hypothesis:
         FreeParameter(f"{MESH}.maximum", high, logarithmic=True),
         FreeParameter(f"{MESH}.minimum", low, logarithmic=True),
         FreeParameter(f"{MESH}.contact_ratio", contact_ratio, 0.2, lower=1.02, upper=1.98),
-    ][: 1 if stands else 3]
+    ]
     if damping > 0:
         lower = LEAST_DAMPING * damping
         free = [FreeParameter(DAMPING, damping, logarithmic=True, lower=lower), *free]
-    if evidence.has_index and not stands:
+    if evidence.has_index:
         free = [FreeParameter("mesh_phase", 0.0, deviation=INDEX_ERROR if evidence.mesh_index else inf), *free]
     free = [expected_about(parameter, uncertain.pop(parameter.name, None)) for parameter in free]
     free += [_uncertain(name, stated[name], relative) for name, relative in uncertain.items() if name in stated]
-    return Hypothesis(system, tuple(effects), start | {DAMPING: damping}, tuple(free))
+    told = tuple(parameter for parameter in free if parameter.name not in untold)
+    return Hypothesis(system, tuple(effects), start | {DAMPING: damping}, told)
 
 
 def shaped(rough: Outcome, evidence: Evidence, iterations: int, solver: Solver | None = None) -> Outcome:
@@ -108,12 +107,17 @@ def shaped(rough: Outcome, evidence: Evidence, iterations: int, solver: Solver |
     rounds = Rounds(iterations)
     shaped = _with_shape(rough, evidence, _shape_harmonics(rough, evidence, solver))
     found = fit_hypothesis(shaped, evidence, InitialValues(after=rough), rounds, solver=solver)
-    samples = sum(len(record.stacked) for record in evidence.fitted)
-    if evidence.has_index or not iterations or found.fitted.cost < SHAPED * samples * evidence.noise**2:
+    if evidence.has_index or not iterations or leaves_noise(found, evidence):
         return found
     angles = angles_of(found.hypothesis, evidence, evidence.duration, solver)
     again = fit_hypothesis(found.hypothesis, evidence, InitialValues(own=angles), rounds, solver=solver)
     return again if again.fitted.cost < SCANNED * found.fitted.cost else found
+
+
+def leaves_noise(found: Outcome, evidence: Evidence) -> bool:
+    """Whether a fit leaves hardly more than the noise, so that nothing hides behind what it lacks."""
+    samples = sum(len(record.stacked) for record in evidence.fitted)
+    return found.fitted.cost < SHAPED * samples * evidence.noise**2
 
 
 def angles_of(hypothesis: Hypothesis, evidence: Evidence, horizon: float, solver: Solver | None) -> Mapping[str, float]:
@@ -181,8 +185,7 @@ def _with_shape(fitted: Outcome, evidence: Evidence, harmonics: int) -> Hypothes
     """
     rough = fitted.hypothesis
     names = [f"{SHAPE}.{part}[{h}]" for part in ("in_phase", "quadrature") for h in range(harmonics)]
-    taken_over = ("mesh_phase", f"{MESH}.minimum", f"{MESH}.contact_ratio")
-    free = tuple(p for p in rough.free if p.name not in taken_over)
+    free = tuple(p for p in rough.free if p.name not in PHASED)
     zeros = (0.0,) * harmonics
     given = rough.given | {f"{SHAPE}.in_phase": zeros, f"{SHAPE}.quadrature": zeros, f"{MESH}.edge": EDGE}
     passed = min(_passed_harmonics(fitted, evidence), harmonics)

@@ -16,10 +16,10 @@ from gear_damping.explanation.model.followed import followed_alone
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, natural_frequency_hz
 from gear_damping.explanation.model.nominal_gear_pair import (
     SCANNED,
-    SHAPED,
     angles_of,
     first_gear_pair,
     is_standing,
+    leaves_noise,
     shaped,
     with_stiffness,
 )
@@ -226,19 +226,13 @@ def _angles_counted(
     one, many = (_rough_gear_pair(either, solver) for either in (evidence, apart))
     if one.fitted.cost > APART * many.fitted.cost:
         return (evidence, one, None) if _are_in_line(many, evidence) else (apart, many, None)
-    if one.fitted.cost <= EQUIVOCAL * many.fitted.cost or _leaves_noise(one, evidence):
+    if one.fitted.cost <= EQUIVOCAL * many.fitted.cost or leaves_noise(one, evidence):
         return evidence, one, None
     own, of_many = (
         shaped(rough, either, SHAPE_ITERATIONS, solver) for rough, either in ((one, evidence), (many, apart))
     )
     is_one = own.fitted.cost <= APART * of_many.fitted.cost or _are_in_line(of_many, evidence)
     return (evidence, one, own) if is_one else (apart, many, of_many)
-
-
-def _leaves_noise(found: Outcome, evidence: Evidence) -> bool:
-    """Whether a fit leaves hardly more than the noise, so that nothing hides behind what it lacks."""
-    samples = sum(len(record.stacked) for record in evidence.fitted)
-    return found.fitted.cost < SHAPED * samples * evidence.noise**2
 
 
 def _are_in_line(many: Outcome, evidence: Evidence) -> bool:
