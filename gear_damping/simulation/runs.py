@@ -144,7 +144,7 @@ class Runs:
         return sorted((s for s in sensors if (s.channel or response) == channel), key=lambda s: s.position)
 
     def keep(self, mask: Tensor) -> "Runs":
-        """The runs where `mask` (batch,) is true."""
+        """The runs where `mask` (batch,) is true, or those whose numbers it holds."""
 
         def some(values: dict[str, Tensor], last: bool) -> dict[str, Tensor]:
             return {k: v[..., mask] if last else v[mask] for k, v in values.items()}

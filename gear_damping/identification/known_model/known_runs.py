@@ -42,7 +42,7 @@ class KnownRuns:
         return len(self.records)
 
     def pick(self, chosen: Tensor) -> "KnownRuns":
-        """Those of the runs that a mask (runs,) names."""
+        """Those of the runs that a mask (runs,) or numbers of runs name."""
         names = ("centre", "deviation", "records", "noise")
         return replace(self, runs=self.runs.keep(chosen), **{name: getattr(self, name)[chosen] for name in names})
 
@@ -73,6 +73,28 @@ class KnownRuns:
         """Response to blocks of damping ratios (blocks, runs) and starts (blocks, runs, 2): (blocks, runs, samples)."""
         values = self.values(ratio.reshape(-1), start.reshape(-1, 2), len(ratio))
         return self.simulated(values, samples).response.reshape(len(ratio), len(self), samples)
+
+    def from_there(self, ratio: Tensor, states: Tensor, first: int, samples: int) -> tuple[Tensor, Tensor]:
+        """Response from a later sample on, and the state behind it.
+
+        Args:
+            ratio: Damping ratio in %, (blocks, runs).
+            states: Displacement and velocity at sample `first` about the centre, in `units`, (blocks, runs, 2).
+            first: The sample.
+            samples: How many of the response.
+
+        Returns:
+            The response, (blocks, runs, samples), and the state at the sample after it, or at the last one of the
+            record, (blocks, runs, 2).
+        """
+        blocks = len(ratio)
+        values = self.values(ratio.reshape(-1), states.reshape(-1, 2), blocks, self.units)
+        seconds = torch.full((blocks * len(self),), first / self.runs.sampling_rate, dtype=torch.float64)
+        values |= self.runs.model.system.begun_later(values, seconds)
+        found = self.simulated(values, min(samples + 1, self.records.shape[1] - first), first)
+        last = torch.stack([found.states[name][:, -1] for name in ("displacement", "velocity")], -1)
+        end = (last - self.centre.repeat(blocks, 1)) / self.units.repeat(blocks, 1)
+        return found.response.reshape(blocks, len(self), -1)[..., :samples], end.reshape(blocks, len(self), 2)
 
     def simulated(self, values: dict[str, Tensor], samples: int, first: int = 0) -> Runs:
         """Blocks of all runs with these parameters, (blocks * runs,), from sample `first` of their inputs on."""

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import torch
 from torch import Tensor
 
-from gear_damping.identification.known_model.known_runs import START, KnownRuns
+from gear_damping.identification.known_model.known_runs import KnownRuns
 
 SEGMENT = 50  # samples: a few natural periods, over which the error of a start hardly grows
 STEPS = 6  # Gauss-Newton steps; from a smoothed motion two or three bring the segments together
@@ -58,29 +58,14 @@ def _segment(known: KnownRuns, share: Tensor, state: Tensor, number: int) -> _Se
     samples = min(SEGMENT, known.records.shape[1] - first)
     places = torch.cat([share[:, None], state], -1)
     moved = torch.stack([places, *(places + MOVE * axis for axis in torch.eye(3, dtype=torch.float64))])
-    response, end = _simulated(known, moved, first, samples)
+    low, high = known.range_percent
+    response, end = known.from_there(low + (high - low) * moved[..., 0], moved[..., 1:], first, samples)
     residual = (response - known.records[:, first : first + samples]) / known.noise[:, None]
     slopes = torch.stack([(side - residual[0]) / MOVE for side in residual[1:]], -1)
     return _Segment(residual[0], slopes, end[0], torch.stack([(side - end[0]) / MOVE for side in end[1:]], -1))
 
 
-def _simulated(known: KnownRuns, places: Tensor, first: int, samples: int) -> tuple[Tensor, Tensor]:
-    """Response (blocks, runs, samples) and the state one sample after it, (blocks, runs, 2), where there is one."""
-    blocks, runs = places.shape[:2]
-    low, high = known.range_percent
-    values = known.values((low + (high - low) * places[..., 0]).reshape(-1), places[..., 1:].reshape(-1, 2), blocks,
-                          known.units)  # fmt: skip
-    seconds = torch.full((blocks * runs,), first / known.runs.sampling_rate, dtype=torch.float64)
-    values |= known.runs.model.system.begun_later(values, seconds)
-    found = known.simulated(values, min(samples + 1, known.records.shape[1] - first), first)
-    last = torch.stack([found.states[name.removeprefix("initial_")][:, -1] for name in START], -1)
-    end = (last - known.centre.repeat(blocks, 1)) / known.units.repeat(blocks, 1)
-    return found.response.reshape(blocks, runs, -1)[..., :samples], end.reshape(blocks, runs, 2)
-
-
-def _step(
-    segments: list[_Segment], nodes: Tensor, start: Tensor, per_deviation: Tensor
-) -> tuple[Tensor, Tensor]:
+def _step(segments: list[_Segment], nodes: Tensor, start: Tensor, per_deviation: Tensor) -> tuple[Tensor, Tensor]:
     """The step of share and start (runs, 3), and the nodes after it.
 
     Each node follows from the three unknowns: its change is `follows @ step + gap`.

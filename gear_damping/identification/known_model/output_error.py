@@ -18,8 +18,6 @@ from gear_damping.identification.known_model.unscented_kalman import smoothed_st
 
 STEP = 1e-4  # of the range, and of a deviation of the start: differences
 FEWER, MORE, FIRST = 0.2, 5.0, 1e-2  # Levenberg's damping after a good and a bad step, and at first
-
-
 SHARES = (0.1, 0.45, 0.8)  # of the range of damping ratios: where the search begins
 STRETCHES, KEPT = (60, 200, 600), (3, 3, 1)  # samples looked at one after another, and starts left after each
 STEPS, LAST = 5, 10  # of each stretch, and of the whole record
@@ -36,16 +34,10 @@ class _Points(NamedTuple):
 
 def output_error(known: KnownRuns) -> Estimates:
     """The damping ratio of each run in %, with its 90 % interval."""
-    places = torch.cat([_lowest(known.pick(rows)) for rows in _blocks(len(known))], 1)
+    places = torch.cat([_lowest(known.pick(rows)) for rows in torch.arange(len(known)).split(BLOCK)], 1)
     deviation = torch.linalg.inv(_information(known, places))[:, 0, 0].sqrt()
     low, high = known.range_percent
     return within(low + (high - low) * places[0, :, 0], (high - low) * deviation, (low, high))
-
-
-def _blocks(runs: int) -> list[Tensor]:
-    """Masks of runs that are looked at together, (runs,) each."""
-    number = torch.arange(runs) // BLOCK
-    return [number == block for block in range(int(number[-1]) + 1)]
 
 
 def _lowest(known: KnownRuns) -> Tensor:

@@ -4,6 +4,7 @@ The sigma points go through the simulator from sample to sample (Julier and Uhlm
 scaling), so that the filter knows the same equation as the simulation.
 """
 
+from collections.abc import Callable
 from math import log, sqrt
 from typing import NamedTuple
 
@@ -21,10 +22,10 @@ WIDEST = 2.0  # of the logarithm, beyond the range on either side: what a sigma 
 
 def unscented_kalman(known: KnownRuns) -> Estimates:
     """The damping ratio of each run in %, with its 90 % interval."""
-    passed = _passed(known)
-    deviation = passed.covariance[:, 2, 2].sqrt()
-    ends = (passed.mean[:, 2] + side * HALF * deviation for side in (-1, 1))
-    centre = passed.mean[:, 2] + deviation**2 / 2
+    mean, covariance = _passed(known)
+    deviation = covariance[:, 2, 2].sqrt()
+    ends = (mean[:, 2] + side * HALF * deviation for side in (-1, 1))
+    centre = mean[:, 2] + deviation**2 / 2
     return Estimates(*(value.exp().clamp(*known.range_percent) for value in (centre, *ends)))
 
 
@@ -34,42 +35,49 @@ def smoothed_states(known: KnownRuns) -> tuple[Tensor, Tensor]:
     The motion is displacement and velocity about the centre, in units of the runs, (runs, time, 2): the filter's, gone
     through backwards (Särkkä 2008).
     """
-    passed = _passed(known)
-    states = [passed.mean]
-    for before, expected, gain in reversed(passed.steps):
+    steps: list[tuple[Tensor, Tensor, Tensor]] = []
+    mean, _ = _passed(known, lambda step: steps.append(_gain(step)))
+    states = [mean]
+    for before, expected, gain in reversed(steps):
         states.append(before + (gain @ (states[-1] - expected).unsqueeze(-1)).squeeze(-1))
-    return passed.mean[:, 2].exp().clamp(*known.range_percent), torch.stack(states[::-1], 1)[..., :2]
+    return mean[:, 2].exp().clamp(*known.range_percent), torch.stack(states[::-1], 1)[..., :2]
 
 
-class _Passed(NamedTuple):
-    """After the last sample: mean (runs, 3) and covariance (runs, 3, 3); of each step the mean before it, the mean that
-    was expected after it, and the smoother's gain (runs, 3, 3).
+class _Step(NamedTuple):
+    """From one sample to the next: mean before it (runs, 3), points before and after it (points, runs, 3), and the mean
+    (runs, 3) and covariance (runs, 3, 3) that are expected after it.
     """
 
+    before: Tensor
+    points: Tensor
+    moved: Tensor
     mean: Tensor
     covariance: Tensor
-    steps: list[tuple[Tensor, Tensor, Tensor]]
 
 
-def _passed(known: KnownRuns) -> _Passed:
-    """The filter over all samples."""
+def _passed(known: KnownRuns, note: Callable[[_Step], None] = lambda step: None) -> tuple[Tensor, Tensor]:
+    """The filter over all samples: mean (runs, 3) and covariance (runs, 3, 3) after the last; each step is noted."""
     low, high = (log(end) for end in known.range_percent)
     mean = torch.zeros(len(known), SIZE, dtype=torch.float64)
     mean[:, 2] = (low + high) / 2
     covariance = DRIFT * torch.eye(SIZE, dtype=torch.float64).repeat(len(known), 1, 1)
     covariance[:, :2, :2] += torch.diag_embed((known.deviation / known.units).square())
     covariance[:, 2, 2] = (high - low) ** 2 / 12
-    weights, steps = _weights(), []
-    for sample in range(known.records.shape[1]):
+    weights = _weights()
+    for sample in range(known.records.shape[1] - 1):
         before, covariance = _corrected(known, sample, mean, covariance)
-        if sample + 1 == known.records.shape[1]:
-            return _Passed(before, covariance, steps)
         points = _points(before, covariance)
         moved = _moved(known, points, sample)
         mean, covariance = _moments(moved, weights)
-        together = torch.einsum("p,pri,prj->rij", weights[1], points - before, moved - mean)
-        steps.append((before, mean, torch.linalg.solve(covariance, together.mT).mT))
-    raise AssertionError("a record has samples")
+        note(_Step(before, points, moved, mean, covariance))
+    return _corrected(known, known.records.shape[1] - 1, mean, covariance)
+
+
+def _gain(step: _Step) -> tuple[Tensor, Tensor, Tensor]:
+    """What going back over a step takes: the means on both sides of it and the smoother's gain (runs, 3, 3)."""
+    off = step.points - step.before, step.moved - step.mean
+    together = torch.einsum("p,pri,prj->rij", _weights()[1], *off)
+    return step.before, step.mean, torch.linalg.solve(step.covariance, together.mT).mT
 
 
 def _weights() -> tuple[Tensor, Tensor]:
@@ -111,13 +119,7 @@ def _corrected(known: KnownRuns, sample: int, mean: Tensor, covariance: Tensor) 
 
 def _moved(known: KnownRuns, points: Tensor, sample: int) -> Tensor:
     """Sigma points one sample later."""
-    blocks, runs = points.shape[:2]
     low, high = (log(end) for end in known.range_percent)
-    ratio = points[..., 2].clamp(low - WIDEST, high + WIDEST).exp().reshape(-1)
-    values = known.values(ratio, points[..., :2].reshape(-1, 2), blocks, known.units)
-    seconds = torch.full((blocks * runs,), sample / known.runs.sampling_rate, dtype=torch.float64)
-    values |= known.runs.model.system.begun_later(values, seconds)
-    found = known.simulated(values, 2, sample)
-    last = torch.stack([found.states["displacement"][:, -1], found.states["velocity"][:, -1]], -1)
-    places = (last - known.centre.repeat(blocks, 1)) / known.units.repeat(blocks, 1)
-    return torch.cat([places.reshape(blocks, runs, 2), points[..., 2:]], -1)
+    ratio = points[..., 2].clamp(low - WIDEST, high + WIDEST).exp()
+    _, states = known.from_there(ratio, points[..., :2], sample, 1)
+    return torch.cat([states, points[..., 2:]], -1)
