@@ -177,10 +177,10 @@ def _label(whole: Whole) -> Found:
 def _physics(whole: Whole) -> Found:
     simulator = whole.simulator
     value = {name: simulator.given.get(name, p.default) for name, p in simulator.model.parameters().items()}
-    for name in ("n_teeth_pinion", "n_teeth_gear"):
-        teeth = value.get(name, 0)
-        if teeth != round(teeth):
-            yield f"simulator.{name}", "must be a whole number", teeth, f"nearest valid value {round(teeth)}"
+    if simulator.model.system.chosen.get("gear_torque_mode") == "held" and "gear_torque" not in simulator.given:
+        balance = value["pinion_torque"] * value["n_teeth_gear"] / value["n_teeth_pinion"]
+        remedy = f"simulator.gear_torque={balance:g} balances the torque on the pinion"
+        yield "simulator.gear_torque", "must be given where it is held", None, remedy
     for effect in (effect.name for effect in simulator.model.effects):
         low, high = value.get(f"{effect}.minimum"), value.get(f"{effect}.maximum")
         if low is not None and high is not None and low > high:

@@ -8,6 +8,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
+from pathlib import Path
 
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.override_parser.types import Override
@@ -30,6 +31,7 @@ COMPLETION = ("--shell-completion", "-sc")
 COMPLETES = {f"{what}={shell}" for what in ("install", "uninstall", "query") for shell in ("bash", "fish", "zsh")}
 FLAGS = (*SHOWS, *MANY, "--run", "-r", "--package", "-p", "--help", "-h")
 _MICRO = re.compile(r"(?<=\d)(?P<space> *)[µμ](?=[A-Za-z])")  # of 80µm, which Hydra cannot read
+_DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?")
 TAKES = {  # the words that a flag takes after it; None: any
     **dict.fromkeys(("--cfg", "-c"), ("job", "hydra", "all")),
     **dict.fromkeys(("--info", "-i"), ("all", "config", "defaults", "defaults-tree", "plugins", "searchpath")),
@@ -133,8 +135,7 @@ def _read_override(argument: str, many: bool) -> tuple[list[Problem], list[str]]
     if not key:
         return [Problem(argument, "has no key", remedy="write key=value", source=SOURCE)], []
     if not many and not parsed.is_delete() and parsed.is_sweep_override():
-        rule, remedy = "has several values and this is one run", "add --multirun for a sweep, or write a list: [a,b]"
-        return [Problem(key, rule, value, remedy, SOURCE)], []
+        return [Problem(key, "has several values and this is one run", value, _one_value(value), SOURCE)], []
     if key == LAUNCHER and value in NEEDED:
         return _missing_launcher(value), [argument]
     if parsed.is_delete() or key.startswith("hydra"):
@@ -145,6 +146,12 @@ def _read_override(argument: str, many: bool) -> tuple[list[Problem], list[str]]
         return [], []
     problems = _unknown_choices(key, value)
     return problems, [] if problems else [f"{key}={value}"]
+
+
+def _one_value(value: str) -> str:
+    """The remedy for several values in one run: a decimal comma looks like two."""
+    number = f"write {value.replace(',', '.')} for one number; " if _DECIMAL_COMMA.fullmatch(value) else ""
+    return f"{number}add --multirun for a sweep, or write a list: [a,b]"
 
 
 def _missing_launcher(name: str) -> list[Problem]:
@@ -162,6 +169,8 @@ def _unknown_choices(group: str, value: str) -> list[Problem]:
         return []  # choice(…) and glob(…) of a sweep
     source = f"{SOURCE}; the choices are the files of {conf_folder() / group}"
     choices = groups()[group]
+    if group == "measurement" and Path(value).suffix:
+        return [Problem(group, "no such choice", value, f"a file of your own is {PATH}={value}", SOURCE)]
     return [
         Problem(group, "no such choice", one, nearest(one, choices), source)
         for one in value.split(",")

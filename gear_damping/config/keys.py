@@ -75,7 +75,14 @@ ELSEWHERE = ("simulator", "family", "model", "wavelet", "plan")  # groups with a
 def check(config: Mapping[str, Any], origin: Origin) -> tuple[dict[str, Any], list[Problem]]:
     """The keys outside simulator and family, numbers in the unit of their key, and every problem with them."""
     found, problems = read_keys(config, SCHEMA, "", origin, ELSEWHERE)
-    return {**config, **{key: value for key, value in found.items() if key not in ELSEWHERE}}, problems
+    known = {**config, **{key: value for key, value in found.items() if key not in ELSEWHERE}}
+    return known, [_with_its_group(problem) if problem.key not in SCHEMA else problem for problem in problems]
+
+
+def _with_its_group(problem: Problem) -> Problem:
+    """Of a key that is one of a group's and was given without it, the remedy names the group."""
+    groups = [name for name, kinds in SCHEMA.items() if isinstance(kinds, Mapping) and problem.key in kinds]
+    return replace(problem, remedy=f"did you mean '{groups[0]}.{problem.key}'?") if len(groups) == 1 else problem
 
 
 def read_keys(

@@ -20,7 +20,8 @@ from gear_damping.schema.values import Problems
 from gear_damping.units import parse_unit
 
 LOST = 0.1  # of a channel's variance, from which it is said that resampling took it
-_GEOMETRY = ("n_teeth_pinion", "n_teeth_gear", "module", "pressure_angle")
+_TEETH = ("n_teeth_pinion", "n_teeth_gear")
+_GEOMETRY = (*_TEETH, "module", "pressure_angle")
 _INERTIAS = ("inertia_pinion", "inertia_gear")
 
 
@@ -44,12 +45,14 @@ class Assembler:
         conditions = self._conditions(raw, channels, findings)
         if raw.complete and len(self.problems) == before:
             self._torque_settled(raw, channels, conditions)
+            self._hold_gear(raw, channels, conditions, notes)
         if not raw.complete or len(self.problems) > before:
             return None
         plan, base = raw.plan, raw.base
         record = Record(
             name, raw.table.path, raw.sha256, plan.role, base.sampling_rate, base.time, channels, conditions,
-            plan.gear_torque_mode, plan.mesh_index, base.uniform, (*raw.table.notes, *notes),
+            None if "gear_torque" in conditions else plan.gear_torque_mode, plan.mesh_index, base.uniform,
+            (*raw.table.notes, *notes),
         )  # fmt: skip
         named = tuple(replace(finding, record=name) for finding in findings)
         return replace(record, findings=(*named, *check_record(replace(record, findings=named))))
@@ -161,6 +164,25 @@ class Assembler:
             rule = "the pinion torque varies and nothing says what the gear torque does"
             remedy = "write gear_torque: balanced (or held) beside pinion_torque, or its channel"
             self.problems.append(Problem(f"{raw.plan.key}.channels", rule, None, remedy, self.source))
+
+    def _hold_gear(
+        self, raw: RawRecord, channels: dict[str, Channel], conditions: dict[str, Quantity], notes: list[str]
+    ) -> None:
+        """A gear torque that is held stays at what balances the mean torque on the pinion."""
+        drive, stated = channels.get("pinion_torque"), conditions.get("pinion_torque")
+        if raw.plan.gear_torque_mode != "held" or (drive is None and stated is None):
+            return
+        values = {name: quantity.value for name, quantity in self.plan.parameters.items()}
+        missing = [name for name in _TEETH if name not in values]
+        if missing:
+            rule, remedy = "held at what balances the pinion's needs the teeth", f"give {', '.join(missing)}, or a value"
+            self.problems.append(Problem(f"{raw.plan.key}.gear_torque", rule, "held", remedy, self.source))
+            return
+        mean = stated.value if drive is None else float(drive.values.mean())
+        true = values.get("torque_gain", 1.0) * mean + values.get("torque_offset", 0.0)
+        held = true * values["n_teeth_gear"] / values["n_teeth_pinion"]
+        conditions["gear_torque"] = Quantity(held, "N*m")
+        notes.append(f"gear_torque: held at {held:.6g} N*m, which balances the mean of pinion_torque")
 
 
 def _lost(recorded: NDArray[np.float64], kept: NDArray[np.float64], name: str, base: TimeBase) -> list[Finding]:

@@ -58,8 +58,9 @@ class Model:
 
         Raises:
             InputError: an effect does not go with the system, is there twice, or a slot that holds
-                one term (mesh stiffness, contact) is filled wrongly.
+                one term (mesh stiffness, contact) is filled wrongly; or one of them is none.
         """
+        _refuse_others(system, effects)
         self.system = system
         self.effects = tuple(effects)
         self._mesh = next((effect for effect in self.effects if isinstance(effect, MeshStiffness)), None)
@@ -148,6 +149,27 @@ ALONE: dict[type[Effect], str] = {
     LoadPath: "stand between the torques and the mesh",
     ContactChange: "change the zone of double contact",
 }
+
+
+def _refuse_others(system: object, effects: object) -> None:
+    """Whatever is no system and no list of effects.
+
+    Raises:
+        InputError: says what it is instead.
+    """
+    if not isinstance(system, System):
+        remedy = "give a system first, for example GearPair()"
+        raise InputError(Problem("system", "is no system", _shown(system), remedy))
+    if isinstance(effects, Effect) or not isinstance(effects, Sequence):
+        raise InputError(Problem("effects", "must be a list", _shown(effects), "put the effects into [ ]"))
+    wrong = [effect for effect in effects if not isinstance(effect, Effect)]
+    remedy = "give effects with their values, for example [Backlash(gap=80e-6)]"
+    if wrong:
+        raise InputError([Problem("effects", "is no effect", _shown(one), remedy) for one in wrong])
+
+
+def _shown(given: object) -> str:
+    return f"the class {given.__name__}, which is not called" if isinstance(given, type) else repr(given)
 
 
 def _composition_problems(system: System, effects: Sequence[Effect]) -> list[Problem]:

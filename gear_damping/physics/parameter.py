@@ -20,6 +20,7 @@ class Parameter:
         meaning: One line for the documentation.
         source: `paper` where the paper prints the value, `assumed` elsewhere.
         vector: Whether it is a list of values (harmonics, teeth, steps) instead of one.
+        whole: Whether it counts something.
     """
 
     name: str
@@ -30,6 +31,7 @@ class Parameter:
     upper: float = inf
     source: str = "assumed"
     vector: bool = False
+    whole: bool = False
 
     @property
     def dimension(self) -> Dimension:
@@ -37,11 +39,13 @@ class Parameter:
         return parse_unit(self.unit).dimension
 
     def problem(self, value: float, key: str, source: str = "") -> Problem | None:
-        """The problem with `value` (SI), or None when it lies within the bounds."""
-        if self.lower <= value <= self.upper:
+        """The problem with `value` (SI), or None when it lies within the bounds and is whole where it must be."""
+        inside = self.lower <= value <= self.upper
+        if inside and (not self.whole or value == round(value)):
             return None
-        rule = f"must lie within {self.lower:g} … {self.upper:g} {self.unit}"
+        rule = "must be a whole number" if inside else f"must lie within {self.lower:g} … {self.upper:g} {self.unit}"
         nearest_valid = min(max(value, self.lower), self.upper) if value == value else self.default
+        nearest_valid = round(nearest_valid) if self.whole else nearest_valid
         return Problem(key, rule, value, f"nearest valid value {nearest_valid:g}", source)
 
 

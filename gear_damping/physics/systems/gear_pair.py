@@ -36,8 +36,8 @@ class GearPair(System):
     traits: ClassVar = frozenset({Trait.SHAFTS, Trait.TEETH, Trait.TORQUE, Trait.PRELOAD, Trait.MASS})
     gains: ClassVar = {"pinion_torque": "torque_gain"}
     parameters: ClassVar = (
-        Parameter("n_teeth_pinion", "1", 20, "teeth of the pinion", 5, 500, "paper"),
-        Parameter("n_teeth_gear", "1", 40, "teeth of the gear", 5, 1000, "paper"),
+        Parameter("n_teeth_pinion", "1", 20, "teeth of the pinion", 5, 500, "paper", whole=True),
+        Parameter("n_teeth_gear", "1", 40, "teeth of the gear", 5, 1000, "paper", whole=True),
         Parameter("module", "m", 3e-3, "module", 1e-4, 0.1, "paper"),
         Parameter("pressure_angle", "rad", pi / 9, "pressure angle", 0.1, 0.7, "paper"),
         Parameter("inertia_pinion", "kg*m^2", 2.6e-4, "moment of inertia of the pinion", 1e-9, 1e4, "paper"),
