@@ -81,6 +81,7 @@ class Recipe:
         length: Elements of its lists; as declared where absent.
         replaces: Parameters of the system that strengths take over, by own name: the parameter becomes 0 and is no
             longer free, and the size of the strength counts in what it was. Goes with `non_nested`.
+        shaft: The shaft whose turns its phases count, where no option `shaft` says it.
     """
 
     strengths: Mapping[str, float | None]
@@ -98,6 +99,12 @@ class Recipe:
     options: Mapping[str, object] = field(default_factory=dict)
     length: int | None = None
     replaces: Mapping[str, str] = field(default_factory=dict)
+    shaft: str = "pinion"
+
+    @property
+    def turns(self) -> str:
+        """The shaft whose turns its phases count."""
+        return str(self.options.get("shaft", self.shaft))
 
 
 def where_there_is_a_spring(*recipes: Recipe) -> Callable[[Rig], tuple[Recipe, ...]]:

@@ -13,7 +13,7 @@ from gear_damping.explanation.statistics.family_wise import (
     cube_root,
     family_wise,
 )
-from gear_damping.explanation.statistics.whitening import autoregression
+from gear_damping.explanation.statistics.whitening import Autoregression, _is_stable, autoregression
 
 SAMPLES, BLOCK = 1200, 6
 
@@ -162,3 +162,46 @@ def test_degrees_that_a_regression_took_are_given_back():
     left = torch.as_tensor(values - taken @ (taken.T @ values))
     assert autoregression([left], 120).variance == pytest.approx(1.0, rel=0.15)
     assert autoregression([left]).variance < 0.9
+
+
+def pink(rng, samples):
+    """Noise whose power goes with 1/f, of unit variance."""
+    frequency = np.fft.rfftfreq(2 * samples)
+    frequency[0] = frequency[1]
+    waves = rng.normal(size=frequency.size) + 1j * rng.normal(size=frequency.size)
+    found = np.fft.irfft(waves / np.sqrt(frequency))[:samples]
+    return (found - found.mean()) / found.std()
+
+
+def test_noise_that_goes_with_one_over_f_is_made_white_by_octaves_of_its_past():
+    rng = np.random.default_rng(33)
+    rows = [torch.as_tensor(pink(rng, samples)) for samples in (16000, 12000)]
+    law = autoregression(rows)
+    assert len(law.octaves) >= 3
+    white = law.whitened(rows[0])
+    assert white[: law.memory].abs().max() == 0
+    left = white[law.memory :].numpy()
+    power = np.abs(np.fft.rfft(left)) ** 2 / left.size / law.innovation
+    coloured = np.abs(np.fft.rfft(rows[0].numpy())) ** 2
+    low, high = slice(10, 100), slice(2000, 7000)
+    assert 0.5 < power[low].mean() / power[high].mean() < 1.5
+    assert coloured[low].mean() / coloured[high].mean() > 50
+
+
+def test_an_octave_of_the_past_is_the_mean_of_its_samples():
+    rng = np.random.default_rng(34)
+    row, near, far = rng.normal(size=60), (0.3, -0.1), (0.2, 0.4)
+    law = Autoregression(torch.tensor(near, dtype=torch.float64), 1.0, torch.tensor(far, dtype=torch.float64))
+    assert (law.order, law.memory) == (4, 8)
+    wanted = [
+        row[t] - 0.3 * row[t - 1] + 0.1 * row[t - 2] - 0.2 * row[t - 4 : t - 2].mean() - 0.4 * row[t - 8 : t - 4].mean()
+        for t in range(8, 60)
+    ]
+    np.testing.assert_allclose(law.whitened(torch.as_tensor(row))[8:], wanted, rtol=1e-12)
+    np.testing.assert_allclose(law.lags, [0.3, -0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1], rtol=1e-15)
+
+
+@pytest.mark.parametrize(("lags", "stable"), [((0.5, 0.2), True), ((0.9, 0.2), False), ((0.0, 0.0, -0.99), True)])
+def test_a_long_memory_is_stable_where_its_poles_lie_inside_the_unit_circle(lags, stable):
+    assert (np.abs(np.roots([1, *(-np.array(lags))])).max() < 1) == stable
+    assert _is_stable(torch.tensor(lags, dtype=torch.float64)) == stable

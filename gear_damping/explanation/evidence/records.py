@@ -139,6 +139,14 @@ class Evidence:
         """How many operating conditions the records hold."""
         return len({condition_of(record) for record in self.records})
 
+    @property
+    def tells_turns(self) -> bool:
+        """Whether angles that count from one mark of the pinion tell its turns apart, so that the gear's follow.
+
+        They do within one record. From one record to the next a counter may have been set back, or only its turns kept.
+        """
+        return self.one_record or not self.base.has(Trait.TEETH)
+
 
 def evidence_of(measurement: Measurement) -> Evidence:
     """The records of a measurement in their roles.

@@ -61,6 +61,11 @@ class Candidate:
         return tuple(sorted(self.hypothesis.effects[-1].chosen.items()))
 
     @property
+    def form(self) -> tuple[object, ...]:
+        """What parts its full fit from others of the effect: the options, and whether records have their own phases."""
+        return (*self.options, bool(self.own_phases or self.own_tooth))
+
+    @property
     def is_elastic(self) -> bool:
         """Whether it is a law of the restoring force."""
         return isinstance(self.hypothesis.effects[-1], ElasticForce)
@@ -77,12 +82,15 @@ def candidates_for(base: Hypothesis, evidence: Evidence, residuals: Residuals | 
     there = {effect.name for effect in base.effects}
     refused = there | base.system.covered_by_nuisance
     rig = rig_of(base, evidence, residuals)
-    sizes = _Sizes(base, evidence.duration, rig)
+    rigs = [rig, replace(rig, indexed=False)] if rig.indexed and not evidence.tells_turns else [rig]
+    each_rig = [_Sizes(base, evidence.duration, one) for one in rigs]
     return [
         _candidate(base, kind, recipe, sizes)
         for name, kind in evidence.library.items()
         if kind.cause and base.system.has(*kind.needs) and name not in refused and set(kind.requires) <= there
-        for recipe in kind.cause.recipes_for(rig)
+        for sizes in (each_rig if kind.cause.turns_with else each_rig[:1])
+        for recipe in kind.cause.recipes_for(sizes.rig)
+        if sizes.rig is rig or recipe.turns == "gear"  # where only the pinion has a mark, turns of the gear have none
         if all(_value(base, parameter) > 0 for parameter in recipe.replaces)
     ]
 

@@ -1,38 +1,49 @@
 """The random part of residuals as an autoregression, and the filter that whitens it.
 
 Burg would fit each record; the covariance method pools all rows, which short records need. The order is the one with
-the least BIC (Schwarz 1978).
+the least BIC (Schwarz 1978). Where all lags that are allowed are used up, as by a sensor whose noise goes with 1/f, the
+past goes on in octaves, each as the mean of its samples (Corsi 2009, J. Financial Econometrics 7(2)): few numbers for a
+long memory, and too smooth for the line of a resonance.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from math import log
+from dataclasses import dataclass, replace
+from math import inf, log
 
 import torch
+from scipy.signal import lfilter
 from torch import Tensor
 
 MOST_ORDER = 8  # coefficients: more would swallow a resonance as well as the effect that drives it
-SAMPLES_PER_ORDER = 8  # of the shortest row, for each coefficient
+MOST_OCTAVES = 8  # of lags behind those: up to 2048 samples
+SAMPLES_PER_ORDER = 8  # of the shortest row, for each coefficient and for each lag of an octave
 LAGS = 4000  # over which autocorrelations are summed
 SETTLED = 1e-9  # of an autocorrelation: what is left of it no longer counts
 
 
 @dataclass(frozen=True)
 class Autoregression:
-    """x_t = sum_k a_k x_(t-k) + e_t.
+    """x_t = sum_k a_k x_(t-k) + sum_j b_j mean(x_(t-k), p 2^j < k <= p 2^(j+1)) + e_t.
 
     Args:
         coefficients: a_1 to a_p, (p,).
         innovation: Variance of e.
+        octaves: b_0 to b_(q-1), (q,).
     """
 
     coefficients: Tensor
     innovation: float
+    octaves: Tensor = torch.zeros(0, dtype=torch.float64)
 
     @property
     def order(self) -> int:
         """Number of coefficients."""
-        return len(self.coefficients)
+        return len(self.coefficients) + len(self.octaves)
+
+    @property
+    def memory(self) -> int:
+        """Samples that it looks back."""
+        return len(self.coefficients) * 2 ** len(self.octaves)
 
     @property
     def variance(self) -> float:
@@ -51,22 +62,37 @@ class Autoregression:
     @property
     def _impulse(self) -> Tensor:
         """Response to one innovation, until nothing is left of it, (lags,)."""
-        p, memory = self.order, [0.0] * self.order
-        found, weights = [1.0], self.coefficients.tolist()
-        memory = [1.0, *memory][:p]
-        while p and len(found) < LAGS and max(map(abs, memory)) > SETTLED:
-            value = sum(a * x for a, x in zip(weights, memory, strict=True))
-            found.append(value)
-            memory = [value, *memory][:p]
-        return torch.tensor(found, dtype=torch.float64)
+        innovation = torch.zeros(LAGS, dtype=torch.float64)
+        innovation[0] = 1.0
+        found = torch.as_tensor(lfilter([1.0], [1.0, *(-self.lags).tolist()], innovation.numpy()))
+        counts = (found.abs() > SETTLED).nonzero()
+        return found[: int(counts[-1]) + 1]
+
+    @property
+    def lags(self) -> Tensor:
+        """The coefficient of every lag, (memory,)."""
+        own = [self.coefficients]
+        for number, coefficient in enumerate(self.octaves.tolist()):
+            width = len(self.coefficients) * 2**number
+            own.append(torch.full((width,), coefficient / width, dtype=torch.float64))
+        return torch.cat(own)
 
     def whitened(self, rows: Tensor) -> Tensor:
-        """The innovations of rows (..., time); 0 for the first `order` samples, which have no full past."""
+        """The innovations of rows (..., time); 0 for the first `memory` samples, which have no full past."""
         found = rows.clone()
         for lag, a in enumerate(self.coefficients.tolist(), 1):
             found[..., lag:] -= a * rows[..., :-lag]
-        found[..., : self.order] = 0.0
+        for number, b in enumerate(self.octaves.tolist()):
+            past = octave(rows, len(self.coefficients) * 2**number)
+            found[..., -past.shape[-1] :] -= b * past
+        found[..., : self.memory] = 0.0
         return found
+
+
+def octave(rows: Tensor, lag: int) -> Tensor:
+    """Means of the samples lag+1 to 2 lag before each sample that has them, (..., time - 2 lag)."""
+    sums = torch.nn.functional.pad(rows, (1, 0)).cumsum(-1)
+    return (sums[..., lag : rows.shape[-1] - lag] - sums[..., : rows.shape[-1] - 2 * lag]) / lag
 
 
 def autoregression(rows: Sequence[Tensor], taken: float = 0.0) -> Autoregression:
@@ -82,23 +108,41 @@ def autoregression(rows: Sequence[Tensor], taken: float = 0.0) -> Autoregression
     samples = sum(len(row) for row in rows)
     if not samples:
         raise ValueError("an autoregression needs samples")
-    most = min(MOST_ORDER, min(len(row) for row in rows) // SAMPLES_PER_ORDER)
+    shortest = min(len(row) for row in rows)
+    most = min(MOST_ORDER, shortest // SAMPLES_PER_ORDER)
+    best = _likeliest([_of_order(rows, order, most) for order in range(most + 1)], rows, most)
+    if best.order == MOST_ORDER:
+        count = sum(MOST_ORDER * 2**j <= shortest // SAMPLES_PER_ORDER for j in range(1, MOST_OCTAVES + 1))
+        longest = MOST_ORDER * 2**count
+        best = _likeliest([_of_order(rows, MOST_ORDER, longest, octaves) for octaves in range(count + 1)], rows, longest)
     left = samples / max(samples - taken, 1.0)
-    fits = [_of_order(rows, order, most) for order in range(most + 1)]
-    rows_used = sum(len(row) - most for row in rows)
-    best = min(fits, key=lambda fit: rows_used * log(max(fit.innovation, 1e-300)) + fit.order * log(max(rows_used, 2)))
-    return Autoregression(best.coefficients, best.innovation * left)
+    return replace(best, innovation=best.innovation * left)
 
 
-def _of_order(rows: Sequence[Tensor], order: int, most: int) -> Autoregression:
-    """The fit of one order over the samples that every order predicts; shrunk until it is stable."""
+def _likeliest(fits: Sequence[Autoregression], rows: Sequence[Tensor], most: int) -> Autoregression:
+    """The fit with the least BIC, each over the samples that have `most` before them."""
+    used = sum(len(row) - most for row in rows)
+    return min(fits, key=lambda fit: used * log(max(fit.innovation, 1e-300)) + fit.order * log(max(used, 2)))
+
+
+def _of_order(rows: Sequence[Tensor], order: int, most: int, octaves: int = 0) -> Autoregression:
+    """The fit of one order over the samples that have `most` before them; stable."""
     target = torch.cat([row[most:] for row in rows])
     if not order:
         return Autoregression(torch.zeros(0, dtype=torch.float64), float(target.square().mean()))
-    past = torch.cat([torch.stack([row[most - k : len(row) - k] for k in range(1, order + 1)], 1) for row in rows])
+    past = torch.cat([_past(row, order, most, octaves) for row in rows])
     found = torch.linalg.lstsq(past, target.unsqueeze(1), rcond=1e-12, driver="gelsd").solution[:, 0]
-    found = _stable(found)
-    return Autoregression(found, float((target - past @ found).square().mean()))
+    if not octaves:
+        found = _stable(found)
+    law = Autoregression(found[:order], float((target - past @ found).square().mean()), found[order:])
+    return law if not octaves or _is_stable(law.lags) else replace(law, innovation=inf)
+
+
+def _past(row: Tensor, order: int, most: int, octaves: int) -> Tensor:
+    """What each sample that has `most` before it is regressed on, (samples, order + octaves)."""
+    near = [row[most - k : len(row) - k] for k in range(1, order + 1)]
+    means = [octave(row, order * 2**number) for number in range(octaves)]
+    return torch.stack([*near, *(mean[-len(row) + most :] for mean in means)], 1)
 
 
 def _stable(coefficients: Tensor) -> Tensor:
@@ -111,3 +155,14 @@ def _stable(coefficients: Tensor) -> Tensor:
         return coefficients
     shrink = (1 - 1e-3) / radius
     return coefficients * shrink ** torch.arange(1, len(coefficients) + 1, dtype=torch.float64)
+
+
+def _is_stable(lags: Tensor) -> bool:
+    """Whether all poles of a long memory lie inside the unit circle: all its reflections are below 1 (Levinson 1947)."""
+    left = lags
+    while len(left):
+        reflection = float(left[-1])
+        if abs(reflection) >= 1:
+            return False
+        left = (left[:-1] + reflection * left[:-1].flip(0)) / (1 - reflection**2)
+    return True

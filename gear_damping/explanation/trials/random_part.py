@@ -168,7 +168,7 @@ class Whitener:
     def __init__(self, random: Random, outcome: Outcome) -> None:
         self.random, self.problem = random, outcome.problem
         weights = self.problem.response.weights.reshape(-1, self.problem.response.length)
-        lost = max((law.order for law in random.laws), default=0) + (MEMORY if random.loads else 0)
+        lost = max((law.memory for law in random.laws), default=0) + (MEMORY if random.loads else 0)
         self.used = _valid(weights, lost)
 
     def __call__(self, signal: Tensor) -> Tensor:
@@ -196,9 +196,8 @@ class Whitener:
 def _valid(weights: Tensor, order: int) -> Tensor:
     """1 where a sample and the `order` before it count, (rows, time)."""
     counts = (weights > 0).double()
-    found = counts.clone()
-    for lag in range(1, order + 1):
-        found[:, lag:] *= counts[:, :-lag]
+    sums = torch.nn.functional.pad(counts, (order + 1, 0)).cumsum(1)
+    found = (sums[:, order + 1 :] - sums[:, : -order - 1] > order + 0.5).double()
     found[:, :order] = 0.0
     return found
 

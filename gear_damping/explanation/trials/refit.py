@@ -92,7 +92,7 @@ def chosen(
     """
     forms: dict[tuple, Score] = {}
     for score in scores:
-        forms.setdefault((score.candidate.name, *score.candidate.options), score)
+        forms.setdefault((score.candidate.name, *score.candidate.form), score)
     every = list(forms.values())
     ranked = list(best_by_effect(every).values())
     first = [score for score in ranked[: settings.full_fits] if score.gain >= least * ranked[0].gain]

@@ -14,7 +14,7 @@ class GearEccentricity(Eccentricity):
     shaft = "gear"
     cause: ClassVar = Cause(
         "the eccentricity of the gear",
-        (Recipe({"amplitude": None}, {"amplitude": "phase"}),),
+        (Recipe({"amplitude": None}, {"amplitude": "phase"}, shaft="gear"),),
         separated_by="torque_channel",
         looks_like=("encoder_error",),
         turns_with="shaft",

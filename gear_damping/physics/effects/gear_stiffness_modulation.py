@@ -14,6 +14,6 @@ class GearStiffnessModulation(StiffnessModulation):
     shaft = "gear"
     cause: ClassVar = Cause(
         "a mesh stiffness that varies over a turn of the gear",
-        (Recipe({"amplitude": None}, {"amplitude": "phase"}),),
+        (Recipe({"amplitude": None}, {"amplitude": "phase"}, shaft="gear"),),
         turns_with="shaft",
     )

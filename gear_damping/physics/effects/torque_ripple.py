@@ -32,6 +32,7 @@ def _every_order(rig: Rig) -> tuple[Recipe, ...]:
             fixed={"order": order, other: 0.0},
             options={"proportional": strength == "share"},
             in_si=True,
+            shaft="pinion" if order == round(order) else "gear",
         )
         for strength, other in (("amplitude", "share"), ("share", "amplitude"))
         for order in ripple_orders(rig)
