@@ -9,10 +9,13 @@ from dataclasses import replace
 from gear_damping.explanation.evidence.excess import ac_energy
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.hypothesis import Outcome
+from gear_damping.identification.output_error.records import FitRecord
 
 BEYOND_NOISE = 3.0  # times the noise: what is left at least of a record that a model has lost
 HELPED = 0.1  # of the mean square that is left: what the other records leave at most once they are followed
 MOST_LOST = 3  # of so many records one may be lost
+REVERSED = (0.02, 0.98)  # of the samples of a torque: its ends without spikes
+ZERO_ERROR = 0.05  # of the larger torque: a smaller one of the other sign may be an error of the zero
 
 
 def followed_alone(
@@ -38,6 +41,25 @@ def followed_alone(
             return None
         found = again
     return None if kept is evidence else (found, kept)
+
+
+def of_one_flank(evidence: Evidence) -> Evidence:
+    """The evidence without fitted records whose torque changes its sign; as it is where it all or none of them do.
+
+    There the teeth cross the gap between their flanks, whatever its size, and the softest of springs would come
+    nearest to that.
+    """
+    kept = tuple(record for record in evidence.fit if not _is_reversed(record))
+    return replace(evidence, fit=kept) if 0 < len(kept) < len(evidence.fit) else evidence
+
+
+def _is_reversed(record: FitRecord) -> bool:
+    """Whether the torque drives one flank and then the other, by more than a torque meter's zero is off."""
+    torque = record.inputs.get("pinion_torque")
+    if torque is None:
+        return False
+    low, high = torque.quantile(torque.new_tensor(REVERSED)).tolist()
+    return low < 0 < high and min(-low, high) > ZERO_ERROR * max(-low, high)
 
 
 def _losses(found: Outcome, evidence: Evidence) -> list[float]:

@@ -12,7 +12,7 @@ from gear_damping.explanation.evidence.input_noise import without_input_noise
 from gear_damping.explanation.evidence.records import Evidence, with_own_angles
 from gear_damping.explanation.evidence.unsteady import has_unsteady_shafts, with_unsteady_shafts
 from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
-from gear_damping.explanation.model.followed import followed_alone
+from gear_damping.explanation.model.followed import followed_alone, of_one_flank
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, natural_frequency_hz
 from gear_damping.explanation.model.nominal_gear_pair import (
     SCANNED,
@@ -150,6 +150,9 @@ def _gear_pair(evidence: Evidence, solver: Solver | None) -> Calibration:
     """Mesh phase by a scan, damping and stiffness, free harmonics of the stiffness, then speeds that vary a little."""
     if is_standing(evidence):
         return Calibration(evidence, fit_hypothesis(first_gear_pair(evidence), evidence, solver=solver))
+    driven = of_one_flank(evidence)
+    if driven is not evidence:
+        return _carried_over(_gear_pair(driven, solver), evidence, solver)
     evidence, rough, nominal = _angles_counted(evidence, solver)
     rough = rough or _rough_gear_pair(evidence, solver)
     nominal = nominal or shaped(rough, evidence, SHAPE_ITERATIONS, solver)
@@ -161,6 +164,16 @@ def _gear_pair(evidence: Evidence, solver: Solver | None) -> Calibration:
         initial, rounds = InitialValues(after=nominal), Rounds(SHAPE_ITERATIONS)
         nominal = fit_hypothesis(nominal.hypothesis, unsteady, initial, rounds, solver=solver)
     return Calibration(unsteady, nominal, rough)
+
+
+def _carried_over(found: Calibration, evidence: Evidence, solver: Solver | None) -> Calibration:
+    """A calibration to some of the records on all of them."""
+    if not found.evidence.has_index:
+        evidence = with_own_angles(evidence)
+    evidence = with_unsteady_shafts(evidence) if has_unsteady_shafts(found.evidence.fit) else evidence
+    followed = found.followed or len(found.evidence.fit)
+    nominal = _of_others(found.nominal, found.evidence, evidence, solver)
+    return Calibration(evidence, nominal, None, followed)
 
 
 def _shaped(evidence: Evidence, solver: Solver | None) -> Outcome:
