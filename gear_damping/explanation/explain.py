@@ -160,8 +160,10 @@ def _searched(
     _tell(nominal, bench)
     is_calibrated()
     state, is_lost = State(bench, nominal, nominal), is_lost_by(nominal, evidence)
-    if evidence.segments or not (state.is_unpredictable or is_lost):
+    is_led = is_lost and evidence.has(Trait.SHAFTS)  # by what turns: a large runout leaves little to the mesh
+    if evidence.segments or not (state.is_unpredictable or (is_lost and not is_led)):
         state = search(nominal, bench)
+        is_lost = is_led and is_lost_by(state.outcome, evidence)
     loses = not evidence.has(Trait.SHAFTS) and best_is_lost(state)
     if evidence.segments or not (is_lost or state.is_unpredictable or loses):
         return state

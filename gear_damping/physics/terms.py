@@ -36,6 +36,7 @@ class Effect(Declared, ABC):
     dissipative: ClassVar[bool] = False
     requires: ClassVar[tuple[str, ...]] = ()  # names of effects that must be there too
     cause: ClassVar[Cause | None] = None  # what `task=explain` tries and says of it; None: it is no candidate
+    mean_free: ClassVar[tuple[str, ...]] = ()  # lists of which only the differences act: their mean is taken as 0
     refinement: ClassVar[float] = 1.0  # of the steps, where the force bends too sharply for them; measured
 
     def __str__(self) -> str:

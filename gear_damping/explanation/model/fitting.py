@@ -9,7 +9,7 @@ from torch import Tensor
 from gear_damping.explanation.evidence.noise import Scatter
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.cross_fit import CrossFit, cross_fitted
-from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, segments_of, settled_at
+from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, mean_free_places, segments_of, settled_at
 from gear_damping.explanation.model.opened import opened
 from gear_damping.identification.output_error.descent import Lent
 from gear_damping.identification.output_error.least_squares import Ends, Fitted, Rounds, fit
@@ -69,12 +69,21 @@ def fit_hypothesis(
         states, rounds = None, replace(rounds, horizons=[None] * len(rounds.horizons))
     ends = replace(ends, enough=ends.enough * evidence.noise**2, is_over=evidence.is_over)
     fitted = fit(problem, shared, rounds, states, ends, None if after is None else lent_from(problem, after))
+    fitted = replace(fitted, shared=_without_means(fitted.shared, hypothesis, problem))
     values = {name: float(value) for name, value in problem.unknowns.parameters(fitted.shared).items()}
     found = _outcome(settled_at(hypothesis, values), Fit(problem, fitted, values), evidence)
     if evidence.sealed or not evidence.holdout:
         return found
     found = opened(found, evidence, solver, None if after is None else after.own)
     return replace(found, left_out=found.holdout, scatter=Scatter())
+
+
+def _without_means(shared: Tensor, hypothesis: Hypothesis, problem: OutputErrorProblem) -> Tensor:
+    """Coordinates with the means that act on nothing taken out."""
+    found = shared.clone()
+    for places in mean_free_places(hypothesis, problem.free):
+        found[places] -= found[places].mean()
+    return found
 
 
 def _begin(problem: OutputErrorProblem, hypothesis: Hypothesis, initial: InitialValues) -> tuple[Tensor | None, Tensor]:

@@ -136,6 +136,13 @@ def placed(given: Given, values: dict[str, float]) -> Given:
     return merged
 
 
+def mean_free_places(hypothesis: Hypothesis, free: Sequence[FreeParameter]) -> list[list[int]]:
+    """Places among free parameters of each list of which only the differences act."""
+    starts = [f"{effect.name}.{name}[" for effect in hypothesis.effects for name in effect.mean_free]
+    found = [[i for i, parameter in enumerate(free) if parameter.name.startswith(start)] for start in starts]
+    return [places for places in found if places]
+
+
 def settled_at(hypothesis: Hypothesis, values: dict[str, float]) -> Hypothesis:
     """A hypothesis with fitted values, by name, as its known ones and as the starts of its free parameters."""
     free = tuple(_settled(p, values.get(p.name, p.start)) for p in hypothesis.free)

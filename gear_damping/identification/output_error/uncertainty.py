@@ -4,7 +4,7 @@ The covariance is the sandwich (J'J)^-1 S (J'J)^-1 with S the long-run covarianc
 (Newey & West 1987): it holds for coloured residuals, which is what a model that misses something leaves.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import torch
 from torch import Tensor
@@ -19,16 +19,19 @@ LEAST_INFORMATION = 1e-30  # beside 1: products of two of them are still numbers
 WIDEST = 1e6  # times the variance of coloured residuals: more is no matter of colour
 
 
-def covariance(problem: OutputErrorProblem, fitted: Fitted, correlated_s: float) -> Tensor:
+def covariance(
+    problem: OutputErrorProblem, fitted: Fitted, correlated_s: float, mean_free: Sequence[Sequence[int]] = ()
+) -> Tensor:
     """Covariance of the coordinates of the shared parameters, (n_shared, n_shared).
 
     Args:
         problem: What was fitted.
         fitted: The fit.
         correlated_s: Seconds over which residuals may be correlated, some natural periods.
+        mean_free: Places of parameters whose mean acts on nothing and is 0.
     """
     residual = fitted.prediction.residual[0]
-    orthogonal, inverse = _information(problem, fitted)
+    orthogonal, inverse = _information(problem, fitted, mean_free)
     scores = orthogonal * residual.unsqueeze(-1)
     lags = [round(correlated_s * record.sampling_rate) for record in problem.records]
     meat = sum(long_run(one, lag) for one, lag in zip(scores, lags, strict=True))
@@ -48,13 +51,18 @@ def noise_covariance(problem: OutputErrorProblem, fitted: Fitted) -> Tensor:
     return _information(problem, fitted)[1] * problem.noise**2
 
 
-def _information(problem: OutputErrorProblem, fitted: Fitted) -> tuple[Tensor, Tensor]:
+def _information(
+    problem: OutputErrorProblem, fitted: Fitted, mean_free: Sequence[Sequence[int]] = ()
+) -> tuple[Tensor, Tensor]:
     """Sensitivities, the records' own projected out, (records, time, n_shared), and the inverse of their products."""
     sensitivity = fitted.prediction.sensitivity[0]
     orthogonal = project_out(sensitivity[..., : problem.n_shared], nuisance_basis(sensitivity, problem.n_shared))
     jacobian = orthogonal.flatten(0, 1)
     expected = problem.expectation(fitted.shared)[1].square()
-    return orthogonal, _inverse(jacobian.T @ jacobian + torch.diag(expected))
+    information = jacobian.T @ jacobian + torch.diag(expected)
+    for places in map(torch.tensor, mean_free):  # a mean that is known as well as all of the differences together
+        information[places.unsqueeze(1), places] += information.diagonal()[places].sum() / len(places)
+    return orthogonal, _inverse(information)
 
 
 def _inverse(information: Tensor) -> Tensor:

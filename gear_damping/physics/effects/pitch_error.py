@@ -65,6 +65,7 @@ class PitchError(TransmissionErrorSource):
         Option("shaft", SHAFTS, "pinion", "which of the two gears"),
         Option("form", ("handover", "interpolated"), "handover", "as stated, or trigonometric interpolation"),
     )
+    mean_free: ClassVar = ("values",)
     needs: ClassVar = (Trait.SHAFTS, Trait.TEETH)
     cause: ClassVar = Cause(
         "errors of the pitch, tooth by tooth",
