@@ -328,6 +328,22 @@ def test_tooth_crack_softens_the_mesh_in_the_middle_of_the_contact_of_its_tooth(
     close(bench.effect.factor(bench.evaluated(), bench.p), 1 - 0.2 * inside)
 
 
+@pytest.mark.parametrize("shaft", ["pinion", "gear"])
+@pytest.mark.parametrize("edges", ["switched", "smooth"])
+def test_a_halved_crack_takes_what_one_of_equally_stiff_pairs_loses(shaft, edges):
+    """Pairs of stiffness 1, or of 1/2 while two carry: the mesh has lost d times the pair's over that of all."""
+    given = {"tooth_crack.depth": 0.2, "tooth_crack.phase": 0.4, "tooth_crack.edge": 1e-6, "pinion_angle": 0.3}
+    bench = Bench("tooth_crack", {"shaft": shaft, "edges": edges, "halved": True}, given, batch=2000)
+    angle = 0.3 + 4600 * math.pi / 30 * bench.times().numpy()
+    angle, teeth = (angle, 20) if shaft == "pinion" else (angle / 2, 40)
+    met = np.mod((angle + 0.4) * teeth / (2 * np.pi), teeth)  # base pitches since the tooth came into contact
+    carries = met < 1.6
+    others = sum((met + step > 0) & (met + step < 1.6) for step in (-1, 1))
+    own = carries / (1 + others)
+    assert {0.0, 0.5, 1.0} == set(np.unique(own))
+    close(bench.effect.factor(bench.evaluated(), bench.p), 1 - 0.2 * own)
+
+
 @pytest.mark.parametrize(("extent", "edge"), [(1.0, 0.02), (0.2, 0.3)])
 def test_a_crack_with_smooth_edges_takes_its_whole_depth_in_the_middle_of_the_contact(extent, edge):
     middle = math.pi * 1.6 / 20 - 0.4  # pinion angle at which the tooth is half through its contact
