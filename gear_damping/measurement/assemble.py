@@ -175,7 +175,8 @@ class Assembler:
         values = {name: quantity.value for name, quantity in self.plan.parameters.items()}
         missing = [name for name in _TEETH if name not in values]
         if missing:
-            rule, remedy = "held at what balances the pinion's needs the teeth", f"give {', '.join(missing)}, or a value"
+            rule = "held at what balances the pinion's needs the teeth"
+            remedy = f"give {', '.join(missing)} under parameters, or a value"
             self.problems.append(Problem(f"{raw.plan.key}.gear_torque", rule, "held", remedy, self.source))
             return
         mean = stated.value if drive is None else float(drive.values.mean())

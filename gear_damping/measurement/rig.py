@@ -128,7 +128,8 @@ class GearConditions(Declared):
     )
     pinion_torque: Annotated[Quantity, Measured("N*m", "any", uncertain=True)] = key("Driving torque.", "load")
     gear_torque: Annotated[Quantity | str, Load("N*m", "any", uncertain=True)] = key(
-        "Load, positive where it resists; or `balanced` (it follows the pinion's torque) or `held` (it stays at what balances the mean).",
+        "Load, positive where it resists; or `balanced` (it follows the pinion's torque) or `held` (it stays at what "
+        "balances the mean).",
         "load",
     )
 

@@ -7,7 +7,7 @@ long memory, and too smooth for the line of a resonance.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import inf, log
 
 import torch
@@ -33,7 +33,7 @@ class Autoregression:
 
     coefficients: Tensor
     innovation: float
-    octaves: Tensor = torch.zeros(0, dtype=torch.float64)
+    octaves: Tensor = field(default_factory=lambda: torch.zeros(0, dtype=torch.float64))
 
     @property
     def order(self) -> int:
@@ -114,7 +114,8 @@ def autoregression(rows: Sequence[Tensor], taken: float = 0.0) -> Autoregression
     if best.order == MOST_ORDER:
         count = sum(MOST_ORDER * 2**j <= shortest // SAMPLES_PER_ORDER for j in range(1, MOST_OCTAVES + 1))
         longest = MOST_ORDER * 2**count
-        best = _likeliest([_of_order(rows, MOST_ORDER, longest, octaves) for octaves in range(count + 1)], rows, longest)
+        longer = [_of_order(rows, MOST_ORDER, longest, octaves) for octaves in range(count + 1)]
+        best = _likeliest(longer, rows, longest)
     left = samples / max(samples - taken, 1.0)
     return replace(best, innovation=best.innovation * left)
 
@@ -158,7 +159,7 @@ def _stable(coefficients: Tensor) -> Tensor:
 
 
 def _is_stable(lags: Tensor) -> bool:
-    """Whether all poles of a long memory lie inside the unit circle: all its reflections are below 1 (Levinson 1947)."""
+    """Whether all poles of a long memory lie inside the unit circle: its reflections are below 1 (Levinson 1947)."""
     left = lags
     while len(left):
         reflection = float(left[-1])

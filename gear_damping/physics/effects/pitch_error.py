@@ -52,7 +52,7 @@ class PitchError(TransmissionErrorSource):
     """
 
     name = "pitch_error"
-    equation = "e = e_j about theta + phi = 2 pi j / z, next over h pitches in two ramps of w h, u + r sin(2 pi u) / 2 pi"
+    equation = "e = e_j about theta + phi = 2 pi j / z, next over h pitches by two ramps of w h, u + r sin(2 pi u)/2 pi"
     reference = "Velex & Maatar (1996), J. Sound Vib. 191(5)"
     parameters: ClassVar = (
         Parameter("values", "m", tuple(1e-6 * v for v in TYPICAL), "e_j, one value a tooth", -1e-3, 1e-3, vector=True),
