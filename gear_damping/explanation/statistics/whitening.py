@@ -3,7 +3,8 @@
 Burg would fit each record; the covariance method pools all rows, which short records need. The order is the one with
 the least BIC (Schwarz 1978). Where all lags that are allowed are used up, as by a sensor whose noise goes with 1/f, the
 past goes on in octaves, each as the mean of its samples (Corsi 2009, J. Financial Econometrics 7(2)): few numbers for a
-long memory, and too smooth for the line of a resonance.
+long memory. Such noise wanders: every octave draws towards its mean. One that pushes away follows a slow swing, which is
+not for the noise to take.
 """
 
 from collections.abc import Sequence
@@ -136,7 +137,8 @@ def _of_order(rows: Sequence[Tensor], order: int, most: int, octaves: int = 0) -
     if not octaves:
         found = _stable(found)
     law = Autoregression(found[:order], float((target - past @ found).square().mean()), found[order:])
-    return law if not octaves or _is_stable(law.lags) else replace(law, innovation=inf)
+    wanders = bool((law.octaves > 0).all()) and (not octaves or _is_stable(law.lags))
+    return law if wanders else replace(law, innovation=inf)
 
 
 def _past(row: Tensor, order: int, most: int, octaves: int) -> Tensor:

@@ -15,6 +15,7 @@ from gear_damping.explanation.statistics.whitening import Autoregression, autore
 from gear_damping.explanation.trials.innovations import RandomLoad
 
 RANDOM_PART = "raised to the random part of the residuals"
+HEAVY = 6.0  # kurtosis of a double exponential distribution: innovations with heavier tails come in bursts
 PER_LOAD = 2  # numbers of a load's part: its level and the sensor's
 
 
@@ -77,7 +78,7 @@ def random_part(
     """The random part of what is left, everything that has a shape projected out.
 
     An autoregression of each channel; or, where that tells more (Schwarz 1978), a random load's part of each record
-    beside one.
+    beside one. A load that comes in bursts, after each of which the motion rings, is no random one but what makes them.
 
     Args:
         left: (samples,).
@@ -95,9 +96,10 @@ def random_part(
     kept, least = laws, regressed.deviance(laws)
     if any(law.order for law in laws) and (known := loads_of()) is not None:
         parts = [moved.part(row.numpy()) for row, moved in zip(rows, known, strict=True)]
-        whitened = regressed.of(innovations(rows.unsqueeze(-1), parts).squeeze(-1))
+        left_of_it = innovations(rows.unsqueeze(-1), parts).squeeze(-1)
+        whitened = regressed.of(left_of_it)
         deviance = sum(part.deviance + PER_LOAD * log(total) for part in parts) + regressed.deviance(whitened)
-        if deviance < least:
+        if deviance < least and kurtosis(left_of_it[weights > 0]) < HEAVY:
             kept, loads, least = whitened, tuple(parts), deviance
     scale = total / max(total - taken - problem.n_shared, 1.0)
     correlation = [laws[int(g)].correlation for g in groups.reshape(-1) if g >= 0]
@@ -106,6 +108,12 @@ def random_part(
     sensors = [part.sensor / record.weight**2 for part, record in zip(loads, problem.records, strict=False)]
     sensor = sum(sensors) / max(len(sensors), 1)
     return Random(kept, groups, mean, sum(correlation) / len(correlation), by_record, loads, least, sensor)
+
+
+def kurtosis(values: Tensor) -> float:
+    """Fourth moment over the squared second one, of values without mean; 3 for a normal variable."""
+    squares = values.square()
+    return float(squares.square().mean() / squares.mean().square().clamp(min=1e-300))
 
 
 @dataclass(frozen=True)
