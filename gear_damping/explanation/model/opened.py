@@ -3,13 +3,16 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+import torch
 from torch import Tensor
 
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.hypothesis import Outcome, slowest_time
+from gear_damping.identification.output_error.angles import MESH_PHASE
 from gear_damping.identification.output_error.holdout import Frozen, predict_holdout
 from gear_damping.identification.output_error.least_squares import Fitted
 from gear_damping.identification.output_error.problem import OutputErrorProblem
+from gear_damping.identification.output_error.records import SEPARATOR, FreeParameter
 from gear_damping.simulation.solver_settings import Solver
 
 ASTRAY = 3.0  # times what is left of the fitted records
@@ -29,7 +32,7 @@ def opened(
     settled = outcome.hypothesis
     scale = slowest_time(settled, evidence)
     own = [parameter for parameter in settled.free if parameter.per_record]
-    given = {**settled.given, **settled.gains}
+    given = {**settled.given, **settled.gains, **_teeth_in_mesh(own, outcome.values)}
     frozen = Frozen(settled.model, given, own, evidence.noise, solver)
     held = predict_holdout(frozen, evidence.holdout, scale, evidence.segments, initial)
     if initial and _is_astray(held.residuals, outcome.fitted, outcome.problem):
@@ -42,6 +45,22 @@ def opened(
         own=held.own,
         error_amplification=max(outcome.error_amplification, held.error_amplification),
     )
+
+
+def _teeth_in_mesh(own: Sequence[FreeParameter], values: Mapping[str, float]) -> dict[str, float]:
+    """Where teeth stand to the mesh in fitted records, of every angle that tells teeth apart, by its name.
+
+    A tooth is in mesh once a pitch: as angles of the mesh these are all one.
+    """
+    found = {}
+    for parameter in (one for one in own if one.places):
+        start = parameter.name + SEPARATOR
+        angles = {n.removeprefix(start): value for n, value in values.items() if n.startswith(start)}
+        meshes = [parameter.places * a - values.get(f"{MESH_PHASE}{SEPARATOR}{r}", 0.0) for r, a in angles.items()]
+        if meshes:
+            turned = torch.exp(1j * torch.tensor(meshes, dtype=torch.float64)).mean()
+            found[parameter.name] = float(turned.angle()) / parameter.places
+    return found
 
 
 def _is_astray(held: Sequence[Tensor], fitted: Fitted, problem: OutputErrorProblem) -> bool:

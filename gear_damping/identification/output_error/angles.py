@@ -44,11 +44,12 @@ def scanned(
     states = problem.first_states() if states is None else states
     for base in angle_bases(problem) if bases is None else bases:
         places = [i for i, p in enumerate(problem.free) if p.name.startswith(base + SEPARATOR)]
-        count = max([_starts(problem, base), *(problem.free[place].places for place in places)])
-        angles = torch.linspace(0, 2 * pi, count + 1, dtype=torch.float64)[:-1]
+        count = max(problem.free[place].places for place in places) or _starts(problem, base)
+        around = torch.linspace(0, 2 * pi, count + 1, dtype=torch.float64)[:-1]
+        angles = {place: around + _tooth_in_mesh(problem, base, place, shared) for place in places}
         starts = shared.repeat(count, 1)
         for place in places:
-            starts[:, place] = torch.tensor([problem.free[place].coordinate(float(a)) for a in angles])
+            starts[:, place] = torch.tensor([problem.free[place].coordinate(float(a)) for a in angles[place]])
         cost = _costs(problem, starts, places, horizon, states)
         for place in places:
             record = problem.free[place].name.partition(SEPARATOR)[2]
@@ -56,8 +57,19 @@ def scanned(
             best = int(cost[:, own].sum(1).argmin())
             shared = shared.clone()
             shared[place] = starts[best, place]
-            found[problem.free[place].name] = float(angles[best])
+            found[problem.free[place].name] = float(angles[place][best])
     return found
+
+
+def _tooth_in_mesh(problem: OutputErrorProblem, base: str, place: int, shared: Tensor) -> float:
+    """The angle at which a tooth is in mesh, of an angle that tells teeth apart: as given, and as the mesh stands."""
+    parameter = problem.free[place]
+    if not parameter.places:
+        return 0.0
+    record = parameter.name.partition(SEPARATOR)[2]
+    mesh = {p.name: i for i, p in enumerate(problem.free)}.get(f"{MESH_PHASE}{SEPARATOR}{record}")
+    stands = 0.0 if mesh is None else float(problem.free[mesh].value(shared[mesh]))
+    return float(problem.given.get(base, 0.0)) + stands / parameter.places
 
 
 def _starts(problem: OutputErrorProblem, base: str) -> int:

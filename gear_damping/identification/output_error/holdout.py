@@ -7,7 +7,7 @@ from math import inf
 import torch
 from torch import Tensor
 
-from gear_damping.identification.output_error.angles import angle_bases, scanned, steady_horizon
+from gear_damping.identification.output_error.angles import MESH_PHASE, angle_bases, scanned, steady_horizon
 from gear_damping.identification.output_error.least_squares import Fitted, Rounds, fit
 from gear_damping.identification.output_error.normal_equations import nuisance_basis, project_out
 from gear_damping.identification.output_error.problem import OutputErrorProblem, Prediction, error_amplification
@@ -105,11 +105,12 @@ def _horizons(problem: OutputErrorProblem, characteristic_s: float, unknown: Seq
     """Seconds of the records over which one fit after another goes, None for all of them.
 
     So short a stretch as shows how an oscillator begins tells nothing of an angle, which would leave the valley that
-    it was begun in. A speed that is uncertain turns the mesh away from any angle in time, and is followed from there.
+    it was begun in. A speed that is uncertain turns the mesh away from any angle in time, and is followed from there;
+    where the angle of the mesh is known, its speed is.
     """
     if not angle_bases(problem):
         return [FIRST_PERIODS * characteristic_s, None]
-    steady = steady_horizon(problem) if unknown else inf
+    steady = steady_horizon(problem) if MESH_PHASE in unknown else inf
     longest, found = max(len(record.response) / record.sampling_rate for record in problem.records), []
     while steady < longest / STRETCH_RATIO:
         found.append(steady)
