@@ -1,6 +1,7 @@
 """What is tried follows the rig of the records: tooth counts, shafts, orders, and the unit of the response."""
 
 from dataclasses import replace
+from itertools import product
 from math import degrees, pi
 
 import numpy as np
@@ -56,13 +57,25 @@ def of(name, base, evidence, residuals=None):
 
 @pytest.mark.parametrize("teeth", RIGS)
 def test_a_crack_is_sought_at_every_tooth_of_either_shaft(teeth):
-    found = of("tooth_crack", *gear_pair(teeth))
-    for shaft, count in zip(("pinion", "gear"), teeth, strict=True):
-        own = [c for c in found if ("shaft", shaft) in c.options]
+    base, evidence = gear_pair(teeth)
+    turned = replace(base, given=base.given | {"mesh_phase": 0.9})
+    found = [c for c in of("tooth_crack", turned, evidence) if not c.own_tooth]
+    for (shaft, count), halved in product(zip(("pinion", "gear"), teeth, strict=True), (False, True)):
+        own = [c for c in found if {("shaft", shaft), ("halved", halved)} <= set(c.options)]
         phases = sorted(c.hypothesis.given["tooth_crack.phase"] for c in own)
-        assert phases == pytest.approx([2 * pi * i / count for i in range(count)])
+        assert phases == pytest.approx([(2 * pi * i + 0.9) / count for i in range(count)])
         edge = next(p for p in own[0].later if p.name == "tooth_crack.edge")
         assert edge.lower < edge.start < edge.upper < 2 * 2 * pi / count, "an edge is short beside a tooth"
+
+
+def test_turns_of_the_gear_are_each_records_own_beside_one_mark_of_the_pinion_but_within_one_record():
+    base, evidence = gear_pair((17, 43))
+    turning = {"gear_eccentricity", "gear_stiffness_modulation", "tooth_crack", "pitch_error", "torque_ripple"}
+    found = candidates_for(base, evidence)
+    assert {c.name for c in found if c.own_phases or c.own_tooth} == turning
+    assert all(("shaft", "pinion") not in c.options for c in found if c.own_tooth)
+    one = candidates_for(base, replace(evidence, one_record=True))
+    assert not [c.name for c in one if c.own_phases or c.own_tooth]
 
 
 @pytest.mark.parametrize("teeth", RIGS)
@@ -92,7 +105,8 @@ def test_low_orders_of_either_shaft_are_tried_as_a_ripple(teeth):
     orders = {c.hypothesis.given["torque_ripple.order"] for c in found}
     gear = {i * teeth[0] / teeth[1] for i in (1, 2, 3)}
     assert orders == {1.0, 2.0, 3.0, 4.0, 5.0, 6.0, teeth[0] - 1.0, teeth[0] + 1.0} | gear
-    assert len(found) == 2 * len(orders), "each as a torque and as a share"
+    turns = [order for order in orders if order != round(order)]
+    assert len(found) == 2 * (len(orders) + len(turns)), "each as a torque and as a share; the gear may stand anywhere"
 
 
 @pytest.mark.parametrize("order", [12, 36])
@@ -102,7 +116,7 @@ def test_what_stands_out_of_the_residual_is_tried_as_a_ripple(teeth, order):
     residuals = [(r, _line(r, order, 1.0) + _line(r, 2 * teeth[0], 3.0) + _noise(r)) for r in evidence.fit]
     found = of("torque_ripple", base, evidence, residuals)
     assert float(order) in {c.hypothesis.given["torque_ripple.order"] for c in found}
-    assert len(found) <= 2 * (11 + 8)
+    assert len(found) <= 2 * (11 + 8 + 3)
 
 
 def _line(record, order, size):

@@ -2,9 +2,9 @@
 
 Burg would fit each record; the covariance method pools all rows, which short records need. The order is the one with
 the least BIC (Schwarz 1978). Where all lags that are allowed are used up, as by a sensor whose noise goes with 1/f, the
-past goes on in octaves, each as the mean of its samples (Corsi 2009, J. Financial Econometrics 7(2)): few numbers for a
-long memory. Such noise wanders: every octave draws towards its mean. One that pushes away follows a slow swing, which is
-not for the noise to take.
+past goes on in octaves, each as the mean of its samples (Corsi 2009, J. Financial Econometrics 7(2)): few numbers for
+a long memory. Such noise wanders: every octave draws towards its mean. One that pushes away follows a slow swing, which
+is not for the noise to take.
 """
 
 from collections.abc import Sequence

@@ -57,15 +57,16 @@ class HiddenCase:
 def draw_case(
     stratum: str, seed: int, *, duration: float = 0.05, snr_db: float | None = None,
     target_excess: float | None = None, rig: str | Rig | None = None, sensors: str | Setup | None = None,
-    chosen: Mapping[str, float | str] | None = None, size: float | None = None,
+    chosen: Mapping[str, float | str] | None = None, size: float | None = None, gear_apart: bool = False,
 ) -> HiddenCase:
     """One case; see draw_cases, which draws many at a fraction of the cost of each.
 
     rig: the usual one where None, `drawn`, or its teeth, `17/43`. sensors: the usual ones where None, `drawn`, or a
     plan by name (setup.PLANS). chosen: parameters of the first effect, where chance should not choose them. size: of
-    the effects as a share of their largest, in the place of an excess.
+    the effects as a share of their largest, in the place of an excess. gear_apart: in every record the gear stands
+    elsewhere, by whole turns of the pinion, which its angle does not tell.
     """  # fmt: skip
-    asked = Wanted(stratum, seed, duration, snr_db, target_excess, rig, sensors, chosen or {}, size)
+    asked = Wanted(stratum, seed, duration, snr_db, target_excess, rig, sensors, chosen or {}, size, gear_apart)
     return _drawn([draft(asked)])[0]
 
 

@@ -30,7 +30,7 @@ class Wanted:
     duration: s on the usual rig; elsewhere as many natural periods, or as many turns of the gear. snr_db, target: of
     the channel, and excess / %; drawn where None. rig: see rigs.rig_of; sensors: see setup.setup_of. chosen:
     parameters of the first effect that are not left to chance. size: of every effect, as a share of its largest, in
-    the place of the excess.
+    the place of the excess. gear_apart: between the records the pinion has turned by whole turns that nobody counted.
     """
 
     stratum: str
@@ -42,6 +42,7 @@ class Wanted:
     sensors: str | Setup | None = None
     chosen: Mapping[str, float | str] = field(default_factory=dict)
     size: float | None = None
+    gear_apart: bool = False
 
 
 @dataclass
@@ -94,6 +95,9 @@ def draft(wanted: Wanted) -> Draft:
     if wanted.sensors is not None and setup.name != "full":
         shape["held"] = 0.0
     records = [bench.knobs() | shape | given | _record(rig, condition, duration, bench) for condition in conditions]
+    if wanted.gear_apart:
+        records = [record | {"gear_phase": record["gear_phase"] + turned} for record, turned in
+                   zip(records, _uncounted(wanted, bench, len(records)), strict=True)]  # fmt: skip
     targets = [_target(sizes, wanted.target) if effect.has_size else None for effect in effects]
     if stratum == "unbalance":
         targets[0] = 2.0  # the bearing that it needs
@@ -110,6 +114,13 @@ def draft(wanted: Wanted) -> Draft:
         _nominal(nominal_source, shape, given, bench), shape, 0.03 * noise.normal(size=(2, len(conditions))), noise,
         bench, setup, n, wanted.rig is None and wanted.sensors is None,
     )  # fmt: skip
+
+
+def _uncounted(wanted: Wanted, bench: Rig, records: int) -> list[float]:
+    """Angles of the gear / rad by whole turns of the pinion, of a source of their own."""
+    source = np.random.default_rng([zlib.crc32(wanted.stratum.encode()), wanted.seed, 4])
+    turns = source.integers(0, bench.teeth[1], records)
+    return [float(2.0 * np.pi * turn * bench.teeth[0] / bench.teeth[1]) for turn in turns]
 
 
 def _samples(wanted: Wanted, bench: Rig, rng: np.random.Generator) -> int:
