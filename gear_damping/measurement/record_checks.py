@@ -21,6 +21,7 @@ from gear_damping.measurement.checks import APPLIED, STRUCK, check_channel
 from gear_damping.measurement.encoders import FROM_ENCODERS
 from gear_damping.measurement.record import Finding, Record
 
+WHOLE_SPEEDS = ("pinion_speed", "gear_speed")  # hold the rotation, beside which what is fitted is little
 LARGEST_TRANSMISSION_ERROR = 1e-3  # m; a gear pair deflects by micrometres
 SPEED_TOLERANCE = 0.02  # of a stated speed: about the slip of an induction motor
 _COARSE = 50  # parts of a record in which a shaft is seen to advance
@@ -251,7 +252,7 @@ def _oversampled(record: Record) -> Finding | None:
         return None
     fastest = 0.0
     for channel in record.channels.values():
-        if channel.name not in APPLIED:
+        if channel.name not in (*APPLIED, *WHOLE_SPEEDS):
             fastest = max(fastest, _fastest_content(channel.values, record.sampling_rate))
     if fastest == 0.0 or record.sampling_rate <= SAMPLES_PER_PERIOD * fastest:
         return None

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 import torch
 
-from gear_damping.explanation.model.followed import followed_alone
+from gear_damping.explanation.model.followed import followed_alone, of_one_flank
 
 NOISE, SAMPLES = 0.01, 400
 
@@ -65,3 +65,23 @@ def test_noise_alone_is_no_loss(level):
     levels = (level, level, 1.2 * level)
     left = SimpleNamespace(fit_residuals=[torch.full((SAMPLES,), one, dtype=torch.float64) for one in levels])
     assert (followed_alone(left, quiet, calibrated) is None) == (level < 3)
+
+
+def driven(name, torque):
+    return SimpleNamespace(name=name, inputs={} if torque is None else {"pinion_torque": torch.as_tensor(torque)})
+
+
+def steps(*levels):
+    return torch.cat([torch.full((100,), float(level), dtype=torch.float64) for level in levels])
+
+
+def test_a_record_whose_torque_changes_its_sign_is_left_out_of_the_nominal_fit():
+    zero = steps(30.0, -0.5)  # a meter whose zero is off
+    evidence = Records((driven("a", steps(20, 40)), driven("b", steps(-20, 25)), driven("c", None), driven("d", zero)))
+    assert [one.name for one in of_one_flank(evidence).fit] == ["a", "c", "d"]
+
+
+def test_where_all_or_no_torques_change_their_sign_all_records_stay():
+    for torque in (steps(-20, 25), steps(20, 25), steps(-20, -25)):
+        evidence = Records((driven("a", torque), driven("b", torque)))
+        assert of_one_flank(evidence) is evidence

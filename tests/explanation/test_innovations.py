@@ -53,3 +53,26 @@ def test_a_random_load_is_told_from_a_sensor_that_is_noisy(load, is_load):
     seen = assessed(*(lambda outcome, evidence: (outcome, [], evidence))(*fitted(load)))
     assert bool(seen.random.loads) is is_load
     assert seen.visible.p > 0.01
+
+
+class Bursts:
+    """A thousandth of all kicks, thirty times as hard."""
+
+    def __init__(self, seed):
+        self.source = np.random.default_rng(seed)
+
+    def normal(self, size):
+        return 30 * self.source.normal(size=size) * (self.source.random(size) < 0.001)
+
+
+def test_a_load_that_comes_in_bursts_is_no_random_one(monkeypatch):
+    monkeypatch.setattr(f"{__name__}.pushed", in_bursts)
+    seen = assessed(*(lambda outcome, evidence: (outcome, [], evidence))(*fitted(0.1)))
+    assert not seen.random.loads
+    monkeypatch.setattr("gear_damping.explanation.trials.random_part.HEAVY", math.inf)
+    assert assessed(*(lambda outcome, evidence: (outcome, [], evidence))(*fitted(0.1))).random.loads
+
+
+def in_bursts(load, seed):
+    moved = pushed_decay(Bursts(seed), load, 1.0, DAMPING, STIFFNESS, RATE, SAMPLES)
+    return torch.as_tensor(moved + NOISE * np.random.default_rng(seed).normal(size=SAMPLES))

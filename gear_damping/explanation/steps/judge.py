@@ -10,6 +10,7 @@ from gear_damping.physics.catalogue import builtin_effects
 
 CONSISTENT, EXPLAINED, AMBIGUOUS = "consistent", "explained", "ambiguous"
 PARTLY, UNEXPLAINED, DATA_PROBLEM = "partly_explained", "unexplained", "data_problem"
+WHOLE = 100.0  # %: an effect that takes more than the whole signal is none
 LARGEST_SET = 4  # names that a sentence lists of causes that are not told apart
 UNTOLD = "but there was no time to see whether it stands in for something else."
 NOT_LESS = "but what is visible and not random stays."
@@ -199,7 +200,10 @@ def _without_name(found: State, before: Excess, known: Known) -> Verdict:
             "sensor, and something in it is visible that is not random; no effect of the catalogue is validated."
         )
         return Verdict(UNEXPLAINED, (text, *known.unsettled))
-    text = f"No evidence of an effect that takes more than {before.threshold:.2g} % of the signal's variance."
+    if before.threshold >= WHOLE:
+        text = "No evidence of an effect; the fitted records are too few to say how large one could be unseen."
+    else:
+        text = f"No evidence of an effect that takes more than {before.threshold:.2g} % of the signal's variance."
     return Verdict(CONSISTENT, (text,))
 
 
