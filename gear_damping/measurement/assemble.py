@@ -51,7 +51,7 @@ class Assembler:
         plan, base = raw.plan, raw.base
         record = Record(
             name, raw.table.path, raw.sha256, plan.role, base.sampling_rate, base.time, channels, conditions,
-            None if "gear_torque" in conditions else plan.gear_torque_mode, plan.mesh_index, base.uniform,
+            "balanced" if plan.gear_torque_mode == "balanced" else None, plan.mesh_index, base.uniform,
             (*raw.table.notes, *notes),
         )  # fmt: skip
         named = tuple(replace(finding, record=name) for finding in findings)

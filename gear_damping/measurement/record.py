@@ -125,7 +125,7 @@ class Record:
         time: (n,) float64, the stamps of the samples in s.
         channels: Channel by name, all of n samples.
         conditions: Constant operating conditions by name, in SI.
-        gear_torque_mode: `balanced` or `held`, where said instead of a gear torque.
+        gear_torque_mode: `balanced`, where the gear torque follows the pinion's; one that is held has a value.
         mesh_index: True where the zero of the pinion angle is the zero of the mesh.
         uniform: False where the stamps are too uneven to be put on a grid.
         notes: What was done to the values on their way in.
@@ -147,6 +147,9 @@ class Record:
     findings: tuple[Finding, ...] = ()
 
     def __post_init__(self) -> None:
+        if self.gear_torque_mode not in ("balanced", None):
+            rule = f"gear_torque_mode must be 'balanced' or None, not {self.gear_torque_mode!r}"
+            raise ValueError(f"{rule}; give a gear torque that is held under conditions")
         if self.role not in (*ROLES, None):
             raise ValueError(f"role must be one of {ROLES} or None, not {self.role!r}")
         if not self.sampling_rate > 0:

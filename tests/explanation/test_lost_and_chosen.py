@@ -84,7 +84,7 @@ def score(name, gain):
     direction = torch.eye(12, dtype=torch.float64)[len(name) % 12]
     hypothesis = SimpleNamespace(effects=[effect], common=())
     candidate = SimpleNamespace(
-        name=name, options=(), non_nested=False, replaced=(), hypothesis=hypothesis,
+        name=name, options=(), form=(), non_nested=False, replaced=(), hypothesis=hypothesis,
         is_elastic=name.endswith("stiffness"),
     )  # fmt: skip
     return SimpleNamespace(candidate=candidate, gain=gain, direction=direction, columns=direction[:, None])
@@ -126,7 +126,7 @@ def test_what_is_tried_as_a_whole_is_fitted_whatever_gain_is_predicted_at_one_si
 
 def test_what_is_tried_as_a_whole_begins_at_every_size_of_its_form():
     def sized(name, form, gain, non_nested=True):
-        candidate = SimpleNamespace(name=name, options=(("shaft", form),), non_nested=non_nested)
+        candidate = SimpleNamespace(name=name, options=(("shaft", form),), form=(form,), non_nested=non_nested)
         direction = torch.ones(2, dtype=torch.float64)
         return Score(candidate, gain, direction, direction, 0.0, direction[:, None])
 

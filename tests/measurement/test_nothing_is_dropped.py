@@ -73,7 +73,7 @@ def test_a_speed_beside_a_measured_angle_is_said(load):
 )  # fmt: skip
 def test_what_excludes_another_of_a_gear_pair_is_refused(load, records, key, said):
     with pytest.raises(InputError) as refused:
-        load("gear_pair", *records)
+        load("gear_pair", *records, parameters={"n_teeth_pinion": 20, "n_teeth_gear": 40})
     assert [problem.key for problem in refused.value.problems] == [key]
     assert said in str(refused.value)
 

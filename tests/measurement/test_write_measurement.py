@@ -26,7 +26,7 @@ def _record(name: str = "run_1", role: str | None = "fit") -> Record:
         ),
     }  # fmt: skip
     conditions = {"pinion_speed": Quantity(480.123456789012345, "rad/s")}
-    return Record(name, Path("-"), "", role, 51200.0, time, channels, conditions, "held", True)
+    return Record(name, Path("-"), "", role, 51200.0, time, channels, conditions, "balanced", True)
 
 
 def _same(read: Record, written: Record) -> None:

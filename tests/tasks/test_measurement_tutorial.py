@@ -7,13 +7,15 @@ import shlex
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from gear_damping.measurement.files import DATA_VARIABLE, data_root
+from gear_damping.measurement.load import load_measurement
 from gear_damping.tasks.command import main
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "measurement.md").read_text(encoding="utf-8")
-TUTORIAL = PAGE.split("<!-- reference: begin")[0]
+TUTORIAL, GEARS = PAGE.split("<!-- reference: begin")[0].split("## A gear pair")
 YAML_FILE = Path("swing/measurement.yaml")
 SLOW = "task=explain"
 pytestmark = [
@@ -86,6 +88,28 @@ def test_the_commands_of_the_tutorial_run_and_give_what_it_says(reader):
     assert f"{found['damping_ratio_percent']:.1f} % (9.8 … 10.8) at {frequency} Hz" in TUTORIAL
     for part in ("fit", "holdout"):
         assert f"{1000 * found[f'rmse_{part}']:.1f} mV" in TUTORIAL
+
+
+def test_the_gear_pair_of_the_page_is_read_as_it_says(tmp_path):
+    """Its files are made up: a steady turn, and counts of two encoders that mesh without any error."""
+    (tmp_path / "measurement.yaml").write_text(GEARS.split("```")[1].removeprefix("yaml\n"))
+    time = np.arange(2000) / 25e3
+    table = {"te": 5 + np.sin(2 * np.pi * 23 * 1100 / 60 * time)}
+    write_csv(tmp_path / "steady.csv", table)
+    turns = 20 * time
+    counts = {"count1": np.floor(turns * 2**20), "count2": np.floor(turns * 23 / 41 * 2**20)}
+    write_csv(tmp_path / "encoders.csv", {"t": time, "T1": 60 + time} | counts)
+    steady, encoders = load_measurement(tmp_path / "measurement.yaml").records
+    np.testing.assert_allclose(steady.channels["transmission_error"].values, 1e-6 * table["te"], rtol=1e-12)
+    assert steady.conditions["pinion_speed"].value == pytest.approx(1100 * np.pi / 30, rel=1e-12)
+    assert {"transmission_error", "pinion_angle", "pinion_torque"} <= set(encoders.channels)
+    assert (steady.gear_torque_mode, encoders.gear_torque_mode) == ("balanced", "balanced")
+    assert (steady.role, encoders.role) == ("fit", "holdout")
+
+
+def write_csv(path, table):
+    rows = np.column_stack(list(table.values()))
+    np.savetxt(path, rows, delimiter=",", header=",".join(table), comments="", fmt="%.17g")
 
 
 @pytest.mark.slow

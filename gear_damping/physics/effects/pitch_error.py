@@ -16,7 +16,7 @@ from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import TransmissionErrorSource, Values
 
 HANDOVERS = (0.05, 1.0)  # of a pitch; two pairs carry for the contact ratio less one
-EDGES = (0.05, 1.0)  # of the handover
+EDGES = (0.05, 1.0)  # of the handover; 1 is one ramp, and a shorter one would be missed by steps
 STEP = 0.13  # of the handover, assumed: a pair takes its load within a tenth of a pitch
 # um, assumed: without a pattern, and a few times less than the static deflection of 17 um.
 TYPICAL = (2, -1, 3, -4, 1, 5, -3, 0, 2, -2, 4, -5, 1, 3, -1, -3, 2, 0, -4, 2)
