@@ -11,7 +11,7 @@ PYTEST := $(BIN)/python -m pytest -n auto --dist worksteal
 ARGS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test test-sweeps test-slurm test-pages check bench estimators limit window coverage alarm plan-check blind real power p-values fuzz docs clean
+.PHONY: help setup run test test-sweeps test-slurm test-pages check bench estimators limit window coverage alarm plan-check blind second-rig real power p-values fuzz docs clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-11s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -99,6 +99,9 @@ bench: setup  ## time simulation, transforms and training beside other libraries
 
 blind: setup  ## hide effects in measurements, have them explained, write outputs/blind (resumes; 85 minutes at most)
 	$(BIN)/python -m tests.blind $(ARGS)
+
+second-rig: setup  ## have 30 measurements of a second generator explained, into outputs/second_rig (resumes)
+	$(BIN)/python -m tests.second_rig $(ARGS)
 
 real: setup  ## what explain says of real records whose answer is known, into docs/real_records.md (10 minutes)
 	$(BIN)/python -m benchmarks.real_records $(ARGS)

@@ -6,6 +6,7 @@ import os
 import tempfile
 import traceback
 import warnings
+from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 from time import process_time
@@ -18,6 +19,7 @@ from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.explain import explain
 from gear_damping.measurement.load import load_measurement
 from gear_damping.physics.catalogue import builtin_effects
+from gear_damping.physics.terms import Effect
 
 from .strata import Question
 
@@ -63,15 +65,21 @@ def _said(case: HiddenCase | OscillatorCase, removed: str | None, everything: bo
     with tempfile.TemporaryDirectory() as folder:
         path = write_case(case, Path(folder) / "measured", case.records if everything else case.first)
         library = {name: kind for name, kind in builtin_effects().items() if name != removed}
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            try:
-                content = explain(load_measurement(path), library=library, budget=Budget(MINUTES, process_time)).content
-            except InputError as error:
-                return {"verdict": REFUSED, "causes": [], "sentences": [str(error).replace(folder, "")]}
-            except Exception as error:  # the run goes on, the case counts as failed
-                place = "".join(traceback.format_tb(error.__traceback__)[-2:])
-                return {"verdict": "crashed", "causes": [], "sentences": [f"{type(error).__name__}: {error}", place]}
+        return said_of(path, library)
+
+
+def said_of(path: Path, library: Mapping[str, type[Effect]]) -> dict[str, Any]:
+    """What is kept of the explanation of a measurement.yaml that lies two folders deep in one of its own."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            content = explain(load_measurement(path), library=library, budget=Budget(MINUTES, process_time)).content
+        except InputError as error:
+            said = str(error).replace(str(path.parents[1]), "")
+            return {"verdict": REFUSED, "causes": [], "sentences": [said]}
+        except Exception as error:  # the run goes on, the case counts as failed
+            place = "".join(traceback.format_tb(error.__traceback__)[-2:])
+            return {"verdict": "crashed", "causes": [], "sentences": [f"{type(error).__name__}: {error}", place]}
     kept = {name: content[name] for name in KEPT}
     damping = (content.get("gain") or {}).get("damping_ratio_percent") or {}
     kept["damping_ratio_percent"] = damping.get("after")
