@@ -85,7 +85,7 @@ def score(name, gain):
     hypothesis = SimpleNamespace(effects=[effect], common=())
     candidate = SimpleNamespace(
         name=name, options=(), form=(), non_nested=False, replaced=(), hypothesis=hypothesis,
-        is_elastic=name.endswith("stiffness"),
+        is_elastic=name.endswith("stiffness"), strengths=(0,),
     )  # fmt: skip
     return SimpleNamespace(candidate=candidate, gain=gain, direction=direction, columns=direction[:, None])
 
@@ -155,3 +155,19 @@ def test_a_full_fit_is_given_up_where_it_cannot_take_the_place_of_what_is_there(
     asked.clear()
     made_up.full_fits(ranked, before, before)
     assert asked == [math.inf, 9.0]  # a quarter of what the first one took
+
+
+def test_full_fits_of_few_strengths_come_before_those_of_many(monkeypatch):
+    asked = []
+
+    def refitted(candidate, outcome, evidence, solver, against, reach):
+        asked.append(candidate.candidate.name)
+        fitted = SimpleNamespace(cost=6.0, converged=True)
+        return SimpleNamespace(outcome=SimpleNamespace(fitted=fitted, left_out_cost=1.0), name=candidate.candidate.name)
+
+    monkeypatch.setattr("gear_damping.explanation.trials.bench.refitted", refitted)
+    before = SimpleNamespace(fitted=SimpleNamespace(cost=10.0, converged=True))
+    ranked = [score(name, 0.5) for name in ("coulomb_friction", "power_law_damping")]
+    ranked[0].candidate.strengths = tuple(range(20))
+    bench(SearchSettings()).full_fits(ranked, before, before)
+    assert asked == ["power_law_damping", "coulomb_friction"]
