@@ -59,7 +59,7 @@ def test_the_page_lays_each_answer_beside_the_truth():
     text = page([found, pitch, case("null", verdict="unexplained")], "make second-rig")
     assert "Written by `make second-rig` from 3 of the 30 cases: 2 right." in text
     assert "`backlash`; gap 6.1e-05 [5.9e-05, 6.3e-05] m (6e-05) | 2.05 [1.9, 2.1] (2)" in text
-    assert "`pitch_error`; largest tooth -4e-06 m (3.4e-06)" in text
+    assert "`pitch_error`; largest tooth -4e-06 m (3.8e-06)" in text
     assert "| c01 | 20/41 | pinion speed | white, 30 dB | nothing | unexplained | – |" in text
 
 
