@@ -25,7 +25,7 @@ They are fixed, too: a package that is changed after its answers about them were
 In c03 and d10 the cracked tooth stands elsewhere in each record although the counters of both shafts run on, which no
 gear does; they are kept as they were made.
 """
-LAWS = ("coulomb_friction", "power_law_damping")  # that a damping ratio holds beside the viscous one
+LAWS = ("coulomb_friction", "power_law_damping")  # whose part a damping ratio holds too
 COLUMNS = ("case", "teeth", "sensor", "noise", "hidden", "verdict", "first cause: found beside the truth",
            "damping ratio / %", "s", "")  # fmt: skip
 SHOWN = ("depth", "gap", "force", "exponent", "coefficient", "amplitude")  # parameters that mean the same on both sides
