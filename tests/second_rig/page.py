@@ -88,7 +88,7 @@ def _first_cause(case: Case) -> str:
 
 
 def _largest(found: dict[str, Any], amplitude: float, z: int) -> str:
-    """The largest error of a tooth / m. Only differences act, so that the mean is 0: of one tooth alone 1 / z is lost."""
+    """The largest error of a tooth / m. Only differences act: of one tooth alone the mean, 1 / z, is lost."""
     errors = [one["value"] for key, one in found.items() if key.startswith("values")]
     return f"largest tooth {max(errors, key=abs):.3g} m ({amplitude * (1 - 1 / z):.3g})"
 
