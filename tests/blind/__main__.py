@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import os
-import signal
 import sys
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
+from .command import ROOT, STOPPED, log, see_oracles, shown, stop_by_signals
+
 PAGE = ROOT / "docs" / "blind.md"
 KEPT = PAGE.with_name("blind_cases.jsonl")  # what the page follows from, and where a fresh clone goes on
 
@@ -31,12 +30,9 @@ def arguments(given: list[str] | None = None) -> argparse.Namespace:
 
 def main(given: list[str] | None = None) -> int:
     """Run; 0 when done, 130 when stopped by Ctrl-C."""
-    os.environ["OMP_NUM_THREADS"] = "1"
-    sys.path.insert(0, str(ROOT / "tests" / "oracles"))
-    os.environ["PYTHONPATH"] = os.pathsep.join([str(ROOT / "tests" / "oracles"), str(ROOT)])  # of the workers
+    see_oracles()
     options = arguments(given)
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, signal.default_int_handler)
+    stop_by_signals()
     from .run import CASES, ask, begin_from, done_cases, keep, write
     from .strata import COUNTS, questions
 
@@ -44,28 +40,19 @@ def main(given: list[str] | None = None) -> int:
     begin_from(KEPT, options.out / CASES)
     stopped = False
     try:
-        cases = ask(asked, options.out, options.processes, _log, options.minutes, redo=options.redo)
+        cases = ask(asked, options.out, options.processes, log, options.minutes, redo=options.redo)
     except KeyboardInterrupt:
         stopped, cases = True, done_cases(options.out / CASES)
-        _log("stopped; the cases done so far are kept, and the same command goes on from here")
+        log(STOPPED)
     if not cases:
         return 130 if stopped else 0
-    found = write(cases, options.out, PAGE if options.page else None, " ".join(["make blind", *_shown(given)]))
+    found = write(cases, options.out, PAGE if options.page else None, shown("make blind", given))
     if options.page:
         keep(cases, KEPT)
     for claim, row in found["rates"].items():
-        _log(f"{claim}: {row['count']} of {row['n']} ({row['target']}: {row['met']})")
-    _log(f"rates and table: {options.out}")
+        log(f"{claim}: {row['count']} of {row['n']} ({row['target']}: {row['met']})")
+    log(f"rates and table: {options.out}")
     return 130 if stopped else 0
-
-
-def _shown(given: list[str] | None) -> list[str]:
-    words = sys.argv[1:] if given is None else given
-    return [f'ARGS="{" ".join(words)}"'] if words else []
-
-
-def _log(text: str) -> None:
-    print(text, flush=True)
 
 
 if __name__ == "__main__":

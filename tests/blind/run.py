@@ -7,7 +7,7 @@ import hashlib
 import json
 import multiprocessing
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from pathlib import Path
 from typing import Any
@@ -71,14 +71,16 @@ def _file_of(name: str) -> Path | None:
 
 def done_cases(path: Path) -> list[Case]:
     """Cases noted so far, the last note of each; a line that was cut off is left out."""
-    found: dict[tuple[str, int], Case] = {}
+    return list({(case["stratum"], case["seed"]): case for case in noted(path)}.values())
+
+
+def noted(path: Path) -> Iterator[dict[str, Any]]:
+    """The lines of a file of notes, none where there is no file; one that was cut off is left out."""
     for line in path.read_text(encoding="utf-8").splitlines() if path.exists() else ():
         try:
-            case = json.loads(line)
+            yield json.loads(line)
         except json.JSONDecodeError:
             continue
-        found[case["stratum"], case["seed"]] = case
-    return list(found.values())
 
 
 def begin_from(kept: Path, path: Path) -> None:
@@ -127,21 +129,32 @@ def ask(
             notes.flush()
             log(_line(case, place, len(waiting), rate))
 
-        _answer_all(waiting, processes, note, log, minutes, solve)
+        answer_all(waiting, processes, note, log, minutes, solve, lambda one: f"{one.stratum} {one.seed}")
     return done_cases(folder / CASES)
 
 
 def _line(case: Case, place: int, total: int, seconds_each: float) -> str:
     hidden = "+".join(effect["name"] for effect in case["truth"]["effects"]) or case["truth"]["fault"] or "nothing"
     said = case["answer"]
-    named = ", ".join(f"{c['name']}{'' if c['status'] == 'established' else '?'}" for c in said["causes"]) or "no name"
     left = f"about {(total - place) * seconds_each / 60:.0f} min left"
-    return (f"[{place}/{total}] {case['stratum']} {case['seed']} (hidden: {hidden}): {said['verdict']}, {named} "
+    return (f"[{place}/{total}] {case['stratum']} {case['seed']} (hidden: {hidden}): {said['verdict']}, {named(said)} "
             f"({case['seconds']:.0f} s; {left})")  # fmt: skip
 
 
-def _answer_all(waiting, processes: int, note, log: Log, minutes: float | None, solve) -> None:
-    """Keep the workers busy; on Ctrl-C they are stopped and what is noted stays."""
+def named(said: dict[str, Any]) -> str:
+    """The causes of an answer; a question mark behind those that are not established."""
+    return ", ".join(f"{c['name']}{'' if c['status'] == 'established' else '?'}" for c in said["causes"]) or "no name"
+
+
+def answer_all(
+    waiting: Sequence[Any], processes: int, note: Callable[[Case, int, float], None], log: Log,
+    minutes: float | None, solve: Callable[[Any], Case], name: Callable[[Any], str] = str,
+) -> None:
+    """Keep the workers busy; on Ctrl-C they are stopped and what is noted stays.
+
+    note: told each answer, how many there are with it, and the seconds that each took on average. minutes: nothing
+    begins after so many. name: what is said of one that failed.
+    """  # fmt: skip
     begun = time.monotonic()
     queue, place = iter(waiting), 0
     context = multiprocessing.get_context("spawn")
@@ -160,7 +173,7 @@ def _answer_all(waiting, processes: int, note, log: Log, minutes: float | None, 
                 if problem is None:
                     note(future.result(), place, (time.monotonic() - begun) / place)
                 else:
-                    log(f"{question.stratum} {question.seed} is left out: {type(problem).__name__}: {problem}")
+                    log(f"{name(question)} is left out: {type(problem).__name__}: {problem}")
     except BaseException:
         for process in list(getattr(pool, "_processes", {}).values()):
             process.terminate()

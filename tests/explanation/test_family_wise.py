@@ -5,6 +5,7 @@ import pytest
 import torch
 from scipy import signal, stats
 
+from gear_damping.explanation.statistics.bursts import BURST_KURTOSIS, kurtosis
 from gear_damping.explanation.statistics.family_wise import (
     Effect,
     Lines,
@@ -205,3 +206,13 @@ def test_an_octave_of_the_past_is_the_mean_of_its_samples():
 def test_a_long_memory_is_stable_where_its_poles_lie_inside_the_unit_circle(lags, stable):
     assert (np.abs(np.roots([1, *(-np.array(lags))])).max() < 1) == stable
     assert _is_stable(torch.tensor(lags, dtype=torch.float64)) == stable
+
+
+@pytest.mark.parametrize(
+    ("law", "wanted"), [(stats.norm, 3.0), (stats.laplace, BURST_KURTOSIS), (stats.uniform(-1, 2), 1.8)]
+)
+def test_the_kurtosis_is_that_of_known_laws(law, wanted):
+    values = law.rvs(size=400_000, random_state=np.random.default_rng(35))
+    assert kurtosis(values) == pytest.approx(wanted, rel=0.03)
+    assert kurtosis(values) == pytest.approx(stats.kurtosis(values, fisher=False), rel=0.01)
+    assert kurtosis(np.zeros(9)) == 0.0

@@ -69,7 +69,7 @@ def test_a_load_that_comes_in_bursts_is_no_random_one(monkeypatch):
     monkeypatch.setattr(f"{__name__}.pushed", in_bursts)
     seen = assessed(*(lambda outcome, evidence: (outcome, [], evidence))(*fitted(0.1)))
     assert not seen.random.loads
-    monkeypatch.setattr("gear_damping.explanation.trials.random_part.HEAVY", math.inf)
+    monkeypatch.setattr("gear_damping.explanation.trials.random_part.BURST_KURTOSIS", math.inf)
     assert assessed(*(lambda outcome, evidence: (outcome, [], evidence))(*fitted(0.1))).random.loads
 
 

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import os
-import signal
 import sys
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
+from ..blind.command import ROOT, STOPPED, log, see_oracles, shown, stop_by_signals
+
 PAGE = ROOT / "docs" / "second_rig.md"
 
 
@@ -28,12 +27,9 @@ def arguments(given: list[str] | None = None) -> argparse.Namespace:
 
 def main(given: list[str] | None = None) -> int:
     """Run; 0 when done, 130 when stopped by Ctrl-C."""
-    os.environ["OMP_NUM_THREADS"] = "1"
-    sys.path.insert(0, str(ROOT / "tests" / "oracles"))
-    os.environ["PYTHONPATH"] = os.pathsep.join([str(ROOT / "tests" / "oracles"), str(ROOT)])  # of the workers
+    see_oracles()
     options = arguments(given)
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, signal.default_int_handler)
+    stop_by_signals()
     from second_rig import CASES, SETS
 
     from .page import page
@@ -41,23 +37,14 @@ def main(given: list[str] | None = None) -> int:
 
     names = options.case or list(SETS[options.set] if options.set else CASES)
     try:
-        cases = ask(names, options.out, options.processes, _log)
+        cases = ask(names, options.out, options.processes, log)
     except KeyboardInterrupt:
-        _log("stopped; the cases done so far are kept, and the same command goes on from here")
+        log(STOPPED)
         return 130
-    _log(f"{sum(case['right'] for case in cases)} of {len(cases)} right: {options.out}")
+    log(f"{sum(case['right'] for case in cases)} of {len(cases)} right: {options.out}")
     if options.page and cases:
-        PAGE.write_text(page(cases, " ".join(["make second-rig", *_shown(given)])), encoding="utf-8")
+        PAGE.write_text(page(cases, shown("make second-rig", given)), encoding="utf-8")
     return 0
-
-
-def _shown(given: list[str] | None) -> list[str]:
-    words = sys.argv[1:] if given is None else given
-    return [f'ARGS="{" ".join(words)}"'] if words else []
-
-
-def _log(text: str) -> None:
-    print(text, flush=True)
 
 
 if __name__ == "__main__":

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import json
-import multiprocessing
 from collections.abc import Callable, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 
-from ..blind.run import engine
-from ..blind.work import quiet_worker
+from ..blind.run import answer_all, engine, named, noted
 from .work import Case, answer
 
 NOTES = "cases.jsonl"
@@ -18,14 +15,7 @@ Log = Callable[[str], None]
 
 def done_cases(path: Path) -> dict[str, Case]:
     """Cases noted so far by their names, the last note of each; a line that was cut off is left out."""
-    found: dict[str, Case] = {}
-    for line in path.read_text(encoding="utf-8").splitlines() if path.exists() else ():
-        try:
-            case = json.loads(line)
-        except json.JSONDecodeError:
-            continue
-        found[case["case"]] = case
-    return found
+    return {case["case"]: case for case in noted(path)}
 
 
 def ask(names: Sequence[str], folder: Path, processes: int, log: Log) -> list[Case]:
@@ -37,38 +27,17 @@ def ask(names: Sequence[str], folder: Path, processes: int, log: Log) -> list[Ca
     log(f"{len(names) - len(waiting)} of {len(names)} cases are done already, {len(waiting)} to do")
     with path.open("a", encoding="utf-8") as notes:
 
-        def note(case: Case) -> None:
+        def note(case: Case, *_: float) -> None:
             notes.write(json.dumps(case | {"engine": version}) + "\n")
             notes.flush()
             log(_line(case))
 
-        _answer_all(waiting, processes, note, log)
+        answer_all(waiting, processes, note, log, None, answer)
     found = done_cases(path)
     return [found[name] for name in names if name in found]
 
 
-def _answer_all(names: Sequence[str], processes: int, note: Callable[[Case], None], log: Log) -> None:
-    """Keep the workers busy; on Ctrl-C they are stopped and what is noted stays."""
-    context = multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(processes, mp_context=context, initializer=quiet_worker)
-    try:
-        running = {pool.submit(answer, name): name for name in names}
-        for future in as_completed(running):
-            problem = future.exception()
-            if problem is None:
-                note(future.result())
-            else:
-                log(f"{running[future]} is left out: {type(problem).__name__}: {problem}")
-    except BaseException:
-        for process in list(getattr(pool, "_processes", {}).values()):
-            process.terminate()
-        raise
-    finally:
-        pool.shutdown(wait=False, cancel_futures=True)
-
-
 def _line(case: Case) -> str:
     said = case["answer"]
-    named = ", ".join(f"{c['name']}{'' if c['status'] == 'established' else '?'}" for c in said["causes"]) or "no name"
-    return (f"{case['case']} (hidden: {case['truth']['hidden'] or 'nothing'}): {said['verdict']}, {named}: "
+    return (f"{case['case']} (hidden: {case['truth']['hidden'] or 'nothing'}): {said['verdict']}, {named(said)}: "
             f"{'right' if case['right'] else 'WRONG'} ({case['seconds']:.0f} s)")  # fmt: skip

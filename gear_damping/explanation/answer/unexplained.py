@@ -11,6 +11,7 @@ from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.evidence.shaft import Shaft, shaft_of
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.linear import linear_of
+from gear_damping.explanation.statistics.bursts import BURST_KURTOSIS, kurtosis
 from gear_damping.explanation.trials.line import strongest_line
 from gear_damping.identification.output_error.records import FitRecord
 
@@ -19,7 +20,6 @@ SHAFT_ORDERS = 3  # harmonics of either shaft that are looked at
 MESH_ORDERS = 6  # harmonics of the mesh
 STATE_POWERS = 3  # of displacement and rate
 BINS = 16  # of the contact phase
-BURST_KURTOSIS = 6.0  # from here on a residual comes in bursts; a normal one has 3
 
 
 def unexplained_residual(outcome: Outcome, evidence: Evidence) -> dict[str, object]:
@@ -105,8 +105,7 @@ def _share(
 
 
 def _kurtosis(residuals: Sequence[Array]) -> float:
-    values = np.concatenate([r / (r.std() or 1.0) for r in residuals])
-    return float((values**4).mean() / max((values**2).mean() ** 2, 1e-300))
+    return kurtosis(np.concatenate([r / (r.std() or 1.0) for r in residuals]))
 
 
 def _orders(residuals: Sequence[Array], shafts: Sequence[Shaft | None]) -> dict[str, float]:

@@ -9,13 +9,13 @@ from torch import Tensor
 
 from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.model.hypothesis import Outcome
+from gear_damping.explanation.statistics.bursts import BURST_KURTOSIS, kurtosis
 from gear_damping.explanation.statistics.load_error import LoadError
 from gear_damping.explanation.statistics.load_noise import MEMORY, LoadNoise
 from gear_damping.explanation.statistics.whitening import Autoregression, autoregression
 from gear_damping.explanation.trials.innovations import RandomLoad
 
 RANDOM_PART = "raised to the random part of the residuals"
-HEAVY = 6.0  # kurtosis of a double exponential distribution: innovations with heavier tails come in bursts
 PER_LOAD = 2  # numbers of a load's part: its level and the sensor's
 
 
@@ -99,7 +99,7 @@ def random_part(
         left_of_it = innovations(rows.unsqueeze(-1), parts).squeeze(-1)
         whitened = regressed.of(left_of_it)
         deviance = sum(part.deviance + PER_LOAD * log(total) for part in parts) + regressed.deviance(whitened)
-        if deviance < least and kurtosis(left_of_it[weights > 0]) < HEAVY:
+        if deviance < least and kurtosis(left_of_it[weights > 0].numpy()) < BURST_KURTOSIS:
             kept, loads, least = whitened, tuple(parts), deviance
     scale = total / max(total - taken - problem.n_shared, 1.0)
     correlation = [laws[int(g)].correlation for g in groups.reshape(-1) if g >= 0]
@@ -108,12 +108,6 @@ def random_part(
     sensors = [part.sensor / record.weight**2 for part, record in zip(loads, problem.records, strict=False)]
     sensor = sum(sensors) / max(len(sensors), 1)
     return Random(kept, groups, mean, sum(correlation) / len(correlation), by_record, loads, least, sensor)
-
-
-def kurtosis(values: Tensor) -> float:
-    """Fourth moment over the squared second one, of values without mean; 3 for a normal variable."""
-    squares = values.square()
-    return float(squares.square().mean() / squares.mean().square().clamp(min=1e-300))
 
 
 @dataclass(frozen=True)

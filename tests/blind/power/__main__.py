@@ -4,21 +4,18 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
-import signal
 import sys
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[3]
+from ..command import ROOT, STOPPED, log, see_oracles, stop_by_signals
+
 DOCS = ROOT / "docs"
 KEPT = "power_cases.jsonl"  # beside the page: what its figures are worked out from, and where a fresh clone goes on
 
 
 def main(given: list[str] | None = None) -> int:
     """Run; 0 when done or time is up, 130 when stopped by Ctrl-C."""
-    os.environ["OMP_NUM_THREADS"] = "1"
-    sys.path.insert(0, str(ROOT / "tests" / "oracles"))
-    os.environ["PYTHONPATH"] = os.pathsep.join([str(ROOT / "tests" / "oracles"), str(ROOT)])  # of the workers
+    see_oracles()
     from ..run import CASES, ask, begin_from, done_cases
     from .cases import EFFECTS, answered, keep, power_questions
     from .page import FIGURE, draw, markdown, summary
@@ -32,16 +29,15 @@ def main(given: list[str] | None = None) -> int:
     parser.add_argument("--page", action="store_true", help="write docs/power.md, docs/power.json and the figure too")
     parser.add_argument("--out", type=Path, default=ROOT / "outputs" / "power", help="folder of cases and power.json")
     options = parser.parse_args(given)
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, signal.default_int_handler)
+    stop_by_signals()
     begin_from(DOCS / KEPT, options.out / CASES)
     asked = power_questions(options.effect or EFFECTS, options.cases, options.seed)
     stopped = False
     try:
-        rows = ask(asked, options.out, options.processes, _log, options.minutes, solve=answered)
+        rows = ask(asked, options.out, options.processes, log, options.minutes, solve=answered)
     except KeyboardInterrupt:
         stopped, rows = True, done_cases(options.out / CASES)
-        _log("stopped; the cases done so far are kept, and the same command goes on from here")
+        log(STOPPED)
     if not rows:
         return 130 if stopped else 0
     found = summary(rows, options.seed)
@@ -49,14 +45,10 @@ def main(given: list[str] | None = None) -> int:
         (folder / "power.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
         (folder / "power.md").write_text(markdown(found), encoding="utf-8")
         draw(found, folder / FIGURE)
-        _log(f"wrote {folder / 'power.json'}, power.md and {FIGURE}")
+        log(f"wrote {folder / 'power.json'}, power.md and {FIGURE}")
     if options.page:
         keep(rows, DOCS / KEPT)
     return 130 if stopped else 0
-
-
-def _log(text: str) -> None:
-    print(text, flush=True)
 
 
 if __name__ == "__main__":
