@@ -22,9 +22,11 @@ _SAMPLES, _SHARE, _RATIO = 5, 1e-3, 6  # at the extreme: at least, of all sample
 _HELD = 5e-3  # share of steps that are zero elsewhere, from which a signal holds its values
 _RESTLESS = 0.2  # share of moves against the one before, from which noise or a fast signal crosses many levels
 _LEAST, _MOST = 8, 200  # samples that a parabola is laid through
+_NEAR, _LEAST_NEAR = 4, 32  # part of them next to a plateau, and samples of it at least
 _TRAVEL = 16.0  # steps of its values that the signal must have moved through over these samples
 _HOLDS = 0.1  # share of them that repeat the one before, from which the values are coarse
 _JUMP = 5.0  # steps of the signal; an extreme reached by a larger one was jumped to
+_AT_RANGE = 0.999  # of a sensor's range, from which a value is at its end
 _BEYOND = 0.5  # share of the samples at the extreme that must stand in plateaus that were cut
 _BEND, _BENT_SHARE, _FEWEST_BENDS = 1e-4, 0.6, 10  # of the largest bend; of the samples; in a record
 _FEWEST_MARKS, _MOST_MARKED = 3, 0.1  # samples of one value; share of all
@@ -94,8 +96,17 @@ def _cut(outward: NDArray, first: int, last: int, step: float) -> bool:
 
 
 def _leads_beyond(side: NDArray, top: float, length: int, step: float) -> bool:
-    """Whether samples before a plateau at `top` lead more than a step and a half beyond it within half its length."""
-    side = side[-_reach(side, length // 2) :]
+    """Whether samples before a plateau at `top` lead more than a step and a half beyond it within half its length.
+
+    So do those next to it alone: what comes to rest there, as a drive that sticks, slows down at last.
+    """
+    reach = _reach(side, length // 2)
+    near = _reach(side, reach // _NEAR)
+    return all(_goes_beyond(side[-count:], top, length, step) for count in {reach, max(near, _LEAST_NEAR)})
+
+
+def _goes_beyond(side: NDArray, top: float, length: int, step: float) -> bool:
+    """The same of all these samples, by the parabola through them."""
     moves = np.abs(np.diff(side))
     if top - side[-1] > _JUMP * float(moves.max()) > 0:
         return True
@@ -212,10 +223,12 @@ def _clipped(channel: Channel) -> Finding | None:
     cut = None if channel.name in APPLIED else clipped_at(values)
     if channel.name in _SPEEDS and cut and values[cut[1]][0] == 0:
         cut = None  # a shaft or a drive that stands still
+    if channel.range is not None and np.abs(values).max() < _AT_RANGE * channel.range:
+        cut = None  # the sensor could have gone on
     if cut:
         return _clipping(channel, cut[1], f"exactly at the {cut[0]}")
     if channel.range is not None:
-        at = np.abs(values) >= 0.999 * channel.range
+        at = np.abs(values) >= _AT_RANGE * channel.range
         if at.sum() > 1:
             return _clipping(channel, at, f"at the sensor's range of {channel.range:.4g} {channel.unit}")
     return None
@@ -224,8 +237,6 @@ def _clipped(channel: Channel) -> Finding | None:
 def _clipping(channel: Channel, at: NDArray, where: str) -> Finding:
     message = (
         f"{100 * at.mean():.2g} % of {channel.name} stands {where}: clipped; "
-        "use a larger range, or slices that leave it out"
+        "use a larger range, or slices that leave it out; where it came to rest there, declare the range of the sensor"
     )
     return Finding("clipped", message, channel=channel.name, sample=int(np.argmax(at)))
-
-

@@ -16,6 +16,9 @@ from gear_damping.measurement.spectral_floor import Spectrum, spectrum_of
 from gear_damping.measurement.time_column import Stamps, find_stamps
 from gear_damping.measurement.timebase import TimeBase, stamped_time, steady_time
 
+_SPARSE = (
+    0.5  # of the longest stretch of values of any column: one with a shorter stretch is filled here and there only
+)
 SHORTEST = 1e-15  # s between two samples: below it lie damaged stamps, and no sensor
 
 
@@ -139,8 +142,13 @@ def _length(columns: Sequence[Column], stamps: Stamps | None) -> int:
 
 
 def _rows(columns: Sequence[Column]) -> tuple[int, int]:
-    """The longest stretch in which every column that has finite values is finite."""
-    held = [np.isfinite(c.values) for c in columns if c.finite[1] > c.finite[0]]
+    """The longest stretch in which every column is finite that is so over much of its length, as one of the others is.
+
+    A column that is filled here and there (a rate that was worked out in some rows only) does not count.
+    """
+    stretches = [c.finite[1] - c.finite[0] for c in columns]
+    least = max(1.0, _SPARSE * max(stretches, default=0))
+    held = [np.isfinite(c.values) for c, stretch in zip(columns, stretches, strict=True) if stretch >= least]
     return _finite(np.where(np.logical_and.reduce(held), 0.0, np.nan)) if held else (0, 0)
 
 
@@ -153,7 +161,7 @@ def _base(
         return (steady_time(clock[1], rows[0], rows[1] - rows[0], clock[0]) if clock else None), ()
     seconds = columns[stamps.index].values[rows[0] : rows[1]] * stamps.in_seconds
     if seconds.size < 2:
-        return None, ()
+        return None, ("no two rows follow each other in which all columns have values",)
     try:
         return stamped_time(seconds, f"column '{columns[stamps.index].reference}'", str(table.path), rows[0]), ()
     except InputError as error:

@@ -35,6 +35,8 @@ _TEETH = range(5, 301)  # tooth counts that are tried
 _TURN = 2 * np.pi  # rad in one turn of a shaft
 _LOCAL = 9  # samples about which a stamp's place is judged; slower wandering of a clock is left alone
 _MATTERS = 1e-4  # share of the signal's variance that s' e must have to matter
+_ONE_COUNT, _COUNTED = 0.01, 0.95  # of a step: the same count; share of the steps that are one
+_MEANLESS = 0.1  # of the mean size of a speed: of a shaft that turns one way the mean is all of it
 _FEWEST = 64  # samples, below which nothing is decided
 _NEIGHBOURS = 33  # frequencies that give the level about a line
 _SLOPE_ERROR = 0.1  # of the power of s' e; nothing is weighted higher than this error of the slope allows
@@ -78,9 +80,7 @@ def tooth_ratio(
         return Finding("tooth_ratio", f"{message}; the encoders of pinion and gear, or the tooth counts, are exchanged")
     near = _nearest_teeth(abs(measured), tolerance, teeth)
     guess = f" (as {near[1]}/{near[0]} teeth would)" if near else ""
-    return Finding(
-        "tooth_ratio", f"{message}{guess}; check n_teeth_pinion, n_teeth_gear and the counts per revolution"
-    )
+    return Finding("tooth_ratio", f"{message}{guess}; check n_teeth_pinion, n_teeth_gear and the counts per revolution")
 
 
 def _nearest_teeth(ratio: float, tolerance: float, teeth: tuple[float, float]) -> tuple[int, int] | None:
@@ -121,7 +121,8 @@ def _speed(record: Record) -> Finding | None:
         fastest = float(np.mean(np.abs(measured.values)))
     rate = float(angle.values[-1] - angle.values[0]) / record.duration
     allowed = max(SPEED_TOLERANCE, 3 * (condition.uncertainty if condition else measured.uncertainty))
-    if abs(rate - stated) <= allowed * abs(fastest) or stated == 0:
+    is_fluctuation = not condition and abs(stated) < _MEANLESS * fastest  # what a coupled sensor leaves of a speed
+    if abs(rate - stated) <= allowed * abs(fastest) or stated == 0 or is_fluctuation:
         return None
     message = (
         f"the pinion angle turns at {rate * 30 / np.pi:.5g} rpm and the stated speed is "
@@ -130,13 +131,13 @@ def _speed(record: Record) -> Finding | None:
     return Finding("speed_mismatch", message, channel="pinion_angle")
 
 
-
-
 def stamps_against_values(record: Record) -> Finding | None:
     """The data problem of a record with uneven stamps whose values were sampled evenly; None for any other."""
     if record.uniform or record.time.size < _FEWEST:
         return None
     for channel in record.channels.values():
+        if _is_counted(channel.values):
+            continue
         share, error = share_at_stamps(channel.values, record.time)
         if abs(share) + _ERRORS * error < _DECIDED:  # a share far below 0 is neither: values that wait for an event
             message = (
@@ -146,6 +147,12 @@ def stamps_against_values(record: Record) -> Finding | None:
             )
             return Finding("uneven_stamps", message, channel=channel.name)
     return None
+
+
+def _is_counted(values: NDArray[np.float64]) -> bool:
+    """Whether a sample was taken at every count of an encoder, up or down, whose stamps say all there is."""
+    steps = np.abs(np.diff(values))
+    return bool(np.mean(np.abs(steps - np.median(steps)) <= _ONE_COUNT * np.median(steps)) > _COUNTED)
 
 
 def share_at_stamps(values: NDArray[np.float64], stamps: NDArray[np.float64]) -> tuple[float, float]:
@@ -184,8 +191,6 @@ def _quiet(values: NDArray) -> NDArray:
     power = np.abs(spectrum) ** 2
     noise = float(np.quantile(median_filter(power, _NEIGHBOURS, mode="nearest"), _FLOOR)) / np.log(2)
     return np.fft.irfft(spectrum * np.maximum(0.0, 1 - _OVER * noise / np.maximum(power, 1e-300)), values.size)
-
-
 
 
 def not_compared(record: Record) -> Iterator[Finding]:

@@ -55,8 +55,6 @@ def monotone_spline(place: NDArray[np.float64], values: NDArray[np.float64]) -> 
     return PchipInterpolator(place, values)
 
 
-
-
 @dataclass(frozen=True, eq=False)
 class TimeBase:
     """The samples' times: (n,) s, their rate in Hz, and the stamps that they replace, if any."""
@@ -146,8 +144,6 @@ def refuse_uncovered(time: NDArray[np.float64], own: TimeBase, key: str, source:
         rule = f"covers {own.time[0]:.6g} to {own.time[-1]:.6g} s"
         rule += f", the record {time[0]:.6g} to {time[-1]:.6g} s"
         raise InputError(Problem(key, rule, remedy="shorten the record with slice", source=source))
-
-
 
 
 @dataclass(frozen=True)

@@ -4,14 +4,12 @@ A force alpha sign(v) |v|^n dissipates per cycle of velocity amplitude V as much
 c_eq = alpha V^(n-1) gamma_n. The ratio belongs to that amplitude and is always stated with it.
 """
 
-from collections.abc import Callable
 from math import pi, sqrt
 
 import torch
 from torch import Tensor
 
 DAMPING_RATIO = "damping_ratio"  # stands for the coefficient of a model's one damping law
-CYCLE = 1000  # instants of a cycle over which a loss is summed; a sign change of a hundredth has sixteen of them
 
 
 def gamma_factor(exponent: Tensor) -> Tensor:
@@ -22,17 +20,6 @@ def gamma_factor(exponent: Tensor) -> Tensor:
 def equivalent_damping_coefficient(coefficient: Tensor, exponent: Tensor, velocity: Tensor) -> Tensor:
     """c_eq in N s/m of a coefficient in N (s/m)^n at a velocity amplitude in m/s."""
     return coefficient * velocity ** (exponent - 1) * gamma_factor(exponent)
-
-
-def harmonic_damping_coefficient(force: Callable[[Tensor], Tensor], velocity: Tensor) -> Tensor:
-    """c_eq of any force that follows the rate alone: what a harmonic motion of this velocity amplitude loses to it.
-
-    c_eq = (1 / (pi V)) integral of F(V cos phi) cos phi over a cycle; 4 F / (pi V) for dry friction.
-    """
-    angles = 2 * pi * (torch.arange(CYCLE, dtype=torch.float64) + 0.5) / CYCLE
-    rates = velocity.unsqueeze(-1) * torch.cos(angles)
-    taken = torch.stack([force(rate) for rate in rates.unbind(-1)], -1) * torch.cos(angles)
-    return 2 * taken.mean(-1) / velocity
 
 
 def equivalent_damping_ratio(

@@ -122,7 +122,6 @@ class DampingForce(Effect):
     """A force that opposes the rate of deflection; it acts only where the flanks touch."""
 
     acts_in_gap: ClassVar[bool] = False  # whether it acts where they do not touch as well
-    follows_the_rate: ClassVar[bool] = False  # and nothing else: then it has an equivalent damping coefficient
 
     @abstractmethod
     def damping_force(self, at: Kinematics, p: Values) -> Tensor:
@@ -272,4 +271,3 @@ class Sensor(Effect):
     def undo(self, signal: Tensor, values: Values) -> Tensor:
         """The true signal from a recorded one that drives a simulation; unchanged where nothing is known."""
         return signal
-

@@ -1,6 +1,10 @@
 """The time of a search: a part of it is kept for what is under way and for the records that are opened at the end."""
 
+from types import SimpleNamespace
+
 from gear_damping.explanation.budget import Budget
+from gear_damping.explanation.settings import SearchSettings
+from gear_damping.explanation.steps import pairs
 
 
 class Clock:
@@ -44,3 +48,25 @@ def test_time_is_kept_for_the_last_looks_where_one_takes_long():
         for second, is_over in ((last - 1, False), (last + 1, True)):
             clock.now = second
             assert made.spent is is_over
+
+
+def test_no_second_effect_is_fitted_once_the_time_is_over():
+    """Whether there is time is asked before each fit, and not before the first one for all of them."""
+    clock, fitted = Clock(), []
+    budget = Budget(5.0, clock)
+
+    def full_fit(score, *_):
+        fitted.append(score.candidate.name)
+        clock.now = 290.0
+
+    scores = [SimpleNamespace(gain=1.0, candidate=SimpleNamespace(name=name)) for name in ("a", "b", "c")]
+    cause = SimpleNamespace(cause=SimpleNamespace(simpler=None))
+    evidence = SimpleNamespace(library=dict.fromkeys("abc", cause))
+    bench = SimpleNamespace(
+        budget=budget, full_fit=full_fit, evidence=evidence, settings=SearchSettings(), goal=lambda _: 0.0,
+        ranked=lambda _: scores, worth=lambda ranked, *_: ranked,
+    )  # fmt: skip
+    state = SimpleNamespace(bench=bench, outcome=None, accepted=("one",))
+    assert pairs._seconds(SimpleNamespace(name="base", outcome=None), state) == []
+    assert fitted == ["a"]
+    assert budget.not_tried[0] == "base with b"

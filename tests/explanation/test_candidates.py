@@ -275,7 +275,10 @@ def test_the_length_is_free_where_the_response_is_no_angle(unit):
 def test_without_a_spring_nothing_takes_its_place():
     base, evidence = oscillator()
     free = base.free[1:]
-    assert not of("sine_restoring", replace(base, free=free, given=base.given | {"stiffness": 0.0}), evidence)
+    without = replace(base, free=free, given=base.given | {"stiffness": 0.0})
+    for name in ("sine_restoring", "hunt_crossley_damping"):
+        assert of(name, base, evidence)
+        assert not of(name, without, evidence), name
 
 
 def test_recipes_may_be_a_tuple_or_a_function_of_the_rig():

@@ -140,4 +140,3 @@ def test_one_record_says_what_it_cannot_show_and_the_experiment_shows_it(explain
     more = explained("cubic_stiffness", 1)
     assert offered(more) == {"cubic_stiffness"}
     assert more["verdict"] == "explained"
-

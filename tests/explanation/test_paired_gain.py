@@ -80,3 +80,13 @@ def test_the_interval_of_a_share_holds_it_as_often_as_it_says():
 def _cross(wave):
     """Nothing: noise and wave have no product on average."""
     return 0.0
+
+
+@pytest.mark.parametrize("test", [lambda *three: paired_gain(*three)[1], confirmation])
+def test_a_prediction_that_is_not_finite_is_worse_than_any_other(test):
+    noise = torch.tensor(np.random.default_rng(12).normal(size=SAMPLES))
+    lost = noise.clone()
+    lost[700:] = torch.nan
+    assert test([lost], [noise], [BLOCK]) > 1e9
+    assert test([noise], [lost], [BLOCK]) < -1e9
+    assert test([lost], [lost], [BLOCK]) == 0.0

@@ -8,7 +8,8 @@ import torch
 from scipy.integrate import solve_ivp
 from scipy.optimize import least_squares as scipy_least_squares
 
-from gear_damping.identification.output_error.descent import Descent, Lent
+from gear_damping.identification.output_error import descent as descent_module
+from gear_damping.identification.output_error.descent import Descent, Ends, Lent
 from gear_damping.identification.output_error.least_squares import Rounds, fit
 from gear_damping.identification.output_error.normal_equations import normal_equations
 from gear_damping.identification.output_error.problem import OutputErrorProblem, Prediction
@@ -66,11 +67,11 @@ def every_problem_counts_as_large(monkeypatch):
     monkeypatch.setattr(DESCENT + ".AT_ONCE", 0.0)
 
 
-def begun(problem, starts=1, at_once=False, **options):
+def begun(problem, starts=1, at_once=False, lent=None, **ends):
     shared = torch.zeros(starts, problem.n_shared, dtype=torch.float64)
     shared[1:, :3] += 0.05
     states = problem.first_states().expand(starts, -1, -1)
-    descent = Descent(problem, Points(shared, states), None, 0.0, **options)
+    descent = Descent(problem, Points(shared, states), None, Ends(**ends), lent)
     descent.at_once = at_once
     return descent
 
@@ -103,10 +104,10 @@ def test_it_ends_where_another_method_does_with_fewer_linearisations_than_steps(
 
 def test_when_time_is_over_a_few_steps_are_all():
     problem = problem_of()
-    whole, cut = begun(problem), begun(problem)
+    whole, cut = begun(problem), begun(problem, is_over=lambda: True)
     trials, advance = [], cut._advance
     cut._advance = lambda left: (trials.append(1), advance(left))
-    cut.run(40, is_over=lambda: True)
+    cut.run(40)
     whole.run(40)
     assert 1 <= len(trials) <= 3
     assert not bool(cut.converged[0])
@@ -215,13 +216,34 @@ def test_a_fit_that_will_not_reach_a_cost_is_given_up():
     assert float(goes_on.cost[0]) == pytest.approx(least, rel=1e-7)
 
 
+@pytest.mark.parametrize(("noise", "crawls"), [(NOISE / 100, True), (100 * NOISE, False)])
+def test_a_start_that_crawls_far_above_the_noise_is_given_up(noise, crawls, monkeypatch):
+    """Every step is cut to a hundred thousandth; beside noise of the larger size any place is near enough to go on."""
+    step = descent_module.newton_step
+
+    def shortened(problem, points, *others):
+        end = step(problem, points, *others)
+        parts = zip((points.shared, points.states), (end.shared, end.states), strict=True)
+        return Points(*(begin + 1e-5 * (whole - begin) for begin, whole in parts))
+
+    monkeypatch.setattr(DESCENT + ".newton_step", shortened)
+    records = [decay("first", DAMPING, 0), decay("second", 1.1 * DAMPING, 1)]
+    problem = OutputErrorProblem(MODEL, {"amplitude": 0.05}, FREE, records, noise=noise)
+    descent, patient = begun(problem, crawl=0.003), begun(problem)
+    descent.run(12)
+    patient.run(12)
+    assert bool(descent.is_promising[0]) is not crawls
+    assert (int(descent.made[0]) < 6) is crawls
+    assert int(patient.made[0]) >= 8
+
+
 def test_a_start_that_falls_behind_another_is_given_up():
     """The second start has half the frequency: it settles in a minimum of its own, and more steps do not help."""
     problem = problem_of()
     descent, alone = (begun(problem, starts=starts) for starts in (2, 1))
     away = descent.points.shared.clone()
     away[1, 0] = math.log(0.25)
-    descent = Descent(problem, Points(away, descent.points.states), None, 0.0)
+    descent = Descent(problem, Points(away, descent.points.states), None)
     descent.run(40)
     alone.run(40)
     assert bool(descent.converged[0])

@@ -184,6 +184,44 @@ def test_an_encoder_that_dwells_at_turning_points_is_not_clipped(bench, friction
     assert _problems(_oscillator(bench, np.arange(index.size) / 833.0, between)) == []
 
 
+def _stuck_drive(gain: float) -> np.ndarray:
+    """A table that a proportional control drives from one place to another; it sticks short of them. 8 s at 1 kHz."""
+    place, speed, places = 0.0, 0.0, np.empty(8000)
+    for k in range(8000):
+        pull = gain * ((-5.0 if k // 2500 % 2 else 5.0) - place)
+        if speed == 0 and abs(pull) <= 320:
+            pull = 0.0
+        else:
+            new = speed + 1e-3 * (pull - 14.0 * speed - 320 * np.sign(speed if speed else pull))
+            speed = 0.0 if speed * new < 0 else new
+            place += 1e-3 * speed
+        places[k] = place
+    return places
+
+
+@pytest.mark.parametrize("gain", [120.0, 150.0, 200.0])
+@pytest.mark.parametrize("step", [1e-3, 4.66e-3])
+def test_a_drive_that_sticks_where_it_came_to_rest_is_not_clipped(bench, gain, step):
+    places = step * np.round(_stuck_drive(gain) / step)
+    assert _problems(_oscillator(bench, np.arange(8000) / 1000, places)) == []
+
+
+def test_a_sensor_with_room_left_is_not_clipped(bench):
+    time = np.arange(3000) / 500
+    _oscillator(bench, time, np.minimum(np.sin(3.1 * time), 0.8))
+    assert bench.kinds() == ["clipped"]
+    bench.channels["displacement"]["range"] = {"value": 2, "unit": "rad"}
+    assert bench.kinds() == []
+
+
+def test_a_sample_at_every_count_has_stamps_of_its_own(bench):
+    """The stamps lie where a swing passes the marks of an encoder, and are far from even."""
+    fine = np.arange(0, 30, 1e-4)
+    counts = np.round(0.5 * np.exp(-0.05 * fine) * np.cos(5 * fine) / 2.6e-3)
+    at = np.flatnonzero(np.diff(counts)) + 1
+    assert _problems(_oscillator(bench, fine[at], 2.6e-3 * counts[at])) == []
+
+
 @pytest.mark.parametrize("noise", [0.0, 0.01])
 @pytest.mark.parametrize("step", [0.0, 2.9142e-3, 2e-2])
 @pytest.mark.parametrize("side", [1, -1])

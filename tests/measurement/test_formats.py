@@ -52,6 +52,12 @@ def test_a_header_names_units_and_may_hold_the_delimiter(tmp_path):
     assert [table.unit(k) for k in range(3)] == ["m/s^2", "rpm", None]
 
 
+def test_units_stand_behind_a_stroke_or_before_the_number_of_a_run_too(tmp_path):
+    names = ["t/s", "AngVel/rad/s", "Weg/mm", "Angle, Ch P1 (rad) Run #16", "group/name", "data[3]"]
+    table = _csv(tmp_path, ",".join(f'"{name}"' for name in names) + "\n1,2,3,4,5,6\n")
+    assert [table.unit(k) for k in range(len(names))] == ["s", "rad/s", "mm", "rad", None, None]
+
+
 def test_older_encodings_are_read(tmp_path):
     assert _csv(tmp_path, "t,x (µm)\n0,1\n", "latin-1").unit(1) == "µm"
     assert _csv(tmp_path, "t,x (µm)\n0,1\n", "utf-16").unit(1) == "µm"

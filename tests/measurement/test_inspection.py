@@ -110,6 +110,13 @@ def test_gaps_in_values_leave_the_longest_stretch(tmp_path):
     assert found.base.time.size == 4899
 
 
+def test_a_column_that_is_filled_here_and_there_cuts_no_stretch(tmp_path):
+    rare = np.where(np.arange(N) % 50 == 0, 1.0 + T, np.nan)
+    found = inspected(tmp_path, time=T, x=np.sin(9 * T), rate=rare)
+    assert found.rows == (0, N)
+    assert found.base.time.size == N
+
+
 def test_columns_of_other_lengths_are_no_part_of_the_record(tmp_path):
     found = inspected(tmp_path, mass=np.array([3.5]), time=T, x=np.sin(9 * T), index=np.arange(40) / 3)
     assert found.length == N

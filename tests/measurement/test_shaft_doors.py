@@ -94,3 +94,12 @@ def test_a_measured_speed_that_runs_up_agrees_with_its_angle(bench):
     assert _shaft(bench, 200 * part**4 / 4 * 0.02) == []
     bench.columns["omega"] = 230 * part**3
     assert _shaft(bench, 200 * part**4 / 4 * 0.02) == ["speed_mismatch"]
+
+
+def test_a_speed_whose_mean_is_lost_says_nothing_against_the_angle(bench):
+    part = np.arange(400) / 400
+    bench.channels["pinion_speed"] = {"column": "omega", "unit": "rad/s"}
+    bench.columns["omega"] = 0.5 * np.sin(90 * part) + 0.01 * np.random.default_rng(3).standard_normal(400)
+    assert _shaft(bench, 3.8 * part) == []
+    bench.columns["omega"] = 20.0 + bench.columns["omega"]
+    assert _shaft(bench, 3.8 * part) == ["speed_mismatch"]

@@ -19,6 +19,7 @@ def arguments(given: list[str] | None = None) -> argparse.Namespace:
     chosen = parser.add_mutually_exclusive_group()
     chosen.add_argument("--set", choices=tuple(SETS), help="only this one; both where absent")
     chosen.add_argument("--case", nargs="+", choices=tuple(CASES), metavar="NAME", help="only these, such as c03 d10")
+    chosen.add_argument("--drawn", nargs=2, type=int, metavar=("FIRST", "N"), help="N cases that are drawn by number")
     parser.add_argument("--processes", type=int, default=2, choices=(1, 2))
     parser.add_argument("--page", action="store_true", help=f"write {PAGE.relative_to(ROOT)} too")
     parser.add_argument("--out", type=Path, default=ROOT / "outputs" / "second_rig", help="folder of the answers")
@@ -30,12 +31,16 @@ def main(given: list[str] | None = None) -> int:
     see_oracles()
     options = arguments(given)
     stop_by_signals()
-    from second_rig import CASES, SETS
+    from second_rig import CASES, DRAWN, SETS
 
     from .page import page
     from .run import ask
 
-    names = options.case or list(SETS[options.set] if options.set else CASES)
+    if options.drawn:
+        first, count = options.drawn
+        names = [f"{DRAWN}{number}" for number in range(first, first + count)]
+    else:
+        names = options.case or list(SETS[options.set] if options.set else CASES)
     try:
         cases = ask(names, options.out, options.processes, log)
     except KeyboardInterrupt:

@@ -16,7 +16,7 @@ from gear_damping.identification.output_error.problem import set_value
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.uncertainty import QUANTILE
 from gear_damping.identification.output_error.unknowns import OFFSET, is_of_model
-from gear_damping.physics.damping_ratio import harmonic_damping_coefficient
+from gear_damping.physics.cycle_loss import damping_coefficient
 from gear_damping.physics.effects.mesh_stiffness_shape import MeshStiffnessShape
 from gear_damping.physics.kinematics import Kinematics, Rotation
 from gear_damping.physics.model import Model, Prepared
@@ -113,7 +113,8 @@ def _interval(outcome: Outcome, covariances: Tensor, place: int, evidence: Evide
 def damping_ratio(outcome: Outcome, covariances: Tensor) -> dict[str, object] | None:
     """The equivalent damping ratio of every damping law together, in % of critical, at its reference velocity.
 
-    Dry friction counts with what a harmonic motion of that velocity loses to it. None where there is no linear
+    Dry friction, hysteresis and what grows with the deflection count with what a harmonic
+    motion of that velocity loses to them. None where there is no linear
     stiffness, or none that is told from nothing: then nothing is critical. Laws of damping take energy: the interval
     ends at zero.
     """
@@ -158,9 +159,9 @@ def _ratios(outcome: Outcome, free: Mapping[str, Tensor], batch: int) -> tuple[T
         if isinstance(effect, DampingLaw):
             own = {p.name: values[f"{effect.name}.{p.name}"] for p in effect.parameters}
             total = total + effect.damping_ratio(own, derived["equivalent_mass"], derived["mean_stiffness"], speed)
-        elif isinstance(effect, DampingForce) and effect.follows_the_rate:
+        elif isinstance(effect, DampingForce) and not effect.requires:  # what acts in a gap alone damps no contact
             critical = 2 * torch.sqrt(derived["mean_stiffness"] * derived["equivalent_mass"])
-            total = total + _coefficient(effect, prepared, speed) / critical
+            total = total + damping_coefficient(effect, prepared, speed) / critical
     return 100 * total, float(speed[0])
 
 
@@ -180,15 +181,3 @@ def mean_stiffness(model: Model, prepared: Prepared) -> Tensor:
         ideal = mesh.stiffness(at, prepared.terms[mesh.name])
         sums += torch.stack([ideal, ideal * shape.factor(at, prepared.terms[shape.name])])
     return plain * sums[1] / sums[0]
-
-
-def _coefficient(effect: DampingForce, prepared: Prepared, speed: Tensor) -> Tensor:
-    """Equivalent damping coefficient in N s/m of a force that follows the rate, at a velocity amplitude in m/s."""
-    none, scales = torch.zeros_like(speed), prepared.scales
-
-    def force(rate: Tensor) -> Tensor:
-        return effect.damping_force(
-            Kinematics(none, none, rate, delta=none, delta_rate=rate), prepared.terms[effect.name]
-        )
-
-    return harmonic_damping_coefficient(force, speed / scales.velocity) * scales.mass / scales.time

@@ -150,10 +150,13 @@ def _contact_ratio(stated: Mapping[str, float]) -> float:
 
 
 def _shape_harmonics(rough: Outcome, evidence: Evidence, solver: Solver | None) -> int:
-    """Harmonics of the mesh that the natural frequency lets through, or more where the sensors would show them."""
+    """Harmonics of the mesh that the natural frequency lets through, or more where the sensors would show them.
+
+    Up to the sampling rate: without a filter before it, those above half of it are folded back among the lower ones.
+    """
     model, given, count = rough.hypothesis.model, rough.flat_given(), _passed_harmonics(rough, evidence)
     resonance = harmonics_to_resonance(model, given, evidence.fit)
-    sampled = resonance * evidence.sampling_rate / 2 / natural_frequency_hz(model, given)
+    sampled = resonance * evidence.sampling_rate / natural_frequency_hz(model, given)
     most = min(MOST_HARMONICS, floor(sampled))
     return max(count, _seen_harmonics(rough, most, evidence, solver)) if most > count else count
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import inf
 
 import torch
 from scipy.stats import t as student
@@ -19,8 +20,11 @@ def paired_gain(before: Sequence[Tensor], after: Sequence[Tensor], blocks: Seque
     The gain is tested as it is and relative to what either leaves of a block, and the clearer answer counts:
     in a decay the first blocks hold nearly all of it, which is no reason to doubt the others. Where all that differs
     happens in a few blocks, as a tooth that passes twice, no t over blocks can be large, and the gain is tested for
-    what differs as it is (`_t_of_events`).
+    what differs as it is (`_t_of_events`). A prediction that is not finite is worse than any other.
     """
+    lost = _is_lost(after) - _is_lost(before)
+    if lost or _is_lost(before):
+        return -inf * lost if lost else 0.0, -inf * lost if lost else 0.0
     gains, shares, sizes = [], [], []
     for old, new, block in zip(before, after, blocks, strict=True):
         count = max(1, len(old) // block)
@@ -42,7 +46,10 @@ def confirmation(before: Sequence[Tensor], after: Sequence[Tensor], blocks: Sequ
     Of two predictions of which one contains the other the difference of squares is blunt: what the larger one adds is
     compared with the residual itself (Clark & West 2007, Journal of Econometrics 138). Over n blocks this t is sqrt(n)
     at most; where what is added lies in a few of them, its variance is that of what the second one leaves.
+    A prediction that is not finite is worse than any other.
     """
+    if _is_lost(before) or _is_lost(after):
+        return paired_gain(before, after, blocks)[1]
     sums, sizes = [], []
     for old, new, block in zip(before, after, blocks, strict=True):
         added = old - new
@@ -80,6 +87,11 @@ def share_taken(before: Sequence[Tensor], after: Sequence[Tensor], blocks: Seque
     missed = (taken - value * left).square().sum() * count / max(count - 1, 1)
     half = float(student.ppf(UPPER, max(count - 1, 1)) * missed.sqrt()) / total
     return Share(value, (value - half, min(value + half, 1.0)))
+
+
+def _is_lost(residuals: Sequence[Tensor]) -> bool:
+    """Whether a prediction is not finite."""
+    return not all(bool(residual.isfinite().all()) for residual in residuals)
 
 
 def _are_few(sizes: Tensor) -> bool:

@@ -134,13 +134,17 @@ def _needed(base: Outcome, state: State) -> float:
 def _seconds(base: Refit, state: State) -> list[Refit]:
     """Full fits of the most promising effects beside a base, held against what was accepted so far."""
     bench = state.bench
+    if bench.budget.refuses(f"a second effect beside {base.name}"):
+        return []
     worth = bench.worth(bench.ranked(base.outcome), base.outcome, _needed(base.outcome, state))
     best = best_by_effect(score for score in worth if score.gain > 0)
     names = list(best)[: bench.settings.pair_seconds]
     simpler = (bench.evidence.library[name].cause.simpler for name in names)
     names += [name for name in simpler if name in best and name not in names]
-    names = [name for name in names if not bench.budget.refuses(f"{base.name} with {name}")]
-    goal = bench.goal(state.outcome)
-    fits = (bench.full_fit(best[name], base.outcome, state.outcome, goal) for name in names)
-    kept = [fit for fit in fits if fit is not None and fit.outcome.fitted.cost < base.outcome.fitted.cost]
+    goal, kept = bench.goal(state.outcome), []
+    for name in names:
+        if bench.budget.refuses(f"{base.name} with {name}"):
+            continue
+        fit = bench.full_fit(best[name], base.outcome, state.outcome, goal)
+        kept += [fit] if fit is not None and fit.outcome.fitted.cost < base.outcome.fitted.cost else []
     return [bench.converged(fit, state.outcome) for fit in kept]

@@ -27,6 +27,7 @@ SHORTEST_BLOCK = 4  # samples, however short the characteristic time is beside t
 CAUTIOUS = 0.3  # of the linearised optimum: the second start, where the first one leads too far
 FIRST_PART = 0.25  # of the records, by which the better start is chosen
 ONE = 1e-9  # share of the starts that goes on: the best
+CRAWL = 0.003  # of the cost: a fit that is far from the noise and gets nearer by less at a time is in a wrong valley
 ENOUGH = 0.1  # noise variances: a tenth of what a parameter of no use gains from noise
 FIRST_ITERATIONS, LAST_ITERATIONS = 10, 30  # over a part of the record, and over all of it
 AT_BOUND = 0.05  # of a bound: a parameter as near to it as that has run into it
@@ -75,9 +76,7 @@ def block_samples(outcome: Outcome, evidence: Evidence, records: Sequence[FitRec
     return [max(SHORTEST_BLOCK, round(seconds * record.sampling_rate)) for record in records]
 
 
-def chosen(
-    scores: Sequence[Score], settings: SearchSettings, least: float = 0.0, springs: bool = False
-) -> list[Score]:
+def chosen(scores: Sequence[Score], settings: SearchSettings, least: float = 0.0, springs: bool = False) -> list[Score]:
     """The candidates worth a full fit: the best variant of the best effects, and who resembles the first.
 
     Another form of an effect (a filter of another order) is tried too where its predicted gain is nearly as large.
@@ -123,7 +122,7 @@ def refitted(
     """
     candidate = score.candidate
     hypothesis = candidate.hypothesis
-    kept, ends = VARIANTS_KEPT if candidate.non_nested else ONE, Ends(ENOUGH, reach)
+    kept, ends = VARIANTS_KEPT if candidate.non_nested else ONE, Ends(ENOUGH, reach, CRAWL)
     rounds = Rounds((FIRST_ITERATIONS, LAST_ITERATIONS), (FIRST_PART * evidence.duration, None), kept)
     initial = InitialValues(_starts(score), outcome, score.own)
     found = fit_hypothesis(hypothesis, evidence, initial, rounds, ends, solver)

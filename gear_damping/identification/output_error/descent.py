@@ -27,6 +27,7 @@ LENT_FOR = 6  # linearisations that borrow at most,
 LENT_DAMPING = 1e3  # and the damping at which borrowing leads no further
 TRIALS = 3  # for each linearisation that a round may take
 SHORT_OF = 2  # linearisations in a row that foretell no success: then a start is given up
+CRAWLED, FAR = 4, 4.0  # linearisations over which a start crawls; times the cost of noise alone, below which none does
 LEAST_TRIALS = 3  # whatever the time: a model without one of its causes is nearly converged by then
 
 
@@ -43,13 +44,32 @@ class Lent:
     columns: Tensor
 
 
+@dataclass(frozen=True)
+class Ends:
+    """When a fit stops before that.
+
+    Args:
+        enough: Fall of the cost below which a start has converged, whatever share of the cost it is.
+        reach: Cost in the last round; a start that will not get below it is given up.
+        crawl: Share of the cost; a start far above the noise is given up that gets it down by less than this over a few
+            linearisations.
+        is_over: Whether time is over: after a few steps of each round nothing more is tried then.
+    """
+
+    enough: float = 0.0
+    reach: float = inf
+    crawl: float = 0.0
+    is_over: Callable[[], bool] = lambda: False
+
+
 class Descent:
     """Starts on their way down over one horizon.
 
     Every tensor has a row for each start: `points`, `linearised` (at them), `cost`, `damping`, `calm` (steps in a row
     that changed little), `carried` (steps since the sensitivities were worked out), `made` (linearisations),
     `short` (those in a row from which a start seemed to get neither below `reach` nor below the best start), `strayed`
-    (whether a step has failed: where sensitivities are fresh, steps then follow the bend of the response).
+    (whether a step has failed: where sensitivities are fresh, steps then follow the bend of the response), `costs` (at its
+    last linearisations).
     """
 
     def __init__(
@@ -57,17 +77,16 @@ class Descent:
         problem: OutputErrorProblem,
         points: Points,
         horizon: float | None,
-        enough: float,
-        reach: float = inf,
+        ends: Ends = Ends(),
         lent: Lent | None = None,
     ) -> None:
         """Begin at points; arguments as for `least_squares.fit`."""
-        self.problem, self.horizon, self.enough, self.reach = problem, horizon, enough, reach
+        self.problem, self.horizon, self.ends = problem, horizon, ends
         self.points = Points(points.shared.clone(), points.states.clone())
         samples = problem.response.samples_within(horizon) * len(problem.response.channels)
-        noise_cost = problem.noise**2 * samples * len(problem.records)
+        self.noise_cost = problem.noise**2 * samples * len(problem.records)
         # beside more than noise, what is enough counts in what is left instead
-        self.smallest_gain = max(SMALLEST_GAIN, enough / noise_cost if noise_cost > 0 else 0.0)
+        self.smallest_gain = max(SMALLEST_GAIN, ends.enough / self.noise_cost if self.noise_cost > 0 else 0.0)
         self.at_once = samples * len(problem.records) * (problem.n_shared + len(problem.local)) < AT_ONCE
         self.lent = None if self.at_once else lent
         self.linearised = problem.linearise(points.shared, points.states, horizon, self._own())
@@ -79,30 +98,32 @@ class Descent:
         self.calm, self.made, self.carried, self.short = torch.zeros(4, len(self.cost), dtype=torch.long)
         self.looked_at = self.made - 1
         self.converged, self.strayed = self.calm > 0, self.calm > 0
+        self.costs = torch.full((len(self.cost), CRAWLED), inf, dtype=torch.float64)
 
-    def run(self, iterations: int, is_over: Callable[[], bool] = lambda: False, is_last: bool = True) -> None:
+    def run(self, iterations: int, is_last: bool = True) -> None:
         """Go down until every start has converged or has been linearised so many times, or time is over.
 
         Where another round follows, nothing is worked out but the points that are reached.
         """
-        self._go_down(iterations, is_over)
+        self._go_down(iterations)
         if not is_last:
             return
         if self.lent:
             self._give_back()
-            self._go_down(iterations, is_over)
+            self._go_down(iterations)
         self._linearise(((self.carried > 0) & ~self.converged & self.is_promising).nonzero()[:, 0])
 
     @property
     def is_promising(self) -> Tensor:
         """Which starts are not given up, (starts,)."""
-        return self.short < SHORT_OF
+        crawls = self.costs[:, 0] - self.cost < self.ends.crawl * self.cost
+        return (self.short < SHORT_OF) & ~(crawls & (self.cost > FAR * self.noise_cost))
 
-    def _go_down(self, iterations: int, is_over: Callable[[], bool]) -> None:
+    def _go_down(self, iterations: int) -> None:
         most = min(iterations, LENT_FOR) if self.lent else iterations
         for number in range(TRIALS * most):
             left = (~self.converged & (self.made < most) & self.is_promising).nonzero()[:, 0]
-            if not len(left) or (number >= LEAST_TRIALS and is_over()):
+            if not len(left) or (number >= LEAST_TRIALS and self.ends.is_over()):
                 break
             self._advance(left)
 
@@ -114,6 +135,7 @@ class Descent:
         """Go on with sensitivities of one's own, the points that are reached being new starts."""
         self.lent = None
         self.calm, self.made = torch.zeros(2, len(self.cost), dtype=torch.long)
+        self.costs = torch.full_like(self.costs, inf)
         self.converged = torch.zeros_like(self.converged)
         self.damping = torch.full_like(self.damping, FIRST_DAMPING)
         self._linearise(torch.arange(len(self.cost)))
@@ -127,7 +149,7 @@ class Descent:
             trial = accelerated(self.problem, points, linearised, self.damping[left], trial, self.horizon)
         seen = self._looked_at(trial)
         old, cost = self.cost[left], self._cost(trial, seen.residual)
-        if not self.at_once and not self.lent and (self.reach < inf or len(self.cost) > 1):
+        if not self.at_once and not self.lent and (self.ends.reach < inf or len(self.cost) > 1):
             self._look_ahead(left[self.looked_at[left] < self.made[left]])
         gain, better = old - cost, cost < old
         flat = self._judge(left, gain, better, fresh)
@@ -159,7 +181,7 @@ class Descent:
 
         A step that stale sensitivities led astray says nothing.
         """
-        enough = torch.full_like(gain, self.enough)
+        enough = torch.full_like(gain, self.ends.enough)
         flat = gain.abs() <= torch.maximum(self.smallest_gain * self.cost[left], enough)
         self.calm[left] = torch.where(better | fresh, torch.where(flat, self.calm[left] + 1, 0), self.calm[left])
         softer, harder = self.damping[left] / 5, self.damping[left] * torch.where(fresh, 6.0, 1.0)
@@ -178,7 +200,7 @@ class Descent:
         )
         linear = linearised.along(moves(self.problem, points, end))
         best = torch.where(self.cost[fresh] > self.cost.min(), self.cost.min(), inf)  # of another start
-        falls_short = self._cost(end, linearised.residual - linear) > best.clamp(max=self.reach)
+        falls_short = self._cost(end, linearised.residual - linear) > best.clamp(max=self.ends.reach)
         self.short[fresh] = torch.where(falls_short, self.short[fresh] + 1, 0)
 
     def _carry(self, places: Tensor, missed: Tensor, changes: Tensor) -> None:
@@ -198,6 +220,7 @@ class Descent:
         self.linearised.sensitivity[places] = found.sensitivity
         self.carried[places] = 0
         self.made[places] += 1
+        self.costs[places] = torch.cat([self.costs[places, 1:], self.cost[places, None]], 1)
 
     def _cost(self, points: Points, residual: Tensor) -> Tensor:
         total = residual.square().sum((1, 2)) + self.problem.expectation(points.shared)[0].square().sum(1)

@@ -1,12 +1,12 @@
 """Levenberg–Marquardt over several starts at once, the starts being members of one batch."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 
 from torch import Tensor
 
-from gear_damping.identification.output_error.descent import Descent, Lent
+from gear_damping.identification.output_error.descent import Descent, Ends, Lent
 from gear_damping.identification.output_error.problem import OutputErrorProblem, Prediction
 from gear_damping.identification.output_error.step import Points
 
@@ -42,21 +42,6 @@ class Rounds:
 NONE = Rounds(0)  # the point itself, linearised
 
 
-@dataclass(frozen=True)
-class Ends:
-    """When a fit stops before that.
-
-    Args:
-        enough: Fall of the cost below which a start has converged, whatever share of the cost it is.
-        reach: Cost in the last round; a start that will not get below it is given up.
-        is_over: Whether time is over: after a few steps of each round nothing more is tried then.
-    """
-
-    enough: float = 0.0
-    reach: float = inf
-    is_over: Callable[[], bool] = lambda: False
-
-
 def fit(
     problem: OutputErrorProblem,
     shared: Tensor,
@@ -82,8 +67,8 @@ def fit(
     most = [rounds.iterations] * count if isinstance(rounds.iterations, int) else rounds.iterations
     for number, horizon in enumerate(rounds.horizons):
         is_last = number == count - 1
-        descent = Descent(problem, points, horizon, ends.enough, ends.reach if is_last else inf, lent)
-        descent.run(most[number], ends.is_over, is_last)
+        descent = Descent(problem, points, horizon, ends if is_last else replace(ends, reach=inf), lent)
+        descent.run(most[number], is_last)
         if not is_last:
             points = descent.points.pick(descent.cost.argsort()[: max(1, round(rounds.kept * len(descent.cost)))])
         if rounds.report:

@@ -16,7 +16,8 @@ from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.formats.table import Table, is_real
 from gear_damping.units import parse_unit
 
-_BRACKETS = re.compile(r"[(\[]([^()\[\]]+)[)\]]\s*$")
+_BRACKETS = re.compile(r"[(\[]([^()\[\]]+)[)\]]\s*(?:run\s*#?\s*\d+\s*)?$", re.I)  # `Angle (rad) Run #2`, too
+_SLASH = re.compile(r"^[^/]+/\s*([^\W\d_][^\s]*|[°%µ][^\s]*)$")  # `Weg/mm`, as DIN 461 has it
 _INDEX = re.compile(r"\w\[\d+\]\s*$")  # `data[3]` is a name, no unit
 _NO_UNIT = ("", "-")
 _COMMENTS = ("%", "%%", ";", "//", "!", "'", "*")  # that other programs write before a line of names
@@ -99,9 +100,14 @@ def _names(row: Sequence[str], width: int) -> Sequence[str]:
 
 
 def bracket_unit(name: str) -> str | None:
-    """What stands in brackets at the end of a name."""
-    found = None if _INDEX.search(name) else _BRACKETS.search(name)
-    return found[1].strip() if found else None
+    """What stands in brackets at the end of a name, or behind its first stroke where that is a unit."""
+    if _INDEX.search(name):
+        return None
+    found = _BRACKETS.search(name)
+    if found is not None:
+        return found[1].strip()
+    behind = _SLASH.search(name.strip())
+    return behind[1] if behind is not None and _is_unit(behind[1]) else None
 
 
 def is_number(cell: str) -> bool:
@@ -149,8 +155,6 @@ def _is_unit(cell: str) -> bool:
     except InputError:
         return False
     return True
-
-
 
 
 def _not_a_number(cell: str) -> str:

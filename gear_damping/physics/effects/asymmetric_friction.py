@@ -44,7 +44,6 @@ class AsymmetricFriction(DampingForce):
         Parameter("width", "1", 0.05, "w, width of the sign change relative to the unit of velocity V", 1e-6, 10),
     )
     dissipative = True
-    follows_the_rate = True
     cause: ClassVar = Cause(
         "a friction force that differs between the two directions of motion",
         _switched_on,

@@ -28,7 +28,6 @@ class CoulombFriction(DampingForce):
         Parameter("width", "1", 0.05, "w, width of the sign change relative to the unit of velocity V", 1e-6, 10),
     )
     dissipative = True
-    follows_the_rate = True
     cause: ClassVar = Cause(
         "a dry friction force",
         _switched_on,

@@ -4,7 +4,7 @@ from typing import ClassVar
 
 from torch import Tensor
 
-from gear_damping.physics.cause import Cause, Recipe
+from gear_damping.physics.cause import Cause, Recipe, where_there_is_a_spring
 from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.shapes import power_of_size
@@ -20,7 +20,7 @@ SWITCHED_ON = Recipe(
 
 
 class HuntCrossleyDamping(DampingForce):
-    """A viscous force that vanishes where the flanks just touch."""
+    """A viscous force that vanishes where the flanks just touch, or at the place of rest."""
 
     name = "hunt_crossley_damping"
     refinement = 1.5  # of the steps, measured by step halving: the force bends where contact begins
@@ -34,7 +34,7 @@ class HuntCrossleyDamping(DampingForce):
     dissipative = True
     cause: ClassVar = Cause(
         "a damping force that grows with the deflection",
-        (SWITCHED_ON,),
+        where_there_is_a_spring(SWITCHED_ON),
     )
 
     def damping_force(self, at: Kinematics, p: Values) -> Tensor:

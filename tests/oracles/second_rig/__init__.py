@@ -9,10 +9,13 @@ from typing import Any
 
 from .case import Case, write
 from .cases import CASES, SETS
+from .drawn import drawn
 
-__all__ = ["CASES", "SETS", "Case", "write_case"]
+DRAWN = "r"  # begins the name of a case that is drawn by the number behind it
+__all__ = ["CASES", "DRAWN", "SETS", "Case", "drawn", "write_case"]
 
 
 def write_case(name: str, folder: str | Path) -> dict[str, Any]:
     """Write measurement.yaml and the files of a case into a new folder, and return the truth about it."""
-    return write(CASES[name], folder)
+    case = drawn(int(name.removeprefix(DRAWN))) if name.startswith(DRAWN) else CASES[name]
+    return write(case, folder)

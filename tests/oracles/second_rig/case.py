@@ -48,7 +48,8 @@ class Case:
     """A measurement before it is drawn.
 
     declared: the rig as the declaration has it, where that is not the true one. step: of the analogue-digital
-    converter, in the unit of the file. said: further parameters of the declaration.
+    converter, in the unit of the file. said: further parameters of the declaration. assembled: whether the wheel is
+    turned between records by whole turns of the pinion alone, as where nobody takes the gears apart.
     """
 
     rig: Rig
@@ -63,6 +64,7 @@ class Case:
     gear_torque: str = "balanced"
     step: float | None = None
     said: Mapping[str, Any] = field(default_factory=dict)
+    assembled: bool = False
 
     @property
     def to_find(self) -> str:
@@ -75,14 +77,26 @@ class Case:
 def drawn_runs(case: Case, rng: np.random.Generator) -> tuple[Run, ...]:
     """The records with the angles at which they happen to begin."""
     runs = tuple(_begun(run, rng) for run in case.runs)
+    zero, ratio = (rng.uniform(0, ZERO_OF_GEAR), case.rig.teeth) if _one_wheel(case) else (0.0, (0, 0))
     if not isinstance(case.writer, Encoders):
-        return runs
-    zero, ratio = rng.uniform(0, ZERO_OF_GEAR), case.rig.teeth
+        return tuple(_turned_on(run, zero, ratio, rng) for run in runs) if case.assembled else runs
+    runs = tuple(replace(run, tooth=0) for run in runs) if case.assembled else runs
     angles = [rng.uniform(*TURNED) for _ in runs]
     return tuple(
         replace(run, pinion_angle=a, gear_angle=zero + a * ratio[0] / ratio[1], mesh_zero=ENCODER_ZERO)
         for run, a in zip(runs, angles, strict=True)
     )
+
+
+def _one_wheel(case: Case) -> bool:
+    return case.assembled or isinstance(case.writer, Encoders)
+
+
+def _turned_on(run: Run, zero: float, teeth: tuple[int, int], rng: np.random.Generator) -> Run:
+    """The record after some whole turns of the pinion; zero: rad between those of both shafts."""
+    turns = int(rng.integers(teeth[1]))
+    gear = zero + (run.pinion_angle + 2 * math.pi * turns) * teeth[0] / teeth[1]
+    return replace(run, tooth=turns * teeth[0], gear_angle=gear)
 
 
 def _begun(run: Run, rng: np.random.Generator) -> Run:

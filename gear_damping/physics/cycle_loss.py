@@ -1,0 +1,59 @@
+"""What any damping force takes in a cycle, whether it follows the rate, the deflection or what was before."""
+
+from math import pi
+
+import torch
+from torch import Tensor
+
+from gear_damping.physics.kinematics import Kinematics
+from gear_damping.physics.model import Prepared
+from gear_damping.physics.terms import DampingForce, ExtraStates
+
+INSTANTS = 1000  # of a cycle
+CYCLES = 5  # until a state of its own comes back to where it was; the last one counts
+
+
+def damping_coefficient(effect: DampingForce, prepared: Prepared, speed: Tensor) -> Tensor:
+    """The viscous coefficient in N s/m that takes as much of a harmonic motion at the natural frequency, (batch,).
+
+    c_eq = (1 / (pi V)) integral of F cos(phi) over a cycle of x' = V cos(phi), about the deflection of the mean load
+    where there is one, the flanks in contact. Of a force with states of its own these are led through the motion by
+    the midpoint rule.
+
+    Args:
+        effect: The force.
+        prepared: The model, (batch,).
+        speed: V, m/s, (batch,).
+    """
+    scales, derived, p = prepared.scales, prepared.derived, prepared.terms[effect.name]
+    velocity, frequency = speed / scales.velocity, derived["natural_frequency"] * scales.time
+    mean = torch.zeros_like(velocity)
+    if "mean_load" in derived:
+        mean = derived["mean_load"] / derived["mean_stiffness"] / scales.length
+    step = 2 * pi / INSTANTS
+
+    def moved(phase: float, extra: dict[str, Tensor]) -> Kinematics:
+        angle = torch.full_like(velocity, phase)
+        place, rate = mean + velocity / frequency * torch.sin(angle), velocity * torch.cos(angle)
+        named = {f"{effect.name}.{name}": value for name, value in extra.items()}
+        return Kinematics(angle, place, rate, named, delta=place, delta_rate=rate, deflection=place)
+
+    with_states = isinstance(effect, ExtraStates)
+    extra = effect.initial(p, prepared.base) if with_states else {}
+    first = (CYCLES - 1 if with_states else 0) * INSTANTS
+    total = torch.zeros_like(velocity)
+    for instant in range(first + INSTANTS):
+        phase = step * instant
+        middle = extra
+        if with_states:
+            middle = _after(effect, extra, effect.state_rates(moved(phase, extra), p), step / 2 / frequency)
+        at = moved(phase + step / 2, middle)
+        if instant >= first:
+            total = total + effect.damping_force(at, p) * at.velocity / velocity
+        if with_states:
+            extra = _after(effect, extra, effect.state_rates(at, p), step / frequency)
+    return 2 * total / INSTANTS / velocity * scales.mass / scales.time
+
+
+def _after(effect: ExtraStates, extra: dict[str, Tensor], rates: dict[str, Tensor], time: Tensor) -> dict[str, Tensor]:
+    return {name: extra[name] + time * rates[name] for name in effect.states}
