@@ -16,9 +16,7 @@ from gear_damping.measurement.spectral_floor import Spectrum, spectrum_of
 from gear_damping.measurement.time_column import Stamps, find_stamps
 from gear_damping.measurement.timebase import TimeBase, stamped_time, steady_time
 
-_SPARSE = (
-    0.5  # of the longest stretch of values of any column: one with a shorter stretch is filled here and there only
-)
+_SPARSE = 0.5  # of the longest stretch of values of any column: one with a shorter one is filled here and there
 SHORTEST = 1e-15  # s between two samples: below it lie damaged stamps, and no sensor
 
 

@@ -71,9 +71,9 @@ def test_a_shaft_that_still_rings_is_found_with_its_size(explained):
 
 @pytest.mark.slow
 def test_a_law_at_its_bound_gives_way_to_the_one_that_it_stands_in_for(explained):
-    """A power of a fifth, the smallest that is tried, is a dry friction by another name."""
+    """A power of a fifth, the smallest that is tried, is a dry friction by another name, and no rival of it."""
     found = explained("coulomb_friction", 9001, None, records=range(8), duration=0.05, target_excess=0.7)
-    assert [(c["name"], c["confusable_with"]) for c in found["causes"]] == [("coulomb_friction", ["power_law_damping"])]
+    assert [(c["name"], c["status"]) for c in found["causes"]] == [("coulomb_friction", "established")]
     low, high = found["causes"][0]["parameters"]["force"]["interval95"]
     assert low < found["truth"]["effects"][0]["parameters"]["force"] < high
 

@@ -47,11 +47,22 @@ NOTHING, MUCH = excess_of(0.0, 1.0), excess_of(8.0, 40.0)
         (True, excess_of(4.0, 9.0, threshold=20.0), 12.0, UNEXPLAINED),  # held-out records tell nothing, the others do
         (True, excess_of(-60.0, 0.04, threshold=68.0), 4.0, UNEXPLAINED),  # what would not show is no consistency
         (False, excess_of(-60.0, 0.04, threshold=68.0), 4.0, CONSISTENT),
+        (False, excess_of(-60.0, 0.04, threshold=520.0), 4.0, UNEXPLAINED),  # far more than a sensor makes, and untold
     ],
 )
 def test_without_a_name(visible, before, fitted, word):
     found = search(visible, sensor=1.0 if before is NOTHING else 100.0)
     assert verdict(found, before, before, fitted=fitted).word == word
+
+
+def test_a_cause_of_other_sizes_beside_something_visible_is_a_part():
+    """Nearly all is taken, but not by one size in all records, and what is left is not all random."""
+    sizes = {True: EXPLAINED, False: PARTLY, None: EXPLAINED}
+    for is_one, word in sizes.items():
+        found = search(accepted=(cause(),), left=True)
+        assert verdict(found, MUCH, excess_of(0.01, 1.05), is_one=is_one).word == word
+    found = search(accepted=(cause(),), left=False)
+    assert verdict(found, MUCH, excess_of(0.01, 1.05), is_one=False).word == EXPLAINED
 
 
 def test_a_shape_without_a_name_is_no_consistency_and_is_told():

@@ -171,10 +171,14 @@ def _steps(judged: Judged, evidence: Evidence) -> list[str]:
         f"These records cannot be predicted from their start alone: they were fitted and scored in segments of "
         f"{evidence.segments.seconds:.3g} s, each from an initial state of its own."
     )
+    left = (
+        "less than the noise"
+        if before.percent < 0
+        else f"{before.percent:.3g} % of the signal's variance beyond the noise"
+    )
     return [
         f"The nominal simulation was fitted first, so that no wrong parameter passes for physics; the fit {ended}.",
-        f"It leaves {before.percent:.3g} % of the signal's variance beyond the noise on held-out records; "
-        f"more than {before.threshold:.2g} % counts as significant.",
+        f"On held-out records it leaves {left}; more than {before.threshold:.2g} % counts as significant.",
         *([segments] if evidence.segments else []),
     ]
 

@@ -1,7 +1,7 @@
 """Step 2: how much of a record is noise, from the record itself by two estimators."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -37,6 +37,7 @@ class NoiseLevel:
         agree: Whether the estimates are within 20 % of each other.
         correlation: Sum of its squared autocorrelations: samples for one that is independent.
         scatter: What errors of the calibration add to residuals of records that were not fitted.
+        channels: The first channel of each record, where they differ; its noise is in the unit of that.
     """
 
     by_record: dict[str, float]
@@ -45,11 +46,18 @@ class NoiseLevel:
     agree: bool
     correlation: float = 1.0
     scatter: Scatter = Scatter()
+    channels: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def value(self) -> float:
-        """Root mean square over the records."""
-        return float(np.mean(np.square(list(self.by_record.values())))) ** 0.5
+        """Root mean square over the records that have the channel of the first one."""
+        return self.typical(next(iter(self.by_record)))
+
+    def typical(self, record: str) -> float:
+        """Root mean square over the records that have the channel of this one."""
+        own = self.channels.get(record)
+        alike = [level for name, level in self.by_record.items() if self.channels.get(name) == own]
+        return float(np.mean(np.square(alike))) ** 0.5
 
 
 def noise_level(records: Sequence[FitRecord], channel: Channel) -> NoiseLevel:
@@ -105,12 +113,32 @@ def noise_of(
 ) -> tuple[list[FitRecord], list[FitRecord], NoiseLevel]:
     """The noise of the first channel, and records whose further channels count by their own."""
     records, channels = (*fit, *holdout), {n: c for r in measurement.records for n, c in r.channels.items()}
-    first = noise_level(records, channels[records[0].observed.name])
+    first = _of_first_channels(records, channels)
     others: dict[str, NoiseLevel] = {}
     for name in dict.fromkeys(channel.name for record in records for channel, _ in record.others):
         alone = [replace(r, response=values) for r in records for channel, values in r.others if channel.name == name]
         others[name] = noise_level(alone, channels[name])
     return scaled(fit, first, others), scaled(holdout, first, others), first
+
+
+def _of_first_channels(records: Sequence[FitRecord], channels: Mapping[str, Channel]) -> NoiseLevel:
+    """The noise of records by their first channels, each in its own unit."""
+    names = {record.name: record.observed.name for record in records}
+    found = [
+        noise_level([record for record in records if record.observed.name == name], channels[name])
+        for name in dict.fromkeys(names.values())
+    ]
+    first, *others = found
+    if not others:
+        return first
+    return replace(
+        first,
+        by_record={name: level for one in found for name, level in one.by_record.items()},
+        degrees_of_freedom=min(one.degrees_of_freedom for one in found),
+        agree=all(one.agree for one in found),
+        correlation=max(one.correlation for one in found),
+        channels=names,
+    )
 
 
 def scaled(records: Sequence[FitRecord], first: NoiseLevel, others: Mapping[str, NoiseLevel]) -> list[FitRecord]:
@@ -126,12 +154,14 @@ def scaled(records: Sequence[FitRecord], first: NoiseLevel, others: Mapping[str,
 
 
 def weighted(records: Sequence[FitRecord], noise: NoiseLevel) -> tuple[FitRecord, ...]:
-    """Records that count by their noise, within a range that no estimate of the noise can overturn."""
-    typical = max(noise.value, 1e-300)
+    """Records that count by their noise, those of one channel within a range that no estimate of it can overturn."""
     low, high = WEIGHTS
-    return tuple(
-        replace(r, weight=min(max(typical / max(noise.by_record[r.name], 1e-300), low), high)) for r in records
-    )
+
+    def weight(name: str) -> float:
+        typical = max(noise.typical(name), 1e-300)
+        return max(noise.value, 1e-300) / typical * min(max(typical / max(noise.by_record[name], 1e-300), low), high)
+
+    return tuple(replace(record, weight=weight(record.name)) for record in records)
 
 
 def _floor(record: FitRecord, low: float, high: float) -> tuple[float, int]:

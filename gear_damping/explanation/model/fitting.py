@@ -12,7 +12,7 @@ from gear_damping.explanation.model.cross_fit import CrossFit, cross_fitted
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, mean_free_places, segments_of, settled_at
 from gear_damping.explanation.model.opened import opened
 from gear_damping.identification.output_error.descent import Lent
-from gear_damping.identification.output_error.least_squares import Ends, Fitted, Rounds, fit
+from gear_damping.identification.output_error.least_squares import TO_THE_END, Ends, Fitted, Rounds, fit
 from gear_damping.identification.output_error.problem import OutputErrorProblem, error_amplification
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import in_segments, joined
@@ -21,7 +21,6 @@ from gear_damping.simulation.solver_settings import Solver
 
 ITERATIONS_NEAR = 20  # to get near enough for the whole records
 ROUNDS = Rounds(30)  # linearisations of a fit that begins near its end
-TO_THE_END = Ends()  # of its rounds
 
 
 @dataclass(frozen=True)
@@ -32,11 +31,13 @@ class InitialValues:
         starts: Coordinates of several starts, (starts, n_free); at the parameters' own starts where absent.
         after: A fit from whose initial states of the records to fit this one starts.
         own: Where parameters of single records begin, by name.
+        is_near: Whether it is so near that flanks which part need no segments to lead it there.
     """
 
     starts: Tensor | None = None
     after: Outcome | None = None
     own: Mapping[str, float] = field(default_factory=dict)
+    is_near: bool = False
 
 
 def fit_hypothesis(
@@ -57,7 +58,8 @@ def fit_hypothesis(
         ends: When it stops before; what is enough, in noise variances.
         solver: Settings of the solver.
     """
-    if not evidence.segments and any(isinstance(effect, Contact) for effect in hypothesis.effects):
+    parts = any(isinstance(effect, Contact) for effect in hypothesis.effects)
+    if parts and not evidence.segments and not initial.is_near:
         near = _fit_in_segments(hypothesis, evidence, initial.starts, rounds.kept, ends.enough, solver)
         if near.error_amplification > evidence.settings.most_growth:
             return near

@@ -10,7 +10,7 @@ from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, natural_frequency_hz
 from gear_damping.identification.oscillator.linear_model import DAMPING, expected_about
-from gear_damping.identification.output_error.angles import angle_bases, harmonics_to_resonance, scanned
+from gear_damping.identification.output_error.angles import STARTS, angle_bases, harmonics_to_resonance, scanned
 from gear_damping.identification.output_error.least_squares import NONE, Rounds
 from gear_damping.identification.output_error.problem import OutputErrorProblem
 from gear_damping.identification.output_error.records import FreeParameter
@@ -105,7 +105,7 @@ def shaped(rough: Outcome, evidence: Evidence, iterations: int, solver: Solver |
         solver: Settings of the solver.
     """
     rounds = Rounds(iterations)
-    shaped = _with_shape(rough, evidence, _shape_harmonics(rough, evidence, solver))
+    shaped = with_shape(rough, evidence, _shape_harmonics(rough, evidence, solver))
     found = fit_hypothesis(shaped, evidence, InitialValues(after=rough), rounds, solver=solver)
     if evidence.has_index or not iterations or leaves_noise(found, evidence):
         return found
@@ -125,6 +125,14 @@ def angles_of(hypothesis: Hypothesis, evidence: Evidence, horizon: float, solver
     segmented = in_segments(evidence.fit, evidence.segments)
     problem = OutputErrorProblem(hypothesis.model, hypothesis.given, hypothesis.free, segmented, solver, evidence.noise)
     return scanned(problem, torch.zeros(problem.n_shared, dtype=torch.float64), horizon, angle_bases(problem))
+
+
+def phase_starts(hypothesis: Hypothesis) -> torch.Tensor | None:
+    """Coordinates of starts all around the mesh, (starts, n); None where its angle is not fitted."""
+    places = [i for i, p in enumerate(hypothesis.free) if p.name == "mesh_phase"]
+    starts = torch.zeros(STARTS, len(hypothesis.common), dtype=torch.float64)
+    starts[:, places] = torch.linspace(0, 2 * pi, STARTS + 1, dtype=torch.float64)[:-1, None]
+    return starts if places else None
 
 
 def with_stiffness(hypothesis: Hypothesis, factor: float) -> Hypothesis:
@@ -169,7 +177,7 @@ def _passed_harmonics(rough: Outcome, evidence: Evidence) -> int:
 
 def _seen_harmonics(rough: Outcome, most: int, evidence: Evidence, solver: Solver | None) -> int:
     """The highest harmonic that the records would show if it had the size that real teeth may give it."""
-    hypothesis = _with_shape(rough, evidence, most)
+    hypothesis = with_shape(rough, evidence, most)
     probe = fit_hypothesis(hypothesis, evidence, InitialValues(after=rough), NONE, solver=solver)
     moved = probe.fitted.prediction.sensitivity[0].square().sum((0, 1))
     seen = [
@@ -181,7 +189,7 @@ def _seen_harmonics(rough: Outcome, most: int, evidence: Evidence, solver: Solve
     return max(seen, default=0)
 
 
-def _with_shape(fitted: Outcome, evidence: Evidence, harmonics: int) -> Hypothesis:
+def with_shape(fitted: Outcome, evidence: Evidence, harmonics: int) -> Hypothesis:
     """Free harmonics take over from the contact ratio, which they contain.
 
     The ideal wave gets edges, and every harmonic that the natural frequency lets through: a load may move the edges.

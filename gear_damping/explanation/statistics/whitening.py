@@ -112,10 +112,10 @@ def autoregression(rows: Sequence[Tensor], taken: float = 0.0) -> Autoregression
     shortest = min(len(row) for row in rows)
     most = min(MOST_ORDER, shortest // SAMPLES_PER_ORDER)
     best = _likeliest([_of_order(rows, order, most) for order in range(most + 1)], rows, most)
-    if best.order:
-        count = sum(best.order * 2**j <= shortest // SAMPLES_PER_ORDER for j in range(1, MOST_OCTAVES + 1))
-        longest = best.order * 2**count
-        longer = [_of_order(rows, best.order, longest, octaves) for octaves in range(count + 1)]
+    if best.order == MOST_ORDER:
+        count = sum(MOST_ORDER * 2**j <= shortest // SAMPLES_PER_ORDER for j in range(1, MOST_OCTAVES + 1))
+        longest = MOST_ORDER * 2**count
+        longer = [_of_order(rows, MOST_ORDER, longest, octaves) for octaves in range(count + 1)]
         best = _likeliest(longer, rows, longest)
     left = samples / max(samples - taken, 1.0)
     return replace(best, innovation=best.innovation * left)

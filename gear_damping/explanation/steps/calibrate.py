@@ -20,6 +20,7 @@ from gear_damping.explanation.model.nominal_gear_pair import (
     first_gear_pair,
     is_standing,
     leaves_noise,
+    phase_starts,
     shaped,
     with_stiffness,
 )
@@ -28,7 +29,6 @@ from gear_damping.explanation.trials.refit import block_samples
 from gear_damping.identification.observation import MESH_PHASE
 from gear_damping.identification.oscillator.fit import fit_oscillator
 from gear_damping.identification.oscillator.linear_model import DAMPING, linear_model, linear_oscillator
-from gear_damping.identification.output_error.angles import STARTS
 from gear_damping.identification.output_error.least_squares import NONE, Rounds
 from gear_damping.identification.output_error.records import SEPARATOR, FreeParameter
 from gear_damping.physics.systems.traits import Trait, by_trait
@@ -201,10 +201,7 @@ def _rough_gear_pair(evidence: Evidence, solver: Solver | None) -> Outcome:
     short = SHORT_PERIODS / natural_frequency_hz(first.model, first.given)
     rounds = Rounds(ROUGH_ITERATIONS, [short, None] if short < evidence.duration else [None])
     if evidence.has_index:
-        starts = torch.zeros(STARTS, len(first.common), dtype=torch.float64)
-        places = [i for i, p in enumerate(first.free) if p.name == "mesh_phase"]
-        starts[:, places] = torch.linspace(0, 2 * pi, STARTS + 1, dtype=torch.float64)[:-1, None]
-        initial, few = InitialValues(starts if places else None), replace(rounds, kept=ANGLES_KEPT)
+        initial, few = InitialValues(phase_starts(first)), replace(rounds, kept=ANGLES_KEPT)
         return fit_hypothesis(first, evidence, initial, few, solver=solver)
     found: Outcome | None = None
     for _ in range(MOST_SCANS):  # a phase that is wrong makes stiffness and damping wrong, and they the next phase

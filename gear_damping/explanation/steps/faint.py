@@ -15,12 +15,17 @@ from gear_damping.explanation.trials.score import best_by_effect
 
 
 def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
-    """The state with the fits that were made, the next cause and its rivals; None where none is confirmed."""
+    """The state with the fits that were made, the next cause and its rivals; None where none is confirmed.
+
+    Tried is what shows, and what promises a good part of all that is left: beside coloured residuals, which may be its
+    own doing, it need not show.
+    """
     seen, bench = state.left, state.bench
     if seen is None:
         return state, None, ()
     best = best_by_effect(state.ranked)
     names = sorted((n for n in best if seen.visible.shows(n)), key=lambda n: -seen.visible.by_name[n])
+    names += [n for n in best if n not in names and best[n].gain >= bench.settings.least_share]
     names = names[: bench.settings.full_fits]
     names = [name for name in names if best[name].gain > 0 and not bench.budget.refuses(name)]
     found = (bench.full_fit(best[name], state.outcome, reach=state.outcome.fitted.cost) for name in names)

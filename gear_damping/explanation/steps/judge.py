@@ -123,6 +123,9 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
     if is_part or is_unsteady:  # most of the gap is still there
         text = f"{missing}. Part of it has a name: {said}. What is left looks random, and is more than that."
         return Verdict(PARTLY, (text, *further))
+    if known.is_one is False and found.left is not None and found.left.visible:
+        text = f"{missing}. Part of it has a name: {said}, though not of one size in all records, and what is left is "
+        return Verdict(PARTLY, (f"{text}not all random.", *further))
     if classes:
         return Verdict(AMBIGUOUS, (f"{missing}.", *_one_class(classes), *further, *_small_residual(found, after)))
     if confused:
@@ -200,6 +203,12 @@ def _without_name(found: State, before: Excess, known: Known) -> Verdict:
             "sensor, and something in it is visible that is not random; no effect of the catalogue is validated."
         )
         return Verdict(UNEXPLAINED, (text, *known.unsettled))
+    if raised and before.threshold >= WHOLE:
+        text = (
+            f"{beyond.percent:.3g} % of the signal's variance is more than the noise of the sensor, and the records "
+            "are too short to tell whether a random load makes it or something is missing."
+        )
+        return Verdict(UNEXPLAINED, (text, *known.unsettled))
     if before.threshold >= WHOLE:
         text = "No evidence of an effect; the fitted records are too few to say how large one could be unseen."
     else:
@@ -208,6 +217,8 @@ def _without_name(found: State, before: Excess, known: Known) -> Verdict:
 
 
 def _missing(before: Excess) -> str:
+    if before.percent > WHOLE:
+        return "The simulation misses more than the held-out records move, which hold little motion"
     if before.percent > 0:
         return f"The simulation misses {before.percent:.3g} % of the signal's variance"
     # what is missing shows in its form, not in its power
@@ -255,7 +266,8 @@ def statuses(word: str) -> str:
 
 
 def _named(accepted: Sequence[Accepted]) -> str:
-    return " and ".join(f"{cause.effect.cause.sentence} (`{cause.name}`)" for cause in accepted)
+    *others, last = (f"{cause.effect.cause.sentence} (`{cause.name}`)" for cause in accepted)
+    return f"{', '.join(others)} and {last}" if others else last
 
 
 def _not_told_apart(confused: Sequence[Accepted]) -> tuple[str, ...]:

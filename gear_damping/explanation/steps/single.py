@@ -3,15 +3,19 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+from gear_damping.explanation.evidence.excess import is_settled
 from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Outcome, settled_at
-from gear_damping.explanation.model.nominal_gear_pair import shaped
+from gear_damping.explanation.model.nominal_gear_pair import SHAPE, shaped
+from gear_damping.explanation.model.parting_flanks import with_parting_flanks
 from gear_damping.explanation.state import State
-from gear_damping.explanation.trials.refit import Refit, again
+from gear_damping.explanation.trials.refit import Refit, again, compared
 from gear_damping.explanation.trials.score import Score, best_by_effect
 from gear_damping.identification.output_error.least_squares import NONE
+from gear_damping.physics.effects.backlash import Backlash
 from gear_damping.physics.systems.traits import Trait
 
+SHAPE_IN_PHASE = f"{SHAPE}.in_phase["  # one of every harmonic
 FAR = 10.0  # times the cost of the best fit: a law that leaves so much more has not converged where it could
 
 
@@ -52,7 +56,21 @@ def _first_fits(state: State) -> tuple[Refit, ...]:
         fits.sort(key=lambda fit: fit.outcome.left_out_cost)
         if _best(fits, state):
             break
-    return tuple(fits)
+    fits += _from_what_is_stated(fits, state)
+    return tuple(sorted(fits, key=lambda fit: fit.outcome.left_out_cost))
+
+
+def _from_what_is_stated(fits: Sequence[Refit], state: State) -> list[Refit]:
+    """The gap between flanks fitted from what is stated of the rig, where nothing else leaves as little as noise."""
+    bench, name = state.bench, Backlash.name
+    score = best_by_effect(state.first_scores).get(name)
+    if score is None or any(is_settled(bench.excess(fit.outcome), state.first, bench.settings) for fit in fits):
+        return []
+    if bench.budget.refuses(f"{name} from what is stated of the rig"):
+        return []
+    harmonics = sum(p.name.startswith(SHAPE_IN_PHASE) for p in state.nominal.problem.free)
+    found = with_parting_flanks(bench.evidence, harmonics, bench.solver)
+    return [] if found is None else [compared(score, found, state.nominal, bench.evidence)]
 
 
 def _from_the_best(fits: Sequence[Refit], state: State) -> list[Refit]:

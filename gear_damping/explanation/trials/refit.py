@@ -79,7 +79,8 @@ def block_samples(outcome: Outcome, evidence: Evidence, records: Sequence[FitRec
 def chosen(scores: Sequence[Score], settings: SearchSettings, least: float = 0.0, springs: bool = False) -> list[Score]:
     """The candidates worth a full fit: the best variant of the best effects, and who resembles the first.
 
-    Another form of an effect (a filter of another order) is tried too where its predicted gain is nearly as large.
+    Another form of an effect (a filter of another order) is tried too where its predicted gain is nearly as large, and
+    with an effect the simpler one that it contains, which needs to be no more.
 
     Args:
         scores: Every candidate, the best first.
@@ -100,6 +101,8 @@ def chosen(scores: Sequence[Score], settings: SearchSettings, least: float = 0.0
     instead = [score for score in ranked if score.candidate.replaced]  # adds nothing that could overfit: always tried
     far = [score for score in ranked if springs and score.gain > 0 and _is_far_from_linear(score.candidate)]
     taken = [*(first + alike)[: settings.most_full_fits], *instead, *far]
+    simpler = {score.candidate.hypothesis.effects[-1].cause.simpler for score in taken}
+    taken += [score for score in ranked if score.candidate.name in simpler]
     worth = {score.candidate.name: score.gain for score in taken}
     return [s for s in every if s.gain >= OTHER_FORM * worth.get(s.candidate.name, inf)]
 

@@ -31,6 +31,8 @@ FIRST_SHIFTS = (0.93, 1.0, 1.07)  # of the frequency of the starts
 FIRST_RATES = (0.1, 1.0, 10.0)  # damping coefficients of the starts without a spring, over one by characteristic time
 HORIZON_PERIODS = (4, 20, 100)  # natural periods of the rounds before the whole record
 SEGMENT_TIMES = 5.0  # characteristic times of a segment
+FEWEST_SEGMENTS = 2  # of a record that is cut
+LOST = 0.5  # of a record's motion: a frequency that changes with the amplitude has run out of step by then
 
 
 @dataclass(frozen=True)
@@ -90,12 +92,15 @@ def fit_oscillator(
         report: Told (done, total) rounds.
         solver: Settings of the solver.
         known: What is stated of the rig: starts, expectations, and 0 for what is not there.
-        segments: How the records are cut; where absent they are whole, or in segments where there is no spring.
+        segments: How the records are cut; where absent they are whole, or in segments where there is no spring, or
+            where the nearest linear oscillator loses step with one of them.
     """
     free, given, scale = linear_model(fit_records, known)
     spring = any(parameter.name == known.system.spring for parameter in free)
+    short = Segments(SEGMENT_TIMES * scale)
+    may_cut = segments is None and spring and max(r.duration for r in fit_records) > FEWEST_SEGMENTS * short.seconds
     if segments is None:
-        segments = WHOLE if spring else Segments(SEGMENT_TIMES * scale)
+        segments = WHOLE if spring else short
     segmented = in_segments(fit_records, segments)
     problem = OutputErrorProblem(linear_oscillator(fit_records, known.system), given, free, segmented, solver)
     fitted = _fitted(problem, spring, scale, report)
@@ -107,6 +112,8 @@ def fit_oscillator(
     found = estimates(problem, fitted, scale)
     given = problem.given | {p.name: values[p.name] for p in free}
     residuals = _fit_residuals(problem, fitted, fit_records, segments)
+    if may_cut and any(_is_lost(residuals[record.name], record) for record in fit_records):
+        return fit_oscillator(fit_records, holdout_records, report, solver, known, short)
     own = {name: value for name, value in values.items() if name not in given}
     if holdout_records:
         held = predict_holdout(Frozen(problem.model, given, solver=solver), holdout_records, scale, segments)
@@ -126,6 +133,12 @@ def fit_oscillator(
         scale=scale,
         segments=segments,
     )
+
+
+def _is_lost(residual: Tensor, record: FitRecord) -> bool:
+    """Whether more than half of a record's motion is left."""
+    moved = record.stacked - record.stacked.mean()
+    return float(residual.square().sum()) > LOST * float(moved.square().sum())
 
 
 def _quantities(found: Mapping[str, Estimate]) -> dict[str, Any]:

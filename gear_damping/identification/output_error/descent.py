@@ -62,14 +62,17 @@ class Ends:
     is_over: Callable[[], bool] = lambda: False
 
 
+TO_THE_END = Ends()
+
+
 class Descent:
     """Starts on their way down over one horizon.
 
     Every tensor has a row for each start: `points`, `linearised` (at them), `cost`, `damping`, `calm` (steps in a row
     that changed little), `carried` (steps since the sensitivities were worked out), `made` (linearisations),
     `short` (those in a row from which a start seemed to get neither below `reach` nor below the best start), `strayed`
-    (whether a step has failed: where sensitivities are fresh, steps then follow the bend of the response), `costs` (at its
-    last linearisations).
+    (whether a step has failed: where sensitivities are fresh, steps then follow the bend of the response),
+    `costs` (at its last linearisations).
     """
 
     def __init__(
@@ -77,7 +80,7 @@ class Descent:
         problem: OutputErrorProblem,
         points: Points,
         horizon: float | None,
-        ends: Ends = Ends(),
+        ends: Ends = TO_THE_END,
         lent: Lent | None = None,
     ) -> None:
         """Begin at points; arguments as for `least_squares.fit`."""

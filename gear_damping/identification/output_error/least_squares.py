@@ -6,7 +6,7 @@ from math import inf
 
 from torch import Tensor
 
-from gear_damping.identification.output_error.descent import Descent, Ends, Lent
+from gear_damping.identification.output_error.descent import TO_THE_END, Descent, Ends, Lent
 from gear_damping.identification.output_error.problem import OutputErrorProblem, Prediction
 from gear_damping.identification.output_error.step import Points
 
@@ -47,7 +47,7 @@ def fit(
     shared: Tensor,
     rounds: Rounds = Rounds(),
     states: Tensor | None = None,
-    ends: Ends = Ends(),
+    ends: Ends = TO_THE_END,
     lent: Lent | None = None,
 ) -> Fitted:
     """The best of several starts.
