@@ -57,6 +57,23 @@ def test_a_clean_free_decay_is_found_exactly():
     assert found.rmse["holdout"] is None
 
 
+def test_a_wide_swing_that_loses_step_is_fitted_in_segments():
+    """A pendulum from 70 degrees: over the whole record the nearest linear oscillator runs out of step."""
+    times = np.arange(6000) / 50.0
+    omega, ratio = 2 * np.pi, 0.002
+
+    def rates(_, state):
+        return state[1], -2 * ratio * omega * state[1] - omega**2 * np.sin(state[0])
+
+    swing = solve_ivp(rates, (0, times[-1]), (1.2, 0.0), "DOP853", times, rtol=1e-9, atol=1e-12).y[0]
+    noisy = swing + 1e-3 * np.random.default_rng(2).standard_normal(6000)
+    found = fit_oscillator([FitRecord("wide", torch.as_tensor(noisy), 50.0)])
+    assert found.segments.seconds == pytest.approx(5 / 0.95, rel=0.1)
+    assert found.damping_ratio_percent.value == pytest.approx(100 * ratio, rel=0.3)
+    narrow = fit_oscillator([FitRecord("narrow", torch.as_tensor(0.05 * swing[5400:]), 50.0)])
+    assert not narrow.segments
+
+
 def test_a_forced_record_is_found_and_the_holdout_predicted():
     found = fit_oscillator([forced_record(1)], [forced_record(2, name="other")])
     assert found.natural_frequency_hz.value == pytest.approx(FREQUENCY, rel=1e-3)

@@ -83,11 +83,13 @@ def predict_holdout(
     unknown = [base for base in angle_bases(problem) if not any(name.startswith(base) for name in known)]
     states = problem.safe_states(starts[0])
     horizons = _horizons(problem, characteristic_s, unknown)
-    for name, angle in scanned(problem, starts[0], horizons[0], unknown, states).items() if unknown else ():
-        place = next(i for i, parameter in enumerate(problem.free) if parameter.name == name)
-        starts[0, place] = problem.free[place].coordinate(angle)
     iterations = (*(FIRST_ITERATIONS for _ in horizons[1:]), LAST_ITERATIONS)
-    first = fit(problem, starts, Rounds(iterations, horizons), states.unsqueeze(0))
+    turned = _turned(problem, starts, horizons[0], unknown, states)
+    first = fit(problem, turned, Rounds(iterations, horizons), states.unsqueeze(0))
+    if unknown and len(horizons) > 1:  # or at the speed as it is stated, which short stretches may lead away from
+        turned = _turned(problem, starts, None, unknown, states)
+        other = fit(problem, turned, Rounds(LAST_ITERATIONS), states.unsqueeze(0))
+        first = min(first, other, key=lambda one: one.cost)
     found = _restarted(problem, first, iterations[-1])
     prediction, weights = found.prediction, problem.response.weights.clamp(min=1e-300)
     left = prediction.residual[0] / weights
@@ -99,6 +101,17 @@ def predict_holdout(
     ]
     values = {name: float(value) for name, value in problem.unknowns.parameters(found.shared).items()}
     return HeldOut(*whole, error_amplification(prediction, problem.n_shared), values)
+
+
+def _turned(
+    problem: OutputErrorProblem, starts: Tensor, horizon: float | None, unknown: Sequence[str], states: Tensor
+) -> Tensor:
+    """Starts (1, n) with the angles that are unknown at the best of all around, over so many seconds."""
+    found = starts.clone()
+    places = {parameter.name: place for place, parameter in enumerate(problem.free)}
+    for name, angle in scanned(problem, starts[0], horizon, unknown, states).items() if unknown else ():
+        found[0, places[name]] = problem.free[places[name]].coordinate(angle)
+    return found
 
 
 def _horizons(problem: OutputErrorProblem, characteristic_s: float, unknown: Sequence[str]) -> list[float | None]:

@@ -1,0 +1,53 @@
+"""Flanks that part in most records: damping and stiffness are found from what is stated of the rig."""
+
+from dataclasses import replace
+
+import pytest
+from second_rig.case import Case, Stream, write
+from second_rig.channels import ERROR_UM, WHITE
+from second_rig.files import Table
+from second_rig.motion import Hidden, Run
+from second_rig.pair import steel_rig
+from second_rig.sensors import Noise
+
+from gear_damping.explanation.evidence.records import evidence_of
+from gear_damping.explanation.explain import fitting_solver, with_noise
+from gear_damping.explanation.model.parting_flanks import with_parting_flanks
+from gear_damping.explanation.steps.calibrate import calibrated
+from gear_damping.measurement.load import load_measurement
+
+HARMONICS = 6
+
+
+@pytest.fixture(scope="module")
+def at_resonance(tmp_path_factory):
+    """Two records under a low torque, one of them near resonance, and no angle known: rig, evidence, nominal model."""
+    rig = steel_rig((38, 33), 2.5e-3, 0.03, (2e-3, 3e-3), 0.02, law="fourier")
+    runs = tuple(Run(20e3, 0.25, round(rig.speed_at(tuning)), 20.0) for tuning in (0.97, 0.6))
+    case = Case(rig, runs, ERROR_UM, Table("csv", "te"), Noise(WHITE, 38), Stream(5, 0), "",
+                Hidden("backlash", {"gap": 9e-5}), assembled=True)  # fmt: skip
+    folder = tmp_path_factory.mktemp("measured") / "case"
+    write(case, folder)
+    measurement = load_measurement(folder / "measurement.yaml")
+    evidence = evidence_of(measurement)
+    evidence = replace(evidence, fit=(*evidence.fit, *evidence.holdout), holdout=())
+    found = calibrated(with_noise(evidence, measurement, lambda _: None)[0], fitting_solver(None))
+    return rig, found.evidence, found.nominal
+
+
+def cost_over_noise(outcome, evidence):
+    return outcome.fitted.cost / evidence.noise**2 / float((outcome.problem.response.weights > 0).sum())
+
+
+def test_damping_is_found_where_flanks_part(at_resonance):
+    rig, evidence, nominal = at_resonance
+    found = with_parting_flanks(evidence, HARMONICS, fitting_solver(None))
+    assert cost_over_noise(found, evidence) < 1.2
+    assert found.values["viscous_damping.damping_coefficient"] == pytest.approx(rig.viscous, rel=0.05)
+    assert cost_over_noise(nominal, evidence) > 3 * cost_over_noise(found, evidence)
+
+
+def test_a_gap_that_is_stated_is_in_the_nominal_model_already(at_resonance):
+    _, evidence, _ = at_resonance
+    stated = replace(evidence, known=replace(evidence.known, values={**evidence.known.values, "backlash_gap": 9e-5}))
+    assert with_parting_flanks(stated, HARMONICS, None) is None
