@@ -19,6 +19,7 @@ _EPOCHS = ((1e8, 1e10, "s"), (1e11, 1e13, "ms"), (1e14, 1e16, "us"))
 _FEWEST = 8  # stamps, as many as a record needs
 _ADVANCING = 0.9  # share of the steps of a named column that go forward
 _SHORT = re.compile(r"^t[a-z]?\d*(_\w+)?$", re.I)  # t1, tb_n: a time only where its steps are even
+_FIRST = re.compile(r"\[0\]\s*$")  # the first column of a matrix, which says nothing of its own
 _EVEN = 0.05  # of the median step; how far the steps of an unnamed column may differ
 
 
@@ -82,7 +83,8 @@ def _by_name(index: int, column: _Column) -> str:
 
 
 def _by_steps(index: int, column: _Column) -> str:
-    if index or column.unit is not None or (isinstance(column.reference, str) and column.reference.strip()):
+    is_named = isinstance(column.reference, str) and column.reference.strip() and not _FIRST.search(column.reference)
+    if index or column.unit is not None or is_named:
         return ""
     return "is the first column and advances evenly" if _is_even(column) else ""
 

@@ -28,6 +28,7 @@ SPLINE_TOLERANCE = 0.01
 REMEDY = "or give sampling_rate instead of the time column, where the stamps are written with too few digits"
 _HALF = 0.5  # of a step; a stamp that far from where it is due counts as another sample's
 _WHOLE = 0.05  # of a gap; how near a whole number of steps it must be, beside what the jitter allows
+_LISTED = 5  # gaps that a message lists
 _RUN = 0.8  # share of gaps behind a gap from which they are a lower rate, not losses
 _MANY = 0.1  # share of the steps; so many are no jumps but another rate
 _LOOSE = 0.2  # of a step; all that jitter may add to that
@@ -107,7 +108,7 @@ def stamped_time(stamps: NDArray[np.float64], key: str, source: str, first: int 
     if written is not None:
         note = f"time stamps are rounded to {written.digit:.3g} s: taken as an even {written.rate:.6g} Hz"
         return TimeBase(written.start + np.arange(stamps.size) / written.rate, written.rate, notes=(note,))
-    found = irregularity(stamps)
+    found = irregularity(stamps, first)
     if found:
         usual = rate if found.severity == "note" else 1 / float(np.median(np.diff(stamps)))
         return TimeBase(stamps, usual, uniform=False, findings=(found,))
@@ -180,11 +181,12 @@ def _last_digit(since: NDArray, rounding: float) -> float | None:
     return None
 
 
-def irregularity(stamps: NDArray[np.float64]) -> Finding | None:
+def irregularity(stamps: NDArray[np.float64], first: int = 0) -> Finding | None:
     """The data problem or the note that uneven stamps call for, or None where they jitter as a recorder's do.
 
     Args:
         stamps: (n,) strictly increasing, in s.
+        first: The row of the first one, from which messages count, as slices do.
     """
     steps = np.diff(stamps)
     usual = float(np.median(steps))
@@ -193,15 +195,16 @@ def irregularity(stamps: NDArray[np.float64]) -> Finding | None:
     gaps = steps[lasting] / usual
     run = np.mean(np.diff(lasting) == 1) if lasting.size > 2 else 0.0
     if lasting.size and run < _RUN and _are_whole(gaps, _scatter(steps) / usual):
-        return _dropped(np.round(gaps).astype(int) - 1, lasting)
+        return _dropped(np.round(gaps).astype(int) - 1, lasting, first)
     few = run < _RUN and lasting.size < _MANY * steps.size
     changes = _change_of_rate(np.delete(steps, lasting) if few else steps)
     if changes is not None:
-        return _changing(steps, changes)
+        return _changing(steps, changes, first)
     if lasting.size:
-        return _unexplained(steps, int(lasting[0]) + 1, "the clock jumps")
+        return _unexplained(steps, int(lasting[0]) + 1, "the clock jumps", first)
     if odd.size > 2 * max(1.0, _LATE_SHARE * steps.size):  # a late stamp has an odd step at either side
-        return _unexplained(steps, int(odd[0]) + 1, "more than jitter, for some steps are nearer to none or to two")
+        what = "more than jitter, for some steps are nearer to none or to two"
+        return _unexplained(steps, int(odd[0]) + 1, what, first)
     return None
 
 
@@ -249,25 +252,26 @@ def _change_of_rate(steps: NDArray) -> int | None:
     return int(np.argmax(np.abs(time - np.linspace(0.0, time[-1], time.size)))) + 1
 
 
-def _dropped(lost: NDArray, gaps: NDArray) -> Finding:
-    where = int(gaps[0]) + 1
+def _dropped(lost: NDArray, gaps: NDArray, first: int) -> Finding:
+    rows = [str(gap + 1 + first) for gap in gaps[:_LISTED].tolist()]
+    more = " and others" if gaps.size > _LISTED else ""
     message = (
-        f"about {lost.sum()} sample(s) were dropped in {gaps.size} gap(s), "
-        f"the first before sample {where}; use slices between the gaps"
+        f"about {lost.sum()} sample(s) were dropped in {gaps.size} gap(s), before row(s) {', '.join(rows)}{more}; "
+        "use slices between the gaps"
     )
-    return Finding("dropped_samples", message, channel="time", sample=where)
+    return Finding("dropped_samples", message, channel="time", sample=int(gaps[0]) + 1)
 
 
-def _changing(steps: NDArray, where: int) -> Finding:
+def _changing(steps: NDArray, where: int, first: int) -> Finding:
     message = (
-        f"{_range_of(steps)}: the rate changes, first before sample {where}; samples are taken at their stamps; where "
-        "the clock and not the sampling did that, give sampling_rate instead of the time column"
+        f"{_range_of(steps)}: the rate changes, first before row {where + first}; samples are taken at their stamps; "
+        "where the clock and not the sampling did that, give sampling_rate instead of the time column"
     )
     return Finding("uneven_stamps", message, channel="time", sample=where, severity="note")
 
 
-def _unexplained(steps: NDArray, where: int, what: str) -> Finding:
-    message = f"{_range_of(steps)}: {what}, first before sample {where}; use slices of one rate, {REMEDY}"
+def _unexplained(steps: NDArray, where: int, what: str, first: int) -> Finding:
+    message = f"{_range_of(steps)}: {what}, first before row {where + first}; use slices of one rate, {REMEDY}"
     return Finding("uneven_stamps", message, channel="time", sample=where)
 
 

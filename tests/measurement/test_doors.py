@@ -264,3 +264,9 @@ def test_a_drive_at_its_limit_is_what_was_applied(bench):
 def test_a_coarse_encoder_at_a_high_rate_was_not_interpolated(bench, step):
     time = np.arange(4000) / 2000
     assert _problems(_oscillator(bench, time, step * np.round(np.exp(-time) * np.cos(9 * time) / step))) == []
+
+
+def test_gaps_are_told_by_the_rows_that_a_slice_counts():
+    stamps = np.delete(np.arange(2000) / RATE, [500, 501, 1200])
+    message = irregularity(stamps, first=300).message
+    assert "about 3 sample(s) were dropped in 2 gap(s), before row(s) 800, 1498;" in message

@@ -135,7 +135,7 @@ def test_garbage_is_one_error_that_names_the_file(tmp_path, suffix):
 
 def test_an_unknown_format_lists_the_known(tmp_path):
     (tmp_path / "a.xls").write_bytes(b"something")
-    with pytest.raises(InputError, match=r"unknown format '.xls'.*known are .*\.csv.*\.hdf5.*\.tdms.*\.xlsx"):
+    with pytest.raises(InputError, match=r"unknown format '.xls'.*save it as one of .*\.csv.*\.hdf5.*\.tdms.*\.xlsx"):
         read_table(tmp_path / "a.xls")
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.io import savemat
 
 from gear_damping.measurement.column_kinds import CONSTANT, COUNTER, PULSES, SIGNAL, TIME, TURNING
 from gear_damping.measurement.formats.registry import read_table
@@ -108,6 +109,14 @@ def test_gaps_in_values_leave_the_longest_stretch(tmp_path):
     found = inspected(tmp_path, time=T, x=x, y=y, empty=np.full(N, np.nan))
     assert found.rows == (101, 5000)
     assert found.base.time.size == 4899
+
+
+def test_the_first_column_of_a_matrix_may_be_the_time(tmp_path):
+    path = tmp_path / "data.mat"
+    savemat(path, {"data": np.column_stack([T, np.sin(9 * T), np.cos(4 * T)])})
+    found = inspect_table(read_table(path))
+    assert found.time.index == 0
+    assert found.rate == pytest.approx(RATE)
 
 
 def test_a_column_that_is_filled_here_and_there_cuts_no_stretch(tmp_path):

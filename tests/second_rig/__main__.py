@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ..blind.command import ROOT, STOPPED, log, see_oracles, shown, stop_by_signals
 
-PAGE = ROOT / "docs" / "second_rig.md"
+PAGE, DRAWN_PAGE = (ROOT / "docs" / name for name in ("second_rig.md", "second_rig_drawn.md"))
 
 
 def arguments(given: list[str] | None = None) -> argparse.Namespace:
@@ -21,7 +21,7 @@ def arguments(given: list[str] | None = None) -> argparse.Namespace:
     chosen.add_argument("--case", nargs="+", choices=tuple(CASES), metavar="NAME", help="only these, such as c03 d10")
     chosen.add_argument("--drawn", nargs=2, type=int, metavar=("FIRST", "N"), help="N cases that are drawn by number")
     parser.add_argument("--processes", type=int, default=2, choices=(1, 2))
-    parser.add_argument("--page", action="store_true", help=f"write {PAGE.relative_to(ROOT)} too")
+    parser.add_argument("--page", action="store_true", help=f"write {PAGE.relative_to(ROOT)} or its drawn one too")
     parser.add_argument("--out", type=Path, default=ROOT / "outputs" / "second_rig", help="folder of the answers")
     return parser.parse_args(given)
 
@@ -33,7 +33,7 @@ def main(given: list[str] | None = None) -> int:
     stop_by_signals()
     from second_rig import CASES, DRAWN, SETS
 
-    from .page import page
+    from .page import drawn_page, page
     from .run import ask
 
     if options.drawn:
@@ -48,7 +48,8 @@ def main(given: list[str] | None = None) -> int:
         return 130
     log(f"{sum(case['right'] for case in cases)} of {len(cases)} right: {options.out}")
     if options.page and cases:
-        PAGE.write_text(page(cases, shown("make second-rig", given)), encoding="utf-8")
+        path, write = (DRAWN_PAGE, drawn_page) if options.drawn else (PAGE, page)
+        path.write_text(write(cases, shown("make second-rig", given)), encoding="utf-8")
     return 0
 
 

@@ -9,7 +9,7 @@ import pytest
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from tests.second_rig.__main__ import arguments
-from tests.second_rig.page import page
+from tests.second_rig.page import drawn_page, page
 from tests.second_rig.run import NOTES, ask, done_cases, engine
 from tests.second_rig.work import is_right
 
@@ -77,3 +77,19 @@ def test_a_set_or_some_cases_are_chosen():
     assert arguments(["--set", "second"]).set == "second"
     with pytest.raises(SystemExit):
         arguments(["--set", "first", "--case", "c03"])
+
+
+def test_the_page_of_drawn_cases_counts_what_is_right_and_what_is_named_wrongly():
+    found = case("effect", "backlash", "explained", [BACKLASH], parameters={"gap": 6e-5})
+    other = case("effect", "backlash", "explained", [OTHER], parameters={"gap": 6e-5}, interval=(2.01, 2.1))
+    text = drawn_page([found, other, case("null")], "make second-rig")
+    assert "from 3 cases, explained by the version a of the package: **2 right (67 % [9, 99]), 1 with a name" in text
+    assert "2 of 3 intervals of the damping ratio hold it" in text
+    assert "| `backlash` | 2 | 1 | 1 |" in text
+    assert "| nothing | 1 | 1 | 0 |" in text
+
+
+def test_drawn_cases_are_chosen_by_their_numbers():
+    assert arguments(["--drawn", "600", "40"]).drawn == [600, 40]
+    with pytest.raises(SystemExit):
+        arguments(["--set", "first", "--drawn", "600", "40"])

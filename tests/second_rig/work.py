@@ -31,16 +31,24 @@ def answer(name: str) -> Case:
 
 
 def is_right(case: Case) -> bool:
+    """By what there was to find: where that is nothing, the damping ratio is in its interval, too."""
+    return names_right(case) and (case["truth"]["to_find"] != "null" or damping_held(case, case["answer"]) is True)
+
+
+def names_right(case: Case) -> bool:
     """By what there was to find.
 
-    Nothing: consistent, and the damping ratio in its interval. An effect: established and named first. A constant
-    declared wrong: consistent once it is calibrated. An effect that the catalogue lacks: unexplained or partly
-    explained, and no name established.
+    Nothing: consistent. An effect: established and named first. A constant declared wrong: consistent once it is
+    calibrated. An effect that the catalogue lacks: unexplained or partly explained, and no name established.
     """
     truth, said = case["truth"], case["answer"]
     if truth["to_find"] == "effect":
         return established(said)[:1] == [truth["hidden"]]
     if truth["to_find"] == "outside":
         return said["verdict"] in SILENT and not established(said)
-    sound = said["verdict"] == "consistent"
-    return sound and (truth["to_find"] == "constant" or damping_held(case, said) is True)
+    return said["verdict"] == "consistent"
+
+
+def names_wrongly(case: Case) -> bool:
+    """Whether a name is established that is not there."""
+    return any(name != case["truth"]["hidden"] for name in established(case["answer"]))

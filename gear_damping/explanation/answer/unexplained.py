@@ -96,12 +96,12 @@ def _waves(angle: Array, count: int) -> Array:
 def _share(
     trained: Sequence[Array], residual: Sequence[Array], tested: Sequence[Array], held: Sequence[Array]
 ) -> float:
-    """Share of the held-out residual's energy that a regression on the fitted records' residuals takes."""
+    """Share of the held-out residual's energy that a regression on the fitted records' residuals takes; 0 for none."""
     columns, target = np.concatenate(trained), np.concatenate(residual)
     found = np.linalg.lstsq(columns, target, rcond=1e-8)[0]
     before = sum(float(r @ r) for r in held)
     after = sum(float(((r - f @ found) ** 2).sum()) for r, f in zip(held, tested, strict=True))
-    return 1 - after / before if before > 0 else 0.0
+    return max(1 - after / before, 0.0) if before > 0 else 0.0
 
 
 def _kurtosis(residuals: Sequence[Array]) -> float:

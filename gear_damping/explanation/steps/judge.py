@@ -78,7 +78,7 @@ class Known:
     @property
     def unsettled(self) -> tuple[str, ...]:
         """What is said where the calibration did not converge."""
-        return () if self.converged else ("The calibration did not converge: take the figures with care.",)
+        return () if self.converged else ("The last fit did not converge: take the figures with care.",)
 
 
 def verdict(found: State, before: Excess, after: Excess, known: Known | None = None) -> Verdict:
