@@ -96,18 +96,31 @@ def _taken(fit: Refit, state: State) -> float:
 
 
 def _accepted(pairs: Sequence[Pair], current: Excess, state: State) -> Pair | None:
-    """The best pair that is validated, or of those that do as well the smallest; None without one."""
+    """The best pair that is validated, or of those that do as well the smallest; None without one.
+
+    A law of which a part has run into a bound bends to what it is not: a pair with such a one is the last choice.
+    """
     bench, settings = state.bench, state.bench.settings
 
     def takes(pair: Pair) -> float:
         return (current.percent - bench.excess(pair.second.outcome).percent) / current.percent
 
     worth = [pair for pair in pairs if pair.second.t > settings.accepted_t and takes(pair) >= settings.least_share]
+    worth = [pair for pair in worth if _is_inside(pair)] or worth
     best = min(worth, key=lambda pair: pair.second.outcome.left_out_cost, default=None)
     if best is None:
         return None
     alike = [pair for pair in worth if bench.is_as_good(pair.second.outcome, best.second.outcome)]
     return min([best, *alike], key=lambda pair: len(pair.second.outcome.hypothesis.free))
+
+
+def _is_inside(pair: Pair) -> bool:
+    """Whether no parameter of the two effects is at a bound."""
+    outcome, own = pair.second.outcome, (f"{pair.first.name}.", f"{pair.second.name}.")
+    bound = outcome.problem.unknowns.at_bound(outcome.fitted.shared)
+    return not any(
+        int(at) and parameter.name.startswith(own) for parameter, at in zip(outcome.problem.free, bound, strict=False)
+    )
 
 
 def _bases(fits: Sequence[Refit], state: State) -> list[Refit]:
