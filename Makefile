@@ -100,7 +100,7 @@ bench: setup  ## time simulation, transforms and training beside other libraries
 blind: setup  ## hide effects in measurements, have them explained, write outputs/blind (resumes; 85 minutes at most)
 	$(BIN)/python -m tests.blind $(ARGS)
 
-second-rig: setup  ## have 30 measurements of a second generator explained, into outputs/second_rig (resumes)
+second-rig: setup  ## have 30 measurements of a second generator explained, into outputs/second_rig (resumes; --drawn 600 40 draws others)
 	$(BIN)/python -m tests.second_rig $(ARGS)
 
 real: setup  ## what explain says of real records whose answer is known, into docs/real_records.md (10 minutes)

@@ -151,7 +151,7 @@ class Residuals(Part):
 
 
 class DampingRatio(Part):
-    """The equivalent damping ratio of every damping law and of dry friction together; none without a spring."""
+    """The equivalent damping ratio of all damping, dry friction and hysteresis among it; none without a spring."""
 
     value: float = said("of critical", "%")
     unit: Literal["%"] = said("its unit")

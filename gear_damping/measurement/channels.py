@@ -67,7 +67,8 @@ class Ranged(AnyChannel):
     """A channel with a full scale."""
 
     range: Annotated[Quantity, Measured(None)] = key(
-        "Full scale of the sensor, ±; of a WAV file, what ±1 stands for.", "check: samples at it are clipped"
+        "Full scale of the sensor, ±; of a WAV file, what ±1 stands for.",
+        "check: samples at it are clipped, and where none is, none is",
     )
 
 

@@ -9,7 +9,7 @@ from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.model import Prepared
 from gear_damping.physics.terms import DampingForce, ExtraStates
 
-INSTANTS = 1000  # of a cycle
+INSTANTS = 1000  # of a cycle over which a loss is summed; a sign change of a hundredth of it has sixteen of them
 CYCLES = 5  # until a state of its own comes back to where it was; the last one counts
 
 

@@ -24,7 +24,7 @@ def with_shape(monkeypatch, passed, harmonics=20):
     monkeypatch.setattr(nominal_gear_pair, "_passed_harmonics", lambda fitted, evidence: passed)
     known = {f"{MESH}.maximum": STIFF, f"{MESH}.minimum": SOFT, f"{MESH}.contact_ratio": RATIO}
     rough = SimpleNamespace(hypothesis=Hypothesis(GearPair(), (FourierMeshStiffness(),), known, ()))
-    return nominal_gear_pair._with_shape(rough, None, harmonics)
+    return nominal_gear_pair.with_shape(rough, None, harmonics)
 
 
 @pytest.mark.parametrize(("passed", "length"), [(6, 8), (9, 12), (14, 16), (20, 20)])
