@@ -35,7 +35,9 @@ noise and its colour, and what is hidden (`tests/oracles/second_rig/drawn.py`). 
 its usual range, and moves at least one record by half a standard deviation of the noise: some of it is small. The
 numbers below were drawn once and were not looked at before the version of the package that answered them was frozen;
 other numbers, by which it was mended, are not counted here. A name is *right* as on that page; the intervals of the
-damping ratio are counted apart, where no damping law is hidden.
+damping ratio are counted apart, where no damping law is hidden. Where the pinion's angle is recorded, it holds the
+vibration too, while the mesh follows the even rotation: some 2 mrad of the mesh apart, which shows 40 dB below the
+motion (r604).
 """
 LAWS = ("coulomb_friction", "power_law_damping")  # whose part a damping ratio holds too
 COLUMNS = ("case", "teeth", "sensor", "noise", "hidden", "verdict", "first cause: found beside the truth",
