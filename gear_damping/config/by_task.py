@@ -22,20 +22,8 @@ OWN_NOISE = "training.noise_snr_db"  # the paper's study has its own
 SEARCHED = ("explain.", "ruled_out")  # how keys of a search for causes begin
 PLAN = "plan"
 NOT_PLANNED = (
-    "family.",
-    "protocol",
-    "training",
-    "model",
-    "wavelet",
-    "measurement",
-    "seeds",
-    "checkpoint",
-    "resume",
-    "write_measurement",
-    "data_folder",
-    "simulator.n_runs",
-    "simulator.n_samples",
-    "simulator.diverged_share",
+    "family.", "protocol", "training", "model", "wavelet", "measurement", "seeds", "checkpoint", "resume",
+    "write_measurement", "data_folder", "simulator.n_runs", "simulator.n_samples", "simulator.diverged_share",
 )  # how keys begin that a plan does not read; a choice of family may say the rig's speed
 COLLECT = "collect"
 UNMEASURED = ("train", "simulate", "evaluate", COLLECT)  # plan and paper refuse a measurement with their own keys

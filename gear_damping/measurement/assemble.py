@@ -139,7 +139,9 @@ class Assembler:
             channels["pinion_speed"] = replace(speed, values=values)
             notes.append("pinion_speed: its mean is the one under conditions")
 
-    def _conditions(self, raw: RawRecord, channels: dict[str, Channel], findings: list[Finding]) -> dict[str, Quantity]:
+    def _conditions(
+        self, raw: RawRecord, channels: dict[str, Channel], findings: list[Finding]
+    ) -> dict[str, Quantity]:
         """A channel beats a condition of the same name, which is said."""
         kept = {}
         for name, quantity in raw.plan.conditions.items():

@@ -99,6 +99,7 @@ class Plan:
     si: Mapping[str, str] | None = None
 
 
+
 def declared_plan(
     content: object, problems: Problems, source: str, own: "Mapping[str, type[System]]" = NONE
 ) -> Plan | None:

@@ -116,6 +116,8 @@ def base_radius(n_teeth: float, module: float, pressure_angle: float) -> float:
     return n_teeth * module * float(np.cos(pressure_angle)) / 2
 
 
+
+
 def shaft_angle(
     plan: EncoderPlan, base: TimeBase, rows: ReadColumn, whole: ReadColumn, file: str
 ) -> NDArray[np.float64]:

@@ -73,7 +73,6 @@ def read_yaml(path: Path) -> object:
         raise InputError(Problem("measurement.path", rule, str(path), remedy))
     return content
 
-
 def data_root() -> Path:
     """The folder of measured records: GEAR_DAMPING_DATA, or `shared/data` beside the checkout."""
     chosen = os.environ.get(DATA_VARIABLE)

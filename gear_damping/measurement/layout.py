@@ -172,8 +172,7 @@ class AnyRecord(Declared):
     )
     role: Annotated[str, OneOf(ROLES)] = key(
         "Fitted, held out, or a sound casing to compare with; absent, task=explain holds out a part by itself, and so "
-        "does task=identify of a gear pair.",
-        "fit and score",
+        "does task=identify of a gear pair.", "fit and score",
     )
     slice: Annotated[tuple[int, int], Rows()] = key("Rows a to b-1, counted from 0.", "rows")
     window: Window = key("The rows between two times, instead of `slice`.", "rows")

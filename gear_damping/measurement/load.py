@@ -52,7 +52,9 @@ def check_declaration(path: str | Path, plugins: Sequence[str | Path] = ()) -> P
     return plan
 
 
-def load_measurement(path: str | Path, max_bytes: int | None = None, plugins: Sequence[str | Path] = ()) -> Measurement:
+def load_measurement(
+    path: str | Path, max_bytes: int | None = None, plugins: Sequence[str | Path] = ()
+) -> Measurement:
     """Read a measurement.yaml and the files that it names.
 
     Args:

@@ -37,8 +37,12 @@ class GearParameters(Declared):
     n_teeth_pinion: Annotated[Quantity, Measured("1", whole=True, within=(5, 500))] = key(
         "Teeth of the pinion.", "known"
     )
-    n_teeth_gear: Annotated[Quantity, Measured("1", whole=True, within=(5, 1000))] = key("Teeth of the gear.", "known")
-    module: Annotated[Quantity, Measured("m", uncertain=True, within=(1e-4, 0.1))] = key("Module of the teeth.", KNOWN)
+    n_teeth_gear: Annotated[Quantity, Measured("1", whole=True, within=(5, 1000))] = key(
+        "Teeth of the gear.", "known"
+    )
+    module: Annotated[Quantity, Measured("m", uncertain=True, within=(1e-4, 0.1))] = key(
+        "Module of the teeth.", KNOWN
+    )
     pressure_angle: Annotated[Quantity, Measured("rad", uncertain=True, within=(0.1, 0.7))] = key(
         "Pressure angle.", KNOWN
     )

@@ -54,20 +54,9 @@ REFUSED = {
     ("gear_pair", "records", "encoders", "gear", "index"): "turns of|holds no pulse",
     ("gear_pair", "records", "encoders", "tacho", "threshold", "unit"): "do not cover the record",
     ("oscillator", "parameters", "stiffness", "unit"): "show nothing beyond",
-    **{
-        ("gear_pair", "parameters", name, "unit"): "lies outside|must be a whole number|finite"
-        for name in (
-            "n_teeth_pinion",
-            "n_teeth_gear",
-            "module",
-            "pressure_angle",
-            "inertia_pinion",
-            "inertia_gear",
-            "mesh_stiffness_max",
-            "mesh_stiffness_min",
-            "contact_ratio",
-        )
-    },
+    **{("gear_pair", "parameters", name, "unit"): "lies outside|must be a whole number|finite"
+       for name in ("n_teeth_pinion", "n_teeth_gear", "module", "pressure_angle", "inertia_pinion", "inertia_gear",
+                    "mesh_stiffness_max", "mesh_stiffness_min", "contact_ratio")},
     **{(system, "records", "window", "unit"): "the record goes from" for system in ("gear_pair", "oscillator")},
     **{(system, "segments", "unit"): "longer than every record" for system in ("gear_pair", "oscillator")},
     ("oscillator", "records", "role"): "is held out, and all rows of it are fitted",

@@ -98,6 +98,13 @@ def test_an_elastic_law_is_fitted_whatever_gain_is_predicted():
     assert math.isclose(ranked[-1].gain, 5e-5)
 
 
+def test_the_simpler_law_that_an_effect_contains_is_fitted_too():
+    names = ("asymmetric_friction", "power_law_damping", "sensor_delay", "sensor_drift", "coulomb_friction")
+    ranked = [score(name, 0.5 / 10**k) for k, name in enumerate(names)]
+    assert "coulomb_friction" in {s.candidate.name for s in chosen(ranked, SearchSettings())}
+    assert "coulomb_friction" not in {s.candidate.name for s in chosen(ranked[1:], SearchSettings(full_fits=3))}
+
+
 @pytest.mark.parametrize(
     ("difference", "correlation", "expected"),
     [(2.0, 1.0, True), (40.0, 1.0, False), (40.0, 10.0, True), (-40.0, 1.0, True)],

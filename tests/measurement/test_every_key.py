@@ -32,10 +32,8 @@ REFUSED = {
     ("gear_pair", "records", "channels", "acceleration", "mounting"): "no meaning on a casing",
     ("gear_pair", "records", "encoders", "pinion", "index"): "turns of",
     ("gear_pair", "records", "encoders", "gear", "index"): "turns of",
-    **{
-        ("gear_pair", "parameters", name, "unit"): "lies outside|must be a whole number"
-        for name in ("module", "pressure_angle", "n_teeth_pinion", "n_teeth_gear", "contact_ratio")
-    },
+    **{("gear_pair", "parameters", name, "unit"): "lies outside|must be a whole number"
+       for name in ("module", "pressure_angle", "n_teeth_pinion", "n_teeth_gear", "contact_ratio")},
 }
 # Where the next value of the kind would be refused beside the others.
 CHOSEN = {

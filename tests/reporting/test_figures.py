@@ -197,7 +197,9 @@ def test_without_a_shaft_the_spectrum_is_over_the_frequencies_that_have_content(
 
 @pytest.mark.parametrize("length", [8, 31])
 def test_a_run_too_short_for_a_spectrum_says_so(length):
-    figure = figures.simulation_figure(figures.ShownRun(TIME[:length], SIGNAL[:length], VELOCITY[:length], "µm", RATE))
+    figure = figures.simulation_figure(
+        figures.ShownRun(TIME[:length], SIGNAL[:length], VELOCITY[:length], "µm", RATE)
+    )
     assert "no spectrum to show" in said(drawn(figure))
     assert "no orbit" in said(figure)
 

@@ -149,7 +149,9 @@ def test_a_measurement_is_refused_where_nothing_looks_at_it(task, word, tmp_path
     assert f"{key} = '{value}': acts in task=identify, task=explain, task=inspect" in said()
 
 
-def test_an_input_that_the_machine_does_not_give_is_named_by_the_key_of_the_configuration(tmp_path, monkeypatch, said):
+def test_an_input_that_the_machine_does_not_give_is_named_by_the_key_of_the_configuration(
+    tmp_path, monkeypatch, said
+):
     """Wherever it is met: no text of reading is that of an output."""
     path = tmp_path / "extended_simulator.yaml"
 

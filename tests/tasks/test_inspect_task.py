@@ -121,7 +121,7 @@ def test_the_start_of_a_file_that_says_nothing_asks_for_what_is_missing(tmp_path
     assert (code, left["metrics"]["sampling_rate"], left["metrics"]["open"]) == (0, None, 3)
     start = tmp_path / "out" / "measurement.yaml"
     text = start.read_text()
-    assert "# nothing in the file says it" in text
+    assert '# nothing in the file says it' in text
     start.write_text(text.replace('{value: "???", unit: Hz}', "{value: 500, unit: Hz}").replace('"???"', "V"))
     record = load_measurement(start).records[0]
     assert record.sampling_rate == RATE

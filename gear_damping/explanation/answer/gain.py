@@ -113,10 +113,9 @@ def _interval(outcome: Outcome, covariances: Tensor, place: int, evidence: Evide
 def damping_ratio(outcome: Outcome, covariances: Tensor) -> dict[str, object] | None:
     """The equivalent damping ratio of every damping law together, in % of critical, at its reference velocity.
 
-    Dry friction, hysteresis and what grows with the deflection count with what a harmonic
-    motion of that velocity loses to them. None where there is no linear
-    stiffness, or none that is told from nothing: then nothing is critical. Laws of damping take energy: the interval
-    ends at zero.
+    Dry friction, hysteresis and what grows with the deflection count with what a harmonic motion of that velocity
+    loses to them. None where there is no linear stiffness, or none that is told from nothing: then nothing is
+    critical. Laws of damping take energy: the interval ends at zero.
     """
     problem, shared = outcome.problem, outcome.fitted.shared
     if _has_no_spring(outcome, covariances):

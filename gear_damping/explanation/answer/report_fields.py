@@ -171,11 +171,8 @@ def _steps(judged: Judged, evidence: Evidence) -> list[str]:
         f"These records cannot be predicted from their start alone: they were fitted and scored in segments of "
         f"{evidence.segments.seconds:.3g} s, each from an initial state of its own."
     )
-    left = (
-        "less than the noise"
-        if before.percent < 0
-        else f"{before.percent:.3g} % of the signal's variance beyond the noise"
-    )
+    beyond = f"{before.percent:.3g} % of the signal's variance beyond the noise"
+    left = "less than the noise" if before.percent < 0 else beyond
     return [
         f"The nominal simulation was fitted first, so that no wrong parameter passes for physics; the fit {ended}.",
         f"On held-out records it leaves {left}; more than {before.threshold:.2g} % counts as significant.",

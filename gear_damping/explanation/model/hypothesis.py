@@ -111,6 +111,11 @@ class Outcome:
         return bool(self.fitted.prediction.sensitivity.isfinite().all()) and isfinite(self.left_out_cost)
 
     @property
+    def of_records(self) -> dict[str, float]:
+        """What single fitted records have of their own, by name."""
+        return {name: value for name, value in self.values.items() if SEPARATOR in name}
+
+    @property
     def left_out_cost(self) -> float:
         """Sum of squares of what is left of conditions that are left out."""
         return sum(float(r.square().sum()) for r in self.left_out)

@@ -12,13 +12,15 @@ from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.fitting import InitialValues, error_amplification_over, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, segments_of
 from gear_damping.explanation.model.nominal_gear_pair import (
+    ANGLES_KEPT,
+    ROUGH_ITERATIONS,
     angles_of,
     first_gear_pair,
     phase_starts,
     with_shape,
 )
 from gear_damping.identification.output_error.least_squares import Rounds
-from gear_damping.identification.output_error.records import SEPARATOR, FreeParameter
+from gear_damping.identification.output_error.records import FreeParameter
 from gear_damping.physics.effects.backlash import GAPS, Backlash
 from gear_damping.physics.terms import Contact
 from gear_damping.simulation.solver_settings import Solver
@@ -26,8 +28,7 @@ from gear_damping.simulation.solver_settings import Solver
 GAP = f"{Backlash.name}.gap"
 STARTS = tuple(share / GAPS[-1] for share in GAPS)  # of the largest usual gap
 LOOKS = 2  # at the angles of the mesh, each followed by a fit: with the damping that is stated, and with what was found
-ROUGH_ITERATIONS, ITERATIONS = 12, 30  # with the ideal wave of the stiffness, and with its free shape
-ANGLES_KEPT = 0.12  # of those all around, after the first round
+ITERATIONS = 30  # over whole records, and with a free shape of the stiffness
 
 
 def with_parting_flanks(evidence: Evidence, harmonics: int, solver: Solver | None) -> Outcome | None:
@@ -59,7 +60,7 @@ def with_parting_flanks(evidence: Evidence, harmonics: int, solver: Solver | Non
 
 def _shaped(rough: Outcome, evidence: Evidence, harmonics: int, solver: Solver | None) -> Outcome:
     """With a free shape of the stiffness, over whole records where these can be predicted from their start."""
-    own, rounds = {name: value for name, value in rough.values.items() if SEPARATOR in name}, Rounds(ITERATIONS)
+    own, rounds = rough.of_records, Rounds(ITERATIONS)
     whole = fit_hypothesis(rough.hypothesis, evidence, InitialValues(own=own, is_near=True), rounds, solver=solver)
     if whole.is_finite and whole.error_amplification <= evidence.settings.most_growth:
         initial = InitialValues(after=whole, is_near=True)

@@ -15,6 +15,8 @@ from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.followed import followed_alone, of_one_flank
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, natural_frequency_hz
 from gear_damping.explanation.model.nominal_gear_pair import (
+    ANGLES_KEPT,
+    ROUGH_ITERATIONS,
     SCANNED,
     angles_of,
     first_gear_pair,
@@ -35,8 +37,6 @@ from gear_damping.physics.systems.traits import Trait, by_trait
 from gear_damping.simulation.solver_settings import Solver
 
 LESS_DAMPING = 0.05  # of what was found: what a local minimum takes for damping
-ROUGH_ITERATIONS = 12  # of each round while the teeth have the contact ratio's shape
-ANGLES_KEPT = 0.12  # of those all around: after the first round one or two valleys are left
 SHAPE_ITERATIONS = 30  # of the fit with a free shape of the stiffness; causes are tried from where it stands
 SHORT_PERIODS = 40.0  # natural periods of the first round
 MOST_SCANS = 8  # of the records' angles, each followed by a fit
@@ -137,7 +137,7 @@ def recalibrated(calibration: Calibration, evidence: Evidence, solver: Solver | 
     One that only some of the records follow stays as it is.
     """
     hypothesis = calibration.nominal.hypothesis
-    own = _own_of(calibration.nominal)
+    own = calibration.nominal.of_records
     if calibration.followed:
         return fit_hypothesis(hypothesis, evidence, InitialValues(own=own), NONE, solver=solver)
     starts = torch.zeros(2, len(hypothesis.common), dtype=torch.float64)
@@ -186,13 +186,8 @@ def _of_others(found: Outcome, followed: Evidence, evidence: Evidence, solver: S
     names = {record.name for record in followed.fit}
     others = replace(evidence, fit=tuple(record for record in evidence.fit if record.name not in names))
     own = {} if evidence.has_index else dict(angles_of(found.hypothesis, others, evidence.duration, solver))
-    own |= _own_of(found)
+    own |= found.of_records
     return fit_hypothesis(found.hypothesis, evidence, InitialValues(own=own), NONE, solver=solver)
-
-
-def _own_of(found: Outcome) -> dict[str, float]:
-    """What single records have of their own, by name."""
-    return {name: value for name, value in found.values.items() if SEPARATOR in name}
 
 
 def _rough_gear_pair(evidence: Evidence, solver: Solver | None) -> Outcome:
