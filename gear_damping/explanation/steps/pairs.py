@@ -26,6 +26,11 @@ class Pair:
     second: Refit
     replaces: bool
 
+    @property
+    def is_inside(self) -> bool:
+        """Whether no parameter of the two effects has run into a bound of what is tried."""
+        return not any(fit.is_at_bound_in(self.second.outcome) for fit in (self.first, self.second))
+
 
 def with_pair(state: State) -> State | None:
     """The state with the pair that leaves least beside what was accepted, or in its place, if any."""
@@ -106,21 +111,12 @@ def _accepted(pairs: Sequence[Pair], current: Excess, state: State) -> Pair | No
         return (current.percent - bench.excess(pair.second.outcome).percent) / current.percent
 
     worth = [pair for pair in pairs if pair.second.t > settings.accepted_t and takes(pair) >= settings.least_share]
-    worth = [pair for pair in worth if _is_inside(pair)] or worth
+    worth = [pair for pair in worth if pair.is_inside] or worth
     best = min(worth, key=lambda pair: pair.second.outcome.left_out_cost, default=None)
     if best is None:
         return None
     alike = [pair for pair in worth if bench.is_as_good(pair.second.outcome, best.second.outcome)]
     return min([best, *alike], key=lambda pair: len(pair.second.outcome.hypothesis.free))
-
-
-def _is_inside(pair: Pair) -> bool:
-    """Whether no parameter of the two effects is at a bound."""
-    outcome, own = pair.second.outcome, (f"{pair.first.name}.", f"{pair.second.name}.")
-    bound = outcome.problem.unknowns.at_bound(outcome.fitted.shared)
-    return not any(
-        int(at) and parameter.name.startswith(own) for parameter, at in zip(outcome.problem.free, bound, strict=False)
-    )
 
 
 def _bases(fits: Sequence[Refit], state: State) -> list[Refit]:

@@ -58,8 +58,12 @@ class Refit:
     @property
     def is_at_bound(self) -> bool:
         """Whether a parameter of the effect itself has run into a bound of what is tried."""
-        own = [p for p in self.outcome.problem.free if p.name.startswith(self.name + ".")]
-        values, sharpest = self.outcome.values, self.score.candidate.sharpest
+        return self.is_at_bound_in(self.outcome)
+
+    def is_at_bound_in(self, outcome: Outcome) -> bool:
+        """The same of a model that holds this effect among others."""
+        own = [p for p in outcome.problem.free if p.name.startswith(self.name + ".")]
+        values, sharpest = outcome.values, self.score.candidate.sharpest
         ends = [(p, p.upper) for p in own] + [(p, p.lower) for p in own if p.name not in sharpest]
         return any(isclose(values[p.name], end, rel_tol=AT_BOUND) for p, end in ends if end)
 

@@ -1,0 +1,44 @@
+"""What is tried where left-out residuals are too blunt, on made-up scores."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from gear_damping.explanation.settings import SearchSettings
+from gear_damping.explanation.state import State
+from gear_damping.explanation.steps.faint import faint_cause
+from tests.explanation.decisions.made_up import NAMES, outcome, scored
+
+SHOWING, LARGE, SMALL = NAMES[:3]
+
+
+def tried(gains, shows, refused=()):
+    """The effects that get a full fit, in order: of these predicted gains, where these show beyond chance."""
+    fitted = []
+    bench = SimpleNamespace(
+        settings=SearchSettings(),
+        budget=SimpleNamespace(refuses=lambda name: name in refused),
+        full_fit=lambda score, *_, **__: fitted.append(score.candidate.name),
+    )
+    visible = SimpleNamespace(shows=lambda name: name in shows, by_name=dict.fromkeys(shows, 10.0))
+    scores = tuple(scored(place, gain) for place, gain in enumerate(gains))
+    state = State(bench, outcome(), outcome(), ranked=scores, left=SimpleNamespace(visible=visible))
+    assert faint_cause(state)[1:] == (None, ())
+    return fitted
+
+
+@pytest.mark.parametrize(
+    ("gains", "shows", "expected"),
+    [
+        ((0.01, 0.9, 0.01), (SHOWING,), [SHOWING, LARGE]),  # a large promise is tried though noise hides it
+        ((0.01, 0.2, 0.01), (SHOWING,), [SHOWING]),  # less than a quarter of what is left
+        ((0.01, 0.2, 0.01), (), []),
+        ((0.0, 0.2, 0.01), (SHOWING,), []),
+    ],
+)
+def test_what_is_worth_a_full_fit(gains, shows, expected):
+    assert tried(gains, shows) == expected
+
+
+def test_a_budget_refuses_by_name():
+    assert tried((0.01, 0.9, 0.5), (SHOWING,), refused=(LARGE,)) == [SHOWING, SMALL]

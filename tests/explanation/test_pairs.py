@@ -1,0 +1,66 @@
+"""Which pair of effects is taken, on made-up fits: inside the bounds before outside, then the smaller of equals."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+from unittest.mock import patch
+
+import pytest
+
+from gear_damping.explanation.settings import SearchSettings
+from gear_damping.explanation.state import State
+from gear_damping.explanation.steps.pairs import Pair, _accepted
+from gear_damping.explanation.trials.bench import Bench
+from gear_damping.explanation.trials.refit import Refit
+from tests.explanation.decisions.made_up import bench, left, outcome
+
+BOUNDS = {"a.force": (0.0, 100.0), "a.width": (0.02, 0.5), "b.share": (-1.0, 1.0)}
+MIDDLE = {"a.force": 10.0, "a.width": 0.1, "b.share": 0.3}
+
+
+def model(cost, **values):
+    """A model of the effects a and b that costs so much on records left out, with these values."""
+    free = [SimpleNamespace(name=name, lower=low, upper=high) for name, (low, high) in BOUNDS.items()]
+    hypothesis = SimpleNamespace(free=free)
+    values = MIDDLE | {name.replace("_", ".", 1): value for name, value in values.items()}
+    return outcome(cost, cost, problem=SimpleNamespace(free=free), hypothesis=hypothesis, values=values)
+
+
+def pair(cost, sharpest=(), t=50.0, **values):
+    """A pair whose model costs so much; the first effect was fitted alone before, well inside its bounds."""
+    score = SimpleNamespace(candidate=SimpleNamespace(name="a", sharpest=sharpest))
+    first = Refit(score, model(0.5), 1.0, t, 1.0, True)
+    second = replace(
+        first, score=SimpleNamespace(candidate=SimpleNamespace(name="b", sharpest=())), outcome=model(cost, **values)
+    )
+    return Pair(first, second, False)
+
+
+@pytest.mark.parametrize(
+    ("values", "sharpest", "inside"),
+    [
+        ({}, (), True),
+        ({"a_width": 0.0201}, (), False),
+        ({"a_width": 0.0201}, ("a.width",), True),  # finer steps would show no more: no bound of what is there
+        ({"a_width": 0.499}, ("a.width",), False),
+        ({"b_share": -0.999}, ("a.width",), False),  # of the second effect
+        ({"a_force": 0.0}, (), True),  # absent is a value like any other
+    ],
+)
+def test_a_pair_is_inside_its_bounds_as_each_of_its_effects_is(values, sharpest, inside):
+    assert pair(0.1, sharpest, **values).is_inside is inside
+
+
+@pytest.mark.parametrize(
+    ("best_is_inside", "t", "taken"),
+    [
+        (True, 50.0, 0),
+        (False, 50.0, 1),  # a law at its bound bends to what it is not
+        (False, 0.5, 0),  # ... but comes before one that is not validated
+    ],
+)
+def test_a_pair_at_a_bound_is_the_last_choice(best_is_inside, t, taken):
+    pairs = [pair(0.10) if best_is_inside else pair(0.10, b_share=1.0), pair(0.15, t=t)]
+    leaves = [(each.second.outcome, left(100 * each.second.outcome.left_out_cost)) for each in pairs]
+    state = State(bench(SearchSettings(), leaves), outcome(), outcome())
+    with patch.object(Bench, "is_as_good", lambda *_: False):
+        assert _accepted(pairs, left(100.0), state) is pairs[taken]
