@@ -117,7 +117,9 @@ def _completed(named: list[tuple[Column, str | None, str]]) -> list[tuple[Column
     channels = {channel for _, channel, _ in named}
     if channels & {"displacement", "velocity", "acceleration"}:
         return named
-    free = sorted((c for c, channel, _ in named if channel is None and c.spectrum), key=lambda c: c.spectrum.centroid)
+    signals = [(column, channel) for column, channel, _ in named if column.spectrum]
+    free = [column for column, channel in signals if channel is None] or [column for column, _ in signals]
+    free.sort(key=lambda column: column.spectrum.centroid)  # an input by its name that nothing answers is the answer
     if not free:
         return named
     chosen = {id(free[0]): ("displacement", "the slowest column; what it is, only you know")}
@@ -186,10 +188,10 @@ def _unit(column: Column, channel: str | None) -> tuple[str, str]:
 
 def _unit_of_name(column: Column) -> str | None:
     """The unit that a name ends in, as in `speed_rpm`, or that it is, as in `V1`."""
-    words = re.split(r"[_\s/.\[\](]+", str(column.reference).strip(")] ").lower())
-    if len(words) > 1 and words[-1] in _NAMED_UNITS:
-        return _NAMED_UNITS[words[-1]]
-    return "V" if re.match(r"^[uv]\d+$", words[-1]) else None
+    words = re.split(r"[_\s/.\[\](]+", str(column.reference).strip(")] "))
+    if len(words) > 1 and words[-1].lower() in _NAMED_UNITS:
+        return _NAMED_UNITS[words[-1].lower()]
+    return "V" if re.match(r"^[UV]\d+$", words[-1]) else None  # a small v is as well a velocity
 
 
 def _unit_by_meaning(column: Column, channel: str | None) -> tuple[str, str]:

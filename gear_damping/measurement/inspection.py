@@ -17,6 +17,7 @@ from gear_damping.measurement.time_column import Stamps, find_stamps
 from gear_damping.measurement.timebase import TimeBase, stamped_time, steady_time
 
 _SPARSE = 0.5  # of the longest stretch of values of any column: one with a shorter one is filled here and there
+_EVEN = 1e-6  # of an advance from sample to sample: differences below it are rounding
 SHORTEST = 1e-15  # s between two samples: below it lie damaged stamps, and no sensor
 
 
@@ -188,4 +189,11 @@ def _seen(
     own = clock[1] if clock else None
     rate = base.sampling_rate if base is not None and column.values.size == length else own
     spectrum = spectrum_of(column.inside, rate or 1.0)
-    return replace(column, kind=kind, says=says, step=step_of(column.inside), spectrum=spectrum, rate=rate)
+    return replace(column, kind=kind, says=says, step=_step_of(column.inside), spectrum=spectrum, rate=rate)
+
+
+def _step_of(values: NDArray[np.float64]) -> float:
+    """The quantisation step; none of values that go on by one amount, which is their speed and no converter's."""
+    advance = np.diff(values)
+    is_ramp = advance.size and np.ptp(advance) <= _EVEN * np.abs(advance).max()
+    return 0.0 if is_ramp else step_of(values)

@@ -159,10 +159,26 @@ def test_of_several_displacements_the_one_that_swings_is_declared(tmp_path):
     assert used == {"phi": "displacement"}
 
 
+@pytest.mark.parametrize(
+    ("faster", "used"),
+    [(None, {"Voltage": "displacement"}), ("current", {"Voltage": "displacement", "current": "force"})],
+)
+def test_an_input_by_its_name_that_nothing_answers_is_the_answer(faster, used, tmp_path):
+    more = {faster: RNG(7).normal(size=N)} if faster else {}
+    assert channels(tmp_path, time=T, Voltage=np.exp(-T) * np.sin(20 * T), **more)[1] == used
+
+
+def test_the_even_advance_of_an_angle_is_no_step_of_a_converter(tmp_path):
+    ramp = 2 * np.pi * 11.3 * T
+    found = inspected(tmp_path, time=T, theta=ramp, coarse=np.round(ramp / 0.1) * 0.1)
+    assert column(found, "theta").step == 0
+    assert column(found, "coarse").step == pytest.approx(0.1)
+
+
 def test_a_unit_that_nobody_knows_stays_open(tmp_path):
-    found = inspected(tmp_path, time=T, x=np.sin(20 * T), angle=np.sin(9 * T), travel_mm=np.cos(7 * T))
+    found = inspected(tmp_path, time=T, x=np.sin(20 * T), angle=np.sin(9 * T), travel_mm=np.cos(7 * T), v1=-T, V2=T**2)
     units = {g.column.reference: g.unit for g in guesses(found, "oscillator")}
-    assert units == {"x": UNKNOWN, "angle": "rad", "travel_mm": "mm"}
+    assert units == {"x": UNKNOWN, "angle": "rad", "travel_mm": "mm", "v1": UNKNOWN, "V2": "V"}
 
 
 def test_stamps_closer_than_anything_is_sampled_give_no_rate(tmp_path):
