@@ -37,6 +37,7 @@ class DampingEstimate:
         frequency_hz: Of the damped vibration.
         amplitudes: Largest and smallest amplitude that it is a mean over, in the unit of the response.
         curve: Against amplitude, of estimators that tell it.
+        doubt: Why the record is not what the estimator takes it for, and what suits it; "" where nothing says so.
     """
 
     damping_ratio_percent: float
@@ -44,3 +45,4 @@ class DampingEstimate:
     frequency_hz: float
     amplitudes: tuple[float, float]
     curve: DampingCurve | None = None
+    doubt: str = ""

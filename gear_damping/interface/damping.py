@@ -73,7 +73,7 @@ class Damping:
 
     def table(self) -> str:
         """A row for each record and estimator, as text."""
-        rows, reasons = [], {}
+        rows, reasons, doubts = [], {}, []
         for record in self.measurement.records:
             for name, found in self.found.items():
                 one = found[record.name]
@@ -81,6 +81,7 @@ class Damping:
                     rows.append((record.name, name, "-", "", "", ""))
                     reasons.setdefault((name, one.unsuited), []).append(record.name)
                     continue
+                doubts += [f"{name} of {record.name} is in doubt: {one.doubt}"] if one.doubt else []
                 low, high = one.interval95
                 ratio, interval = f"{one.damping_ratio_percent:.4g}", f"{low:.4g} … {high:.4g}"
                 declared = self._declared(record)
@@ -88,7 +89,7 @@ class Damping:
                 amplitudes = f"{large} … {small} {pretty_unit(declared.declared_unit)}"
                 rows.append((record.name, name, ratio, interval, f"{one.frequency_hz:.5g}", amplitudes))
         said = [f"{name} says nothing of {', '.join(of)}: {why}" for (name, why), of in reasons.items()]
-        return "\n".join([damping_table(rows).rstrip(), *said]) + "\n"
+        return "\n".join([damping_table(rows).rstrip(), *said, *doubts]) + "\n"
 
     def plot(self) -> Figure:
         """The damping ratio against amplitude, record by record, with bands."""
@@ -126,6 +127,7 @@ class Damping:
             "frequency_hz": one.frequency_hz,
             "amplitudes": [size / factor for size in one.amplitudes],
             "curve": one.curve and _plain_curve(one.curve, factor),
+            "doubt": one.doubt or None,
         }
 
 

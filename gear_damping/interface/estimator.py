@@ -45,6 +45,7 @@ class Prediction:
         amplitudes: Largest and smallest amplitude that the ratio is a mean over, in the unit of the loaded channel.
         curve: The ratio against amplitude, of estimators that tell it.
         unsuited: Why the record does not suit it, and what would.
+        doubt: Why the record is not what the estimator takes it for, though it says something.
         familiarity: How like the runs of a network's training the record is; None where nothing tells it.
     """
 
@@ -56,6 +57,7 @@ class Prediction:
     amplitudes: tuple[float, float] | None = None
     curve: DampingCurve | None = None
     unsuited: str = ""
+    doubt: str = ""
     familiarity: Familiarity | None = None
 
 

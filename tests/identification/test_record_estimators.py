@@ -58,6 +58,7 @@ def test_a_linear_decay(name, ratio):
     assert found.frequency_hz == pytest.approx(FREQUENCY * math.sqrt(1 - ratio**2), rel=2e-3)
     assert found.amplitudes[0] == pytest.approx(0.02, rel=0.12)
     assert found.amplitudes[1] < found.amplitudes[0]
+    assert found.doubt == ""
 
 
 def quadratic_decay():
@@ -65,6 +66,21 @@ def quadratic_decay():
     time = np.arange(12000) / RATE
     rates = lambda t, y: (y[1], -QUADRATIC * y[1] * abs(y[1]) - OMEGA**2 * y[0])  # noqa: E731
     return solve_ivp(rates, (0, time[-1]), (0.02, 0.0), t_eval=time, rtol=1e-9, atol=1e-12).y[0]
+
+
+@pytest.mark.parametrize("swing", [0.1, 2.0])
+def test_half_power_doubts_a_line_that_a_moving_frequency_widens(swing):
+    """A pendulum of 1 % of critical for small swings, by an integrator: a wide one is slower, and has a wider line."""
+    time = np.arange(6000) / RATE
+    rates = lambda t, y: (y[1], -0.02 * OMEGA * y[1] - OMEGA**2 * np.sin(y[0]))  # noqa: E731
+    swung = solve_ivp(rates, (0, time[-1]), (swing, 0.0), t_eval=time, rtol=1e-9, atol=1e-12).y[0]
+    found = KINDS["half_power"]({}).estimate(recorded(swung + noise(swung.size, 1, swing / 100)))
+    if swing < 1:
+        assert found.doubt == ""
+        assert found.damping_ratio_percent == pytest.approx(1.0, abs=0.03)
+    else:
+        assert "wavelet_ridge" in found.doubt
+        assert found.damping_ratio_percent > 1.5
 
 
 def test_the_ridge_tells_damping_that_grows_with_amplitude():

@@ -1,5 +1,6 @@
 """The width of the resonance in the spectrum of a free decay, at half its power."""
 
+from dataclasses import replace
 from functools import cache
 from math import pi
 from typing import ClassVar
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 from gear_damping.identification.damping_estimate import DampingEstimate, UnsuitedRecord
 from gear_damping.identification.decay_rate import LEVEL, ratio_percent
 from gear_damping.identification.estimators.base import Recorded, RecordEstimator
+from gear_damping.identification.free_vibration import FreeVibration
 from gear_damping.setting import Setting
 
 Array = NDArray[np.float64]
@@ -38,6 +40,10 @@ class HalfPower(RecordEstimator):
     def estimate(self, recorded: Recorded) -> DampingEstimate:
         """One figure for the whole decay, which is mostly that of its beginning."""
         free = recorded.free_vibration
+        found = self._of(free)
+        return replace(found, doubt=self._doubt(found, free))
+
+    def _of(self, free: FreeVibration) -> DampingEstimate:
         seconds = free.values.size / free.sampling_rate
         frequencies = _refined(free.values, free.sampling_rate, free.frequency_hz)
         tones = np.exp(-2j * pi * np.outer(frequencies, free.time))
@@ -57,6 +63,25 @@ class HalfPower(RecordEstimator):
         value, lower, upper = (float(one) for one in ratio_percent(rates, frequency))
         size = float(np.abs(model).max())
         return DampingEstimate(value, (lower, upper), frequency, (size, size * float(np.exp(-nepers))))
+
+    def _doubt(self, whole: DampingEstimate, free: FreeVibration) -> str:
+        """Whether the later half of the decay, where it swings less, has another width: then no exponential is there.
+
+        A frequency that moves with the amplitude widens the line as damping does.
+        """
+        later = replace(free, values=free.values[free.values.size // 2 :])
+        try:
+            found = self._of(later)
+        except UnsuitedRecord:
+            return ""
+        apart = max(whole.interval95[0] - found.interval95[1], found.interval95[0] - whole.interval95[1])
+        if apart <= 0:
+            return ""
+        return (
+            f"the later half of the decay has a damping ratio of {found.damping_ratio_percent:.3g} % by its own "
+            f"width, not {whole.damping_ratio_percent:.3g} %: frequency or damping changes with the amplitude, and "
+            "widens the line by that; wavelet_ridge tells both against the amplitude"
+        )
 
     def _quantiles(self, noise: Array, line: Array, frequencies: Array, seconds: float) -> tuple[float, float]:
         """Of the fall in nepers, over draws of white noise through the spectrum.

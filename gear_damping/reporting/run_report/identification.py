@@ -70,7 +70,7 @@ def _overlay(left: Left, content: Mapping[str, Any]) -> list[Picture]:
 
 
 def _of_estimators(left: Left, content: Mapping[str, Any]) -> RunReport:
-    rows, silent = [], {}
+    rows, silent, doubts = [], {}, []
     laws = content.get("laws") or {}
     for record, found in content["records"].items():
         for name, one in (found | laws.get(record, {})).items():
@@ -78,9 +78,11 @@ def _of_estimators(left: Left, content: Mapping[str, Any]) -> RunReport:
                 silent.setdefault((name, one.get("unsuited") or ""), []).append(record)
             else:
                 rows.append((record, f"`{name}`", *_told(one, content["channels"][record]["unit"])))
+                doubts += [f"`{name}` of {record} is in doubt: {one['doubt']}."] if one.get("doubt") else []
     headings = ("record", "estimator", "damping ratio / %", "95 % interval", "frequency / Hz", "amplitudes")
     table = Table("Damping ratio in % of critical by each estimator.", headings, rows, [2, 3, 4, 5])
     notes = [f"`{name}` says nothing of {', '.join(records)}: {why}." for (name, why), records in silent.items()]
+    notes += doubts
     ratios = [float(row[2]) for row in rows]
     lead = (
         f"Damping ratio {number(min(ratios), 3)} … {number(max(ratios), 3)} % of critical, by record and estimator."
