@@ -52,9 +52,12 @@ def _shortened(text: str) -> str:
 def nearest(word: str, choices: Sequence[str]) -> str:
     """The remedy sentence for a name that is not among `choices`: the nearest one, or the list.
 
-    The same words in another order are nearest: of `pinion_inertia` that is `inertia_pinion`, not `inertia_gear`.
+    The same words in another order are nearest: of `pinion_inertia` that is `inertia_pinion`, not `inertia_gear`. Then
+    comes the only one that has all the words: of `pinion_teeth` that is `n_teeth_pinion`.
     """
     found = [choice for choice in choices if _words(choice) == _words(word)]
+    having = [choice for choice in choices if set(_words(word)) <= set(_words(choice))]
+    found = found or (having if len(having) == 1 else [])
     found = found or get_close_matches(str(word), list(choices), n=1, cutoff=0.5)
     if found:
         return f"did you mean '{found[0]}'?"

@@ -249,7 +249,16 @@ def _unknown(model: type[Declared], name: object, value: object) -> Problem:
     if name in model.refused:
         reason, remedy = model.refused[name]
         return Problem("", f"has no meaning for {model.title}: {reason}", value, remedy)
+    within = [part for part in names(model) if name in _names_at(model, (part,))]
+    if within:
+        return Problem("", model.unknown, None, f"it is a key of {' or of '.join(within)}: write it there")
     return Problem("", model.unknown, None, nearest(str(name), tuple(names(model))))
+
+
+def _names_at(model: type[Declared], place: Path) -> tuple[str, ...]:
+    """The keys of the mapping at a place; none where a plain value or a list stands."""
+    found = _model_at(model, place)
+    return tuple(names(found)) if found is not None else ()
 
 
 def _parts(key: str) -> Path:

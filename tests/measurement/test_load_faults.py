@@ -48,6 +48,13 @@ def test_an_unknown_key_names_the_nearest(bench, place, key, right):
     assert "measurement.yaml" in problem
 
 
+def test_a_key_one_floor_too_high_is_sent_to_its_place(bench):
+    bench.record["pinion_speed"] = {"value": 300, "unit": "rpm"}
+    assert "pinion_speed: unknown key; remedy: it is a key of channels or of conditions: write it there" in (
+        bench.only_problem()
+    )
+
+
 @pytest.mark.timeout(20)
 @pytest.mark.parametrize("key", ["uncertain.1.2", ".", "value.unit", "a" * 3000])
 def test_an_unknown_key_with_dots_ends_as_a_message(bench, key):

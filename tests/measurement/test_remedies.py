@@ -13,6 +13,18 @@ def test_the_same_words_in_another_order_are_nearest():
 
 
 @pytest.mark.parametrize(
+    ("word", "choices", "right"),
+    [
+        ("pinion_teeth", ["n_teeth_gear", "n_teeth_pinion"], "n_teeth_pinion"),
+        ("teeth", ["n_teeth_gear", "n_teeth_pinion", "tooth"], "tooth"),  # two have all its words: spelling decides
+        ("backlash", ["backlash_gap", "gear_lash"], "backlash_gap"),
+    ],
+)
+def test_the_only_name_with_all_the_words_is_nearest(word, choices, right):
+    assert nearest(word, choices) == f"did you mean '{right}'?"
+
+
+@pytest.mark.parametrize(
     ("text", "product", "factor"),
     [
         ("kgm2", "kg*m2", 1.0), ("kgm^2", "kg*m^2", 1.0), ("kg m^2", "kg*m^2", 1.0), ("kg.m2", "kg*m2", 1.0),
