@@ -15,6 +15,7 @@ from gear_damping.identification.output_error.least_squares import NONE, Rounds
 from gear_damping.identification.output_error.problem import OutputErrorProblem
 from gear_damping.identification.output_error.records import FreeParameter
 from gear_damping.identification.output_error.segments import in_segments
+from gear_damping.measurement.spectral_floor import spectrum_of
 from gear_damping.physics.effects.backlash import Backlash
 from gear_damping.physics.effects.fourier_mesh_stiffness import FourierMeshStiffness
 from gear_damping.physics.effects.mesh_stiffness_shape import MeshStiffnessShape
@@ -95,6 +96,16 @@ def first_gear_pair(evidence: Evidence) -> Hypothesis:
     free += [_uncertain(name, stated[name], relative) for name, relative in uncertain.items() if name in stated]
     told = tuple(parameter for parameter in free if parameter.name not in untold)
     return Hypothesis(system, tuple(effects), start | {DAMPING: damping}, told)
+
+
+def standing(evidence: Evidence, solver: Solver | None = None) -> Outcome:
+    """A standing gear pair, fitted from what is stated and from where it rings at the strongest line of a record."""
+    first = first_gear_pair(evidence)
+    record, own = evidence.fit[0], natural_frequency_hz(first.model, first.given)
+    found = spectrum_of(record.response.numpy(), record.sampling_rate)
+    begun = [first] if found is None else [first, with_stiffness(first, (found.strongest / own) ** 2)]
+    tried = [fit_hypothesis(hypothesis, evidence, solver=solver) for hypothesis in begun]
+    return min(tried, key=lambda outcome: outcome.fitted.cost)
 
 
 def shaped(rough: Outcome, evidence: Evidence, iterations: int, solver: Solver | None = None) -> Outcome:

@@ -24,6 +24,7 @@ from gear_damping.explanation.model.nominal_gear_pair import (
     leaves_noise,
     phase_starts,
     shaped,
+    standing,
     with_stiffness,
 )
 from gear_damping.explanation.statistics.paired import paired_gain
@@ -149,7 +150,7 @@ def recalibrated(calibration: Calibration, evidence: Evidence, solver: Solver | 
 def _gear_pair(evidence: Evidence, solver: Solver | None) -> Calibration:
     """Mesh phase by a scan, damping and stiffness, free harmonics of the stiffness, then speeds that vary a little."""
     if is_standing(evidence):
-        return Calibration(evidence, fit_hypothesis(first_gear_pair(evidence), evidence, solver=solver))
+        return Calibration(evidence, standing(evidence, solver))
     driven = of_one_flank(evidence)
     if driven is not evidence:
         return _carried_over(_gear_pair(driven, solver), evidence, solver)
