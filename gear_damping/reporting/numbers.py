@@ -30,7 +30,9 @@ def number(value: float | None, digits: int = 4) -> str:
     """A number with so many digits that count; a dash where there is none."""
     if value is None or not isfinite(value):
         return NOTHING
-    return _EXPONENT.sub(r"e\1", f"{value:.{digits}g}")
+    text = f"{value:.{digits}g}"
+    is_plain = "e" in text and _PLAIN[0] <= abs(value) < _PLAIN[1]  # 9.6e+02 is read as 960
+    return f"{float(text):.0f}" if is_plain else _EXPONENT.sub(r"e\1", text)
 
 
 def quantity(value: float | None, unit: str | None, interval: Interval = None, digits: int = 3) -> str:
