@@ -7,16 +7,18 @@ import pytest
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import State
 from gear_damping.explanation.steps.faint import faint_cause
+from gear_damping.physics.systems.traits import Trait
 from tests.explanation.decisions.made_up import NAMES, outcome, scored
 
 SHOWING, LARGE, SMALL = NAMES[:3]
 
 
-def tried(gains, shows, refused=()):
+def tried(gains, shows, refused=(), cheap=False):
     """The effects that get a full fit, in order: of these predicted gains, where these show beyond chance."""
     fitted = []
     bench = SimpleNamespace(
         settings=SearchSettings(),
+        evidence=SimpleNamespace(has=lambda trait: trait is Trait.REST and cheap),
         budget=SimpleNamespace(refuses=lambda name: name in refused),
         full_fit=lambda score, *_, **__: fitted.append(score.candidate.name),
     )
@@ -42,3 +44,14 @@ def test_what_is_worth_a_full_fit(gains, shows, expected):
 
 def test_a_budget_refuses_by_name():
     assert tried((0.01, 0.9, 0.5), (SHOWING,), refused=(LARGE,)) == [SHOWING, SMALL]
+
+
+@pytest.mark.parametrize(
+    ("gains", "shows", "expected"),
+    [
+        ((0.01, 0.2, 0.1), (SHOWING,), [SHOWING, LARGE, SMALL]),
+        ((0.01, 0.2, 0.1), (), []),  # nothing is sought where nothing shows
+    ],
+)
+def test_where_fits_are_cheap_whatever_may_be_meant_is_tried(gains, shows, expected):
+    assert tried(gains, shows, cheap=True) == expected

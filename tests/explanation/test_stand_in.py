@@ -9,7 +9,7 @@ import pytest
 import torch
 from scipy.integrate import solve_ivp
 
-from gear_damping.explanation.answer.stand_in import is_untold, shape_without_name, stand_ins
+from gear_damping.explanation.answer.stand_in import beyond_chance, is_untold, shape_without_name, stand_ins
 from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.fitting import fit_hypothesis
@@ -158,3 +158,20 @@ def test_a_record_that_is_too_short_for_a_line_has_none_there(forced, samples):
 def test_segments_have_no_line_of_their_own(forced):
     cut = replace(forced.bench.evidence, segments=Segments(2.0))
     assert strongest_line(fit_hypothesis(forced.nominal.hypothesis, cut), cut) is None
+
+
+@pytest.mark.parametrize(("numbers", "blocks"), [(1, 30), (9, 60), (24, 400)])
+def test_numbers_that_mean_nothing_take_nothing_beyond_chance(numbers, blocks):
+    """Regressions of noise on columns of noise: the mean share that they take is no more than chance."""
+    random = np.random.default_rng(numbers)
+    shares = []
+    for _ in range(200):
+        columns, residual = random.normal(size=(blocks, numbers)), random.normal(size=blocks)
+        columns, residual = columns - columns.mean(0), residual - residual.mean()
+        left = residual - columns @ np.linalg.lstsq(columns, residual, rcond=None)[0]
+        shares.append(beyond_chance(1 - left @ left / (residual @ residual), numbers, blocks))
+    assert abs(np.mean(shares)) < 4 * np.std(shares) / 200**0.5
+
+
+def test_as_many_numbers_as_blocks_tell_nothing():
+    assert beyond_chance(0.99, 24, 9.0) == 0.0

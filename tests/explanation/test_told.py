@@ -122,7 +122,7 @@ def test_what_explains_all_and_is_missed_is_there_whatever_its_size(left, as_goo
     Of what is tried as a whole, one that is not known is no cause.
     """
     monkeypatch.setattr("gear_damping.explanation.steps.told.is_told", lambda *_: False)
-    nominal, outcome, without = (SimpleNamespace(is_finite=True) for _ in range(3))
+    nominal, outcome, without = (SimpleNamespace(is_finite=True, left_out_cost=1.0) for _ in range(3))
     bench = SimpleNamespace(
         evidence=None,
         settings=SearchSettings(),
@@ -136,3 +136,22 @@ def test_what_explains_all_and_is_missed_is_there_whatever_its_size(left, as_goo
     found = told_of(state)
     assert bool(found.accepted) is kept
     assert found.outcome is (outcome if kept else without)
+
+
+@pytest.mark.parametrize("order", ["abc", "bca", "cab"])
+def test_of_causes_that_trade_against_each_other_the_least_needed_goes_first(order, monkeypatch):
+    """Three without a size of their own; without `b` most is left, and beside it alone its size is told."""
+    costs = {"a": 2.0, "b": 5.0, "c": 1.0}  # of left-out records without each
+    monkeypatch.setattr("gear_damping.explanation.steps.told.is_told", lambda outcome, *_: outcome.alone)
+    whole = SimpleNamespace(is_finite=True, left_out_cost=0.5, alone=False, causes=frozenset("abc"))
+
+    def without(outcome, name):
+        kept = outcome.causes - {name}
+        return SimpleNamespace(is_finite=True, left_out_cost=costs[name], alone=len(kept) == 1, causes=kept)
+
+    bench = SimpleNamespace(evidence=None, settings=SearchSettings(), log=lambda text: None, without=without)
+    refit = SimpleNamespace(score=SimpleNamespace(candidate=SimpleNamespace(non_nested=True)))
+    state = State(bench, None, whole, tuple(Accepted(name, refit, 0.5, ()) for name in order))
+    found = told_of(state)
+    assert [cause.name for cause in found.accepted] == ["b"]
+    assert found.unsized == {"a", "c"}

@@ -28,7 +28,6 @@ from gear_damping.explanation.trials.unnamed import unnamed_columns
 from gear_damping.physics.terms import ExtraStates
 
 GOES_ON = 3.0  # times the longest record: what swings for so long has lost a quarter of its size at its end
-INDEPENDENT = 1e-6  # of what a cause adds: less is left of it beside a family that can do the same
 
 
 @dataclass(frozen=True)
@@ -151,11 +150,12 @@ def _stand_in(cause: Accepted, state: State) -> StandIn | None:
     free = sum(parameter.name.startswith(cause.name + ".") for parameter in state.outcome.problem.free)
     block, found = block_of(without, bench.evidence), []
     beyond_noise = 1 - min(bench.noise_cost(without) / total, 1.0)
-    least = max(cause_takes, bench.settings.taken_by_one * beyond_noise)
+    by_itself = beyond_chance(cause_takes, free, len(added) / block)
+    least = max(by_itself, bench.settings.taken_by_one * beyond_noise)
     for alternative in _alternatives(without, project, state):
         left, other = alternative.project_out(residual), alternative.project_out(change)
         takes = 1 - float(left.square().sum()) / total
-        if takes <= least:
+        if beyond_chance(takes, alternative.numbers, len(added) / block) <= least:
             continue
         share = float(other.square().sum()) / energy
         why = f"with {alternative.numbers} numbers in the place of {free}" if alternative.numbers < free else ""
@@ -165,6 +165,18 @@ def _stand_in(cause: Accepted, state: State) -> StandIn | None:
         if why:
             found.append(StandIn(cause.name, alternative.name, takes, cause_takes, why))
     return max(found, key=lambda one: one.takes, default=None)
+
+
+def beyond_chance(takes: float, numbers: int, blocks: float) -> float:
+    """The share of residuals that so many numbers take, less what they take of any (Ezekiel 1930).
+
+    Args:
+        takes: The share.
+        numbers: How many are fitted.
+        blocks: Of residuals that are independent of each other; as few as there are numbers tell nothing.
+    """
+    free = blocks - 1 - numbers
+    return 1 - (1 - takes) * (blocks - 1) / free if free > 0 else 0.0
 
 
 def _size_within(
@@ -180,11 +192,11 @@ def _size_within(
         block: Samples over which residuals may be correlated.
         settings: Thresholds.
     """
-    if share <= INDEPENDENT:
+    tolerance = settings.homogeneity_tolerance / max(share, 1e-300) ** 0.5
+    if tolerance >= 1:  # so little is the cause's own that its absence, too, is as near as its form is known
         return None
     size = float((change * residual).sum() / change.square().sum())
     column, left_over = (signal[:samples, 0] for signal in (change, residual - size * change))
-    tolerance = settings.homogeneity_tolerance / share**0.5
     chance = norm.sf((1 - size) / hypot(float(error_of(column, left_over, block)), tolerance))
     return size if chance < settings.homogeneity_level else None
 

@@ -10,8 +10,9 @@ from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.state import State
 from gear_damping.explanation.trials.assess import Assessment
 from gear_damping.explanation.trials.bench import Bench
-from gear_damping.explanation.trials.refit import Refit
+from gear_damping.explanation.trials.refit import Refit, chosen
 from gear_damping.explanation.trials.score import best_by_effect
+from gear_damping.physics.systems.traits import Trait
 
 
 def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
@@ -27,6 +28,9 @@ def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
     names = sorted((n for n in best if seen.visible.shows(n)), key=lambda n: -seen.visible.by_name[n])
     names += [n for n in best if n not in names and best[n].gain >= bench.settings.least_share]
     names = names[: bench.settings.full_fits]
+    if names and bench.evidence.has(Trait.REST):  # where fits are cheap, whatever may be meant stands beside them
+        likely = chosen(state.ranked, bench.settings, springs=True)
+        names += [name for name in best_by_effect(likely) if name not in names]
     names = [name for name in names if best[name].gain > 0 and not bench.budget.refuses(name)]
     found = (bench.full_fit(best[name], state.outcome, reach=state.outcome.fitted.cost) for name in names)
     fits = [fit for fit in found if fit is not None]

@@ -13,7 +13,7 @@ from gear_damping.explanation.evidence.excess import is_all
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.covariance import CORRELATED_PERIODS, SILENT, covariance_of
 from gear_damping.explanation.model.hypothesis import Outcome, time_scale
-from gear_damping.explanation.state import State
+from gear_damping.explanation.state import Accepted, State
 from gear_damping.explanation.trials.refit import Refit
 from gear_damping.identification.output_error.normal_equations import nuisance_basis, project_out
 from gear_damping.identification.output_error.uncertainty import QUANTILE, long_run
@@ -29,20 +29,30 @@ def told(state: State) -> State:
     its edges): what explains all, and is missed when it is taken out, is there whatever its size. That is no rescue for
     what is tried as a whole: of any stiffness and any inertia, the torsion of a shaft bends to what another one does.
     """
-    bench = state.bench
+    while (untold := _untold(state)) is not None:
+        cause, outcome = untold
+        state.bench.log(f"{cause.name} lowers the cost, but its size is not told from none")
+        kept = tuple(other for other in state.accepted if other is not cause)
+        rejected, unsized = (cause.refit, *state.rejected), state.unsized | {cause.name}
+        state = replace(state, outcome=outcome, accepted=kept, rejected=rejected, unsized=unsized)
+    return state
+
+
+def _untold(state: State) -> tuple[Accepted, Outcome] | None:
+    """A cause of no known size and the model without it, None where all are told.
+
+    Of several that trade against each other, the one without which conditions that are left out are predicted best.
+    """
+    bench, found = state.bench, []
     for cause in state.accepted:
         runs_away = not state.outcome.is_finite  # with a small change: then it tells nothing
         if not runs_away and is_told(state.outcome, cause.refit, bench.evidence):
             continue
         outcome = bench.without(state.outcome, cause.name)
         is_missed = not runs_away and not cause.refit.score.candidate.non_nested and _explain_all(state)
-        if is_missed and not bench.is_as_good(outcome, state.outcome):
-            continue
-        bench.log(f"{cause.name} lowers the cost, but its size is not told from none")
-        kept = tuple(other for other in state.accepted if other is not cause)
-        rejected, unsized = (cause.refit, *state.rejected), state.unsized | {cause.name}
-        state = replace(state, outcome=outcome, accepted=kept, rejected=rejected, unsized=unsized)
-    return state
+        if not is_missed or bench.is_as_good(outcome, state.outcome):
+            found.append((cause, outcome))
+    return min(found, key=lambda one: one[1].left_out_cost, default=None)
 
 
 def _explain_all(state: State) -> bool:

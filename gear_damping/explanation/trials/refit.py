@@ -90,9 +90,9 @@ def chosen(scores: Sequence[Score], settings: SearchSettings, least: float = 0.0
         scores: Every candidate, the best first.
         settings: How many are worth it.
         least: Of the first one's predicted gain, that another needs.
-        springs: Whether everything far from linear is worth one, as for an oscillator, whose fits are cheap: a law that
-            is even in the deflection pulls the frequency by its square, and what is tried as a whole (a sensor that
-            saturates) has little gain at a wrong size. No linear score foresees either.
+        springs: Whether every promising one and everything far from linear is worth one, as for an oscillator, whose
+            fits are cheap: a law that is even in the deflection pulls the frequency by its square, and what is tried
+            as a whole (a sensor that saturates) has little gain at a wrong size. No linear score foresees either.
     """
     forms: dict[tuple, Score] = {}
     for score in scores:
@@ -101,7 +101,7 @@ def chosen(scores: Sequence[Score], settings: SearchSettings, least: float = 0.0
     ranked = list(best_by_effect(every).values())
     first = [score for score in ranked[: settings.full_fits] if score.gain >= least * ranked[0].gain]
     promising = [score for score in ranked[settings.full_fits :] if score.gain > LEAST_PREDICTED_GAIN * ranked[0].gain]
-    alike = [score for score in promising if collinearity(ranked[0], score) > NEARLY_COLLINEAR]
+    alike = [score for score in promising if springs or collinearity(ranked[0], score) > NEARLY_COLLINEAR]
     instead = [score for score in ranked if score.candidate.replaced]  # adds nothing that could overfit: always tried
     far = [score for score in ranked if springs and score.gain > 0 and _is_far_from_linear(score.candidate)]
     taken = [*(first + alike)[: settings.most_full_fits], *instead, *far]
