@@ -188,12 +188,16 @@ def _judged(found: Confirmed, notes: Sequence[str]) -> Judged:
     evidence, settings, budget = state.bench.evidence, state.bench.settings, state.bench.budget
     stands_in = swings_on(state) or next((one.sentence for one in stand_ins(state)), "")  # which may be refused too
     not_tried = tuple(budget.not_tried)
-    fitted = excess(state.nominal.fit_residuals, evidence.fitted, state.noise, settings)
+    fitted, beyond = (
+        excess(state.nominal.fit_residuals, evidence.fitted, noise, settings)
+        for noise in (state.noise, state.bench.floor)
+    )
     known = Known(
         converged=state.outcome.fitted.converged,
         is_one=_is_one(state),
         whole=_taken_of_all(state),
         fitted=fitted.percent,
+        fitted_beyond_sensor=beyond.percent if beyond.misfit > settings.small_misfit else 0.0,
         untried=not_tried,
         of_fit=1 - state.outcome.fitted.cost / max(state.nominal.fitted.cost, 1e-300),
         stands_in=stands_in,

@@ -19,6 +19,7 @@ from gear_damping.reporting import figures, tables
 from gear_damping.simulation.solver_settings import Progress, Solver
 
 NEWTONS = ("N*s/m", "N/m")  # units of what is not per unit of mass
+NO_DAMPING = 1e-6  # %: a fit that comes so near to 0 has come to the end of its range
 MOST_SAMPLES = 200_000  # beyond which the test of what is random takes longer than the fit
 
 
@@ -79,15 +80,32 @@ def content_of(measurement: Measurement, fitted: Fitted) -> dict[str, Any]:
     found, roles, channel = fitted.found, fitted.roles, fitted.channel
     content = _identification(found, measurement, roles, channel)
     lacking = lack_of_fit(found.predictions, roles["fit"], roles["holdout"], channel)
-    return content | {"lack_of_fit": lacking and lacking | {"source": str(measurement.source)}}
+    undamped = _undamped(found, bool(roles["fit"][0].inputs))
+    return content | {"undamped": undamped, "lack_of_fit": lacking and lacking | {"source": str(measurement.source)}}
+
+
+def _undamped(found: OscillatorFit, is_driven: bool) -> str | None:
+    """What it means where the damping has come to the end of its range; None where it has not."""
+    ratio = found.damping_ratio_percent
+    if ratio is None or ratio.value > NO_DAMPING:
+        return None
+    text = (
+        f"no damping: the fit has come to the end of its range, 0, and the damping ratio is at most "
+        f"{ratio.interval95[1]:.3g} % if this model is right. "
+    )
+    if is_driven:
+        return text + "An input that is late, or whose zero is not that of the force (datum: arbitrary), does that"
+    return text + (
+        "A motion that does not die away may be driven by what no channel holds, and its frequency is then that of the "
+        "drive: declare the force, or a window behind its end"
+    )
 
 
 def table_of(content: dict[str, Any]) -> str:
     """The parameters with their intervals, and what is missing."""
     text, lacking = _table(content), content["lack_of_fit"]
-    if lacking and lacking["significant"]:
-        text = f"{text.rstrip()}\n\n{sentence(lacking)}\n"
-    return text
+    said = [content["undamped"], sentence(lacking) if lacking and lacking["significant"] else None]
+    return "\n\n".join([text.rstrip(), *filter(None, said)]) + "\n"
 
 
 def _identification(

@@ -248,6 +248,9 @@ def _force_that_tells(file: layout.AnyFile, records: Numbered) -> Found:
         return
     if len({(force.value, force.unit) for force in forces}) == 1 and forces[0].value != 0:
         rule = "a force that is the same in every record shifts the place of rest, and tells nothing more"
+        stiffness = getattr(file.parameters, "stiffness", None)
+        if stiffness is not None and stiffness.value == 0:
+            rule = "a constant force on what has no spring is fitted by itself, and its size tells nothing more"
         yield Problem(f"records[{records[0][0]}].conditions.force", rule, forces[0].value, "leave it out")
 
 

@@ -215,3 +215,26 @@ def test_a_faint_cause_takes_a_quarter_of_what_is_not_random(left, word):
     faint = excess_of(-0.05, 0.99)
     assert verdict(search(accepted=(cause(),), not_random=left), faint, faint).word == word
     assert verdict(search(accepted=(cause(),), not_random=left), MUCH, NOTHING).word == EXPLAINED
+
+
+@pytest.mark.parametrize(
+    ("fitted", "threshold", "word"), [(60.0, 15e3, UNEXPLAINED), (2.0, 15e3, CONSISTENT), (60.0, 15.0, CONSISTENT)]
+)
+def test_fitted_records_that_are_missed_are_no_consistency_where_the_others_hardly_move(fitted, threshold, word):
+    """A step of a motor whose cause no channel holds: what is held out is its steady end, and tells nothing."""
+    before = excess_of(-60.0, 0.05, threshold)
+    found = search(visible=False, sensor=2.0)
+    assert verdict(found, before, before, fitted_beyond_sensor=fitted).word == word
+
+
+@pytest.mark.parametrize(("at_bound", "word"), [(False, PARTLY), (True, UNEXPLAINED)])
+def test_what_has_run_into_a_bound_and_leaves_most_is_no_part_of_an_answer(at_bound, word):
+    before = excess_of(5.0, 9.0)
+    assert verdict(search(accepted=(cause(at_bound=at_bound),)), before, NOTHING, whole=0.2).word == word
+
+
+@pytest.mark.parametrize(("misfit", "said"), [(600.0, "is not random"), (1.0, "No evidence")])
+def test_something_visible_that_is_too_small_to_matter_is_not_called_nothing(misfit, said):
+    before = excess_of(0.02, misfit, threshold=0.03)
+    (sentence,) = verdict(search(sensor=1.0), before, before).sentences
+    assert said in sentence

@@ -8,7 +8,7 @@ import pytest
 import torch
 from scipy.integrate import solve_ivp
 
-from gear_damping.identification.observation import fit_record
+from gear_damping.identification.observation import Known, fit_record
 from gear_damping.identification.oscillator.first_frequency import first_frequency
 from gear_damping.identification.oscillator.fit import fit_oscillator
 from gear_damping.identification.oscillator.linear_model import DAMPING
@@ -72,6 +72,20 @@ def test_a_wide_swing_that_loses_step_is_fitted_in_segments():
     assert found.damping_ratio_percent.value == pytest.approx(100 * ratio, rel=0.3)
     narrow = fit_oscillator([FitRecord("narrow", torch.as_tensor(0.05 * swing[5400:]), 50.0)])
     assert not narrow.segments
+
+
+@pytest.mark.parametrize("starts_at", [0.0, 20.0])
+def test_what_gains_speed_by_itself_is_pushed_and_what_coasts_is_not(starts_at):
+    """A motor behind a step of its voltage, and a wheel that coasts to rest: v' = push - v / tau, in closed form."""
+    tau, push, time = 0.2, 45.0 if starts_at == 0 else 0.0, np.arange(400) / 200.0
+    speed = push * tau + (starts_at - push * tau) * np.exp(-time / tau)
+    speed += 0.02 * np.random.default_rng(3).normal(size=time.size)
+    record = FitRecord("run", torch.as_tensor(speed), 200.0, observed=Observed("velocity"))
+    found = fit_oscillator([record], known=Known({"stiffness": 0.0}, {}))
+    assert found.parameters["damping_coefficient"].value == pytest.approx(1 / tau, rel=0.02)
+    assert ("offset_force.force" in found.given) is (starts_at == 0)
+    if starts_at == 0:
+        assert found.given["offset_force.force"] == pytest.approx(push, rel=0.02)
 
 
 def test_a_forced_record_is_found_and_the_holdout_predicted():

@@ -12,7 +12,8 @@ NAN, INFINITE = float("nan"), float("inf")
     [
         (0.123456, 4, "0.1235"), (123456.0, 4, "1.235e5"), (1e-7, 4, "1e-7"), (1e12, 4, "1e12"),
         (1e-12, 4, "1e-12"), (-1.25e100, 3, "-1.25e100"), (-2.5, 4, "-2.5"), (0.0, 4, "0"),
-        (20.0, 2, "20"), (963.0, 2, "960"), (-12345.0, 3, "-12300"), (None, 4, NOTHING), (NAN, 4, NOTHING), (INFINITE, 4, NOTHING),
+        (20.0, 2, "20"), (963.0, 2, "960"), (-12345.0, 3, "-12300"), (None, 4, NOTHING),
+        (NAN, 4, NOTHING), (INFINITE, 4, NOTHING),
     ],
 )  # fmt: skip
 def test_number(value, digits, said):

@@ -59,6 +59,15 @@ def test_a_linear_oscillator_is(noise, tmp_path, caplog, capsys):
     assert "lack of fit" not in caplog.text + capsys.readouterr().err
 
 
+def test_what_goes_on_by_a_drive_that_no_channel_holds_is_no_decay(tmp_path, caplog, capsys):
+    found = identified(tmp_path, 1e-2 * np.cos(OMEGA * TIME), 1e-4)
+    said = caplog.text + capsys.readouterr().err
+    assert found["undamped"].startswith("no damping: ")
+    assert "declare the force, or a window behind its end" in said
+    assert "no damping" in (tmp_path / "run" / "identification.txt").read_text()
+    assert identified(tmp_path / "other", LINEAR, 1e-4)["undamped"] is None
+
+
 def channel(**more):
     return Channel("displacement", LINEAR, "m", **more)
 

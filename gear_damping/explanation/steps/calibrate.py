@@ -117,7 +117,7 @@ def _oscillator(evidence: Evidence, solver: Solver | None) -> Outcome:
     free, given, _ = linear_model(evidence.fit, evidence.known)
     gains = evidence.base.gains.values()
     free = [_from_here(parameter, found.given[parameter.name], parameter.name in gains) for parameter in free]
-    model = linear_oscillator(evidence.fit, evidence.base)
+    model = linear_oscillator(evidence.fit, evidence.known)
     nominal = Hypothesis(model.system, tuple(model.effects), given, tuple(free))
     return fit_hypothesis(nominal, evidence, solver=solver)
 

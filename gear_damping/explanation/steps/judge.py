@@ -14,6 +14,7 @@ WHOLE = 100.0  # %: an effect that takes more than the whole signal is none
 LARGEST_SET = 4  # names that a sentence lists of causes that are not told apart
 UNTOLD = "but there was no time to see whether it stands in for something else."
 NOT_LESS = "but what is visible and not random stays."
+AT_BOUND = "but it has run into the end of what it can be, and leaves most: it stands in for something else."
 OTHER_SIZES = "but with another size in other records: it stands in for something that has no name here."
 
 
@@ -58,6 +59,7 @@ class Known:
             tell of one.
         whole: Share that causes take of everything beyond the sensor's noise, what looks random included.
         fitted: What the nominal model leaves of the fitted records beyond the noise, in % of their variance.
+        fitted_beyond_sensor: The same beyond the noise of the sensor, which what looks random may exceed.
         untried: What there was no time for.
         of_fit: Share that causes take of the squared residuals of the fitted records.
         stands_in: Why one of the causes is none, in words; empty where all may be.
@@ -69,6 +71,7 @@ class Known:
     is_one: bool | None = None
     whole: float = 1.0
     fitted: float = 0.0
+    fitted_beyond_sensor: float = 0.0
     untried: Sequence[str] = ()
     of_fit: float = 0.0
     stands_in: str = ""
@@ -120,6 +123,8 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
     if is_part and is_unsteady:
         text = f"{missing}. {said[0].upper()}{said[1:]} would take part of it; most of it looks random, and is not."
         return Verdict(UNEXPLAINED, (text, *known.unsettled))
+    if (is_part or is_unsteady) and any(cause.refit.is_at_bound for cause in found.accepted):
+        return _not_established(found, before, known, AT_BOUND)
     if is_part or is_unsteady:  # most of the gap is still there
         text = f"{missing}. Part of it has a name: {said}. What is left looks random, and is more than that."
         return Verdict(PARTLY, (text, *further))
@@ -197,6 +202,12 @@ def _without_name(found: State, before: Excess, known: Known) -> Verdict:
         return Verdict(UNEXPLAINED, (text, *known.unsettled))
     beyond = found.beyond_sensor(found.nominal)
     raised = beyond.misfit > settings.small_misfit and beyond.percent > settings.least_excess
+    if before.threshold >= WHOLE and known.fitted_beyond_sensor > settings.gross_percent:
+        text = (
+            f"The simulation misses {known.fitted_beyond_sensor:.3g} % of the variance of the records that it was "
+            "fitted to, and the others hold too little motion to tell what is missing."
+        )
+        return Verdict(UNEXPLAINED, (text, *known.unsettled))
     if visible and raised:  # more than a sensor makes, and not all of it can be random
         text = (
             f"{beyond.percent:.3g} % of the signal's variance looks nearly random, is more than the noise of the "
@@ -209,7 +220,12 @@ def _without_name(found: State, before: Excess, known: Known) -> Verdict:
             "are too short to tell whether a random load makes it or something is missing."
         )
         return Verdict(UNEXPLAINED, (text, *known.unsettled))
-    if before.threshold >= WHOLE:
+    if visible and before.misfit > settings.small_misfit:
+        text = (
+            f"What the simulation misses is not random, and less than {max(before.percent, before.threshold):.2g} % of "
+            "the signal's variance: no effect that takes more is missing."
+        )
+    elif before.threshold >= WHOLE:
         text = "No evidence of an effect; the fitted records are too few to say how large one could be unseen."
     else:
         text = f"No evidence of an effect that takes more than {before.threshold:.2g} % of the signal's variance."

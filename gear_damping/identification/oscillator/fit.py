@@ -102,7 +102,7 @@ def fit_oscillator(
     if segments is None:
         segments = WHOLE if spring else short
     segmented = in_segments(fit_records, segments)
-    problem = OutputErrorProblem(linear_oscillator(fit_records, known.system), given, free, segmented, solver)
+    problem = OutputErrorProblem(linear_oscillator(fit_records, known), given, free, segmented, solver)
     fitted = _fitted(problem, spring, scale, report)
     samples = max(float((problem.response.weights > 0).sum()), 1.0)
     problem.noise = float(fitted.prediction.residual.square().sum() / samples) ** 0.5

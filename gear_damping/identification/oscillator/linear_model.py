@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from math import pi
 
+import numpy as np
 import torch
 
 from gear_damping.identification.observation import Known
@@ -16,18 +17,36 @@ from gear_damping.physics.effects.offset_force import OffsetForce
 from gear_damping.physics.effects.viscous_damping import ViscousDamping
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.base import System
-from gear_damping.physics.systems.oscillator import Oscillator
 
 DAMPING, FORCE = "viscous_damping.damping_coefficient", "offset_force.force"
 TIME = "characteristic_time"
 LAWS = dict.fromkeys(("damping_coefficient", "damping_ratio"), DAMPING)  # words of a file for the viscous damping
+STRETCHES, GAINED = 20, 0.1  # of a record, whose mean speeds are compared; of the highest, what noise does not make
 FIRST_RATIOS = (0.01, 0.05, 0.2)  # damping ratios of the starts
 NOTHING = Known({}, {})
 
 
-def linear_oscillator(records: Sequence[FitRecord], system: type[System] = Oscillator) -> Model:
-    """The linear system of these records; one that is driven has a constant force beside its input."""
-    return Model(system(), [ViscousDamping(), *([OffsetForce()] if records[0].inputs else [])])
+def linear_oscillator(records: Sequence[FitRecord], known: Known = NOTHING) -> Model:
+    """The linear system of these records; what is driven or pushed has a constant force."""
+    return Model(known.system(), [ViscousDamping(), *([OffsetForce()] if _is_pushed(records, known) else [])])
+
+
+def _is_pushed(records: Sequence[FitRecord], known: Known) -> bool:
+    """Whether a constant force is fitted: beside a measured input, or where a rig without a spring gains speed alone.
+
+    What coasts loses speed from its first sample on; a motor behind a step of its voltage does not.
+    """
+    spring = known.values.get(known.system.spring, 1.0) > 0
+    return bool(records[0].inputs) or (not spring and any(_gains_speed(record) for record in records))
+
+
+def _gains_speed(record: FitRecord) -> bool:
+    if record.observed.derivatives > 1 or (record.observed.derivatives == 1 and record.observed.offset):
+        return False  # its speed is not known
+    values = record.response.numpy()
+    rate = np.gradient(values) if record.observed.derivatives == 0 else values
+    speeds = np.abs([stretch.mean() for stretch in np.array_split(rate, min(STRETCHES, len(rate)))])
+    return bool(speeds.max() - speeds[0] > GAINED * speeds.max())
 
 
 def linear_model(
@@ -55,7 +74,7 @@ def linear_model(
             size = per_amplitude * amplitude * mass / float(force.std().clamp(min=1e-300))
             gain = stated.get(of_drive, size)
             free.append(FreeParameter(of_drive, gain, scale=abs(gain) or size))
-    if records[0].inputs:
+    if _is_pushed(records, known):
         free.append(FreeParameter(FORCE, 0.0, scale=(rate**2 if spring else 1 / scale**2) * amplitude * mass))
     free += [FreeParameter(one, stated[one], abs(stated[one]), logarithmic=stated[one] > 0) for one in _unsure(known)]
     expected = {LAWS.get(one, one): relative for one, relative in known.uncertainty.items() if stated[one]}
