@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
+from math import pi
 from typing import Any
 
 from gear_damping.explanation.evidence.records import Evidence
@@ -19,7 +20,7 @@ from gear_damping.reporting import figures, tables
 from gear_damping.simulation.solver_settings import Progress, Solver
 
 NEWTONS = ("N*s/m", "N/m")  # units of what is not per unit of mass
-NO_DAMPING = 1e-6  # %: a fit that comes so near to 0 has come to the end of its range
+LEAST_FALL = 0.1  # nepers over a record: what falls less may as well go on
 MOST_SAMPLES = 200_000  # beyond which the test of what is random takes longer than the fit
 
 
@@ -80,24 +81,25 @@ def content_of(measurement: Measurement, fitted: Fitted) -> dict[str, Any]:
     found, roles, channel = fitted.found, fitted.roles, fitted.channel
     content = _identification(found, measurement, roles, channel)
     lacking = lack_of_fit(found.predictions, roles["fit"], roles["holdout"], channel)
-    undamped = _undamped(found, bool(roles["fit"][0].inputs))
+    undamped = _undamped(found, roles["fit"])
     return content | {"undamped": undamped, "lack_of_fit": lacking and lacking | {"source": str(measurement.source)}}
 
 
-def _undamped(found: OscillatorFit, is_driven: bool) -> str | None:
-    """What it means where the damping has come to the end of its range; None where it has not."""
-    ratio = found.damping_ratio_percent
-    if ratio is None or ratio.value > NO_DAMPING:
+def _undamped(found: OscillatorFit, fit: Sequence[FitRecord]) -> str | None:
+    """What it means where the records do not tell the damping from none; None where they do."""
+    ratio, frequency = found.damping_ratio_percent, found.natural_frequency_hz
+    if ratio is None or ratio.interval95[0] > 0:
         return None
-    text = (
-        f"no damping: the fit has come to the end of its range, 0, and the damping ratio is at most "
-        f"{ratio.interval95[1]:.3g} % if this model is right. "
-    )
-    if is_driven:
-        return text + "An input that is late, or whose zero is not that of the force (datum: arbitrary), does that"
-    return text + (
-        "A motion that does not die away may be driven by what no channel holds, and its frequency is then that of the "
-        "drive: declare the force, or a window behind its end"
+    text = f"no damping: these records do not tell it from none; it is at most {ratio.interval95[1]:.3g} %"
+    if any(record.inputs for record in fit):
+        late = "an input that is late, or whose zero is not that of the force (`datum: arbitrary`), does that"
+        return f"{text}, if this model is right: {late}"
+    nepers = 2 * pi * frequency.value * ratio.value / 100 * max(record.duration for record in fit)
+    if nepers > LEAST_FALL:
+        return text
+    return (
+        f"{text}. A motion that does not die away may be driven by what no channel holds, and its frequency is then "
+        "that of the drive: declare the force, or a window behind its end"
     )
 
 
