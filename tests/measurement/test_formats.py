@@ -54,8 +54,9 @@ def test_a_header_names_units_and_may_hold_the_delimiter(tmp_path):
 
 def test_units_stand_behind_a_stroke_or_before_the_number_of_a_run_too(tmp_path):
     names = ["t/s", "AngVel/rad/s", "Weg/mm", "Angle, Ch P1 (rad) Run #16", "group/name", "data[3]"]
-    table = _csv(tmp_path, ",".join(f'"{name}"' for name in names) + "\n1,2,3,4,5,6\n")
-    assert [table.unit(k) for k in range(len(names))] == ["s", "rad/s", "mm", "rad", None, None]
+    names += ["Position (cm) Monitor Run", "Signal (left) of x", "x (2) old"]
+    table = _csv(tmp_path, ",".join(f'"{name}"' for name in names) + "\n1,2,3,4,5,6,7,8,9\n")
+    assert [table.unit(k) for k in range(len(names))] == ["s", "rad/s", "mm", "rad", None, None, "cm", None, None]
 
 
 def test_older_encodings_are_read(tmp_path):
@@ -210,3 +211,8 @@ def test_a_labview_text_file_is_read_below_its_last_header(tmp_path, sign, last)
     assert [name for name in table.names if name] == ["X_Value", "Voltage", "Acceleration"]
     assert _column(table, "X_Value") == [0, 0.001, 0.002]
     assert _column(table, "Acceleration") == [-0.016, -0.094, -0.066]
+    assert [table.unit(table.index(name, "column")) for name in ("X_Value", "Voltage", "Acceleration")] == [
+        "s",
+        "Volts",
+        "g",
+    ]

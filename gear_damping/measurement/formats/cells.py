@@ -17,6 +17,7 @@ from gear_damping.measurement.formats.table import Table, is_real
 from gear_damping.units import parse_unit
 
 _BRACKETS = re.compile(r"[(\[]([^()\[\]]+)[)\]]\s*(?:run\s*#?\s*\d+\s*)?$", re.I)  # `Angle (rad) Run #2`, too
+_WITHIN = re.compile(r"[(\[]([^()\[\]]+)[)\]]")  # `Position (cm) Monitor Run`, where that is a unit
 _SLASH = re.compile(r"^[^/]+/\s*([^\W\d_][^\s]*|[°%µ][^\s]*)$")  # `Weg/mm`, as DIN 461 has it
 _INDEX = re.compile(r"\w\[\d+\]\s*$")  # `data[3]` is a name, no unit
 _NO_UNIT = ("", "-")
@@ -100,12 +101,16 @@ def _names(row: Sequence[str], width: int) -> Sequence[str]:
 
 
 def bracket_unit(name: str) -> str | None:
-    """What stands in brackets at the end of a name, or behind its first stroke where that is a unit."""
+    """What stands in brackets at the end of a name, or within it or behind its first stroke where that is a unit."""
     if _INDEX.search(name):
         return None
     found = _BRACKETS.search(name)
     if found is not None:
         return found[1].strip()
+    within = [one.strip() for one in _WITHIN.findall(name)]
+    units = [one for one in within if not is_number(one) and _is_unit(one)]
+    if len(units) == 1:
+        return units[0]
     behind = _SLASH.search(name.strip())
     return behind[1] if behind is not None and _is_unit(behind[1]) else None
 

@@ -30,6 +30,8 @@ _HEAD = 100  # rows among which the header is looked for
 _PREAMBLE, _BELOW = 20, 20  # rows that may be settings; rows of the table below them, at least
 _NAN = ("nan", "NaN", "NAN", "Nan", "-nan", "+nan")
 _NUMBER, _IS_COMMENT = re.compile(r"\d"), re.compile(r"\s*#")
+_PLACE = "X_Value"  # LabVIEW's name of what the values are over,
+_PLAIN = {"pounds": "lbf", "newtons": "N", "amps": "A", "meters": "m"}  # ... and its words for units
 _END_OF_HEADER = re.compile(r"^\*+ ?end[_ ]of[_ ]header", re.IGNORECASE)
 _COMMENT = re.compile(rb"^[ \t]*#", re.MULTILINE)
 
@@ -139,9 +141,9 @@ def _header(text: _Text) -> tuple[Header, int]:
     if not rows:
         raise InputError(Problem("file", "no rows", str(text.path), "export it again"))
     start = _behind_marks(rows)
-    lines, rows = lines[start:], rows[start:]
+    settings, lines, rows = rows[:start], lines[start:], rows[start:]
     header = _below_preamble(rows, text.width) or find_header(rows, text.width)
-    header = _of_labview(header, start) if start else header
+    header = _of_labview(header, settings) if start else header
     if text.delimiter == " " and len(header.names) > text.width > 0:  # a title: names in words would be as many
         header = Header(("",) * text.width, (), header.first, header.first)
     if header.first == len(rows):
@@ -160,10 +162,19 @@ def _behind_marks(rows: list[list[str]]) -> int:
     return ends[-1] + 1 if ends and ends[-1] + 1 < len(rows) else 0
 
 
-def _of_labview(header: Header, start: int) -> Header:
-    """The header below `start` lines of settings, without the column of comments, whose cells are not written."""
+def _of_labview(header: Header, settings: list[list[str]]) -> Header:
+    """The header below the lines of settings, with the units that they say.
+
+    The column of comments, whose cells are not written, is none. Time counts in seconds.
+    """
     kept = len(header.names) - (header.names[-1:] == ("Comment",))
-    return replace(header, names=header.names[:kept], units=header.units[:kept], skipped=header.skipped + start)
+    said = {row[0].strip(): [cell.strip() for cell in row[1:]] for row in settings}
+    names, units = header.names[:kept], header.units[:kept]
+    labels = [_PLAIN.get(label.lower(), label) for label in said.get("Y_Unit_Label", ())]
+    if not units and names[:1] == (_PLACE,) and len(labels) >= kept - 1:
+        is_time = "Time" in said.get("X_Dimension", ("Time",))[:1]
+        units = ("s" if is_time else "", *labels[: kept - 1])
+    return replace(header, names=names, units=units, skipped=header.skipped + len(settings))
 
 
 def _below_preamble(rows: list[list[str]], width: int) -> Header | None:
