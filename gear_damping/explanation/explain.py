@@ -114,14 +114,16 @@ def explain(
     if faults:
         return Explanation(report_fields.of_faults(measurement, faults))
     evidence = at_useful_rate(evidence if library is None else replace(evidence, library=library))
-    notes = [note for note in (died_away(evidence), too_short(evidence)) if note]
-    for note in notes:
-        log(note)
+    notes = [note for note in (died_away(evidence),) if note]
+    whole = evidence
     sealed = evidence.holdout if evidence.can_be_sealed else ()
     evidence = replace(evidence, holdout=(), sealed=True) if sealed else evidence
     evidence, noise = with_noise(evidence, measurement, log)
     step(1, STEPS)
     state = _searched(evidence, noise, log, fitting_solver(solver), budget, lambda: step(2, STEPS))
+    notes += [note for note in (too_short(whole, state.nominal),) if note]
+    for note in notes:
+        log(note)
     step(3, STEPS)
     found = confirmed(state, sealed, measurement)
     if found.state.names != state.names:

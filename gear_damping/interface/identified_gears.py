@@ -136,7 +136,7 @@ def content_of(measurement: Measurement, found: Fitted) -> dict[str, Any]:
             "threshold_percent": left.threshold,
             "source": str(measurement.source),
         },
-        "too_short": too_short(evidence) or None,
+        "too_short": too_short(evidence, outcome) or None,
         "segment_s": evidence.segments.seconds or None,
         "records": {
             record.name: {"role": role, "rmse": rmse([residual]) / factor, "unit": unit}

@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 from gear_damping.errors import InputError
 from gear_damping.units import to_si
 
-NAMED = re.compile(r"^(t|ts|tt)$|time|zeit|temps|tiempo|stamp|second|millis|micros|elapsed|clock|abscissa|^x_value$", re.I)
+NAMED = re.compile(
+    r"^(t|ts|tt|x_value)$|time|zeit|temps|tiempo|stamp|second|millis|micros|elapsed|clock|abscissa", re.I
+)
 _SUFFIX = re.compile(r"[_ .\-/](s|sec|ms|us|µs|min|h)$", re.I)
 _SLOW = 200  # whole numbers a step: as milliseconds less than 5 Hz, and few vibrate as slowly
 # Ranges that a time counted from 1970 lies in, by its unit: from 1973 on, and they do not meet.

@@ -6,12 +6,13 @@ and a band-limited signal is determined by samples so placed (Kadec's theorem). 
 or a doubled sample, and the stamps alone no longer say which. A few late stamps (one in a thousand) that the next ones
 make good again are a busy recorder's and are let pass. Another rate over an eighth of the record is a recorder's that
 slowed down, or one that writes events: samples are taken at their stamps, which is said. What stays unexplained is a
-data problem: a lasting shift of whole steps (samples were dropped), any other lasting shift (the clock jumps), steps
-all over the place. Whether the values were taken at their stamps is asked of them too (`record_checks`).
+data problem: a lasting shift of whole steps (samples were dropped), any other lasting shift (the clock jumps, or the
+recorder paused where the values move as long), steps all over the place. Whether the values were taken at their
+stamps is asked of them too (`record_checks`).
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +27,7 @@ GRID_TOLERANCE = 1e-6  # of a step; stamps this close to a grid are one
 # 0.001 % of content at 10, because its slope errs by 4.5 and 0.1 %; beyond, samples are fitted at their stamps.
 SPLINE_TOLERANCE = 0.01
 REMEDY = "or give sampling_rate instead of the time column, where the stamps are written with too few digits"
+CLOCK_JUMPS = "clock_jumps"  # a kind of finding
 _HALF = 0.5  # of a step; a stamp that far from where it is due counts as another sample's
 _WHOLE = 0.05  # of a gap; how near a whole number of steps it must be, beside what the jitter allows
 _LISTED = 5  # gaps that a message lists
@@ -201,7 +203,7 @@ def irregularity(stamps: NDArray[np.float64], first: int = 0) -> Finding | None:
     if changes is not None:
         return _changing(steps, changes, first)
     if lasting.size:
-        return _unexplained(steps, int(lasting[0]) + 1, "the clock jumps", first)
+        return replace(_unexplained(steps, int(lasting[0]) + 1, "the clock jumps", first), kind=CLOCK_JUMPS)
     if odd.size > 2 * max(1.0, _LATE_SHARE * steps.size):  # a late stamp has an odd step at either side
         what = "more than jitter, for some steps are nearer to none or to two"
         return _unexplained(steps, int(odd[0]) + 1, what, first)

@@ -130,7 +130,7 @@ def test_a_clock_that_jumps_by_part_of_a_step_is_a_problem(bench, rng, jitter):
     stamps[900:] += 2.5 / RATE
     record = _stamped(bench, stamps)
     (problem,) = [finding for finding in record.findings if finding.severity == "data_problem"]
-    assert (problem.kind, problem.sample) == ("uneven_stamps", 900)
+    assert (problem.kind, problem.sample) == ("clock_jumps", 900)
     assert "jumps" in problem.message
 
 

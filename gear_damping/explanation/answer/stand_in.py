@@ -17,7 +17,9 @@ from torch import Tensor
 
 from gear_damping.explanation.answer.homogeneity import block_of, error_of
 from gear_damping.explanation.evidence.excess import ac_energy
-from gear_damping.explanation.model.hypothesis import Outcome
+from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency_hz
+from gear_damping.explanation.model.rig import strongest_frequencies
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import Accepted, State
 from gear_damping.explanation.statistics.projector import Projector
@@ -128,8 +130,15 @@ def shape_without_name(state: State) -> str:
     if percent < state.bench.settings.least_excess:
         return ""
     if largest == LINE_FAMILY:
-        return line.name if line else largest.removeprefix(UNNAMED)
+        return line.name if line else _line_in_segments(nominal, evidence)
     return f"some {largest.removeprefix(UNNAMED)}"
+
+
+def _line_in_segments(nominal: Outcome, evidence: Evidence) -> str:
+    """A line where records are cut, none of whose segments holds one of its own: by the peak of what is left."""
+    natural = natural_frequency_hz(nominal.hypothesis.model, nominal.flat_given()) if evidence.has_spring else 0.0
+    found = strongest_frequencies(list(zip(evidence.fitted, nominal.fit_residuals, strict=True)), natural)
+    return f"a line near {found[0]:.3g} Hz" if found else LINE_FAMILY.removeprefix(UNNAMED)
 
 
 def _stand_in(cause: Accepted, state: State) -> StandIn | None:

@@ -1,0 +1,62 @@
+"""A recorder that pauses, and a clock that jumps: the values over the gap tell which."""
+
+import numpy as np
+import pytest
+
+from gear_damping.measurement.load import load_measurement
+from gear_damping.measurement.record_checks import share_over_gaps
+
+SAMPLES, STEP, GAPS = 1200, 0.01, np.array([150, 320, 480, 700, 810, 990, 1100])
+
+
+def stamps_with_gaps(seed=0):
+    """Steps of 10 ms that scatter, and seven that last 2.3 to 6.6 times as long."""
+    random = np.random.default_rng(seed)
+    steps = STEP * (1 + 0.05 * random.normal(size=SAMPLES))
+    steps[GAPS] *= random.uniform(2.3, 6.6, size=GAPS.size)
+    return np.cumsum(steps)
+
+
+def moved(stamps, paused, noise, seed=1):
+    """A decaying swing at the stamps, or at even instants with a clock that jumps."""
+    time = stamps if paused else STEP * np.arange(SAMPLES)
+    swing = np.exp(-0.05 * time) * np.sin(2 * np.pi * 0.7 * time)
+    return swing + noise * np.random.default_rng(seed).normal(size=SAMPLES)
+
+
+def loaded(folder, stamps, values):
+    np.savetxt(folder / "swing.csv", np.column_stack([stamps, values]), "%.9g", ",", header="t,x", comments="")
+    channels = "{time: {column: t, unit: s}, displacement: {column: x, unit: mm}}"
+    text = f"system: oscillator\nrecords:\n- file: swing.csv\n  channels: {channels}\n"
+    (folder / "measurement.yaml").write_text(text)
+    return load_measurement(folder / "measurement.yaml").records[0]
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.003])
+@pytest.mark.parametrize("paused", [True, False])
+def test_values_over_gaps_tell_a_pause_from_a_clock(paused, noise, tmp_path):
+    stamps = stamps_with_gaps()
+    share, error = share_over_gaps(moved(stamps, paused, noise), stamps)
+    assert error < 0.08
+    (finding,) = [
+        one for one in loaded(tmp_path, stamps, moved(stamps, paused, noise)).findings if one.channel == "time"
+    ]
+    if paused:
+        assert share == pytest.approx(1, abs=0.15)
+        assert (finding.kind, finding.severity) == ("uneven_stamps", "note")
+        assert "the recorder paused" in finding.message
+    else:
+        assert share < 0.5
+        assert (finding.kind, finding.severity) == ("clock_jumps", "data_problem")
+
+
+def test_noise_alone_bears_out_nothing(tmp_path):
+    stamps = stamps_with_gaps()
+    values = np.random.default_rng(3).normal(size=SAMPLES)
+    (finding,) = [one for one in loaded(tmp_path, stamps, values).findings if one.channel == "time"]
+    assert finding.severity == "data_problem"
+
+
+def test_few_gaps_tell_nothing():
+    stamps = STEP * np.arange(SAMPLES) + 0.05 * (np.arange(SAMPLES) > 400)
+    assert share_over_gaps(moved(stamps, True, 0.0), stamps) == (1.0, np.inf)
