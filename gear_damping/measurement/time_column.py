@@ -22,6 +22,7 @@ _FEWEST = 8  # stamps, as many as a record needs
 _ADVANCING = 0.9  # share of the steps of a named column that go forward
 _SHORT = re.compile(r"^t[a-z]?\d*(_\w+)?$", re.I)  # t1, tb_n: a time only where its steps are even
 _FIRST = re.compile(r"\[0\]\s*$")  # the first column of a matrix, which says nothing of its own
+_LOOSELY = 0.5  # of the median step; how far the steps of a first column without a name may differ
 _EVEN = 0.05  # of the median step; how far the steps of an unnamed column may differ
 
 
@@ -88,7 +89,7 @@ def _by_steps(index: int, column: _Column) -> str:
     is_named = isinstance(column.reference, str) and column.reference.strip() and not _FIRST.search(column.reference)
     if index or column.unit is not None or is_named:
         return ""
-    return "is the first column and advances evenly" if _is_even(column) else ""
+    return "is the first column and advances evenly" if _is_nearly_even(column) else ""
 
 
 def _by_ramp(index: int, column: _Column) -> str:
@@ -100,6 +101,13 @@ def _is_even(column: _Column) -> bool:
     steps = np.diff(column.inside)
     median = float(np.median(steps))
     return median > 0 and bool(np.all(np.abs(steps / median - 1) < _EVEN))
+
+
+def _is_nearly_even(column: _Column) -> bool:
+    """Whether it never goes back, and nearly all steps are one, as those of stamps that jitter or are rounded."""
+    steps = np.diff(column.inside)
+    median = float(np.median(steps))
+    return median > 0 and bool(steps.min() >= 0 and np.mean(np.abs(steps / median - 1) < _LOOSELY) > _ADVANCING)
 
 
 def _advances(column: _Column) -> bool:

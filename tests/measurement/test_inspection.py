@@ -119,6 +119,21 @@ def test_the_first_column_of_a_matrix_may_be_the_time(tmp_path):
     assert found.rate == pytest.approx(RATE)
 
 
+@pytest.mark.parametrize(
+    "stamps",
+    [np.round(10 * T + 4.9e-3 * np.sin(7 * T), 2), T + 2e-4 * np.sin(99 * T), np.floor(22e3 * T + 3 * np.sin(T))],
+)
+def test_a_first_column_of_stamps_that_jitter_or_are_rounded_is_the_time(stamps, tmp_path):
+    np.savetxt(tmp_path / "a.txt", np.column_stack([stamps, np.sin(20 * T)]))
+    found = inspect_table(read_table(tmp_path / "a.txt"))
+    assert [one.kind for one in found.columns] == [TIME, SIGNAL]
+
+
+def test_a_first_column_that_goes_back_is_no_time(tmp_path):
+    np.savetxt(tmp_path / "a.txt", np.column_stack([T + 2e-3 * np.sin(900 * T), np.sin(20 * T)]))
+    assert inspect_table(read_table(tmp_path / "a.txt")).columns[0].kind != TIME
+
+
 def test_a_column_that_is_filled_here_and_there_cuts_no_stretch(tmp_path):
     rare = np.where(np.arange(N) % 50 == 0, 1.0 + T, np.nan)
     found = inspected(tmp_path, time=T, x=np.sin(9 * T), rate=rare)
