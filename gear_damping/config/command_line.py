@@ -82,7 +82,7 @@ def read_command_line(arguments: Sequence[str]) -> CommandLine:
     problems: list[Problem] = []
     many = bool(set(MANY) & set(arguments))
     takes: tuple[str, ...] | None = ()
-    for argument in arguments:
+    for place, argument in enumerate(arguments):
         if takes is None or argument in takes:
             flags.append(argument)
             takes = ()
@@ -93,7 +93,7 @@ def read_command_line(arguments: Sequence[str]) -> CommandLine:
             flags += [] if found else [argument]
             takes = () if "=" in argument else TAKES.get(name, ())
         else:
-            found, override = _read_override(argument, many)
+            found, override = _read_override(argument, many, arguments[place - 1] if place else "")
             problems += found
             overrides += override
     shown = next((flag for flag in flags if flag.partition("=")[0] in SHOWS), None)
@@ -116,10 +116,12 @@ def _unknown_flag(name: str) -> list[Problem]:
     return [] if name in FLAGS else [Problem(name, "no such flag", remedy=nearest(name, FLAGS), source=SOURCE)]
 
 
-def _read_override(argument: str, many: bool) -> tuple[list[Problem], list[str]]:
-    """What is wrong with one word, and the override that Hydra shall see."""
+def _read_override(argument: str, many: bool, before: str) -> tuple[list[Problem], list[str]]:
+    """What is wrong with one word, and the override that Hydra shall see; `before` is the word before it."""
     if "=" not in argument and not argument.startswith("~"):
         remedy = "write key=value, for example experiment=backlash"
+        if before.partition("=")[2]:  # a value with a blank, which the shell has cut in two
+            remedy += f'; where the blank before it is part of a value, quote the whole: "{before} {argument} …"'
         return [Problem(argument, "is not an override", remedy=remedy, source=SOURCE)], []
     if not {"'", '"'} & set(argument):  # what is quoted is read as it stands
         argument = _MICRO.sub(r"\g<space>u", argument)

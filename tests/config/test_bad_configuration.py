@@ -30,6 +30,10 @@ FAULTS = {
     "solver_engine": (["simulator.solver.engine=fast"], ["simulator.solver.engine", "auto, native, eager"]),
     "missing_plugin": (["simulator.plugins=[nope.py]"], ["simulator.plugins", "nope.py", "no such file"]),
     "unknown_choice": (["experiment=backlsh"], ["experiment = 'backlsh'", "did you mean 'backlash'"]),
+    "blank_in_a_path": (
+        ["measurement.path=my", "data.csv"],
+        ["data.csv: is not an override", '"measurement.path=my data.csv'],
+    ),
     "unknown_key": (["sed=3"], ["sed: no such key", "did you mean 'seed'"]),
     "unknown_plus_key": (["+foo=3"], ["foo: no such key", "command line: foo=3"]),
     "no_override": (["backlash"], ["backlash: is not an override"]),

@@ -197,9 +197,7 @@ def test_without_a_shaft_the_spectrum_is_over_the_frequencies_that_have_content(
 
 @pytest.mark.parametrize("length", [8, 31])
 def test_a_run_too_short_for_a_spectrum_says_so(length):
-    figure = figures.simulation_figure(
-        figures.ShownRun(TIME[:length], SIGNAL[:length], VELOCITY[:length], "µm", RATE)
-    )
+    figure = figures.simulation_figure(figures.ShownRun(TIME[:length], SIGNAL[:length], VELOCITY[:length], "µm", RATE))
     assert "no spectrum to show" in said(drawn(figure))
     assert "no orbit" in said(figure)
 
@@ -247,3 +245,17 @@ def test_the_most_visible_stands_on_top_and_its_limit_is_drawn():
     axes = figures.visible_figure({"a": 1.0, "unnamed: b": 9.0}, 4.2).axes[0]
     assert [label.get_text() for label in axes.get_yticklabels()] == ["b", "a"]
     assert [line.get_xdata()[0] for line in axes.lines] == [4.2]
+
+
+@pytest.mark.parametrize(("samples", "panels"), [(len(TIME), 2), (len(TIME) // 2, 3)])
+def test_a_stretch_that_is_the_whole_record_is_not_shown_twice(samples, panels):
+    shown = figures.Overlay("a", TIME, SIGNAL, SIGNAL, SIGNAL + 0.1, 0.1)
+    assert len(figures.overlay_figure(shown, "µm", samples=samples).axes) == panels
+
+
+@pytest.mark.parametrize(
+    ("unit", "label"), [("µm", "residual / µm"), ("m/s²", "residual / (m/s²)"), ("1", "residual"), ("", "residual")]
+)
+def test_an_axis_has_a_unit_where_there_is_one(unit, label):
+    axes = figures.overlay_figure(figures.Overlay("a", TIME, SIGNAL, SIGNAL), unit).axes
+    assert axes[1].get_ylabel() == label

@@ -18,6 +18,13 @@ SUFFIXES = {
 }
 
 
+def axis(quantity: str, unit: str) -> str:
+    """The label of an axis: the quantity over its unit, as numbers on it are; a pure number has none."""
+    if unit in ("", "1"):
+        return quantity
+    return f"{quantity} / ({unit})" if "/" in unit else f"{quantity} / {unit}"
+
+
 def swept_axis(key: str) -> str:
     """The label of an axis over a configuration key: words, unit, and the key itself in the second line.
 

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from gear_damping.reporting.figures.arrays import any_finite, series
+from gear_damping.reporting.figures.axis_names import axis
 from gear_damping.reporting.figures.spectra import spectra_over_orders
 from gear_damping.reporting.style import BLUE, INK, PALE, RED, legend_above, mark_empty, new_figure, styled
 
@@ -59,7 +60,7 @@ def casing_orders_figure(
     """
     spectra = ({} if reference is None else {"reference": reference}) | {"record": amplitude}
     marks = {"pinion_order": 1.0, "gear_order": gear_order, "mesh_order": mesh_order}
-    return spectra_over_orders(orders, spectra, f"acceleration / {unit}", marks)
+    return spectra_over_orders(orders, spectra, axis("acceleration", unit), marks)
 
 
 def casing_turns_figure(turns: Mapping[str, Turn], *, unit: str) -> Figure:
@@ -77,7 +78,7 @@ def casing_turns_figure(turns: Mapping[str, Turn], *, unit: str) -> Figure:
         panels = np.atleast_1d(figure.subplots(len(turns), 1))
         for axes, (shaft, one) in zip(panels, turns.items(), strict=True):
             _turn(axes, one)
-            axes.set(xlabel=f"turns of the {shaft}", ylabel=f"residual / {unit}", xlim=(0, 1))
+            axes.set(xlabel=f"turns of the {shaft}", ylabel=axis("residual", unit), xlim=(0, 1))
         legend_above(panels[0])
         return figure
 

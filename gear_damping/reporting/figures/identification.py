@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gear_damping.reporting.figures.arrays import Array, any_finite, extent, series
+from gear_damping.reporting.figures.axis_names import axis
 from gear_damping.reporting.style import BLUE, FAINT, INK, RED, legend_above, mark_empty, new_figure, styled
 
 EXCERPT_SAMPLES = 120  # in which single cycles are seen
@@ -81,7 +82,7 @@ def _record(cells: np.ndarray, panel: Mapping[str, Any], unit: str, label: str) 
             limits = extent([time[part]])
             if limits:
                 axes.set_xlim(limits)
-    whole.set(ylabel=f"{label} / {unit}", title=_title(panel))
+    whole.set(ylabel=axis(label, unit), title=_title(panel))
     left.set_ylabel(unit)  # its title says what it is
     if any_finite(residual):
         left.set_title(f"residual, RMSE {float(np.sqrt(np.nanmean(residual**2))):.4g} {unit}", fontsize=9, color=RED)

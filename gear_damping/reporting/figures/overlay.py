@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from gear_damping.reporting.figures.arrays import Array, any_finite, extent, series, time_axis
+from gear_damping.reporting.figures.axis_names import axis
 from gear_damping.reporting.style import BLUE, INK, PALE, RED, SKY, legend_above, mark_empty, new_figure, styled
 
 SHOWN_SAMPLES = 240  # in which two curves can be told apart
@@ -60,21 +61,23 @@ def overlay_figure(
     looks = (NOMINAL, EXTENDED)[: len(simulated)]
     time, time_label = time_axis(time)
     part = worst_stretch(residuals[0], samples)
+    is_all = part == slice(None)
     with styled():
-        figure = new_figure(6.6)
-        upper, middle, lower = figure.subplots(3, 1, height_ratios=(2.2, 1, 1))
+        figure = new_figure(5.0 if is_all else 6.6)
+        upper, *below = figure.subplots(2 if is_all else 3, 1, height_ratios=(2.2, 1) if is_all else (2.2, 1, 1))
+        middle, lower = below[0], below[-1]
         for values, look in zip(simulated, looks, strict=True):
             upper.plot(time[part], values[part], **look)
         upper.plot(time[part], measured[part], zorder=3, **MEASURED)
-        upper.set(ylabel=f"{quantity} / {unit}")
+        upper.set(ylabel=axis(quantity, unit))
         upper.tick_params(labelbottom=False)
-        for axes, excerpt in ((middle, part), (lower, slice(None))):
+        for axes, excerpt in zip(below, (part, slice(None)), strict=False):
             _residuals(axes, time[excerpt], [r[excerpt] for r in residuals], looks, shown.noise)
-            axes.set_ylabel(f"residual / {unit}")
+            axes.set_ylabel(axis("residual", unit))
         _limits(upper, time[part])
-        for axes in (middle, lower):
+        for axes in below:
             axes.set_xlabel(time_label)
-        if any_finite(time[part]):
+        if any_finite(time[part]) and not is_all:
             lower.axvspan(np.nanmin(time[part]), np.nanmax(time[part]), color=SKY, alpha=0.3, linewidth=0, zorder=0)
             lower.set_title("the whole record; the stretch above is shaded", fontsize=9)
         if shown.noise:

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from gear_damping.reporting.figures.arrays import Array, any_finite, grid, series
+from gear_damping.reporting.figures.axis_names import axis
 from gear_damping.reporting.style import BLUE, DIVERGING, FAINT, PALE, mark_empty, new_figure, styled
 
 ROBUST_PERCENTILE = 99.0  # of the sizes; a few outliers may saturate
@@ -66,7 +67,7 @@ def residual_force_map_figure(shown: ForceMap) -> Figure:
         figure = new_figure(3.9)
         axes = figure.subplots()
         axes.set(xlabel="pinion tooth", ylabel="mesh phase / mesh periods")
-        if _picture(axes, teeth, phase, force, f"residual force / {shown.unit}"):
+        if _picture(axes, teeth, phase, force, axis("residual force", shown.unit)):
             axes.set_xticks(teeth[:: max(1, len(teeth) // 20)])
             axes.set_title(_grey(force), fontsize=9)
         return figure
@@ -84,8 +85,8 @@ def residual_force_surface_figure(shown: ForceSurface) -> Figure:
     (x,), (v,) = series(displacement=shown.displacement), series(velocity=shown.velocity)
     force = grid(shown.force, v, x, "force")
     weights = np.ones_like(force) if shown.visits is None else grid(shown.visits, v, x, "visits")
-    name = f"residual force / {shown.force_unit}"
-    x_name, v_name = f"displacement / {shown.displacement_unit}", f"velocity / ({shown.velocity_unit})"
+    name = axis("residual force", shown.force_unit)
+    x_name, v_name = axis("displacement", shown.displacement_unit), axis("velocity", shown.velocity_unit)
     with styled():
         figure = new_figure(5.6)
         layout = figure.add_gridspec(2, 2, width_ratios=(2.6, 1), height_ratios=(1, 2.2))

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
+from gear_damping.reporting.figures.axis_names import axis
 from gear_damping.reporting.figures.spectra import (
     FREQUENCY_LABEL,
     Spectra,
@@ -57,7 +58,7 @@ def residual_spectrum_figure(spectrum: ResidualSpectrum, unit: str) -> Figure:
     Raises:
         ValueError: the arrays have different shapes.
     """
-    name = f"residual amplitude / {unit}"
+    name = axis("residual amplitude", unit)
     if spectrum.mesh_order is None:
         return _over_frequencies(spectrum, name)
     marks = {"pinion_order": 1.0, "gear_order": spectrum.gear_order, "mesh_order": spectrum.mesh_order}

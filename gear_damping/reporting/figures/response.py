@@ -5,6 +5,7 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from gear_damping.reporting.figures.arrays import any_finite, extent, series, time_axis
+from gear_damping.reporting.figures.axis_names import axis
 from gear_damping.reporting.style import BLUE, SKY, mark_empty, new_figure, styled
 
 READABLE_SAMPLES = 300  # in which single cycles are seen
@@ -38,7 +39,7 @@ def response_figure(
         stop = min(readable, len(time))
         for axes, values, width in ((whole, slice(None), 0.7), (excerpt, slice(0, stop), 1.1)):
             axes.plot(shown_time[values], signal[values], color=BLUE, linewidth=width)
-            axes.set(ylabel=f"{label} / {unit}", xlabel=time_label)
+            axes.set(ylabel=axis(label, unit), xlabel=time_label)
             limits = extent([shown_time[values]])
             if limits:
                 axes.set_xlim(limits)

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from gear_damping.reporting.figures.arrays import Array, any_finite, extent, series, time_axis
+from gear_damping.reporting.figures.axis_names import axis
 from gear_damping.reporting.figures.marks import mark_orders
 from gear_damping.reporting.figures.spectra import (
     DECADES,
@@ -69,7 +70,7 @@ def simulation_figure(run: ShownRun) -> Figure:
         wide = np.s_[1, 1] if shaft else np.s_[1, :2]  # without a shaft there are no low orders
         over_time, spectrum, phase = (figure.add_subplot(grid[place]) for place in (np.s_[0, :], wide, np.s_[1, 2]))
         over_time.set_title(run.title)
-        _over_time(over_time, time, signal, f"{run.label} / {run.unit}")
+        _over_time(over_time, time, signal, axis(run.label, run.unit))
         orders, amplitudes = _spectrum(signal, run.sampling_rate, shaft)
         highest = SHOWN_MESH_HARMONICS * teeth if shaft and teeth else None
         top = draw_spectra(spectrum, orders, {"response": amplitudes}, highest or _content(orders, amplitudes))
@@ -83,9 +84,9 @@ def simulation_figure(run: ShownRun) -> Figure:
             mark_orders(first, LOW_ORDERS, **marks)
             mark_orders(spectrum, top, mesh_order=teeth, **marks)
             figure.legend(handles=spectrum.get_legend_handles_labels()[0][1:], loc="outside lower center", ncols=3)
-        first.set_ylabel(f"amplitude / {run.unit}")
+        first.set_ylabel(axis("amplitude", run.unit))
         _phase_plane(phase, signal, velocity)
-        phase.set(xlabel=f"{run.label} / {run.unit}", ylabel="velocity / (m/s)")
+        phase.set(xlabel=axis(run.label, run.unit), ylabel="velocity / (m/s)")
         phase.locator_params(axis="x", nbins=4)
         return figure
 
