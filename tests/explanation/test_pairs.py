@@ -5,6 +5,7 @@ from types import SimpleNamespace
 from unittest.mock import patch
 
 import pytest
+import torch
 
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import State
@@ -19,10 +20,15 @@ MIDDLE = {"a.force": 10.0, "a.width": 0.1, "b.share": 0.3}
 
 def model(cost, **values):
     """A model of the effects a and b that costs so much on records left out, with these values."""
-    free = [SimpleNamespace(name=name, lower=low, upper=high) for name, (low, high) in BOUNDS.items()]
-    hypothesis = SimpleNamespace(free=free)
-    values = MIDDLE | {name.replace("_", ".", 1): value for name, value in values.items()}
-    return outcome(cost, cost, problem=SimpleNamespace(free=free), hypothesis=hypothesis, values=values)
+    found = MIDDLE | {name.replace("_", ".", 1): value for name, value in values.items()}
+    free = [SimpleNamespace(name=name) for name in BOUNDS]
+    low, high = torch.tensor(list(BOUNDS.values())).T
+    unknowns = SimpleNamespace(at_bound=lambda shared: (shared >= high).long() - (shared <= low).long())
+    made = outcome(
+        cost, cost, problem=SimpleNamespace(free=free, unknowns=unknowns), hypothesis=SimpleNamespace(free=free)
+    )
+    made.fitted.shared = torch.tensor([found[name] for name in BOUNDS])
+    return made
 
 
 def pair(cost, sharpest=(), t=50.0, **values):
@@ -39,11 +45,11 @@ def pair(cost, sharpest=(), t=50.0, **values):
     ("values", "sharpest", "inside"),
     [
         ({}, (), True),
-        ({"a_width": 0.0201}, (), False),
-        ({"a_width": 0.0201}, ("a.width",), True),  # finer steps would show no more: no bound of what is there
-        ({"a_width": 0.499}, ("a.width",), False),
-        ({"b_share": -0.999}, ("a.width",), False),  # of the second effect
-        ({"a_force": 0.0}, (), True),  # absent is a value like any other
+        ({"a_width": 0.02}, (), False),
+        ({"a_width": 0.02}, ("a.width",), True),  # finer steps would show no more: no bound of what is there
+        ({"a_width": 0.5}, ("a.width",), False),
+        ({"b_share": -1.0}, ("a.width",), False),  # of the second effect
+        ({"a_force": 0.0}, ("a.width",), False),  # a law of which a part is nothing stands in for a simpler one
     ],
 )
 def test_a_pair_is_inside_its_bounds_as_each_of_its_effects_is(values, sharpest, inside):

@@ -29,7 +29,7 @@ def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
     names += [n for n in best if n not in names and best[n].gain >= bench.settings.least_share]
     names = names[: bench.settings.full_fits]
     if names and bench.evidence.has(Trait.REST):  # where fits are cheap, whatever may be meant stands beside them
-        likely = chosen(state.ranked, bench.settings, springs=True)
+        likely = chosen(state.ranked, bench.settings, springs=True, every=True)
         names += [name for name in best_by_effect(likely) if name not in names]
     names = [name for name in names if best[name].gain > 0 and not bench.budget.refuses(name)]
     found = (bench.full_fit(best[name], state.outcome, reach=state.outcome.fitted.cost) for name in names)

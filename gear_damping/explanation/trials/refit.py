@@ -58,12 +58,8 @@ class Refit:
     @property
     def is_at_bound(self) -> bool:
         """Whether a parameter of the effect itself has run into a bound of what is tried."""
-        return self.is_at_bound_in(self.outcome)
-
-    def is_at_bound_in(self, outcome: Outcome) -> bool:
-        """The same of a model that holds this effect among others."""
-        own = [p for p in outcome.problem.free if p.name.startswith(self.name + ".")]
-        values, sharpest = outcome.values, self.score.candidate.sharpest
+        own = [p for p in self.outcome.problem.free if p.name.startswith(self.name + ".")]
+        values, sharpest = self.outcome.values, self.score.candidate.sharpest
         ends = [(p, p.upper) for p in own] + [(p, p.lower) for p in own if p.name not in sharpest]
         return any(isclose(values[p.name], end, rel_tol=AT_BOUND) for p, end in ends if end)
 
@@ -80,7 +76,9 @@ def block_samples(outcome: Outcome, evidence: Evidence, records: Sequence[FitRec
     return [max(SHORTEST_BLOCK, round(seconds * record.sampling_rate)) for record in records]
 
 
-def chosen(scores: Sequence[Score], settings: SearchSettings, least: float = 0.0, springs: bool = False) -> list[Score]:
+def chosen(
+    scores: Sequence[Score], settings: SearchSettings, least: float = 0.0, springs: bool = False, every: bool = False
+) -> list[Score]:
     """The candidates worth a full fit: the best variant of the best effects, and who resembles the first.
 
     Another form of an effect (a filter of another order) is tried too where its predicted gain is nearly as large, and
@@ -90,9 +88,10 @@ def chosen(scores: Sequence[Score], settings: SearchSettings, least: float = 0.0
         scores: Every candidate, the best first.
         settings: How many are worth it.
         least: Of the first one's predicted gain, that another needs.
-        springs: Whether every promising one and everything far from linear is worth one, as for an oscillator, whose
-            fits are cheap: a law that is even in the deflection pulls the frequency by its square, and what is tried
-            as a whole (a sensor that saturates) has little gain at a wrong size. No linear score foresees either.
+        springs: Whether everything far from linear is worth one, as for an oscillator, whose fits are cheap: a law that
+            is even in the deflection pulls the frequency by its square, and what is tried as a whole (a sensor that
+            saturates) has little gain at a wrong size. No linear score foresees either.
+        every: Whether all that promise much are, whether they resemble the first or not.
     """
     forms: dict[tuple, Score] = {}
     for score in scores:
@@ -101,7 +100,7 @@ def chosen(scores: Sequence[Score], settings: SearchSettings, least: float = 0.0
     ranked = list(best_by_effect(every).values())
     first = [score for score in ranked[: settings.full_fits] if score.gain >= least * ranked[0].gain]
     promising = [score for score in ranked[settings.full_fits :] if score.gain > LEAST_PREDICTED_GAIN * ranked[0].gain]
-    alike = [score for score in promising if springs or collinearity(ranked[0], score) > NEARLY_COLLINEAR]
+    alike = [score for score in promising if every or collinearity(ranked[0], score) > NEARLY_COLLINEAR]
     instead = [score for score in ranked if score.candidate.replaced]  # adds nothing that could overfit: always tried
     far = [score for score in ranked if springs and score.gain > 0 and _is_far_from_linear(score.candidate)]
     taken = [*(first + alike)[: settings.most_full_fits], *instead, *far]
