@@ -13,7 +13,7 @@ from tests.explanation.decisions.made_up import NAMES, outcome, scored
 SHOWING, LARGE, SMALL = NAMES[:3]
 
 
-def tried(gains, shows, refused=(), cheap=False):
+def tried(gains, shows, refused=(), cheap=False, accepted=()):
     """The effects that get a full fit, in order: of these predicted gains, where these show beyond chance."""
     fitted = []
     bench = SimpleNamespace(
@@ -24,7 +24,8 @@ def tried(gains, shows, refused=(), cheap=False):
     )
     visible = SimpleNamespace(shows=lambda name: name in shows, by_name=dict.fromkeys(shows, 10.0))
     scores = tuple(scored(place, gain) for place, gain in enumerate(gains))
-    state = State(bench, outcome(), outcome(), ranked=scores, left=SimpleNamespace(visible=visible))
+    left = SimpleNamespace(visible=visible)
+    state = State(bench, outcome(), outcome(), accepted=accepted, ranked=scores, left=left)
     assert faint_cause(state)[1:] == (None, ())
     return fitted
 
@@ -55,3 +56,7 @@ def test_a_budget_refuses_by_name():
 )
 def test_where_fits_are_cheap_whatever_may_be_meant_is_tried(gains, shows, expected):
     assert tried(gains, shows, cheap=True) == expected
+
+
+def test_beside_a_cause_only_what_shows_is_tried():
+    assert tried((0.01, 0.2, 0.1), (SHOWING,), cheap=True, accepted=(SimpleNamespace(name="other"),)) == [SHOWING]

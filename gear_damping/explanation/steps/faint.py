@@ -28,7 +28,8 @@ def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
     names = sorted((n for n in best if seen.visible.shows(n)), key=lambda n: -seen.visible.by_name[n])
     names += [n for n in best if n not in names and best[n].gain >= bench.settings.least_share]
     names = names[: bench.settings.full_fits]
-    if names and bench.evidence.has(Trait.REST):  # where fits are cheap, whatever may be meant stands beside them
+    is_first = not state.accepted  # what shows may then be meant by any of the laws that promise much
+    if names and is_first and bench.evidence.has(Trait.REST):  # where fits are cheap
         likely = chosen(state.ranked, bench.settings, springs=True, every=True)
         names += [name for name in best_by_effect(likely) if name not in names]
     names = [name for name in names if best[name].gain > 0 and not bench.budget.refuses(name)]
