@@ -7,6 +7,7 @@ import pytest
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import State
 from gear_damping.explanation.steps.faint import faint_cause
+from gear_damping.explanation.trials.refit import chosen
 from gear_damping.physics.systems.traits import Trait
 from tests.explanation.decisions.made_up import NAMES, outcome, scored
 
@@ -60,3 +61,10 @@ def test_where_fits_are_cheap_whatever_may_be_meant_is_tried(gains, shows, expec
 
 def test_beside_a_cause_only_what_shows_is_tried():
     assert tried((0.01, 0.2, 0.1), (SHOWING,), cheap=True, accepted=(SimpleNamespace(name="other"),)) == [SHOWING]
+
+
+@pytest.mark.parametrize(("every", "kept"), [(False, 4), (True, 6)])
+def test_laws_that_do_not_resemble_the_first_are_chosen_where_every_one_is_asked_for(every, kept):
+    """Seven along axes of their own: four come first, two more promise a third of the first one's gain."""
+    ranked = [scored(place, gain) for place, gain in enumerate((0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.1))]
+    assert len(chosen(ranked, SearchSettings(), every=every)) == kept

@@ -96,8 +96,8 @@ def chosen(
     forms: dict[tuple, Score] = {}
     for score in scores:
         forms.setdefault((score.candidate.name, *score.candidate.form), score)
-    every = list(forms.values())
-    ranked = list(best_by_effect(every).values())
+    variants = list(forms.values())
+    ranked = list(best_by_effect(variants).values())
     first = [score for score in ranked[: settings.full_fits] if score.gain >= least * ranked[0].gain]
     promising = [score for score in ranked[settings.full_fits :] if score.gain > LEAST_PREDICTED_GAIN * ranked[0].gain]
     alike = [score for score in promising if every or collinearity(ranked[0], score) > NEARLY_COLLINEAR]
@@ -107,7 +107,7 @@ def chosen(
     simpler = {score.candidate.hypothesis.effects[-1].cause.simpler for score in taken}
     taken += [score for score in ranked if score.candidate.name in simpler]
     worth = {score.candidate.name: score.gain for score in taken}
-    return [s for s in every if s.gain >= OTHER_FORM * worth.get(s.candidate.name, inf)]
+    return [s for s in variants if s.gain >= OTHER_FORM * worth.get(s.candidate.name, inf)]
 
 
 def _is_far_from_linear(candidate: Candidate) -> bool:
