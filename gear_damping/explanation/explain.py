@@ -114,22 +114,23 @@ def explain(
     if faults:
         return Explanation(report_fields.of_faults(measurement, faults))
     evidence = at_useful_rate(evidence if library is None else replace(evidence, library=library))
-    notes = [note for note in (died_away(evidence),) if note]
-    whole = evidence
+    silent, whole = died_away(evidence), evidence
+    if silent:
+        log(silent)
     sealed = evidence.holdout if evidence.can_be_sealed else ()
     evidence = replace(evidence, holdout=(), sealed=True) if sealed else evidence
     evidence, noise = with_noise(evidence, measurement, log)
     step(1, STEPS)
     state = _searched(evidence, noise, log, fitting_solver(solver), budget, lambda: step(2, STEPS))
-    notes += [note for note in (too_short(whole, state.nominal),) if note]
-    for note in notes:
-        log(note)
+    short = too_short(whole, state.nominal)
+    if short:
+        log(short)
     step(3, STEPS)
     found = confirmed(state, sealed, measurement)
     if found.state.names != state.names:
         found = replace(found, state=replace(found.state, left=looked(found.state).left))
     found = replace(found, state=estimated(found.state))
-    notes += [INPUT_NOISE] if found.state.bench.evidence.input_noise else []
+    notes = [silent, short, INPUT_NOISE if found.state.bench.evidence.input_noise else ""]
     judged = _judged(found, notes)
     step(4, STEPS)
     evidence, noise = found.state.bench.evidence, found.noise

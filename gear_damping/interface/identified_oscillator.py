@@ -8,6 +8,7 @@ from typing import Any
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome
 from gear_damping.explanation.trials.efficient import weighed
+from gear_damping.identification.free_vibration import LEAST_FALL
 from gear_damping.identification.observation import fit_record, has_spring, known_of, require_alike, require_fitted
 from gear_damping.identification.oscillator.estimates import Estimate
 from gear_damping.identification.oscillator.fit import OscillatorFit, fit_oscillator
@@ -20,7 +21,6 @@ from gear_damping.reporting import figures, tables
 from gear_damping.simulation.solver_settings import Progress, Solver
 
 NEWTONS = ("N*s/m", "N/m")  # units of what is not per unit of mass
-LEAST_FALL = 0.1  # nepers over a record: what falls less may as well go on
 MOST_SAMPLES = 200_000  # beyond which the test of what is random takes longer than the fit
 
 

@@ -7,14 +7,13 @@ from gear_damping.explanation.evidence.records import SPLIT, Evidence
 from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency_hz
 from gear_damping.explanation.model.stated import stated_frequency
 from gear_damping.explanation.trials.refit import FEWEST_BLOCKS
-from gear_damping.identification.oscillator.first_frequency import first_frequency
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.time_scale import decorrelation_time
 
 FEWEST_PERIODS = 3.0  # held out, whatever the time over which the motion forgets itself
 
 
-def too_short(evidence: Evidence, nominal: Outcome | None = None) -> str:
+def too_short(evidence: Evidence, nominal: Outcome) -> str:
     """A sentence where no test over the held-out records can decide, else nothing.
 
     A test compares residuals over blocks that are independent of each other: a block lasts at least a characteristic
@@ -22,7 +21,7 @@ def too_short(evidence: Evidence, nominal: Outcome | None = None) -> str:
 
     Args:
         evidence: The records.
-        nominal: The nominal model fitted to them, whose frequency is theirs; a first guess of it where absent.
+        nominal: The nominal model fitted to them, whose frequency is theirs.
     """
     period, name = _characteristic(evidence, nominal)
     held = _times(evidence.holdout, period)
@@ -52,21 +51,14 @@ def died_away(evidence: Evidence) -> str:
     )
 
 
-def _characteristic(evidence: Evidence, nominal: Outcome | None) -> tuple[float, str]:
+def _characteristic(evidence: Evidence, nominal: Outcome) -> tuple[float, str]:
     """Seconds over which the motion forgets itself, and what so many of them are called."""
     if not evidence.has_spring:
         time = max(decorrelation_time(record) for record in evidence.fit)
         return time, f"times of {time:.3g} s, over which the motion forgets itself"
-    frequency = _natural_frequency(evidence, nominal)
+    fitted = natural_frequency_hz(nominal.hypothesis.model, nominal.flat_given())
+    frequency = stated_frequency(evidence) or fitted
     return 1 / frequency, f"natural periods of {frequency:.3g} Hz"
-
-
-def _natural_frequency(evidence: Evidence, nominal: Outcome | None) -> float:
-    """As stated, as it was fitted, or as the longest record shows it, in Hz."""
-    if stated := stated_frequency(evidence):
-        return stated
-    fitted = natural_frequency_hz(nominal.hypothesis.model, nominal.flat_given()) if nominal is not None else 0.0
-    return fitted or first_frequency(max(evidence.fit, key=lambda record: record.duration))
 
 
 def _times(records: Sequence[FitRecord], period: float) -> float:

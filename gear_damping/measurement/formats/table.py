@@ -29,7 +29,9 @@ class Table(ABC):
         left_out: What the file holds besides real numbers, for messages.
     """
 
-    def __init__(self, path: Path, shapes: Sequence[tuple[str, tuple[int, ...]]], left_out: Sequence[str] = ()) -> None:
+    def __init__(
+        self, path: Path, shapes: Sequence[tuple[str, tuple[int, ...]]], left_out: Sequence[str] = ()
+    ) -> None:
         self.path, self.shapes, self.left_out = path, tuple(shapes), tuple(left_out)
         columns = [
             (_column_name(name, rest), array, rest, max(shape))
@@ -86,7 +88,9 @@ class Table(ABC):
     def _absent(self, column: str, key: str) -> Problem:
         named = [name for name in self.names if name]
         if not named:
-            return Problem(key, "no such column", column, f"give a 0-based index: {self.listing(True)}", str(self.path))
+            return Problem(
+                key, "no such column", column, f"give a 0-based index: {self.listing(True)}", str(self.path)
+            )
         indexed = _INDEXED.match(column)
         shapes = dict(self.shapes)
         base = (indexed[1] if indexed else column).strip().strip("/")
