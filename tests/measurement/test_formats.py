@@ -83,6 +83,16 @@ def test_a_repeated_header_needs_an_index(tmp_path):
         table.index("x", "column")
 
 
+def test_the_last_part_of_a_path_is_enough_where_it_is_the_only_one(tmp_path):
+    held = {"left/force": np.arange(3.0), "left/speed": np.ones(3), "right/speed": np.zeros(3)}
+    np.savez(tmp_path / "a.npz", **held)
+    table = read_table(tmp_path / "a.npz")
+    assert _column(table, "force") == [0, 1, 2]
+    assert _column(table, "right/speed") == [0, 0, 0]
+    with pytest.raises(InputError, match=r"2 columns bear this name.*one of \[1, 2\]"):
+        table.index("speed", "column")
+
+
 def test_many_faults_are_counted_not_listed(tmp_path):
     with pytest.raises(InputError) as caught:
         _column(_csv(tmp_path, "t,a\n" + "0,x\n" * 50 + "0,1\n"), "a")

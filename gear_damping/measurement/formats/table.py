@@ -81,9 +81,14 @@ class Table(ABC):
         return []
 
     def _named(self, column: str) -> list[int]:
-        exact = [index for index, name in enumerate(self.names) if name and name == column]
-        alike = normalize("NFKC", column)  # the same letters in other codes: µ and μ, ä and a with two dots
-        return exact or [index for index, name in enumerate(self.names) if name and normalize("NFKC", name) == alike]
+        """Those of the very name, else of its letters in other codes (µ and μ), else of the last part of its path."""
+        own = [normalize("NFKC", name) for name in self.names]
+        last = [name.rpartition("/")[2] for name in own]
+        alike = normalize("NFKC", column)
+        for names, sought in ((self.names, column), (own, alike), (last, alike)):
+            if found := [index for index, name in enumerate(names) if name and name == sought]:
+                return found
+        return []
 
     def _absent(self, column: str, key: str) -> Problem:
         named = [name for name in self.names if name]
