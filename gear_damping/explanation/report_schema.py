@@ -51,6 +51,7 @@ class Parameter(Part):
     at_bound: bool | None = may_be_left_out(
         "whether it ran into the end of its range: then it stands for something else"
     )
+    told: bool | None = may_be_left_out("false where the records say nothing of it: the interval is all it may be")
 
 
 class PerRecord(Part):

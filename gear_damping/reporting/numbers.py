@@ -65,10 +65,13 @@ def _alike(numbers: Sequence[float]) -> list[str]:
 
 
 def estimate(entry: Mapping[str, Any] | None, digits: int = 3) -> str:
-    """`quantity` of {value, unit, interval95}."""
+    """`quantity` of {value, unit, interval95}; not told by the records, or at the end of its range, it says so."""
     if entry is None:
         return NOTHING
-    return quantity(entry.get("value"), entry.get("unit"), entry.get("interval95"), digits)
+    text = quantity(entry.get("value"), entry.get("unit"), entry.get("interval95"), digits)
+    if entry.get("told") is False:
+        return f"{text}: not told by these records"
+    return f"{text}, at the end of its range" if entry.get("at_bound") else text
 
 
 def percent(share: float | None, digits: int = 3) -> str:

@@ -36,8 +36,10 @@ def test_a_gap_whose_far_flank_is_never_touched_has_its_whole_range_as_interval(
     gap = parameters_of(outcome, covariances, "backlash", evidence)["gap"]
     declared = model.parameters()["backlash.gap"]
     assert gap["interval95"] == [declared.lower, declared.upper]
+    assert gap["told"] is False
     damping = parameters_of(outcome, covariances, "viscous_damping", evidence)["damping_coefficient"]
     low, high = damping["interval95"]
+    assert "told" not in damping
     assert low < 64.5 < high
     assert high - low < 6.0
 

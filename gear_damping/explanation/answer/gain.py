@@ -29,15 +29,17 @@ STEP = 1e-4  # of a coordinate, for the slope of the damping ratio
 
 @dataclass(frozen=True)
 class Interval:
-    """A value with its 95 % interval."""
+    """A value with its 95 % interval; not `told` where that is all it may be."""
 
     value: float
     interval95: tuple[float, float]
     unit: str
+    told: bool = True
 
     def plain(self) -> dict[str, object]:
         """As JSON types."""
-        return {"value": self.value, "unit": self.unit, "interval95": list(self.interval95)}
+        found = {"value": self.value, "unit": self.unit, "interval95": list(self.interval95)}
+        return found if self.told else found | {"told": False}
 
 
 def rmse(residuals: Sequence[Tensor]) -> float:
@@ -99,7 +101,7 @@ def _interval(outcome: Outcome, covariances: Tensor, place: int, evidence: Evide
         ends = sorted((0.0, value * (1 + half)))
     else:
         ends = sorted(float(parameter.value(z + shift)) for shift in (-half, half))
-    known = outcome.hypothesis.model.parameters().get(parameter.declared_name)
+    known, told = outcome.hypothesis.model.parameters().get(parameter.declared_name), True
     if known is not None:
         moved = float(outcome.fitted.prediction.sensitivity[..., place].norm())
         at_bound = int(outcome.problem.unknowns.at_bound(outcome.fitted.shared)[place])
@@ -107,7 +109,8 @@ def _interval(outcome: Outcome, covariances: Tensor, place: int, evidence: Evide
         lower = known.lower if silent or at_bound < 0 else ends[0]
         upper = known.upper if silent or at_bound > 0 else ends[1]
         ends = [min(max(lower, known.lower), value), max(min(upper, known.upper), value)]
-    return Interval(value, (ends[0], ends[1]), unit)
+        told = ends != [known.lower, known.upper]
+    return Interval(value, (ends[0], ends[1]), unit, told)
 
 
 def damping_ratio(outcome: Outcome, covariances: Tensor) -> dict[str, object] | None:
