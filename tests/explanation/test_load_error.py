@@ -1,5 +1,7 @@
 """The error of a measured load behind an oscillator, against an integrator and the covariance of many draws."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import torch
@@ -12,6 +14,8 @@ from gear_damping.explanation.statistics.load_error import KnownError, Linear, l
 from gear_damping.explanation.steps.calibrate import calibrated
 from gear_damping.explanation.trials.assess import assessed
 from gear_damping.explanation.trials.innovations import load_errors
+from gear_damping.explanation.trials.noisy_load import moves_with_noise
+from gear_damping.explanation.trials.random_part import Random
 from gear_damping.identification.observation import Known
 from gear_damping.identification.output_error.records import FitRecord, Observed
 
@@ -27,12 +31,12 @@ def error_autocovariance():
     return np.concatenate([full, np.zeros(SAMPLES - len(full))])
 
 
-def shown_motion(push, stamps, derivatives=0):
+def shown_motion(push, stamps, derivatives=0, damping=DAMPING):
     """What an integrator gives for a load that goes in a line from sample to sample, after it has settled."""
     rest = 900  # samples before the record, over which the start dies away
     time = np.arange(len(push)) / RATE
     fine = np.arange(FINER * (len(push) - 1) + 1) / (RATE * FINER)
-    rates = np.array([[0.0, 1.0], [-STIFFNESS, -DAMPING]])
+    rates = np.array([[0.0, 1.0], [-STIFFNESS, -damping]])
     system = (rates, [[0.0], [1.0]], np.eye(2), np.zeros((2, 1)))
     load = np.interp(fine, time, push)
     _, states, _ = lsim(system, load, fine)
@@ -95,17 +99,17 @@ def test_it_is_likelier_than_a_white_sensor_only_where_it_is_there():
     assert found[1] > of_white[1]
 
 
-def rig(is_in_motion, highest, noise=0.3, count=4):
+def rig(is_in_motion, highest, noise=0.3, count=4, damping=DAMPING, seed=7, samples=SAMPLES):
     """Records of an oscillator whose load of lines up to so many Hz was measured with noise, or that moves with it."""
-    random, rows = np.random.default_rng(7), np.arange(1660)
+    random, rows = np.random.default_rng(seed), np.arange(samples + 960)
     phases, lines = random.uniform(0, 7, (count, 12)), np.linspace(0.7, highest, 12)
     records = []
     for i in range(count):
         true = (1 + i) * np.cos(2 * np.pi * np.multiply.outer(rows / RATE, lines) + phases[i]).sum(1)
         seen = true + (1 + i) * noise * random.normal(size=len(rows))
-        moved = shown_motion(seen if is_in_motion else true, np.arange(SAMPLES) / RATE)
-        moved = moved + SENSOR * random.normal(size=SAMPLES)
-        force = torch.as_tensor(seen[900 : 900 + SAMPLES])
+        moved = shown_motion(seen if is_in_motion else true, np.arange(samples) / RATE, damping=damping)
+        moved = moved + SENSOR * random.normal(size=samples)
+        force = torch.as_tensor(seen[900 : 900 + samples])
         records.append(FitRecord(f"run {i}", torch.as_tensor(moved), RATE, {"force": force}, observed=Observed()))
     known = Known({}, {})
     return Evidence("oscillator", tuple(records[:-1]), (records[-1],), known, None, one_record=False, noise=SENSOR)
@@ -113,6 +117,29 @@ def rig(is_in_motion, highest, noise=0.3, count=4):
 
 def test_noise_that_an_oscillator_moves_with_stays_in_its_load():
     assert not calibrated(rig(is_in_motion=True, highest=6.0)).evidence.input_noise
+
+
+@pytest.mark.parametrize("seed", [4, 11, 12])
+def test_noise_of_the_sensor_of_a_load_is_none_though_a_few_blocks_of_a_narrow_resonance_like_it(seed):
+    """It rings for as long as a record lasts, so that its blocks hang together."""
+    light = rig(is_in_motion=False, highest=17.0, damping=0.5, seed=seed, samples=250)
+    assert calibrated(light).evidence.input_noise
+
+
+def test_where_the_error_of_a_load_is_unknown_blocks_of_the_residual_decide():
+    evidence = rig(is_in_motion=False, highest=6.0, count=3)
+    found = calibrated(evidence)
+    series = [residual.clone() for residual in found.nominal.fit_residuals]
+    less = replace(found.nominal, fit_residuals=[0.5 * one for one in series])
+    bare = replace(evidence, fit=tuple(replace(record, input_errors={}) for record in evidence.fit))
+    assert moves_with_noise(less, found.nominal, bare)
+    assert not moves_with_noise(found.nominal, less, bare)
+
+
+def test_a_record_that_was_not_fitted_has_the_error_of_its_load_whatever_colour_the_others_are_taken_for():
+    groups, level = torch.zeros(1, 1), NoiseLevel({"fitted": 0.1, "held": 0.1}, "floor", 1e9, agree=True)
+    coloured = Random((), groups, 0.04, 1.0, {"fitted": 0.04}, errors={"fitted": 0.5, "held": 0.25})
+    assert coloured.joined(level).by_record == pytest.approx({"fitted": 0.2, "held": 0.5})
 
 
 def test_the_error_of_a_load_is_no_effect_and_is_expected_in_records_that_were_not_fitted():

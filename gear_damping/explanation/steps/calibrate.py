@@ -27,8 +27,7 @@ from gear_damping.explanation.model.nominal_gear_pair import (
     standing,
     with_stiffness,
 )
-from gear_damping.explanation.statistics.paired import paired_gain
-from gear_damping.explanation.trials.refit import block_samples
+from gear_damping.explanation.trials.noisy_load import moves_with_noise
 from gear_damping.identification.observation import MESH_PHASE
 from gear_damping.identification.oscillator.fit import fit_oscillator
 from gear_damping.identification.oscillator.linear_model import DAMPING, linear_model, linear_oscillator
@@ -95,10 +94,7 @@ def _simulable() -> Iterator[None]:
 
 
 def _oscillator_calibrated(evidence: Evidence, solver: Solver | None) -> Calibration:
-    """With loads without the noise of their sensor; as they were measured where the oscillator moves with that noise.
-
-    It does where it is followed clearly better with it than without.
-    """
+    """With loads without the noise of their sensor, or as they were measured where the oscillator moves with that."""
     found = Calibration(evidence, _oscillator(evidence, solver))
     cleaned = without_input_noise(evidence.records)
     if cleaned is None:
@@ -106,9 +102,7 @@ def _oscillator_calibrated(evidence: Evidence, solver: Solver | None) -> Calibra
     count = len(evidence.fit)
     evidence = replace(evidence, fit=cleaned[:count], holdout=cleaned[count:], input_noise=True)
     quiet = Calibration(evidence, _oscillator(evidence, solver))
-    blocks = block_samples(quiet.nominal, evidence, evidence.fitted)
-    _, t = paired_gain(quiet.nominal.fit_residuals, found.nominal.fit_residuals, blocks)
-    return found if t >= evidence.settings.rival_t else quiet
+    return found if moves_with_noise(found.nominal, quiet.nominal, evidence) else quiet
 
 
 def _oscillator(evidence: Evidence, solver: Solver | None) -> Outcome:

@@ -64,12 +64,16 @@ class Random:
         return replace(noise, by_record=levels, correlation=correlation, method=f"{noise.method}; {RANDOM_PART}")
 
     def _of(self, record: str) -> float:
-        """Variance in a record: its own; else of a sensor and what the error of its load adds; else the typical one."""
+        """Variance in a record: its own; else of a sensor and what the error of its load adds; else the typical one.
+
+        Where that error is a part of the fitted records their initial states may have taken most of it, so that another
+        colour tells as much; records that were not fitted have it all the same.
+        """
         if record in self.by_record:
             return self.by_record[record]
-        if record in self.errors and self.loads:
-            return self.sensor + self.errors[record]
-        return self.variance
+        if record not in self.errors:
+            return self.variance
+        return self.sensor + self.errors[record] if self.loads else max(self.variance, self.errors[record])
 
 
 def random_part(
