@@ -54,7 +54,8 @@ class Budget:
         """What there was no time for; empty where there was for everything."""
         missing = ", ".join(self.not_tried)
         said = (
-            f"In the {self.minutes:g} minutes of the search there was no time for these: {missing}. "
+            f"Of the {self.minutes:g} minutes of the search a part is kept to test what it finds, and there was no "
+            f"time for these: {missing}. "
             f"explain.minutes={MORE * self.minutes:g} gives it more."
         )
         return said if missing else ""

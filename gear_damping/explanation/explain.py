@@ -8,7 +8,13 @@ from torch import Tensor
 
 from gear_damping.explanation.answer import report_fields
 from gear_damping.explanation.answer.homogeneity import homogeneity
-from gear_damping.explanation.answer.stand_in import is_untold, shape_without_name, stand_ins, swings_on
+from gear_damping.explanation.answer.stand_in import (
+    is_untold,
+    line_left,
+    shape_without_name,
+    stand_ins,
+    swings_on,
+)
 from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.casing.heard import is_casing
 from gear_damping.explanation.casing.report_fields import CasingStudy, explain_casing
@@ -207,7 +213,7 @@ def _judged(found: Confirmed, notes: Sequence[str]) -> Judged:
         is_untold=is_untold(state),
         shape=shape_without_name(state),
     )
-    said = verdict(state, before, after, known).saying(*notes, budget.sentence)
+    said = verdict(state, before, after, known).saying(line_left(state), *notes, budget.sentence)
     if said.word == CONSISTENT:  # what would take part of so little is no cause
         state, after = replace(state, accepted=(), outcome=state.nominal, left=state.seen), before
     return Judged(state, before, after, said, not_tried, found.t)

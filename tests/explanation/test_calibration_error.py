@@ -13,6 +13,7 @@ from gear_damping.explanation.model.fitting import fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Hypothesis
 from gear_damping.explanation.model.opened import opened
 from gear_damping.identification.observation import Known
+from gear_damping.identification.output_error.problem import OutputErrorProblem
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.physics.effects.viscous_damping import ViscousDamping
 from gear_damping.physics.systems.oscillator import Oscillator
@@ -80,3 +81,12 @@ def test_chance_is_wider_where_the_calibration_is_uncertain():
     floor = 100 * NOISE**2 / float((evidence.holdout[0].response - evidence.holdout[0].response.mean()).square().mean())
     plain = found.chance / 3  # one standard error, in % of the channel's variance
     assert wider.chance == pytest.approx(0.5 * floor + 3 * math.hypot(plain, 0.3 * floor), rel=1e-9)
+
+
+def test_it_is_of_the_motion_that_was_recorded_however_far_off_its_first_guess(monkeypatch):
+    """As of an accelerometer that has lost its zero: integrated twice it runs away."""
+    outcome, evidence = calibrated(0)
+    expected = calibration_error(outcome, evidence).expected
+    guess = OutputErrorProblem.first_states
+    monkeypatch.setattr(OutputErrorProblem, "first_states", lambda problem: 8 * guess(problem))
+    assert calibration_error(outcome, evidence).expected == pytest.approx(expected, rel=0.01)

@@ -9,7 +9,7 @@ import pytest
 import torch
 from scipy.integrate import solve_ivp
 
-from gear_damping.explanation.answer.stand_in import beyond_chance, is_untold, shape_without_name, stand_ins
+from gear_damping.explanation.answer.stand_in import beyond_chance, is_untold, line_left, shape_without_name, stand_ins
 from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.fitting import fit_hypothesis
@@ -135,11 +135,21 @@ def test_what_is_visible_without_a_name_is_told_by_its_place(forced):
     assert shape_without_name(found).startswith("a line at 1.3")
 
 
+def test_a_line_that_is_most_of_what_causes_leave_is_told(forced):
+    seen = assessed(forced.nominal, [], forced.bench.evidence)
+    beside = State(forced.bench, forced.nominal, forced.nominal, forced.accepted, left=seen)
+    assert line_left(beside).startswith("Of what is left, 9")
+    assert "is a line at 1.3" in line_left(beside)
+    assert not line_left(replace(beside, accepted=()))  # said by the verdict itself
+    assert not line_left(replace(beside, left=None))
+
+
 def test_nothing_is_told_of_noise():
     quiet = searched(cubic=0.0, force=0.0)
     seen = assessed(quiet.nominal, [], quiet.bench.evidence)
     assert not seen.visible
     assert not shape_without_name(State(quiet.bench, quiet.nominal, quiet.nominal, seen=seen))
+    assert not line_left(State(quiet.bench, quiet.nominal, quiet.nominal, (SimpleNamespace(name="cubic_stiffness"),), left=seen))
 
 
 @pytest.mark.parametrize("samples", [50, 80])

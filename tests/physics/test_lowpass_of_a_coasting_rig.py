@@ -1,7 +1,10 @@
-"""How a low-pass of the sensor is tried: of a rig without a spring none that is slower than the motion."""
+"""How a low-pass is tried: not of a free swing, and of a rig without a spring none slower than the motion."""
+
+from dataclasses import replace
 
 from gear_damping.physics.cause import Rig
 from gear_damping.physics.effects.sensor_lowpass import SensorLowpass
+from gear_damping.physics.systems.traits import Trait
 
 CUTOFF = "sensor_lowpass.cutoff"
 
@@ -18,3 +21,10 @@ def test_beside_a_mode_a_sensor_may_be_slower():
     assert {recipe.options["order"] for recipe in recipes} == {1, 2}
     assert min(recipe.strengths["cutoff"] for recipe in recipes) < 1.0
     assert not any(recipe.within for recipe in recipes)
+
+
+def test_of_a_free_swing_none_is_tried():
+    free = Rig("oscillator", values={"natural_frequency": 30.0}, traits=frozenset({Trait.REST}))
+    assert SensorLowpass.cause.recipes_for(free) == ()
+    assert SensorLowpass.cause.recipes_for(replace(free, inputs=("force",)))
+    assert SensorLowpass.cause.recipes_for(replace(free, traits=frozenset({Trait.SHAFTS})))

@@ -29,6 +29,7 @@ from gear_damping.explanation.trials.score import projected
 from gear_damping.explanation.trials.unnamed import unnamed_columns
 from gear_damping.physics.terms import ExtraStates
 
+MOST_OF_IT = 0.5  # of a residual: a line that takes more is what is left
 GOES_ON = 3.0  # times the longest record: what swings for so long has lost a quarter of its size at its end
 
 
@@ -132,6 +133,16 @@ def shape_without_name(state: State) -> str:
     if largest == LINE_FAMILY:
         return line.name if line else _line_in_segments(nominal, evidence)
     return f"some {largest.removeprefix(UNNAMED)}"
+
+
+def line_left(state: State) -> str:
+    """What is said of a line that is most of what is left beside the causes; empty where there is none."""
+    if not state.accepted or state.left is None or not state.left.visible.shows(LINE_FAMILY):
+        return ""
+    line = strongest_line(state.outcome, state.bench.evidence)
+    if line is None or line.share < MOST_OF_IT:
+        return ""
+    return f"Of what is left, {100 * line.share:.0f} % is {line.name}."
 
 
 def _line_in_segments(nominal: Outcome, evidence: Evidence) -> str:

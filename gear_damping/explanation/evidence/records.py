@@ -6,6 +6,7 @@ from math import floor, log10, pi
 
 from gear_damping.explanation.evidence.silent_end import audible_samples
 from gear_damping.explanation.evidence.slow_rotation import gear_ratio, with_slow_rotation
+from gear_damping.explanation.evidence.speed_of_gear import with_speed_of_gear
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.identification.observation import (
     MESH_PHASE,
@@ -158,7 +159,9 @@ def evidence_of(measurement: Measurement) -> Evidence:
     base, known = measurement.base, known_of(measurement)
     spring = has_spring(known, base)
     used = [record for record in measurement.records if record.role != "reference"]
-    records = [(fit_record(record, base, spring), record.role) for record in used]
+    seen = [fit_record(record, base, spring) for record in used]
+    seen = with_speed_of_gear(seen, used, gear_ratio(known.values)) if base.has(Trait.SHAFTS) else seen
+    records = [(one, record.role) for one, record in zip(seen, used, strict=True)]
     modes = {record.gear_torque_mode for record in used} - {None}
     mode = "held" if any("gear_torque" in r.conditions for r, _ in records) else next(iter(modes), "balanced")
     if base.has(Trait.REST):

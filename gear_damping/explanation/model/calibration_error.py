@@ -1,15 +1,21 @@
 """Step 3b: what errors of the calibrated parameters leave on held-out records, though nothing is wrong."""
 
+from collections.abc import Mapping
+
 import torch
+from torch import Tensor
 
 from gear_damping.explanation.evidence.noise import Scatter
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.hypothesis import Outcome
+from gear_damping.identification.output_error.least_squares import Rounds, fit
 from gear_damping.identification.output_error.normal_equations import nuisance_basis, project_out
 from gear_damping.identification.output_error.problem import OutputErrorProblem
 from gear_damping.identification.output_error.segments import in_segments
 from gear_damping.identification.output_error.uncertainty import noise_covariance
 from gear_damping.simulation.solver_settings import Solver
+
+ITERATIONS = 20  # of the fit of initial states
 
 
 def calibration_error(nominal: Outcome, evidence: Evidence, solver: Solver | None = None) -> Scatter:
@@ -21,10 +27,8 @@ def calibration_error(nominal: Outcome, evidence: Evidence, solver: Solver | Non
     hypothesis = nominal.hypothesis
     segmented = in_segments(evidence.holdout, evidence.segments)
     problem = OutputErrorProblem(hypothesis.model, hypothesis.given, hypothesis.free, segmented, solver, evidence.noise)
-    settled = torch.zeros(1, problem.n_shared, dtype=torch.float64)
-    for place, parameter in enumerate(problem.free):
-        settled[0, place] = parameter.coordinate(nominal.own[parameter.name]) if parameter.name in nominal.own else 0.0
-    found = problem.linearise(settled, problem.first_states().unsqueeze(0)).sensitivity[0]
+    settled, states = _at(problem, nominal.own), _initial_states(problem, nominal, evidence)
+    found = problem.linearise(settled, states.unsqueeze(0)).sensitivity[0]
     if not bool(found.isfinite().all()):
         return Scatter()
     common = min(problem.unknowns.n_common, nominal.problem.unknowns.n_common)
@@ -36,3 +40,22 @@ def calibration_error(nominal: Outcome, evidence: Evidence, solver: Solver | Non
     shares = sensitivity.T @ sensitivity @ covariance
     shares = shares / (samples * max(evidence.noise, 1e-300) ** 2)
     return Scatter(float(shares.trace()), float((2 * (shares @ shares).trace()).clamp(min=0).sqrt()))
+
+
+def _at(problem: OutputErrorProblem, own: Mapping[str, float]) -> Tensor:
+    """Coordinates (1, n_shared) where single records have what was found of them, and all else is settled."""
+    found = torch.zeros(1, problem.n_shared, dtype=torch.float64)
+    for place, parameter in enumerate(problem.free):
+        found[0, place] = parameter.coordinate(own[parameter.name]) if parameter.name in own else 0.0
+    return found
+
+
+def _initial_states(problem: OutputErrorProblem, nominal: Outcome, evidence: Evidence) -> Tensor:
+    """Initial states (records, local) that go with the records: a first guess from an acceleration may be far off."""
+    hypothesis = nominal.hypothesis
+    own = [parameter for parameter in hypothesis.free if parameter.per_record]
+    given = {**hypothesis.given, **hypothesis.gains}
+    alone = OutputErrorProblem(hypothesis.model, given, own, problem.records, problem.solver, evidence.noise)
+    start = _at(alone, nominal.own)
+    found = fit(alone, start, Rounds(ITERATIONS), alone.safe_states(start[0]).unsqueeze(0))
+    return problem.states_of(alone, found.states)

@@ -134,7 +134,9 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
     if classes:
         return Verdict(AMBIGUOUS, (f"{missing}.", *_one_class(classes), *further, *_small_residual(found, after)))
     if confused:
-        return Verdict(AMBIGUOUS, (f"{missing}.", *further, *_small_residual(found, after)))
+        sure = [cause for cause in found.accepted if not cause.confusable]
+        named = f"{missing}, and most of it has names: {said}." if sure else f"{missing}."
+        return Verdict(AMBIGUOUS, (named, *further, *_small_residual(found, after)))
     same = _same_record(found.accepted)
     return Verdict(EXPLAINED, (f"{missing}: {said}.", *further, *same, *_small_residual(found, after)))
 

@@ -40,7 +40,7 @@ def _exchanged_at(state: State, place: int) -> State:
 
 
 def simplified(state: State) -> State:
-    """Every cause, or the simpler one that it contains where that does as well beside the other causes."""
+    """Every cause, or the simpler one that it contains where that does as well, or nearly, beside the other causes."""
     return reduce(_simplified_at, range(len(state.accepted)), state)
 
 
@@ -52,7 +52,9 @@ def _simplified_at(state: State, place: int) -> State:
     without = bench.without(state.outcome, cause.name)
     ranked = bench.ranked(without, {simpler})
     fit = bench.full_fit(ranked[0], without) if ranked else None
-    if fit is None or not bench.is_as_good(fit.outcome, state.outcome):
+    if fit is None:
+        return state
+    if not bench.is_as_good(fit.outcome, state.outcome) and bench.is_further(state.outcome, fit.outcome):
         return state
     bench.log(f"{simpler} does as well as {cause.name}, with fewer parameters")
     rivals = tuple(name for name in cause.confusable if name != simpler)

@@ -215,7 +215,22 @@ class Bench:
         outer = {f.name for f in alike if any(contains(f.score, o.score) for o in inner if o.name != f.name)}
         kept = self._not_encompassed(best, [f for f in alike if f.name not in outer] or alike)
         first = self._within_bounds(smallest(kept), fits)
-        return first, tuple(dict.fromkeys(f.name for f in kept if f.name != first.name))
+        plain = self._plain_form(first, fits)
+        return plain, tuple(dict.fromkeys(f.name for f in kept if f.name not in (first.name, plain.name)))
+
+    def _plain_form(self, fit: Refit, fits: Sequence[Refit]) -> Refit:
+        """A law, or the simpler one that it contains where it takes too little of what that leaves."""
+        simpler = self.evidence.library[fit.name].cause.simpler
+        plain = [one for one in fits if one.name == simpler and one.is_seen_in_fit]
+        return next((one for one in plain if not self.is_further(fit.outcome, one.outcome)), fit)
+
+    def is_further(self, richer: Outcome, simpler: Outcome) -> bool:
+        """Whether a richer law takes as much of what the one that it contains leaves as a further cause must.
+
+        One that takes less bends to something else that is missing.
+        """
+        left, most = self.excess(richer).percent, self.excess(simpler).percent
+        return most - left >= self.settings.least_share * most
 
     def _not_encompassed(self, best: Refit, alike: Sequence[Refit]) -> list[Refit]:
         """Those that the best explanation does not beat by what the other leaves."""

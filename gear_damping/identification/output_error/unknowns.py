@@ -83,7 +83,7 @@ class Unknowns:
         for name, value in self.parameters(shared).items():
             base, _, record = name.partition(SEPARATOR)
             if not record:
-                found[base] = value.unsqueeze(1).expand(len(shared), len(self._records))
+                found[base] = value.unsqueeze(1).repeat(1, len(self._records))
                 continue
             if base not in found:
                 found[base] = shared.new_full((len(shared), len(self._records)), torch.nan)
