@@ -85,16 +85,17 @@ def score(name, gain):
     hypothesis = SimpleNamespace(effects=[effect], common=())
     candidate = SimpleNamespace(
         name=name, options=(), form=(), non_nested=False, replaced=(), hypothesis=hypothesis,
-        is_elastic=name.endswith("stiffness"), strengths=(0,),
+        is_law=name.endswith(("stiffness", "damping")), strengths=(0,),
     )  # fmt: skip
     return SimpleNamespace(candidate=candidate, gain=gain, direction=direction, columns=direction[:, None])
 
 
-def test_an_elastic_law_is_fitted_whatever_gain_is_predicted():
-    names = ("coulomb_friction", "power_law_damping", "sensor_delay", "sensor_drift", "quadratic_stiffness")
+@pytest.mark.parametrize("law", ["quadratic_stiffness", "power_law_damping"])
+def test_a_law_is_fitted_whatever_gain_is_predicted(law):
+    names = ("coulomb_friction", "sensor_offset", "sensor_delay", "sensor_drift", law)
     ranked = [score(name, 0.5 / 10**k) for k, name in enumerate(names)]
-    assert "quadratic_stiffness" not in {s.candidate.name for s in chosen(ranked, SearchSettings())}
-    assert "quadratic_stiffness" in {s.candidate.name for s in chosen(ranked, SearchSettings(), springs=True)}
+    assert law not in {s.candidate.name for s in chosen(ranked, SearchSettings())}
+    assert law in {s.candidate.name for s in chosen(ranked, SearchSettings(), laws=True)}
     assert math.isclose(ranked[-1].gain, 5e-5)
 
 
@@ -128,7 +129,7 @@ def test_what_is_tried_as_a_whole_is_fitted_whatever_gain_is_predicted_at_one_si
     ranked = [score(name, 0.5 / 10**k) for k, name in enumerate(names)]
     ranked[-1].candidate.non_nested = True
     assert "sensor_saturation" not in {s.candidate.name for s in chosen(ranked, SearchSettings())}
-    assert "sensor_saturation" in {s.candidate.name for s in chosen(ranked, SearchSettings(), springs=True)}
+    assert "sensor_saturation" in {s.candidate.name for s in chosen(ranked, SearchSettings(), laws=True)}
 
 
 def test_what_is_tried_as_a_whole_begins_at_every_size_of_its_form():

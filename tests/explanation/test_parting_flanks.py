@@ -12,7 +12,7 @@ from second_rig.sensors import Noise
 
 from gear_damping.explanation.evidence.records import evidence_of
 from gear_damping.explanation.explain import fitting_solver, with_noise
-from gear_damping.explanation.model.parting_flanks import with_parting_flanks
+from gear_damping.explanation.model.parting_flanks import flanks_part, with_parting_flanks
 from gear_damping.explanation.steps.calibrate import calibrated
 from gear_damping.measurement.load import load_measurement
 
@@ -51,3 +51,18 @@ def test_a_gap_that_is_stated_is_in_the_nominal_model_already(at_resonance):
     _, evidence, _ = at_resonance
     stated = replace(evidence, known=replace(evidence.known, values={**evidence.known.values, "backlash_gap": 9e-5}))
     assert with_parting_flanks(stated, HARMONICS, None) is None
+
+
+def test_an_error_that_is_measured_from_its_zero_on_shows_flanks_that_part(at_resonance):
+    evidence = at_resonance[1]
+    first = evidence.fit[0]
+    first = replace(first, observed=replace(first.observed, offset=False))
+
+    def part(response, **more):
+        return flanks_part(replace(evidence, fit=(replace(first, response=response, **more),)))
+
+    parted = first.response - first.response.median()
+    assert part(parted)
+    assert not part(first.response - first.response.min())
+    assert not part(0.0 * parted - 2 * evidence.noise)
+    assert not part(parted, observed=replace(first.observed, offset=True))

@@ -149,7 +149,8 @@ def test_nothing_is_told_of_noise():
     seen = assessed(quiet.nominal, [], quiet.bench.evidence)
     assert not seen.visible
     assert not shape_without_name(State(quiet.bench, quiet.nominal, quiet.nominal, seen=seen))
-    assert not line_left(State(quiet.bench, quiet.nominal, quiet.nominal, (SimpleNamespace(name="cubic_stiffness"),), left=seen))
+    cause = SimpleNamespace(name="cubic_stiffness")
+    assert not line_left(State(quiet.bench, quiet.nominal, quiet.nominal, (cause,), left=seen))
 
 
 @pytest.mark.parametrize("samples", [50, 80])

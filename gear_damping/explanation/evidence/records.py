@@ -29,6 +29,7 @@ from gear_damping.physics.terms import Effect
 
 HELD_OUT = 4  # every so many operating conditions one is held out where the file does not say
 FEWEST_CONDITIONS = 3  # of the fitted records, for each to be left out in turn
+FEWEST_DECAYS = 3  # of one condition, for one of them to be held out whole
 SPLIT = 2 / 3  # of a single record: fitted before, held out behind
 
 
@@ -169,10 +170,11 @@ def evidence_of(measurement: Measurement) -> Evidence:
     elif mode == "balanced":  # else torques tell how the shafts speed up
         swaying = with_slow_rotation([record for record, _ in records], gear_ratio(known.values))
         records = [(record, role) for record, (_, role) in zip(swaying, records, strict=True)]
-    fit, holdout = _roles(records)
+    dies_away = base.has(Trait.REST) or all(record.conditions.get("pinion_speed") == 0 for record, _ in records)
+    fit, holdout = _roles(records, dies_away)
     one, silent = not holdout, 0.0
     if one:
-        fit, silent = _audible(fit) if base.has(Trait.REST) else (fit, 0.0)
+        fit, silent = _audible(fit) if dies_away else (fit, 0.0)
         fit, holdout = _cut(fit)
     return Evidence(
         system=measurement.system,
@@ -203,12 +205,21 @@ def with_own(evidence: Evidence, own_of: Callable[[FitRecord], tuple[FreeParamet
     return replace(evidence, fit=fit, holdout=holdout)
 
 
-def _roles(records: Sequence[tuple[FitRecord, str | None]]) -> tuple[list[FitRecord], list[FitRecord]]:
-    """Roles as the file says; where it says none, whole operating conditions are held out."""
+def _roles(
+    records: Sequence[tuple[FitRecord, str | None]], dies_away: bool
+) -> tuple[list[FitRecord], list[FitRecord]]:
+    """Roles as the file says; where it says none, whole operating conditions are held out.
+
+    Of several decays of one condition whole ones are, of middling size: their ends show no law that grows with it.
+    """
     said = [role for _, role in records if role]
     if said:
         return [r for r, role in records if role != "holdout"], [r for r, role in records if role == "holdout"]
     found = sorted({condition_of(record) for record, _ in records})
+    if dies_away and len(found) == 1 and len(records) >= FEWEST_DECAYS and not any(r.inputs for r, _ in records):
+        by_size = sorted((record for record, _ in records), key=lambda record: float(record.response.std()))
+        apart = {record.name for record in by_size[1:-1][::HELD_OUT]}
+        return [r for r, _ in records if r.name not in apart], [r for r, _ in records if r.name in apart]
     held = set(found[HELD_OUT // 2 :: HELD_OUT]) if len(found) > 1 else set()
     fit = [record for record, _ in records if condition_of(record) not in held]
     return fit, [record for record, _ in records if condition_of(record) in held]

@@ -10,7 +10,7 @@ from gear_damping.explanation.model.rig import Residuals, rig_of
 from gear_damping.identification.output_error.records import FreeParameter
 from gear_damping.physics.cause import Recipe, Rig
 from gear_damping.physics.parameter import Parameter
-from gear_damping.physics.terms import Effect, ElasticForce
+from gear_damping.physics.terms import DampingForce, Effect, ElasticForce
 from gear_damping.units import parse_unit
 
 UNSEEN = 50.0  # times smaller than where it begins, a parameter that has no size yet does nothing
@@ -66,9 +66,9 @@ class Candidate:
         return (*self.options, bool(self.own_phases or self.own_tooth))
 
     @property
-    def is_elastic(self) -> bool:
-        """Whether it is a law of the restoring force."""
-        return isinstance(self.hypothesis.effects[-1], ElasticForce)
+    def is_law(self) -> bool:
+        """Whether it is a law of the restoring or of the damping force."""
+        return isinstance(self.hypothesis.effects[-1], ElasticForce | DampingForce)
 
 
 def candidates_for(base: Hypothesis, evidence: Evidence, residuals: Residuals | None = None) -> list[Candidate]:

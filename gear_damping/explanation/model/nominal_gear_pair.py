@@ -8,7 +8,7 @@ import torch
 
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
-from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, natural_frequency_hz
+from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, natural_frequency_hz, settled_at
 from gear_damping.identification.oscillator.linear_model import DAMPING, expected_about
 from gear_damping.identification.output_error.angles import STARTS, angle_bases, harmonics_to_resonance, scanned
 from gear_damping.identification.output_error.least_squares import NONE, Rounds
@@ -45,6 +45,7 @@ ROUGH_ITERATIONS = 12  # of each round while the teeth have the contact ratio's 
 ANGLES_KEPT = 0.12  # of those all around: after the first round one or two valleys are left
 SHAPED = 3.0  # noise variances: what a fit with all its shapes may leave before angles are looked at again
 SCANNED = 0.99  # of the cost before: less is no reason for another scan
+UPRIGHT = 1.01  # of the cost: the same wave
 LEAST_DAMPING = 1e-5  # of the first guess, N s/m
 
 
@@ -106,6 +107,24 @@ def standing(evidence: Evidence, solver: Solver | None = None) -> Outcome:
     begun = [first] if found is None else [first, with_stiffness(first, (found.strongest / own) ** 2)]
     tried = [fit_hypothesis(hypothesis, evidence, solver=solver) for hypothesis in begun]
     return min(tried, key=lambda outcome: outcome.fitted.cost)
+
+
+def upright(found: Outcome, evidence: Evidence, solver: Solver | None = None) -> Outcome:
+    """A fit whose larger stiffness is that of two pairs of teeth: the ideal wave upside down is the same one, moved.
+
+    What stands to the mesh where one pair carries alone, as the error of a tooth, would be sought half a pitch away.
+    """
+    high, low, ratio = (found.values.get(f"{MESH}.{name}", 0.0) for name in ("maximum", "minimum", "contact_ratio"))
+    if high >= low or not ratio:
+        return found
+    later = 2 * pi * (ratio - 1)
+    turned = {f"{MESH}.maximum": low, f"{MESH}.minimum": high, f"{MESH}.contact_ratio": 3 - ratio}
+    if "mesh_phase" in found.values:
+        turned["mesh_phase"] = found.values["mesh_phase"] - later
+    own = {name: value - later * name.startswith("mesh_phase") for name, value in found.of_records.items()}
+    initial, settled = InitialValues(own=own, is_near=True), settled_at(found.hypothesis, turned)
+    again = fit_hypothesis(settled, evidence, initial, Rounds(ROUGH_ITERATIONS), solver=solver)
+    return again if again.fitted.cost <= UPRIGHT * found.fitted.cost else found
 
 
 def shaped(rough: Outcome, evidence: Evidence, iterations: int, solver: Solver | None = None) -> Outcome:

@@ -27,8 +27,18 @@ from gear_damping.simulation.solver_settings import Solver
 
 GAP = f"{Backlash.name}.gap"
 STARTS = tuple(share / GAPS[-1] for share in GAPS)  # of the largest usual gap
+RESPONSE = "transmission_error"
+CLEAR, PARTED = 3.0, 0.01  # noises; share of samples: noise alone, wherever it lies, reaches it in one of 700
 LOOKS = 2  # at the angles of the mesh, each followed by a fit: with the damping that is stated, and with what was found
 ITERATIONS = 30  # over whole records, and with a free shape of the stiffness
+
+
+def flanks_part(evidence: Evidence) -> bool:
+    """Whether a transmission error that was measured from its zero on shows flanks that part, well beyond the noise."""
+    seen = [record for record in evidence.fit if record.observed.name == RESPONSE and not record.observed.offset]
+    count = sum(len(record.response) for record in seen)
+    parted = sum(int((record.response < -CLEAR * evidence.noise).sum()) for record in seen)
+    return parted > PARTED * count
 
 
 def with_parting_flanks(evidence: Evidence, harmonics: int, solver: Solver | None) -> Outcome | None:

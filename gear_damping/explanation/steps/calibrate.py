@@ -25,8 +25,10 @@ from gear_damping.explanation.model.nominal_gear_pair import (
     phase_starts,
     shaped,
     standing,
+    upright,
     with_stiffness,
 )
+from gear_damping.explanation.model.parting_flanks import flanks_part
 from gear_damping.explanation.trials.noisy_load import moves_with_noise
 from gear_damping.identification.observation import MESH_PHASE
 from gear_damping.identification.oscillator.fit import fit_oscillator
@@ -39,7 +41,7 @@ from gear_damping.simulation.solver_settings import Solver
 LESS_DAMPING = 0.05  # of what was found: what a local minimum takes for damping
 SHAPE_ITERATIONS = 30  # of the fit with a free shape of the stiffness; causes are tried from where it stands
 SHORT_PERIODS = 40.0  # natural periods of the first round
-MOST_SCANS = 8  # of the records' angles, each followed by a fit
+MOST_SCANS = 8  # of the records' angles, each followed by a fit; one where flanks part, which no fit of these follows
 STIFFNESSES = (1.0, 0.85, 0.92, 1.08, 1.17)  # times where it begins: with a wrong one angles of records are wrong too
 APART = 1.5  # times the cost of a phase for every record: one phase of all leaves that much where there is none; angles
 # that begin anywhere agree that well once in a thousand times, for three records
@@ -186,6 +188,11 @@ def _of_others(found: Outcome, followed: Evidence, evidence: Evidence, solver: S
 
 
 def _rough_gear_pair(evidence: Evidence, solver: Solver | None) -> Outcome:
+    """The contact ratio's wave, the stiffer part of which is that of two pairs of teeth."""
+    return upright(_wave_of_gear_pair(evidence, solver), evidence, solver)
+
+
+def _wave_of_gear_pair(evidence: Evidence, solver: Solver | None) -> Outcome:
     """The contact ratio's wave, with the mesh phase tried all around: one phase, or one of every record."""
     first = first_gear_pair(evidence)
     short = SHORT_PERIODS / natural_frequency_hz(first.model, first.given)
@@ -194,7 +201,8 @@ def _rough_gear_pair(evidence: Evidence, solver: Solver | None) -> Outcome:
         initial, few = InitialValues(phase_starts(first)), replace(rounds, kept=ANGLES_KEPT)
         return fit_hypothesis(first, evidence, initial, few, solver=solver)
     found: Outcome | None = None
-    for _ in range(MOST_SCANS):  # a phase that is wrong makes stiffness and damping wrong, and they the next phase
+    scans = 1 if flanks_part(evidence) else MOST_SCANS
+    for _ in range(scans):  # a phase that is wrong makes stiffness and damping wrong, and they the next phase
         hypothesis = first if found is None else found.hypothesis
         tried = []
         for factor in STIFFNESSES:

@@ -30,7 +30,7 @@ def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
     names = names[: bench.settings.full_fits]
     is_first = not state.accepted  # what shows may then be meant by any of the laws that promise much
     if names and is_first and bench.evidence.has(Trait.REST):  # where fits are cheap
-        likely = chosen(state.ranked, bench.settings, springs=True, every=True)
+        likely = chosen(state.ranked, bench.settings, laws=True, every=True)
         names += [name for name in best_by_effect(likely) if name not in names]
     names = [name for name in names if best[name].gain > 0 and not bench.budget.refuses(name)]
     found = (bench.full_fit(best[name], state.outcome, reach=state.outcome.fitted.cost) for name in names)

@@ -7,7 +7,7 @@ from gear_damping.explanation.evidence.excess import is_settled
 from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Outcome, settled_at
 from gear_damping.explanation.model.nominal_gear_pair import SHAPE, shaped
-from gear_damping.explanation.model.parting_flanks import with_parting_flanks
+from gear_damping.explanation.model.parting_flanks import flanks_part, with_parting_flanks
 from gear_damping.explanation.state import State
 from gear_damping.explanation.trials.refit import Refit, again, compared
 from gear_damping.explanation.trials.score import Score, best_by_effect
@@ -46,6 +46,11 @@ def _first_fits(state: State) -> tuple[Refit, ...]:
     """
     bench = state.bench
     fits = [again(refit, state.nominal, bench.evidence, bench.solver) for refit in state.carried_on]
+    is_parted = not fits and flanks_part(bench.evidence)
+    if is_parted:  # a model whose flanks stay together is no place to begin
+        fits = _from_what_is_stated(fits, state)
+        if _best(fits, state):
+            return tuple(fits)
     is_bent = state.current.misfit >= bench.settings.bent_misfit
     for place in (_unshaped, _shaped) if is_bent else (_shaped, _unshaped):
         carried_on = place(state)
@@ -56,7 +61,7 @@ def _first_fits(state: State) -> tuple[Refit, ...]:
         fits.sort(key=lambda fit: fit.outcome.left_out_cost)
         if _best(fits, state):
             break
-    fits += _from_what_is_stated(fits, state)
+    fits += [] if is_parted else _from_what_is_stated(fits, state)
     return tuple(sorted(fits, key=lambda fit: fit.outcome.left_out_cost))
 
 

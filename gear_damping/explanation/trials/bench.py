@@ -135,7 +135,7 @@ class Bench:
             return ()
         fits: list[Refit] = []
         base = (outcome if outcome.fitted.converged else against).fitted.cost
-        worth = chosen(ranked, self.settings, predicted_gain, springs=self.evidence.has(Trait.REST))
+        worth = chosen(ranked, self.settings, predicted_gain, laws=self.evidence.has(Trait.REST))
         for score in sorted(worth, key=lambda score: len(score.candidate.strengths)):
             if self.budget.refuses(score.candidate.name):
                 continue

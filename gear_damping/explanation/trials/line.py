@@ -118,7 +118,7 @@ def _clocks(outcome: Outcome, evidence: Evidence) -> list[_Clock]:
     rows = outcome.problem.records
     time = [2 * pi * np.arange(len(row.response)) / row.sampling_rate for row in rows]
     shafts = [shaft_of(row, evidence) for row in rows]
-    if not all(shafts):
+    if not all(shafts) or not any(np.ptp(shaft.angle) for shaft in shafts):  # nothing turns: it swings or rings
         natural = natural_frequency_hz(outcome.hypothesis.model, outcome.flat_given())
         return [_Clock("Hz", time, FEWEST_CYCLES, natural)]
     turned = [shaft.angle for shaft in shafts]

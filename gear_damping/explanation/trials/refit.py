@@ -77,7 +77,7 @@ def block_samples(outcome: Outcome, evidence: Evidence, records: Sequence[FitRec
 
 
 def chosen(
-    scores: Sequence[Score], settings: SearchSettings, least: float = 0.0, springs: bool = False, every: bool = False
+    scores: Sequence[Score], settings: SearchSettings, least: float = 0.0, laws: bool = False, every: bool = False
 ) -> list[Score]:
     """The candidates worth a full fit: the best variant of the best effects, and who resembles the first.
 
@@ -88,9 +88,10 @@ def chosen(
         scores: Every candidate, the best first.
         settings: How many are worth it.
         least: Of the first one's predicted gain, that another needs.
-        springs: Whether everything far from linear is worth one, as for an oscillator, whose fits are cheap: a law that
-            is even in the deflection pulls the frequency by its square, and what is tried as a whole (a sensor that
-            saturates) has little gain at a wrong size. No linear score foresees either.
+        laws: Whether every law of stiffness or damping is worth one, as for an oscillator, whose fits are cheap: one
+            that is even in the deflection pulls the frequency by its square, one of damping takes its part from what
+            another was fitted to, and what is tried as a whole (a sensor that saturates) has little gain at a wrong
+            size. No linear score foresees these.
         every: Whether all that promise much are, whether they resemble the first or not.
     """
     forms: dict[tuple, Score] = {}
@@ -102,7 +103,7 @@ def chosen(
     promising = [score for score in ranked[settings.full_fits :] if score.gain > LEAST_PREDICTED_GAIN * ranked[0].gain]
     alike = [score for score in promising if every or collinearity(ranked[0], score) > NEARLY_COLLINEAR]
     instead = [score for score in ranked if score.candidate.replaced]  # adds nothing that could overfit: always tried
-    far = [score for score in ranked if springs and score.gain > 0 and _is_far_from_linear(score.candidate)]
+    far = [score for score in ranked if laws and score.gain > 0 and _is_unforeseen(score.candidate)]
     taken = [*(first + alike)[: settings.most_full_fits], *instead, *far]
     simpler = {score.candidate.hypothesis.effects[-1].cause.simpler for score in taken}
     taken += [score for score in ranked if score.candidate.name in simpler]
@@ -110,8 +111,8 @@ def chosen(
     return [s for s in variants if s.gain >= OTHER_FORM * worth.get(s.candidate.name, inf)]
 
 
-def _is_far_from_linear(candidate: Candidate) -> bool:
-    return candidate.is_elastic or bool(candidate.non_nested)
+def _is_unforeseen(candidate: Candidate) -> bool:
+    return candidate.is_law or bool(candidate.non_nested)
 
 
 def refitted(

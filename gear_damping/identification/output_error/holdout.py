@@ -125,7 +125,7 @@ def _horizons(problem: OutputErrorProblem, characteristic_s: float, unknown: Seq
         return [FIRST_PERIODS * characteristic_s, None]
     steady = steady_horizon(problem) if MESH_PHASE in unknown else inf
     longest, found = max(len(record.response) / record.sampling_rate for record in problem.records), []
-    while steady < longest / STRETCH_RATIO:
+    while steady < longest:
         found.append(steady)
         steady *= STRETCH_RATIO
     return [*found, None]

@@ -18,7 +18,6 @@ from gear_damping.physics.terms import TransmissionErrorSource, Values
 HANDOVERS = (0.05, 1.0)  # of a pitch; two pairs carry for the contact ratio less one
 EDGES = (0.05, 1.0)  # of the handover; 1 is one ramp, and a shorter one would be missed by steps
 STEP = 0.13  # of the handover, assumed: a pair takes its load within a tenth of a pitch
-STARTS = (0.0, pi)  # of the mesh: where the calibrated wave stands says little of a stiffness of another shape
 # um, assumed: without a pattern, and a few times less than the static deflection of 17 um.
 TYPICAL = (2, -1, 3, -4, 1, 5, -3, 0, 2, -2, 4, -5, 1, 3, -1, -3, 2, 0, -4, 2)
 
@@ -32,7 +31,7 @@ def _by_shaft(rig: Rig) -> tuple[Recipe, ...]:
     return tuple(
         Recipe(
             {"values": 3e-6},
-            scanned={"phase": (alone + moved) / rig.teeth(shaft), "handover": handover, "edge": edge},
+            scanned={"phase": alone / rig.teeth(shaft), "handover": handover, "edge": edge},
             in_si=True,
             sharpest=("handover", "edge"),
             options={"shaft": shaft},
@@ -40,7 +39,6 @@ def _by_shaft(rig: Rig) -> tuple[Recipe, ...]:
         )
         for shaft in SHAFTS
         for handover, edge in ((both, 1.0), (stepped, STEP))
-        for moved in STARTS
     )
 
 

@@ -52,7 +52,7 @@ def scored(place: int, gain: float, direction: int | None = None) -> Scored:
     """The score of the effect in this place of `NAMES`, along an axis of its own or along another."""
     axis = torch.eye(len(NAMES), dtype=torch.float64)[place if direction is None else direction]
     hypothesis = SimpleNamespace(effects=[effect_class(NAMES[place])()], common=())
-    known = {"options": (), "form": (), "non_nested": False, "replaced": (), "is_elastic": False}
+    known = {"options": (), "form": (), "non_nested": False, "replaced": (), "is_law": False}
     known |= {"hypothesis": hypothesis}
     return Scored(SimpleNamespace(name=NAMES[place], **known), gain, axis, axis[:, None])
 
