@@ -85,6 +85,7 @@ def first_place_to_begin(settings: SearchSettings):
         with (
             patch.object(single, "_unshaped", places_of["unshaped"]),
             patch.object(single, "_shaped", places_of["shaped"]),
+            patch.object(single, "flanks_part", lambda evidence: False),
         ):
             single._first_fits(state)
         begun.append(places[0])
