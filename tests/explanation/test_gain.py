@@ -1,9 +1,12 @@
 """What is said of fitted parameters."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import torch
 
+from gear_damping.explanation.answer import gain
 from gear_damping.explanation.answer.gain import mean_stiffness, parameters_of
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.covariance import covariance_of
@@ -42,6 +45,19 @@ def test_a_gap_whose_far_flank_is_never_touched_has_its_whole_range_as_interval(
     assert "told" not in damping
     assert low < 64.5 < high
     assert high - low < 6.0
+
+
+@pytest.mark.parametrize(("end", "sharpest", "has_run"), [(-1, (), True), (-1, ("law.width",), False),
+                                                          (1, ("law.width",), True), (0, (), False)])  # fmt: skip
+def test_what_rests_at_its_sharpest_end_has_run_into_nothing(end, sharpest, has_run, monkeypatch):
+    monkeypatch.setattr(gain, "_interval", lambda *_: gain.Interval(1.0, (0.0, 2.0), "1"))
+    monkeypatch.setattr(gain, "unit_of", lambda *_: "1")
+    free = (SimpleNamespace(name="law.width", declared_name="law.width"),)
+    problem = SimpleNamespace(free=free, unknowns=SimpleNamespace(at_bound=lambda _: torch.tensor([end])))
+    fitted, hypothesis = SimpleNamespace(shared=None), SimpleNamespace(model=None)
+    outcome = SimpleNamespace(problem=problem, fitted=fitted, hypothesis=hypothesis)
+    found = gain.parameters_of(outcome, None, "law", None, sharpest)
+    assert found["width"]["at_bound"] is has_run
 
 
 def test_the_mean_stiffness_knows_the_shape_of_the_teeth():

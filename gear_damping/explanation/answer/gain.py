@@ -1,6 +1,6 @@
 """Step 9: what naming the cause was worth, in residuals and in the damping figure."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from math import pi
 
@@ -54,9 +54,9 @@ def nrmse(residuals: Sequence[Tensor], records: Sequence[FitRecord]) -> float:
 
 
 def parameters_of(
-    outcome: Outcome, covariances: Tensor, cause: str, evidence: Evidence
+    outcome: Outcome, covariances: Tensor, cause: str, evidence: Evidence, sharpest: Collection[str] = ()
 ) -> dict[str, dict[str, object]]:
-    """The fitted parameters of an effect with 95 % intervals, by own name.
+    """The fitted parameters of an effect with 95 % intervals, by own name; `sharpest` may rest at their lower ends.
 
     Of one that the records say nothing of (a gap whose far flank is never touched) it is its whole range; of one
     that the fit has driven to its bound, it takes in what lies beyond.
@@ -68,9 +68,9 @@ def parameters_of(
         if effect != cause:
             continue
         unit = unit_of(parameter.declared_name, outcome.hypothesis.model, evidence)
-        found[own] = _interval(outcome, covariances, place, evidence, unit).plain() | {
-            "at_bound": bool(at_bound[place])
-        }
+        end = int(at_bound[place])
+        has_run = end > 0 or (end < 0 and parameter.name not in sharpest)
+        found[own] = _interval(outcome, covariances, place, evidence, unit).plain() | {"at_bound": has_run}
     return found
 
 
