@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import pytest
+import torch
 from second_rig.case import Case, Stream, write
 from second_rig.channels import ERROR_UM, WHITE
 from second_rig.files import Table
@@ -66,3 +67,8 @@ def test_an_error_that_is_measured_from_its_zero_on_shows_flanks_that_part(at_re
     assert not part(first.response - first.response.min())
     assert not part(0.0 * parted - 2 * evidence.noise)
     assert not part(parted, observed=replace(first.observed, offset=True))
+    closed, torque = first.response - first.response.min(), first.conditions["pinion_torque"]
+    assert not part(-closed, conditions=first.conditions | {"pinion_torque": -torque})  # on the other flanks
+    assert part(-closed)
+    assert not part(-closed, conditions={})
+    assert not part(-closed, inputs={"pinion_torque": -torch.ones_like(closed)})

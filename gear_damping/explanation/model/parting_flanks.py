@@ -7,6 +7,7 @@ mesh to what the impacts do, and from there no fit finds back to a gap. What is 
 from dataclasses import replace
 
 import torch
+from torch import Tensor
 
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.fitting import InitialValues, error_amplification_over, fit_hypothesis
@@ -20,25 +21,34 @@ from gear_damping.explanation.model.nominal_gear_pair import (
     with_shape,
 )
 from gear_damping.identification.output_error.least_squares import Rounds
-from gear_damping.identification.output_error.records import FreeParameter
+from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.physics.effects.backlash import GAPS, Backlash
 from gear_damping.physics.terms import Contact
 from gear_damping.simulation.solver_settings import Solver
 
 GAP = f"{Backlash.name}.gap"
 STARTS = tuple(share / GAPS[-1] for share in GAPS)  # of the largest usual gap
-RESPONSE = "transmission_error"
+RESPONSE, TORQUE = "transmission_error", "pinion_torque"
 CLEAR, PARTED = 3.0, 0.01  # noises; share of samples: noise alone, wherever it lies, reaches it in one of 700
 LOOKS = 2  # at the angles of the mesh, each followed by a fit: with the damping that is stated, and with what was found
 ITERATIONS = 30  # over whole records, and with a free shape of the stiffness
 
 
 def flanks_part(evidence: Evidence) -> bool:
-    """Whether a transmission error that was measured from its zero on shows flanks that part, well beyond the noise."""
+    """Whether a transmission error that was measured from its zero on shows flanks that part, well beyond the noise.
+
+    Where the torque drives the other flank, the error of closed flanks is negative; without one nobody knows which.
+    """
     seen = [record for record in evidence.fit if record.observed.name == RESPONSE and not record.observed.offset]
-    count = sum(len(record.response) for record in seen)
-    parted = sum(int((record.response < -CLEAR * evidence.noise).sum()) for record in seen)
-    return parted > PARTED * count
+    closed = [record.response * _driven_flank(record) for record in seen]
+    parted = sum(int((error < -CLEAR * evidence.noise).sum()) for error in closed)
+    return parted > PARTED * sum(len(error) for error in closed)
+
+
+def _driven_flank(record: FitRecord) -> Tensor:
+    """1 where the torque closes the driven flanks, -1 where it closes the others, 0 without one, of every sample."""
+    stated = torch.full_like(record.response, record.conditions.get(TORQUE, 0.0))
+    return record.inputs.get(TORQUE, stated).sign()
 
 
 def with_parting_flanks(evidence: Evidence, harmonics: int, solver: Solver | None) -> Outcome | None:
