@@ -170,7 +170,7 @@ def evidence_of(measurement: Measurement) -> Evidence:
     elif mode == "balanced":  # else torques tell how the shafts speed up
         swaying = with_slow_rotation([record for record, _ in records], gear_ratio(known.values))
         records = [(record, role) for record, (_, role) in zip(swaying, records, strict=True)]
-    dies_away = base.has(Trait.REST) or all(record.conditions.get("pinion_speed") == 0 for record, _ in records)
+    dies_away = base.has(Trait.REST) or all_stand([record for record, _ in records])
     fit, holdout = _roles(records, dies_away)
     one, silent = not holdout, 0.0
     if one:
@@ -223,6 +223,11 @@ def _roles(
     held = set(found[HELD_OUT // 2 :: HELD_OUT]) if len(found) > 1 else set()
     fit = [record for record, _ in records if condition_of(record) not in held]
     return fit, [record for record, _ in records if condition_of(record) in held]
+
+
+def all_stand(records: Sequence[FitRecord]) -> bool:
+    """Whether the shafts stand in all records, so that the teeth that carry never change."""
+    return all(record.conditions.get("pinion_speed") == 0 for record in records)
 
 
 def condition_of(record: FitRecord) -> tuple[float, float]:

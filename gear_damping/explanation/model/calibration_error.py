@@ -1,7 +1,5 @@
 """Step 3b: what errors of the calibrated parameters leave on held-out records, though nothing is wrong."""
 
-from collections.abc import Mapping
-
 import torch
 from torch import Tensor
 
@@ -27,8 +25,8 @@ def calibration_error(nominal: Outcome, evidence: Evidence, solver: Solver | Non
     hypothesis = nominal.hypothesis
     segmented = in_segments(evidence.holdout, evidence.segments)
     problem = OutputErrorProblem(hypothesis.model, hypothesis.given, hypothesis.free, segmented, solver, evidence.noise)
-    settled, states = _at(problem, nominal.own), _initial_states(problem, nominal, evidence)
-    found = problem.linearise(settled, states.unsqueeze(0)).sensitivity[0]
+    settled, states = problem.unknowns.coordinates(nominal.own), _initial_states(problem, nominal, evidence)
+    found = problem.linearise(settled.unsqueeze(0), states.unsqueeze(0)).sensitivity[0]
     if not bool(found.isfinite().all()):
         return Scatter()
     common = min(problem.unknowns.n_common, nominal.problem.unknowns.n_common)
@@ -42,20 +40,12 @@ def calibration_error(nominal: Outcome, evidence: Evidence, solver: Solver | Non
     return Scatter(float(shares.trace()), float((2 * (shares @ shares).trace()).clamp(min=0).sqrt()))
 
 
-def _at(problem: OutputErrorProblem, own: Mapping[str, float]) -> Tensor:
-    """Coordinates (1, n_shared) where single records have what was found of them, and all else is settled."""
-    found = torch.zeros(1, problem.n_shared, dtype=torch.float64)
-    for place, parameter in enumerate(problem.free):
-        found[0, place] = parameter.coordinate(own[parameter.name]) if parameter.name in own else 0.0
-    return found
-
-
 def _initial_states(problem: OutputErrorProblem, nominal: Outcome, evidence: Evidence) -> Tensor:
     """Initial states (records, local) that go with the records: a first guess from an acceleration may be far off."""
     hypothesis = nominal.hypothesis
     own = [parameter for parameter in hypothesis.free if parameter.per_record]
     given = {**hypothesis.given, **hypothesis.gains}
     alone = OutputErrorProblem(hypothesis.model, given, own, problem.records, problem.solver, evidence.noise)
-    start = _at(alone, nominal.own)
-    found = fit(alone, start, Rounds(ITERATIONS), alone.safe_states(start[0]).unsqueeze(0))
+    start = alone.unknowns.coordinates(nominal.own)
+    found = fit(alone, start.unsqueeze(0), Rounds(ITERATIONS), alone.safe_states(start).unsqueeze(0))
     return problem.states_of(alone, found.states)

@@ -6,7 +6,7 @@ from math import ceil, cos, floor, inf, pi, sin, sqrt
 
 import torch
 
-from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.evidence.records import Evidence, all_stand
 from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, natural_frequency_hz, settled_at
 from gear_damping.identification.oscillator.linear_model import DAMPING, expected_about
@@ -57,7 +57,7 @@ def stated_mesh_frequency(evidence: Evidence) -> float:
 
 def is_standing(evidence: Evidence) -> bool:
     """Whether the shafts stand in all records, so that the teeth that carry never change."""
-    return all(record.conditions.get("pinion_speed") == 0 for record in evidence.fit)
+    return all_stand(evidence.fit)
 
 
 def first_gear_pair(evidence: Evidence) -> Hypothesis:

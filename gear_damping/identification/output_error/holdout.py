@@ -76,10 +76,8 @@ def predict_holdout(
     """
     segmented = in_segments(records, segments)
     problem = OutputErrorProblem(frozen.model, frozen.given, list(frozen.own), segmented, frozen.solver, frozen.noise)
-    starts = torch.zeros(1, problem.n_shared, dtype=torch.float64)
     known = dict(initial or {})
-    for place, parameter in enumerate(problem.free):
-        starts[0, place] = parameter.coordinate(known[parameter.name]) if parameter.name in known else 0.0
+    starts = problem.unknowns.coordinates(known).unsqueeze(0)
     unknown = [base for base in angle_bases(problem) if not any(name.startswith(base) for name in known)]
     states = problem.safe_states(starts[0])
     horizons = _horizons(problem, characteristic_s, unknown)

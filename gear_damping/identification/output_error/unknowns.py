@@ -69,6 +69,11 @@ class Unknowns:
         missing = len(self) - shared.shape[-1]
         return torch.nn.functional.pad(shared, (0, missing)) if missing else shared
 
+    def coordinates(self, values: Mapping[str, float]) -> Tensor:
+        """Coordinates (len(self),) of values by name, 0 for those that have none."""
+        found = [p.coordinate(values[p.name]) if p.name in values else 0.0 for p in self.free]
+        return torch.tensor(found, dtype=torch.float64)
+
     def parameters(self, shared: Tensor) -> dict[str, Tensor]:
         """Values by name from coordinates (..., any number of the first)."""
         return {p.name: p.value(shared[..., i]) for i, p in enumerate(self.free[: shared.shape[-1]])}
