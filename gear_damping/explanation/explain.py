@@ -1,25 +1,18 @@
 """Measured data in, named cause out: the steps in the order in which they are done."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
 from torch import Tensor
 
 from gear_damping.explanation.answer import report_fields
-from gear_damping.explanation.answer.homogeneity import homogeneity
-from gear_damping.explanation.answer.stand_in import (
-    is_untold,
-    line_left,
-    shape_without_name,
-    stand_ins,
-    swings_on,
-)
+from gear_damping.explanation.answer.judged import judged
 from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.casing.heard import is_casing
 from gear_damping.explanation.casing.report_fields import CasingStudy, explain_casing
 from gear_damping.explanation.evidence.data_faults import data_faults, mesh_order_faults
-from gear_damping.explanation.evidence.excess import ac_energy, excess
+from gear_damping.explanation.evidence.excess import ac_energy
 from gear_damping.explanation.evidence.noise import NoiseLevel, Scatter, noise_of, weighted
 from gear_damping.explanation.evidence.records import Evidence, evidence_of
 from gear_damping.explanation.model.calibration_error import calibration_error
@@ -28,9 +21,8 @@ from gear_damping.explanation.search import looked, search
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import State
 from gear_damping.explanation.steps.calibrate import calibrated, recalibrated
-from gear_damping.explanation.steps.confirm import Confirmed, confirmed
+from gear_damping.explanation.steps.confirm import confirmed
 from gear_damping.explanation.steps.estimate import estimated
-from gear_damping.explanation.steps.judge import CONSISTENT, Judged, Known, verdict
 from gear_damping.explanation.steps.too_short import died_away, too_short
 from gear_damping.explanation.trials.bench import Bench, Log
 from gear_damping.identification.decimation import decimated
@@ -137,10 +129,10 @@ def explain(
         found = replace(found, state=replace(found.state, left=looked(found.state).left))
     found = replace(found, state=estimated(found.state))
     notes = [silent, short, INPUT_NOISE if found.state.bench.evidence.input_noise else ""]
-    judged = _judged(found, notes)
+    said = judged(found, notes)
     step(4, STEPS)
     evidence, noise = found.state.bench.evidence, found.noise
-    return Explanation(report_fields.of_search(measurement, evidence, noise, judged), evidence, noise, found.state)
+    return Explanation(report_fields.of_search(measurement, evidence, noise, said), evidence, noise, said.found)
 
 
 def with_noise(evidence: Evidence, measurement: Measurement, log: Log) -> tuple[Evidence, NoiseLevel]:
@@ -189,34 +181,6 @@ def _searched(
 def _scatter(nominal: Outcome, evidence: Evidence, solver: Solver) -> Scatter:
     """What errors of the calibration add to the residuals by which models are compared."""
     return nominal.scatter if evidence.sealed else calibration_error(nominal, evidence, solver)
-
-
-def _judged(found: Confirmed, notes: Sequence[str]) -> Judged:
-    """The state with its verdict."""
-    state, before, after = found.state, found.before, found.after
-    evidence, settings, budget = state.bench.evidence, state.bench.settings, state.bench.budget
-    stands_in = swings_on(state) or next((one.sentence for one in stand_ins(state)), "")  # which may be refused too
-    not_tried = tuple(budget.not_tried)
-    fitted, beyond = (
-        excess(state.nominal.fit_residuals, evidence.fitted, noise, settings)
-        for noise in (state.noise, state.bench.floor)
-    )
-    known = Known(
-        converged=state.outcome.fitted.converged,
-        is_one=_is_one(state),
-        whole=_taken_of_all(state),
-        fitted=fitted.percent,
-        fitted_beyond_sensor=beyond.percent if beyond.misfit > settings.small_misfit else 0.0,
-        untried=not_tried,
-        of_fit=1 - state.outcome.fitted.cost / max(state.nominal.fitted.cost, 1e-300),
-        stands_in=stands_in,
-        is_untold=is_untold(state),
-        shape=shape_without_name(state),
-    )
-    said = verdict(state, before, after, known).saying(line_left(state), *notes, budget.sentence)
-    if said.word == CONSISTENT:  # what would take part of so little is no cause
-        state, after = replace(state, accepted=(), outcome=state.nominal, left=state.seen), before
-    return Judged(state, before, after, said, not_tried, found.t)
 
 
 def at_useful_rate(evidence: Evidence) -> Evidence:
@@ -270,20 +234,6 @@ def _is_lost(residual: Tensor, record: FitRecord, evidence: Evidence) -> bool:
         if motion > CLEAR * len(moved) * evidence.noise**2 and float(left.square().sum()) > share * motion:
             return True
     return False
-
-
-def _taken_of_all(state: State) -> float:
-    """Share that causes take of all that the nominal model leaves beyond what was known of the noise at first."""
-    before, after = (state.beyond_sensor(outcome).percent for outcome in (state.nominal, state.outcome))
-    return 1 - max(after, 0.0) / before if before > 0 else 1.0
-
-
-def _is_one(state: State) -> bool | None:
-    """Whether every cause has one size over all records; None where none is refuted and too few tell of one."""
-    tests = [homogeneity(state.outcome, cause.name, state.bench.evidence) for cause in state.accepted]
-    if not all(test.holds for test in tests):
-        return False
-    return True if all(test.testable for test in tests) else None
 
 
 def _tell(nominal: Outcome, bench: Bench) -> None:

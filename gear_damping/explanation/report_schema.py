@@ -87,6 +87,9 @@ class Cause(Part):
     fixed: dict[str, float] | None = may_be_left_out(
         "parameters that were tried and not fitted, as the order of a ripple"
     )
+    options: dict[str, str | int | bool] | None = may_be_left_out(
+        "the form of it that was found, as the `shaft` whose tooth is cracked"
+    )
     per_record: list[PerRecord] = said("its first strength record by record")
     homogeneous: Homogeneous = said("whether these are one size")
 
@@ -167,6 +170,10 @@ class DampingRatios(Part):
     before: DampingRatio = said("by the nominal simulation")
     after: DampingRatio = said("with the causes")
     bias_of_the_nominal: float = said("what the missing causes did to it", "%")
+    conditional: bool = said(
+        "true where something without a name is left, or the last fit did not converge: the intervals are of the noise "
+        "alone, and the damping may lie outside"
+    )
 
 
 class Confirmed(Part):

@@ -106,3 +106,20 @@ def test_a_rival_that_the_best_one_encompasses_is_none():
     with patch.object(Bench, "encompasses", lambda _, first, other: (first.name, other.name) in seen):
         kept = bench._not_encompassed(best, [best, beaten, both, neither])
     assert [fit.name for fit in kept] == ["best", "both", "neither"]
+
+
+def test_without_a_cause_the_others_are_held_against_the_same_records():
+    fewer, all_of_it = model(size=2.0), model()
+    state = state_of([("needed", ()), ("doubtful", ())], all_of_it, without={"doubtful": fewer})
+    excess = SimpleNamespace(percent=3.0)
+    found = confirm.Confirmed(state, None, None, None, 9.0, is_opened=True)
+    with (
+        patch.object(MadeUp, "ranked", lambda *_: []),
+        patch.object(MadeUp, "assessed", lambda *_: "what is left"),
+        patch.object(confirm, "excess", lambda residuals, *_: excess if residuals is fewer.holdout else None),
+    ):
+        found = confirm.without(found, "doubtful")
+    assert [cause.name for cause in found.state.accepted] == ["needed"]
+    assert (found.state.outcome, found.state.left, found.after) == (fewer, "what is left", excess)
+    assert found.state.rejected[0].name == "doubtful"
+    assert found.t == confirm._t(state.nominal, fewer, state)

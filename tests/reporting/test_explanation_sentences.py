@@ -2,7 +2,13 @@
 
 import pytest
 
-from gear_damping.reporting.explanation_report.sentences import confirmed_sentence, verdict_sentences
+from gear_damping.reporting.explanation_report.sentences import (
+    CONDITIONAL,
+    confirmed_sentence,
+    damping_sentence,
+    size_sentence,
+    verdict_sentences,
+)
 
 CONFIRMED = {"t": 14.27, "percent": 99.958, "interval95": [99.91, 100.0]}
 
@@ -20,3 +26,23 @@ def test_what_causes_are_worth_is_said_with_how_sure_that_is():
 @pytest.mark.parametrize("gain", [None, {}, {"confirmed": None}, {"confirmed": CONFIRMED | {"t": float("nan")}}])
 def test_nothing_is_said_of_what_is_not_known(gain):
     assert confirmed_sentence(gain) == ""
+
+
+def test_a_cause_is_said_with_its_form_its_size_and_what_was_not_fitted():
+    depth = {"value": 0.249, "unit": "1", "interval95": [0.241, 0.257]}
+    crack = {"name": "tooth_crack", "status": "established", "parameters": {"depth": depth, "phase": depth}}
+    said = size_sentence(crack | {"options": {"shaft": "gear", "halved": True}, "fixed": {"order": 2.0}})
+    assert said == (
+        "tooth_crack (established): shaft gear; order 2; depth 0.249 (0.241 … 0.257); phase 0.249 (0.241 … 0.257)."
+    )
+    many = size_sentence(crack | {"parameters": {f"values[{place}]": depth for place in range(9)}})
+    assert many.endswith("and 3 more in the report.")
+
+
+def test_damping_beside_what_has_no_name_is_said_to_be_conditional():
+    before, after = ({"value": value, "interval95": [value - 0.1, value + 0.1]} for value in (2.0, 1.0))
+    gain = {"damping_ratio_percent": {"before": before, "after": after, "conditional": False}}
+    plain = damping_sentence(gain)
+    assert "100 % too high" in plain
+    gain["damping_ratio_percent"]["conditional"] = True
+    assert damping_sentence(gain) == plain + CONDITIONAL

@@ -193,6 +193,7 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
             "confusable_with": [*cause.confusable, *cause.effect.cause.looks_like][: LARGEST_SET - 1],
             "status": statuses(judged.verdict.word),
             "fixed": _fixed(last, cause.name),
+            "options": dict(cause.refit.score.candidate.options),
             **by_record(last, cause.name, evidence),
         }
         for cause in found.accepted
@@ -206,7 +207,8 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
             share = _share(refit.outcome, found.nominal)
             listed.append(
                 {"name": refit.name, "parameters": own, "excess_explained": share, "confusable_with": alike}
-                | {"status": "suggested", **by_record(refit.outcome, refit.name, evidence)}
+                | {"status": "suggested", "options": dict(refit.score.candidate.options)}
+                | by_record(refit.outcome, refit.name, evidence)
             )
     return sorted(listed, key=lambda cause: -cause["excess_explained"])
 
@@ -238,6 +240,7 @@ def _gain(judged: Judged, evidence: Evidence, noise: NoiseLevel) -> dict[str, An
     whole = all(damping.values())
     if whole:
         damping = {key: found | {"velocity_unit": rig_unit("m/s", evidence)} for key, found in damping.items()}
+        damping["conditional"] = judged.verdict.leaves_unnamed or not last.fitted.converged
         damping["bias_of_the_nominal"] = damping["before"]["value"] - damping["after"]["value"]
     return {
         "nrmse": {

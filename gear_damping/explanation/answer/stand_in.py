@@ -30,6 +30,7 @@ from gear_damping.explanation.trials.unnamed import unnamed_columns
 from gear_damping.physics.terms import ExtraStates
 
 MOST_OF_IT = 0.5  # of a residual: a line that takes more is what is left
+SWINGS_ON = "but `{}` does not die away within the records: a line looks the same."
 GOES_ON = 3.0  # times the longest record: what swings for so long has lost a quarter of its size at its end
 
 
@@ -86,8 +87,8 @@ def stand_ins(state: State) -> Iterator[StandIn]:
     yield from (one for one in found if one is not None)
 
 
-def swings_on(state: State) -> str:
-    """Why a cause that swings by itself is none, in words; empty where none does, or where it dies away.
+def swinging_on(state: State) -> Iterator[str]:
+    """The names of causes that swing by themselves and do not die away.
 
     A motion that goes on all through the records with a start of its own in each is as well a line that somebody
     else drives, and no mode is without damping.
@@ -98,8 +99,7 @@ def swings_on(state: State) -> str:
         if isinstance(effect, ExtraStates):
             own = {parameter.name: values[f"{effect.name}.{parameter.name}"] for parameter in effect.parameters}
             if effect.decay_time(own) > GOES_ON * longest:
-                return f"but `{cause.name}` does not die away within the records: a line looks the same."
-    return ""
+                yield effect.name
 
 
 def is_untold(state: State) -> bool:

@@ -31,6 +31,7 @@ class Confirmed:
         before: What the nominal model leaves of held-out records.
         after: What the extended one does.
         t: Of what the causes together add to the prediction of held-out records; 0 where there is none.
+        is_opened: Whether there are records that took no part in the choice.
     """
 
     state: State
@@ -38,6 +39,7 @@ class Confirmed:
     before: Excess
     after: Excess
     t: float = 0.0
+    is_opened: bool = False
 
 
 def confirmed(state: State, sealed: Sequence[FitRecord], measurement: Measurement) -> Confirmed:
@@ -59,7 +61,32 @@ def confirmed(state: State, sealed: Sequence[FitRecord], measurement: Measuremen
     extended = opened(state.outcome, evidence, bench.solver, nominal.own) if state.accepted else nominal
     state, t = _validated(_told_apart(replace(state, bench=bench, nominal=nominal, outcome=extended)))
     before, after = (excess(one.holdout, evidence.held, noise, bench.settings) for one in (nominal, state.outcome))
-    return Confirmed(state, noise, before, after, t)
+    return Confirmed(state, noise, before, after, t, is_opened=True)
+
+
+def without(found: Confirmed, name: str) -> Confirmed:
+    """The search without one of its causes, the others fitted and held against held-out records anew.
+
+    Args:
+        found: The search.
+        name: The cause.
+    """
+    state, evidence, bench = found.state, found.state.bench.evidence, found.state.bench
+    outcome = bench.without(state.outcome, name)
+    if found.is_opened:
+        outcome = opened(outcome, evidence, bench.solver, state.nominal.own)
+    state = _dropped(state, name, outcome)
+    left = bench.assessed(outcome, bench.ranked(outcome))
+    t, state = _t(state.nominal, outcome, state), replace(state, left=left)
+    after = excess(outcome.holdout, evidence.held, found.noise, bench.settings) if found.is_opened else state.current
+    return replace(found, state=state, after=after, t=t)
+
+
+def _dropped(state: State, name: str, outcome: Outcome) -> State:
+    """The state with a model without one of its causes, which counts as rejected."""
+    kept = tuple(cause for cause in state.accepted if cause.name != name)
+    refits = (cause.refit for cause in state.accepted if cause.name == name)
+    return replace(state, accepted=kept, outcome=outcome, rejected=(*refits, *state.rejected))
 
 
 def _with_sealed(state: State, sealed: Sequence[FitRecord], measurement: Measurement) -> tuple[Evidence, NoiseLevel]:
@@ -112,12 +139,11 @@ def _validated(state: State) -> tuple[State, float]:
         return state, 0.0
     bench, least = state.bench, state.bench.settings.confirmed_t
     for cause in state.accepted if len(state.accepted) > 1 else ():
-        without = bench.without(state.outcome, cause.name)
-        without = opened(without, bench.evidence, bench.solver, state.nominal.own)
-        if _t(without, state.outcome, state) < least:
+        fewer = bench.without(state.outcome, cause.name)
+        fewer = opened(fewer, bench.evidence, bench.solver, state.nominal.own)
+        if _t(fewer, state.outcome, state) < least:
             bench.log(f"{cause.name} is not validated on held-out records")
-            kept = tuple(other for other in state.accepted if other is not cause)
-            state = replace(state, accepted=kept, outcome=without, rejected=(cause.refit, *state.rejected))
+            state = _dropped(state, cause.name, fewer)
     t = _t(state.nominal, state.outcome, state)
     if t < least:
         bench.log("held-out records do not validate what was found")

@@ -30,6 +30,11 @@ class Verdict:
     word: str
     sentences: tuple[str, ...]
 
+    @property
+    def leaves_unnamed(self) -> bool:
+        """Whether something is missing that has no name."""
+        return self.word in (PARTLY, UNEXPLAINED)
+
     def saying(self, *more: str) -> "Verdict":
         """The same with further sentences; empty ones are none."""
         return replace(self, sentences=(*self.sentences, *filter(None, more)))

@@ -44,9 +44,12 @@ def _record(name: str, entry: Mapping[str, Any], noise: float | None, misfit: Ma
 
 
 def cause_parameters(cause: Mapping[str, Any]) -> list[Row]:
-    """Parameter, value with interval, meaning."""
-    given = cause.get("parameters") or {}
-    return [(words(name), estimate(entry), meaning(cause["name"], name)) for name, entry in given.items()]
+    """Parameter, value with interval, meaning; the form that was found and what was tried and not fitted come first."""
+    given, name = cause.get("parameters") or {}, cause["name"]
+    form = {key: str(value) for key, value in (cause.get("options") or {}).items() if isinstance(value, str)}
+    tried = {key: number(value) for key, value in (cause.get("fixed") or {}).items()}
+    fitted = {key: estimate(entry) for key, entry in given.items()}
+    return [(words(key), value, meaning(name, key)) for key, value in {**form, **tried, **fitted}.items()]
 
 
 def parameters(report: ReportInput) -> list[Row]:

@@ -7,6 +7,7 @@ from typing import Any
 from gear_damping.reporting.explanation_report.vocabulary import description, listed
 from gear_damping.reporting.figures.visible import UNNAMED
 from gear_damping.reporting.numbers import estimate, number, percent, quantity
+from gear_damping.reporting.page.render import words
 
 HEADLINES = {
     "consistent": "Consistent: these data give no evidence that the simulation misses anything.",
@@ -20,7 +21,12 @@ CASING_HEADLINES = {
     "consistent": "Consistent: the casing shows nothing that a sound gear pair does not show.",
     "unexplained": "Unexplained: the casing shows something that a sound gear pair does not show.",
 }
+CONDITIONAL = (
+    " That interval is of the noise alone: while something is missing that has no name, or a fit has not converged, "
+    "the damping may lie outside it."
+)
 ONLY_NOISE = 1.5  # noise variances that may be left for saying so
+MOST_SIZES = 6  # parameters in a line
 ALL_THE_SAME = "An effect smaller than those listed under “What could not have been seen” may be there all the same."
 
 
@@ -47,6 +53,15 @@ def cause_sentences(cause: Mapping[str, Any], own: Mapping[str, str]) -> list[st
     if cause.get("status") == "suggested":
         told.append("It is a suggestion only: held-out records do not validate it.")
     return [sentence for sentence in told if sentence]
+
+
+def size_sentence(cause: Mapping[str, Any]) -> str:
+    """The size of a cause in a line: its form, its parameters with their intervals, and those that were not fitted."""
+    form = [f"{words(name)} {value}" for name, value in (cause.get("options") or {}).items() if isinstance(value, str)]
+    fitted = [f"{words(name)} {estimate(entry)}" for name, entry in (cause.get("parameters") or {}).items()]
+    tried = [f"{words(name)} {number(value)}" for name, value in (cause.get("fixed") or {}).items()]
+    more = [f"and {len(fitted) - MOST_SIZES} more in the report"] if len(fitted) > MOST_SIZES else []
+    return f"{cause['name']} ({cause['status']}): {'; '.join([*form, *tried, *fitted[:MOST_SIZES], *more])}."
 
 
 def one_size_sentence(homogeneous: Mapping[str, Any] | None) -> str:
@@ -121,9 +136,13 @@ def damping_sentence(gain: Mapping[str, Any] | None) -> str:
     before, after = damping.get("before") or {}, damping.get("after") or {}
     if not _known(before.get("value")):
         return ""
-    was, now = (estimate({**found, "unit": "%"}) for found in (before, after))
     at = quantity(before.get("reference_velocity"), before.get("velocity_unit", "m/s"))
     at = f" at a velocity amplitude of {at}" if before.get("reference_velocity") else ""
+    return f"{_damping(before, after, at)}{CONDITIONAL if damping.get('conditional') else ''}"
+
+
+def _damping(before: Mapping[str, Any], after: Mapping[str, Any], at: str) -> str:
+    was, now = (estimate({**found, "unit": "%"}) for found in (before, after))
     if not _known(after.get("value")) or after["value"] == before["value"]:
         return f"The damping ratio is {was} of critical{at}."
     said = f"The damping ratio came out at {was} of critical{at} with the nominal simulation"

@@ -24,7 +24,8 @@ def meaning(name: str, parameter: str) -> str:
     """What a parameter of an effect means; an element of a list (`values[3]`) means what the list does."""
     effect = builtin_effects().get(name)
     plain = parameter.partition("[")[0].removeprefix(f"{name}.")
-    return next((p.meaning for p in effect.parameters if p.name == plain), "") if effect else ""
+    declared = (*effect.parameters, *effect.options) if effect else ()
+    return next((one.meaning for one in declared if one.name == plain), "")
 
 
 def listed(names: Sequence[str], last: str = "and") -> str:

@@ -1,0 +1,86 @@
+"""Step 10: the verdict on a search with its held-out records; a cause that is none does not take the others along."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from gear_damping.explanation.answer.homogeneity import homogeneity
+from gear_damping.explanation.answer.stand_in import (
+    SWINGS_ON,
+    is_untold,
+    line_left,
+    shape_without_name,
+    stand_ins,
+    swinging_on,
+)
+from gear_damping.explanation.evidence.excess import excess
+from gear_damping.explanation.state import State
+from gear_damping.explanation.steps.confirm import Confirmed, without
+from gear_damping.explanation.steps.judge import CONSISTENT, UNEXPLAINED, Judged, Known, verdict
+
+
+def judged(found: Confirmed, notes: Sequence[str]) -> Judged:
+    """The state with its verdict.
+
+    Where causes are refused for one among them that is none, those that are left are judged without it.
+
+    Args:
+        found: The search with its held-out records.
+        notes: What is said beside the verdict.
+    """
+    said, doubtful = _judged(found, notes)
+    fewer = said
+    while fewer.verdict.word == UNEXPLAINED and doubtful and len(fewer.found.accepted) > 1:
+        found = without(found, doubtful)
+        fewer, doubtful = _judged(found, notes)
+    return said if fewer.verdict.word == UNEXPLAINED else fewer
+
+
+def _judged(found: Confirmed, notes: Sequence[str]) -> tuple[Judged, str]:
+    """The state with its verdict, and the name of a cause that may be none; empty where there is no such."""
+    state, before, after = found.state, found.before, found.after
+    evidence, settings, budget = state.bench.evidence, state.bench.settings, state.bench.budget
+    doubtful, stands_in = _doubtful(state)
+    not_tried = tuple(budget.not_tried)
+    fitted, beyond = (
+        excess(state.nominal.fit_residuals, evidence.fitted, noise, settings)
+        for noise in (state.noise, state.bench.floor)
+    )
+    known = Known(
+        converged=state.outcome.fitted.converged,
+        is_one=_is_one(state),
+        whole=_taken_of_all(state),
+        fitted=fitted.percent,
+        fitted_beyond_sensor=beyond.percent if beyond.misfit > settings.small_misfit else 0.0,
+        untried=not_tried,
+        of_fit=1 - state.outcome.fitted.cost / max(state.nominal.fitted.cost, 1e-300),
+        stands_in=stands_in,
+        is_untold=is_untold(state),
+        shape=shape_without_name(state),
+    )
+    said = verdict(state, before, after, known).saying(line_left(state), *notes, budget.sentence)
+    if said.word == CONSISTENT:  # what would take part of so little is no cause
+        state, after = replace(state, accepted=(), outcome=state.nominal, left=state.seen), before
+    return Judged(state, before, after, said, not_tried, found.t), doubtful
+
+
+def _doubtful(state: State) -> tuple[str, str]:
+    """A cause that stands in for something else or has run into a bound, and why it is none; both empty without."""
+    for name in swinging_on(state):
+        return name, SWINGS_ON.format(name)
+    for one in stand_ins(state):
+        return one.cause, one.sentence
+    return next((cause.name for cause in state.accepted if cause.refit.is_at_bound), ""), ""
+
+
+def _taken_of_all(state: State) -> float:
+    """Share that causes take of all that the nominal model leaves beyond what was known of the noise at first."""
+    before, after = (state.beyond_sensor(outcome).percent for outcome in (state.nominal, state.outcome))
+    return 1 - max(after, 0.0) / before if before > 0 else 1.0
+
+
+def _is_one(state: State) -> bool | None:
+    """Whether every cause has one size over all records; None where none is refuted and too few tell of one."""
+    tests = [homogeneity(state.outcome, cause.name, state.bench.evidence) for cause in state.accepted]
+    if not all(test.holds for test in tests):
+        return False
+    return True if all(test.testable for test in tests) else None

@@ -1,0 +1,67 @@
+"""A cause that is none does not take the others along; verdicts on made-up searches."""
+
+from types import SimpleNamespace
+from unittest.mock import patch
+
+import pytest
+
+from gear_damping.explanation.answer import judged as module
+from gear_damping.explanation.answer.judged import judged
+
+
+def search_of(*names):
+    return SimpleNamespace(state=SimpleNamespace(accepted=names))
+
+
+def without(found, name):
+    return search_of(*(other for other in found.state.accepted if other != name))
+
+
+def judge(words, doubts):
+    """A judge with a word for every set of causes, and the cause that it doubts."""
+
+    def one(found, notes):
+        names = found.state.accepted
+        verdict = SimpleNamespace(word=words.get(names, "unexplained"))
+        return SimpleNamespace(verdict=verdict, found=found.state), doubts.get(names, "")
+
+    return one
+
+
+@pytest.mark.parametrize(
+    ("words", "doubts", "kept"),
+    [
+        ({("ripple",): "partly_explained"}, {("ripple", "pitch"): "pitch"}, ("ripple",)),
+        ({("ripple",): "partly_explained"}, {("ripple", "pitch"): "ripple"}, ("ripple", "pitch")),
+        ({("ripple",): "partly_explained"}, {}, ("ripple", "pitch")),
+        ({("ripple", "pitch"): "explained"}, {("ripple", "pitch"): "pitch"}, ("ripple", "pitch")),
+    ],
+    ids=["the rest is named", "the rest is none either", "nothing is doubted", "all is well"],
+)
+def test_what_is_left_without_a_cause_that_is_none_is_judged_by_itself(words, doubts, kept):
+    with patch.object(module, "_judged", judge(words, doubts)), patch.object(module, "without", without):
+        found = judged(search_of("ripple", "pitch"), ())
+    assert found.found.accepted == kept
+
+
+def test_one_after_another_is_doubted():
+    words = {("a",): "explained"}
+    doubts = {("a", "b", "c"): "b", ("a", "c"): "c"}
+    with patch.object(module, "_judged", judge(words, doubts)), patch.object(module, "without", without):
+        assert judged(search_of("a", "b", "c"), ()).found.accepted == ("a",)
+
+
+def test_a_cause_at_its_bound_is_doubted_where_nothing_else_is():
+    bounded = [SimpleNamespace(name=name, refit=SimpleNamespace(is_at_bound=name == "pitch")) for name in ("a", "pitch")]
+    state = SimpleNamespace(accepted=bounded)
+    with (
+        patch.object(module, "swinging_on", lambda _: iter(())),
+        patch.object(module, "stand_ins", lambda _: iter(())),
+    ):
+        assert module._doubtful(state) == ("pitch", "")
+    stand_in = SimpleNamespace(cause="a", sentence="but a line takes more.")
+    with (
+        patch.object(module, "swinging_on", lambda _: iter(())),
+        patch.object(module, "stand_ins", lambda _: iter([stand_in])),
+    ):
+        assert module._doubtful(state) == ("a", "but a line takes more.")
