@@ -19,6 +19,7 @@ from gear_damping.schema.values import Problems
 from gear_damping.units import to_si
 
 LEAST_SAMPLES = 8  # of a record, for a spectrum at all
+MOST_MISSING = 0.01  # of a record: a sheet whose last cells are blank, and no channel of another rate
 _SAME_RATE = 1e-3  # how far a declared rate may lie from the file's
 _SAME_UNIT = 1e-9  # the same of units
 
@@ -132,7 +133,9 @@ class RawReader:
         values = self._all(column, key)
         if values.size < self.stop:
             rule = f"column '{column}' has {values.size} samples, the record {self.stop}"
+            last, few = values.size, self.stop - values.size <= MOST_MISSING * self.stop
             remedy = "give the channel its own time or sampling_rate"
+            remedy = f"end the slice at {last}, or {remedy}" if few and last > self.first else remedy
             raise InputError(Problem(key, rule, remedy=remedy, source=self.file))
         values = values[self.first : self.stop]
         self._refuse_cells(column, key, self.first, self.stop)

@@ -26,6 +26,7 @@ GRID_TOLERANCE = 1e-6  # of a step; stamps this close to a grid are one
 # Of a step: a cubic spline that moves samples this far errs by at most 0.07 % of content at 4 samples a period and
 # 0.001 % of content at 10, because its slope errs by 4.5 and 0.1 %; beyond, samples are fitted at their stamps.
 SPLINE_TOLERANCE = 0.01
+MOST_STRAY = 0.1  # of the steps go back in a clock that stumbles; beyond, rows stand in another order
 REMEDY = "or give sampling_rate instead of the time column, where the stamps are written with too few digits"
 CLOCK_JUMPS = "clock_jumps"  # a kind of finding
 _HALF = 0.5  # of a step; a stamp that far from where it is due counts as another sample's
@@ -123,7 +124,9 @@ def _refuse_repeated_or_backward(steps: NDArray, key: str, source: str, first: i
         where = np.flatnonzero(bad) + 1 + first
         if where.size:
             rule = f"{where.size} {kind} time stamp(s), the first at sample {where[0]}"
-            problems.append(Problem(key, rule, remedy=f"leave those rows out, {REMEDY}", source=source))
+            is_shuffled = kind == "backward" and where.size > MOST_STRAY * steps.size
+            remedy = "sort the rows by time" if is_shuffled else f"leave those rows out, {REMEDY}"
+            problems.append(Problem(key, rule, remedy=remedy, source=source))
     if problems:
         raise InputError(problems)
 

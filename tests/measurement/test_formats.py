@@ -73,7 +73,7 @@ def test_a_file_without_header_is_read_by_index(tmp_path):
 
 def test_a_column_without_name_or_cells_is_empty_when_asked_for(tmp_path):
     table = _csv(tmp_path, "t,a,\n0,1.5\n1,2\n")
-    with pytest.raises(InputError, match=r"row 0 .line 2., column 2 = '': an empty cell"):
+    with pytest.raises(InputError, match="column 2: all of its cells are empty; remedy: name another column: t, a"):
         table.values(2)
 
 

@@ -109,3 +109,49 @@ _SILENT = [(20.0, "time [s]"), (20.1, "time [s]"), (10.0, "t"), (10.0, "x [m]")]
 @pytest.mark.parametrize(("kilohertz", "header"), _SILENT)
 def test_a_rate_that_nothing_contradicts_is_silent(bench, kilohertz, header):
     assert "rate_conflict" not in _at_a_rate(bench, kilohertz, header)
+
+
+def oscillator_of(lines, tmp_path, column="x"):
+    """The problems with a declaration of a text table."""
+    (tmp_path / "run.csv").write_text("\n".join(lines) + "\n")
+    record = (
+        "system: oscillator\nrecords:\n  - file: run.csv\n    channels:\n"
+        f"      time: {{column: t, unit: s}}\n      displacement: {{column: {column}, unit: m}}\n"
+    )
+    (tmp_path / "measurement.yaml").write_text(record)
+    with pytest.raises(InputError) as caught:
+        load_measurement(tmp_path / "measurement.yaml")
+    return [str(problem) for problem in caught.value.problems]
+
+
+def test_rows_in_another_order_are_to_be_sorted_and_a_stumble_is_to_be_left_out(tmp_path):
+    times = [0.01 * k for k in range(60)]
+    shuffled = [*times[::2], *reversed(times[1::2])]
+    rows = [f"{t:.4f},{t * t:.6f}" for t in shuffled]
+    assert "remedy: sort the rows by time" in oscillator_of(["t,x", *rows], tmp_path)[0]
+    rows = [f"{t:.4f},{t * t:.6f}" for t in (*times[:30], 0.2, *times[30:])]
+    assert "remedy: leave those rows out" in oscillator_of(["t,x", *rows], tmp_path)[0]
+
+
+def test_an_empty_column_is_named_once_with_those_that_hold_numbers(tmp_path):
+    problems = oscillator_of(["t,blank,x", *(f"{0.01 * k:.3f},,{k * k}" for k in range(60))], tmp_path, "blank")
+    assert len(problems) == 1
+    assert "all of its cells are empty" in problems[0]
+    assert "name another column: t, x" in problems[0]
+
+
+@pytest.mark.parametrize(("missing", "is_last_cell"), [(1, True), (100, False)])
+def test_a_column_that_ends_early_ends_the_slice_or_is_a_channel_of_its_own(tmp_path, missing, is_last_cell):
+    openpyxl = pytest.importorskip("openpyxl")
+    book = openpyxl.Workbook()
+    for row in [("t", "x"), *((0.01 * k, k * k if k < 200 - missing else None) for k in range(200))]:
+        book.active.append(row)
+    book.save(tmp_path / "run.xlsx")
+    record = (
+        "system: oscillator\nrecords:\n  - file: run.xlsx\n    channels:\n"
+        "      time: {column: t, unit: s}\n      displacement: {column: x, unit: m}\n"
+    )
+    (tmp_path / "measurement.yaml").write_text(record)
+    with pytest.raises(InputError, match="give the channel its own time") as caught:
+        load_measurement(tmp_path / "measurement.yaml")
+    assert ("end the slice at 199, or" in str(caught.value)) == is_last_cell

@@ -27,6 +27,7 @@ MOMENT = "a date or a clock, which is not read from a text"
 _MOMENT = re.compile(r"\d{1,2}:\d{2}|\d{4}-\d{2}-\d{2}|\d{1,2}[./]\d{1,2}[./]\d{2,4}")
 NO_VALUE = ("", "-", "--", "?", "n/a", "na", "#n/a", "null", "none", "ovld", "overload", "err", "error")
 SHOWN = 3  # faults of one kind that are listed one by one
+LISTED = 8  # columns that a message lists
 
 
 @dataclass(frozen=True)
@@ -238,8 +239,21 @@ class CellTable(Table):
         self.notes = self.notes if note in self.notes else (*self.notes, note)
         return [cell.replace(",", ".") for cell in cells]
 
+    def _with_numbers(self) -> str:
+        """The columns that begin with numbers, as a list in a message."""
+        held = [
+            self.names[k] or str(k)
+            for k, column in enumerate(self._columns)
+            if is_real(column.values.dtype) or any(is_number(str(cell)) for cell in column.values[:SHOWN])
+        ]
+        return ", ".join(held[:LISTED])
+
     def _problems(self, index: int, cells: list[str], bad: list[int]) -> list[Problem]:
         title = f"column {index}" + (f" '{self.names[index]}'" if self.names[index] else "")
+        if cells and len(bad) == len(cells) and not any(cell.strip() for cell in cells):
+            rule, held = "all of its cells are empty", self._with_numbers()
+            remedy = f"name another column: {held}" if held else "name another column"
+            return [Problem(f"{self.path.name}, {title}", rule, None, remedy, str(self.path))]
         problems = []
         for k in bad[:SHOWN]:
             rule = "an empty cell" if not cells[k].strip() else _not_a_number(cells[k])
