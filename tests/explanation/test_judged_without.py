@@ -52,7 +52,8 @@ def test_one_after_another_is_doubted():
 
 
 def test_a_cause_at_its_bound_is_doubted_where_nothing_else_is():
-    bounded = [SimpleNamespace(name=name, refit=SimpleNamespace(is_at_bound=name == "pitch")) for name in ("a", "pitch")]
+    refits = {name: SimpleNamespace(is_at_bound=name == "pitch") for name in ("a", "pitch")}
+    bounded = [SimpleNamespace(name=name, refit=refit) for name, refit in refits.items()]
     state = SimpleNamespace(accepted=bounded)
     with (
         patch.object(module, "swinging_on", lambda _: iter(())),
