@@ -17,6 +17,12 @@ def without(found, name):
     return search_of(*(other for other in found.state.accepted if other != name))
 
 
+@pytest.fixture(autouse=True)
+def waves_as_they_are():
+    with patch.object(module, "_reported", lambda said: said):
+        yield
+
+
 def judge(words, doubts):
     """A judge with a word for every set of causes, and the cause that it doubts."""
 

@@ -31,7 +31,7 @@ def test_nothing_is_said_of_what_is_not_known(gain):
 def test_a_cause_is_said_with_its_form_its_size_and_what_was_not_fitted():
     depth = {"value": 0.249, "unit": "1", "interval95": [0.241, 0.257]}
     crack = {"name": "tooth_crack", "status": "established", "parameters": {"depth": depth, "phase": depth}}
-    said = size_sentence(crack | {"options": {"shaft": "gear", "halved": True}, "fixed": {"order": 2.0}})
+    said = size_sentence(crack | {"options": {"shaft": "gear", "halved": True}, "fixed": {"order": 2.0, "share": 0.0}})
     assert said == (
         "tooth_crack (established): shaft gear; order 2; depth 0.249 (0.241 … 0.257); phase 0.249 (0.241 … 0.257)."
     )

@@ -13,6 +13,7 @@ from gear_damping.explanation.answer.stand_in import (
     swinging_on,
 )
 from gear_damping.explanation.evidence.excess import excess
+from gear_damping.explanation.model.positive import positive
 from gear_damping.explanation.state import State
 from gear_damping.explanation.steps.confirm import Confirmed, without
 from gear_damping.explanation.steps.judge import CONSISTENT, UNEXPLAINED, Judged, Known, verdict
@@ -32,7 +33,14 @@ def judged(found: Confirmed, notes: Sequence[str]) -> Judged:
     while fewer.verdict.word == UNEXPLAINED and doubtful and len(fewer.found.accepted) > 1:
         found = without(found, doubtful)
         fewer, doubtful = _judged(found, notes)
-    return said if fewer.verdict.word == UNEXPLAINED else fewer
+    return _reported(said if fewer.verdict.word == UNEXPLAINED else fewer)
+
+
+def _reported(said: Judged) -> Judged:
+    """The same with the extended model's waves as they are reported."""
+    state = said.found
+    tried = [cause.refit.score.candidate for cause in state.accepted]
+    return replace(said, found=replace(state, outcome=positive(state.outcome, tried))) if tried else said
 
 
 def _judged(found: Confirmed, notes: Sequence[str]) -> tuple[Judged, str]:

@@ -17,7 +17,7 @@ from gear_damping.explanation.model.covariance import covariance_of
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.report_schema import KEYS, SCHEMA_VERSION
 from gear_damping.explanation.statistics.paired import share_taken
-from gear_damping.explanation.steps.judge import CONSISTENT, DATA_PROBLEM, LARGEST_SET, Judged, statuses
+from gear_damping.explanation.steps.judge import CONSISTENT, DATA_PROBLEM, LARGEST_SET, Judged, is_visible, statuses
 from gear_damping.explanation.trials.assess import Assessment
 from gear_damping.explanation.trials.random_part import Random
 from gear_damping.explanation.trials.refit import block_samples
@@ -193,7 +193,7 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
             "confusable_with": [*cause.confusable, *cause.effect.cause.looks_like][: LARGEST_SET - 1],
             "status": statuses(judged.verdict.word),
             "fixed": _fixed(last, cause.name),
-            "options": dict(cause.refit.score.candidate.options),
+            "options": dict(cause.refit.score.candidate.tried),
             **by_record(last, cause.name, evidence),
         }
         for cause in found.accepted
@@ -207,7 +207,7 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
             share = _share(refit.outcome, found.nominal)
             listed.append(
                 {"name": refit.name, "parameters": own, "excess_explained": share, "confusable_with": alike}
-                | {"status": "suggested", "options": dict(refit.score.candidate.options)}
+                | {"status": "suggested", "options": dict(refit.score.candidate.tried)}
                 | by_record(refit.outcome, refit.name, evidence)
             )
     return sorted(listed, key=lambda cause: -cause["excess_explained"])
@@ -240,7 +240,8 @@ def _gain(judged: Judged, evidence: Evidence, noise: NoiseLevel) -> dict[str, An
     whole = all(damping.values())
     if whole:
         damping = {key: found | {"velocity_unit": rig_unit("m/s", evidence)} for key, found in damping.items()}
-        damping["conditional"] = judged.verdict.leaves_unnamed or not last.fitted.converged
+        is_more = bool(judged.found.accepted) and is_visible(judged.found.left)
+        damping["conditional"] = judged.verdict.leaves_unnamed or is_more or not last.fitted.converged
         damping["bias_of_the_nominal"] = damping["before"]["value"] - damping["after"]["value"]
     return {
         "nrmse": {

@@ -38,6 +38,7 @@ class Candidate:
         own_phases: Name of the phase by place of its strength, where every record has one of its own.
         own_tooth: Name of the phase that says which tooth is in mesh at the start of a record, where nothing else does.
         teeth: How many there are, where that is so.
+        tried: The options that its recipe sets, as whose tooth is cracked.
     """
 
     name: str
@@ -54,6 +55,7 @@ class Candidate:
     own_phases: Mapping[int, str] = field(default_factory=dict)
     own_tooth: str = ""
     teeth: int = 0
+    tried: Mapping[str, object] = field(default_factory=dict)
 
     @property
     def options(self) -> tuple[tuple[str, object], ...]:
@@ -167,6 +169,7 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Si
         own_phases,
         own_tooth,
         teeth,
+        recipe.options,
     )
 
 

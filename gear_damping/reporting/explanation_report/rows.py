@@ -47,7 +47,7 @@ def cause_parameters(cause: Mapping[str, Any]) -> list[Row]:
     """Parameter, value with interval, meaning; the form that was found and what was tried and not fitted come first."""
     given, name = cause.get("parameters") or {}, cause["name"]
     form = {key: str(value) for key, value in (cause.get("options") or {}).items() if isinstance(value, str)}
-    tried = {key: number(value) for key, value in (cause.get("fixed") or {}).items()}
+    tried = {key: number(value) for key, value in (cause.get("fixed") or {}).items() if value}
     fitted = {key: estimate(entry) for key, entry in given.items()}
     return [(words(key), value, meaning(name, key)) for key, value in {**form, **tried, **fitted}.items()]
 

@@ -59,7 +59,7 @@ def size_sentence(cause: Mapping[str, Any]) -> str:
     """The size of a cause in a line: its form, its parameters with their intervals, and those that were not fitted."""
     form = [f"{words(name)} {value}" for name, value in (cause.get("options") or {}).items() if isinstance(value, str)]
     fitted = [f"{words(name)} {estimate(entry)}" for name, entry in (cause.get("parameters") or {}).items()]
-    tried = [f"{words(name)} {number(value)}" for name, value in (cause.get("fixed") or {}).items()]
+    tried = [f"{words(name)} {number(value)}" for name, value in (cause.get("fixed") or {}).items() if value]
     more = [f"and {len(fitted) - MOST_SIZES} more in the report"] if len(fitted) > MOST_SIZES else []
     return f"{cause['name']} ({cause['status']}): {'; '.join([*form, *tried, *fitted[:MOST_SIZES], *more])}."
 
