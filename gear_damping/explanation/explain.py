@@ -23,6 +23,7 @@ from gear_damping.explanation.state import State
 from gear_damping.explanation.steps.calibrate import calibrated, recalibrated
 from gear_damping.explanation.steps.confirm import confirmed
 from gear_damping.explanation.steps.estimate import estimated
+from gear_damping.explanation.steps.out_of_step import out_of_step
 from gear_damping.explanation.steps.too_short import died_away, too_short
 from gear_damping.explanation.trials.bench import Bench, Log
 from gear_damping.identification.decimation import decimated
@@ -128,7 +129,7 @@ def explain(
     if found.state.names != state.names:
         found = replace(found, state=replace(found.state, left=looked(found.state).left))
     found = replace(found, state=estimated(found.state))
-    notes = [silent, short, INPUT_NOISE if found.state.bench.evidence.input_noise else ""]
+    notes = [silent, short, out_of_step(found.state), INPUT_NOISE if found.state.bench.evidence.input_noise else ""]
     said = judged(found, notes)
     step(4, STEPS)
     evidence, noise = found.state.bench.evidence, found.noise

@@ -171,8 +171,8 @@ class DampingRatios(Part):
     after: DampingRatio = said("with the causes")
     bias_of_the_nominal: float = said("what the missing causes did to it", "%")
     conditional: bool = said(
-        "true where something is left that has no name or is not random, or the last fit did not converge: the intervals "
-        "are of the noise alone, and the damping may lie outside"
+        "true where something is left that has no name or is not random, or the last fit did not converge: the "
+        "intervals are of the noise alone, and the damping may lie outside"
     )
 
 
