@@ -1,10 +1,8 @@
 """What Lightning needs in order to be a quiet, reproducible and interruptible part of a program."""
 
-import ctypes
 import io
 import logging
 import signal
-import sys
 import threading
 import warnings
 from collections.abc import Iterator
@@ -24,12 +22,6 @@ from gear_damping.identification.seeding import derived_seed
 # Below this batch size a second thread costs more than it brings: LSTM of 60 units on 30 samples, windows
 # per second with 1 and 2 threads: 28k and 22k at batch 32, 37k and 49k at 256.
 THREADS_PAY_FROM = 128
-
-# Of glibc's mallopt: up to which size of the free memory at the end, and from which size of a block on, memory
-# goes back to the kernel.
-M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3
-KEPT_BYTES = 1 << 30  # that freed memory is kept up to, instead of being given back and asked for at every step
-LARGEST_OF_OLD_GLIBC = 32 << 20  # which refuses larger blocks
 
 
 class EpochSeeds(Callback):
@@ -130,18 +122,6 @@ def threads(batch_size: int) -> Iterator[None]:
         yield
     finally:
         torch.set_num_threads(before)
-
-
-def keep_memory() -> None:
-    """Let the process keep what it frees: each step of a training needs the same blocks again.
-
-    Otherwise glibc returns them and the kernel clears new pages at every step: at batch 1024 these are 17 000
-    page faults a step and a third of its time. Other C libraries are left alone.
-    """
-    if sys.platform == "linux" and hasattr(library := ctypes.CDLL(None), "mallopt"):
-        library.mallopt(M_TRIM_THRESHOLD, KEPT_BYTES)
-        if not library.mallopt(M_MMAP_THRESHOLD, KEPT_BYTES):
-            library.mallopt(M_MMAP_THRESHOLD, LARGEST_OF_OLD_GLIBC)
 
 
 @contextmanager

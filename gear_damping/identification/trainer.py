@@ -16,6 +16,7 @@ from lightning.pytorch.strategies import DDPStrategy
 from torch import Tensor
 
 from gear_damping.identification.datamodule import Material, WindowDataModule
+from gear_damping.identification.kept_memory import keep_memory
 from gear_damping.identification.lightning_module import CONSTANT, COSINE, DampingModule, EstimatorConfig
 from gear_damping.identification.lightning_support import (
     EpochSeeds,
@@ -24,7 +25,6 @@ from gear_damping.identification.lightning_support import (
     PortableCheckpoint,
     WholeCheckpoints,
     interruptible,
-    keep_memory,
     own_randomness,
     quiet_lightning,
     threads,

@@ -12,7 +12,7 @@ import pytest
 # each is small enough for the heap.
 PROGRAM = """
 import json, resource, torch
-from gear_damping.identification.lightning_support import keep_memory
+from gear_damping.identification.kept_memory import keep_memory
 keep_memory()
 def page_faults():
     return resource.getrusage(resource.RUSAGE_SELF).ru_minflt

@@ -6,6 +6,7 @@ from math import inf
 
 from torch import Tensor
 
+from gear_damping.identification.kept_memory import keep_memory
 from gear_damping.identification.output_error.descent import TO_THE_END, Descent, Ends, Lent
 from gear_damping.identification.output_error.problem import OutputErrorProblem, Prediction
 from gear_damping.identification.output_error.step import Points
@@ -60,6 +61,7 @@ def fit(
         ends: When it stops before.
         lent: Sensitivities to begin with, as another fit to the same records found them.
     """
+    keep_memory()
     if states is None:
         states = problem.first_states().expand(shared.shape[0], -1, -1).clone()
     points = Points(problem.unknowns.within(problem.unknowns.completed(shared)), states)
