@@ -129,7 +129,7 @@ class Bench:
         """The candidates worth it, fitted in full, the best first; one that will not get below `reach` is given up.
 
         Those with few strengths are fitted first: one that takes nearly all spares the many of another, as of an error
-        of every tooth.
+        of every tooth, and one that can do all that it does and more waits for the next round.
         """
         if not ranked:
             return ()
@@ -137,6 +137,8 @@ class Bench:
         base = (outcome if outcome.fitted.converged else against).fitted.cost
         worth = chosen(ranked, self.settings, predicted_gain, laws=self.evidence.has(Trait.REST))
         for score in sorted(worth, key=lambda score: len(score.candidate.strengths)):
+            if any(self._is_enough(fit, score, base) for fit in fits):
+                continue
             if self.budget.refuses(score.candidate.name):
                 continue
             most = max((base - fit.outcome.fitted.cost for fit in fits), default=0.0)
@@ -146,6 +148,17 @@ class Bench:
                 self.failed[score.candidate.name] = "its full fit ran away"
             fits += [] if fit is None else [fit]
         return tuple(sorted(fits, key=lambda fit: fit.outcome.left_out_cost))
+
+    def _is_enough(self, fit: Refit, larger: Score, base: float) -> bool:
+        """Whether a full fit takes most of what is promised of a candidate that can do the same and more.
+
+        An error of every tooth does what an eccentricity does, and with its other numbers bends to whatever else is
+        missing. What the smaller one leaves is asked for in the next round, the larger one among the answers.
+        """
+        if fit.t <= self.settings.accepted_t or not fit.is_seen_in_fit or fit.is_at_bound:
+            return False
+        taken = 1 - fit.outcome.fitted.cost / base
+        return taken >= self.settings.taken_by_one * larger.gain and contains(larger, fit.score)
 
     def _reach(self, most: float, base: float, against: Outcome) -> float:
         """The cost that another fit has to get below, where one took the `most` of it.

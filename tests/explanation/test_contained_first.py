@@ -1,0 +1,40 @@
+"""Of an effect of many numbers and one in it that takes most of the same, the smaller comes first; made-up fits."""
+
+from types import SimpleNamespace
+
+import pytest
+import torch
+
+from gear_damping.explanation.settings import SearchSettings
+from tests.explanation.decisions.made_up import bench
+
+AXES = torch.eye(5, dtype=torch.float64)
+EVERY_TOOTH, ECCENTRIC, ELSEWHERE = AXES[:, :3], AXES[:, :1], AXES[:, 4:]
+
+
+def score(columns, gain):
+    return SimpleNamespace(columns=columns, direction=columns[:, 0], gain=gain)
+
+
+def fit(columns, cost, **more):
+    outcome = SimpleNamespace(fitted=SimpleNamespace(cost=cost))
+    known = {"t": 50.0, "is_seen_in_fit": True, "is_at_bound": False} | more
+    return SimpleNamespace(score=score(columns, 1 - cost / 8), outcome=outcome, **known)
+
+
+@pytest.mark.parametrize(
+    ("small", "waits"),
+    [
+        (fit(ECCENTRIC, 2.0), True),
+        (fit(ECCENTRIC, 6.0), False),
+        (fit(ELSEWHERE, 2.0), False),
+        (fit(ECCENTRIC, 2.0, is_at_bound=True), False),
+        (fit(ECCENTRIC, 2.0, t=1.0), False),
+        (fit(ECCENTRIC, 2.0, is_seen_in_fit=False), False),
+    ],
+    ids=["takes most of it", "takes little", "is not in it", "at a bound", "not validated", "luck"],
+)
+def test_an_effect_of_many_numbers_waits_for_one_in_it_that_takes_most(small, waits):
+    found = bench(SearchSettings())
+    assert found._is_enough(small, score(EVERY_TOOTH, 0.9), 8.0) == waits
+    assert not found._is_enough(fit(EVERY_TOOTH, 2.0), score(ECCENTRIC, 0.7), 8.0)
