@@ -152,7 +152,9 @@ def test_a_full_fit_is_given_up_where_it_cannot_take_the_place_of_what_is_there(
     def refitted(candidate, outcome, evidence, solver, against, reach):
         asked.append(reach)
         fitted = SimpleNamespace(cost=6.0, converged=True)
-        return SimpleNamespace(outcome=SimpleNamespace(fitted=fitted, left_out_cost=1.0), name=candidate.candidate.name, t=0.0)
+        return SimpleNamespace(
+            outcome=SimpleNamespace(fitted=fitted, left_out_cost=1.0), name=candidate.candidate.name, t=0.0
+        )
 
     monkeypatch.setattr("gear_damping.explanation.trials.bench.refitted", refitted)
     before = SimpleNamespace(fitted=SimpleNamespace(cost=10.0, converged=True))
@@ -171,7 +173,9 @@ def test_full_fits_of_few_strengths_come_before_those_of_many(monkeypatch):
     def refitted(candidate, outcome, evidence, solver, against, reach):
         asked.append(candidate.candidate.name)
         fitted = SimpleNamespace(cost=6.0, converged=True)
-        return SimpleNamespace(outcome=SimpleNamespace(fitted=fitted, left_out_cost=1.0), name=candidate.candidate.name, t=0.0)
+        return SimpleNamespace(
+            outcome=SimpleNamespace(fitted=fitted, left_out_cost=1.0), name=candidate.candidate.name, t=0.0
+        )
 
     monkeypatch.setattr("gear_damping.explanation.trials.bench.refitted", refitted)
     before = SimpleNamespace(fitted=SimpleNamespace(cost=10.0, converged=True))
