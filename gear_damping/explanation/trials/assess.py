@@ -22,6 +22,7 @@ COLUMNS_PER_SAMPLE = 0.2  # at most so many columns are taken out of white noise
 SHOWN_PER_SAMPLE = 0.05  # and so many before the colour of the noise is fitted, which they take with them
 INDEPENDENT = 1e-6  # of the largest: a direction of an effect, less the nuisance, that counts
 ALIKE = 1e-6  # of the largest eigenvalue: below it a direction repeats others
+COLUMNS_AT_ONCE = 64  # are made white together
 MOST_COLUMNS = 400  # are taken out at once: those that take most, as the time goes with their square
 LONGEST_BLOCK = 2.0  # natural periods, over which a residual is taken to be correlated at most
 MOST_BLOCKS = 2000  # of all records: more only take time, where that makes none of them longer than that
@@ -82,7 +83,7 @@ def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, fami
         slopes = white(sensitivity.flatten(0, 1)).reshape(sensitivity.shape)
         whitened = Projector(slopes, project.expected, project.slope)
         seen = whitened(white.padded(residual))[:, 0]
-        effects = _effects(scores, unnamed, lambda columns: orthonormal(whitened(white.padded(columns))))
+        effects = _effects(scores, unnamed, lambda columns: whitened(white.padded(columns)))
         return _tested(seen, effects, whitened, white, outcome, evidence.settings.level)
 
     def random_in(left: Tensor, taken: float) -> Random:
@@ -109,13 +110,27 @@ def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, fami
 
 
 def _effects(
-    scores: Sequence[Score], unnamed: Mapping[str, Tensor], form: Callable[[Tensor], Tensor] = lambda columns: columns
+    scores: Sequence[Score], unnamed: Mapping[str, Tensor], form: Callable[[Tensor], Tensor] | None = None
 ) -> list[Effect]:
-    """Every candidate that does something, and the families without a name, with their columns brought to a form."""
-    found = [
-        Effect(s.candidate.name, form(s.columns), bool(s.candidate.non_nested)) for s in scores if s.columns.shape[1]
-    ]
-    return found + [Effect(name, form(columns)) for name, columns in unnamed.items()]
+    """Every candidate that does something, and the families without a name; columns brought to a form span the same."""
+    shown = [score for score in scores if score.columns.shape[1]]
+    columns = [*(score.columns for score in shown), *unnamed.values()]
+    columns = columns if form is None else [orthonormal(one) for one in _formed(columns, form)]
+    named, nameless = columns[: len(shown)], columns[len(shown) :]
+    found = [Effect(s.candidate.name, own, bool(s.candidate.non_nested)) for s, own in zip(shown, named, strict=True)]
+    return found + [Effect(name, own) for name, own in zip(unnamed, nameless, strict=True)]
+
+
+def _formed(columns: Sequence[Tensor], form: Callable[[Tensor], Tensor]) -> list[Tensor]:
+    """All columns brought to a form, many at once: it costs hardly more of many than of one."""
+    widths, chunks, found = [one.shape[1] for one in columns], [[]], []
+    for one in columns:
+        if sum(other.shape[1] for other in chunks[-1]) >= COLUMNS_AT_ONCE:
+            chunks.append([])
+        chunks[-1].append(one)
+    for chunk in filter(None, chunks):
+        found += form(torch.cat(chunk, 1)).split(widths[len(found) : len(found) + len(chunk)], 1)
+    return found
 
 
 def _tested(

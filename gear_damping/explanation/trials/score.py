@@ -23,6 +23,7 @@ from gear_damping.simulation.solver_settings import Solver
 
 PROBE = 0.05  # share of a strength's size that its slope is taken over
 NEGLIGIBLE = 1e-3  # of the residual, for what an effect tried as a whole would change
+SINGULAR = 1e-9  # of the largest: a direction that columns do not have
 MOST_SAMPLES = 4_000_000  # that are predicted at once
 CONTAINED = 0.99  # cosine with what another can do, from which it contains this one
 VISIBLE = 5.0  # standard deviations at which an effect counts as visible
@@ -203,16 +204,25 @@ def _score(candidate: Candidate, orthogonal: Tensor, problem: OutputErrorProblem
         return replace(_unseen(candidate, n_free, len(residual)), failed="its prediction diverged")
     if not bool(orthogonal.any()):
         return _unseen(candidate, n_free, len(residual))
-    basis, singular_values, _ = torch.linalg.svd(orthogonal, full_matrices=False)
+    basis, singular_values, turned = torch.linalg.svd(orthogonal, full_matrices=False)
     teeth = teeth_of(candidate, orthogonal, base.orthogonal, problem)
     orthogonal = orthogonal if teeth is None else teeth.columns
-    coefficients = _coefficients(orthogonal, residual) if teeth is None else teeth.strengths
+    if teeth is None:
+        told = singular_values > SINGULAR * singular_values[0]
+        coefficients = turned[told].T @ (basis[:, told].T @ residual / singular_values[told])
+    else:
+        coefficients = teeth.strengths
     explained = orthogonal @ coefficients
     kept = basis[:, singular_values > 1e-6 * singular_values[0]]
     if candidate.non_nested:  # there is no less than nothing of it: the sign counts
         kept = orthogonal[:, :1] / orthogonal[:, :1].norm()
     smallest = VISIBLE * base.noise / float(orthogonal[:, 0].norm().clamp(min=1e-300)) * _unit(candidate)
-    gain = 0.0 if _is_beyond(candidate, coefficients) else _gain(candidate, problem, states, orthogonal, base)
+    if _is_beyond(candidate, coefficients):
+        gain = 0.0
+    elif teeth is None and not candidate.non_nested:
+        gain = _share(base.orthogonal, base.orthogonal - explained, base)
+    else:
+        gain = _gain(candidate, problem, states, orthogonal, base)
     direction = explained / explained.norm().clamp(min=1e-300)
     if teeth is not None:
         at = own_from(problem, base.outcome)
@@ -233,7 +243,12 @@ def _is_beyond(candidate: Candidate, coefficients: Tensor) -> bool:
 
 
 def _coefficients(columns: Tensor, signal: Tensor) -> Tensor:
-    return torch.linalg.lstsq(columns, signal.unsqueeze(1), rcond=1e-9, driver="gelsd").solution[:, 0]
+    return torch.linalg.lstsq(columns, signal.unsqueeze(1), rcond=SINGULAR, driver="gelsd").solution[:, 0]
+
+
+def _share(before: Tensor, after: Tensor, base: Base) -> float:
+    """The fall of the squares as a share of the residual's energy."""
+    return float((before.square().sum() - after.square().sum()) / base.residual.square().sum())
 
 
 def _gain(candidate: Candidate, problem: OutputErrorProblem, states: Tensor, orthogonal: Tensor, base: Base) -> float:
@@ -243,7 +258,6 @@ def _gain(candidate: Candidate, problem: OutputErrorProblem, states: Tensor, ort
     another start of its states; otherwise it would be judged by a size that fits badly.
     """
     project, residual = base.project, base.orthogonal
-    free = residual.square().sum()
     if candidate.non_nested:
         own = [i for i, p in enumerate(candidate.hypothesis.common) if p.name.startswith(candidate.name + ".")]
         places = [*own, *range(problem.n_shared + 2, problem.n_shared + len(problem.local))]
@@ -254,7 +268,7 @@ def _gain(candidate: Candidate, problem: OutputErrorProblem, states: Tensor, ort
         # A difference far below the residual is the integrator's: no size that makes sense would lift it to that.
         orthogonal = orthogonal[:, orthogonal.norm(dim=0) > NEGLIGIBLE * residual.norm()]
     left = residual - orthogonal @ _coefficients(orthogonal, residual)
-    return float((free - left.square().sum()) / base.residual.square().sum())
+    return _share(base.orthogonal, left, base)
 
 
 def _slopes(problem: OutputErrorProblem, places: Sequence[int], states: Tensor, at: Tensor) -> Tensor:
