@@ -35,8 +35,10 @@ def test_a_cause_is_said_with_its_form_its_size_and_what_was_not_fitted():
     assert said == (
         "tooth_crack (established): shaft gear; order 2; depth 0.249 (0.241 … 0.257); phase 0.249 (0.241 … 0.257)."
     )
-    many = size_sentence(crack | {"parameters": {f"values[{place}]": depth for place in range(9)}})
+    many = size_sentence(crack | {"parameters": {f"harmonic_{place}": depth for place in range(9)}})
     assert many.endswith("and 3 more in the report.")
+    teeth = {f"values[{place}]": {**depth, "value": -(place % 7)} for place in range(9)}
+    assert "; values[6], the largest of 9, -6" in size_sentence(crack | {"parameters": teeth, "options": {"a": "b"}})
 
 
 def test_damping_beside_what_has_no_name_is_said_to_be_conditional():

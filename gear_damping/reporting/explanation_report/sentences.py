@@ -26,6 +26,7 @@ CONDITIONAL = (
     "the damping may lie outside it."
 )
 ONLY_NOISE = 1.5  # noise variances that may be left for saying so
+MOST_PLACES = 4  # of a list, as errors of every tooth, that are told one by one
 MOST_SIZES = 6  # parameters in a line
 ALL_THE_SAME = "An effect smaller than those listed under “What could not have been seen” may be there all the same."
 
@@ -58,10 +59,25 @@ def cause_sentences(cause: Mapping[str, Any], own: Mapping[str, str]) -> list[st
 def size_sentence(cause: Mapping[str, Any]) -> str:
     """The size of a cause in a line: its form, its parameters with their intervals, and those that were not fitted."""
     form = [f"{words(name)} {value}" for name, value in (cause.get("options") or {}).items() if isinstance(value, str)]
-    fitted = [f"{words(name)} {estimate(entry)}" for name, entry in (cause.get("parameters") or {}).items()]
+    fitted = [f"{words(name)} {estimate(entry)}" for name, entry in _largest(cause.get("parameters") or {}).items()]
     tried = [f"{words(name)} {number(value)}" for name, value in (cause.get("fixed") or {}).items() if value]
     more = [f"and {len(fitted) - MOST_SIZES} more in the report"] if len(fitted) > MOST_SIZES else []
     return f"{cause['name']} ({cause['status']}): {'; '.join([*form, *tried, *fitted[:MOST_SIZES], *more])}."
+
+
+def _largest(parameters: Mapping[str, Any]) -> dict[str, Any]:
+    """Parameters, of a long list the largest place only, with how many there are."""
+    lists: dict[str, list[str]] = {}
+    for name in parameters:
+        lists.setdefault(name.partition("[")[0], []).append(name)
+    found = {}
+    for names in lists.values():
+        if len(names) <= MOST_PLACES:
+            found |= {name: parameters[name] for name in names}
+            continue
+        largest = max(names, key=lambda name: abs(parameters[name]["value"]))
+        found[f"{largest}, the largest of {len(names)},"] = parameters[largest]
+    return found
 
 
 def one_size_sentence(homogeneous: Mapping[str, Any] | None) -> str:
