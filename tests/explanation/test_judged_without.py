@@ -7,6 +7,7 @@ import pytest
 
 from gear_damping.explanation.answer import judged as module
 from gear_damping.explanation.answer.judged import judged
+from gear_damping.explanation.settings import SearchSettings
 
 
 def search_of(*names):
@@ -17,9 +18,9 @@ def without(found, name):
     return search_of(*(other for other in found.state.accepted if other != name))
 
 
-@pytest.fixture(autouse=True)
+@pytest.fixture
 def waves_as_they_are():
-    with patch.object(module, "_reported", lambda said: said):
+    with patch.object(module, "_reported", lambda said: said), patch.object(module, "_within_form", lambda state: ""):
         yield
 
 
@@ -44,12 +45,14 @@ def judge(words, doubts):
     ],
     ids=["the rest is named", "the rest is none either", "nothing is doubted", "all is well"],
 )
+@pytest.mark.usefixtures("waves_as_they_are")
 def test_what_is_left_without_a_cause_that_is_none_is_judged_by_itself(words, doubts, kept):
     with patch.object(module, "_judged", judge(words, doubts)), patch.object(module, "without", without):
         found = judged(search_of("ripple", "pitch"), ())
     assert found.found.accepted == kept
 
 
+@pytest.mark.usefixtures("waves_as_they_are")
 def test_one_after_another_is_doubted():
     words = {("a",): "explained"}
     doubts = {("a", "b", "c"): "b", ("a", "c"): "c"}
@@ -72,3 +75,39 @@ def test_a_cause_at_its_bound_is_doubted_where_nothing_else_is():
         patch.object(module, "stand_ins", lambda _: iter([stand_in])),
     ):
         assert module._doubtful(state) == ("a", "but a line takes more.")
+
+
+@pytest.mark.parametrize(
+    ("shares", "visible", "dropped"),
+    [((0.98, 0.009), True, "b"), ((0.98, 0.009), False, ""), ((0.9, 0.05), True, ""), ((0.009,), True, "")],
+    ids=["little, and something is left", "nothing is left", "more than another form", "alone"],
+)
+def test_a_cause_as_small_as_the_form_of_another_is_not_named(shares, visible, dropped):
+    accepted = tuple(SimpleNamespace(name=name, share=share) for name, share in zip("ab", shares, strict=False))
+    bench = SimpleNamespace(settings=SearchSettings())
+    state = SimpleNamespace(accepted=accepted, bench=bench, left=SimpleNamespace(visible=visible))
+    assert module._within_form(state) == dropped
+
+
+def test_what_is_not_named_is_said():
+    big, small = (SimpleNamespace(name=name, share=share) for name, share in (("crack", 0.98), ("bearing", 0.009)))
+    bench = SimpleNamespace(settings=SearchSettings())
+
+    def searched(*accepted):
+        return SimpleNamespace(
+            state=SimpleNamespace(accepted=accepted, bench=bench, left=SimpleNamespace(visible=True))
+        )
+
+    told = []
+
+    def one(found, notes):
+        told.extend(notes)
+        return SimpleNamespace(verdict=SimpleNamespace(word="explained"), found=found.state), ""
+
+    with (
+        patch.object(module, "_judged", one),
+        patch.object(module, "_reported", lambda said: said),
+        patch.object(module, "without", lambda found, name: searched(big)),
+    ):
+        assert judged(searched(big, small), ()).found.accepted == (big,)
+    assert told == [module.WITHIN_FORM.format("bearing")]

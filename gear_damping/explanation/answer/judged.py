@@ -18,22 +18,35 @@ from gear_damping.explanation.state import State
 from gear_damping.explanation.steps.confirm import Confirmed, without
 from gear_damping.explanation.steps.judge import CONSISTENT, UNEXPLAINED, Judged, Known, verdict
 
+WITHIN_FORM = "`{}` would take a little more: so little may as well be the form of the other causes, and is not named."
+
 
 def judged(found: Confirmed, notes: Sequence[str]) -> Judged:
     """The state with its verdict.
 
-    Where causes are refused for one among them that is none, those that are left are judged without it.
+    Where causes are refused for one among them that is none, those that are left are judged without it. And where
+    something is left beside all of them, one that takes hardly anything bends to what the form of the others misses.
 
     Args:
         found: The search with its held-out records.
         notes: What is said beside the verdict.
     """
+    while name := _within_form(found.state):
+        found, notes = without(found, name), (*notes, WITHIN_FORM.format(name))
     said, doubtful = _judged(found, notes)
     fewer = said
     while fewer.verdict.word == UNEXPLAINED and doubtful and len(fewer.found.accepted) > 1:
         found = without(found, doubtful)
         fewer, doubtful = _judged(found, notes)
     return _reported(said if fewer.verdict.word == UNEXPLAINED else fewer)
+
+
+def _within_form(state: State) -> str:
+    """The smallest cause, where it takes no more than another form of the others would, and something is left."""
+    if len(state.accepted) < 2 or state.left is None or not state.left.visible:
+        return ""
+    least = min(state.accepted, key=lambda cause: cause.share)
+    return least.name if least.share < state.bench.settings.settled_share else ""
 
 
 def _reported(said: Judged) -> Judged:
