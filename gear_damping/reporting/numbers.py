@@ -68,9 +68,9 @@ def estimate(entry: Mapping[str, Any] | None, digits: int = 3) -> str:
     """`quantity` of {value, unit, interval95}; not told by the records, or at the end of its range, it says so."""
     if entry is None:
         return NOTHING
+    if entry.get("told") is False:  # its interval is all that it may be, and has no digits that count
+        return f"{quantity(entry.get('value'), entry.get('unit'), None, digits)}: not told by these records"
     text = quantity(entry.get("value"), entry.get("unit"), entry.get("interval95"), digits)
-    if entry.get("told") is False:
-        return f"{text}: not told by these records"
     return f"{text}, at the end of its range" if entry.get("at_bound") else text
 
 

@@ -52,6 +52,8 @@ def test_an_estimate_is_a_quantity_with_its_interval():
     assert estimate({"value": 2.0, "unit": "N"}) == "2 N"
     assert estimate(None) == NOTHING
     assert estimate({"value": 2.0, "unit": "N", "told": False}) == "2 N: not told by these records"
+    gap = {"value": 8.1e-5, "unit": "m", "interval95": [0.0, 0.01], "told": False}
+    assert estimate(gap) == "81 µm: not told by these records"
     assert estimate({"value": 2.0, "unit": "N", "at_bound": True}) == "2 N, at the end of its range"
     assert estimate({"value": 2.0, "unit": "N", "at_bound": False}) == "2 N"
 
