@@ -3,8 +3,10 @@
 What reads and assembles data is imported where data is read, so that a YAML alone is checked within a second.
 """
 
+import re
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from math import pi
 from pathlib import Path
@@ -22,6 +24,7 @@ from gear_damping.schema.values import Problems
 if TYPE_CHECKING:
     from gear_damping.measurement.raw import RawRecord
 
+RECORD = re.compile(r"records\[(\d+)\]")
 ONE_RATE = 1e-6  # rates that differ by less are one, written with other digits
 OTHER_RATE = 0.01  # rates that differ by more are said
 
@@ -39,22 +42,12 @@ def check_declaration(path: str | Path, plugins: Sequence[str | Path] = ()) -> P
     Raises:
         InputError: everything that is wrong with the YAML, all at once.
     """
-    problems, source = Problems(), str(path)
-    plan = declared_plan(read_yaml(Path(path)), problems, source, own_systems(plugins))
-    if plan is not None:
-        _names(plan.records, problems, source)
-        declared = list(_units(plan))
-        if plan.si is not None or all(unit for _, unit, _ in declared):
-            known = [(name, unit, key) for name, unit, key in declared if unit]
-            units = UnitSystem(plan.si, [(name, unit) for name, unit, _ in known])
-            _compare_units(plan, units, problems, source)
-    problems.raise_any()
-    return plan
+    content = read_yaml(Path(path))
+    with _telling_names(content):
+        return _checked(content, str(path), plugins)
 
 
-def load_measurement(
-    path: str | Path, max_bytes: int | None = None, plugins: Sequence[str | Path] = ()
-) -> Measurement:
+def load_measurement(path: str | Path, max_bytes: int | None = None, plugins: Sequence[str | Path] = ()) -> Measurement:
     """Read a measurement.yaml and the files that it names.
 
     Args:
@@ -68,10 +61,49 @@ def load_measurement(
     Raises:
         InputError: everything that cannot be read or understood, all at once.
     """
+    content = read_yaml(Path(path))
+    with _telling_names(content):
+        return _loaded(content, Path(path), max_bytes, plugins)
+
+
+@contextmanager
+def _telling_names(content: object) -> Iterator[None]:
+    """Problems of a record that has a name say it: of thirty records nobody counts to `records[17]`."""
+    try:
+        yield
+    except InputError as error:
+        declared = content.get("records") if isinstance(content, dict) else None
+        listed = declared if isinstance(declared, list) else []
+        names = [one.get("name") if isinstance(one, dict) else None for one in listed]
+        raise InputError([_with_name(problem, names) for problem in error.problems]) from None
+
+
+def _with_name(problem: Problem, names: Sequence[object]) -> Problem:
+    found = RECORD.match(problem.key)
+    name = names[int(found[1])] if found and int(found[1]) < len(names) else None
+    if not isinstance(name, str):
+        return problem
+    said = f"record '{name}'"
+    return replace(problem, source=f"{problem.source}, {said}" if problem.source else said)
+
+
+def _checked(content: object, source: str, plugins: Sequence[str | Path]) -> Plan:
+    problems = Problems()
+    plan = declared_plan(content, problems, source, own_systems(plugins))
+    if plan is not None:
+        _names(plan.records, problems, source)
+        declared = list(_units(plan))
+        if plan.si is not None or all(unit for _, unit, _ in declared):
+            known = [(name, unit, key) for name, unit, key in declared if unit]
+            units = UnitSystem(plan.si, [(name, unit) for name, unit, _ in known])
+            _compare_units(plan, units, problems, source)
+    problems.raise_any()
+    return plan
+
+
+def _loaded(content: object, path: Path, max_bytes: int | None, plugins: Sequence[str | Path]) -> Measurement:
     from gear_damping.measurement.assemble import Assembler
 
-    path = Path(path)
-    content = read_yaml(path)
     problems, source = Problems(), str(path)
     systems = own_systems(plugins)
     plan = declared_plan(content, problems, source, systems)

@@ -155,3 +155,11 @@ def test_a_column_that_ends_early_ends_the_slice_or_is_a_channel_of_its_own(tmp_
     with pytest.raises(InputError, match="give the channel its own time") as caught:
         load_measurement(tmp_path / "measurement.yaml")
     assert ("end the slice at 199, or" in str(caught.value)) == is_last_cell
+
+
+def test_a_problem_of_a_record_with_a_name_says_it(bench):
+    bench.record["name"] = "up_800"
+    bench.record["conditions"] = {"pinion_speed": {"value": 1200, "unit": "rpmm"}}
+    assert "record 'up_800'" in bench.only_problem()
+    del bench.record["name"]
+    assert "record '" not in bench.only_problem()
