@@ -20,7 +20,9 @@ from gear_damping.interface.identified import Identification, refuse_faults
 from gear_damping.measurement.record import Channel, Measurement, Record
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.reporting import figures
+from gear_damping.reporting.figures.axis_names import axis
 from gear_damping.reporting.numbers import pretty_unit
+from gear_damping.reporting.page.render import words
 from gear_damping.reporting.tables import damping_table
 
 Settings = Mapping[str, float | int | bool]
@@ -96,7 +98,7 @@ class Damping:
         panels, shown = [], []
         for record in self.measurement.records:
             declared = self._declared(record)
-            factor, said = declared.declared_factor, f"{declared.name.replace('_', ' ')} / {declared.declared_unit}"
+            factor, said = declared.declared_factor, axis(words(declared.name), pretty_unit(declared.declared_unit))
             bands = {name: _drawn(found[record.name], factor) for name, found in self.found.items()}
             laws = {name: _drawn(one, factor) for name, one in self._laws_of(record.name).items()}
             panels.append(figures.DampingPanel(record.name, bands, laws))

@@ -108,6 +108,7 @@ class RawReader:
             if n < LEAST_SAMPLES:
                 rule += f", and {columns[0][1]} = {columns[0][0]!r} holds {n}"
                 remedy = f"name another column: {self.table.path.name} holds {self.table.listing(True)}"
+                remedy = remedy if max(self.table.lengths) >= LEAST_SAMPLES else "use a longer file"
             raise InputError(Problem(self.plan.key, rule, None, remedy, self.source))
 
     def _seconds(self) -> NDArray[np.float64]:

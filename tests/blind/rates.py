@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
-from scipy.stats import PermutationMethod, beta, chi2_contingency
+from scipy.stats import PermutationMethod, binomtest, chi2_contingency
 
 from .accuracy import errors, misfits
 from .judge import Case, channel_of, damping_held, judged, names
@@ -67,10 +67,8 @@ def clopper_pearson(count: int, n: int, level: float = 0.95) -> tuple[float, flo
     """The exact interval of a rate of `count` in `n`."""
     if not 0 <= count <= n or n < 1:
         raise ValueError(f"count must lie in 0..n and n be at least 1, not {count} of {n}")
-    tail = 0.5 * (1.0 - level)
-    low = 0.0 if count == 0 else float(beta.ppf(tail, count, n - count + 1))
-    high = 1.0 if count == n else float(beta.ppf(1.0 - tail, count + 1, n - count))
-    return low, high
+    found = binomtest(count, n).proportion_ci(level, method="exact")
+    return float(found.low), float(found.high)
 
 
 def rates(cases: Sequence[Case]) -> dict[str, Any]:

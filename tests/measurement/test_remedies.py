@@ -163,3 +163,17 @@ def test_a_problem_of_a_record_with_a_name_says_it(bench):
     assert "record 'up_800'" in bench.only_problem()
     del bench.record["name"]
     assert "record '" not in bench.only_problem()
+
+
+@pytest.mark.parametrize(("rows", "remedy"), [(5, "use a longer file"), (20, "use a longer slice, window or file")])
+def test_a_file_that_is_too_short_as_a_whole_has_no_better_column(tmp_path, rows, remedy):
+    lines = ["t,x", *(f"{0.01 * k:.3f},{k * k}" for k in range(rows))]
+    (tmp_path / "run.csv").write_text("\n".join(lines) + "\n")
+    record = (
+        "system: oscillator\nrecords:\n  - file: run.csv\n    slice: [0, 5]\n    channels:\n"
+        "      time: {column: t, unit: s}\n      displacement: {column: x, unit: m}\n"
+    )
+    (tmp_path / "measurement.yaml").write_text(record)
+    with pytest.raises(InputError) as caught:
+        load_measurement(tmp_path / "measurement.yaml")
+    assert caught.value.problems[0].remedy == remedy
