@@ -1,12 +1,13 @@
 """What is said of fitted parameters."""
 
 from types import SimpleNamespace
+from unittest.mock import patch
 
 import numpy as np
 import pytest
 import torch
 
-from gear_damping.explanation.answer import gain
+from gear_damping.explanation.answer import gain, report_fields
 from gear_damping.explanation.answer.gain import mean_stiffness, parameters_of
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.covariance import covariance_of
@@ -77,3 +78,30 @@ def test_the_mean_stiffness_knows_the_shape_of_the_teeth():
     found = mean_stiffness(model, prepared)
     assert found.tolist() == pytest.approx([np.mean(ideal * factor)] * 2, rel=1e-9)
     assert abs(float(found[0]) / float(prepared.derived["mean_stiffness"][0]) - 1) > 0.003  # it counts
+
+
+@pytest.mark.parametrize(
+    ("leaves_unnamed", "causes", "visible", "converged", "conditional"),
+    [
+        (False, 1, False, True, False),
+        (True, 1, False, True, True),
+        (False, 1, True, True, True),
+        (False, 0, True, True, False),
+        (False, 1, False, False, True),
+    ],
+    ids=["all is named", "a part has no name", "not all random", "nothing is missing", "not converged"],
+)
+def test_damping_is_conditional_where_more_than_noise_is_left(leaves_unnamed, causes, visible, converged, conditional):
+    left = SimpleNamespace(visible=visible)
+    last = SimpleNamespace(fitted=SimpleNamespace(converged=converged), holdout=[])
+    found = SimpleNamespace(accepted=(None,) * causes, left=left, nominal=last, outcome=last)
+    judged = SimpleNamespace(found=found, verdict=SimpleNamespace(leaves_unnamed=leaves_unnamed))
+    evidence, ratio = SimpleNamespace(held=()), {"value": 1.0}
+    with (
+        patch.object(report_fields.gain, "damping_ratio", lambda *_: dict(ratio)),
+        patch.object(report_fields, "covariance_of", lambda *_: None),
+        patch.object(report_fields, "rig_unit", lambda *_: "m/s"),
+        patch.object(report_fields, "_confirmed", lambda *_: None),
+    ):
+        said = report_fields._gain(judged, evidence, None)
+    assert said["damping_ratio_percent"]["conditional"] == conditional

@@ -22,8 +22,8 @@ CASING_HEADLINES = {
     "unexplained": "Unexplained: the casing shows something that a sound gear pair does not show.",
 }
 CONDITIONAL = (
-    " That interval is of the noise alone: while something is missing that has no name, or a fit has not converged, "
-    "the damping may lie outside it."
+    " That interval is of the noise alone: where what is left is not all random, or a fit has not converged, the "
+    "damping may lie outside it."
 )
 ONLY_NOISE = 1.5  # noise variances that may be left for saying so
 MOST_PLACES = 4  # of a list, as errors of every tooth, that are told one by one
