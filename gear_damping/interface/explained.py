@@ -17,6 +17,7 @@ from gear_damping.interface.model import Model
 from gear_damping.measurement.record import Measurement
 from gear_damping.physics.catalogue import catalogue
 from gear_damping.reporting.explanation_report import render, report_input
+from gear_damping.reporting.explanation_report.sentences import in_short
 from gear_damping.simulation.solver_settings import Solver
 
 ARGUMENTS = ("minutes", "ruled_out", "plugins", "listener", "solver")  # of `explain`, beside its thresholds
@@ -57,6 +58,15 @@ class Answer:
         outcome = self.found.found.outcome
         return Model.holding(outcome.hypothesis.model, outcome.flat_given())
 
+    @property
+    def damping_ratio(self) -> dict[str, Any] | None:
+        """The damping ratio with the causes: `value` in % of critical, `interval95`, `reference_velocity`.
+
+        `conditional` where that interval is of the noise alone. None where nothing was fitted, or without a spring.
+        """
+        found = (self.content.get("gain") or {}).get("damping_ratio_percent")
+        return found and found["after"] | {"conditional": found["conditional"]}
+
     def report(self, path: Path | str) -> Path:
         """Write the report as one HTML file; an existing one stays.
 
@@ -71,8 +81,12 @@ class Answer:
     def __repr__(self) -> str:
         return f"<{self.verdict}: {self.sentences[0]}>"
 
+    def __str__(self) -> str:
+        """The verdict, how large each cause is, and the damping, a line each."""
+        return "\n".join([self.verdict, *in_short(self.content)])
+
     def _repr_html_(self) -> str:
-        lines = "".join(f"<li>{escape(sentence)}</li>" for sentence in self.sentences)
+        lines = "".join(f"<li>{escape(sentence)}</li>" for sentence in in_short(self.content))
         return f"<p><b>{escape(self.verdict)}</b></p><ul>{lines}</ul>"
 
 

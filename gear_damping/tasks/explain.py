@@ -12,7 +12,7 @@ from gear_damping.measurement.record import Measurement
 from gear_damping.physics.catalogue import catalogue
 from gear_damping.physics.terms import Effect
 from gear_damping.reporting.explanation_report import write_report
-from gear_damping.reporting.explanation_report.sentences import damping_sentence, size_sentence
+from gear_damping.reporting.explanation_report.sentences import in_short
 from gear_damping.tasks import statements
 from gear_damping.tasks.progress import progress_bar
 from gear_damping.tasks.run_folder import EDITED, RunFolder
@@ -32,16 +32,10 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     if found.found is not None:
         _write_extended(folder.path / EXTENDED, found, measurement)
     write_report(folder.path, found, {"command": folder.record["command"], "measurement": str(measurement.source)})
-    _tell(found.content)
+    for sentence in in_short(found.content):
+        statements.log(sentence)
     statements.log(f"verdict: {found.content['verdict']}; the report is {folder.path / 'report.html'}")
     return _metrics(found.content)
-
-
-def _tell(content: dict[str, Any]) -> None:
-    """What was found, how large it is, and what the damping is with it."""
-    sizes = map(size_sentence, content["causes"])
-    for sentence in filter(None, (*content["sentences"], *sizes, damping_sentence(content["gain"]))):
-        statements.log(sentence)
 
 
 def _library(settings: Settings) -> dict[str, type[Effect]]:

@@ -240,6 +240,13 @@ def test_an_explanation_names_the_spring(record, tmp_path):
     assert answer.content["verdict"] == answer.verdict
     assert answer.model.given["cubic_stiffness.coefficient"] == pytest.approx(CUBIC, rel=0.05)
     assert "cubic_stiffness" in answer._repr_html_()
+    told = str(answer).splitlines()
+    assert told[0] == "explained"
+    assert any(line.startswith("cubic_stiffness (established): coefficient ") for line in told)
+    assert told[-1].startswith("The damping ratio came out at ")
+    low, high = answer.damping_ratio["interval95"]
+    assert low < answer.damping_ratio["value"] < high
+    assert not answer.damping_ratio["conditional"]
     report = answer.report(tmp_path / "report.html")
     assert "cubic" in report.read_text(encoding="utf-8")
     with pytest.raises(FileExistsError):

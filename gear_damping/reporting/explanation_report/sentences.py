@@ -43,6 +43,13 @@ def verdict_sentences(explanation: Mapping[str, Any]) -> list[str]:
     return [sentence for sentence in told if sentence]
 
 
+def in_short(explanation: Mapping[str, Any]) -> list[str]:
+    """What was found, how large it is, and what the damping is with it."""
+    sizes = map(size_sentence, explanation["causes"])
+    told = (*explanation["sentences"], *sizes, damping_sentence(explanation.get("gain")))
+    return [sentence for sentence in told if sentence]
+
+
 def cause_sentences(cause: Mapping[str, Any], own: Mapping[str, str]) -> list[str]:
     """What a cause is, how much it explains and what it could be mistaken for."""
     told = [description(cause["name"], own)]
