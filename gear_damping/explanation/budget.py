@@ -42,6 +42,11 @@ class Budget:
     def _is_over(self, share: float) -> bool:
         return self.clock() - self._begun > 60 * share * self.minutes
 
+    @property
+    def all_spent(self) -> bool:
+        """Whether that which is kept for what comes last is over too."""
+        return self._is_over(LAST_SHARE)
+
     @contextmanager
     def looking(self) -> Iterator[None]:
         """Around a look at what is left, of which the longest says how much time is kept for the last ones."""
@@ -62,7 +67,7 @@ class Budget:
 
     def refuses(self, what: str, is_last: bool = False) -> bool:
         """Whether there is no time for it, which is then noted; for what comes last there is more."""
-        refused = self._is_over(LAST_SHARE) if is_last else self.spent
+        refused = self.all_spent if is_last else self.spent
         if refused and what not in self.not_tried:
             self.not_tried.append(what)
         return refused

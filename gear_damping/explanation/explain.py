@@ -125,7 +125,7 @@ def explain(
     if short:
         log(short)
     step(3, STEPS)
-    found = confirmed(state, sealed, measurement)
+    found = confirmed(_with_the_last_time(state), sealed, measurement)
     if found.state.names != state.names:
         found = replace(found, state=replace(found.state, left=looked(found.state).left))
     found = replace(found, state=estimated(found.state))
@@ -134,6 +134,13 @@ def explain(
     step(4, STEPS)
     evidence, noise = found.state.bench.evidence, found.noise
     return Explanation(report_fields.of_search(measurement, evidence, noise, said), evidence, noise, said.found)
+
+
+def _with_the_last_time(state: State) -> State:
+    """The state whose further fits may take the time that was kept for them: one cut short says nothing of a cause."""
+    bench = state.bench
+    evidence = replace(bench.evidence, is_over=lambda: bench.budget.all_spent)
+    return replace(state, bench=replace(bench, evidence=evidence))
 
 
 def with_noise(evidence: Evidence, measurement: Measurement, log: Log) -> tuple[Evidence, NoiseLevel]:

@@ -3,8 +3,12 @@
 from types import SimpleNamespace
 
 from gear_damping.explanation.budget import Budget
+from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.explain import _with_the_last_time
 from gear_damping.explanation.settings import SearchSettings
+from gear_damping.explanation.state import State
 from gear_damping.explanation.steps import pairs
+from gear_damping.explanation.trials.bench import Bench
 
 
 class Clock:
@@ -34,6 +38,18 @@ def test_what_comes_last_has_time_when_the_search_is_over():
     for second, is_over in ((260.0, False), (289.0, False), (293.0, True)):
         clock.now = second
         assert made.refuses("what it stands in for", is_last=True) is is_over
+        assert made.all_spent is is_over
+
+
+def test_the_last_fits_go_on_in_the_time_that_was_kept_for_them():
+    clock = Clock()
+    budget = Budget(5.0, clock)
+    evidence = Evidence("oscillator", (), (), {}, None, one_record=True, is_over=lambda: budget.spent)
+    bench = Bench(evidence, None, print, None, None, budget=budget)
+    later = _with_the_last_time(State(bench, None, None)).bench.evidence
+    for second, search, last in ((200.0, False, False), (260.0, True, False), (293.0, True, True)):
+        clock.now = second
+        assert (evidence.is_over(), later.is_over()) == (search, last)
 
 
 def test_time_is_kept_for_the_last_looks_where_one_takes_long():

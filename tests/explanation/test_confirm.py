@@ -18,10 +18,10 @@ LENGTH = BLOCKS * BLOCK
 NOISE = torch.randn(LENGTH, dtype=torch.float64, generator=torch.Generator().manual_seed(8))
 
 
-def model(free=1, size=0.0, cost=1.0):
+def model(free=1, size=0.0, cost=1.0, causes=()):
     """A model that leaves noise and a wave of so many noise levels on held-out records."""
     wave = size * torch.cos(torch.arange(LENGTH, dtype=torch.float64))
-    hypothesis = SimpleNamespace(free=[None] * free)
+    hypothesis = SimpleNamespace(free=[None] * free, causes=causes)
     return SimpleNamespace(holdout=[NOISE + wave], hypothesis=hypothesis, fitted=SimpleNamespace(cost=cost))
 
 
@@ -123,3 +123,15 @@ def test_without_a_cause_the_others_are_held_against_the_same_records():
     assert (found.state.outcome, found.state.left, found.after) == (fewer, "what is left", excess)
     assert found.state.rejected[0].name == "doubtful"
     assert found.t == confirm._t(state.nominal, fewer, state)
+
+
+def test_a_model_without_a_cause_is_the_one_before_it_came_where_that_is_better():
+    """A fit from where all causes were may end in another valley."""
+    astray, before, other = model(cost=5.0), model(cost=2.0, causes=("needed",)), model(cost=1.0, causes=("doubtful",))
+    state = state_of([("needed", ()), ("doubtful", ())], model(), without={"doubtful": astray})
+    state = state.with_cause(0, Accepted("needed", refit("needed", before), 0.5, ()))
+    state = state.with_cause(1, Accepted("doubtful", refit("doubtful", other), 0.5, ()))
+    assert confirm._fewer(state, "doubtful") is before
+    near = state_of([("needed", ()), ("doubtful", ())], model(), without={"doubtful": model(cost=1.5)})
+    near = near.with_cause(0, state.accepted[0])
+    assert confirm._fewer(near, "doubtful").fitted.cost == 1.5

@@ -72,7 +72,7 @@ def without(found: Confirmed, name: str) -> Confirmed:
         name: The cause.
     """
     state, evidence, bench = found.state, found.state.bench.evidence, found.state.bench
-    outcome = bench.without(state.outcome, name)
+    outcome = _fewer(state, name)
     if found.is_opened:
         outcome = opened(outcome, evidence, bench.solver, state.nominal.own)
     state = _dropped(state, name, outcome)
@@ -80,6 +80,13 @@ def without(found: Confirmed, name: str) -> Confirmed:
     t, state = _t(state.nominal, outcome, state), replace(state, left=left)
     after = excess(outcome.holdout, evidence.held, found.noise, bench.settings) if found.is_opened else state.current
     return replace(found, state=state, after=after, t=t)
+
+
+def _fewer(state: State, name: str) -> Outcome:
+    """The model without a cause: fitted from where all were, or as it was before that cause came, the better one."""
+    kept = state.names - {name}
+    before = [c.refit.outcome for c in state.accepted if set(c.refit.outcome.hypothesis.causes) == kept]
+    return min([state.bench.without(state.outcome, name), *before], key=lambda outcome: outcome.fitted.cost)
 
 
 def _dropped(state: State, name: str, outcome: Outcome) -> State:
@@ -139,8 +146,7 @@ def _validated(state: State) -> tuple[State, float]:
         return state, 0.0
     bench, least = state.bench, state.bench.settings.confirmed_t
     for cause in state.accepted if len(state.accepted) > 1 else ():
-        fewer = bench.without(state.outcome, cause.name)
-        fewer = opened(fewer, bench.evidence, bench.solver, state.nominal.own)
+        fewer = opened(_fewer(state, cause.name), bench.evidence, bench.solver, state.nominal.own)
         if _t(fewer, state.outcome, state) < least:
             bench.log(f"{cause.name} is not validated on held-out records")
             state = _dropped(state, cause.name, fewer)
