@@ -76,7 +76,8 @@ def without(found: Confirmed, name: str) -> Confirmed:
     if found.is_opened:
         outcome = opened(outcome, evidence, bench.solver, state.nominal.own)
     state = _dropped(state, name, outcome)
-    left = bench.assessed(outcome, bench.ranked(outcome))
+    is_late = bench.budget.all_spent  # what is visible beside more causes is so beside fewer
+    left = state.left if is_late else bench.assessed(outcome, bench.ranked(outcome))
     t, state = _t(state.nominal, outcome, state), replace(state, left=left)
     after = excess(outcome.holdout, evidence.held, found.noise, bench.settings) if found.is_opened else state.current
     return replace(found, state=state, after=after, t=t)
