@@ -20,7 +20,10 @@ def without(found, name):
 
 @pytest.fixture
 def waves_as_they_are():
-    with patch.object(module, "_reported", lambda said: said), patch.object(module, "_within_form", lambda state: ""):
+    with (
+        patch.object(module, "_reported", lambda said: said),
+        patch.object(module, "_without_form", lambda found: (found, ())),
+    ):
         yield
 
 
@@ -78,26 +81,30 @@ def test_a_cause_at_its_bound_is_doubted_where_nothing_else_is():
 
 
 @pytest.mark.parametrize(
-    ("shares", "visible", "dropped"),
-    [((0.98, 0.009), True, "b"), ((0.98, 0.009), False, ""), ((0.9, 0.05), True, ""), ((0.009,), True, "")],
-    ids=["little, and something is left", "nothing is left", "more than another form", "alone"],
+    ("shares", "visible", "small"),
+    [
+        ((0.98, 0.009), True, ("b",)),
+        ((0.98, 0.009), False, ()),
+        ((0.9, 0.05), True, ()),
+        ((0.009,), True, ()),
+        ((0.001, 0.98, 0.009), True, ("c", "a")),
+        ((), True, ()),
+    ],
+    ids=["little, and something is left", "nothing is left", "more than another form", "alone", "two", "none"],
 )
-def test_a_cause_as_small_as_the_form_of_another_is_not_named(shares, visible, dropped):
-    accepted = tuple(SimpleNamespace(name=name, share=share) for name, share in zip("ab", shares, strict=False))
+def test_causes_as_small_as_the_form_of_another(shares, visible, small):
+    assert module._small(searched_for(shares, visible).state) == small
+
+
+def searched_for(shares, visible=True, left=1.0):
+    accepted = tuple(SimpleNamespace(name=name, share=share) for name, share in zip("abc", shares, strict=False))
     bench = SimpleNamespace(settings=SearchSettings())
     state = SimpleNamespace(accepted=accepted, bench=bench, left=SimpleNamespace(visible=visible))
-    assert module._within_form(state) == dropped
+    return SimpleNamespace(state=state, after=SimpleNamespace(percent=left))
 
 
-def test_what_is_not_named_is_said():
-    big, small = (SimpleNamespace(name=name, share=share) for name, share in (("crack", 0.98), ("bearing", 0.009)))
-    bench = SimpleNamespace(settings=SearchSettings())
-
-    def searched(*accepted):
-        return SimpleNamespace(
-            state=SimpleNamespace(accepted=accepted, bench=bench, left=SimpleNamespace(visible=True))
-        )
-
+@pytest.mark.parametrize(("left", "named"), [(0.2, ("a",)), (0.05, ("a", "b"))], ids=["a part", "all but noise"])
+def test_they_are_named_where_they_take_nearly_all_that_the_others_leave(left, named):
     told = []
 
     def one(found, notes):
@@ -107,7 +114,8 @@ def test_what_is_not_named_is_said():
     with (
         patch.object(module, "_judged", one),
         patch.object(module, "_reported", lambda said: said),
-        patch.object(module, "without", lambda found, name: searched(big)),
+        patch.object(module, "without", lambda found, name: searched_for((0.98,), left=1.0)),
     ):
-        assert judged(searched(big, small), ()).found.accepted == (big,)
-    assert told == [module.WITHIN_FORM.format("bearing")]
+        found = judged(searched_for((0.98, 0.009), left=left), ())
+    assert tuple(cause.name for cause in found.found.accepted) == named
+    assert told == ([] if "b" in named else [module.WITHIN_FORM.format("b")])

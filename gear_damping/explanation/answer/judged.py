@@ -31,8 +31,8 @@ def judged(found: Confirmed, notes: Sequence[str]) -> Judged:
         found: The search with its held-out records.
         notes: What is said beside the verdict.
     """
-    while name := _within_form(found.state):
-        found, notes = without(found, name), (*notes, WITHIN_FORM.format(name))
+    found, small = _without_form(found)
+    notes = (*notes, *map(WITHIN_FORM.format, small))
     said, doubtful = _judged(found, notes)
     fewer = said
     while fewer.verdict.word == UNEXPLAINED and doubtful and len(fewer.found.accepted) > 1:
@@ -41,12 +41,25 @@ def judged(found: Confirmed, notes: Sequence[str]) -> Judged:
     return _reported(said if fewer.verdict.word == UNEXPLAINED else fewer)
 
 
-def _within_form(state: State) -> str:
-    """The smallest cause, where it takes no more than another form of the others would, and something is left."""
-    if len(state.accepted) < 2 or state.left is None or not state.left.visible:
-        return ""
-    least = min(state.accepted, key=lambda cause: cause.share)
-    return least.name if least.share < state.bench.settings.settled_share else ""
+def _without_form(found: Confirmed) -> tuple[Confirmed, tuple[str, ...]]:
+    """The search without causes that are another form of the larger ones, and their names.
+
+    These take no more than that would, something is left beside them, and of what they were to explain a part.
+    """
+    settings, fewer = found.state.bench.settings, found
+    small = _small(found.state)
+    for name in small:
+        fewer = without(fewer, name)
+    take_all = 1 - found.after.percent / max(fewer.after.percent, 1e-300) >= settings.taken_by_all
+    return (found, ()) if take_all or not small else (fewer, small)
+
+
+def _small(state: State) -> tuple[str, ...]:
+    """The causes beside the largest that take no more than its form may be wrong by, where something is left."""
+    if state.left is None or not state.left.visible:
+        return ()
+    _, *others = sorted(state.accepted, key=lambda cause: -cause.share) or [None]
+    return tuple(cause.name for cause in others if cause.share < state.bench.settings.settled_share)
 
 
 def _reported(said: Judged) -> Judged:
