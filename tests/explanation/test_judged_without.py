@@ -8,6 +8,7 @@ import pytest
 from gear_damping.explanation.answer import judged as module
 from gear_damping.explanation.answer.judged import judged
 from gear_damping.explanation.settings import SearchSettings
+from gear_damping.physics.catalogue import effect_class
 
 
 def search_of(*names):
@@ -96,8 +97,17 @@ def test_causes_as_small_as_the_form_of_another(shares, visible, small):
     assert module._small(searched_for(shares, visible).state) == small
 
 
+def test_a_small_friction_is_no_other_form_of_a_stiffness():
+    state = searched_for((0.98, 0.009, 0.005)).state
+    state.accepted[1].effect = effect_class("coulomb_friction")()
+    assert module._small(state) == ("c",)
+
+
 def searched_for(shares, visible=True, left=1.0):
-    accepted = tuple(SimpleNamespace(name=name, share=share) for name, share in zip("abc", shares, strict=False))
+    spring = effect_class("cubic_stiffness")()
+    accepted = tuple(
+        SimpleNamespace(name=name, share=share, effect=spring) for name, share in zip("abc", shares, strict=False)
+    )
     bench = SimpleNamespace(settings=SearchSettings())
     state = SimpleNamespace(accepted=accepted, bench=bench, left=SimpleNamespace(visible=visible))
     return SimpleNamespace(state=state, after=SimpleNamespace(percent=left))

@@ -14,9 +14,10 @@ from gear_damping.explanation.answer.stand_in import (
 )
 from gear_damping.explanation.evidence.excess import excess
 from gear_damping.explanation.model.positive import positive
-from gear_damping.explanation.state import State
+from gear_damping.explanation.state import Accepted, State
 from gear_damping.explanation.steps.confirm import Confirmed, without
 from gear_damping.explanation.steps.judge import CONSISTENT, UNEXPLAINED, Judged, Known, verdict
+from gear_damping.physics.terms import DampingForce, DampingLaw
 
 WITHIN_FORM = "`{}` would take a little more: so little may as well be the form of the other causes, and is not named."
 
@@ -55,11 +56,19 @@ def _without_form(found: Confirmed) -> tuple[Confirmed, tuple[str, ...]]:
 
 
 def _small(state: State) -> tuple[str, ...]:
-    """The causes beside the largest that take no more than its form may be wrong by, where something is left."""
-    if state.left is None or not state.left.visible:
+    """The causes beside the largest that take no more than its form may be wrong by, where something is left.
+
+    What takes energy out of the motion is no other form of what stores it.
+    """
+    if state.left is None or not state.left.visible or not state.accepted:
         return ()
-    _, *others = sorted(state.accepted, key=lambda cause: -cause.share) or [None]
-    return tuple(cause.name for cause in others if cause.share < state.bench.settings.settled_share)
+    largest, *others = sorted(state.accepted, key=lambda cause: -cause.share)
+    alike = [cause for cause in others if _is_damping(cause) == _is_damping(largest)]
+    return tuple(cause.name for cause in alike if cause.share < state.bench.settings.settled_share)
+
+
+def _is_damping(cause: Accepted) -> bool:
+    return isinstance(cause.effect, DampingForce | DampingLaw)
 
 
 def _reported(said: Judged) -> Judged:
