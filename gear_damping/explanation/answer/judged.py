@@ -17,7 +17,7 @@ from gear_damping.explanation.model.positive import positive
 from gear_damping.explanation.state import Accepted, State
 from gear_damping.explanation.steps.confirm import Confirmed, without
 from gear_damping.explanation.steps.judge import CONSISTENT, UNEXPLAINED, Judged, Known, verdict
-from gear_damping.physics.terms import DampingForce, DampingLaw
+from gear_damping.physics.terms import DampingForce
 
 WITHIN_FORM = "`{}` would take a little more: so little may as well be the form of the other causes, and is not named."
 
@@ -68,7 +68,7 @@ def _small(state: State) -> tuple[str, ...]:
 
 
 def _is_damping(cause: Accepted) -> bool:
-    return isinstance(cause.effect, DampingForce | DampingLaw)
+    return isinstance(cause.effect, DampingForce)
 
 
 def _reported(said: Judged) -> Judged:

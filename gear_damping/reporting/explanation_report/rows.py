@@ -5,7 +5,7 @@ from math import isfinite
 from typing import Any
 
 from gear_damping.reporting.explanation_report.report_input import ReportInput
-from gear_damping.reporting.explanation_report.vocabulary import description, meaning
+from gear_damping.reporting.explanation_report.vocabulary import description, form_of, meaning
 from gear_damping.reporting.numbers import estimate, number, percent, quantity
 from gear_damping.reporting.page.render import words
 
@@ -46,10 +46,8 @@ def _record(name: str, entry: Mapping[str, Any], noise: float | None, misfit: Ma
 def cause_parameters(cause: Mapping[str, Any]) -> list[Row]:
     """Parameter, value with interval, meaning; the form that was found and what was tried and not fitted come first."""
     given, name = cause.get("parameters") or {}, cause["name"]
-    form = {key: str(value) for key, value in (cause.get("options") or {}).items() if isinstance(value, str)}
-    tried = {key: number(value) for key, value in (cause.get("fixed") or {}).items() if value}
     fitted = {key: estimate(entry) for key, entry in given.items()}
-    return [(words(key), value, meaning(name, key)) for key, value in {**form, **tried, **fitted}.items()]
+    return [(words(key), value, meaning(name, key)) for key, value in (form_of(cause) | fitted).items()]
 
 
 def parameters(report: ReportInput) -> list[Row]:

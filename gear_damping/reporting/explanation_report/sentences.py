@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from math import isfinite
 from typing import Any
 
-from gear_damping.reporting.explanation_report.vocabulary import description, listed
+from gear_damping.reporting.explanation_report.vocabulary import description, form_of, listed
 from gear_damping.reporting.figures.visible import UNNAMED
 from gear_damping.reporting.numbers import estimate, number, percent, quantity
 from gear_damping.reporting.page.render import words
@@ -65,11 +65,10 @@ def cause_sentences(cause: Mapping[str, Any], own: Mapping[str, str]) -> list[st
 
 def size_sentence(cause: Mapping[str, Any]) -> str:
     """The size of a cause in a line: its form, its parameters with their intervals, and those that were not fitted."""
-    form = [f"{words(name)} {value}" for name, value in (cause.get("options") or {}).items() if isinstance(value, str)]
+    form = [f"{words(name)} {value}" for name, value in form_of(cause).items()]
     fitted = [f"{words(name)} {estimate(entry)}" for name, entry in _largest(cause.get("parameters") or {}).items()]
-    tried = [f"{words(name)} {number(value)}" for name, value in (cause.get("fixed") or {}).items() if value]
     more = [f"and {len(fitted) - MOST_SIZES} more in the report"] if len(fitted) > MOST_SIZES else []
-    return f"{cause['name']} ({cause['status']}): {'; '.join([*form, *tried, *fitted[:MOST_SIZES], *more])}."
+    return f"{cause['name']} ({cause['status']}): {'; '.join([*form, *fitted[:MOST_SIZES], *more])}."
 
 
 def _largest(parameters: Mapping[str, Any]) -> dict[str, Any]:

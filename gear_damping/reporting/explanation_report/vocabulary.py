@@ -1,8 +1,10 @@
 """Effects in words, taken from their declarations."""
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 from gear_damping.physics.catalogue import builtin_effects
+from gear_damping.reporting.numbers import number
 from gear_damping.reporting.page.render import words
 
 
@@ -26,6 +28,12 @@ def meaning(name: str, parameter: str) -> str:
     plain = parameter.partition("[")[0].removeprefix(f"{name}.")
     declared = (*effect.parameters, *effect.options) if effect else ()
     return next((one.meaning for one in declared if one.name == plain), "")
+
+
+def form_of(cause: Mapping[str, Any]) -> dict[str, str]:
+    """What was tried of a cause and not fitted, as text by name: its form (whose tooth), and values but for zeros."""
+    form = {name: value for name, value in (cause.get("options") or {}).items() if isinstance(value, str)}
+    return form | {name: number(value) for name, value in (cause.get("fixed") or {}).items() if value}
 
 
 def listed(names: Sequence[str], last: str = "and") -> str:
