@@ -15,6 +15,7 @@ from gear_damping.explanation.evidence.data_faults import data_faults, mesh_orde
 from gear_damping.explanation.evidence.excess import ac_energy
 from gear_damping.explanation.evidence.noise import NoiseLevel, Scatter, noise_of, weighted
 from gear_damping.explanation.evidence.records import Evidence, evidence_of
+from gear_damping.explanation.evidence.useful_samples import at_useful_rate, of_useful_length
 from gear_damping.explanation.model.calibration_error import calibration_error
 from gear_damping.explanation.model.hypothesis import SEGMENT_TIMES, Outcome, segments_of
 from gear_damping.explanation.search import looked, search
@@ -26,8 +27,6 @@ from gear_damping.explanation.steps.estimate import estimated
 from gear_damping.explanation.steps.out_of_step import out_of_step
 from gear_damping.explanation.steps.too_short import died_away, too_short
 from gear_damping.explanation.trials.bench import Bench, Log
-from gear_damping.identification.decimation import decimated
-from gear_damping.identification.oscillator.linear_model import linear_model
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import Segments
 from gear_damping.identification.time_scale import characteristic_time
@@ -113,9 +112,11 @@ def explain(
     if faults:
         return Explanation(report_fields.of_faults(measurement, faults))
     evidence = at_useful_rate(evidence if library is None else replace(evidence, library=library))
+    stretches = of_useful_length(evidence)
+    evidence = stretches.evidence
     silent, whole = died_away(evidence), evidence
-    if silent:
-        log(silent)
+    for said in filter(None, (silent, stretches.said)):
+        log(said)
     sealed = evidence.holdout if evidence.can_be_sealed else ()
     evidence = replace(evidence, holdout=(), sealed=True) if sealed else evidence
     evidence, noise = with_noise(evidence, measurement, log)
@@ -130,7 +131,7 @@ def explain(
         found = replace(found, state=replace(found.state, left=looked(found.state).left))
     found = replace(found, state=estimated(found.state))
     notes = [silent, short, out_of_step(found.state), INPUT_NOISE if found.state.bench.evidence.input_noise else ""]
-    said = judged(found, notes)
+    said = judged(found, [*notes, stretches.said])
     step(4, STEPS)
     evidence, noise = found.state.bench.evidence, found.noise
     return Explanation(report_fields.of_search(measurement, evidence, noise, said), evidence, noise, said.found)
@@ -189,16 +190,6 @@ def _searched(
 def _scatter(nominal: Outcome, evidence: Evidence, solver: Solver) -> Scatter:
     """What errors of the calibration add to the residuals by which models are compared."""
     return nominal.scatter if evidence.sealed else calibration_error(nominal, evidence, solver)
-
-
-def at_useful_rate(evidence: Evidence) -> Evidence:
-    """Records of a free or forced swing at a rate that shows all of its motion, and no more."""
-    if not evidence.has(Trait.REST):
-        return evidence
-    scale = linear_model(evidence.fit, evidence.known)[2]
-    return replace(
-        evidence, fit=tuple(decimated(evidence.fit, scale)), holdout=tuple(decimated(evidence.holdout, scale))
-    )
 
 
 def first_segments(evidence: Evidence) -> Segments:

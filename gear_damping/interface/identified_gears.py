@@ -13,7 +13,8 @@ from gear_damping.explanation.casing.heard import is_casing
 from gear_damping.explanation.evidence.excess import excess
 from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.evidence.records import Evidence, evidence_of, with_own_angles
-from gear_damping.explanation.explain import Listener, at_useful_rate, explain, fitting_solver, with_noise
+from gear_damping.explanation.evidence.useful_samples import at_useful_rate
+from gear_damping.explanation.explain import Listener, explain, fitting_solver, with_noise
 from gear_damping.explanation.model.covariance import covariance_of
 from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Given, Hypothesis, Outcome, natural_frequency_hz

@@ -8,6 +8,7 @@ import torch
 from hidden import draw_case, write_case
 
 from gear_damping.explanation import explain as module
+from gear_damping.explanation.evidence.useful_samples import at_useful_rate
 from gear_damping.explanation.steps.confirm import confirmed
 from gear_damping.measurement.load import load_measurement
 
@@ -37,7 +38,7 @@ def test_nothing_of_them_is_read_before_the_search_is_over(tmp_path):
 
     def opened(state, records, measurement):
         assert all(bool(record.response.isnan().all()) for record in records)
-        return confirmed(state, module.at_useful_rate(whole).holdout, measurement)
+        return confirmed(state, at_useful_rate(whole).holdout, measurement)
 
     with (
         patch.object(module, "evidence_of", lambda _: unread),

@@ -14,10 +14,9 @@ from gear_damping.explanation.answer.stand_in import (
 )
 from gear_damping.explanation.evidence.excess import excess
 from gear_damping.explanation.model.positive import positive
-from gear_damping.explanation.state import Accepted, State
+from gear_damping.explanation.state import State
 from gear_damping.explanation.steps.confirm import Confirmed, without
 from gear_damping.explanation.steps.judge import CONSISTENT, UNEXPLAINED, Judged, Known, verdict
-from gear_damping.physics.terms import DampingForce
 
 WITHIN_FORM = "`{}` would take a little more: so little may as well be the form of the other causes, and is not named."
 
@@ -63,12 +62,8 @@ def _small(state: State) -> tuple[str, ...]:
     if state.left is None or not state.left.visible or not state.accepted:
         return ()
     largest, *others = sorted(state.accepted, key=lambda cause: -cause.share)
-    alike = [cause for cause in others if _is_damping(cause) == _is_damping(largest)]
+    alike = [cause for cause in others if cause.effect.dissipative == largest.effect.dissipative]
     return tuple(cause.name for cause in alike if cause.share < state.bench.settings.settled_share)
-
-
-def _is_damping(cause: Accepted) -> bool:
-    return isinstance(cause.effect, DampingForce)
 
 
 def _reported(said: Judged) -> Judged:

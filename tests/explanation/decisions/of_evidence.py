@@ -8,10 +8,13 @@ import torch
 from gear_damping.explanation.answer import homogeneity
 from gear_damping.explanation.evidence.excess import excess, is_all, is_settled
 from gear_damping.explanation.evidence.noise import NoiseLevel
+from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.evidence.useful_samples import of_useful_length
 from gear_damping.explanation.explain import is_lost_by
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import State
 from gear_damping.explanation.statistics.family_wise import Effect, Residual, family_wise
+from gear_damping.identification.observation import Known
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.physics.systems.gear_pair import GearPair
 from tests.explanation.decisions.declared import decides
@@ -128,3 +131,12 @@ def one_size_within_a_tolerance(settings: SearchSettings):
 def one_size_beyond_chance(settings: SearchSettings):
     """Deviations of which chance would make as large ones in 20 % and in 2 %."""
     return tuple(of_one_size([-s, -s / 3, s / 3, s], 1e-3, settings) for s in (0.217, 0.316))
+
+
+@decides("most_samples", (True, False))
+def a_record_that_is_searched_whole(settings: SearchSettings):
+    """Three records, of 5000, 15 000 and 50 000 samples: whether the second and the third stay whole."""
+    records = tuple(FitRecord("one", torch.zeros(n, dtype=torch.float64), 1.0) for n in (5000, 15000, 50000))
+    evidence = Evidence("oscillator", records, (), Known({}, {}), None, one_record=False, settings=settings)
+    kept = of_useful_length(evidence).evidence.fit
+    return tuple(len(a.response) == len(b.response) for a, b in zip(records[1:], kept[1:], strict=True))
