@@ -111,7 +111,7 @@ class GearChannels(c.Timed):
     transmission_error: c.TransmissionError = key("r_b1 theta_1 - r_b2 theta_2, closing positive.", "response")
     pinion_torque: c.Torque = key("Driving torque.", "load")
     gear_torque: Annotated[c.GearTorque, Word(*GEAR_TORQUE_MODES)] = key(
-        "Load, positive where it resists; or `balanced` (it follows the pinion's torque) or `held` (it stays).", "load"
+        "Load, positive where it resists; or the word `balanced` or `held`, here or under `conditions`.", "load"
     )
     pinion_angle: c.Angle = key("Angle of the pinion; may wrap. Coarse steps are smoothed.", "angle of the shafts")
     pinion_speed: c.Speed = key(

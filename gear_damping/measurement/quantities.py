@@ -79,6 +79,7 @@ class Measured(Value):
         uncertain: Whether a relative `uncertainty` has a meaning.
         whole: Whether it is a count.
         within: Smallest and largest value that makes sense, in `unit`; beyond them a unit is wrong.
+        beyond: What to do about a value beyond them.
     """
 
     unit: str | None
@@ -86,6 +87,7 @@ class Measured(Value):
     uncertain: bool = False
     whole: bool = False
     within: tuple[float, float] | None = None
+    beyond: str = "check the value and its unit"
 
     def keys(self) -> tuple[str, ...]:
         """The keys of the mapping."""
@@ -178,7 +180,7 @@ class Measured(Value):
         if self.whole and quantity.value != round(quantity.value):
             refuse("must be a whole number", f"{found.value:g} {found.unit}")
         if self.within and not self.within[0] <= quantity.value <= self.within[1]:
-            refuse(f"lies outside {self._range}", f"{found.value:g} {found.unit}", "check the value and its unit")
+            refuse(f"lies outside {self._range}", f"{found.value:g} {found.unit}", self.beyond)
         return quantity
 
     @property

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 _ROUNDING = 16 * 2.0**-52  # of the largest magnitude; values closer than this are one
+_FINEST = 2.0**-33  # of the range: converters have 32 bits at most, and closer values are rounding
 _DIVISORS = (1, 2, 3, 4)  # of a difference that may be more than one step
 _QUANTILES = (0.5, 0.05, 0.0)  # of the differences that are tried as a step
 _OFF = 0.1  # of a step; how far a value may be from its level (few digits round the levels themselves)
@@ -34,7 +35,8 @@ def step_of(values: NDArray[np.float64]) -> float:
 def _gaps(values: NDArray[np.float64]) -> NDArray[np.float64]:
     """Differences between neighbouring distinct levels, ascending; levels that differ by rounding alone are one."""
     levels = np.unique(values)
-    apart = np.diff(levels) > _ROUNDING * float(np.max(np.abs(levels), initial=0.0))
+    finest = max(_ROUNDING * float(np.max(np.abs(levels), initial=0.0)), _FINEST * float(np.ptp(levels)))
+    apart = np.diff(levels) > finest
     firsts, lasts = levels[np.r_[True, apart]], levels[np.r_[apart, True]]
     return np.sort(np.diff((firsts + lasts) / 2))
 

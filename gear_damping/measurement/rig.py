@@ -14,6 +14,10 @@ from gear_damping.units import spoken
 GEAR_TORQUE_MODES = ("balanced", "held")
 KNOWN = "known, or a prior with its uncertainty"
 START = "start of the fit, or a prior with its uncertainty"
+MORE_PAIRS = (
+    "check the value; where two and three pairs alternate, as of helical teeth, state 1 and what is beyond the whole "
+    "number, and the stiffness of three pairs and of two"
+)
 
 
 @dataclass(frozen=True)
@@ -58,7 +62,9 @@ class GearParameters(Declared):
     mesh_stiffness_min: Annotated[Quantity, Measured("N/m", uncertain=True, within=(0, 1e14))] = key(
         "Mesh stiffness with the smaller number.", START
     )
-    contact_ratio: Annotated[Quantity, Measured("1", uncertain=True, within=(1, 2))] = key("Contact ratio.", START)
+    contact_ratio: Annotated[Quantity, Measured("1", uncertain=True, within=(1, 2), beyond=MORE_PAIRS)] = key(
+        "Contact ratio.", START
+    )
     damping_ratio: Annotated[Quantity, Measured("1", "not negative", uncertain=True)] = key(
         "Viscous damping ratio of the mesh.", START
     )

@@ -237,7 +237,11 @@ def _record_lines(record: Record) -> Iterator[str]:
 
 
 def _channel(channel: Channel, values: np.ndarray, spectrum: Spectrum | None, rate: float) -> str:
-    said = f"{values.min():.5g} to {values.max():.5g} {channel.declared_unit}, offset (mean) {values.mean():.5g}"
+    said = f"{values.min():.5g} to {values.max():.5g} {channel.declared_unit}"
+    if channel.name == "pinion_angle":  # what is left of a ramp is neither a tone nor a converter's step
+        turns = float(channel.values[-1] - channel.values[0]) / (2 * np.pi)
+        return f"{said}, {turns:.4g} turns, on average {60 * turns * rate / max(values.size - 1, 1):.5g} rpm"
+    said += f", offset (mean) {values.mean():.5g}"
     noise = _noise(spectrum, step_of(values), rate)
     datum = "" if channel.datum == "absolute" else ", datum arbitrary"
     return f"{said}{datum}{', ' if noise else ''}{noise}"

@@ -85,5 +85,5 @@ def test_of_a_steady_record_it_is_the_beginning():
 
 def test_the_answer_says_how_much_was_left_out():
     said = of_useful_length(evidence_of([record(4000), record(20000)], [record(5000)])).said
-    assert said.startswith("Of 1 of 3 records a stretch of 6 s was searched, not all of their 20 s")
-    assert "explain.most_samples=10000" in said
+    assert said.startswith("1 of 3 records are long, and 6 of their 20 s were searched, a stretch of each")
+    assert "explain.most_samples=20000" in said

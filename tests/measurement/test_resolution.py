@@ -77,3 +77,8 @@ def test_the_steps_of_the_measured_records():
         ("wheel_gyro", "early"): pytest.approx(5.7375e-4, rel=1e-3),  # rad/s, 16 bits
         ("wheel_gyro", "late"): pytest.approx(5.7375e-4, rel=1e-3),
     }
+
+
+def test_what_the_difference_of_two_large_numbers_is_rounded_to_is_no_step():
+    values = (_wave(20000) + 4e4) - 4e4
+    assert step_of(1e-5 * values) == 0.0

@@ -224,6 +224,9 @@ def test_the_guess_of_a_gear_file_passes_the_check_where_the_blanks_are_filled(t
     assert set(record.channels) == {"pinion_angle", "transmission_error", "pinion_torque"}
     assert record.gear_torque_mode == "balanced"
     assert record.findings == ()
+    inspected(tmp_path / "out" / "measurement.yaml", tmp_path / "checked")
+    found = json.loads((tmp_path / "checked" / "inspection.json").read_text())
+    assert "rad, 23.97 turns, on average 719.9" in dict(found["records"][0]["channels"])["pinion_angle"]
 
 
 def test_two_counters_a_tacho_and_a_casing_are_declared(tmp_path):

@@ -56,12 +56,10 @@ def of_useful_length(evidence: Evidence) -> Stretches:
     long = [(whole, kept) for whole, kept in pairs if len(kept.response) < len(whole.response)]
     if not long:
         return Stretches(evidence)
-    seconds = sorted(kept.duration for _, kept in long)
-    span = f"{seconds[0]:.3g} s" if seconds[0] == seconds[-1] else f"{seconds[0]:.3g} to {seconds[-1]:.3g} s"
+    total, searched = (sum(record.duration for record in records) for records in zip(*long, strict=True))
     said = (
-        f"Of {len(long)} of {len(pairs)} records a stretch of {span} was searched, not all of their "
-        f"{sum(whole.duration for whole, _ in long):.3g} s: explain.most_samples={most} samples are, of the fitted "
-        "records and as many of the held-out ones; more need as much more of explain.minutes."
+        f"{len(long)} of {len(pairs)} records are long, and {searched:.3g} of their {total:.3g} s were searched, "
+        f"a stretch of each: explain.most_samples={2 * most} takes twice as much, and twice the explain.minutes."
     )
     return Stretches(replace(evidence, fit=fit, holdout=holdout), said)
 
