@@ -29,7 +29,10 @@ _GEAR_NAMES = (
 _OSCILLATOR_NAMES = (
     ("base_acceleration", r"(base|ground|table|shaker).*(acc|^a)"),
     ("acceleration", r"acc|^a_?[xyz]?$|ddot"),
-    ("force", r"force|kraft|torque|load|input|excit|command|voltage|current|^u_?\d?$|^f_?\d?$|^tau|^vir$|^i$"),
+    (
+        "force",
+        r"force|kraft|torque|load|input|excit|command|volt|spannung|current|strom|^u_?\d?$|^f_?\d?$|^tau|^vir$|^i$",
+    ),
     ("velocity", r"vel|speed|rate|gyro|omega|dot$|^v$|^dq"),
     ("displacement", r"disp|pos|angle|theta|phi|roll|pitch|yaw|heave|deflec|output|^[qxyz](_?\w)?$|^s$|way|weg"),
 )
@@ -37,6 +40,7 @@ _NAMED_UNITS = {
     "mm": "mm", "um": "um", "cm": "cm", "deg": "deg", "mrad": "mrad", "rad": "rad", "rpm": "rpm", "nm": "N*m",
     "mv": "mV", "volt": "V", "volts": "V", "degrees": "deg", "radians": "rad", "mps2": "m/s^2",
 }  # fmt: skip
+_OF_FREQUENCY = ("Hz", "kHz", "MHz")  # an axis of a spectrum, or what an exciter was set to
 _OTHERWISE = {"torque": "N*m", "tacho": "V"}
 _LOWEST, _CLEARLY = 4, 1.2  # lines of a spectrum that hold drifts; ratio by which one column beats an earlier one
 _DERIVED = 0.98  # correlation of a column with the slope of another
@@ -95,6 +99,8 @@ def _oscillator_channel(column: Column) -> tuple[str | None, str]:
     by_unit = _channel_of_unit(unit)
     if by_unit:
         return by_unit, f"by its unit {unit}"
+    if unit in _OF_FREQUENCY:
+        return None, f"in {unit}"
     name = _by_name(column, _OSCILLATOR_NAMES)
     return name, "by its name" if name else ""
 
@@ -150,15 +156,21 @@ def _gear_channel(column: Column) -> tuple[str | None, str]:
 
 
 def _by_name(column: Column, names: Sequence[tuple[str, str]]) -> str | None:
-    return next((channel for channel, words in names if re.search(words, _plain(column))), None)
+    plain, whole = _plain(column), _bare(column).split("/")[-1]
+    return next((channel for channel, words in names if re.search(words, plain) or re.search(words, whole)), None)
+
+
+def _bare(column: Column) -> str:
+    """A name in lower case, without the unit in its brackets or behind a stroke."""
+    if isinstance(column.reference, int):
+        return ""
+    bare = re.sub(r"[(\[][^)\]]*[)\]]\s*$", "", column.reference).strip()
+    return bare.removesuffix(column.unit or "").rstrip(" /").lower() if "/" in bare else bare.lower()
 
 
 def _plain(column: Column) -> str:
-    """A name in lower case, without the unit in its brackets, the path before it and a unit at its end."""
-    if isinstance(column.reference, int):
-        return ""
-    bare = re.sub(r"[(\[][^)\]]*[)\]]\s*$", "", column.reference).strip().lower()
-    words = [word for word in re.split(r"[/\s]+|\.(?=\D)", bare) if word]
+    """The last word of a name, without the path before it and a unit at its end."""
+    words = [word for word in re.split(r"[/\s]+|\.(?=\D)", _bare(column)) if word]
     kept = words[-1] if words else ""
     head, _, tail = kept.rpartition("_")
     return head if head and tail in _NAMED_UNITS else kept

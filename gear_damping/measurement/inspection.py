@@ -1,7 +1,8 @@
 """What a bare file of data holds: its time, and what each column looks like."""
 
+import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,6 +19,7 @@ from gear_damping.measurement.timebase import TimeBase, stamped_time, steady_tim
 
 _SPARSE = 0.5  # of the longest stretch of values of any column: one with a shorter one is filled here and there
 _EVEN = 1e-6  # of an advance from sample to sample: differences below it are rounding
+_RATE = re.compile(r"samp\w*[ _]?(freq|rate)|^(fs|f_s|sr|s_?rate)$|abtastrate", re.I)  # of a single number
 SHORTEST = 1e-15  # s between two samples: below it lie damaged stamps, and no sensor
 
 
@@ -73,6 +75,7 @@ class Inspection:
         base: The time of the rows `rows`; None where no rate is known.
         rows: (first, stop) of the longest stretch in which every column of that length is finite.
         faults: What is wrong with the stamps, for people.
+        rate_of: The column with a single number that may be the rate; None where none was needed.
     """
 
     table: Table
@@ -82,6 +85,7 @@ class Inspection:
     base: TimeBase | None
     rows: tuple[int, int]
     faults: tuple[str, ...] = ()
+    rate_of: Column | None = None
 
     @property
     def rate(self) -> float | None:
@@ -109,8 +113,29 @@ def inspect_table(table: Table) -> Inspection:
     length = _length(columns, stamps)
     rows = _rows([c for c in columns if c.values.size == length])
     base, faults = _base(table, columns, stamps, length, rows)
+    named = None if base or stamps else next((column for column in columns if _may_be_rate(column)), None)
+    base = steady_time(float(named.values[0]), rows[0], rows[1] - rows[0]) if named else base
     found = [_seen(c, stamps, columns, base, length, table.clock(k)) for k, c in enumerate(columns)]
-    return Inspection(table, tuple(found), length, stamps, base, rows, faults)
+    return Inspection(table, tuple(found), length, stamps, base, rows, faults, named)
+
+
+def of_columns(found: Inspection, used: Collection[Column]) -> Inspection:
+    """The same with the rows in which these columns and the stamps are finite, whatever the others hold."""
+    times = [found.columns[found.time.index]] if found.time else []
+    kept = [c for c in (*times, *used) if c.values.size == found.length]
+    rows = _rows(kept) if used else found.rows
+    if rows == found.rows or rows[1] - rows[0] < found.rows[1] - found.rows[0]:
+        return found
+    if found.rate_of is not None:
+        return replace(found, rows=rows, base=steady_time(found.rate, rows[0], rows[1] - rows[0]))
+    base, faults = _base(found.table, found.columns, found.time, found.length, rows)
+    return replace(found, rows=rows, base=base, faults=faults)
+
+
+def _may_be_rate(column: Column) -> bool:
+    """Whether it is one positive number under the name of a rate."""
+    name = str(column.reference).split(".")[-1].split("/")[-1].strip()
+    return column.values.size == 1 and column.values[0] > 0 and bool(_RATE.search(name))
 
 
 def _column(table: Table, index: int) -> Column:

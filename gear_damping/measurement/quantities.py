@@ -106,8 +106,12 @@ class Measured(Value):
             value = {"value": said[0], "unit": said[1]}
         if self.unit == "1" and not isinstance(value, dict):
             value = {"value": Number().read(value, name)}
+        is_number = isinstance(value, int | float) and not isinstance(value, bool)
+        if is_number and value == 0 and self.unit not in (None, "own"):  # nothing is nothing in every unit
+            value = {"value": value, "unit": self.unit}
         if not isinstance(value, dict):
-            remedy = f"write {name}: {{value: 1.0, unit: {self._example}}}, or {name}: 1.0 {self._example}"
+            shown = value if is_number else 1.0
+            remedy = f"write {name}: {{value: {shown}, unit: {self._example}}}, or {name}: {shown} {self._example}"
             refuse("needs a value and a unit", value, remedy)
         problems = self._unknown(value)
         number = self._part(value, "value", Number(), None, problems)

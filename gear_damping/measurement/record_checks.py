@@ -310,7 +310,7 @@ def _oversampled(record: Record) -> Finding | None:
         return None
     message = (
         f"99.9 % of the energy lies below {fastest:.3g} Hz, so that {record.sampling_rate:.4g} Hz "
-        "is far more than is needed; decimate to save time"
+        "is far more than is needed; resample: {value: …, unit: Hz} saves time"
     )
     return Finding("oversampled", message, severity="note")
 

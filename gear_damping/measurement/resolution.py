@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 _ROUNDING = 16 * 2.0**-52  # of the largest magnitude; values closer than this are one
+_SINGLE = 4 * 2.0**-23  # the same of values that single precision holds exactly
 _FINEST = 2.0**-33  # of the range: converters have 32 bits at most, and closer values are rounding
 _DIVISORS = (1, 2, 3, 4)  # of a difference that may be more than one step
 _QUANTILES = (0.5, 0.05, 0.0)  # of the differences that are tried as a step
@@ -35,7 +36,8 @@ def step_of(values: NDArray[np.float64]) -> float:
 def _gaps(values: NDArray[np.float64]) -> NDArray[np.float64]:
     """Differences between neighbouring distinct levels, ascending; levels that differ by rounding alone are one."""
     levels = np.unique(values)
-    finest = max(_ROUNDING * float(np.max(np.abs(levels), initial=0.0)), _FINEST * float(np.ptp(levels)))
+    rounding = _SINGLE if np.array_equal(levels, levels.astype(np.float32)) else _ROUNDING
+    finest = max(rounding * float(np.max(np.abs(levels), initial=0.0)), _FINEST * float(np.ptp(levels)))
     apart = np.diff(levels) > finest
     firsts, lasts = levels[np.r_[True, apart]], levels[np.r_[apart, True]]
     return np.sort(np.diff((firsts + lasts) / 2))

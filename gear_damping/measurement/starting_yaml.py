@@ -72,6 +72,9 @@ def _time(found: Inspection) -> Iterator[str]:
     elif found.faults:
         stated = {"value": float(f"{rate:.10g}") if rate else UNKNOWN, "unit": "Hz"}
         yield f"sampling_rate: {_mapping(stated)}   # guess: the mean of the time stamps, of which {found.faults[0]}"
+    elif found.rate_of is not None:
+        stated = {"value": float(f"{rate:.10g}"), "unit": "Hz"}
+        yield f"sampling_rate: {_mapping(stated)}   # guess: what the file calls {found.rate_of.reference}"
     elif rate is None:
         stated = {"value": UNKNOWN, "unit": "Hz"}
         yield f"sampling_rate: {_mapping(stated)}   # nothing in the file says it"
@@ -156,7 +159,12 @@ def _left_out(found: Inspection, listed: Sequence[Guess]) -> Iterator[str]:
     """What the YAML says nothing of, as comments."""
     stamps = found.columns[found.time.index] if found.time else None
     told = {id(guess.column): guess for guess in listed}
+    numbers = [column for column in found.columns if column.values.size == 1 and found.length > 1]
+    if numbers:
+        yield f"    # not declared: single numbers: {', '.join(_scalar(column.reference) for column in numbers)}"
     for column in found.columns:
+        if column in numbers:
+            continue
         guess = told.get(id(column))
         if column is stamps or (guess is not None and guess.channel):
             continue

@@ -86,9 +86,11 @@ def _by_name(index: int, column: _Column) -> str:
 
 
 def _by_steps(index: int, column: _Column) -> str:
-    is_named = isinstance(column.reference, str) and column.reference.strip() and not _FIRST.search(column.reference)
-    if index or column.unit is not None or is_named:
+    name = column.reference.strip() if isinstance(column.reference, str) else ""
+    if column.unit is not None or (name and not _FIRST.search(name)) or (index and not name):
         return ""
+    if index:
+        return f"is the first column of {name[: -len('[0]')]} and advances evenly" if _is_even(column) else ""
     return "is the first column and advances evenly" if _is_nearly_even(column) else ""
 
 
@@ -111,7 +113,9 @@ def _is_nearly_even(column: _Column) -> bool:
 
 
 def _advances(column: _Column) -> bool:
-    return bool(np.mean(np.diff(column.inside) > 0) > _ADVANCING)
+    """Whether it goes on; stamps of data that came in bursts repeat, and never go back."""
+    steps = np.diff(column.inside)
+    return bool(np.mean(steps > 0) > _ADVANCING or (steps.min() >= 0 and np.count_nonzero(steps) >= _FEWEST))
 
 
 def _bare(reference: str | int) -> str:

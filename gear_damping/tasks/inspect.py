@@ -15,7 +15,7 @@ from gear_damping.config.measured import YAML_SUFFIXES
 from gear_damping.measurement.column_kinds import CONSTANT
 from gear_damping.measurement.formats.registry import read_table, readers
 from gear_damping.measurement.guessing import UNKNOWN, Guess, guesses, system_of
-from gear_damping.measurement.inspection import Column, Inspection, inspect_table
+from gear_damping.measurement.inspection import Column, Inspection, inspect_table, of_columns
 from gear_damping.measurement.load import load_measurement
 from gear_damping.measurement.record import Channel, Measurement, Record
 from gear_damping.measurement.resolution import step_of
@@ -44,6 +44,7 @@ def _bare(path: Path, plugins: Sequence[str], folder: RunFolder) -> dict[str, An
     folder.add_inputs([path], "measurement.path")
     system = system_of(found)
     listed = guesses(found, system[0])
+    found = of_columns(found, [guess.column for guess in listed if guess.used])
     text = starting_yaml(found, system, listed)
     with start.open("x", encoding="utf-8") as file:
         file.write(text)
@@ -75,7 +76,8 @@ def _file_lines(found: Inspection) -> Iterator[str]:
     notes = found.base.notes + tuple(finding.message for finding in found.base.findings) if found.base else ()
     yield from (f"  time: {said}" for said in (*notes, *found.faults))
     if found.rows != (0, found.length):
-        yield f"  rows {found.rows[0]} to {found.rows[1] - 1} are the longest stretch in which every value is finite"
+        first, last = found.rows[0], found.rows[1] - 1
+        yield f"  rows {first} to {last} are the longest stretch in which all that is declared is finite"
 
 
 def _file_content(found: Inspection, listed: Sequence[Guess]) -> dict[str, Any]:
@@ -107,6 +109,8 @@ def _time(found: Inspection) -> str:
         return "no column looks like time stamps, and the file says no rate"
     n = found.rows[1] - found.rows[0]
     lasts = f"{found.rate:.6g} Hz, {n / found.rate:.4g} s" if found.rate else "no rate"
+    if found.rate_of is not None:
+        return f"{lasts}, a guess: what the file calls {found.rate_of.reference}"
     if found.time is None:
         return f"{lasts}, as the file says"
     guessed = f", a guess: {found.time.guessed}" if found.time.guessed else ""
@@ -116,10 +120,18 @@ def _time(found: Inspection) -> str:
 
 def _column_lines(found: Inspection, listed: Sequence[Guess]) -> Iterator[str]:
     for column, shape, guess in _told(found, listed):
-        yield f"column '{column.reference}' ({shape}), {_unit(column, guess)}: {column.kind}"
+        yield f"column {_name(column, found)} ({shape}), {_unit(column, guess)}: {column.kind}"
         yield from (f"    {line}" for line in _looks(column, found) if line)
         if guess is not None and guess.channel:
             yield f"    may be {guess.channel}: {guess.why}"
+
+
+def _name(column: Column, found: Inspection) -> str:
+    """Its name, or its number where it has none of its own."""
+    if isinstance(column.reference, str):
+        return f"'{column.reference}'"
+    name = found.table.names[column.reference]
+    return f"{column.reference}, one of several named '{name}'," if name else str(column.reference)
 
 
 def _unit(column: Column, guess: Guess | None) -> str:
@@ -135,7 +147,7 @@ def _looks(column: Column, found: Inspection) -> Iterator[str]:
     if missing:
         yield f"{missing} of {column.values.size} values are not finite"
     if values.size and column.kind != CONSTANT:
-        yield f"from {values.min():.5g} to {values.max():.5g}, offset (mean) {values.mean():.5g}"
+        yield f"from {values.min() + 0.0:.5g} to {values.max() + 0.0:.5g}, offset (mean) {values.mean():.5g}"  # no -0
     yield _noise(column.spectrum, column.step, column.rate)
 
 
@@ -237,7 +249,7 @@ def _record_lines(record: Record) -> Iterator[str]:
 
 
 def _channel(channel: Channel, values: np.ndarray, spectrum: Spectrum | None, rate: float) -> str:
-    said = f"{values.min():.5g} to {values.max():.5g} {channel.declared_unit}"
+    said = f"{values.min() + 0.0:.5g} to {values.max() + 0.0:.5g} {channel.declared_unit}"  # no -0
     if channel.name == "pinion_angle":  # what is left of a ramp is neither a tone nor a converter's step
         turns = float(channel.values[-1] - channel.values[0]) / (2 * np.pi)
         return f"{said}, {turns:.4g} turns, on average {60 * turns * rate / max(values.size - 1, 1):.5g} rpm"

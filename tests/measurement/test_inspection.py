@@ -7,8 +7,9 @@ from scipy.io import savemat
 from gear_damping.measurement.column_kinds import CONSTANT, COUNTER, PULSES, SIGNAL, TIME, TURNING
 from gear_damping.measurement.formats.registry import read_table
 from gear_damping.measurement.guessing import UNKNOWN, guesses, system_of
-from gear_damping.measurement.inspection import inspect_table
+from gear_damping.measurement.inspection import inspect_table, of_columns
 from gear_damping.measurement.spectral_floor import spectrum_of
+from gear_damping.measurement.starting_yaml import starting_yaml
 
 RATE = 1000.0
 N = 6000
@@ -129,6 +130,43 @@ def test_a_first_column_of_stamps_that_jitter_or_are_rounded_is_the_time(stamps,
     assert [one.kind for one in found.columns] == [TIME, SIGNAL]
 
 
+def test_the_first_column_of_a_matrix_among_others_may_be_the_time(tmp_path):
+    path = tmp_path / "data.mat"
+    savemat(path, {"gain": 3.0, "side": np.cos(3 * T), "data": np.column_stack([T, np.sin(9 * T)])})
+    found = inspect_table(read_table(path))
+    assert found.columns[found.time.index].reference == "data[0]"
+    assert found.rate == pytest.approx(RATE)
+
+
+def test_stamps_of_data_that_came_in_bursts_are_the_time_and_their_mean_the_rate(tmp_path):
+    found = inspected(tmp_path, elapsed_s=np.floor(T / 0.02) * 0.02, x=np.sin(9 * T))
+    assert found.columns[found.time.index].reference == "elapsed_s"
+    assert found.rate == pytest.approx(RATE, rel=0.01)
+    assert "repeated" in found.faults[0]
+
+
+@pytest.mark.parametrize("name", ["SampFreq", "fs", "sampling_rate", "Sample Rate"])
+def test_a_number_named_like_a_rate_may_be_it(name, tmp_path):
+    found = inspected(tmp_path, **{name: np.array([RATE]), "x": np.sin(9 * T), "offset": np.array([3.0])})
+    assert found.rate == RATE
+    text = starting_yaml(found, system_of(found), guesses(found, "oscillator"))
+    assert f"sampling_rate: {{value: 1000.0, unit: Hz}}   # guess: what the file calls {name}" in text.replace('"', "")
+    assert "# not declared: single numbers: " in text
+    stamped = inspected(tmp_path, fs=np.array([50.0]), time=T, x=np.sin(9 * T))
+    assert stamped.rate == pytest.approx(RATE)
+    assert stamped.rate_of is None
+
+
+def test_what_is_not_declared_cuts_no_stretch(tmp_path):
+    x, spectrum = np.sin(9 * T), np.cos(5 * T)
+    x[5990:], spectrum[4000:] = np.nan, np.nan
+    found = inspected(tmp_path, time=T, x=x, spectrum=spectrum)
+    assert found.rows == (0, 4000)
+    found = of_columns(found, [column(found, "x")])
+    assert found.rows == (0, 5990)
+    assert found.base.time.size == 5990
+
+
 def test_a_first_column_that_goes_back_is_no_time(tmp_path):
     np.savetxt(tmp_path / "a.txt", np.column_stack([T + 2e-3 * np.sin(900 * T), np.sin(20 * T)]))
     assert inspect_table(read_table(tmp_path / "a.txt")).columns[0].kind != TIME
@@ -203,3 +241,12 @@ def test_stamps_closer_than_anything_is_sampled_give_no_rate(tmp_path):
     found = inspect_table(read_table(tmp_path / "run.csv"))
     assert found.base is None
     assert found.rate is None
+
+
+def test_a_unit_behind_a_stroke_is_no_name(tmp_path):
+    header = "Zeit t / s,Weg a / rad,Spannung U_B1 / V,Frequenz f / Hz"
+    rows = np.column_stack([T, np.sin(9 * T), np.sin(40 * T), T**2])
+    np.savetxt(tmp_path / "a.csv", rows, "%.9g", ",", header=header, comments="")
+    found = inspect_table(read_table(tmp_path / "a.csv"))
+    known = {g.column.reference.split()[0]: g.channel for g in guesses(found, "oscillator")}
+    assert known == {"Weg": "displacement", "Spannung": "force", "Frequenz": None}

@@ -82,3 +82,9 @@ def test_the_steps_of_the_measured_records():
 def test_what_the_difference_of_two_large_numbers_is_rounded_to_is_no_step():
     values = (_wave(20000) + 4e4) - 4e4
     assert step_of(1e-5 * values) == 0.0
+
+
+def test_the_digits_of_single_precision_are_no_step():
+    noise = np.random.default_rng(5).standard_normal(20000)
+    assert step_of((100 + 1e-5 * noise).astype(np.float32).astype(float)) == 0.0
+    assert step_of((100 + np.round(noise, 2)).astype(np.float32).astype(float)) == pytest.approx(0.01, rel=1e-3)
