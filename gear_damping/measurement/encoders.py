@@ -14,6 +14,9 @@ TURN = 2 * np.pi  # rad in one turn of a shaft
 FEWEST_PULSES = 2  # in a record: one alone tells no speed
 COUNTERS = (16, 24, 32)  # bits of the registers that run over in counter cards
 FROM_ENCODERS = "transmission_error: r_b1 theta_1 - r_b2 theta_2 from the encoders, without its mean"  # a note
+SQUARE = 0.1  # of a pulse's height: from one level to the other within a sample, so that the edge is known to that
+_STEADIEST = 6  # degrees of polynomials that are tried through the edges of square pulses
+_WITHIN = 1.03  # samples between the earliest and the latest of edges about it: rounding moves them by one in all
 _TURN_TOLERANCE = 0.25  # of a turn; a pulse is known to a sample
 ReadColumn = Callable[[str | int, str], NDArray[np.float64]]
 
@@ -88,6 +91,28 @@ def rising_edges(signal: NDArray[np.float64], time: NDArray[np.float64], thresho
     return time[last] + share * (time[last + 1] - time[last])
 
 
+def edges_of_square_pulses(
+    signal: NDArray[np.float64], time: NDArray[np.float64], threshold: float
+) -> NDArray[np.float64]:
+    """(m,) the times in s of rising edges, without the rounding to samples where the pulses are square.
+
+    Square pulses tell an edge to a sample, which fifty teeth and their harmonics make a good part of a period. Where
+    some even turning leaves no more than that rounding, the edges lie on the smoothest one that does.
+    """
+    edges, sample = rising_edges(signal, time, threshold), float(np.median(np.diff(time)))
+    last = np.flatnonzero((signal[:-1] < threshold) & (signal[1:] >= threshold))
+    low, high = float(signal.min()), float(signal.max())
+    margin = SQUARE * (high - low)
+    if not (np.all(signal[last] < low + margin) and np.all(signal[last + 1] > high - margin)):
+        return edges
+    count = np.arange(edges.size)
+    for degree in range(1, min(_STEADIEST, edges.size - 3) + 1):
+        smooth = np.polynomial.Polynomial.fit(count, edges, degree)(count)
+        if np.ptp(edges - smooth) <= _WITHIN * sample:
+            return smooth
+    return edges
+
+
 def transmission_error(
     pinion: NDArray[np.float64], gear: NDArray[np.float64], radius_pinion: float, radius_gear: float
 ) -> NDArray[np.float64]:
@@ -142,7 +167,7 @@ def shaft_angle(
         pulses = whole(plan.column, key) * to_si(1.0, plan.unit, "s", f"{plan.key}.unit", file)
     else:
         signal = rows(plan.column, key)
-        pulses = rising_edges(signal, time, _threshold(plan, signal, file))
+        pulses = edges_of_square_pulses(signal, time, _threshold(plan, signal, file))
     angle = angle_from_pulses(pulses, time, plan.per_revolution, plan.direction, key, file)
     return angle - (0.0 if plan.index is None else _at_index_stamp(plan, angle, time, whole, file))
 

@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 
 from gear_damping.errors import InputError
-from gear_damping.measurement.encoders import angle_from_counts, angle_from_pulses, rising_edges
+from gear_damping.measurement.encoders import (
+    angle_from_counts,
+    angle_from_pulses,
+    edges_of_square_pulses,
+    rising_edges,
+)
 
 RADIUS_PINION = 20 * 3e-3 * cos(pi / 9) / 2
 RADIUS_GEAR = 2 * RADIUS_PINION
@@ -64,6 +69,35 @@ def test_edges_are_found_between_samples():
     time = np.arange(1000) / 1000
     edges = rising_edges(np.sin(2 * pi * 7.3 * time - 1), time, 0.0)
     np.testing.assert_allclose(edges, (1 / (2 * pi) + np.arange(edges.size)) / 7.3, atol=1e-6)
+
+
+def tacho(swing, rate, seconds, once=1):
+    """Samples of a square pulse at each of `once` marks in a turn, and the true times at which it rises."""
+    time = np.arange(round(rate * seconds)) / rate
+    turns = once * swing(time) / (2 * pi)
+    fine = np.linspace(0, seconds, 2_000_001)
+    rises = np.interp(np.arange(1, np.floor(turns[-1]) + 1), once * swing(fine) / (2 * pi), fine)
+    return time, 5.0 * (np.mod(turns, 1.0) < 0.3), rises[rises < time[-1]]
+
+
+@pytest.mark.parametrize("drift", [0.0, 3.0, -8.0])  # rad/s^2
+def test_square_pulses_of_an_even_rotation_are_told_better_than_to_a_sample(drift):
+    time, signal, rises = tacho(lambda t: 0.3 + 141.7 * t + drift * t**2 / 2, 50e3, 0.7)
+    rounded, found = (read(signal, time, 2.5) for read in (rising_edges, edges_of_square_pulses))
+    assert found.shape == rises.shape
+    assert np.std(found - rises) < 0.7 * np.std(rounded - rises)
+    assert np.abs(found - rises).max() < 0.6 / 50e3
+
+
+def test_edges_that_swing_by_more_than_a_sample_stay_where_they_are():
+    time, signal, _ = tacho(lambda t: 0.3 + 140 * t + 0.05 * np.sin(2 * pi * 31 * t), 50e3, 0.7)
+    np.testing.assert_array_equal(edges_of_square_pulses(signal, time, 2.5), rising_edges(signal, time, 2.5))
+
+
+def test_pulses_that_rise_slowly_tell_their_edges_between_samples():
+    time = np.arange(7000) / 1000
+    signal = np.sin(2 * pi * 7.3 * time + 1e-3 * np.sin(2 * pi * 2.9 * time))
+    np.testing.assert_array_equal(edges_of_square_pulses(signal, time, 0.0), rising_edges(signal, time, 0.0))
 
 
 def test_two_encoders_give_the_transmission_error(bench):
