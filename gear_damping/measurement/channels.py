@@ -51,7 +51,9 @@ class AnyChannel(Timed):
     unit: Annotated[str, Text()] = key("Unit of the values; absent, that of the column's header.", "values")
     polarity: Annotated[int, OneOf((1, -1))] = key("Sign that the values are multiplied by.", "values", 1)
     gain: Annotated[float, Number(nonzero=True)] = key(
-        "The file's value over the quantity: values are divided by it, and `unit` is that of the quantity.", "values", 1.0
+        "The file's value over the quantity: values are divided by it, and `unit` is that of the quantity.",
+        "values",
+        1.0,
     )
 
 

@@ -47,8 +47,8 @@ def of_useful_length(evidence: Evidence) -> Stretches:
     """One stretch of each record of which there is too much to be searched in the time of a search.
 
     Short records stay whole, and the long ones share what is left of `most_samples`. So it is done with the held-out
-    records, which have as many. What a cause has to take is measured in noise, and of a hundred thousand samples an
-    effect of a hundredth of the noise is seen; the time grows with them.
+    records, which have as many. Of ten thousand samples an effect of a twentieth of the noise is seen; the time grows
+    with them.
     """
     most = evidence.settings.most_samples
     fit, holdout = (_stretches(records, most, evidence) for records in (evidence.fit, evidence.holdout))
@@ -65,7 +65,7 @@ def of_useful_length(evidence: Evidence) -> Stretches:
 
 
 def _stretches(records: Sequence[FitRecord], most: int, evidence: Evidence) -> tuple[FitRecord, ...]:
-    share = _share([_size(record) for record in records], most)
+    share = fair_share([_size(record) for record in records], most)
     return tuple(_stretch(record, share, evidence) for record in records)
 
 
@@ -73,8 +73,8 @@ def _size(record: FitRecord) -> int:
     return len(record.response) * len(record.channels)
 
 
-def _share(sizes: Sequence[int], most: int) -> float:
-    """The largest size of a record with which all together hold no more than `most` samples."""
+def fair_share(sizes: Sequence[int], most: int) -> float:
+    """The largest size of a record with which all together hold no more than `most` samples; short ones stay whole."""
     left = float(most)
     for place, size in enumerate(sorted(sizes)):
         share = left / (len(sizes) - place)

@@ -5,6 +5,7 @@ from copy import copy
 import torch
 from torch import Tensor
 
+from gear_damping.explanation.statistics.tall import tall_svd
 from gear_damping.identification.output_error.normal_equations import INDEPENDENT, nuisance_basis, project_out
 
 
@@ -72,7 +73,7 @@ class Projector:
         rows = torch.block_diag(*columns)
         orthogonal = self(torch.nn.functional.pad(rows, (0, 0, 0, len(self.slope))))
         own = orthogonal.norm(dim=0) > INDEPENDENT * rows.norm(dim=0)
-        basis, sizes, _ = torch.linalg.svd(orthogonal[:, own] / orthogonal[:, own].norm(dim=0), full_matrices=False)
+        basis, sizes, _ = tall_svd(orthogonal[:, own] / orthogonal[:, own].norm(dim=0))
         more = copy(self)
         more.basis = torch.cat([self.basis, basis[:, sizes > INDEPENDENT]], 1)
         return more

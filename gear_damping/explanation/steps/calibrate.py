@@ -11,6 +11,7 @@ from gear_damping.errors import InputError, Problem
 from gear_damping.explanation.evidence.input_noise import without_input_noise
 from gear_damping.explanation.evidence.records import Evidence, with_own_angles
 from gear_damping.explanation.evidence.unsteady import has_unsteady_shafts, with_unsteady_shafts
+from gear_damping.explanation.evidence.useful_samples import fair_share
 from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.followed import followed_alone, of_one_flank
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, natural_frequency_hz
@@ -35,11 +36,13 @@ from gear_damping.identification.oscillator.fit import fit_oscillator
 from gear_damping.identification.oscillator.linear_model import DAMPING, linear_model, linear_oscillator
 from gear_damping.identification.output_error.least_squares import NONE, Rounds
 from gear_damping.identification.output_error.records import SEPARATOR, FreeParameter
+from gear_damping.identification.output_error.segments import shortened
 from gear_damping.physics.systems.traits import Trait, by_trait
 from gear_damping.simulation.solver_settings import Solver
 
 LESS_DAMPING = 0.05  # of what was found: what a local minimum takes for damping
 SHAPE_ITERATIONS = 30  # of the fit with a free shape of the stiffness; causes are tried from where it stands
+CALIBRATED = 8000  # samples of the fitted records together, on which their calibration begins
 SHORT_PERIODS = 40.0  # natural periods of the first round
 MOST_SCANS = 8  # of the records' angles, each followed by a fit; one where flanks part, which no fit of these follows
 STIFFNESSES = (1.0, 0.85, 0.92, 1.08, 1.17)  # times where it begins: with a wrong one angles of records are wrong too
@@ -150,9 +153,7 @@ def _gear_pair(evidence: Evidence, solver: Solver | None) -> Calibration:
     driven = of_one_flank(evidence)
     if driven is not evidence:
         return _carried_over(_gear_pair(driven, solver), evidence, solver)
-    evidence, rough, nominal = _angles_counted(evidence, solver)
-    rough = rough or _rough_gear_pair(evidence, solver)
-    nominal = nominal or shaped(rough, evidence, SHAPE_ITERATIONS, solver)
+    evidence, rough, nominal = _begun_short(evidence, solver)
     followed = followed_alone(nominal, evidence, lambda some: _shaped(some, solver))
     unsteady = with_unsteady_shafts(evidence)
     if followed is not None:
@@ -161,6 +162,28 @@ def _gear_pair(evidence: Evidence, solver: Solver | None) -> Calibration:
         initial, rounds = InitialValues(after=nominal), Rounds(SHAPE_ITERATIONS)
         nominal = fit_hypothesis(nominal.hypothesis, unsteady, initial, rounds, solver=solver)
     return Calibration(unsteady, nominal, rough)
+
+
+def _begun_short(evidence: Evidence, solver: Solver | None) -> tuple[Evidence, Outcome, Outcome]:
+    """The evidence with its angles counted, the rough fit and the nominal model, all of long records begun on a part.
+
+    Stiffness, damping and angles are found by many fits, of which a few thousand samples tell as much as all.
+    """
+    share = fair_share([len(record.stacked) for record in evidence.fit], CALIBRATED)
+    short = tuple(shortened(r, int(min(len(r.response), share / len(r.channels)))) for r in evidence.fit)
+    is_whole = all(len(a.response) == len(b.response) for a, b in zip(short, evidence.fit, strict=True))
+    begun, rough, nominal = _angles_counted(evidence if is_whole else replace(evidence, fit=short), solver)
+    rough = rough or _rough_gear_pair(begun, solver)
+    nominal = nominal or shaped(rough, begun, SHAPE_ITERATIONS, solver)
+    if is_whole:
+        return begun, rough, nominal
+    whole = evidence if begun.has_index else with_own_angles(evidence)
+    rounds = Rounds(ROUGH_ITERATIONS), Rounds(SHAPE_ITERATIONS)
+    rough, nominal = (
+        fit_hypothesis(found.hypothesis, whole, InitialValues(after=found, is_near=True), some, solver=solver)
+        for found, some in zip((rough, nominal), rounds, strict=True)
+    )
+    return whole, rough, nominal
 
 
 def _carried_over(found: Calibration, evidence: Evidence, solver: Solver | None) -> Calibration:

@@ -12,6 +12,7 @@ from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency_hz
 from gear_damping.explanation.statistics.family_wise import Effect, Lines, Residual, Visible, block_numbers, family_wise
 from gear_damping.explanation.statistics.projector import Projector
+from gear_damping.explanation.statistics.tall import tall_svd
 from gear_damping.explanation.trials.innovations import load_errors, random_loads
 from gear_damping.explanation.trials.line import strongest_line
 from gear_damping.explanation.trials.random_part import Random, Whitener, random_part
@@ -99,6 +100,8 @@ def assessed(outcome: Outcome, scores: Sequence[Score], evidence: Evidence, fami
     found = looked_at(random_in(*_without(orthogonal, taken_out, SHOWN_PER_SAMPLE)))
     if not found.visible:
         return replace(found, random=random_in(orthogonal, 0.0)) if taken_out else found
+    if found.taken > evidence.settings.random_share:  # beside so much the random part is no noise yet
+        return found
     shown = [columns for name, columns in named.items() if found.visible.shows(name)]
     shown += [columns for name, columns in nameless().items() if found.visible.shows(name)]
     left, taken = _without(orthogonal, shown, SHOWN_PER_SAMPLE)
@@ -200,7 +203,7 @@ def orthonormal(columns: Tensor) -> Tensor:
     columns = columns[:, norms > INDEPENDENT * norms.max().clamp(min=1e-300)]
     if not columns.shape[1]:
         return columns
-    basis, sizes, _ = torch.linalg.svd(columns / columns.norm(dim=0), full_matrices=False)
+    basis, sizes, _ = tall_svd(columns / columns.norm(dim=0))
     return basis[:, sizes > INDEPENDENT * sizes[0]]
 
 

@@ -129,14 +129,16 @@ class Bench:
         """The candidates worth it, fitted in full, the best first; one that will not get below `reach` is given up.
 
         Those with few strengths are fitted first: one that takes nearly all spares the many of another, as of an error
-        of every tooth, and one that can do all that it does and more waits for the next round.
+        of every tooth, and one that can do all that it does and more waits for the next round. What promises too little
+        for that comes last.
         """
         if not ranked:
             return ()
         fits: list[Refit] = []
         base = (outcome if outcome.fitted.converged else against).fitted.cost
         worth = chosen(ranked, self.settings, predicted_gain, laws=self.evidence.has(Trait.REST))
-        for score in sorted(worth, key=lambda score: len(score.candidate.strengths)):
+        enough = self.settings.taken_by_one * max((score.gain for score in worth), default=0.0)
+        for score in sorted(worth, key=lambda score: (score.gain < enough, len(score.candidate.strengths))):
             if any(self._is_enough(fit, score, base) for fit in fits):
                 continue
             if self.budget.refuses(score.candidate.name):

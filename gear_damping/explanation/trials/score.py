@@ -17,6 +17,7 @@ from gear_damping.explanation.model.own_phases import (
     turn_own_phases,
 )
 from gear_damping.explanation.statistics.projector import Projector
+from gear_damping.explanation.statistics.tall import tall_svd
 from gear_damping.identification.output_error.problem import OutputErrorProblem, prepare_predictions
 from gear_damping.identification.output_error.records import DIFFERENCE, FreeParameter
 from gear_damping.simulation.solver_settings import Solver
@@ -204,7 +205,7 @@ def _score(candidate: Candidate, orthogonal: Tensor, problem: OutputErrorProblem
         return replace(_unseen(candidate, n_free, len(residual)), failed="its prediction diverged")
     if not bool(orthogonal.any()):
         return _unseen(candidate, n_free, len(residual))
-    basis, singular_values, turned = torch.linalg.svd(orthogonal, full_matrices=False)
+    basis, singular_values, turned = tall_svd(orthogonal)
     teeth = teeth_of(candidate, orthogonal, base.orthogonal, problem)
     orthogonal = orthogonal if teeth is None else teeth.columns
     if teeth is None:

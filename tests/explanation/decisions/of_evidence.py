@@ -135,8 +135,8 @@ def one_size_beyond_chance(settings: SearchSettings):
 
 @decides("most_samples", (True, False))
 def a_record_that_is_searched_whole(settings: SearchSettings):
-    """Three records, of 5000, 15 000 and 50 000 samples: whether the second and the third stay whole."""
-    records = tuple(FitRecord("one", torch.zeros(n, dtype=torch.float64), 1.0) for n in (5000, 15000, 50000))
+    """Three records, of 3000, 8000 and 25 000 samples: whether the second and the third stay whole."""
+    records = tuple(FitRecord("one", torch.zeros(n, dtype=torch.float64), 1.0) for n in (3000, 8000, 25000))
     evidence = Evidence("oscillator", records, (), Known({}, {}), None, one_record=False, settings=settings)
     kept = of_useful_length(evidence).evidence.fit
     return tuple(len(a.response) == len(b.response) for a, b in zip(records[1:], kept[1:], strict=True))
