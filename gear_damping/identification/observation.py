@@ -109,6 +109,8 @@ def fit_record(record: Record, system: type[System], spring: bool = True) -> Fit
             known["pinion_speed"] = mean
             own = FreeParameter("pinion_speed", mean, error, deviation=error, expected=mean)
             uncertain = [own, *(p for p in uncertain if p.name != "pinion_speed")]
+    if "pinion_angle" in record.channels:
+        uncertain += _angle_errors(record, record.channels["pinion_angle"])
     parameters = {parameter.name for parameter in system.parameters}
     for name in (one for one in system.inputs if one in record.conditions and one not in parameters):
         inputs[name] = torch.full((len(record.time),), record.conditions[name].value, dtype=torch.float64)
@@ -201,6 +203,16 @@ def _means(inputs: dict[str, Tensor], sampling_rate: float) -> dict[str, float]:
         angle = inputs["pinion_angle"]
         found["pinion_speed"] = float(angle[-1] - angle[0]) / (len(angle) - 1) * sampling_rate
     return found
+
+
+def _angle_errors(record: Record, angle: Channel) -> list[FreeParameter]:
+    """Where a shaft stands and how fast it turns beside what edges tell that are known to a sample; none elsewhere."""
+    if not angle.timing_error:
+        return []
+    lasts = float(record.time[-1] - record.time[0])
+    late = angle.timing_error * abs(float(angle.values[-1] - angle.values[0])) / lasts
+    sizes = {"angle_error": late, "angle_error_rate": 12**0.5 * late / lasts}  # of a line through them
+    return [FreeParameter(name, 0.0, size, deviation=size, expected=0.0) for name, size in sizes.items()]
 
 
 def _uncertain(record: Record) -> list[FreeParameter]:

@@ -102,16 +102,19 @@ class Assembler:
         self, raw: RawRecord, channels: dict[str, Channel], notes: list[str], findings: list[Finding]
     ) -> None:
         """The pinion angle, and the transmission error where both shafts are measured."""
-        shaft = raw.angles.get("pinion", raw.angles.get("tacho"))
+        told = raw.angles.get("pinion", raw.angles.get("tacho"))
+        shaft = None if told is None else told.values
         if {"pinion", "gear"} <= {*raw.angles} and "transmission_error" not in channels:
-            error, shaft = self._error(raw.angles, f"{raw.plan.key}.encoders", findings)
+            angles = {name: one.values for name, one in raw.angles.items()}
+            error, shaft = self._error(angles, f"{raw.plan.key}.encoders", findings)
             channels["transmission_error"] = Channel(
                 "transmission_error", raw.base.resample(error), "m", datum="arbitrary"
             )
             notes.append(FROM_ENCODERS)
         if shaft is not None and "pinion_angle" not in channels:
             datum = "absolute" if raw.plan.mesh_index else "arbitrary"
-            channels["pinion_angle"] = Channel("pinion_angle", raw.base.resample(shaft), "rad", datum=datum)
+            values, late = raw.base.resample(shaft), told.timing_error
+            channels["pinion_angle"] = Channel("pinion_angle", values, "rad", datum=datum, timing_error=late)
 
     def _error(
         self, angles: dict[str, NDArray], key: str, findings: list[Finding]

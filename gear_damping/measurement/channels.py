@@ -203,6 +203,10 @@ class Angle(Delayed):
 
     title: ClassVar[str] = "the pinion angle"
     si: ClassVar[str | None] = "rad"
+    timing_error: Annotated[Quantity, Measured("s")] = key(
+        "Standard deviation by which all of the angle may be late, as where edges of pulses are known to a sample.",
+        "prior on where each record begins and on its speed",
+    )
     refused: ClassVar[Reasons] = Frozen(
         {
             **_input_reasons("leave it out"),

@@ -237,7 +237,7 @@ def _resolved(name: str, channel: AnyChannel, record: layout.AnyRecord, based: b
         found = getattr(channel, corner, None)
         if found:
             sensor |= {corner: found.frequency, f"{corner}_order": found.order}
-    for length in ("delay", "radius"):
+    for length in ("delay", "radius", "timing_error"):
         if quantity := getattr(channel, length, None):
             sensor[length] = quantity.value
     sensor["datum"] = _datum(name, channel, record)

@@ -1,6 +1,7 @@
 """Shaft angles from encoders and tachos, and the transmission error from two encoders."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,19 @@ _STEADIEST = 6  # degrees of polynomials that are tried through the edges of squ
 _WITHIN = 1.03  # samples between the earliest and the latest of edges about it: rounding moves them by one in all
 _TURN_TOLERANCE = 0.25  # of a turn; a pulse is known to a sample
 ReadColumn = Callable[[str | int, str], NDArray[np.float64]]
+
+
+@dataclass(frozen=True, eq=False)
+class ShaftAngle:
+    """Where a shaft stands.
+
+    Args:
+        values: (n,) rad at the record's samples.
+        timing_error: Standard deviation in s by which all of it may be late, where edges are known to a sample.
+    """
+
+    values: NDArray[np.float64]
+    timing_error: float = 0.0
 
 
 def angle_from_counts(counts: NDArray[np.float64], per_revolution: float, direction: int = 1) -> NDArray[np.float64]:
@@ -93,8 +107,8 @@ def rising_edges(signal: NDArray[np.float64], time: NDArray[np.float64], thresho
 
 def edges_of_square_pulses(
     signal: NDArray[np.float64], time: NDArray[np.float64], threshold: float
-) -> NDArray[np.float64]:
-    """(m,) the times in s of rising edges, without the rounding to samples where the pulses are square.
+) -> tuple[NDArray[np.float64], float]:
+    """(m,) the times in s of rising edges, not rounded to samples, and by how much they may be late (one deviation).
 
     Square pulses tell an edge to a sample, which fifty teeth and their harmonics make a good part of a period. Where
     some even turning leaves no more than that rounding, the edges lie on the smoothest one that does.
@@ -104,13 +118,13 @@ def edges_of_square_pulses(
     low, high = float(signal.min()), float(signal.max())
     margin = SQUARE * (high - low)
     if not (np.all(signal[last] < low + margin) and np.all(signal[last + 1] > high - margin)):
-        return edges
+        return edges, 0.0
     count = np.arange(edges.size)
     for degree in range(1, min(_STEADIEST, edges.size - 3) + 1):
         smooth = np.polynomial.Polynomial.fit(count, edges, degree)(count)
         if np.ptp(edges - smooth) <= _WITHIN * sample:
-            return smooth
-    return edges
+            return smooth, sample * ((degree + 1) / edges.size / 12) ** 0.5
+    return edges, 0.0
 
 
 def transmission_error(
@@ -145,8 +159,8 @@ def base_radius(n_teeth: float, module: float, pressure_angle: float) -> float:
 
 def shaft_angle(
     plan: EncoderPlan, base: TimeBase, rows: ReadColumn, whole: ReadColumn, file: str
-) -> NDArray[np.float64]:
-    """(n,) rad at the record's samples as they are stamped in the file.
+) -> ShaftAngle:
+    """The angle at the record's samples as they are stamped in the file.
 
     Args:
         plan: The declared encoder or tacho.
@@ -161,15 +175,15 @@ def shaft_angle(
     time = base.time if base.stamps is None else base.stamps
     if plan.name != "tacho" and not plan.timestamps:
         angle = angle_from_counts(rows(plan.column, f"{plan.key}.column"), plan.per_revolution, plan.direction)
-        return angle - (0.0 if plan.index is None else _at_index_pulse(plan, angle, rows, file))
+        return ShaftAngle(angle - (0.0 if plan.index is None else _at_index_pulse(plan, angle, rows, file)))
     key = f"{plan.key}.{'timestamps' if plan.timestamps else 'column'}"
     if plan.timestamps:
-        pulses = whole(plan.column, key) * to_si(1.0, plan.unit, "s", f"{plan.key}.unit", file)
+        pulses, late = whole(plan.column, key) * to_si(1.0, plan.unit, "s", f"{plan.key}.unit", file), 0.0
     else:
         signal = rows(plan.column, key)
-        pulses = edges_of_square_pulses(signal, time, _threshold(plan, signal, file))
+        pulses, late = edges_of_square_pulses(signal, time, _threshold(plan, signal, file))
     angle = angle_from_pulses(pulses, time, plan.per_revolution, plan.direction, key, file)
-    return angle - (0.0 if plan.index is None else _at_index_stamp(plan, angle, time, whole, file))
+    return ShaftAngle(angle - (0.0 if plan.index is None else _at_index_stamp(plan, angle, time, whole, file)), late)
 
 
 def _threshold(plan: EncoderPlan, signal: NDArray, file: str) -> float:

@@ -10,7 +10,7 @@ from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.checks import refuse_not_finite
 from gear_damping.measurement.cutting import slower, window_rows
 from gear_damping.measurement.declaration import ChannelPlan, EncoderPlan, RecordPlan, TimePlan
-from gear_damping.measurement.encoders import ReadColumn, shaft_angle
+from gear_damping.measurement.encoders import ReadColumn, ShaftAngle, shaft_angle
 from gear_damping.measurement.formats.table import Table
 from gear_damping.measurement.record import Finding
 from gear_damping.measurement.time_column import is_time, stamped_rate
@@ -37,14 +37,14 @@ class RawChannel:
 
 @dataclass(frozen=True, eq=False)
 class RawRecord:
-    """A record as it stands in its file; `angles` holds the shafts' angles in rad by encoder."""
+    """A record as it stands in its file; `angles` holds the shafts' angles by encoder."""
 
     plan: RecordPlan
     table: Table
     sha256: str
     base: TimeBase
     channels: list[RawChannel]
-    angles: dict[str, NDArray[np.float64]]
+    angles: dict[str, ShaftAngle]
     complete: bool
 
 

@@ -78,6 +78,7 @@ class Channel:
         shaft: `pinion` or `gear`, on which a tangential accelerometer sits.
         frame: Of an oscillator on a base whose acceleration is measured: `absolute`, or `relative` to the base.
         hold: Of an input, whether it stays at each sample's value until the next one.
+        timing_error: Standard deviation in s by which a pinion's angle may be late, whose edges are known to a sample.
     """
 
     name: str
@@ -102,6 +103,7 @@ class Channel:
     shaft: str | None = None
     frame: str | None = None
     hold: bool = False
+    timing_error: float = 0.0
 
     def __post_init__(self) -> None:
         if np.ndim(self.values) != 1:

@@ -123,7 +123,8 @@ def _channel(channel: Channel, keys: Sequence[str]) -> dict[str, object]:
     """The column, its unit and what differs from the defaults of a sensor; `keys` are those that it may have."""
     declared: dict[str, object] = {"column": channel.name, "unit": channel.declared_unit}
     for name, unit in (
-        ("lowpass", "Hz"), ("highpass", "Hz"), ("delay", "s"), ("radius", "m"),
+        ("lowpass", "Hz"), ("highpass", "Hz"), ("delay", "s"), ("timing_error", "s"),
+        ("radius", "m"),
         ("range", channel.unit), ("noise", channel.unit),
     ):  # fmt: skip
         value = getattr(channel, name)

@@ -30,6 +30,7 @@ class Rig:
         indexed: Whether the angle of all records counts from one mark, so that a tooth has one number.
         traits: Those of the system.
         spring: The parameter of the system that is its constant stiffness; None where it has a mesh.
+        standing: Whether its shafts stand in all records.
     """
 
     system: str
@@ -44,6 +45,7 @@ class Rig:
     indexed: bool = True
     traits: frozenset[Trait] = frozenset()
     spring: str | None = None
+    standing: bool = False
 
     def has(self, trait: Trait) -> bool:
         """Whether its system has a trait."""

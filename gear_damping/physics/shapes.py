@@ -11,7 +11,7 @@ from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import Values
 
 # Widths within which the sign change of a friction is fitted. A mesh rings fast beside its sampling, and steps that
-# follow a sharper change cost too much; a drive that stands still needs one, or it creeps under its load.
+# follow a sharper change cost too much; what comes to rest needs one, or it creeps under its load.
 WIDTH_OF_MESH, WIDTH_AT_REST = (0.02, 0.5), (0.001, 0.5)
 HARMONICS_AT_ONCE = 4  # in a kernel: lists are filled up to a multiple of it
 SMALLEST = 1e-100  # natural size below which a power counts as zero, so that its slope stays finite
@@ -19,7 +19,7 @@ SMALLEST = 1e-100  # natural size below which a power counts as zero, so that it
 
 def friction_width(rig: Rig) -> tuple[float, float]:
     """Least and largest width of the sign change of a friction that is fitted on a rig."""
-    return WIDTH_OF_MESH if rig.has(Trait.TEETH) else WIDTH_AT_REST
+    return WIDTH_OF_MESH if rig.has(Trait.TEETH) and not rig.standing else WIDTH_AT_REST
 
 
 def power_of_size(value: Tensor, exponent: Tensor) -> Tensor:

@@ -1,11 +1,13 @@
 """Of an effect of many numbers and one in it that takes most of the same, the smaller comes first; made-up fits."""
 
 from types import SimpleNamespace
+from unittest.mock import patch
 
 import pytest
 import torch
 
 from gear_damping.explanation.settings import SearchSettings
+from gear_damping.explanation.trials import bench as module
 from tests.explanation.decisions.made_up import bench
 
 AXES = torch.eye(5, dtype=torch.float64)
@@ -38,3 +40,28 @@ def test_an_effect_of_many_numbers_waits_for_one_in_it_that_takes_most(small, wa
     found = bench(SearchSettings())
     assert found._is_enough(small, score(EVERY_TOOTH, 0.9), 8.0) == waits
     assert not found._is_enough(fit(EVERY_TOOTH, 2.0), score(ECCENTRIC, 0.7), 8.0)
+
+
+@pytest.mark.parametrize(
+    ("promised", "order"),
+    [
+        ({"every": 0.8, "one": 0.5}, ["one", "every"]),
+        ({"every": 0.8, "one": 0.3}, ["every", "one"]),
+        ({"every": 0.8, "two": 0.5, "one": 0.3}, ["two", "every", "one"]),
+    ],
+)
+def test_what_promises_too_little_to_spare_the_larger_one_is_fitted_after_it(promised, order):
+    strengths, fitted = {"one": 1, "two": 2, "every": 30}, []
+    ranked = [
+        SimpleNamespace(candidate=SimpleNamespace(name=name, strengths=range(strengths[name]), replaced=()), gain=gain,
+                        columns=AXES[:, place : place + 1], direction=AXES[:, place])
+        for place, (name, gain) in enumerate(promised.items())
+    ]  # fmt: skip
+    found = bench(SearchSettings())
+    base = SimpleNamespace(fitted=SimpleNamespace(cost=8.0, converged=True))
+    with (
+        patch.object(module, "chosen", lambda ranked, *_, **__: ranked),
+        patch.object(module.Bench, "full_fit", lambda self, score, *_: fitted.append(score.candidate.name)),
+    ):
+        found.full_fits(ranked, base, base)
+    assert fitted == order

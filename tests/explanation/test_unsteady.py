@@ -53,13 +53,14 @@ def test_a_measured_angle_is_followed_as_it_is():
 @pytest.mark.parametrize("later", [0.0, 0.4])
 def test_angle_and_speed_of_a_shaft_that_speeds_up(later):
     values = {"pinion_speed": 3.0, "pinion_acceleration": -2.0, "pinion_jerk": 1.2, "pinion_angle": 0.1}
+    values |= {"angle_error": 0.04, "angle_error_rate": -0.3}
     given = {**values, "n_teeth_pinion": 20.0, "n_teeth_gear": 50.0, "mesh_phase": 0.3, "gear_phase": 0.2}
     given = {name: torch.tensor([value], dtype=torch.float64) for name, value in given.items()}
     given |= GearPair().begun_later(given, torch.tensor([later], dtype=torch.float64))
     turned = GearPair().rotations(torch.tensor([0.7], dtype=torch.float64), {}, given)
     end = 0.7 + later
-    angle = 0.1 + quad(lambda t: 3.0 + quad(lambda s: -2.0 + 1.2 * s, 0, t)[0], 0, end)[0]
-    speed = 3.0 + quad(lambda t: -2.0 + 1.2 * t, 0, end)[0]
+    angle = 0.1 + 0.04 - 0.3 * end + quad(lambda t: 3.0 + quad(lambda s: -2.0 + 1.2 * s, 0, t)[0], 0, end)[0]
+    speed = 3.0 - 0.3 + quad(lambda t: -2.0 + 1.2 * t, 0, end)[0]
     found = SimpleNamespace(**{name: (float(r.angle), float(r.speed)) for name, r in turned.items()})
     assert found.pinion == pytest.approx((angle, speed), rel=1e-12)
     assert found.gear == pytest.approx((0.4 * angle + 0.2, 0.4 * speed), rel=1e-12)

@@ -82,6 +82,7 @@ def _channel(system: str, name: str, column: str, **more: object) -> dict:
 def _gear(channels: dict, **record: object) -> dict:
     torque = {name: _channel("gear_pair", name, "b") for name in ("pinion_torque", "gear_torque")}
     angle = {"pinion_angle": _channel("gear_pair", "pinion_angle", "a", polarity=1)}
+    angle["pinion_angle"]["timing_error"] = {"value": 3e-6, "unit": "s"}
     base = {"name": "one", "file": "data.npz", "role": "fit", "mesh_index": False}
     timed = {"time": {"column": "t", "unit": "s"}}
     return {"system": "gear_pair", "segments": {"value": 0.05, "unit": "s"},

@@ -83,21 +83,27 @@ def tacho(swing, rate, seconds, once=1):
 @pytest.mark.parametrize("drift", [0.0, 3.0, -8.0])  # rad/s^2
 def test_square_pulses_of_an_even_rotation_are_told_better_than_to_a_sample(drift):
     time, signal, rises = tacho(lambda t: 0.3 + 141.7 * t + drift * t**2 / 2, 50e3, 0.7)
-    rounded, found = (read(signal, time, 2.5) for read in (rising_edges, edges_of_square_pulses))
+    rounded, (found, late) = (read(signal, time, 2.5) for read in (rising_edges, edges_of_square_pulses))
     assert found.shape == rises.shape
+    assert abs((found - rises).mean()) < 4 * late
+    assert late < 0.7 * np.std(rounded - rises)
     assert np.std(found - rises) < 0.7 * np.std(rounded - rises)
     assert np.abs(found - rises).max() < 0.6 / 50e3
 
 
 def test_edges_that_swing_by_more_than_a_sample_stay_where_they_are():
     time, signal, _ = tacho(lambda t: 0.3 + 140 * t + 0.05 * np.sin(2 * pi * 31 * t), 50e3, 0.7)
-    np.testing.assert_array_equal(edges_of_square_pulses(signal, time, 2.5), rising_edges(signal, time, 2.5))
+    found, late = edges_of_square_pulses(signal, time, 2.5)
+    np.testing.assert_array_equal(found, rising_edges(signal, time, 2.5))
+    assert late == 0.0
 
 
 def test_pulses_that_rise_slowly_tell_their_edges_between_samples():
     time = np.arange(7000) / 1000
     signal = np.sin(2 * pi * 7.3 * time + 1e-3 * np.sin(2 * pi * 2.9 * time))
-    np.testing.assert_array_equal(edges_of_square_pulses(signal, time, 0.0), rising_edges(signal, time, 0.0))
+    found, late = edges_of_square_pulses(signal, time, 0.0)
+    np.testing.assert_array_equal(found, rising_edges(signal, time, 0.0))
+    assert late == 0.0
 
 
 def test_two_encoders_give_the_transmission_error(bench):

@@ -7,10 +7,13 @@ import numpy as np
 import pytest
 
 from gear_damping.errors import InputError
+from gear_damping.identification.observation import fit_record
 from gear_damping.measurement.load import load_measurement
 from gear_damping.measurement.record import Channel, Quantity, Record
 from gear_damping.measurement.write import write_measurement
+from gear_damping.physics.systems.gear_pair import GearPair
 
+UNLIKE = {"name", "values", "unit", "hold", "timing_error"}  # none that an acceleration has
 DIFFERENT = {
     "lowpass": 3e3, "lowpass_order": 4, "highpass": 2.0, "highpass_order": 2, "coupling": "AC", "delay": 1e-4,
     "range": 4.0, "noise": 0.25, "uncertainty": 0.03, "polarity": -1, "gain": -4.0, "datum": "arbitrary",
@@ -27,7 +30,7 @@ def _of(system: str, response: Channel, **others: Channel) -> Record:
                   "balanced" if system == "gear_pair" else None, system == "gear_pair")  # fmt: skip
 
 
-@pytest.mark.parametrize("name", sorted({field.name for field in fields(Channel)} - {"name", "values", "unit", "hold"}))
+@pytest.mark.parametrize("name", sorted({f.name for f in fields(Channel)} - UNLIKE))
 def test_every_field_of_a_channel_is_written_and_read(name, tmp_path):
     values = np.random.default_rng(1).standard_normal(40)
     system = "oscillator" if name == "frame" else "gear_pair"
@@ -57,6 +60,19 @@ def test_what_could_not_be_read_back_is_not_written(tmp_path):
     with pytest.raises(InputError, match=r"acceleration\.shaft: is missing"):
         write_measurement(tmp_path / "new", "gear_pair", [_of("gear_pair", channel)])
     assert not (tmp_path / "new").exists()
+
+
+def test_how_late_an_angle_may_be_is_written_and_read(tmp_path):
+    values = np.random.default_rng(1).standard_normal(40)
+    angle = Channel("pinion_angle", np.arange(40) / 100, "rad", datum="arbitrary", timing_error=3e-6)
+    record = _of("gear_pair", Channel("transmission_error", values, "m"), pinion_angle=angle)
+    read = load_measurement(write_measurement(tmp_path, "gear_pair", [record], None, 0.002)).records[0]
+    assert read.channels["pinion_angle"].timing_error == 3e-6
+    own = {p.name: p for p in fit_record(read, GearPair).own if p.name.startswith("angle")}
+    assert {name: p.expected for name, p in own.items()} == {"angle_error": 0.0, "angle_error_rate": 0.0}
+    late = 3e-6 * 100.0  # s, of 100 rad/s
+    assert own["angle_error"].deviation == pytest.approx(late)
+    assert own["angle_error_rate"].deviation == pytest.approx(12**0.5 * late / 3.9e-3)
 
 
 @pytest.mark.parametrize("hold", [False, True])

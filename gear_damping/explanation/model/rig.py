@@ -8,7 +8,7 @@ from torch import Tensor
 
 from gear_damping.errors import InputError
 from gear_damping.explanation.evidence.declared_units import length_unit
-from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.evidence.records import Evidence, all_stand
 from gear_damping.explanation.model.hypothesis import Hypothesis
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.physics.cause import Rig
@@ -57,6 +57,7 @@ def rig_of(base: Hypothesis, evidence: Evidence, residuals: Residuals | None = N
     lines = strongest_orders(residuals or (), pinion, gear, values["pinion_speed"])
     harmonics = max(_harmonics(record, pinion, values["pinion_speed"]) for record in evidence.fit)
     teeth = {"n_teeth_pinion": pinion, "n_teeth_gear": gear, "indexed": evidence.has_index}
+    teeth["standing"] = all_stand(evidence.fit)
     return Rig(mesh_harmonics=harmonics, lines=lines, **teeth, **common)
 
 

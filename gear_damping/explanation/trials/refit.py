@@ -24,6 +24,7 @@ LEAST_PREDICTED_GAIN = 0.3  # of the first one's, for a full fit of one that res
 BLOCK_TIMES = 6.0  # characteristic times of a block of the paired test,
 FEWEST_BLOCKS = 8  # but at least so many blocks: the variance of fewer is anybody's guess
 SHORTEST_BLOCK = 4  # samples, however short the characteristic time is beside them
+JOINS = 0.5  # of the way to the cost that is to be reached, from where what joins later may take the rest
 CAUTIOUS = 0.3  # of the linearised optimum: the second start, where the first one leads too far
 FIRST_PART = 0.25  # of the records, by which the better start is chosen
 ONE = 1e-9  # share of the starts that goes on: the best
@@ -125,7 +126,8 @@ def refitted(
 ) -> Refit | None:
     """The candidate's full fit from `outcome`, held against it or another; None where the fit ran away.
 
-    A fit that will not get the cost below `reach` is not carried to its end, and what would join later does not join.
+    A fit that will not get the cost below `reach` is not carried to its end. What joins later does so where the rest is
+    half of the way there: a friction that turns too softly leaves most of what it would take.
     """
     candidate = score.candidate
     hypothesis = candidate.hypothesis
@@ -133,7 +135,8 @@ def refitted(
     rounds = Rounds((FIRST_ITERATIONS, LAST_ITERATIONS), (FIRST_PART * evidence.duration, None), kept)
     initial = InitialValues(_starts(score), outcome, score.own)
     found = fit_hypothesis(hypothesis, evidence, initial, rounds, ends, solver)
-    if candidate.later and found.fitted.cost <= reach:
+    gone, wanted = (max(outcome.fitted.cost - cost, 0.0) for cost in (found.fitted.cost, reach))
+    if candidate.later and gone >= JOINS * wanted:
         found = fit_hypothesis(_freed(found, candidate), evidence, InitialValues(after=found), ends=ends, solver=solver)
     if not found.is_finite:
         return None

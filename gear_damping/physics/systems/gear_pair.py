@@ -51,6 +51,8 @@ class GearPair(System):
         Parameter("pinion_acceleration", "rad/s^2", 0.0, "rate of the pinion's speed at the start", -1e8, 1e8),
         Parameter("pinion_jerk", "rad/s^3", 0.0, "rate of its acceleration", -1e12, 1e12),
         Parameter("pinion_angle", "rad", 0.0, "pinion angle at the start"),
+        Parameter("angle_error", "rad", 0.0, "true pinion angle less the recorded or stated one, at the start"),
+        Parameter("angle_error_rate", "rad/s", 0.0, "its rate", -1e4, 1e4),
         Parameter("mesh_phase", "rad", 0.0, "mesh angle at pinion angle zero"),
         Parameter("gear_phase", "rad", 0.0, "gear angle at pinion angle zero"),
         Parameter("initial_displacement", "m", 0.0, "transmission error at the start"),
@@ -122,6 +124,7 @@ class GearPair(System):
             angle, speed = inputs["pinion_angle"], inputs["pinion_angle_rate"]
         else:
             angle, speed = _turned(p, time)
+        angle, speed = angle + p["angle_error"] + time * p["angle_error_rate"], speed + p["angle_error_rate"]
         ratio = p["n_teeth_pinion"] / p["n_teeth_gear"]
         return {
             "pinion": Rotation(angle, speed),
@@ -133,7 +136,8 @@ class GearPair(System):
         """Where the shaft is by then, and how fast it turns."""
         angle, speed = _turned(values, seconds)
         faster = values["pinion_acceleration"] + seconds * values["pinion_jerk"]
-        return {"pinion_angle": angle, "pinion_speed": speed, "pinion_acceleration": faster}
+        later = values["angle_error"] + seconds * values["angle_error_rate"]
+        return {"pinion_angle": angle, "pinion_speed": speed, "pinion_acceleration": faster, "angle_error": later}
 
 
 def _turned(p: Values, time: Tensor) -> tuple[Tensor, Tensor]:
