@@ -12,6 +12,11 @@ def columns(samples, n, dependent):
     return found
 
 
+def test_of_no_columns_there_is_nothing():
+    basis, sizes, turned = tall_svd(torch.zeros(9, 0, dtype=torch.float64))
+    assert (basis.shape, sizes.shape, turned.shape) == ((9, 0), (0,), (0, 0))
+
+
 @pytest.mark.parametrize("dependent", [1.0, 1e-3, 1e-6, 0.0])
 @pytest.mark.parametrize("n", [1, 2, 7])
 def test_it_is_that_of_the_general_one(n, dependent):

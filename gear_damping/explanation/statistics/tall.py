@@ -12,7 +12,7 @@ def tall_svd(columns: Tensor) -> tuple[Tensor, Tensor, Tensor]:
     By the Gram matrix, which takes a quarter of the time, where the columns are far enough from dependent for that.
     """
     squares, turned = torch.linalg.eigh(columns.T @ columns)
-    if not bool(squares[0] > INDEPENDENT * squares[-1]):
+    if not len(squares) or not bool(squares[0] > INDEPENDENT * squares[-1]):
         return torch.linalg.svd(columns, full_matrices=False)
     sizes, turned = squares.flip(0).sqrt(), turned.flip(1)
     return columns @ (turned / sizes), sizes, turned.T
