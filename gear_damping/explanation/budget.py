@@ -28,6 +28,7 @@ class Budget:
     not_tried: list[str] = field(default_factory=list)
     _begun: float = field(init=False)
     _look: float = field(default=0.0, init=False)
+    _is_first: bool = field(default=False, init=False)
 
     def __post_init__(self) -> None:
         """Begin."""
@@ -36,7 +37,7 @@ class Budget:
     @property
     def spent(self) -> bool:
         """Whether the time for the search is over."""
-        kept = min(LOOKS_LEFT * self._look, MOST_KEPT * 60 * self.minutes)
+        kept = 0.0 if self._is_first else min(LOOKS_LEFT * self._look, MOST_KEPT * 60 * self.minutes)
         return self._is_over(SEARCH_SHARE) or self.clock() - self._begun + kept > 60 * self.minutes
 
     def _is_over(self, share: float) -> bool:
@@ -53,6 +54,15 @@ class Budget:
         begun = self.clock()
         yield
         self._look = max(self._look, self.clock() - begun)
+
+    @contextmanager
+    def trying(self, is_first: bool) -> Iterator[None]:
+        """Around the trial of a cause: the first one has the kept time too, as without it there is nothing to test."""
+        self._is_first = is_first
+        try:
+            yield
+        finally:
+            self._is_first = False
 
     @property
     def sentence(self) -> str:

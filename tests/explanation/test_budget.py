@@ -41,6 +41,21 @@ def test_what_comes_last_has_time_when_the_search_is_over():
         assert made.all_spent is is_over
 
 
+def test_the_first_cause_is_tried_in_the_time_that_is_kept_too():
+    clock = Clock()
+    made = Budget(5.0, clock)
+    with made.looking():
+        clock.now = 100.0
+    cases = ((140.0, False, False), (160.0, False, True), (250.0, False, True), (260.0, True, True))
+    for second, first, further in cases:
+        clock.now = second
+        with made.trying(is_first=True):
+            assert made.spent is first
+        with made.trying(is_first=False):
+            assert made.spent is further
+        assert made.spent is further
+
+
 def test_the_last_fits_go_on_in_the_time_that_was_kept_for_them():
     clock = Clock()
     budget = Budget(5.0, clock)

@@ -58,7 +58,7 @@ def test_what_promises_too_little_to_spare_the_larger_one_is_fitted_after_it(pro
         for place, (name, gain) in enumerate(promised.items())
     ]  # fmt: skip
     found = bench(SearchSettings())
-    base = SimpleNamespace(fitted=SimpleNamespace(cost=8.0, converged=True))
+    base = SimpleNamespace(fitted=SimpleNamespace(cost=8.0, converged=True), hypothesis=SimpleNamespace(causes=()))
     with (
         patch.object(module, "chosen", lambda ranked, *_, **__: ranked),
         patch.object(module.Bench, "full_fit", lambda self, score, *_: fitted.append(score.candidate.name)),

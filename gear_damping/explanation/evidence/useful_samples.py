@@ -15,7 +15,7 @@ from gear_damping.identification.output_error.segments import part
 from gear_damping.physics.systems.traits import Trait
 
 TURNS = 2.0  # of the slower shaft that a stretch holds: less does not tell a line of it from what changes slowly
-MOST_SHARES = 4.0  # of a record's share of the samples, that these turns may take
+MOST_SHARES = 2.0  # of a record's share of the samples, that these turns may take
 STARTS = 16  # places in a record at which a stretch may begin
 AS_LOUD = 0.5  # of the energy of the loudest stretch: the first one with as much is taken
 

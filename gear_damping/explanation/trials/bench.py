@@ -141,11 +141,12 @@ class Bench:
         for score in sorted(worth, key=lambda score: (score.gain < enough, len(score.candidate.strengths))):
             if any(self._is_enough(fit, score, base) for fit in fits):
                 continue
-            if self.budget.refuses(score.candidate.name):
-                continue
-            most = max((base - fit.outcome.fitted.cost for fit in fits), default=0.0)
-            goal = min(reach, self._reach(most, base, against)) if most > 0 else reach
-            fit = self.full_fit(score, outcome, against, goal) if score.gain > 0 else None
+            with self.budget.trying(is_first=not fits and not outcome.hypothesis.causes):
+                if self.budget.refuses(score.candidate.name):
+                    continue
+                most = max((base - fit.outcome.fitted.cost for fit in fits), default=0.0)
+                goal = min(reach, self._reach(most, base, against)) if most > 0 else reach
+                fit = self.full_fit(score, outcome, against, goal) if score.gain > 0 else None
             if fit is None and score.gain > 0:
                 self.failed[score.candidate.name] = "its full fit ran away"
             fits += [] if fit is None else [fit]
