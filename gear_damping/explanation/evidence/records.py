@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import floor, log10, pi
 
+from gear_damping.explanation.evidence.release import released_at
 from gear_damping.explanation.evidence.silent_end import audible_samples
 from gear_damping.explanation.evidence.slow_rotation import gear_ratio, with_slow_rotation
 from gear_damping.explanation.evidence.speed_of_gear import with_speed_of_gear
@@ -52,6 +53,7 @@ class Evidence:
         has_index: Whether the angle of all records counts from one mark.
         mesh_index: Whether the file says that it counts from the zero of the mesh.
         silent_s: Seconds at the ends of records that were left out, because the motion had died away.
+        waited_s: Seconds before the motion was free at the beginnings of records, left out too.
         settings: Thresholds of the search.
         is_over: Whether the time for fits is over.
         input_noise: Whether the noise of measured loads was taken out.
@@ -73,6 +75,7 @@ class Evidence:
     has_index: bool = True
     mesh_index: bool = False
     silent_s: float = 0.0
+    waited_s: float = 0.0
     settings: SearchSettings = field(default_factory=SearchSettings)
     is_over: Callable[[], bool] = lambda: False
     input_noise: bool = False
@@ -162,7 +165,10 @@ def evidence_of(measurement: Measurement) -> Evidence:
     used = [record for record in measurement.records if record.role != "reference"]
     seen = [fit_record(record, base, spring) for record in used]
     seen = with_speed_of_gear(seen, used, gear_ratio(known.values)) if base.has(Trait.SHAFTS) else seen
-    records = [(one, record.role) for one, record in zip(seen, used, strict=True)]
+    dies_away = base.has(Trait.REST) or all_stand(seen)
+    free = [_released(record) for record in seen] if dies_away else seen
+    waited_s = sum(whole.duration - left.duration for whole, left in zip(seen, free, strict=True))
+    records = [(one, record.role) for one, record in zip(free, used, strict=True)]
     modes = {record.gear_torque_mode for record in used} - {None}
     mode = "held" if any("gear_torque" in r.conditions for r, _ in records) else next(iter(modes), "balanced")
     if base.has(Trait.REST):
@@ -170,7 +176,6 @@ def evidence_of(measurement: Measurement) -> Evidence:
     elif mode == "balanced":  # else torques tell how the shafts speed up
         swaying = with_slow_rotation([record for record, _ in records], gear_ratio(known.values))
         records = [(record, role) for record, (_, role) in zip(swaying, records, strict=True)]
-    dies_away = base.has(Trait.REST) or all_stand([record for record, _ in records])
     fit, holdout = _roles(records, dies_away)
     one, silent = not holdout, 0.0
     if one:
@@ -189,6 +194,7 @@ def evidence_of(measurement: Measurement) -> Evidence:
         has_index=all("pinion_angle" in record.inputs for record, _ in records) or not base.has(Trait.SHAFTS),
         mesh_index=all(record.mesh_index for record in used),
         silent_s=silent,
+        waited_s=waited_s,
     )
 
 
@@ -235,6 +241,12 @@ def condition_of(record: FitRecord) -> tuple[float, float]:
     speed, torque = record.conditions.get("pinion_speed", 0.0), record.conditions.get("pinion_torque", 0.0)
     digits = -floor(log10(max(abs(torque), 1e-9))) + 1
     return round(speed * 30 / pi, -1), round(torque, digits)
+
+
+def _released(record: FitRecord) -> FitRecord:
+    """A record from where its motion is free, under its name."""
+    first = released_at(record)
+    return replace(part(record, slice(first, None)), group=record.group) if first else record
 
 
 def _audible(records: Sequence[FitRecord]) -> tuple[list[FitRecord], float]:

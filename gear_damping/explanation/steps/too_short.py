@@ -42,13 +42,16 @@ def too_short(evidence: Evidence, nominal: Outcome) -> str:
 
 
 def died_away(evidence: Evidence) -> str:
-    """A sentence where the ends of records were left out."""
-    if not evidence.silent_s:
-        return ""
-    return (
+    """Sentences where ends of records were left out, or what came before their motion was free."""
+    before = (
+        f"{evidence.waited_s:.3g} s at the beginning, before the motion is free, are left out: no channel holds what "
+        "moves the rig until then."
+    )
+    behind = (
         f"The last {evidence.silent_s:.3g} s hold only noise and are left out: what is held out is the end of the "
         "motion (records with `role: holdout` are taken whole)."
     )
+    return " ".join([*[before] * (evidence.waited_s > 0), *[behind] * (evidence.silent_s > 0)])
 
 
 def _characteristic(evidence: Evidence, nominal: Outcome) -> tuple[float, str]:
