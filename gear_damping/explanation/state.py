@@ -100,6 +100,10 @@ class State:
         """The effects that were accepted."""
         return frozenset(cause.name for cause in self.accepted)
 
+    def is_at_bound(self, cause: Accepted) -> bool:
+        """Whether a parameter of a cause has run into a bound, in its own full fit or beside the other causes."""
+        return cause.refit.is_at_bound or replace(cause.refit, outcome=self.outcome).is_at_bound
+
     @property
     def needs_known_size(self) -> bool:
         """Whether a further cause counts only where its size is known: beside so many a law bends to what is left."""

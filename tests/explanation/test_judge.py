@@ -25,6 +25,7 @@ def search(visible=True, accepted=(), left=False, sensor=1.0, rest=1.0, not_rand
     seen = [SimpleNamespace(visible=one, taken=share) for one, share in ((visible, 0.8), (left, not_random))]
     bench = SimpleNamespace(settings=SearchSettings())
     found = SimpleNamespace(bench=bench, accepted=accepted, seen=seen[0], left=seen[1], nominal=sensor, outcome=rest)
+    found.is_at_bound = lambda cause: cause.refit.is_at_bound
     found.beyond_sensor = lambda misfit: excess_of(0.1 * max(misfit - 1.0, 0.0), misfit)
     return found
 

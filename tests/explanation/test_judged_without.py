@@ -8,6 +8,8 @@ import pytest
 from gear_damping.explanation.answer import judged as module
 from gear_damping.explanation.answer.judged import judged
 from gear_damping.explanation.settings import SearchSettings
+from gear_damping.explanation.state import State
+from gear_damping.explanation.trials.refit import Refit
 from gear_damping.physics.catalogue import effect_class
 
 
@@ -67,7 +69,7 @@ def test_one_after_another_is_doubted():
 def test_a_cause_at_its_bound_is_doubted_where_nothing_else_is():
     refits = {name: SimpleNamespace(is_at_bound=name == "pitch") for name in ("a", "pitch")}
     bounded = [SimpleNamespace(name=name, refit=refit) for name, refit in refits.items()]
-    state = SimpleNamespace(accepted=bounded)
+    state = SimpleNamespace(accepted=bounded, is_at_bound=lambda cause: cause.refit.is_at_bound)
     with (
         patch.object(module, "swinging_on", lambda _: iter(())),
         patch.object(module, "stand_ins", lambda _: iter(())),
@@ -79,6 +81,19 @@ def test_a_cause_at_its_bound_is_doubted_where_nothing_else_is():
         patch.object(module, "stand_ins", lambda _: iter([stand_in])),
     ):
         assert module._doubtful(state) == ("a", "but a line takes more.")
+
+
+@pytest.mark.parametrize(
+    ("alone", "beside", "doubted"), [(2.0, 2.0, False), (4.0, 2.0, True), (2.0, 4.0, True), (2.0, 1.01, True)]
+)
+def test_a_cause_may_run_into_its_bound_beside_the_others_only(alone, beside, doubted):
+    def outcome(size):
+        free = [SimpleNamespace(name=name, lower=low, upper=4.0) for name, low in (("law.size", 1.0), ("gap", 2.0))]
+        return SimpleNamespace(problem=SimpleNamespace(free=free), values={"law.size": size, "gap": 2.0})
+
+    score = SimpleNamespace(candidate=SimpleNamespace(name="law", sharpest=()))
+    cause = SimpleNamespace(refit=Refit(score, outcome(alone), 1.0, 9.0, 9.0, is_seen_in_fit=True))
+    assert State(None, None, outcome(beside)).is_at_bound(cause) is doubted
 
 
 @pytest.mark.parametrize(

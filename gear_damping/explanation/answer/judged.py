@@ -107,7 +107,7 @@ def _doubtful(state: State) -> tuple[str, str]:
         return name, SWINGS_ON.format(name)
     for one in stand_ins(state):
         return one.cause, one.sentence
-    return next((cause.name for cause in state.accepted if cause.refit.is_at_bound), ""), ""
+    return next((cause.name for cause in state.accepted if state.is_at_bound(cause)), ""), ""
 
 
 def _taken_of_all(state: State) -> float:

@@ -128,7 +128,7 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
     if is_part and is_unsteady:
         text = f"{missing}. {said[0].upper()}{said[1:]} would take part of it; most of it looks random, and is not."
         return Verdict(UNEXPLAINED, (text, *known.unsettled))
-    if (is_part or is_unsteady) and any(cause.refit.is_at_bound for cause in found.accepted):
+    if (is_part or is_unsteady) and any(found.is_at_bound(cause) for cause in found.accepted):
         return _not_established(found, before, known, AT_BOUND)
     if is_part or is_unsteady:  # most of the gap is still there
         text = f"{missing}. Part of it has a name: {said}. What is left looks random, and is more than that."
@@ -178,7 +178,7 @@ def _is_part_named(found: State, share: float, after: Excess, known: Known) -> b
     What has another size in other records, or has run into the end of what it can be, stands in for something else,
     however much it takes.
     """
-    if known.is_one is False or any(cause.refit.is_at_bound for cause in found.accepted):
+    if known.is_one is False or any(found.is_at_bound(cause) for cause in found.accepted):
         return False
     settings = found.bench.settings
     nobody_knows = known.is_one is None and known.of_fit >= settings.taken_by_all  # but nearly all of one record

@@ -83,7 +83,7 @@ class Bench:
         residuals = list(zip(self.evidence.fitted, outcome.fit_residuals, strict=True))
         tried = candidates_for(outcome.hypothesis, self.evidence, residuals)
         tried = tried if names is None else [candidate for candidate in tried if candidate.name in names]
-        return scores(outcome, tried, self.noise.value, self.solver)
+        return scores(outcome, tried, self.noise.value, self.solver, self.settings.taken_by_all)
 
     def noise_cost(self, outcome: Outcome) -> float:
         """Sum of squares that noise alone leaves of the fitted records."""

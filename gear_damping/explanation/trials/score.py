@@ -1,7 +1,8 @@
 """Step 5b: what each candidate could explain, by its sensitivity with the nuisance projected out (score test)."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from math import inf
 
 import torch
 from torch import Tensor
@@ -27,6 +28,7 @@ NEGLIGIBLE = 1e-3  # of the residual, for what an effect tried as a whole would 
 SINGULAR = 1e-9  # of the largest: a direction that columns do not have
 MOST_SAMPLES = 4_000_000  # that are predicted at once
 CONTAINED = 0.99  # cosine with what another can do, from which it contains this one
+WIDE = 12  # columns of a candidate: the teeth of one gear, and of few other effects a tenth of them
 VISIBLE = 5.0  # standard deviations at which an effect counts as visible
 
 
@@ -104,22 +106,25 @@ def scores(
     candidates: Sequence[Candidate],
     noise: float,
     solver: Solver | None = None,
-    report: Callable[[int, int], None] | None = None,
+    enough: float = inf,
 ) -> list[Score]:
-    """Every candidate's score, the most promising first."""
+    """Every candidate's score, the most promising first.
+
+    Those of many columns, as of an error of every tooth, are left out where another promises `enough` of the residual's
+    energy: what that leaves is asked about in the next round, by all of them.
+    """
     if not bool(outcome.fitted.prediction.sensitivity.isfinite().all()):
         return []  # beside a model that runs away nothing can be told
     project, residual = projected(outcome)
     orthogonal, residual = project(residual)[:, 0], residual[:, 0]
     base = Base(outcome, project, residual, orthogonal, _predicted(outcome), noise, solver)
     found: list[Score] = []
-    groups = _alike(candidates, len(residual))
+    groups = sorted(_alike(candidates, len(residual)), key=_is_wide)
     hypotheses = [group[0].hypothesis for group in groups]
     prepare_predictions([(h.model, h.given) for h in hypotheses], outcome.problem.records, solver)
     for group in groups:
-        found += _score_together(group, base)
-        if report:
-            report(len(found), len(candidates))
+        if not _is_wide(group) or max((score.gain for score in found), default=0.0) < enough:
+            found += _score_together(group, base)
     return with_other_sizes(sorted(found, key=lambda score: -score.gain))
 
 
@@ -153,6 +158,11 @@ def _alike(candidates: Sequence[Candidate], samples: int) -> list[list[Candidate
         most = max(1, MOST_SAMPLES // (samples * len(_probes(group[0], len(group[0].hypothesis.common))[0])))
         found += [group[i : i + most] for i in range(0, len(group), most)]
     return found
+
+
+def _is_wide(group: Sequence[Candidate]) -> bool:
+    """Whether each of its candidates has many columns."""
+    return len(_probes(group[0], len(group[0].hypothesis.common))[0]) >= WIDE
 
 
 def _varied(group: Sequence[Candidate]) -> list[FreeParameter]:

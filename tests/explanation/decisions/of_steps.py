@@ -166,12 +166,12 @@ def told_alone(settings: SearchSettings):
 def said(settings: SearchSettings, before, after, *, count=1, seen=True, rest=True, **known) -> str:
     """The word for a search that ended with so many causes."""
     declared = SimpleNamespace(sentence="a law", one_class=(), looks_like=())
-    own = {"confusable": (), "effect": SimpleNamespace(cause=declared), "refit": SimpleNamespace(is_at_bound=False)}
+    own = {"confusable": (), "effect": SimpleNamespace(cause=declared)}
     causes = tuple(SimpleNamespace(name=name, **own) for name in NAMES[:count])
     looked = [SimpleNamespace(visible=one, taken=0.5) for one in (seen, rest)]
     found = SimpleNamespace(
         bench=SimpleNamespace(settings=settings), accepted=causes, seen=looked[0], left=looked[1],
-        nominal=None, outcome=None, beyond_sensor=lambda _: left(0.0, 1.0),
+        nominal=None, outcome=None, beyond_sensor=lambda _: left(0.0, 1.0), is_at_bound=lambda _: False,
     )  # fmt: skip
     return verdict(found, before, after, Known(**known)).word
 
