@@ -5,10 +5,11 @@ from dataclasses import dataclass, replace
 
 from gear_damping.explanation.evidence.excess import Excess
 from gear_damping.explanation.evidence.noise import NoiseLevel
+from gear_damping.explanation.model.candidates import Candidate
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.trials.assess import Assessment
 from gear_damping.explanation.trials.bench import Bench
-from gear_damping.explanation.trials.refit import Refit
+from gear_damping.explanation.trials.refit import Refit, runs_into_bound
 from gear_damping.explanation.trials.score import Score
 from gear_damping.physics.terms import Effect
 
@@ -24,12 +25,23 @@ class Accepted:
         refit: Its full fit when it was accepted.
         share: Share of the excess that it took on left-out records.
         confusable: Other effects that fit no worse.
+        score: Its own score, where the full fit is that of another that was accepted with it.
     """
 
     name: str
     refit: Refit
     share: float
     confusable: tuple[str, ...]
+    score: Score | None = None
+
+    @property
+    def candidate(self) -> Candidate:
+        """The form in which it was tried."""
+        return (self.score or self.refit.score).candidate
+
+    def runs_into_bound(self, outcome: Outcome) -> bool:
+        """Whether a parameter of the effect is at a bound in a model."""
+        return runs_into_bound(self.name, outcome, self.candidate.sharpest)
 
     @property
     def effect(self) -> Effect:
@@ -55,6 +67,7 @@ class State:
         left: What those of the model hold.
         calibrations: How often the nominal model has been calibrated anew.
         unsized: Causes that were dropped because the records do not tell their size from none.
+        pruned: Causes that were not needed beside others.
     """
 
     bench: Bench
@@ -70,6 +83,7 @@ class State:
     left: Assessment | None = None
     calibrations: int = 0
     unsized: frozenset[str] = frozenset()
+    pruned: tuple[Accepted, ...] = ()
 
     @property
     def first(self) -> Excess:
@@ -102,7 +116,7 @@ class State:
 
     def is_at_bound(self, cause: Accepted) -> bool:
         """Whether a parameter of a cause has run into a bound, in its own full fit or beside the other causes."""
-        return cause.refit.is_at_bound or replace(cause.refit, outcome=self.outcome).is_at_bound
+        return cause.runs_into_bound(cause.refit.outcome) or cause.runs_into_bound(self.outcome)
 
     @property
     def needs_known_size(self) -> bool:

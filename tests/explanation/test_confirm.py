@@ -1,11 +1,13 @@
 """What held-out records decide when they are opened, on made-up residuals; and how records are left out before."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 from unittest.mock import patch
 
 import pytest
 import torch
 
+from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.model.cross_fit import folds_of
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import Accepted, State
@@ -53,6 +55,20 @@ def residuals_as_they_are():
         patch.object(confirm, "block_samples", lambda *_: [BLOCK]),
     ):
         yield
+
+
+@pytest.mark.parametrize(("beside", "named"), [(("a", "b"), ["a", "b"]), (("a", "c", "b"), ["a"]), (("b",), ["a"])])
+def test_a_cause_that_was_not_needed_beside_one_that_is_none_is_back(beside, named):
+    alone, before = model(cost=9.0, causes=("a",)), model(cost=2.0, causes=beside)
+    both = state_of([("a", ()), ("c", ())], model(causes=("a", "c")), without={"c": alone})
+    before.fitted.converged = True
+    back = Accepted("b", refit("b", before), 0.1, ())
+    state = replace(both, pruned=(back,), bench=replace(both.bench, budget=Budget(0.0)))
+    with patch.object(confirm, "excess", lambda *_: None):
+        found = confirm.without(confirm.Confirmed(state, None, None, None, 5.0, is_opened=True), "c").state
+    assert [cause.name for cause in found.accepted] == named
+    assert found.outcome is (before if len(named) > 1 else alone)
+    assert len(found.pruned) == 2 - len(named)
 
 
 def test_a_rival_that_held_out_records_refute_leaves_the_set():

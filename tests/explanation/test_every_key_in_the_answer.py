@@ -115,6 +115,7 @@ def channel(system: str, name: str, **more: object) -> dict:
     full = {
         "column": column, "unit": unit, "polarity": 1, "gain": 1.05, "hold": False, "uncertainty": 0.01,
         "range": {"value": 1e7 if column == "acc" else FULL_SCALE.get(name, 1e4), "unit": unit},
+        "timing_error": {"value": 1e-7, "unit": "s"},
         "delay": {"value": 1e-5, "unit": "s"}, "lowpass": {"value": 15e3, "unit": "Hz", "order": 2},
         "highpass": {"value": 20.0, "unit": "Hz", "order": 1}, "coupling": "DC",
         "noise": {"value": NOISE.get(name, 0.05), "unit": unit},

@@ -8,7 +8,7 @@ import pytest
 from gear_damping.explanation.answer import judged as module
 from gear_damping.explanation.answer.judged import judged
 from gear_damping.explanation.settings import SearchSettings
-from gear_damping.explanation.state import State
+from gear_damping.explanation.state import Accepted, State
 from gear_damping.explanation.trials.refit import Refit
 from gear_damping.physics.catalogue import effect_class
 
@@ -92,8 +92,11 @@ def test_a_cause_may_run_into_its_bound_beside_the_others_only(alone, beside, do
         return SimpleNamespace(problem=SimpleNamespace(free=free), values={"law.size": size, "gap": 2.0})
 
     score = SimpleNamespace(candidate=SimpleNamespace(name="law", sharpest=()))
-    cause = SimpleNamespace(refit=Refit(score, outcome(alone), 1.0, 9.0, 9.0, is_seen_in_fit=True))
+    cause = Accepted("law", Refit(score, outcome(alone), 1.0, 9.0, 9.0, is_seen_in_fit=True), 0.9, ())
     assert State(None, None, outcome(beside)).is_at_bound(cause) is doubted
+    other = SimpleNamespace(candidate=SimpleNamespace(name="other", sharpest=()))
+    first = Accepted("law", Refit(other, outcome(alone), 1.0, 9.0, 9.0, is_seen_in_fit=True), 0.5, (), score)
+    assert State(None, None, outcome(beside)).is_at_bound(first) is doubted  # of a pair, by its own name
 
 
 @pytest.mark.parametrize(

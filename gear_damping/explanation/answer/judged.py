@@ -69,7 +69,7 @@ def _small(state: State) -> tuple[str, ...]:
 def _reported(said: Judged) -> Judged:
     """The same with the extended model's waves as they are reported."""
     state = said.found
-    tried = [cause.refit.score.candidate for cause in state.accepted]
+    tried = [cause.candidate for cause in state.accepted]
     return replace(said, found=replace(state, outcome=positive(state.outcome, tried))) if tried else said
 
 

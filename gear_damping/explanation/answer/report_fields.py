@@ -193,7 +193,7 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
             "confusable_with": [*cause.confusable, *cause.effect.cause.looks_like][: LARGEST_SET - 1],
             "status": statuses(judged.verdict.word),
             "fixed": _fixed(last, cause.name),
-            "options": dict(cause.refit.score.candidate.tried),
+            "options": dict(cause.candidate.tried),
             **by_record(last, cause.name, evidence),
         }
         for cause in found.accepted

@@ -3,7 +3,7 @@
 They tell what the causes are worth on records that nobody has looked at, and whether they are validated there at all.
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 from gear_damping.explanation.evidence.excess import Excess, excess
@@ -67,20 +67,32 @@ def confirmed(state: State, sealed: Sequence[FitRecord], measurement: Measuremen
 def without(found: Confirmed, name: str) -> Confirmed:
     """The search without one of its causes, the others fitted and held against held-out records anew.
 
+    One that was not needed beside it, and was accepted beside the others before it came, is back in its place.
+
     Args:
         found: The search.
         name: The cause.
     """
     state, evidence, bench = found.state, found.state.bench.evidence, found.state.bench
-    outcome = _fewer(state, name)
+    back = next((cause for cause in state.pruned if _is_beside(cause, state.names - {name})), None)
+    outcome = _fewer(state, name) if back is None else bench.until_converged(back.refit.outcome)
     if found.is_opened:
         outcome = opened(outcome, evidence, bench.solver, state.nominal.own)
     state = _dropped(state, name, outcome)
+    if back is not None:
+        bench.log(f"{back.name} is back in the place of {name}")
+        pruned = tuple(cause for cause in state.pruned if cause is not back)
+        state = replace(state, accepted=(*state.accepted, back), pruned=pruned)
     is_late = bench.budget.all_spent  # what is visible beside more causes is so beside fewer
     left = state.left if is_late else bench.assessed(outcome, bench.ranked(outcome))
     t, state = _t(state.nominal, outcome, state), replace(state, left=left)
     after = excess(outcome.holdout, evidence.held, found.noise, bench.settings) if found.is_opened else state.current
     return replace(found, state=state, after=after, t=t)
+
+
+def _is_beside(cause: Accepted, names: Collection[str]) -> bool:
+    """Whether a cause was accepted beside these and no others."""
+    return cause.name not in names and set(cause.refit.outcome.hypothesis.causes) == {*names, cause.name}
 
 
 def _fewer(state: State, name: str) -> Outcome:

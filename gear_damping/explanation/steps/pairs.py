@@ -87,7 +87,7 @@ def _with(pair: Pair, state: State) -> State:
         state = replace(state, accepted=(), outcome=state.nominal)
     outcome = bench.until_converged(pair.second.outcome)
     share = state.share_taken(outcome)
-    causes = [Accepted(fit.name, pair.second, share / PAIR, ()) for fit in (pair.first, pair.second)]
+    causes = [Accepted(fit.name, pair.second, share / PAIR, (), fit.score) for fit in (pair.first, pair.second)]
     bench.log(f"{pair.first.name} and {pair.second.name} take {100 * share:.1f} % of the excess on left-out records")
     return replace(state, outcome=outcome, accepted=(*state.accepted, *causes))
 
@@ -107,7 +107,8 @@ def _taken(fit: Refit, state: State) -> float:
 def _accepted(pairs: Sequence[Pair], current: Excess, state: State) -> Pair | None:
     """The best pair that is validated, or of those that do as well the smallest; None without one.
 
-    A law of which a part has run into a bound bends to what it is not: a pair with such a one is the last choice.
+    A law of which a part has run into a bound bends to what it is not: a pair with such a one is the last choice, and
+    takes no other's place.
     """
     bench, settings = state.bench, state.bench.settings
 
@@ -115,7 +116,7 @@ def _accepted(pairs: Sequence[Pair], current: Excess, state: State) -> Pair | No
         return (current.percent - bench.excess(pair.second.outcome).percent) / current.percent
 
     worth = [pair for pair in pairs if pair.second.t > settings.accepted_t and takes(pair) >= settings.least_share]
-    worth = [pair for pair in worth if pair.is_inside] or worth
+    worth = [pair for pair in worth if pair.is_inside] or [pair for pair in worth if not pair.replaces]
     best = min(worth, key=lambda pair: pair.second.outcome.left_out_cost, default=None)
     if best is None:
         return None

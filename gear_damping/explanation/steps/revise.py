@@ -74,7 +74,7 @@ def pruned(state: State) -> State:
         bench.log(f"{cause.name} is not needed beside the others")
         first, *others = [other for other in state.accepted if other is not cause]
         first = replace(first, share=first.share + cause.share)
-        state = replace(state, outcome=without, accepted=(first, *others))
+        state = replace(state, outcome=without, accepted=(first, *others), pruned=(*state.pruned, cause))
     return state
 
 

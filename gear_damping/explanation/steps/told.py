@@ -49,7 +49,7 @@ def _untold(state: State) -> tuple[Accepted, Outcome] | None:
         if not runs_away and is_told(state.outcome, cause.refit, bench.evidence):
             continue
         outcome = bench.without(state.outcome, cause.name)
-        is_missed = not runs_away and not cause.refit.score.candidate.non_nested and _explain_all(state)
+        is_missed = not runs_away and not cause.candidate.non_nested and _explain_all(state)
         if not is_missed or bench.is_as_good(outcome, state.outcome):
             found.append((cause, outcome))
     return min(found, key=lambda one: one[1].left_out_cost, default=None)

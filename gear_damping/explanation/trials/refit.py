@@ -1,6 +1,6 @@
 """Step 6: the full fit of a candidate, and whether left-out records validate it."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from math import inf, isclose
 
@@ -59,15 +59,19 @@ class Refit:
     @property
     def is_at_bound(self) -> bool:
         """Whether a parameter of the effect itself has run into a bound of what is tried."""
-        own = [p for p in self.outcome.problem.free if p.name.startswith(self.name + ".")]
-        values, sharpest = self.outcome.values, self.score.candidate.sharpest
-        ends = [(p, p.upper) for p in own] + [(p, p.lower) for p in own if p.name not in sharpest]
-        return any(isclose(values[p.name], end, rel_tol=AT_BOUND) for p, end in ends if end)
+        return runs_into_bound(self.name, self.outcome, self.score.candidate.sharpest)
 
     @property
     def name(self) -> str:
         """The effect."""
         return self.score.candidate.name
+
+
+def runs_into_bound(name: str, outcome: Outcome, sharpest: Collection[str]) -> bool:
+    """Whether a parameter of an effect is at a bound of what is tried, but for a sharp end."""
+    own = [p for p in outcome.problem.free if p.name.startswith(name + ".")]
+    ends = [(p, p.upper) for p in own] + [(p, p.lower) for p in own if p.name not in sharpest]
+    return any(isclose(outcome.values[p.name], end, rel_tol=AT_BOUND) for p, end in ends if end)
 
 
 def block_samples(outcome: Outcome, evidence: Evidence, records: Sequence[FitRecord]) -> list[int]:
