@@ -157,7 +157,8 @@ def test_a_full_fit_is_given_up_where_it_cannot_take_the_place_of_what_is_there(
         )
 
     monkeypatch.setattr("gear_damping.explanation.trials.bench.refitted", refitted)
-    before = SimpleNamespace(fitted=SimpleNamespace(cost=10.0, converged=True))
+    fitted = SimpleNamespace(cost=10.0, converged=True)
+    before = SimpleNamespace(fitted=fitted, hypothesis=SimpleNamespace(causes=()))
     made_up = bench(SearchSettings())
     ranked = [score(name, 0.5) for name in ("coulomb_friction", "power_law_damping")]
     made_up.full_fits(ranked, before, before, reach=5.0)
@@ -178,7 +179,8 @@ def test_full_fits_of_few_strengths_come_before_those_of_many(monkeypatch):
         )
 
     monkeypatch.setattr("gear_damping.explanation.trials.bench.refitted", refitted)
-    before = SimpleNamespace(fitted=SimpleNamespace(cost=10.0, converged=True))
+    fitted = SimpleNamespace(cost=10.0, converged=True)
+    before = SimpleNamespace(fitted=fitted, hypothesis=SimpleNamespace(causes=()))
     ranked = [score(name, 0.5) for name in ("coulomb_friction", "power_law_damping")]
     ranked[0].candidate.strengths = tuple(range(20))
     bench(SearchSettings()).full_fits(ranked, before, before)
