@@ -56,6 +56,17 @@ def test_without_a_name(visible, before, fitted, word):
     assert verdict(found, before, before, fitted=fitted).word == word
 
 
+@pytest.mark.parametrize(("threshold", "word"), [(330.0, UNEXPLAINED), (30.0, PARTLY)])
+def test_beside_a_rest_nothing_is_established_by_held_out_records_that_hardly_move(threshold, word):
+    found = search(accepted=(cause(),), left=True, sensor=200.0, rest=40.0, not_random=0.1)
+    before, after = (excess_of(percent, 0.9, threshold=threshold) for percent in (-1290.0, -1300.0))
+    said = verdict(found, before, after, is_one=True)
+    assert said.word == word
+    if word == UNEXPLAINED:
+        assert "too little motion" in said.sentences[0]
+        assert "%" not in said.sentences[0]
+
+
 def test_a_cause_of_other_sizes_beside_something_visible_is_a_part():
     """Nearly all is taken, but not by one size in all records, and what is left is not all random."""
     sizes = {True: EXPLAINED, False: PARTLY, None: EXPLAINED}

@@ -12,6 +12,7 @@ CONSISTENT, EXPLAINED, AMBIGUOUS = "consistent", "explained", "ambiguous"
 PARTLY, UNEXPLAINED, DATA_PROBLEM = "partly_explained", "unexplained", "data_problem"
 WHOLE = 100.0  # %: an effect that takes more than the whole signal is none
 LARGEST_SET = 4  # names that a sentence lists of causes that are not told apart
+TOO_STILL = "but something is left beside it, and the held-out records tell nothing of either."
 UNTOLD = "but there was no time to see whether it stands in for something else."
 NOT_LESS = "but what is visible and not random stays."
 AT_BOUND = "but it has run into the end of what it can be, and leaves most: it stands in for something else."
@@ -113,6 +114,8 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
         return _not_established(found, before, known, known.stands_in)
     if taken.is_faint and taken.share < settings.least_share:
         return _not_established(found, before, known, NOT_LESS)
+    if not explains_all and before.threshold >= WHOLE and not before.significant:
+        return _not_established(found, before, known, TOO_STILL)
     if not explains_all and known.is_untold:
         return _not_established(found, before, known, UNTOLD)
     if not explains_all:
@@ -244,6 +247,8 @@ def _missing(before: Excess) -> str:
         return "The simulation misses more than the held-out records move, which hold little motion"
     if before.percent > 0:
         return f"The simulation misses {before.percent:.3g} % of the signal's variance"
+    if before.threshold >= WHOLE:
+        return "The simulation misses something, and the held-out records hold too little motion to say how much"
     # what is missing shows in its form, not in its power
     return f"The simulation misses something, though less than {before.threshold:.2g} % of the signal's variance"
 
