@@ -100,9 +100,14 @@ def _extended(pulses: NDArray, angle: NDArray, time: NDArray) -> NDArray[np.floa
 
 def rising_edges(signal: NDArray[np.float64], time: NDArray[np.float64], threshold: float) -> NDArray[np.float64]:
     """(m,) the times in s at which a pulse train rises through `threshold`, between samples too."""
-    last = np.flatnonzero((signal[:-1] < threshold) & (signal[1:] >= threshold))
+    last = _before_edges(signal, threshold)
     share = (threshold - signal[last]) / (signal[last + 1] - signal[last])
     return time[last] + share * (time[last + 1] - time[last])
+
+
+def _before_edges(signal: NDArray[np.float64], threshold: float) -> NDArray[np.intp]:
+    """(m,) the last samples below a threshold that the next one is not below any more."""
+    return np.flatnonzero((signal[:-1] < threshold) & (signal[1:] >= threshold))
 
 
 def edges_of_square_pulses(
@@ -114,7 +119,7 @@ def edges_of_square_pulses(
     some even turning leaves no more than that rounding, the edges lie on the smoothest one that does.
     """
     edges, sample = rising_edges(signal, time, threshold), float(np.median(np.diff(time)))
-    last = np.flatnonzero((signal[:-1] < threshold) & (signal[1:] >= threshold))
+    last = _before_edges(signal, threshold)
     low, high = float(signal.min()), float(signal.max())
     margin = SQUARE * (high - low)
     if not (np.all(signal[last] < low + margin) and np.all(signal[last + 1] > high - margin)):

@@ -20,7 +20,7 @@ from gear_damping.identification.observation import (
     response_names,
 )
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
-from gear_damping.identification.output_error.segments import WHOLE, Segments, covered, part, shortened
+from gear_damping.identification.output_error.segments import WHOLE, Segments, covered, part, shortened, stretch
 from gear_damping.measurement.record import Channel, Measurement
 from gear_damping.physics.catalogue import builtin_effects
 from gear_damping.physics.systems.base import System
@@ -246,7 +246,7 @@ def condition_of(record: FitRecord) -> tuple[float, float]:
 def _released(record: FitRecord) -> FitRecord:
     """A record from where its motion is free, under its name."""
     first = released_at(record)
-    return replace(part(record, slice(first, None)), group=record.group) if first else record
+    return stretch(record, slice(first, None)) if first else record
 
 
 def _audible(records: Sequence[FitRecord]) -> tuple[list[FitRecord], float]:

@@ -3,14 +3,12 @@
 from dataclasses import replace
 from math import ceil
 
-from scipy.stats import chi2
-
 from gear_damping.explanation.evidence.noise import floor_variance
+from gear_damping.explanation.evidence.silent_end import largest_of_noise
 from gear_damping.identification.oscillator.first_frequency import first_frequency
 from gear_damping.identification.output_error.records import FitRecord
 
 BLOCKS, FEWEST_SAMPLES = 200, 8  # into which a record is cut, of so many samples at least
-CHANCE = 0.01  # that noise alone is taken for motion anywhere in a record
 STILL = 0.03  # of the largest movement within a block: a rig that hangs still sways a little
 LEAST_WAIT = 1.0  # natural periods: a motion passes its turning points faster
 AT_REST = 0.5  # of the largest deflection that follows: nearer, the rig was not held away but is moved by a hand
@@ -44,6 +42,6 @@ def _silent_samples(record: FitRecord, block: int) -> int:
     """Samples before the first block that holds more than noise, the whole blocks of them."""
     count = len(record.response) // block
     power = record.response[: count * block].unflatten(0, (count, block)).var(1)
-    limit = floor_variance(record) * float(chi2.ppf(1 - CHANCE / count, block - 1)) / (block - 1)
+    limit = floor_variance(record) * largest_of_noise(count, block)
     moves = (power > max(limit, STILL**2 * float(power.max()))).nonzero()
     return int(moves[0]) * block if len(moves) else 0

@@ -29,13 +29,18 @@ def audible_samples(record: FitRecord) -> int:
     count, noise = ceil(total / block), floor_variance(record)
     if count <= FEWEST_BLOCKS or noise <= 0:
         return total
-    limit = float(chi2.ppf(1 - CHANCE / count, block - 1)) / (block - 1)
+    limit = largest_of_noise(count, block)
     moves = _power(record.response, block) > noise * limit
     for series in record.inputs.values():
         power, own = _power(series, block), floor_variance(replace(record, response=series))
         moves = moves | (power > torch.clamp(STILL**2 * power.max(), min=own * limit))
     last = int(moves.nonzero().max()) if bool(moves.any()) else count
     return min(total, max(last + 1, FEWEST_BLOCKS) * block)
+
+
+def largest_of_noise(count: int, block: int) -> float:
+    """The largest variance that noise has in any of so many blocks of samples, over its own."""
+    return float(chi2.ppf(1 - CHANCE / count, block - 1)) / (block - 1)
 
 
 def _power(series: Tensor, block: int) -> Tensor:

@@ -11,7 +11,7 @@ from gear_damping.explanation.evidence.slow_rotation import gear_ratio
 from gear_damping.identification.decimation import decimated
 from gear_damping.identification.oscillator.linear_model import linear_model
 from gear_damping.identification.output_error.records import FitRecord
-from gear_damping.identification.output_error.segments import part
+from gear_damping.identification.output_error.segments import stretch
 from gear_damping.physics.systems.traits import Trait
 
 TURNS = 2.0  # of the slower shaft that a stretch holds: less does not tell a line of it from what changes slowly
@@ -93,7 +93,7 @@ def _stretch(record: FitRecord, share: float, evidence: Evidence) -> FitRecord:
     if length >= len(record.response):
         return record
     first = _first_loud(record, length)
-    return replace(part(record, slice(first, first + length)), group=record.group)
+    return stretch(record, slice(first, first + length))
 
 
 def _turns(record: FitRecord, evidence: Evidence) -> float:

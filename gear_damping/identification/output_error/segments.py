@@ -74,9 +74,14 @@ def covered(records: Sequence[FitRecord], segments: Segments) -> list[FitRecord]
     return [shortened(record, segments.ends(record)[-1][1]) if segments.exact else record for record in records]
 
 
+def stretch(record: FitRecord, samples: slice) -> FitRecord:
+    """The samples of a slice of a record, under its name."""
+    return replace(part(record, samples), group=record.group)
+
+
 def shortened(record: FitRecord, samples: int) -> FitRecord:
     """The first samples of a record, under its name."""
-    return replace(part(record, slice(0, samples)), group=record.group)
+    return stretch(record, slice(0, samples))
 
 
 def joined(
