@@ -25,7 +25,7 @@ from gear_damping.explanation.steps.calibrate import calibrated, recalibrated
 from gear_damping.explanation.steps.confirm import confirmed
 from gear_damping.explanation.steps.estimate import estimated
 from gear_damping.explanation.steps.out_of_step import out_of_step
-from gear_damping.explanation.steps.too_short import died_away, too_short
+from gear_damping.explanation.steps.too_short import left_out_ends, too_short
 from gear_damping.explanation.trials.bench import Bench, Log
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import Segments
@@ -114,7 +114,7 @@ def explain(
     evidence = at_useful_rate(evidence if library is None else replace(evidence, library=library))
     stretches = of_useful_length(evidence)
     evidence = stretches.evidence
-    silent, whole = died_away(evidence), evidence
+    silent, whole = left_out_ends(evidence), evidence
     for said in filter(None, (silent, stretches.said)):
         log(said)
     sealed = evidence.holdout if evidence.can_be_sealed else ()

@@ -41,7 +41,7 @@ def too_short(evidence: Evidence, nominal: Outcome) -> str:
     )
 
 
-def died_away(evidence: Evidence) -> str:
+def left_out_ends(evidence: Evidence) -> str:
     """Sentences where ends of records were left out, or what came before their motion was free."""
     before = (
         f"{evidence.waited_s:.3g} s at the beginning, before the motion is free, are left out: no channel holds what "

@@ -123,7 +123,7 @@ def scores(
     hypotheses = [group[0].hypothesis for group in groups]
     prepare_predictions([(h.model, h.given) for h in hypotheses], outcome.problem.records, solver)
     for group in groups:
-        if not _is_wide(group) or max((score.gain for score in found), default=0.0) < enough:
+        if max((score.gain for score in found), default=0.0) < enough or not _is_wide(group):
             found += _score_together(group, base)
     return with_other_sizes(sorted(found, key=lambda score: -score.gain))
 
