@@ -8,7 +8,7 @@ from gear_damping.explanation.answer.report_fields import _candidates
 from gear_damping.explanation.evidence.excess import Excess
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import State
-from gear_damping.explanation.steps.judge import CONSISTENT, EXPLAINED, PARTLY, UNEXPLAINED, Known
+from gear_damping.explanation.steps.judge import AMBIGUOUS, CONSISTENT, EXPLAINED, PARTLY, UNEXPLAINED, Known
 from gear_damping.explanation.steps.judge import verdict as verdict_of
 
 
@@ -250,3 +250,14 @@ def test_something_visible_that_is_too_small_to_matter_is_not_called_nothing(mis
     before = excess_of(0.02, misfit, threshold=0.03)
     (sentence,) = verdict(search(sensor=1.0), before, before).sentences
     assert said in sentence
+
+
+def test_a_sure_cause_beside_one_that_looks_like_others_is_named_in_the_first_sentence():
+    """A runout of 39 % beside a gain, a wrong inertia or a wrong torque that look the same."""
+    alike = cause("sensor_gain")
+    alike.effect.cause.one_class = ("an error of the torque", "a wrong inertia")
+    for accepted, is_named in (((cause("pinion_eccentricity"), alike), True), ((alike,), False)):
+        said = verdict(search(accepted=accepted), MUCH, NOTHING)
+        assert said.word == AMBIGUOUS
+        assert ("pinion_eccentricity" in said.sentences[0]) is is_named
+        assert "look the same" in said.sentences[1]

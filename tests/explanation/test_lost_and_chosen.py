@@ -160,12 +160,16 @@ def test_a_full_fit_is_given_up_where_it_cannot_take_the_place_of_what_is_there(
     fitted = SimpleNamespace(cost=10.0, converged=True)
     before = SimpleNamespace(fitted=fitted, hypothesis=SimpleNamespace(causes=()))
     made_up = bench(SearchSettings())
-    ranked = [score(name, 0.5) for name in ("coulomb_friction", "power_law_damping")]
+    ranked = [score("coulomb_friction", 0.5), score("power_law_damping", 0.4)]
     made_up.full_fits(ranked, before, before, reach=5.0)
     assert asked == [5.0, 5.0]
     asked.clear()
     made_up.full_fits(ranked, before, before)
     assert asked == [math.inf, 9.0]  # a quarter of what the first one took
+    asked.clear()
+    ranked[0].candidate.strengths = (0, 1, 2)  # fitted last, and it promises most
+    made_up.full_fits(ranked, before, before)
+    assert asked == [math.inf, math.inf]
 
 
 def test_full_fits_of_few_strengths_come_before_those_of_many(monkeypatch):

@@ -1,5 +1,6 @@
 """Flanks that part in most records: damping and stiffness are found from what is stated of the rig."""
 
+import math
 from dataclasses import replace
 
 import pytest
@@ -57,7 +58,7 @@ def test_a_gap_that_is_stated_is_in_the_nominal_model_already(at_resonance):
 def test_an_error_that_is_measured_from_its_zero_on_shows_flanks_that_part(at_resonance):
     evidence = at_resonance[1]
     first = evidence.fit[0]
-    first = replace(first, observed=replace(first.observed, offset=False))
+    first = replace(first, observed=replace(first.observed, offset=False), response=0.1 * first.response)
 
     def part(response, **more):
         return flanks_part(replace(evidence, fit=(replace(first, response=response, **more),)))
@@ -66,9 +67,46 @@ def test_an_error_that_is_measured_from_its_zero_on_shows_flanks_that_part(at_re
     assert part(parted)
     assert not part(first.response - first.response.min())
     assert not part(0.0 * parted - 2 * evidence.noise)
-    assert not part(parted, observed=replace(first.observed, offset=True))
+    unknown = replace(first.observed, offset=True)
+    assert not part(parted, observed=unknown)
+    assert part(10 * parted, observed=unknown)  # the mesh carries nothing in flight
     closed, torque = first.response - first.response.min(), first.conditions["pinion_torque"]
     assert not part(-closed, conditions=first.conditions | {"pinion_torque": -torque})  # on the other flanks
     assert part(-closed)
     assert not part(-closed, conditions={})
     assert not part(-closed, inputs={"pinion_torque": -torch.ones_like(closed)})
+
+
+def test_a_mesh_that_carries_nothing_for_long_shows_it_wherever_the_zero_lies(at_resonance):
+    """The force in the mesh is the load less the inertia of the relative motion; made up from a sine."""
+    evidence = at_resonance[1]
+    first, mass = evidence.fit[0], 1 / sum(radius**2 / inertia for radius, inertia in shafts(evidence))
+    first = replace(first, sampling_rate=80e3)  # 23 samples of a natural period
+    load = first.conditions["pinion_torque"] / shafts(evidence)[0][0]
+    angle = 2 * torch.pi * 0.04 * torch.arange(4000, dtype=torch.float64)  # 25 samples a period
+    size = load / mass / (2 * torch.pi * 0.04 * first.sampling_rate) ** 2  # the force just reaches zero
+
+    def part(share, noise=0.0, **more):
+        response = 1.0 + share * size * torch.sin(angle)
+        one = replace(first, response=response, observed=replace(first.observed, offset=True), **more)
+        return flanks_part(replace(evidence, fit=(one,), noise=noise))
+
+    assert part(1.0)
+    assert not part(0.7)
+    assert not part(1.0, noise=0.1 * float(size))  # nothing to be seen behind it
+    assert part(1.0, noise=0.003 * float(size))
+    assert not part(1.0, conditions=first.conditions | {"pinion_torque": 2 * first.conditions["pinion_torque"]})
+    fewer = replace(first.observed, name="gear_speed", offset=True)
+    turning = torch.cos(angle) * size * 2 * torch.pi * 0.04 * first.sampling_rate
+    radius, inertia = shafts(evidence)[1]
+    for share, parted in ((1.0, True), (0.7, False)):
+        speed = -share * turning * mass * radius / inertia
+        one = replace(first, response=speed, observed=fewer)
+        assert flanks_part(replace(evidence, fit=(one,), noise=0.0)) is parted
+
+
+def shafts(evidence):
+    """Base radius and moment of inertia of pinion and gear."""
+    known = evidence.known.values
+    per_tooth = known["module"] * math.cos(known["pressure_angle"]) / 2
+    return [(per_tooth * known[f"n_teeth_{shaft}"], known[f"inertia_{shaft}"]) for shaft in ("pinion", "gear")]

@@ -4,9 +4,13 @@ Where flanks part in most records, a model in which they cannot bends its stiffn
 mesh to what the impacts do, and from there no fit finds back to a gap. What is stated of the rig is the better start.
 """
 
+from collections.abc import Mapping
 from dataclasses import replace
 
+import numpy as np
 import torch
+from numpy.typing import NDArray
+from scipy.signal import savgol_coeffs, savgol_filter
 from torch import Tensor
 
 from gear_damping.explanation.evidence.records import Evidence
@@ -20,6 +24,8 @@ from gear_damping.explanation.model.nominal_gear_pair import (
     phase_starts,
     with_shape,
 )
+from gear_damping.explanation.model.rig import rig_of
+from gear_damping.identification.output_error.first_guess import participation
 from gear_damping.identification.output_error.least_squares import Rounds
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.physics.effects.backlash import GAPS, Backlash
@@ -30,11 +36,20 @@ GAP = f"{Backlash.name}.gap"
 STARTS = tuple(share / GAPS[-1] for share in GAPS)  # of the largest usual gap
 RESPONSE, TORQUE = "transmission_error", "pinion_torque"
 CLEAR, PARTED = 3.0, 0.01  # noises; share of samples: noise alone, wherever it lies, reaches it in one of 700
+LIGHT = 0.2  # of the load: what the mesh carries where flanks part, beside a wrong inertia or torque
+LONG = 0.1  # of a record: a wave of the force that just touches zero stays below a fifth for twice as long
+PARABOLA, SHORTEST = 2, 3  # degree, and least samples of the window in which the motion is one
+SHOWN = 0.9  # of an acceleration at the natural frequency, by a window that is not too wide
 LOOKS = 2  # at the angles of the mesh, each followed by a fit: with the damping that is stated, and with what was found
 ITERATIONS = 30  # over whole records, and with a free shape of the stiffness
 
 
 def flanks_part(evidence: Evidence) -> bool:
+    """Whether flanks part: their error crosses its zero, or the mesh carries next to nothing for long."""
+    return _crosses_zero(evidence) or _is_unloaded(evidence)
+
+
+def _crosses_zero(evidence: Evidence) -> bool:
     """Whether a transmission error that was measured from its zero on shows flanks that part, well beyond the noise.
 
     Where the torque drives the other flank, the error of closed flanks is negative; without one nobody knows which.
@@ -45,10 +60,50 @@ def flanks_part(evidence: Evidence) -> bool:
     return parted > PARTED * sum(len(error) for error in closed)
 
 
+def _is_unloaded(evidence: Evidence) -> bool:
+    """Whether the force in the mesh stays near zero in a record: flanks push and do not pull.
+
+    It is the load less the inertia of the relative motion, F - m_e x'' (d'Alembert), whatever the stiffness, the errors
+    of the teeth or the zero of the sensor are. What noise hides says nothing.
+    """
+    first = first_gear_pair(evidence)
+    values = rig_of(first, evidence).values
+    return any(_share_unloaded(record, first, values, evidence.noise) > LONG for record in evidence.fit)
+
+
+def _share_unloaded(record: FitRecord, rig: Hypothesis, values: Mapping[str, float], noise: float) -> float:
+    """Share of a record in which the mesh carries next to nothing; 0 where the noise does not let that be seen.
+
+    The motion is differentiated by the narrowest window through which noise is small beside the load.
+    """
+    rate, order = record.sampling_rate, 2 - record.observed.derivatives
+    load = (values["load_per_pinion_torque"] * _stated(record, TORQUE)).numpy()
+    inertia = values["equivalent_mass"] / participation(record.observed, rig.model, rig.given) * rate**order
+    for width in range(SHORTEST, len(load), 2):
+        weights = savgol_coeffs(width, PARABOLA, deriv=order)
+        if _shown(weights, values["natural_frequency"] / rate, order) < SHOWN:
+            return 0.0
+        if CLEAR * noise * abs(inertia) * float(np.linalg.norm(weights)) <= LIGHT * float(np.abs(load).mean()):
+            curved = savgol_filter(record.response.numpy(), width, PARABOLA, deriv=order)
+            carried = load - inertia * (curved - curved.mean())
+            return float(np.mean(carried * np.sign(load) < LIGHT * np.abs(load)))
+    return 0.0
+
+
+def _shown(weights: NDArray, angle: float, order: int) -> float:
+    """What a window shows of the derivative of a wave, as a share of it, samples lying `angle` rad of it apart."""
+    place = np.arange(len(weights)) - len(weights) // 2
+    return abs(np.exp(1j * angle * place) @ weights) / angle**order
+
+
 def _driven_flank(record: FitRecord) -> Tensor:
     """1 where the torque closes the driven flanks, -1 where it closes the others, 0 without one, of every sample."""
-    stated = torch.full_like(record.response, record.conditions.get(TORQUE, 0.0))
-    return record.inputs.get(TORQUE, stated).sign()
+    return _stated(record, TORQUE).sign()
+
+
+def _stated(record: FitRecord, name: str) -> Tensor:
+    """A torque as it was measured or is stated, of every sample; 0 where it is neither."""
+    return record.inputs.get(name, torch.full_like(record.response, record.conditions.get(name, 0.0)))
 
 
 def with_parting_flanks(evidence: Evidence, harmonics: int, solver: Solver | None) -> Outcome | None:

@@ -139,12 +139,10 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
     if known.is_one is False and found.left is not None and found.left.visible:
         text = f"{missing}. Part of it has a name: {said}, though not of one size in all records, and what is left is "
         return Verdict(PARTLY, (f"{text}not all random.", *further))
-    if classes:
-        return Verdict(AMBIGUOUS, (f"{missing}.", *_one_class(classes), *further, *_small_residual(found, after)))
-    if confused:
-        sure = [cause for cause in found.accepted if not cause.confusable]
-        named = f"{missing}, and most of it has names: {said}." if sure else f"{missing}."
-        return Verdict(AMBIGUOUS, (named, *further, *_small_residual(found, after)))
+    if classes or confused:
+        is_one_sure = any(cause not in classes and not cause.confusable for cause in found.accepted)
+        named = f"{missing}, and most of it has names: {said}." if is_one_sure else f"{missing}."
+        return Verdict(AMBIGUOUS, (named, *_one_class(classes), *further, *_small_residual(found, after)))
     same = _same_record(found.accepted)
     return Verdict(EXPLAINED, (f"{missing}: {said}.", *further, *same, *_small_residual(found, after)))
 

@@ -137,7 +137,8 @@ class Bench:
         fits: list[Refit] = []
         base = (outcome if outcome.fitted.converged else against).fitted.cost
         worth = chosen(ranked, self.settings, predicted_gain, laws=self.evidence.has(Trait.REST))
-        enough = self.settings.taken_by_one * max((score.gain for score in worth), default=0.0)
+        largest = max((score.gain for score in worth), default=0.0)
+        enough = self.settings.taken_by_one * largest
         for score in sorted(worth, key=lambda score: (score.gain < enough, len(score.candidate.strengths))):
             if any(self._is_enough(fit, score, base) for fit in fits):
                 continue
@@ -145,7 +146,8 @@ class Bench:
                 if self.budget.refuses(score.candidate.name):
                     continue
                 most = max((base - fit.outcome.fitted.cost for fit in fits), default=0.0)
-                goal = min(reach, self._reach(most, base, against)) if most > 0 else reach
+                is_less = most > 0 and score.gain < largest  # what promises most goes on to its end
+                goal = min(reach, self._reach(most, base, against)) if is_less else reach
                 fit = self.full_fit(score, outcome, against, goal) if score.gain > 0 else None
             if fit is None and score.gain > 0:
                 self.failed[score.candidate.name] = "its full fit ran away"
