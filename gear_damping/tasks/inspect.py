@@ -13,6 +13,7 @@ import numpy as np
 from gear_damping.config.light import InspectSettings
 from gear_damping.config.measured import YAML_SUFFIXES
 from gear_damping.measurement.column_kinds import CONSTANT
+from gear_damping.measurement.encoders import FROM_ENCODERS
 from gear_damping.measurement.formats.registry import read_table, readers
 from gear_damping.measurement.guessing import UNKNOWN, Guess, guesses, system_of
 from gear_damping.measurement.inspection import Column, Inspection, inspect_table, of_columns
@@ -192,7 +193,7 @@ def _declared(measurement: Measurement, folder: RunFolder) -> dict[str, Any]:
         for channel in record.channels.values():
             spectrum = _spectrum(record, channel)
             values = channel.values / channel.declared_factor
-            said.append((channel.name, _channel(channel, values, spectrum, record.sampling_rate)))
+            said.append((channel.name, _channel(record, channel, values, spectrum)))
             drawn = curves.setdefault((channel.name, channel.declared_unit), [])
             drawn.append(_curve(record.name, record.time, values, spectrum))
         found = [*_findings(record)]
@@ -248,13 +249,16 @@ def _record_lines(record: Record) -> Iterator[str]:
         yield f"    gear_torque: {record.gear_torque_mode}"
 
 
-def _channel(channel: Channel, values: np.ndarray, spectrum: Spectrum | None, rate: float) -> str:
+def _channel(record: Record, channel: Channel, values: np.ndarray, spectrum: Spectrum | None) -> str:
     said = f"{values.min() + 0.0:.5g} to {values.max() + 0.0:.5g} {channel.declared_unit}"  # no -0
     if channel.name == "pinion_angle":  # what is left of a ramp is neither a tone nor a converter's step
         turns = float(channel.values[-1] - channel.values[0]) / (2 * np.pi)
-        return f"{said}, {turns:.4g} turns, on average {60 * turns * rate / max(values.size - 1, 1):.5g} rpm"
+        seconds = max(values.size - 1, 1) / record.sampling_rate
+        return f"{said}, {turns:.4g} turns, on average {60 * turns / seconds:.5g} rpm"
     said += f", offset (mean) {values.mean():.5g}"
-    noise = _noise(spectrum, step_of(values), rate)
+    is_difference = channel.name == "transmission_error" and FROM_ENCODERS in record.notes
+    step = 0.0 if is_difference else step_of(values)  # what the steps of two encoders divide by is no step of either
+    noise = _noise(spectrum, step, record.sampling_rate)
     datum = "" if channel.datum == "absolute" else ", datum arbitrary"
     return f"{said}{datum}{', ' if noise else ''}{noise}"
 

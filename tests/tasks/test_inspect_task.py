@@ -121,7 +121,7 @@ def test_the_start_of_a_file_that_says_nothing_asks_for_what_is_missing(tmp_path
     assert (code, left["metrics"]["sampling_rate"], left["metrics"]["open"]) == (0, None, 3)
     start = tmp_path / "out" / "measurement.yaml"
     text = start.read_text()
-    assert '# nothing in the file says it' in text
+    assert "# nothing in the file says it" in text
     start.write_text(text.replace('{value: "???", unit: Hz}', "{value: 500, unit: Hz}").replace('"???"', "V"))
     record = load_measurement(start).records[0]
     assert record.sampling_rate == RATE
@@ -258,3 +258,22 @@ def test_two_counters_a_tacho_and_a_casing_are_declared(tmp_path):
         assert {encoder.name for encoder in plan.records[0].encoders} == expected
     assert [channel.name for channel in plan.records[0].channels] == ["acceleration"]
     assert isinstance(load_measurement(path).source, Path)
+
+
+def test_what_the_steps_of_two_encoders_divide_by_is_told_as_no_step(tmp_path):
+    counts = np.column_stack([np.floor(2048 * 12 * TIME), np.floor(1024 * 6 * TIME)])
+    np.savetxt(tmp_path / "run.csv", counts, delimiter=",", header="p,g", comments="", fmt="%d")
+    encoders = {"pinion": {"column": "p", "counts_per_revolution": 2048}}
+    encoders["gear"] = {"column": "g", "counts_per_revolution": 1024}
+    conditions = {"pinion_torque": "100 Nm", "gear_torque": "balanced"}
+    record = {"name": "run", "file": "run.csv", "encoders": encoders, "conditions": conditions}
+    record["channels"] = {"sampling_rate": f"{RATE} Hz"}
+    parameters = {"n_teeth_pinion": 20, "n_teeth_gear": 40, "module": "3 mm", "pressure_angle": "20 deg"}
+    parameters |= {"inertia_pinion": "1e-3 kg*m^2", "inertia_gear": "5e-3 kg*m^2"}
+    declared = {"system": "gear_pair", "parameters": parameters, "records": [record]}
+    (tmp_path / "measurement.yaml").write_text(yaml.safe_dump(declared))
+    code, _ = inspected(tmp_path / "measurement.yaml", tmp_path / "out")
+    assert code == 0
+    said = dict(json.loads((tmp_path / "out" / "inspection.json").read_text())["records"][0]["channels"])
+    assert "noise" in said["transmission_error"]
+    assert "rounding" not in said["transmission_error"]
