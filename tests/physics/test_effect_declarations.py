@@ -16,7 +16,7 @@ gear_eccentricity pinion_stiffness_modulation gear_stiffness_modulation profile_
 torque_ripple torque_variation bearing_flexibility shaft_torsion load_dependent_contact inertia_error unbalance
 windage_drag shaft_angle_error load_noise sensor_noise sensor_gain sensor_offset sensor_drift sensor_delay
 sensor_lowpass sensor_saturation sensor_quantisation fourier_mesh_stiffness rectangular_mesh_stiffness
-quadratic_stiffness offset_force sine_restoring mesh_stiffness_shape second_mode
+quadratic_stiffness offset_force sine_restoring mesh_stiffness_shape second_mode tip_relief
 """
 
 
