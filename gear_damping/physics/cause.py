@@ -31,6 +31,7 @@ class Rig:
         traits: Those of the system.
         spring: The parameter of the system that is its constant stiffness; None where it has a mesh.
         standing: Whether its shafts stand in all records.
+        on_shafts: Whether a speed or an acceleration of one shaft was measured.
     """
 
     system: str
@@ -46,6 +47,7 @@ class Rig:
     traits: frozenset[Trait] = frozenset()
     spring: str | None = None
     standing: bool = False
+    on_shafts: bool = False
 
     def has(self, trait: Trait) -> bool:
         """Whether its system has a trait."""

@@ -6,9 +6,10 @@ from torch import Tensor
 from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.model import Prepared
 from gear_damping.physics.systems.traits import Trait
-from gear_damping.physics.terms import LoadPath
+from gear_damping.physics.terms import Load, LoadPath
 from gear_damping.simulation.integrate import input_units
 from gear_damping.simulation.runs import ACCELERATION, Runs
+from gear_damping.simulation.series import ANGLE, ANGLE_RATE
 from gear_damping.simulation.simulate import natural_units
 
 PINION_SPEED, GEAR_SPEED = "pinion_speed", "gear_speed"
@@ -26,8 +27,9 @@ def shaft_motion(runs: Runs) -> dict[str, Tensor]:
     where a is the acceleration of both pitch circles as one body: 0 where the torques balance. Speeds are those
     about the mean speed of the shafts: the integral of a about its mean, and the share of x'.
     Errors of geometry move x, so that nothing changes here. Behind the torsion of a shaft T1 is the shaft's torque.
-    Load effects (drag, ripple, drawn loads) enter through x'' alone, as they do where the gear's torque balances
-    them; sliding friction is counted as if its arms were the base radii.
+    Load effects (drag, drawn loads, a ripple that the gear's torque follows) enter through x'' alone, as they do where
+    that torque balances them, and a ripple that it does not follow enters through a too; sliding friction is counted as
+    if its arms were the base radii.
 
     Returns:
         `pinion_speed` and `gear_speed`; where the run has the acceleration (`simulate(..., acceleration=True)`) also
@@ -75,7 +77,7 @@ def _participation(runs: Runs) -> tuple[Tensor, Tensor]:
 def _common_acceleration(runs: Runs) -> Tensor:
     """The acceleration of both pitch circles as one body, m/s^2, (batch, time), or (batch, 1) where it is steady."""
     pinion_radius, gear_radius = (runs.derived[f"base_radius_{s}"].unsqueeze(1) for s in ("pinion", "gear"))
-    unbalanced = _through_shaft(runs) / pinion_radius
+    unbalanced = _unbalanced_torque(runs) / pinion_radius
     if runs.model.system.chosen["gear_torque_mode"] == "held":
         torques = (runs.inputs.get(f"{s}_torque", runs.values[f"{s}_torque"].unsqueeze(1)) for s in ("pinion", "gear"))
         drive, brake = torques
@@ -85,17 +87,23 @@ def _common_acceleration(runs: Runs) -> Tensor:
     return unbalanced / (scale * (1 / pinion + 1 / gear))
 
 
-def _through_shaft(runs: Runs) -> Tensor:
-    """What a shaft's torque on the pinion has beyond the torque that drives it, N m, (batch, time) or one 0."""
+def _unbalanced_torque(runs: Runs) -> Tensor:
+    """The torque on the pinion beyond the one that is stated, N m, (batch, time) or one 0.
+
+    It is what a shaft transmits beyond what drives it, and what loads have that no torque on the gear balances.
+    """
     paths = [effect for effect in runs.model.effects if isinstance(effect, LoadPath)]
+    loads = [effect for effect in runs.model.effects if isinstance(effect, Load)]
     zero = torch.zeros((), dtype=torch.float64)
-    if not paths:
+    if not paths and not any(type(load).unbalanced_load is not Load.unbalanced_load for load in loads):
         return zero
     prepared = runs.model.prepare(runs.values)
     at = _kinematics(runs, prepared)
     at.drive_load = runs.model.system.load(at, prepared.base) + torch.zeros_like(at.displacement)
-    beyond = sum((path.transmitted_load(at, prepared.terms[path.name]) - at.drive_load for path in paths), zero)
-    return (beyond * prepared.scales.force).T / _participation(runs)[0]
+    forces = [path.transmitted_load(at, prepared.terms[path.name]) - at.drive_load for path in paths]
+    forces += [load.unbalanced_load(at, prepared.terms[load.name]) for load in loads]
+    beyond = sum((force for force in forces if force is not None), zero)
+    return (beyond * prepared.scales.force).T / _participation(runs)[0] if beyond.ndim else zero
 
 
 def _kinematics(runs: Runs, prepared: Prepared) -> Kinematics:
@@ -103,8 +111,11 @@ def _kinematics(runs: Runs, prepared: Prepared) -> Kinematics:
     units = natural_units(runs.model, prepared)
     x, v, *extra = (runs.states[name].T / unit for name, unit in units.items())
     given = {n: runs.inputs[n].T / unit for n, unit in input_units(runs.model, runs.inputs, prepared).items()}
+    turning = given | ({ANGLE_RATE: 0 * given[ANGLE]} if ANGLE in given else {})
+    time = runs.time.unsqueeze(1) / prepared.scales.time
+    turns = runs.model.system.rotations(time, turning, prepared.base)
     names = list(units)[2:]
-    return Kinematics(runs.time, x, v, extra=dict(zip(names, extra, strict=True)), inputs=given)
+    return Kinematics(time, x, v, extra=dict(zip(names, extra, strict=True)), inputs=given, **turns)
 
 
 def _integral(rate: Tensor, sampling_rate: float) -> Tensor:

@@ -41,7 +41,8 @@ def wheels(drive_torque, brake_torque, inertias=(I1, I2), start=2.5e-5):
 
 
 def pair(mode, effects=("viscous_damping", "pinion_eccentricity"), torque=None, **given):
-    effects = [effect_class(name)() for name in ("fourier_mesh_stiffness", *effects)]
+    effects = ("fourier_mesh_stiffness", *effects)
+    effects = [effect_class(one)() if isinstance(one, str) else one for one in effects]
     model = Model(GearPair(gear_torque_mode=mode), effects)
     known = {
         "fourier_mesh_stiffness.maximum": K,
@@ -71,6 +72,21 @@ def test_torques_that_balance():
     """Both shafts keep their mean speed, also while the torque changes."""
     states, slopes = wheels(drive, lambda t: drive(t) * R2 / R1)
     agree(pair("balanced", torque=drive(TIMES)), states, slopes)
+
+
+@pytest.mark.parametrize("mode", ["balanced", "held"])
+def test_both_shafts_speed_up_with_a_ripple_that_the_gear_s_torque_does_not_follow(mode):
+    order, size, phase = 3.0, 20.0, 0.4
+    ripple = effect_class("torque_ripple")(gear_torque="stays")
+    given = {"torque_ripple.amplitude": size, "torque_ripple.order": order, "torque_ripple.phase": phase}
+    given |= {"gear_torque": 150.0 * R2 / R1} if mode == "held" else {}
+    runs = pair(mode, ("viscous_damping", "pinion_eccentricity", ripple), **given)
+
+    def rippled(t):
+        return 150.0 + size * np.cos(order * SPEED * t + phase)
+
+    states, slopes = wheels(rippled, lambda t: 150.0 * R2 / R1)
+    agree(runs, states, slopes, speed_tolerance=2e-4)
 
 
 def test_a_gear_whose_torque_is_held():

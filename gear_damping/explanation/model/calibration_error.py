@@ -48,4 +48,4 @@ def _initial_states(problem: OutputErrorProblem, nominal: Outcome, evidence: Evi
     alone = OutputErrorProblem(hypothesis.model, given, own, problem.records, problem.solver, evidence.noise)
     start = alone.unknowns.coordinates(nominal.own)
     found = fit(alone, start.unsqueeze(0), Rounds(ITERATIONS), alone.safe_states(start).unsqueeze(0))
-    return problem.states_of(alone, found.states)
+    return problem.states_of(alone, found.states, range(len(problem.records)))

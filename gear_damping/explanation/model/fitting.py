@@ -153,11 +153,21 @@ def error_amplification_over(hypothesis: Hypothesis, records: Sequence[FitRecord
 def initial_states_from(problem: OutputErrorProblem, after: Outcome, points: int) -> Tensor:
     """Initial states of several points of a problem, (points, records, local), from a fit to the same records.
 
-    From the records themselves where that fit cut them otherwise.
+    From the records themselves where that fit cut them so that some begin elsewhere.
     """
-    if len(after.problem.records) != len(problem.records):
+    places = _beginnings(problem.records, after.problem.records)
+    if places is None:
         return problem.first_states().repeat(points, 1, 1)
-    return problem.states_of(after.problem, after.fitted.states).repeat(points, 1, 1)
+    return problem.states_of(after.problem, after.fitted.states, places).repeat(points, 1, 1)
+
+
+def _beginnings(records: Sequence[FitRecord], others: Sequence[FitRecord]) -> list[int] | None:
+    """For each record the other one that begins with it; None where there is none for one of them."""
+    if len(records) == len(others):
+        return list(range(len(records)))
+    begin = {(other.record, round(other.begins * other.sampling_rate)): place for place, other in enumerate(others)}
+    found = [begin.get((record.record, round(record.begins * record.sampling_rate))) for record in records]
+    return None if None in found else found
 
 
 def lent_from(problem: OutputErrorProblem, after: Outcome) -> Lent | None:

@@ -175,6 +175,11 @@ def with_stiffness(hypothesis: Hypothesis, factor: float) -> Hypothesis:
     return replace(hypothesis, given=given, free=free)
 
 
+def with_edge(hypothesis: Hypothesis, edge: float) -> Hypothesis:
+    """A gear pair whose pairs of teeth take up their load over a share of a mesh period."""
+    return replace(hypothesis, given=hypothesis.given | {f"{MESH}.edge": edge})
+
+
 def _uncertain(name: str, value: float, relative: float) -> FreeParameter:
     """A known parameter with its expectation."""
     return expected_about(FreeParameter(name, value, abs(value), logarithmic=value > 0), relative)
@@ -230,7 +235,8 @@ def with_shape(fitted: Outcome, evidence: Evidence, harmonics: int) -> Hypothesi
     names = [f"{SHAPE}.{part}[{h}]" for part in ("in_phase", "quadrature") for h in range(harmonics)]
     free = tuple(p for p in rough.free if p.name not in PHASED)
     zeros = (0.0,) * harmonics
-    given = rough.given | {f"{SHAPE}.in_phase": zeros, f"{SHAPE}.quadrature": zeros, f"{MESH}.edge": EDGE}
+    edge = max(EDGE, float(rough.given.get(f"{MESH}.edge", 0.0)))
+    given = rough.given | {f"{SHAPE}.in_phase": zeros, f"{SHAPE}.quadrature": zeros, f"{MESH}.edge": edge}
     passed = min(_passed_harmonics(fitted, evidence), harmonics)
     mesh = FourierMeshStiffness(n_harmonics=min(length for length in SERIES if length >= passed))
     return Hypothesis(

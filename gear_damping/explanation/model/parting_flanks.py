@@ -29,6 +29,7 @@ from gear_damping.identification.output_error.first_guess import participation
 from gear_damping.identification.output_error.least_squares import Rounds
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.physics.effects.backlash import GAPS, Backlash
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import Contact
 from gear_damping.simulation.solver_settings import Solver
 
@@ -37,16 +38,17 @@ STARTS = tuple(share / GAPS[-1] for share in GAPS)  # of the largest usual gap
 RESPONSE, TORQUE = "transmission_error", "pinion_torque"
 CLEAR, PARTED = 3.0, 0.01  # noises; share of samples: noise alone, wherever it lies, reaches it in one of 700
 LIGHT = 0.2  # of the load: what the mesh carries where flanks part, beside a wrong inertia or torque
-LONG = 0.1  # of a record: a wave of the force that just touches zero stays below a fifth for twice as long
+LONG = 0.05  # of a record: a wave of the force that just touches zero stays below a fifth for four times as long
 PARABOLA, SHORTEST = 2, 3  # degree, and least samples of the window in which the motion is one
 SHOWN = 0.9  # of an acceleration at the natural frequency, by a window that is not too wide
 LOOKS = 2  # at the angles of the mesh, each followed by a fit: with the damping that is stated, and with what was found
+FAR = 4.0  # times the cost in segments: whole records have fewer initial states to bend, and no more is their doing
 ITERATIONS = 30  # over whole records, and with a free shape of the stiffness
 
 
 def flanks_part(evidence: Evidence) -> bool:
     """Whether flanks part: their error crosses its zero, or the mesh carries next to nothing for long."""
-    return _crosses_zero(evidence) or _is_unloaded(evidence)
+    return evidence.has(Trait.TEETH) and (_crosses_zero(evidence) or _is_unloaded(evidence))
 
 
 def _crosses_zero(evidence: Evidence) -> bool:
@@ -134,15 +136,19 @@ def with_parting_flanks(evidence: Evidence, harmonics: int, solver: Solver | Non
 
 
 def _shaped(rough: Outcome, evidence: Evidence, harmonics: int, solver: Solver | None) -> Outcome:
-    """With a free shape of the stiffness, over whole records where these can be predicted from their start."""
-    own, rounds = rough.of_records, Rounds(ITERATIONS)
-    whole = fit_hypothesis(rough.hypothesis, evidence, InitialValues(own=own, is_near=True), rounds, solver=solver)
-    if whole.is_finite and whole.error_amplification <= evidence.settings.most_growth:
-        initial = InitialValues(after=whole, is_near=True)
-        return fit_hypothesis(with_shape(whole, evidence, harmonics), evidence, initial, rounds, solver=solver)
-    short = _in_short(rough.hypothesis, evidence)
+    """With a free shape of the stiffness, over whole records where these can be predicted from their start.
+
+    Near a resonance a motion whose flanks part goes on as it began, large or small: whole records are fitted from the
+    shape and the initial states that their segments tell.
+    """
+    short, rounds, own = _in_short(rough.hypothesis, evidence), Rounds(ITERATIONS), rough.of_records
     found = fit_hypothesis(with_shape(rough, evidence, harmonics), short, InitialValues(own=own), rounds, solver=solver)
     growth = error_amplification_over(found.hypothesis, evidence.fit, solver)
+    if found.is_finite and growth <= evidence.settings.most_growth:
+        initial = InitialValues(after=found, is_near=True)
+        whole = fit_hypothesis(found.hypothesis, evidence, initial, rounds, solver=solver)
+        if whole.is_finite and whole.fitted.cost <= FAR * found.fitted.cost:
+            return whole
     return replace(found, error_amplification=growth)
 
 

@@ -27,6 +27,7 @@ from gear_damping.explanation.model.nominal_gear_pair import (
     shaped,
     standing,
     upright,
+    with_edge,
     with_stiffness,
 )
 from gear_damping.explanation.model.parting_flanks import flanks_part
@@ -45,6 +46,7 @@ SHAPE_ITERATIONS = 30  # of the fit with a free shape of the stiffness; causes a
 CALIBRATED = 8000  # samples of the fitted records together, on which their calibration begins
 SHORT_PERIODS = 40.0  # natural periods of the first round
 MOST_SCANS = 8  # of the records' angles, each followed by a fit; one where flanks part, which no fit of these follows
+EDGES = (0.0, 0.2, 0.4)  # of a mesh period: of spur teeth, wide ones and helical ones
 STIFFNESSES = (1.0, 0.85, 0.92, 1.08, 1.17)  # times where it begins: with a wrong one angles of records are wrong too
 APART = 1.5  # times the cost of a phase for every record: one phase of all leaves that much where there is none; angles
 # that begin anywhere agree that well once in a thousand times, for three records
@@ -216,28 +218,39 @@ def _rough_gear_pair(evidence: Evidence, solver: Solver | None) -> Outcome:
 
 
 def _wave_of_gear_pair(evidence: Evidence, solver: Solver | None) -> Outcome:
-    """The contact ratio's wave, with the mesh phase tried all around: one phase, or one of every record."""
+    """The contact ratio's wave, with the mesh phase tried all around: one phase, or one of every record.
+
+    Pairs of helical teeth, and of wide ones, take up their load over a good part of a pitch. A wave with corners then
+    has harmonics that no record shows, and only a damping far too large takes them away.
+    """
     first = first_gear_pair(evidence)
     short = SHORT_PERIODS / natural_frequency_hz(first.model, first.given)
     rounds = Rounds(ROUGH_ITERATIONS, [short, None] if short < evidence.duration else [None])
-    if evidence.has_index:
-        initial, few = InitialValues(phase_starts(first)), replace(rounds, kept=ANGLES_KEPT)
-        return fit_hypothesis(first, evidence, initial, few, solver=solver)
     found: Outcome | None = None
+    for edge in EDGES:
+        tried = _wave(with_edge(first, edge), evidence, rounds, solver)
+        found = tried if found is None or tried.fitted.cost < SCANNED * found.fitted.cost else found
+    if evidence.has_index:
+        return found
     scans = 1 if flanks_part(evidence) else MOST_SCANS
-    for _ in range(scans):  # a phase that is wrong makes stiffness and damping wrong, and they the next phase
-        hypothesis = first if found is None else found.hypothesis
-        tried = []
-        for factor in STIFFNESSES:
-            initial = with_stiffness(hypothesis, factor)
-            angles = angles_of(initial, evidence, short, solver)
-            tried.append(fit_hypothesis(initial, evidence, InitialValues(own=angles), rounds, solver=solver))
+    for number in range(scans):  # a phase that is wrong makes stiffness and damping wrong, and they the next phase
+        factors = STIFFNESSES if number else STIFFNESSES[1:]  # where it begins is tried already
+        tried = [_wave(with_stiffness(found.hypothesis, factor), evidence, rounds, solver) for factor in factors]
         again = min(tried, key=lambda outcome: outcome.fitted.cost)
-        is_better = found is None or again.fitted.cost < SCANNED * found.fitted.cost
-        found = again if found is None or again.fitted.cost < found.fitted.cost else found
+        is_better = number == 0 or again.fitted.cost < SCANNED * found.fitted.cost
+        found = again if again.fitted.cost < found.fitted.cost else found
         if not is_better:
             break
     return found
+
+
+def _wave(hypothesis: Hypothesis, evidence: Evidence, rounds: Rounds, solver: Solver | None) -> Outcome:
+    """One fit, from the best angles of the mesh."""
+    if evidence.has_index:
+        initial, few = InitialValues(phase_starts(hypothesis)), replace(rounds, kept=ANGLES_KEPT)
+        return fit_hypothesis(hypothesis, evidence, initial, few, solver=solver)
+    angles = angles_of(hypothesis, evidence, rounds.horizons[0] or evidence.duration, solver)
+    return fit_hypothesis(hypothesis, evidence, InitialValues(own=angles), rounds, solver=solver)
 
 
 def _angles_counted(

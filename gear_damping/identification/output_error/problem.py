@@ -159,16 +159,22 @@ class OutputErrorProblem:
         offset = next((parameter.start for parameter in self.free if parameter.name == name), 0.0)
         return first_motion(record, offset, float(self.static[place]), self.model, self.given)
 
-    def states_of(self, other: "OutputErrorProblem", states: Tensor) -> Tensor:
-        """Initial states found by another problem of the same records, (..., records, local), as they are called here.
+    def states_of(self, other: "OutputErrorProblem", states: Tensor, places: Sequence[int]) -> Tensor:
+        """Initial states found by another problem, (..., its records, local), as they are called here.
 
         States of effects that the other does not have are those where the effect puts them.
+
+        Args:
+            other: The other problem.
+            states: What it found.
+            places: For each record here, the one there that begins with it.
         """
-        found = states.new_zeros(*states.shape[:-1], len(self.local))
+        kept, scales = states[..., list(places), :], other.scales[list(places)]
+        found = states.new_zeros(*kept.shape[:-1], len(self.local))
         for place, name in enumerate(self.local):
             if name in other.local:
                 there = other.local.index(name)
-                found[..., place] = states[..., there] * other.scales[:, there] / self.scales[:, place]
+                found[..., place] = kept[..., there] * scales[:, there] / self.scales[:, place]
         return found
 
     def _scales(self) -> Tensor:

@@ -5,7 +5,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
-from gear_damping.physics.cause import Cause, Recipe, Rig
+from gear_damping.physics.cause import SHAFTS, Cause, Recipe, Rig
 from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.systems.traits import Trait
@@ -23,18 +23,26 @@ def ripple_orders(rig: Rig) -> tuple[float, ...]:
     return tuple(dict.fromkeys([*low, *gear, teeth - 1.0, teeth + 1.0, *rig.lines]))
 
 
+FORMS = (("amplitude", "share", "follows"), ("share", "amplitude", "follows"), ("amplitude", "share", "stays"))
+
+
 def _every_order(rig: Rig) -> tuple[Recipe, ...]:
-    """Both forms at every order."""
+    """Every form at every order.
+
+    Through the transmission error a gear's torque that follows and one that stays differ by a factor only; a sensor on
+    a shaft sees how both shafts speed up.
+    """
     return tuple(
         Recipe(
             {strength: None},
             {strength: "phase"},
             fixed={"order": order, other: 0.0},
-            options={"proportional": strength == "share"},
+            options={"proportional": strength == "share", "gear_torque": gear_torque},
             in_si=True,
             shaft="pinion" if order == round(order) else "gear",
         )
-        for strength, other in (("amplitude", "share"), ("share", "amplitude"))
+        for strength, other, gear_torque in FORMS
+        if gear_torque == "follows" or rig.on_shafts
         for order in ripple_orders(rig)
     )
 
@@ -51,7 +59,10 @@ class TorqueRipple(Load, LoadFactor):
         Parameter("order", "1", 1.0, "q, cycles per turn of the pinion", 0, 1000),
         Parameter("phase", "rad", 0.0, "phi"),
     )
-    options: ClassVar = (Option("proportional", (False, True), False, "a share of the load instead of a torque"),)
+    options: ClassVar = (
+        Option("proportional", (False, True), False, "a share of the load instead of a torque"),
+        Option("gear_torque", ("follows", "stays"), "follows", "what the gear's torque does; stays: shafts speed up"),
+    )
     needs: ClassVar = (Trait.SHAFTS, Trait.TORQUE)
     cause: ClassVar = Cause(
         "a ripple of the torque that the torque channel does not show",
@@ -62,7 +73,11 @@ class TorqueRipple(Load, LoadFactor):
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
         """The amplitude as a force, or as a share."""
-        force = values["amplitude"] * base["load_per_pinion_torque"]
+        per_torque = base["load_per_pinion_torque"]
+        if self.chosen["gear_torque"] == "stays":
+            pinion, gear = (base[f"base_radius_{s}"] ** 2 / base[f"inertia_{s}"] for s in SHAFTS)
+            per_torque = pinion / (pinion + gear) / base["base_radius_pinion"]
+        force = values["amplitude"] * per_torque
         size = values["share"] if self.chosen["proportional"] else force
         return {"size": size, "order": values["order"], "phase": values["phase"]}
 
@@ -72,6 +87,10 @@ class TorqueRipple(Load, LoadFactor):
     def load_force(self, at: Kinematics, p: Values) -> Tensor:
         """The force at this instant, where it is a torque of its own."""
         return torch.zeros_like(at.displacement) if self.chosen["proportional"] else self._wave(at, p)
+
+    def unbalanced_load(self, at: Kinematics, p: Values) -> Tensor | None:
+        """All of it, where the gear's torque stays as it is."""
+        return self.load_force(at, p) if self.chosen["gear_torque"] == "stays" else None
 
     def load_factor(self, at: Kinematics, p: Values) -> Tensor:
         """The factor at this instant, where it is a share of the load."""
