@@ -41,7 +41,7 @@ class Accepted:
 
     def runs_into_bound(self, outcome: Outcome) -> bool:
         """Whether a parameter of the effect is at a bound in a model."""
-        return runs_into_bound(self.name, outcome, self.candidate.sharpest)
+        return runs_into_bound(self.name, outcome, self.candidate.resting)
 
     @property
     def effect(self) -> Effect:

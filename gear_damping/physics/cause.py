@@ -76,6 +76,8 @@ class Recipe:
             which they are moved for further starts of the full fit.
         sharpest: Parameters, by own name, whose lower bound is where finer steps would cost more and show no more: one
             that converges there has run into nothing.
+        whole: Parameters, by own name, whose upper bound is the end of what there is, as of a share of a pitch: one
+            that converges there has run into nothing either.
         fixed: Parameters that stay.
         neutral: Value of the strengths without the effect.
         non_nested: The effect has no neutral value (a stiffness that was rigid): it is tried as a whole, at the
@@ -96,6 +98,7 @@ class Recipe:
     jointly_fitted: Mapping[str, float | None] = field(default_factory=dict)
     restart_scaling: Mapping[str, float] = field(default_factory=dict)
     sharpest: tuple[str, ...] = ()
+    whole: tuple[str, ...] = ()
     fixed: Mapping[str, float] = field(default_factory=dict)
     neutral: float = 0.0
     non_nested: bool = False

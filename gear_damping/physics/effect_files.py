@@ -144,7 +144,7 @@ def _values(system: System, mean_stiffness: torch.Tensor | None) -> dict[str, fl
 def _recipe_faults(kind: type[Effect], recipe: Recipe) -> Iterator[str]:
     declared = {parameter.name for parameter in kind.parameters}
     named = {*recipe.strengths, *recipe.phases, *recipe.phases.values()}
-    named |= {*recipe.scanned, *recipe.timed, *recipe.fixed, *recipe.sharpest, *recipe.replaces.values()}
+    named |= {*recipe.scanned, *recipe.timed, *recipe.fixed, *recipe.sharpest, *recipe.whole, *recipe.replaces.values()}
     for name in sorted(named - declared):
         yield f"has a recipe with {name!r}, which is none of its parameters"
 

@@ -204,7 +204,7 @@ def test_the_width_of_a_friction_may_rest_at_its_lower_bound():
     for base, evidence in (oscillator(), gear_pair((20, 40))):
         for name in ("coulomb_friction", "asymmetric_friction"):
             for candidate in of(name, base, evidence):
-                (width,) = [p for p in candidate.later if p.name in candidate.sharpest]
+                (width,) = [p for p in candidate.later if (p.name, -1) in candidate.resting]
                 assert width.name == f"{name}.width"
                 assert width.lower == (0.001 if base.system.name == "oscillator" else 0.02)
                 assert width.start == 0.05

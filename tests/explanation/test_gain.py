@@ -48,16 +48,24 @@ def test_a_gap_whose_far_flank_is_never_touched_has_its_whole_range_as_interval(
     assert high - low < 6.0
 
 
-@pytest.mark.parametrize(("end", "sharpest", "has_run"), [(-1, (), True), (-1, ("law.width",), False),
-                                                          (1, ("law.width",), True), (0, (), False)])  # fmt: skip
-def test_what_rests_at_its_sharpest_end_has_run_into_nothing(end, sharpest, has_run, monkeypatch):
+@pytest.mark.parametrize(
+    ("end", "resting", "has_run"),
+    [
+        (-1, (), True),
+        (-1, (("law.width", -1),), False),
+        (1, (("law.width", -1),), True),
+        (1, (("law.width", 1),), False),
+        (0, (), False),
+    ],
+)
+def test_what_rests_at_its_end_of_what_there_is_has_run_into_nothing(end, resting, has_run, monkeypatch):
     monkeypatch.setattr(gain, "_interval", lambda *_: gain.Interval(1.0, (0.0, 2.0), "1"))
     monkeypatch.setattr(gain, "unit_of", lambda *_: "1")
     free = (SimpleNamespace(name="law.width", declared_name="law.width"),)
     problem = SimpleNamespace(free=free, unknowns=SimpleNamespace(at_bound=lambda _: torch.tensor([end])))
     fitted, hypothesis = SimpleNamespace(shared=None), SimpleNamespace(model=None)
     outcome = SimpleNamespace(problem=problem, fitted=fitted, hypothesis=hypothesis)
-    found = gain.parameters_of(outcome, None, "law", None, sharpest)
+    found = gain.parameters_of(outcome, None, "law", None, resting)
     assert found["width"]["at_bound"] is has_run
 
 

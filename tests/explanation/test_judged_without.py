@@ -91,10 +91,10 @@ def test_a_cause_may_run_into_its_bound_beside_the_others_only(alone, beside, do
         free = [SimpleNamespace(name=name, lower=low, upper=4.0) for name, low in (("law.size", 1.0), ("gap", 2.0))]
         return SimpleNamespace(problem=SimpleNamespace(free=free), values={"law.size": size, "gap": 2.0})
 
-    score = SimpleNamespace(candidate=SimpleNamespace(name="law", sharpest=()))
+    score = SimpleNamespace(candidate=SimpleNamespace(name="law", resting=()))
     cause = Accepted("law", Refit(score, outcome(alone), 1.0, 9.0, 9.0, is_seen_in_fit=True), 0.9, ())
     assert State(None, None, outcome(beside)).is_at_bound(cause) is doubted
-    other = SimpleNamespace(candidate=SimpleNamespace(name="other", sharpest=()))
+    other = SimpleNamespace(candidate=SimpleNamespace(name="other", resting=()))
     first = Accepted("law", Refit(other, outcome(alone), 1.0, 9.0, 9.0, is_seen_in_fit=True), 0.5, (), score)
     assert State(None, None, outcome(beside)).is_at_bound(first) is doubted  # of a pair, by its own name
 

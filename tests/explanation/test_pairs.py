@@ -31,29 +31,30 @@ def model(cost, **values):
     return made
 
 
-def pair(cost, sharpest=(), t=50.0, **values):
+def pair(cost, resting=(), t=50.0, **values):
     """A pair whose model costs so much; the first effect was fitted alone before, well inside its bounds."""
-    score = SimpleNamespace(candidate=SimpleNamespace(name="a", sharpest=sharpest))
+    score = SimpleNamespace(candidate=SimpleNamespace(name="a", resting=resting))
     first = Refit(score, model(0.5), 1.0, t, 1.0, True)
     second = replace(
-        first, score=SimpleNamespace(candidate=SimpleNamespace(name="b", sharpest=())), outcome=model(cost, **values)
+        first, score=SimpleNamespace(candidate=SimpleNamespace(name="b", resting=())), outcome=model(cost, **values)
     )
     return Pair(first, second, False)
 
 
 @pytest.mark.parametrize(
-    ("values", "sharpest", "inside"),
+    ("values", "resting", "inside"),
     [
         ({}, (), True),
         ({"a_width": 0.02}, (), False),
-        ({"a_width": 0.02}, ("a.width",), True),  # finer steps would show no more: no bound of what is there
-        ({"a_width": 0.5}, ("a.width",), False),
-        ({"b_share": -1.0}, ("a.width",), False),  # of the second effect
-        ({"a_force": 0.0}, ("a.width",), False),  # a law of which a part is nothing stands in for a simpler one
+        ({"a_width": 0.02}, (("a.width", -1),), True),  # finer steps would show no more: no bound of what is there
+        ({"a_width": 0.5}, (("a.width", -1),), False),
+        ({"a_width": 0.5}, (("a.width", 1),), True),  # a share of all there is
+        ({"b_share": -1.0}, (("a.width", -1),), False),  # of the second effect
+        ({"a_force": 0.0}, (("a.width", -1),), False),  # a law of which a part is nothing stands in for a simpler one
     ],
 )
-def test_a_pair_is_inside_its_bounds_as_each_of_its_effects_is(values, sharpest, inside):
-    assert pair(0.1, sharpest, **values).is_inside is inside
+def test_a_pair_is_inside_its_bounds_as_each_of_its_effects_is(values, resting, inside):
+    assert pair(0.1, resting, **values).is_inside is inside
 
 
 @pytest.mark.parametrize(

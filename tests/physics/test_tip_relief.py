@@ -8,7 +8,7 @@ import torch
 from effect_bench import Bench
 
 PHASE, RATIO, SPEED, TEETH = 0.7, 1.6, 4600 * math.pi / 30, 20
-DEPTH, SHARE, MEETS = 9e-6, 0.35, 0.1
+DEPTH, ASYMMETRY, SHARE, MEETS = 9e-6, 0.3, 0.35, 0.1  # the pinion's tips are cut back more
 BATCH = 400
 
 
@@ -20,8 +20,8 @@ def not_carried(pitches, pressed, length, power):
         ends = min(ends, abs(way), abs(way - RATIO))
         if not 0 < way < RATIO:
             continue
-        for inside in (way, RATIO - way):
-            relief = DEPTH * max(0.0, 1 - inside / length) ** power
+        for inside, side in ((way, 1 - ASYMMETRY), (RATIO - way, 1 + ASYMMETRY)):  # a pair parts at the pinion's tip
+            relief = side * DEPTH * max(0.0, 1 - inside / length) ** power
             if relief > 0 and pressed > 0:
                 lost += (pressed**-4 + relief**-4) ** -0.25
     return lost, ends
@@ -32,6 +32,7 @@ def not_carried(pitches, pressed, length, power):
 @pytest.mark.parametrize("size", [2e-6, 1.6e-5])
 def test_a_pair_lacks_its_relief_or_all_that_it_would_carry(length, form, power, size):
     given = {"tip_relief.depth": DEPTH, "tip_relief.length": length, "tip_relief.share": SHARE, "mesh_phase": PHASE}
+    given |= {"tip_relief.asymmetry": ASYMMETRY}
     bench = Bench("tip_relief", {"form": form}, given, batch=BATCH)
     time = torch.linspace(0, 7.3 * 2 * math.pi / SPEED / TEETH, BATCH, dtype=torch.float64)
     pressed = size * (1 + torch.sin(torch.arange(BATCH, dtype=torch.float64)))  # to flanks that just part
@@ -46,7 +47,7 @@ def test_a_pair_lacks_its_relief_or_all_that_it_would_carry(length, form, power,
     assert inner.sum() > BATCH / 2
     off = np.abs(found + SHARE * stiffness * wanted)[inner]
     assert off.max() < 1e-9 * stiffness.max() * DEPTH
-    assert np.abs(found[~inner]).max() <= 1.001 * SHARE * stiffness.max() * DEPTH * (2 if length > RATIO - 1 else 1)
+    assert np.abs(found[~inner]).max() <= 1.001 * SHARE * stiffness.max() * DEPTH * (2.6 if length > RATIO - 1 else 1.3)
 
 
 def test_a_relief_shortens_a_light_contact_more_than_a_heavy_one():

@@ -54,9 +54,9 @@ def nrmse(residuals: Sequence[Tensor], records: Sequence[FitRecord]) -> float:
 
 
 def parameters_of(
-    outcome: Outcome, covariances: Tensor, cause: str, evidence: Evidence, sharpest: Collection[str] = ()
+    outcome: Outcome, covariances: Tensor, cause: str, evidence: Evidence, resting: Collection[tuple[str, int]] = ()
 ) -> dict[str, dict[str, object]]:
-    """The fitted parameters of an effect with 95 % intervals, by own name; `sharpest` may rest at their lower ends.
+    """The fitted parameters of an effect with 95 % intervals, by own name; `resting` may be at ends (-1, 1).
 
     Of one that the records say nothing of (a gap whose far flank is never touched) it is its whole range; of one
     that the fit has driven to its bound, it takes in what lies beyond.
@@ -69,7 +69,7 @@ def parameters_of(
             continue
         unit = unit_of(parameter.declared_name, outcome.hypothesis.model, evidence)
         end = int(at_bound[place])
-        has_run = end > 0 or (end < 0 and parameter.name not in sharpest)
+        has_run = end != 0 and (parameter.name, end) not in resting
         found[own] = _interval(outcome, covariances, place, evidence, unit).plain() | {"at_bound": has_run}
     return found
 

@@ -184,11 +184,11 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
     """Accepted causes; where none was, the best of what was tried as a suggestion."""
     found, last = judged.found, judged.found.outcome
     covariances = covariance_of(last, evidence)
-    sharpest = {name for score in found.first_scores for name in score.candidate.sharpest}
+    resting = {end for score in found.first_scores for end in score.candidate.resting}
     listed = [
         {
             "name": cause.name,
-            "parameters": gain.parameters_of(last, covariances, cause.name, evidence, sharpest),
+            "parameters": gain.parameters_of(last, covariances, cause.name, evidence, resting),
             "excess_explained": cause.share,
             "confusable_with": [*cause.confusable, *cause.effect.cause.looks_like][: LARGEST_SET - 1],
             "status": statuses(judged.verdict.word),
@@ -202,7 +202,7 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
         helping = (r for r in found.rejected if r.gain > 0 and r.is_seen_in_fit)
         for refit in [r for r in helping if _share(r.outcome, found.nominal) > 0][:1]:
             covariances = covariance_of(refit.outcome, evidence)
-            own = gain.parameters_of(refit.outcome, covariances, refit.name, evidence, sharpest)
+            own = gain.parameters_of(refit.outcome, covariances, refit.name, evidence, resting)
             alike = confusable_beforehand(found.first_scores, refit.name)[: LARGEST_SET - 1]
             share = _share(refit.outcome, found.nominal)
             listed.append(

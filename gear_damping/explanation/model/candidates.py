@@ -34,7 +34,8 @@ class Candidate:
         later: Free parameters that join in the full fit only.
         non_nested: Whether it is tried as a whole.
         replaced: Free parameters that it took the place of.
-        sharpest: Names of parameters that may rest at their lower bound without having run into it.
+        resting: Names of parameters that may rest at a bound without having run into it, with -1 for the lower one, 1
+            for the upper one.
         own_phases: Name of the phase by place of its strength, where every record has one of its own.
         own_tooth: Name of the phase that says which tooth is in mesh at the start of a record, where nothing else does.
         teeth: How many there are, where that is so.
@@ -51,7 +52,7 @@ class Candidate:
     later: tuple[FreeParameter, ...]
     non_nested: bool
     replaced: tuple[FreeParameter, ...] = ()
-    sharpest: tuple[str, ...] = ()
+    resting: frozenset[tuple[str, int]] = frozenset()
     own_phases: Mapping[int, str] = field(default_factory=dict)
     own_tooth: str = ""
     teeth: int = 0
@@ -165,7 +166,9 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Si
         tuple(later),
         recipe.non_nested,
         replaced,
-        tuple(f"{kind.name}.{name}" for name in recipe.sharpest),
+        frozenset(
+            (f"{kind.name}.{name}", end) for end, own in ((-1, recipe.sharpest), (1, recipe.whole)) for name in own
+        ),
         own_phases,
         own_tooth,
         teeth,

@@ -28,12 +28,12 @@ class Pair:
 
     @property
     def is_inside(self) -> bool:
-        """Whether no parameter of the two effects is at a bound, none of a part included; but for a sharp end."""
+        """Whether no parameter of the two effects is at a bound, none of a part included, but where it may rest."""
         outcome, own = self.second.outcome, (f"{self.first.name}.", f"{self.second.name}.")
         ends = outcome.problem.unknowns.at_bound(outcome.fitted.shared)
-        sharpest = {name for fit in (self.first, self.second) for name in fit.score.candidate.sharpest}
+        resting = {end for fit in (self.first, self.second) for end in fit.score.candidate.resting}
         named = zip((parameter.name for parameter in outcome.problem.free), ends.tolist(), strict=False)
-        return not any(end and name.startswith(own) and not (end < 0 and name in sharpest) for name, end in named)
+        return not any(end and name.startswith(own) and (name, end) not in resting for name, end in named)
 
 
 def with_pair(state: State) -> State | None:

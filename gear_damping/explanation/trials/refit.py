@@ -59,7 +59,7 @@ class Refit:
     @property
     def is_at_bound(self) -> bool:
         """Whether a parameter of the effect itself has run into a bound of what is tried."""
-        return runs_into_bound(self.name, self.outcome, self.score.candidate.sharpest)
+        return runs_into_bound(self.name, self.outcome, self.score.candidate.resting)
 
     @property
     def name(self) -> str:
@@ -67,11 +67,12 @@ class Refit:
         return self.score.candidate.name
 
 
-def runs_into_bound(name: str, outcome: Outcome, sharpest: Collection[str]) -> bool:
-    """Whether a parameter of an effect is at a bound of what is tried, but for a sharp end."""
+def runs_into_bound(name: str, outcome: Outcome, resting: Collection[tuple[str, int]]) -> bool:
+    """Whether a parameter of an effect is at a bound of what is tried, but for one where it may rest."""
     own = [p for p in outcome.problem.free if p.name.startswith(name + ".")]
-    ends = [(p, p.upper) for p in own] + [(p, p.lower) for p in own if p.name not in sharpest]
-    return any(isclose(outcome.values[p.name], end, rel_tol=AT_BOUND) for p, end in ends if end)
+    ends = [(p.name, side, end) for p in own for side, end in ((1, p.upper), (-1, p.lower)) if end]
+    tried = [(name, end) for name, side, end in ends if (name, side) not in resting]
+    return any(isclose(outcome.values[name], end, rel_tol=AT_BOUND) for name, end in tried)
 
 
 def block_samples(outcome: Outcome, evidence: Evidence, records: Sequence[FitRecord]) -> list[int]:

@@ -34,6 +34,7 @@ def _by_shaft(rig: Rig) -> tuple[Recipe, ...]:
             scanned={"phase": alone / rig.teeth(shaft), "handover": handover, "edge": edge},
             in_si=True,
             sharpest=("handover", "edge"),
+            whole=("handover", "edge"),
             options={"shaft": shaft},
             length=rig.teeth(shaft),
         )

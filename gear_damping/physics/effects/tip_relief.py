@@ -20,23 +20,27 @@ MEETS = 0.1  # of a base pitch, assumed: over so much a pair begins and ends
 class TipRelief(ElasticForce):
     """A pair that enters or leaves lacks what its relief takes, and carries nothing until that is closed.
 
-    Under a light load the contact is shorter, under a heavy one it grows to that of teeth without relief. The relief is
-    counted along the line of action, and is that of the pinion's tips on one side and of the gear's on the other.
+    Under a light load the contact is shorter, under a heavy one it grows to that of teeth without relief. A pair meets
+    at the tip of the driven gear and parts at that of the pinion; the relief is counted along the line of action.
     """
 
     name = "tip_relief"
-    equation = "F_el = -s k (lost(C_in) + lost(C_out)), lost = delta C / (delta^4 + C^4)^(1/4), C = C_a (1 - u / L)^n"
+    equation = "F_el = -s k (lost(C_g) + lost(C_p)), lost = (delta^-4 + C^-4)^(-1/4), C = C_a (1 -+ A) (1 - u / L)^n"
     reference = "Lin, Oswald & Townsend (1994), Mech. Mach. Theory 29(8)"
     parameters: ClassVar = (
-        Parameter("depth", "m", 1e-5, "C_a, relief where a pair meets and parts", 0, 1e-3),
-        Parameter("length", "1", 0.3, "L, base pitches over which it runs out", 0.05, 1.0),
+        Parameter("depth", "m", 1e-5, "C_a, mean of the gear's tips (a pair meets) and the pinion's", 0, 1e-3),
+        Parameter("asymmetry", "1", 0.0, "A, by which the pinion's relief is larger and the gear's smaller", -1, 1),
+        Parameter("length", "1", 0.3, "L, base pitches over which both run out", 0.05, 1.0),
         Parameter("share", "1", 0.4, "s, of the mesh stiffness that is the relieved pair's", 0, 1),
     )
     options: ClassVar = (Option("form", FORMS, "parabolic", "n = 1 or 2"),)
     needs: ClassVar = (Trait.TEETH, Trait.PRELOAD)
     cause: ClassVar = Cause(
         "a relief of the tips of the teeth",
-        tuple(Recipe({"depth": 1e-6}, scanned={"length": length}, in_si=True) for length in LENGTHS),
+        tuple(
+            Recipe({"depth": 1e-6}, scanned={"length": length}, fixed={"asymmetry": 0.0}, in_si=True)
+            for length in LENGTHS
+        ),
     )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
@@ -47,18 +51,18 @@ class TipRelief(ElasticForce):
     def elastic_force(self, at: Kinematics, p: Values) -> Tensor:
         """What the two pairs do not carry, for flanks that are pressed."""
         pressed = at.deflection.clamp(min=0.0)
-        lost = torch.zeros_like(pressed)
-        for pitches in (at.mesh.angle - p["enters"], p["leaves"] - at.mesh.angle):
-            lost = lost + _lost(pressed, self._relief(pitches / (2 * pi), p))
+        meets, parts = ((at.mesh.angle - p["enters"]) / (2 * pi), (p["leaves"] - at.mesh.angle) / (2 * pi))
+        gear, pinion = p["depth"] * (1 - p["asymmetry"]), p["depth"] * (1 + p["asymmetry"])
+        lost = _lost(pressed, gear * self._closing(meets, p)) + _lost(pressed, pinion * self._closing(parts, p))
         return -p["share"] * at.stiffness * lost
 
-    def _relief(self, inside: Tensor, p: Values) -> Tensor:
-        """The relief at so many base pitches inside the contact; none beyond it, where there is no pair."""
+    def _closing(self, inside: Tensor, p: Values) -> Tensor:
+        """The share of a relief at so many base pitches inside the contact; none beyond it, where there is no pair."""
         place = inside + MEETS / 2 - torch.floor(inside + MEETS / 2) - MEETS / 2
         left = torch.clamp(1 - place / p["length"], 0.0, 1.0)
         there = torch.clamp(place / MEETS + 0.5, 0.0, 1.0)
         there = there * there * (3 - 2 * there)
-        return p["depth"] * there * (left if self.chosen["form"] == "linear" else left * left)
+        return there * (left if self.chosen["form"] == "linear" else left * left)
 
 
 def _lost(deflection: Tensor, relief: Tensor) -> Tensor:
