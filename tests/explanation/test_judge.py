@@ -261,3 +261,16 @@ def test_a_sure_cause_beside_one_that_looks_like_others_is_named_in_the_first_se
         assert said.word == AMBIGUOUS
         assert ("pinion_eccentricity" in said.sentences[0]) is is_named
         assert "look the same" in said.sentences[1]
+
+
+@pytest.mark.parametrize(("not_random", "word"), [(0.02, CONSISTENT), (0.04, UNEXPLAINED)])
+def test_what_shows_and_is_less_than_what_counts_is_no_gap(not_random, word):
+    """A stiffness of other teeth left .06 % of a null, of which .02 % could be shown to be no noise."""
+    little = Excess(0.06, 0.04, 0.04, 1.12, {})
+    said = verdict(search(), little, little, not_random=not_random)
+    assert said.word == word
+    if word == CONSISTENT:
+        assert "not random, and less than 0.06 %" in said.sentences[0]
+    raised = verdict(search(sensor=16.0), NOTHING, NOTHING, not_random=not_random)  # a pink noise over a white floor
+    assert raised.word == word
+    assert verdict(search(), MUCH, MUCH, not_random=not_random).word == UNEXPLAINED

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+from gear_damping.explanation.answer.gain import nrmse
 from gear_damping.explanation.answer.homogeneity import homogeneity
 from gear_damping.explanation.answer.stand_in import (
     SWINGS_ON,
@@ -94,11 +95,18 @@ def _judged(found: Confirmed, notes: Sequence[str]) -> tuple[Judged, str]:
         stands_in=stands_in,
         is_untold=is_untold(state),
         shape=shape_without_name(state),
+        not_random=_not_random(state),
     )
     said = verdict(state, before, after, known).saying(line_left(state), *notes, budget.sentence)
     if said.word == CONSISTENT:  # what would take part of so little is no cause
         state, after = replace(state, accepted=(), outcome=state.nominal, left=state.seen), before
     return Judged(state, before, after, said, not_tried, found.t), doubtful
+
+
+def _not_random(state: State) -> float:
+    """What of the nominal model's residuals shows that it is not random, in % of the fitted records' variance."""
+    left = 100 * nrmse(state.nominal.fit_residuals, state.bench.evidence.fitted) ** 2
+    return left if state.seen is None else left * state.seen.taken
 
 
 def _doubtful(state: State) -> tuple[str, str]:

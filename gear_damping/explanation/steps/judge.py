@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from math import inf
 
 from gear_damping.explanation.evidence.excess import Excess, is_all
 from gear_damping.explanation.state import Accepted, State
@@ -71,6 +72,8 @@ class Known:
         stands_in: Why one of the causes is none, in words; empty where all may be.
         is_untold: Whether there was no time to see what some cause stands in for.
         shape: What is visible and has no name, in words; empty where nothing of that kind is.
+        not_random: What of the nominal model's residuals shows that it is not random, in % of the fitted records'
+            variance.
     """
 
     converged: bool = True
@@ -83,6 +86,7 @@ class Known:
     stands_in: str = ""
     is_untold: bool = False
     shape: str = ""
+    not_random: float = inf
 
     @property
     def unsettled(self) -> tuple[str, ...]:
@@ -193,7 +197,8 @@ def _without_name(found: State, before: Excess, known: Known) -> Verdict:
     settings, visible = found.bench.settings, is_visible(found.seen)
     is_more = before.misfit > settings.small_misfit
     is_gross = visible and is_more and known.fitted > settings.gross_percent
-    missing = (before.significant and (visible or is_more)) or is_gross
+    matters = visible and known.not_random > settings.least_excess  # a form of a law that is hardly another's shows too
+    missing = (before.significant and (matters or is_more)) or is_gross
     waiting = [name for name in known.untried if found.seen is not None and found.seen.visible.shows(name)]
     if missing and waiting:
         text = f"{_missing(before)}, and the time was over before its likely cause was tried: {', '.join(waiting)}."
@@ -216,7 +221,7 @@ def _without_name(found: State, before: Excess, known: Known) -> Verdict:
             "fitted to, and the others hold too little motion to tell what is missing."
         )
         return Verdict(UNEXPLAINED, (text, *known.unsettled))
-    if visible and raised:  # more than a sensor makes, and not all of it can be random
+    if matters and raised:  # more than a sensor makes, and not all of it can be random
         text = (
             f"{beyond.percent:.3g} % of the signal's variance looks nearly random, is more than the noise of the "
             "sensor, and something in it is visible that is not random; no effect of the catalogue is validated."
@@ -228,7 +233,7 @@ def _without_name(found: State, before: Excess, known: Known) -> Verdict:
             "are too short to tell whether a random load makes it or something is missing."
         )
         return Verdict(UNEXPLAINED, (text, *known.unsettled))
-    if visible and before.misfit > settings.small_misfit:
+    if visible and (is_more or before.significant):
         text = (
             f"What the simulation misses is not random, and less than {max(before.percent, before.threshold):.2g} % of "
             "the signal's variance: no effect that takes more is missing."
