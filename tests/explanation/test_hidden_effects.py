@@ -45,6 +45,15 @@ def test_a_hidden_effect_is_named_first_with_its_size(explained, effect, paramet
 
 
 @pytest.mark.slow
+def test_a_relief_of_the_tips_is_told_from_an_error_of_the_profile_by_its_loads(explained):
+    """Hidden as what either pair lacks; a light load shortens the contact by it, which no error of geometry does."""
+    found = explained("tip_relief", 101, 35.0, records=range(8), duration=0.05, target_excess=3.0)
+    assert [(cause["name"], cause["status"]) for cause in found["causes"]] == [("tip_relief", "established")]
+    true = found["truth"]["effects"][0]["parameters"]["length"]
+    assert found["causes"][0]["parameters"]["length"]["value"] == pytest.approx(true, rel=0.15)
+
+
+@pytest.mark.slow
 def test_of_two_causes_neither_keeps_the_name_of_its_neighbour(explained):
     """Before the profile is known, other laws come as near as the dry friction; it takes their place."""
     found = explained("pairs", 1001, None, records=range(8), duration=0.05, target_excess=None)

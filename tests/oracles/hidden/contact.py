@@ -30,6 +30,10 @@ class Instant:
     torque: np.ndarray
     friction: np.ndarray | float
     unbalance: np.ndarray | float
+    cut_last: np.ndarray | float = 0.0  # of the pair that met last: its relief and its stiffness,
+    last: np.ndarray | float = 0.0
+    cut_before: np.ndarray | float = 0.0  # and those of the pair before it
+    before: np.ndarray | float = 0.0
 
 
 def damping_laws(knobs: Arrays) -> list[Law]:
@@ -89,6 +93,7 @@ class Motion:
         self.yielding = 2 + 2 * (self.bearing is not None) + 2 * (self.torsion is not None)
         self.rows = self.yielding + 3 * any_on(p, "hysteresis")
         self.gapped, self.filmed = any_on(p, "gap"), any_on(p, "film")
+        self.relieved = any_on(p, "relief")
         self.curved = [name for name in ("cubic", "hertz") if any_on(p, name)]
         self.coast_shift = np.where(np.isfinite(p["gap"]), p["gap"], 0.0)
         self.relaxation = np.sqrt(mean_stiffness(p) / p["mass"])
@@ -152,6 +157,9 @@ class Motion:
         if "hertz" in self.curved:
             k = k * ((deflection / p["hertz_at"]) ** 2 + 1e-8) ** (0.5 * p["hertz"])
         force = k * deflection
+        if self.relieved:  # a pair carries nothing of what its flanks are cut back by
+            pressed = np.maximum(deflection, 0.0)
+            force = force - at.last * np.minimum(pressed, at.cut_last) - at.before * np.minimum(pressed, at.cut_before)
         return force + p["cubic"] * deflection**3 if "cubic" in self.curved else force
 
     def _film(self, delta: np.ndarray, rate: np.ndarray) -> np.ndarray:

@@ -104,6 +104,10 @@ CONTACT = (
         lambda p, record: {"contact_growth": p["growth"] / p["reference_load"] / record["radius_1"]}, {"growth": 1},
     ),
     Effect(
+        "tip_relief", lambda rng, T: {"depth": 2e-5, "length": float(rng.uniform(0.25, 0.5))},
+        lambda p, record: {"relief": p["depth"], "relief_pitches": p["length"]}, {"depth": 1},
+    ),
+    Effect(
         "inertia_error", lambda rng, T: {"share": signed(rng, 0.3)},
         lambda p, record: {"mass": record["mass"] * (1.0 + p["share"])}, {"share": 1},
     ),

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .knobs import any_on
-from .stiffness import Arrays, carrying, of_shares, smooth_step
+from .stiffness import Arrays, carrying, of_shares, pair_shape, smooth_step
 from .tooth_friction import friction_factor
 
 TURN = 2.0 * np.pi
@@ -47,6 +47,20 @@ def stiffness(knobs: Arrays, t: np.ndarray, at: Turning) -> tuple[np.ndarray, np
     if any_on(knobs, "warming", "warmed"):
         k = k * (1.0 + knobs["warmed"] + knobs["warming"] * t)
     return k, friction_factor(knobs, at, places, shares) if any_on(knobs, "friction") else 1.0
+
+
+def reliefs(knobs: Arrays, at: Turning) -> list[np.ndarray]:
+    """Of the pair that met last and of the one before it: what its flanks are cut back / m, its stiffness / (N/m).
+
+    A parabola at both ends of its way; a pair that is about to meet counts as met, from as far as its edge reaches.
+    """
+    found, early = [], 0.5 * np.max(knobs["edge"])
+    met = at.mesh / TURN + early
+    for place in (met - np.floor(met) - early, met - np.floor(met) - early + 1.0):
+        ends = (place, knobs["contact_ratio"] - place)
+        cut = sum(np.clip(1.0 - np.maximum(end, 0.0) / knobs["relief_pitches"], 0.0, 1.0) ** 2 for end in ends)
+        found += [knobs["relief"] * cut, (knobs["two_pairs"] - knobs["one_pair"]) * pair_shape(knobs, place)]
+    return found
 
 
 def crack_window(knobs: Arrays, at: Turning) -> np.ndarray:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .contact import Instant, Motion
-from .excitation import error, load, stiffness, turning
+from .excitation import error, load, reliefs, stiffness, turning
 from .knobs import any_on
 from .runge_kutta import NODES, step
 from .stiffness import Arrays
@@ -67,7 +67,8 @@ def tabulate(knobs: Arrays, first: float, count: int, h: float, held: np.ndarray
     unbalance = _by_step(turned) if any_on(knobs, "unbalance") else 0.0
     force = _by_step(force) if held is None else _by_step(force) + (held * knobs["load_noise"])[:, None]
     friction = _by_step(friction) if isinstance(friction, np.ndarray) else friction
-    return Tables(_by_step(k), _by_step(e), _by_step(e_rate), force, _by_step(torque), friction, unbalance)
+    cut = [_by_step(one) for one in reliefs(knobs, at)] if any_on(knobs, "relief") else []
+    return Tables(_by_step(k), _by_step(e), _by_step(e_rate), force, _by_step(torque), friction, unbalance, *cut)
 
 
 def _by_step(values: np.ndarray) -> np.ndarray:

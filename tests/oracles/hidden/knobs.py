@@ -39,7 +39,7 @@ NEUTRAL: Knobs = {
     "pitch": np.zeros(pair.MOST_TEETH), "pitch_phase": 0.0, "pitch_on_gear": 0.0, "handover": 0.6,
     "pinion_modulation": 0.0, "pinion_modulation_phase": 0.0,
     "gear_modulation": 0.0, "gear_modulation_phase": 0.0,
-    "crack": 0.0, "crack_phase": 0.0, "crack_on_gear": 0.0,
+    "relief": 0.0, "relief_pitches": 0.3, "crack": 0.0, "crack_phase": 0.0, "crack_on_gear": 0.0,
     # laws of the contact
     "gap": math.inf, "power": 0.0, "power_n": 1.0, "power_rounding": 1e-6, "dry": 0.0, "dry_width": 1.0,
     "dry_forward": 0.0, "dry_backward": 0.0, "viscous_forward": 0.0, "viscous_backward": 0.0,

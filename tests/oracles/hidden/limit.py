@@ -32,6 +32,7 @@ AMPLITUDES = {
     "squeeze_film_damping": ("damping_coefficient", "N*s/m"), "hunt_crossley_damping": ("damping_coefficient", "N*s/m"),
     "hysteretic_damping": ("share", "1"), "cubic_stiffness": ("coefficient", "N/m^3"),
     "hertz_stiffness": ("exponent", "1"), "load_dependent_contact": ("growth", "1"),
+    "tip_relief": ("depth", "m"),
     "pinion_eccentricity": ("amplitude", "m"), "gear_eccentricity": ("amplitude", "m"),
     "pinion_stiffness_modulation": ("amplitude", "1"), "gear_stiffness_modulation": ("amplitude", "1"),
     "profile_error": ("amplitudes", "m"), "pitch_error": ("values", "m"), "tooth_crack": ("depth", "1"),

@@ -21,7 +21,7 @@ DIMENSIONS: dict[str, dict[str, dict[str, float]]] = {
     "backlash": {"gap": LENGTH},
     "cubic_stiffness": {"coefficient": {"force": 1, "length": -3}},
     "hertz_stiffness": {"reference_deflection": LENGTH},
-    "load_dependent_contact": {"reference_load": FORCE},
+    "load_dependent_contact": {"reference_load": FORCE}, "tip_relief": {"depth": LENGTH},
     "pinion_eccentricity": {"amplitude": LENGTH}, "gear_eccentricity": {"amplitude": LENGTH},
     "profile_error": {"amplitudes": LENGTH}, "pitch_error": {"values": LENGTH},
     "torque_ripple": {"amplitude": TORQUE},
