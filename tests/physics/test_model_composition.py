@@ -174,3 +174,8 @@ def test_a_plugin_that_cannot_be_used_is_refused(plugin, tmp_path):
     plugin.write_text(PLUGIN.replace('"my_damping"', '"backlash"'))
     with pytest.raises(InputError, match=r"repeats the name \['backlash'\]"):
         catalogue([plugin])
+
+
+def test_a_gear_s_torque_that_stays_beside_a_ripple_of_the_load_is_refused():
+    with pytest.raises(InputError, match=r"torque_ripple\.gear_torque: stays beside a ripple of the torque alone"):
+        Bench("torque_ripple", {"gear_torque": "stays", "proportional": True})

@@ -5,6 +5,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
+from gear_damping.errors import InputError, Problem
 from gear_damping.physics.cause import SHAFTS, Cause, Recipe, Rig
 from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Option, Parameter
@@ -13,6 +14,8 @@ from gear_damping.physics.terms import Load, LoadFactor, Values
 
 LOW_ORDERS = 6  # of the pinion's shaft, of a motor's torque
 GEAR_ORDERS = 3  # of the gear's shaft
+# strength, what is none beside it, and what the gear's torque does
+FORMS = (("amplitude", "share", "follows"), ("share", "amplitude", "follows"), ("amplitude", "share", "stays"))
 
 
 def ripple_orders(rig: Rig) -> tuple[float, ...]:
@@ -21,9 +24,6 @@ def ripple_orders(rig: Rig) -> tuple[float, ...]:
     low = [float(order) for order in range(1, LOW_ORDERS + 1)]
     gear = [order * teeth / rig.n_teeth_gear for order in range(1, GEAR_ORDERS + 1)]
     return tuple(dict.fromkeys([*low, *gear, teeth - 1.0, teeth + 1.0, *rig.lines]))
-
-
-FORMS = (("amplitude", "share", "follows"), ("share", "amplitude", "follows"), ("amplitude", "share", "stays"))
 
 
 def _every_order(rig: Rig) -> tuple[Recipe, ...]:
@@ -75,11 +75,17 @@ class TorqueRipple(Load, LoadFactor):
         """The amplitude as a force, or as a share."""
         per_torque = base["load_per_pinion_torque"]
         if self.chosen["gear_torque"] == "stays":
+            self._check_is_torque()
             pinion, gear = (base[f"base_radius_{s}"] ** 2 / base[f"inertia_{s}"] for s in SHAFTS)
             per_torque = pinion / (pinion + gear) / base["base_radius_pinion"]
         force = values["amplitude"] * per_torque
         size = values["share"] if self.chosen["proportional"] else force
         return {"size": size, "order": values["order"], "phase": values["phase"]}
+
+    def _check_is_torque(self) -> None:
+        if self.chosen["proportional"]:
+            rule, remedy = "stays beside a ripple of the torque alone, not of the load", "leave out proportional: true"
+            raise InputError(Problem("simulator.torque_ripple.gear_torque", rule, remedy=remedy))
 
     def _wave(self, at: Kinematics, p: Values) -> Tensor:
         return p["size"] * torch.cos(p["order"] * at.pinion.angle + p["phase"])
