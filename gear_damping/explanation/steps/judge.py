@@ -17,7 +17,9 @@ TOO_STILL = "but something is left beside it, and the held-out records tell noth
 UNTOLD = "but there was no time to see whether it stands in for something else."
 NOT_LESS = "but what is visible and not random stays."
 AT_BOUND = "but it has run into the end of what it can be, and leaves most: it stands in for something else."
-OTHER_SIZES = "but with another size in other records: it stands in for something that has no name here."
+OTHER_SIZES = (
+    "but with another size in other records: its form is another one, or it stands in for something that has no name here."
+)
 
 
 @dataclass(frozen=True)
