@@ -18,7 +18,7 @@ UNTOLD = "but there was no time to see whether it stands in for something else."
 NOT_LESS = "but what is visible and not random stays."
 AT_BOUND = "but it has run into the end of what it can be, and leaves most: it stands in for something else."
 OTHER_SIZES = (
-    "but with another size in other records: its form is another one, or it stands in for something that has no name here."
+    "but with another size in other records: its form is another one, or it stands in for something that has no name."
 )
 
 
