@@ -113,6 +113,11 @@ class Recipe:
         """The shaft whose turns its phases count."""
         return str(self.options.get("shaft", self.shaft))
 
+    @property
+    def resting(self) -> tuple[tuple[str, int], ...]:
+        """Parameters by own name with a bound, -1 or 1, at which they have run into nothing."""
+        return (*((name, -1) for name in self.sharpest), *((name, 1) for name in self.whole))
+
 
 def where_there_is_a_spring(*recipes: Recipe) -> Callable[[Rig], tuple[Recipe, ...]]:
     """Recipes of a law about a place of rest: where nothing pulls the rig back there is none to count from."""

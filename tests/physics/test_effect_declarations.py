@@ -5,6 +5,7 @@ import re
 import pytest
 from effect_bench import EFFECTS
 
+from gear_damping.physics.cause import Rig
 from gear_damping.physics.effect_files import cause_faults, some_rigs
 from gear_damping.physics.systems.known import SYSTEMS, systems_of
 from gear_damping.units import parse_unit
@@ -83,3 +84,10 @@ def test_a_cause_with_a_shaft_is_tried_on_both(name):
     for rig in some_rigs(SYSTEMS["gear_pair"]):
         tried = {recipe.options.get("shaft") for recipe in EFFECTS[name].cause.recipes_for(rig)}
         assert tried == {"pinion", "gear"}
+
+
+@pytest.mark.parametrize("on_shafts", [True, False])
+def test_a_ripple_that_speeds_both_shafts_up_is_sought_where_a_sensor_on_a_shaft_sees_it(on_shafts):
+    rig = Rig("gear_pair", n_teeth_pinion=20, n_teeth_gear=40, on_shafts=on_shafts)
+    tried = {recipe.options["gear_torque"] for recipe in EFFECTS["torque_ripple"].cause.recipes_for(rig)}
+    assert tried == ({"follows", "stays"} if on_shafts else {"follows"})

@@ -166,9 +166,7 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Si
         tuple(later),
         recipe.non_nested,
         replaced,
-        frozenset(
-            (f"{kind.name}.{name}", end) for end, own in ((-1, recipe.sharpest), (1, recipe.whole)) for name in own
-        ),
+        frozenset((f"{kind.name}.{name}", end) for name, end in recipe.resting),
         own_phases,
         own_tooth,
         teeth,

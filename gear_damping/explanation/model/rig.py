@@ -58,8 +58,7 @@ def rig_of(base: Hypothesis, evidence: Evidence, residuals: Residuals | None = N
     harmonics = max(_harmonics(record, pinion, values["pinion_speed"]) for record in evidence.fit)
     teeth = {"n_teeth_pinion": pinion, "n_teeth_gear": gear, "indexed": evidence.has_index}
     teeth["standing"] = all_stand(evidence.fit)
-    channels = [channel for record in evidence.fit for channel in (record.observed, *(o for o, _ in record.others))]
-    teeth["on_shafts"] = any(channel.derivatives for channel in channels)
+    teeth["on_shafts"] = any(channel.derivatives for record in evidence.fit for channel in record.channels)
     return Rig(mesh_harmonics=harmonics, lines=lines, **teeth, **common)
 
 
