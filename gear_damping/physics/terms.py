@@ -135,12 +135,10 @@ class Load(Effect):
     def load_force(self, at: Kinematics, p: Values) -> Tensor:
         """The force at this instant, positive where it presses the drive flanks together."""
 
-    def unbalanced_load(self, at: Kinematics, p: Values) -> Tensor | None:
-        """Of that force what comes of a torque on the pinion that none on the gear balances; None where none does.
-
-        With it both shafts speed up. Of the kinematics it may use time and angles.
-        """
-        return None
+    @property
+    def is_unbalanced(self) -> bool:
+        """Whether it comes of a torque on the pinion that none on the gear balances, so that both shafts speed up."""
+        return False
 
 
 class LoadFactor(Effect):

@@ -93,17 +93,15 @@ def _unbalanced_torque(runs: Runs) -> Tensor:
     It is what a shaft transmits beyond what drives it, and what loads have that no torque on the gear balances.
     """
     paths = [effect for effect in runs.model.effects if isinstance(effect, LoadPath)]
-    loads = [effect for effect in runs.model.effects if isinstance(effect, Load)]
-    zero = torch.zeros((), dtype=torch.float64)
-    if not paths and not any(type(load).unbalanced_load is not Load.unbalanced_load for load in loads):
-        return zero
+    loads = [effect for effect in runs.model.effects if isinstance(effect, Load) and effect.is_unbalanced]
+    if not paths and not loads:
+        return torch.zeros((), dtype=torch.float64)
     prepared = runs.model.prepare(runs.values)
     at = _kinematics(runs, prepared)
     at.drive_load = runs.model.system.load(at, prepared.base) + torch.zeros_like(at.displacement)
     forces = [path.transmitted_load(at, prepared.terms[path.name]) - at.drive_load for path in paths]
-    forces += [load.unbalanced_load(at, prepared.terms[load.name]) for load in loads]
-    beyond = sum((force for force in forces if force is not None), zero)
-    return (beyond * prepared.scales.force).T / _participation(runs)[0] if beyond.ndim else zero
+    forces += [load.load_force(at, prepared.terms[load.name]) for load in loads]
+    return (sum(forces) * prepared.scales.force).T / _participation(runs)[0]
 
 
 def _kinematics(runs: Runs, prepared: Prepared) -> Kinematics:

@@ -56,8 +56,9 @@ def nrmse(residuals: Sequence[Tensor], records: Sequence[FitRecord]) -> float:
 def parameters_of(
     outcome: Outcome, covariances: Tensor, cause: str, evidence: Evidence, resting: Collection[tuple[str, int]] = ()
 ) -> dict[str, dict[str, object]]:
-    """The fitted parameters of an effect with 95 % intervals, by own name; `resting` may be at ends (-1, 1).
+    """The fitted parameters of an effect with 95 % intervals, by own name.
 
+    Those in `resting` may lie at the bound that is named with them, -1 for the lower one and 1 for the upper one.
     Of one that the records say nothing of (a gap whose far flank is never touched) it is its whole range; of one
     that the fit has driven to its bound, it takes in what lies beyond.
     """

@@ -22,6 +22,7 @@ class TipRelief(ElasticForce):
 
     Under a light load the contact is shorter, under a heavy one it grows to that of teeth without relief. A pair meets
     at the tip of the driven gear and parts at that of the pinion; the relief is counted along the line of action.
+    Flanks of the coast side are taken as sound.
     """
 
     name = "tip_relief"

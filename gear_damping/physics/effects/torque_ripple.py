@@ -71,10 +71,15 @@ class TorqueRipple(Load, LoadFactor):
         turns_with="shaft",
     )
 
+    @property
+    def is_unbalanced(self) -> bool:
+        """Where the gear's torque stays as it is."""
+        return self.chosen["gear_torque"] == "stays"
+
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
         """The amplitude as a force, or as a share."""
         per_torque = base["load_per_pinion_torque"]
-        if self.chosen["gear_torque"] == "stays":
+        if self.is_unbalanced:
             self._check_is_torque()
             pinion, gear = (base[f"base_radius_{s}"] ** 2 / base[f"inertia_{s}"] for s in SHAFTS)
             per_torque = pinion / (pinion + gear) / base["base_radius_pinion"]
@@ -93,10 +98,6 @@ class TorqueRipple(Load, LoadFactor):
     def load_force(self, at: Kinematics, p: Values) -> Tensor:
         """The force at this instant, where it is a torque of its own."""
         return torch.zeros_like(at.displacement) if self.chosen["proportional"] else self._wave(at, p)
-
-    def unbalanced_load(self, at: Kinematics, p: Values) -> Tensor | None:
-        """All of it, where the gear's torque stays as it is."""
-        return self.load_force(at, p) if self.chosen["gear_torque"] == "stays" else None
 
     def load_factor(self, at: Kinematics, p: Values) -> Tensor:
         """The factor at this instant, where it is a share of the load."""
