@@ -23,6 +23,7 @@ from gear_damping.tasks.evaluate import KNOWING
 
 CHUNK = 250  # runs that these take at once
 MINUTES = 85  # at most, of one call
+ESTIMATORS = (*NETWORKS, *KNOWING)
 
 
 def main() -> None:
@@ -42,13 +43,14 @@ def main() -> None:
 def _works(made: Bench, asked: argparse.Namespace) -> Iterator:
     """Everything that is not done yet, in order."""
     for seed in asked.seeds:
-        for name in NETWORKS:
+        for name in [one for one in NETWORKS if one in asked.only]:
             folder = asked.out / "networks" / name / f"seed_{seed}"
             yield lambda name=name, seed=seed, folder=folder: trained(name, seed, folder, asked.runs)
             yield from _parts(
                 made, asked, name, seed, lambda rows, snr, f=folder: estimates_of_network(f, made, rows, snr)
             )
-    for name, estimate in KNOWING.items():
+    for name in [one for one in KNOWING if one in asked.only]:
+        estimate = KNOWING[name]
         yield from _parts(made, asked, name, None, lambda rows, snr, e=estimate: e(made.known(rows, snr)))
 
 
@@ -84,14 +86,16 @@ def _said(folder: Path) -> tuple[Estimates, float]:
 
 
 def _write(made: Bench, asked: argparse.Namespace) -> None:
-    """The figures of every estimator, means over the seeds, and the page."""
-    names = [*NETWORKS, *KNOWING]
+    """The figures of every estimator, means over the seeds, and the page; what was not asked keeps its figures."""
     content = {"family": asked.family, "test_runs": len(made), "irregular_runs": int((~made.regular).sum()),
                "training_runs": asked.runs, "seeds": asked.seeds, "snr_db": {}}  # fmt: skip
     for snr in SNRS:
         limit = made.limit(snr)
         row = {"bound_percent": float(limit[made.regular].square().mean().sqrt()), "estimators": {}}
-        for name in names:
+        for name in ESTIMATORS:
+            if name not in asked.only:
+                row["estimators"][name] = _kept(made)["snr_db"][str(snr)]["estimators"][name]
+                continue
             seeds = asked.seeds if name in NETWORKS else [None]
             said = [_said(_part(asked.out, name, seed, snr)) for seed in seeds]
             row["estimators"][name] = mean_over_seeds(made, said, snr)
@@ -103,9 +107,18 @@ def _write(made: Bench, asked: argparse.Namespace) -> None:
     print(evaluation_table(content), flush=True)
 
 
+def _kept(made: Bench) -> dict:
+    """What the page says; refused where it is about other runs."""
+    kept = page.kept()
+    if kept["test_runs"] != len(made):
+        raise SystemExit(f"--only goes with the {kept['test_runs']} runs of {page.KEPT.name}, not with {len(made)}")
+    return kept
+
+
 def _asked() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.limit", description=__doc__)
     parser.add_argument("--family", default="bench", help="of runs (conf/family)")
+    parser.add_argument("--only", nargs="+", default=ESTIMATORS, choices=ESTIMATORS, help="others keep their figures")
     parser.add_argument("--runs", type=int, default=40_000, help="simulated for training and validation")
     parser.add_argument("--test-runs", type=int, default=2000)
     parser.add_argument("--seeds", type=int, nargs="+", default=[1, 2, 3])
