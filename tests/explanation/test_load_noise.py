@@ -1,7 +1,10 @@
 """Innovations of an oscillator that is pushed at random, against a Kalman filter and against what was drawn."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
+from scipy.integrate import quad_vec
 from scipy.linalg import expm
 
 from gear_damping.explanation.statistics.load_noise import Recurrence, drive_correlation, load_noise, recurrence
@@ -117,3 +120,22 @@ def test_innovations_are_those_of_a_kalman_filter(transitions, motion):
         covariances = step @ (covariances - np.outer(gain, covariances[0])) @ step.T + noise
     found = load_noise(seen, motion).innovations(seen[:, None])[:, 0]
     assert np.corrcoef(found[100:], np.array(expected)[100:])[0, 1] > 0.995
+
+
+@pytest.mark.parametrize(
+    ("mass", "damping", "stiffness"), [(1.0, 36032.0, 4.08e6), (MASS, DAMPING, MEAN), (1.0, 2.0, -2000.0)]
+)
+def test_the_correlation_holds_where_the_motion_dies_away_within_a_sample(mass, damping, stiffness):
+    interval, rates = 1.3e-3, np.array([[0, 1], [-stiffness / mass, -damping / mass]])
+
+    def pushed(time):
+        answer = expm(rates * time)[:, 1]
+        return np.outer(answer, answer).ravel()
+
+    ends = [0.0, *np.geomspace(1e-4 * interval, interval, 12)]
+    noise = sum(quad_vec(pushed, a, b, epsabs=0, epsrel=1e-10)[0] for a, b in pairwise(ends)).reshape(2, 2)
+    step = expm(rates * interval)
+    late = step[0] - np.trace(step) * np.eye(2)[0]
+    expected = late @ noise[:, 0] / (noise[0, 0] + late @ noise @ late)
+    assert abs(expected) <= 0.5
+    assert drive_correlation(mass, damping, stiffness, interval, 0) == pytest.approx(expected, rel=1e-6, abs=1e-9)

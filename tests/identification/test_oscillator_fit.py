@@ -151,3 +151,14 @@ def test_silverbox():
     assert found.rmse["holdout"] <= 7.0e-3
     assert found.natural_frequency_hz.value == pytest.approx(69.5, rel=0.01)
     assert found.given[DAMPING] > 0
+
+
+def test_records_seen_through_different_channels_are_fitted_together():
+    shown = free_decay_record(0, 1e-6)
+    times = np.arange(1500) / RATE
+    _, speed = closed_forms.free_decay(times, 1.0, 2 * RATIO * OMEGA, OMEGA**2, 2e-3, 0.05)
+    other = FitRecord("speed", torch.as_tensor(speed), RATE, observed=Observed("velocity"), weight=1 / OMEGA)
+    found = fit_oscillator([shown, other], [replace(other, name="held")])
+    assert found.damping_ratio_percent.value == pytest.approx(100 * RATIO, rel=1e-3)
+    assert len(found.predictions["speed"]) == len(found.predictions["held"]) == 1500
+    assert float((found.predictions["speed"] - other.response).abs().max()) < 1e-3 * float(other.response.abs().max())

@@ -7,7 +7,7 @@ import torch
 
 from gear_damping.identification.output_error.normal_equations import normal_equations, nuisance_basis, project_out
 from gear_damping.identification.output_error.problem import OutputErrorProblem, Prediction, error_amplification
-from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.identification.output_error.records import FitRecord, Observed
 from gear_damping.identification.output_error.segments import WHOLE, Segments, covered, in_segments, joined
 from gear_damping.physics.effects.sensor_drift import SensorDrift
 from gear_damping.physics.model import Model
@@ -76,11 +76,16 @@ def test_stated_segments_are_exact_and_a_shorter_end_is_left_out():
     assert torch.equal(covered([record], segments)[0].response, record.response[:100])
 
 
-def test_segments_of_several_channels_are_put_together_by_channel():
-    record = FitRecord("a", torch.arange(60.0), 100.0)
-    segmented = [torch.cat([record.response[a:b], -record.response[a:b]]) for a, b in Segments(0.3).ends(record)]
-    (found,) = joined(segmented, [record], Segments(0.3), channels=2)
-    assert torch.equal(found, torch.cat([record.response, -record.response]))
+def test_segments_of_several_channels_are_put_together_by_the_channels_of_each_record():
+    samples, names, segments = torch.arange(60.0), ["displacement", "velocity"], Segments(0.3)
+    speed = Observed("velocity")
+    both = FitRecord("a", samples, 100.0, others=((speed, -samples),))
+    second = FitRecord("b", samples, 100.0, observed=speed)  # has no row of displacement
+    ends = segments.ends(both)
+    segmented = [torch.cat([samples[a:b], -samples[a:b]]) for _ in range(2) for a, b in ends]
+    found = joined(segmented, [both, second], segments, names)
+    assert torch.equal(found[0], torch.cat([samples, -samples]))
+    assert torch.equal(found[1], -samples)
 
 
 def test_records_stay_whole_without_a_length():

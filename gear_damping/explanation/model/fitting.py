@@ -119,7 +119,7 @@ def _outcome(settled: Hypothesis, found: Fit, evidence: Evidence) -> Outcome:
     left = [
         [part / record.weight for part, record in zip(whole, evidence.fit, strict=True)]
         for series in (crossed.residuals, fitted.prediction.residual[0])
-        for whole in [joined(series, evidence.fitted, evidence.segments, len(problem.response.channels))]
+        for whole in [joined(series, evidence.fitted, evidence.segments, problem.response.channels)]
     ]
     amplification = error_amplification(fitted.prediction, problem.n_shared)
     return Outcome(settled, problem, fitted, found.values, *left, crossed.scatter, amplification)

@@ -197,7 +197,7 @@ def _fit_residuals(
     problem: OutputErrorProblem, fitted: Fitted, records: Sequence[FitRecord], segments: Segments
 ) -> dict[str, Tensor]:
     left = fitted.prediction.residual[0] / problem.response.weights.clamp(min=1e-300)
-    whole = joined(left, covered(records, segments), segments, len(problem.response.channels))
+    whole = joined(left, covered(records, segments), segments, problem.response.channels)
     return {record.name: found for record, found in zip(records, whole, strict=True)}
 
 

@@ -93,7 +93,7 @@ def predict_holdout(
     left = prediction.residual[0] / weights
     projected = _projected_out(prediction, problem.n_shared) / weights
     counted = (problem.response.weights > 0).double()
-    kept, channels = covered(records, segments), len(problem.response.channels)
+    kept, channels = covered(records, segments), problem.response.channels
     whole = [
         joined(series * counted, kept, segments, channels) for series in (problem.response.values - left, projected)
     ]

@@ -85,7 +85,7 @@ def shortened(record: FitRecord, samples: int) -> FitRecord:
 
 
 def joined(
-    series: Sequence[Tensor], records: Sequence[FitRecord], segments: Segments, channels: int = 1
+    series: Sequence[Tensor], records: Sequence[FitRecord], segments: Segments, channels: Sequence[str] | None = None
 ) -> list[Tensor]:
     """What stands in the order of the segments put together again by record.
 
@@ -93,13 +93,15 @@ def joined(
         series: By segment, its channels one after another at one length, (channels * time,).
         records: The whole records.
         segments: How they were cut.
-        channels: Channels of each.
+        channels: Of each, by name, of which a record may have some; where absent there is one.
 
     Returns:
-        By record, its channels one after another, (channels * samples,).
+        By record, the channels that it has one after another, (its channels * samples,).
     """
     left, whole = iter(series), []
     for record in records:
-        parts = [next(left).unflatten(-1, (channels, -1))[:, : b - a] for a, b in segments.ends(record)]
+        rows = [0] if channels is None else [channels.index(channel.name) for channel in record.channels]
+        count = 1 if channels is None else len(channels)
+        parts = [next(left).unflatten(-1, (count, -1))[rows, : b - a] for a, b in segments.ends(record)]
         whole.append(torch.cat(parts, -1).flatten())
     return whole
