@@ -10,9 +10,10 @@ from gear_damping.measurement.cutting import moved
 from gear_damping.measurement.declaration import Plan
 from gear_damping.measurement.declared_units import Conversion, UnitSystem
 from gear_damping.measurement.encoders import FROM_ENCODERS, base_radius, mean_rotation, transmission_error
+from gear_damping.measurement.gaps import borne_out
 from gear_damping.measurement.raw import RawChannel, RawRecord
 from gear_damping.measurement.record import Channel, Finding, Quantity, Record
-from gear_damping.measurement.record_checks import check_record, pauses_borne_out, tooth_ratio
+from gear_damping.measurement.record_checks import check_record, tooth_ratio
 from gear_damping.measurement.staircase import is_staircase
 from gear_damping.measurement.timebase import TimeBase
 from gear_damping.measurement.vocabulary import HOLDABLE
@@ -55,8 +56,8 @@ class Assembler:
             (*raw.table.notes, *notes),
         )  # fmt: skip
         named = tuple(replace(finding, record=name) for finding in findings)
-        named = pauses_borne_out(replace(record, findings=named))
-        return replace(record, findings=(*named, *check_record(replace(record, findings=named))))
+        record = borne_out(replace(record, findings=named))
+        return replace(record, findings=(*record.findings, *check_record(record)))
 
     def _channel(self, raw: RawChannel, record: RawRecord, notes: list[str], findings: list[Finding]) -> Channel:
         plan = raw.plan

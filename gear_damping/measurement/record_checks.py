@@ -20,7 +20,6 @@ from numpy.typing import NDArray
 from gear_damping.measurement.checks import APPLIED, STRUCK, check_channel
 from gear_damping.measurement.encoders import FROM_ENCODERS
 from gear_damping.measurement.record import Finding, Record
-from gear_damping.measurement.timebase import CLOCK_JUMPS
 
 WHOLE_SPEEDS = ("pinion_speed", "gear_speed")  # hold the rotation, beside which what is fitted is little
 LARGEST_TRANSMISSION_ERROR = 1e-3  # m; a gear pair deflects by micrometres
@@ -44,7 +43,6 @@ _SLOPE_ERROR = 0.1  # of the power of s' e; nothing is weighted higher than this
 _FLOOR, _OVER = 0.1, 4.0  # quantile of the power that is noise; times this, what a line must be above
 _DECIDED = 0.35  # share below which the stamps are wrong
 _ERRORS = 4.0  # standard errors that the share must be nearer to none by
-_GAP, _BESIDE, _FEWEST_GAPS = 1.5, 4, 5  # usual steps in a gap; samples on either side; gaps that a share is had from
 _RESPONSES = ("transmission_error", "gear_speed")  # that make a record one of a simulation, not of a casing
 
 
@@ -149,51 +147,6 @@ def stamps_against_values(record: Record) -> Finding | None:
             )
             return Finding("uneven_stamps", message, channel=channel.name)
     return None
-
-
-def pauses_borne_out(record: Record) -> tuple[Finding, ...]:
-    """The findings of a record, where its clock jumps and its values moved as long only with a note of it.
-
-    Over a pause of the recorder a value moves by its slope times the pause, over a jump of its clock by that of one
-    step. The slope is that of lines through a few samples on either side.
-    """
-    jumps = [finding for finding in record.findings if finding.kind == CLOCK_JUMPS]
-    shares = [share_over_gaps(c.values, record.time) for c in record.channels.values() if jumps]
-    if not any(
-        share - _ERRORS * error > 1 - _DECIDED and share + _ERRORS * error < 1 + _DECIDED for share, error in shares
-    ):
-        return record.findings
-    said = "the recorder paused, and the values moved as long: samples are taken at their stamps"
-    note = {"kind": "uneven_stamps", "severity": "note"}
-    return tuple(
-        replace(f, message=f"{f.message.partition(': ')[0]}: {said}", **note) if f in jumps else f
-        for f in record.findings
-    )
-
-
-def share_over_gaps(values: NDArray[np.float64], stamps: NDArray[np.float64]) -> tuple[float, float]:
-    """The share of the time of gaps in the stamps over which values moved, and its standard error (infinite of few).
-
-    Args:
-        values: (n,) samples.
-        stamps: (n,) their stamps in s.
-    """
-    steps = np.diff(stamps)
-    usual = float(np.median(steps))
-    gaps = np.flatnonzero(steps > _GAP * usual)
-    apart = np.diff(np.r_[-_BESIDE, gaps, stamps.size - 1 + _BESIDE]) >= _BESIDE  # no other gap within either side
-    gaps = gaps[apart[:-1] & apart[1:] & (gaps >= _BESIDE - 1) & (gaps + _BESIDE < stamps.size)]
-    if gaps.size < _FEWEST_GAPS:
-        return 1.0, np.inf
-    due, seen = np.empty(gaps.size), np.empty(gaps.size)
-    for place, k in enumerate(gaps):
-        before, behind = slice(k - _BESIDE + 1, k + 1), slice(k + 1, k + 1 + _BESIDE)
-        (slope, end), (other, begin) = (
-            np.polyfit(stamps[side] - stamps[at], values[side], 1) for side, at in ((before, k), (behind, k + 1))
-        )
-        due[place], seen[place] = (slope + other) / 2 * steps[k], begin - end
-    share = float(due @ seen / (due @ due))
-    return share, float(np.sqrt(np.sum((due * (seen - share * due)) ** 2)) / (due @ due))
 
 
 def _is_counted(values: NDArray[np.float64]) -> bool:

@@ -28,7 +28,7 @@ GRID_TOLERANCE = 1e-6  # of a step; stamps this close to a grid are one
 SPLINE_TOLERANCE = 0.01
 MOST_STRAY = 0.1  # of the steps go back in a clock that stumbles; beyond, rows stand in another order
 REMEDY = "or give sampling_rate instead of the time column, where the stamps are written with too few digits"
-CLOCK_JUMPS = "clock_jumps"  # a kind of finding
+CLOCK_JUMPS, LOST = "clock_jumps", "dropped_samples"  # kinds of findings
 _HALF = 0.5  # of a step; a stamp that far from where it is due counts as another sample's
 _WHOLE = 0.05  # of a gap; how near a whole number of steps it must be, beside what the jitter allows
 _LISTED = 5  # gaps that a message lists
@@ -112,10 +112,25 @@ def stamped_time(stamps: NDArray[np.float64], key: str, source: str, first: int 
         note = f"time stamps are rounded to {written.digit:.3g} s: taken as an even {written.rate:.6g} Hz"
         return TimeBase(written.start + np.arange(stamps.size) / written.rate, written.rate, notes=(note,))
     found = irregularity(stamps, first)
+    if found and found.kind == LOST:
+        return _with_losses(stamps, found)
     if found:
         usual = rate if found.severity == "note" else 1 / float(np.median(np.diff(stamps)))
         return TimeBase(stamps, usual, uniform=False, findings=(found,))
     return TimeBase(stamps, rate, uniform=False, findings=(jitter_note(stamps),))
+
+
+def _with_losses(stamps: NDArray[np.float64], found: Finding) -> TimeBase:
+    """The stamps where samples were lost, freed of their rounding, at the rate of the steps that they count."""
+    steps = np.diff(stamps)
+    step = float(np.mean(steps[steps < (1 + _HALF) * np.median(steps)]))
+    index = np.r_[0.0, np.cumsum(np.round(steps / step))]
+    written = written_in(stamps, index)
+    if written is None:
+        return TimeBase(stamps, index[-1] / float(stamps[-1] - stamps[0]), uniform=False, findings=(found,))
+    note = f"time stamps are rounded to {written.digit:.3g} s: taken as steps of an even {written.rate:.6g} Hz"
+    time = written.start + index / written.rate
+    return TimeBase(time, written.rate, uniform=False, notes=(note,), findings=(found,))
 
 
 def _refuse_repeated_or_backward(steps: NDArray, key: str, source: str, first: int) -> None:
@@ -161,13 +176,17 @@ class Written:
     rate: float
 
 
-def written_in(stamps: NDArray[np.float64]) -> Written | None:
+def written_in(stamps: NDArray[np.float64], index: NDArray[np.float64] | None = None) -> Written | None:
     """The even grid that stamps of few digits stand for; None where they are not rounded, or not from a grid.
 
     Rounding moves a stamp by half of its last digit, so that it tells nothing against a grid that is nearer. Of the
     rates that the digits allow, the one with the fewest digits of its own is taken.
+
+    Args:
+        stamps: (n,) in s.
+        index: (n,) steps since the first; absent, one a stamp.
     """
-    since, index = stamps - stamps[0], np.arange(stamps.size)
+    since, index = stamps - stamps[0], np.arange(stamps.size) if index is None else index
     digit = _last_digit(since, 4 * np.spacing(np.abs(stamps).max()))
     rate = 1 / float(np.polyfit(index, since, 1)[0])
     if digit is None or np.ptp(since - index / rate) > _WRITTEN * digit:
@@ -200,7 +219,7 @@ def irregularity(stamps: NDArray[np.float64], first: int = 0) -> Finding | None:
     gaps = steps[lasting] / usual
     run = np.mean(np.diff(lasting) == 1) if lasting.size > 2 else 0.0
     if lasting.size and run < _RUN and _are_whole(gaps, _scatter(steps) / usual):
-        return _dropped(np.round(gaps).astype(int) - 1, lasting, first)
+        return _dropped(np.round(gaps).astype(int) - 1, stamps, lasting, first)
     few = run < _RUN and lasting.size < _MANY * steps.size
     changes = _change_of_rate(np.delete(steps, lasting) if few else steps)
     if changes is not None:
@@ -257,14 +276,15 @@ def _change_of_rate(steps: NDArray) -> int | None:
     return int(np.argmax(np.abs(time - np.linspace(0.0, time[-1], time.size)))) + 1
 
 
-def _dropped(lost: NDArray, gaps: NDArray, first: int) -> Finding:
-    rows = [str(gap + 1 + first) for gap in gaps[:_LISTED].tolist()]
+def _dropped(lost: NDArray, stamps: NDArray, gaps: NDArray, first: int) -> Finding:
+    rows = ", ".join(str(gap + 1 + first) for gap in gaps[:_LISTED].tolist())
+    times = ", ".join(f"{stamps[gap + 1]:.6g}" for gap in gaps[:_LISTED].tolist())
     more = " and others" if gaps.size > _LISTED else ""
     message = (
-        f"about {lost.sum()} sample(s) were dropped in {gaps.size} gap(s), before row(s) {', '.join(rows)}{more}; "
-        "use slices between the gaps"
+        f"about {lost.sum()} sample(s) were dropped in {gaps.size} gap(s), before row(s) {rows} of the file "
+        f"(at {times} s){more}; use slices or windows between the gaps"
     )
-    return Finding("dropped_samples", message, channel="time", sample=int(gaps[0]) + 1)
+    return Finding(LOST, message, channel="time", sample=int(gaps[0]) + 1)
 
 
 def _changing(steps: NDArray, where: int, first: int) -> Finding:

@@ -1,10 +1,10 @@
-"""A recorder that pauses, and a clock that jumps: the values over the gap tell which."""
+"""A recorder that pauses or loses samples, and a clock that jumps: the values over the gap tell which."""
 
 import numpy as np
 import pytest
 
+from gear_damping.measurement.gaps import share_over_gaps
 from gear_damping.measurement.load import load_measurement
-from gear_damping.measurement.record_checks import share_over_gaps
 
 SAMPLES, STEP, GAPS = 1200, 0.01, np.array([150, 320, 480, 700, 810, 990, 1100])
 
@@ -60,3 +60,47 @@ def test_noise_alone_bears_out_nothing(tmp_path):
 def test_few_gaps_tell_nothing():
     stamps = STEP * np.arange(SAMPLES) + 0.05 * (np.arange(SAMPLES) > 400)
     assert share_over_gaps(moved(stamps, True, 0.0), stamps) == (1.0, np.inf)
+
+
+def kept(lost, frequency, rate=100.0, noise=1e-4):
+    """Stamps and values of a decaying swing whose samples `lost` are not there."""
+    time = np.delete(np.arange(3000), lost) / rate
+    swing = np.exp(-0.05 * time) * np.sin(2 * np.pi * frequency * time)
+    return time, swing + noise * np.random.default_rng(4).normal(size=time.size)
+
+
+@pytest.mark.parametrize(
+    ("lost", "frequency", "severity"),
+    [
+        ([700], 0.7, "note"),
+        ([*range(700, 703), 1900], 0.7, "note"),
+        (range(700, 950), 0.7, "data_problem"),  # almost two periods
+        (range(700, 750), 0.7, "data_problem"),  # a third of one
+        (range(700, 703), 20.0, "data_problem"),  # more than half of one
+    ],
+)
+def test_lost_samples_are_a_note_where_they_follow_from_their_neighbours(lost, frequency, severity, tmp_path):
+    stamps, values = kept(list(lost), frequency)
+    record = loaded(tmp_path, stamps, values)
+    (finding,) = [one for one in record.findings if one.channel == "time"]
+    assert (finding.kind, finding.severity) == ("dropped_samples", severity)
+    assert "before row(s) 700" in finding.message
+    assert f"(at {stamps[700]:.6g}" in finding.message
+    covered = (len(record.time) - 1) / record.sampling_rate
+    if severity == "note":
+        assert covered == pytest.approx(record.time[-1] - record.time[0], abs=1e-6)
+
+
+def test_stamps_of_few_digits_keep_their_rate_beside_a_gap(tmp_path):
+    even = np.delete(np.arange(4000), [1234]) / 59.69
+    stamps = np.round(even, 3)
+    record = loaded(tmp_path, stamps, np.sin(2 * np.pi * 0.6 * even))
+    assert np.ptp(record.time - even) < 2e-4  # rounding alone spreads them over 1e-3
+    (finding,) = [one for one in record.findings if one.channel == "time"]
+    assert finding.severity == "note"
+
+
+def test_a_recorder_that_paused_is_simulated_to_its_end(tmp_path):
+    stamps = stamps_with_gaps()
+    record = loaded(tmp_path, stamps, moved(stamps, True, 0.001))
+    assert (len(stamps) - 1) / record.sampling_rate == pytest.approx(stamps[-1] - stamps[0], rel=1e-6)

@@ -100,7 +100,7 @@ def drive_correlation(mass: float, damping: float, stiffness: float, interval: f
 def _step_and_noise(rates: Array, interval: float) -> tuple[Array, Array]:
     """What becomes of a state in an interval, and the covariance that a white force adds.
 
-    By van Loan (1978, IEEE Trans. Automatic Control 23) for a part in which nothing has died away, and doubled from there.
+    By van Loan (1978, IEEE Trans. Automatic Control 23) for a part in which nothing has died away, then doubled.
     """
     doublings = max(0, ceil(log2(max(float(np.abs(rates).sum(1).max()) * interval, 1.0))))
     block = np.zeros((4, 4))

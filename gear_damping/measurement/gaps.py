@@ -1,0 +1,121 @@
+"""Gaps in the stamps of a record, and whether its values bear them out.
+
+Samples that a logger lost are no fault of those that it kept: where their stamps stand, they are fitted at their
+stamps. That asks two things of a gap. It must be whole steps of the clock, which a clock that jumps seldom makes; and
+what was lost must follow from its neighbours, so that the motion within the gap is known, and inputs can be put across
+it. How well it follows is tried where nothing was lost: a hole as long is filled by a cubic spline through the samples
+beside it.
+
+A clock that jumps by part of a step and a recorder that paused look alike in the stamps; the values tell them apart.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from gear_damping.measurement.record import Finding, Record
+from gear_damping.measurement.timebase import CLOCK_JUMPS, LOST
+
+_GAP, _BESIDE, _FEWEST_GAPS = 1.5, 4, 5  # usual steps in a gap; samples on either side; gaps that a share is had from
+_NEARER, _ERRORS = (
+    0.65,
+    4.0,
+)  # of the way from a clock's jump to a pause; standard errors that it must be beyond that by
+_FOLLOWS = 0.1  # of a channel's standard deviation: what a spline may miss of what was lost
+_NO_WORSE = 1.5  # times what it misses of a single sample: what is missed is noise then, and would be without a gap
+_MOST_LOST = 0.02  # of the samples; beyond, another clock is as likely
+_FEWEST_HOLES = 20  # that can be tried in a record
+
+
+def borne_out(record: Record) -> Record:
+    """The record, whose gaps are notes where its values bear them out, with samples at their stamps."""
+    findings = _pauses(_losses(record))
+    if findings == record.findings:
+        return record
+    mean = (len(record.time) - 1) / float(record.time[-1] - record.time[0])  # a grid of as many samples covers them all
+    return replace(record, findings=findings, sampling_rate=mean)
+
+
+def _losses(record: Record) -> Record:
+    lost = [finding for finding in record.findings if finding.kind == LOST]
+    if not lost:
+        return record
+    steps = np.diff(record.time)
+    missing = np.round(steps * record.sampling_rate).astype(int) - 1
+    if missing.sum() > _MOST_LOST * len(record.time):
+        return record
+    if not all(follows_from_neighbours(channel.values, int(missing.max())) for channel in record.channels.values()):
+        return record
+    said = "which follow from their neighbours: samples are taken at their stamps"
+    return replace(record, findings=tuple(
+        replace(f, message=f"{f.message.partition(';')[0]}, {said}", severity="note") if f in lost else f
+        for f in record.findings
+    ))  # fmt: skip
+
+
+def follows_from_neighbours(values: NDArray[np.float64], lost: int) -> bool:
+    """Whether a cubic spline through the samples beside a hole of `lost` samples tells what was there.
+
+    Args:
+        values: (n,) samples.
+        lost: At least one.
+    """
+    if len(values) < 2 * _BESIDE + lost + _FEWEST_HOLES:
+        return False
+    spread = float(np.std(values))
+    return spread == 0 or _missed(values, lost) <= max(_FOLLOWS * spread, _NO_WORSE * _missed(values, 1))
+
+
+def _missed(values: NDArray[np.float64], lost: int) -> float:
+    """Root mean square error in the middle of holes of so many samples, where nothing was lost."""
+    beside = np.r_[0:_BESIDE, _BESIDE + lost : 2 * _BESIDE + lost]
+    middle = _BESIDE + lost // 2
+    weights = CubicSpline(beside, np.eye(2 * _BESIDE))(middle)
+    windows = sliding_window_view(values, 2 * _BESIDE + lost)
+    return float(np.sqrt(np.mean((windows[:, beside] @ weights - windows[:, middle]) ** 2)))
+
+
+def _pauses(record: Record) -> tuple[Finding, ...]:
+    """The findings of a record, where its clock jumps and its values moved as long only with a note of it.
+
+    Over a pause of the recorder a value moves by its slope times the pause, over a jump of its clock by that of one
+    step. The slope is that of lines through a few samples on either side.
+    """
+    jumps = [finding for finding in record.findings if finding.kind == CLOCK_JUMPS]
+    shares = [share_over_gaps(c.values, record.time) for c in record.channels.values() if jumps]
+    if not any(share - _ERRORS * error > _NEARER and share + _ERRORS * error < 2 - _NEARER for share, error in shares):
+        return record.findings
+    said = "the recorder paused, and the values moved as long: samples are taken at their stamps"
+    note = {"kind": "uneven_stamps", "severity": "note"}
+    return tuple(
+        replace(f, message=f"{f.message.partition(': ')[0]}: {said}", **note) if f in jumps else f
+        for f in record.findings
+    )
+
+
+def share_over_gaps(values: NDArray[np.float64], stamps: NDArray[np.float64]) -> tuple[float, float]:
+    """The share of the time of gaps in the stamps over which values moved, and its standard error (infinite of few).
+
+    Args:
+        values: (n,) samples.
+        stamps: (n,) their stamps in s.
+    """
+    steps = np.diff(stamps)
+    usual = float(np.median(steps))
+    gaps = np.flatnonzero(steps > _GAP * usual)
+    apart = np.diff(np.r_[-_BESIDE, gaps, stamps.size - 1 + _BESIDE]) >= _BESIDE  # no other gap within either side
+    gaps = gaps[apart[:-1] & apart[1:] & (gaps >= _BESIDE - 1) & (gaps + _BESIDE < stamps.size)]
+    if gaps.size < _FEWEST_GAPS:
+        return 1.0, np.inf
+    due, seen = np.empty(gaps.size), np.empty(gaps.size)
+    for place, k in enumerate(gaps):
+        before, behind = slice(k - _BESIDE + 1, k + 1), slice(k + 1, k + 1 + _BESIDE)
+        (slope, end), (other, begin) = (
+            np.polyfit(stamps[side] - stamps[at], values[side], 1) for side, at in ((before, k), (behind, k + 1))
+        )
+        due[place], seen[place] = (slope + other) / 2 * steps[k], begin - end
+    share = float(due @ seen / (due @ due))
+    return share, float(np.sqrt(np.sum((due * (seen - share * due)) ** 2)) / (due @ due))
