@@ -42,6 +42,7 @@ _PARTS, _LEAST_PART = 8, 16  # a rate is looked at over an eighth of the record,
 _SIGMAS = 5.0  # of the jitter, that a rate over a part must leave the mean by
 _WRITTEN = 1.2  # last digits over which rounded stamps may spread about their grid
 _PLACES = range(10)  # decimal places that are tried
+_HOLES = 2  # in stamps of few digits that are lost samples, where more of them, regular, are rounding
 _EXACT = 1e-4  # of the last digit; how near a whole number of it stamps must be
 
 
@@ -107,7 +108,7 @@ def stamped_time(stamps: NDArray[np.float64], key: str, source: str, first: int 
         variation = 100 * float(np.max(np.abs(np.diff(stamps) * rate - 1)))
         note = f"time steps vary by up to {variation:.2g} %: resampled to a uniform grid at {rate:.6g} Hz"
         return TimeBase(grid, rate, stamps=stamps, notes=(note,))
-    written = written_in(stamps)
+    written = None if _is_grid_with_holes(stamps) else written_in(stamps)
     if written is not None:
         note = f"time stamps are rounded to {written.digit:.3g} s: taken as an even {written.rate:.6g} Hz"
         return TimeBase(written.start + np.arange(stamps.size) / written.rate, written.rate, notes=(note,))
@@ -120,11 +121,28 @@ def stamped_time(stamps: NDArray[np.float64], key: str, source: str, first: int 
     return TimeBase(stamps, rate, uniform=False, findings=(jitter_note(stamps),))
 
 
-def _with_losses(stamps: NDArray[np.float64], found: Finding) -> TimeBase:
-    """The stamps where samples were lost, freed of their rounding, at the rate of the steps that they count."""
+def _counted(stamps: NDArray[np.float64]) -> NDArray[np.float64]:
+    """How many steps of the clock every stamp lies behind the first, (n,)."""
     steps = np.diff(stamps)
     step = float(np.mean(steps[steps < (1 + _HALF) * np.median(steps)]))
-    index = np.r_[0.0, np.cumsum(np.round(steps / step))]
+    return np.r_[0.0, np.cumsum(np.round(steps / step))]
+
+
+def _is_grid_with_holes(stamps: NDArray[np.float64]) -> bool:
+    """Whether stamps lie on a grid of which one or two are not there.
+
+    Rounding to a digit of almost the length of a step leaves holes too, but regular ones, and seldom so few.
+    """
+    index = _counted(stamps)
+    if not 0 < index[-1] + 1 - stamps.size <= _HOLES:
+        return False
+    step, start = np.polyfit(index, stamps - stamps[0], 1)
+    return float(np.max(np.abs(stamps - stamps[0] - start - step * index))) <= SPLINE_TOLERANCE * step
+
+
+def _with_losses(stamps: NDArray[np.float64], found: Finding) -> TimeBase:
+    """The stamps where samples were lost, freed of their rounding, at the rate of the steps that they count."""
+    index = _counted(stamps)
     written = written_in(stamps, index)
     if written is None:
         return TimeBase(stamps, index[-1] / float(stamps[-1] - stamps[0]), uniform=False, findings=(found,))
