@@ -1,7 +1,7 @@
 """Gear pairs, and any model of one's own, fitted to whatever channels respond."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from torch import Tensor
@@ -75,7 +75,7 @@ def own_fit(measurement: Measurement, model: Model, free: Sequence[str], log: Lo
     if model.system.name != evidence.system:
         rule = f"is a {model.system.name}, the records are those of a {evidence.system}"
         raise InputError(Problem("model", rule, remedy="give a model of the measured system"))
-    evidence, noise = with_noise(evidence, measurement, log)
+    evidence, noise = with_noise(replace(evidence, segments=evidence.stated_segments), measurement, log)
     first = {k: v for k, v in _first(evidence).items() if k in model.parameters()}
     named = {FLAT.get(name, name): value for name, value in evidence.parameters.items()}  # a ratio is no coefficient
     stated = {name: first[name] if name == DAMPING else value for name, value in named.items() if name in first}

@@ -5,6 +5,7 @@ from dataclasses import asdict, dataclass, replace
 from math import pi
 from typing import Any
 
+from gear_damping.explanation.evidence.noise import NoiseLevel, noise_of, weighted
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome
 from gear_damping.explanation.trials.efficient import weighed
@@ -16,7 +17,7 @@ from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import Segments
 from gear_damping.interface.identified_page import MOST_PANELS, estimate_rows, panel, residual_rows
 from gear_damping.interface.lack_of_fit import lack_of_fit, sentence
-from gear_damping.measurement.record import Channel, Measurement, Record
+from gear_damping.measurement.record import Channel, Measurement
 from gear_damping.reporting import figures, tables
 from gear_damping.simulation.solver_settings import Progress, Solver
 
@@ -26,11 +27,12 @@ MOST_SAMPLES = 200_000  # beyond which the test of what is random takes longer t
 
 @dataclass(frozen=True)
 class Fitted:
-    """A fitted linear oscillator with the records by role, and the channel that responded."""
+    """A fitted linear oscillator with the records by role, the channel that responded, and its noise."""
 
     found: OscillatorFit
     roles: Mapping[str, Sequence[FitRecord]]
     channel: Channel
+    noise: NoiseLevel
 
 
 def linear_fit(measurement: Measurement, progress: Progress | None, solver: Solver | None) -> Fitted:
@@ -42,16 +44,16 @@ def linear_fit(measurement: Measurement, progress: Progress | None, solver: Solv
     require_fitted(measurement)
     known = known_of(measurement)
     spring = has_spring(known, measurement.base)
-    roles = {
-        "fit": [fit_record(r, measurement.base, spring) for r in _fit_on(measurement)],
-        "holdout": [fit_record(r, measurement.base, spring) for r in measurement.with_role("holdout")],
-    }
-    require_alike([*roles["fit"], *roles["holdout"]], str(measurement.source))
+    fit = [fit_record(r, measurement.base, spring) for r in measurement.records if r.role in ("fit", None)]
+    holdout = [fit_record(r, measurement.base, spring) for r in measurement.with_role("holdout")]
+    require_alike([*fit, *holdout], str(measurement.source))
+    fit, holdout, noise = noise_of(fit, holdout, measurement)
+    roles = {"fit": weighted(fit, noise), "holdout": weighted(holdout, noise)}
     channels = {name: c for record in measurement.records for name, c in record.channels.items()}
     channel = channels[roles["fit"][0].observed.name]
     stated = Segments(measurement.segment_s, exact=True) if measurement.segment_s else None
     found = fit_oscillator(roles["fit"], roles["holdout"], progress, solver, known, stated)
-    return Fitted(_weighed(found, measurement, roles["fit"], channel), roles, channel)
+    return Fitted(_weighed(found, measurement, roles["fit"], channel), roles, channel, noise)
 
 
 def _weighed(
@@ -72,15 +74,11 @@ def _weighed(
     return found.weighed(replace(better.fitted, prediction=better.whitened))
 
 
-def _fit_on(measurement: Measurement) -> Sequence[Record]:
-    return measurement.with_role("fit") or measurement.with_role(None)
-
-
 def content_of(measurement: Measurement, fitted: Fitted) -> dict[str, Any]:
     """What stands in identification.json."""
     found, roles, channel = fitted.found, fitted.roles, fitted.channel
     content = _identification(found, measurement, roles, channel)
-    lacking = lack_of_fit(found.predictions, roles["fit"], roles["holdout"], channel)
+    lacking = lack_of_fit(found.predictions, roles["fit"], roles["holdout"], channel, fitted.noise)
     undamped = _undamped(found, roles["fit"])
     return content | {"undamped": undamped, "lack_of_fit": lacking and lacking | {"source": str(measurement.source)}}
 

@@ -7,14 +7,18 @@ from typing import Any
 from torch import Tensor
 
 from gear_damping.explanation.evidence.excess import excess
-from gear_damping.explanation.evidence.noise import noise_level
+from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.identification.output_error.holdout import rmse
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.measurement.record import Channel
 
 
 def lack_of_fit(
-    predictions: Mapping[str, Tensor], fit: Sequence[FitRecord], holdout: Sequence[FitRecord], channel: Channel
+    predictions: Mapping[str, Tensor],
+    fit: Sequence[FitRecord],
+    holdout: Sequence[FitRecord],
+    channel: Channel,
+    noise: NoiseLevel,
 ) -> dict[str, Any] | None:
     """The residual beside the noise; on the held-out records where there are some.
 
@@ -22,13 +26,13 @@ def lack_of_fit(
         predictions: By record name, (time,).
         fit: Records that were fitted.
         holdout: Records that were predicted.
-        channel: The channel of the response, with its declared unit and noise.
+        channel: The channel of the response, with its declared unit.
+        noise: Of the records.
 
     Returns:
         `significant`, and in the declared unit `residual` and `noise`, beside `percent_of_signal` of the
         residual; None where the records are too short to estimate their noise.
     """
-    noise = noise_level((*fit, *holdout), channel)
     if noise.degrees_of_freedom < 1:
         return None
     judged = [replace(r, response=r.response[: len(predictions[r.name])], others=()) for r in holdout or fit]

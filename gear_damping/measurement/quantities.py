@@ -172,7 +172,8 @@ class Measured(Value):
             refuse("must not be 0", number)
         if found.uncertainty and number == 0:
             rule = "an uncertainty is relative, and there is nothing to relate it to where the value is 0"
-            refuse(rule, found.uncertainty, "state a value, or leave the uncertainty out", "uncertainty")
+            remedy = "state a small value, as 0.1 with an uncertainty of 50 for 0.1 +- 5"
+            refuse(rule, found.uncertainty, remedy, "uncertainty")
         if self.unit in (None, "own"):
             if found.unit != "own" or self.unit is None:
                 parse_unit(found.unit, "unit")

@@ -65,14 +65,14 @@ class GearParameters(Declared):
     contact_ratio: Annotated[Quantity, Measured("1", uncertain=True, within=(1, 2), beyond=MORE_PAIRS)] = key(
         "Contact ratio.", START
     )
-    damping_ratio: Annotated[Quantity, Measured("1", "not negative", uncertain=True)] = key(
+    damping_ratio: Annotated[Quantity, Measured("1", uncertain=True)] = key(
         "Viscous damping ratio of the mesh.", START
     )
     equivalent_mass: Annotated[Quantity, Measured("kg", uncertain=True, within=(0, 1e5))] = key(
         "Mass along the line of action, instead of the two inertias.", KNOWN
     )
     backlash_gap: Annotated[Quantity, Measured("m", "not negative", uncertain=True, within=(0, 0.01))] = key(
-        "Whole clearance between the flanks; 0 means none.", START
+        "Whole clearance between the flanks; 0 means none.", KNOWN
     )
     torque_gain: Annotated[Quantity, Measured("1", "not zero", uncertain=True, within=(-1e3, 1e3))] = key(
         "True torque = torque_gain * read + torque_offset.", KNOWN
@@ -101,10 +101,10 @@ class OscillatorParameters(Declared):
     stiffness: Annotated[Quantity, Measured("1/s^2", "not negative", uncertain=True)] = key(
         "Stiffness over mass; 0 means that there is no spring.", START
     )
-    damping_coefficient: Annotated[Quantity, Measured("1/s", "not negative", uncertain=True)] = key(
+    damping_coefficient: Annotated[Quantity, Measured("1/s", uncertain=True)] = key(
         "Viscous damping over mass.", START
     )
-    damping_ratio: Annotated[Quantity, Measured("1", "not negative", uncertain=True)] = key(
+    damping_ratio: Annotated[Quantity, Measured("1", uncertain=True)] = key(
         "Viscous damping over the critical one, instead of damping_coefficient.", START
     )
     force_gain: Annotated[Quantity, Measured("own", "not zero", uncertain=True)] = key(

@@ -15,7 +15,9 @@ class Measured:
     """Of a measurement what the noise is worked out from."""
 
     records = tuple(
-        type("Recorded", (), {"channels": {name: Channel(name, np.zeros(1), "1")}})() for name in LEVELS
+        type("Recorded", (), {"name": f"{name} {seed}", "channels": {name: Channel(name, np.zeros(1), "1")}})()
+        for name in LEVELS
+        for seed in range(2)
     )
 
 

@@ -8,6 +8,7 @@ import pytest
 import torch
 from scipy.integrate import solve_ivp
 
+from gear_damping.explanation.evidence.noise import noise_level
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.interface.lack_of_fit import lack_of_fit
 from gear_damping.measurement.record import Channel
@@ -68,15 +69,17 @@ def test_what_goes_on_by_a_drive_that_no_channel_holds_is_no_decay(tmp_path, cap
     assert identified(tmp_path / "other", LINEAR, 1e-4)["undamped"] is None
 
 
-def channel(**more):
-    return Channel("displacement", LINEAR, "m", **more)
+def lacking(predictions, fit, holdout, **more):
+    channel = Channel("displacement", LINEAR, "m", **more)
+    noise = noise_level([*fit, *holdout], {record.name: channel for record in (*fit, *holdout)})
+    return lack_of_fit(predictions, fit, holdout, channel, noise)
 
 
 def test_held_out_records_decide_where_there_are_some():
     fit, other = (FitRecord(name, torch.as_tensor(LINEAR.copy()), RATE) for name in ("fit", "other"))
     predictions = {"fit": fit.response, "other": 0.9 * other.response}
-    assert not lack_of_fit(predictions, [fit], [], channel())["significant"]
-    found = lack_of_fit(predictions, [fit], [other], channel())
+    assert not lacking(predictions, [fit], [])["significant"]
+    found = lacking(predictions, [fit], [other])
     assert found["significant"]
     assert found["percent_of_signal"] == pytest.approx(10, rel=1e-2)
 
@@ -84,11 +87,11 @@ def test_held_out_records_decide_where_there_are_some():
 def test_a_declared_noise_is_what_the_residual_is_held_against():
     record = FitRecord("fit", torch.as_tensor(LINEAR.copy()), RATE)
     off = {"fit": record.response + 1e-4 * torch.sin(torch.arange(1500.0))}
-    found = lack_of_fit(off, [record], [], channel(noise=np.float64(1e-5)))
+    found = lacking(off, [record], [], noise=np.float64(1e-5))
     assert json.loads(json.dumps(found))["significant"]
-    assert not lack_of_fit(off, [record], [], channel(noise=1e-4))["significant"]
+    assert not lacking(off, [record], [], noise=1e-4)["significant"]
 
 
 def test_a_record_too_short_for_its_noise_is_not_judged():
     record = FitRecord("fit", torch.as_tensor(LINEAR[:6].copy()), RATE)
-    assert lack_of_fit({"fit": record.response}, [record], [], channel(lowpass=1.0)) is None
+    assert lacking({"fit": record.response}, [record], [], lowpass=1.0) is None

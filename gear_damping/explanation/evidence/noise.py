@@ -60,16 +60,29 @@ class NoiseLevel:
         return float(np.mean(np.square(alike))) ** 0.5
 
 
-def noise_level(records: Sequence[FitRecord], channel: Channel) -> NoiseLevel:
-    """The declared noise, or the floor of the spectrum in two bands above the signal.
+def noise_level(records: Sequence[FitRecord], channels: Mapping[str, Channel]) -> NoiseLevel:
+    """What each record declares of its noise, or the floor of its spectrum in two bands above the signal.
 
     Where the bands differ the lower one counts; records that do not differ share one level. A channel that was
     recorded in steps has at least the noise of their rounding.
+
+    Args:
+        records: Of one channel, which is their first.
+        channels: The channel as it was declared, by record.
     """
-    usable = {r.name: min(r.sampling_rate / 2, channel.lowpass or r.sampling_rate / 2) for r in records}
+    usable = {r.name: min(r.sampling_rate / 2, channels[r.name].lowpass or r.sampling_rate / 2) for r in records}
     correlation = max(r.sampling_rate / 2 / usable[r.name] for r in records)
-    if channel.noise is not None:
-        return NoiseLevel({record.name: channel.noise for record in records}, "declared", 1e9, True, correlation)
+    declared = {r.name: channels[r.name].noise for r in records if channels[r.name].noise is not None}
+    if len(declared) == len(records):
+        return NoiseLevel(declared, "declared", 1e9, True, correlation)
+    floors = _floors([record for record in records if record.name not in declared], usable)
+    method = f"{floors.method}; declared of {', '.join(declared)}" if declared else floors.method
+    levels = {record.name: (declared | floors.by_record)[record.name] for record in records}
+    return replace(floors, by_record=levels, method=method, correlation=correlation)
+
+
+def _floors(records: Sequence[FitRecord], usable: Mapping[str, float]) -> NoiseLevel:
+    """The floors of spectra, up to a frequency that is usable of each record."""
     found = {r.name: [_floor(r, low * usable[r.name], high * usable[r.name]) for low, high in BANDS] for r in records}
     rounding = {record.name: _rounding(record) for record in records}
     levels, agree = {}, True
@@ -84,9 +97,9 @@ def noise_level(records: Sequence[FitRecord], channel: Channel) -> NoiseLevel:
     pooled = _pooled(levels, degrees)
     if pooled is not None:
         shared, freedom = dict.fromkeys(levels, pooled**0.5), sum(degrees.values())
-        return NoiseLevel(shared, f"{said}, of all records", freedom, agree, correlation)
+        return NoiseLevel(shared, f"{said}, of all records", freedom, agree)
     own = {name: variance**0.5 for name, variance in levels.items()}
-    return NoiseLevel(own, said, min(degrees.values()), agree, correlation)
+    return NoiseLevel(own, said, min(degrees.values()), agree)
 
 
 def floor_variance(record: FitRecord) -> float:
@@ -112,22 +125,30 @@ def noise_of(
     fit: Sequence[FitRecord], holdout: Sequence[FitRecord], measurement: Measurement
 ) -> tuple[list[FitRecord], list[FitRecord], NoiseLevel]:
     """The noise of the first channel, and records whose further channels count by their own."""
-    records, channels = (*fit, *holdout), {n: c for r in measurement.records for n, c in r.channels.items()}
-    first = _of_first_channels(records, channels)
+    records = (*fit, *holdout)
+    declared = {record.name: _declared(record, measurement) for record in records}
+    first = _of_first_channels(records, declared)
     others: dict[str, NoiseLevel] = {}
     for name in dict.fromkeys(channel.name for record in records for channel, _ in record.others):
         alone = [replace(r, response=values) for r in records for channel, values in r.others if channel.name == name]
-        others[name] = noise_level(alone, channels[name])
+        others[name] = noise_level(alone, {record.name: declared[record.name][name] for record in alone})
     return scaled(fit, first, others), scaled(holdout, first, others), first
 
 
-def _of_first_channels(records: Sequence[FitRecord], channels: Mapping[str, Channel]) -> NoiseLevel:
+def _declared(record: FitRecord, measurement: Measurement) -> Mapping[str, Channel]:
+    """The channels of the record that this one is, or is a part of."""
+    own = [one for one in measurement.records if one.name in (record.name, record.record)]
+    own = own or [one for one in measurement.records if record.name.startswith(f"{one.name} (")]
+    return own[0].channels
+
+
+def _of_first_channels(records: Sequence[FitRecord], declared: Mapping[str, Mapping[str, Channel]]) -> NoiseLevel:
     """The noise of records by their first channels, each in its own unit."""
     names = {record.name: record.observed.name for record in records}
-    found = [
-        noise_level([record for record in records if record.observed.name == name], channels[name])
-        for name in dict.fromkeys(names.values())
-    ]
+    found = []
+    for name in dict.fromkeys(names.values()):
+        alike = [record for record in records if record.observed.name == name]
+        found.append(noise_level(alike, {record.name: declared[record.name][name] for record in alike}))
     first, *others = found
     if not others:
         return first

@@ -9,7 +9,7 @@ import torch
 from gear_damping.explanation.evidence.records import Evidence, all_stand
 from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, natural_frequency_hz, settled_at
-from gear_damping.identification.oscillator.linear_model import DAMPING, expected_about
+from gear_damping.identification.oscillator.linear_model import DAMPING, expected_about, uncertain_parameter
 from gear_damping.identification.output_error.angles import STARTS, angle_bases, harmonics_to_resonance, scanned
 from gear_damping.identification.output_error.least_squares import NONE, Rounds
 from gear_damping.identification.output_error.problem import OutputErrorProblem
@@ -69,7 +69,7 @@ def first_gear_pair(evidence: Evidence) -> Hypothesis:
     stated = {RENAMED.get(name, name): value for name, value in evidence.parameters.items()}
     uncertain = {RENAMED.get(name, name): relative for name, relative in evidence.known.uncertainty.items()}
     effects = [FourierMeshStiffness(), ViscousDamping()]
-    ratio = stated.pop(DAMPING, FIRST_RATIO)
+    ratio = stated.pop(DAMPING, 0.0) or FIRST_RATIO
     if stated.get("backlash.gap", 0.0) > 0:
         effects.append(Backlash())
     else:
@@ -88,13 +88,16 @@ def first_gear_pair(evidence: Evidence) -> Hypothesis:
         FreeParameter(f"{MESH}.minimum", low, logarithmic=True),
         FreeParameter(f"{MESH}.contact_ratio", contact_ratio, 0.2, lower=1.02, upper=1.98),
     ]
-    if damping > 0:
-        lower = LEAST_DAMPING * damping
-        free = [FreeParameter(DAMPING, damping, logarithmic=True, lower=lower), *free]
+    free = [FreeParameter(DAMPING, damping, logarithmic=True, lower=LEAST_DAMPING * damping), *free]
     if evidence.has_index:
         free = [FreeParameter("mesh_phase", 0.0, deviation=INDEX_ERROR if evidence.mesh_index else inf), *free]
     free = [expected_about(parameter, uncertain.pop(parameter.name, None)) for parameter in free]
-    free += [_uncertain(name, stated[name], relative) for name, relative in uncertain.items() if name in stated]
+    declared = Model(system, effects).parameters()
+    free += [
+        replace(uncertain_parameter(declared[name], stated[name], relative), name=name)
+        for name, relative in uncertain.items()
+        if name in stated
+    ]
     told = tuple(parameter for parameter in free if parameter.name not in untold)
     return Hypothesis(system, tuple(effects), start | {DAMPING: damping}, told)
 
@@ -178,11 +181,6 @@ def with_stiffness(hypothesis: Hypothesis, factor: float) -> Hypothesis:
 def with_edge(hypothesis: Hypothesis, edge: float) -> Hypothesis:
     """A gear pair whose pairs of teeth take up their load over a share of a mesh period."""
     return replace(hypothesis, given=hypothesis.given | {f"{MESH}.edge": edge})
-
-
-def _uncertain(name: str, value: float, relative: float) -> FreeParameter:
-    """A known parameter with its expectation."""
-    return expected_about(FreeParameter(name, value, abs(value), logarithmic=value > 0), relative)
 
 
 def _contact_ratio(stated: Mapping[str, float]) -> float:

@@ -16,6 +16,7 @@ from gear_damping.identification.time_scale import characteristic_time
 from gear_damping.physics.effects.offset_force import OffsetForce
 from gear_damping.physics.effects.viscous_damping import ViscousDamping
 from gear_damping.physics.model import Model
+from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.systems.base import System
 
 DAMPING, FORCE = "viscous_damping.damping_coefficient", "offset_force.force"
@@ -60,13 +61,10 @@ def linear_model(
     given = _stated(known) | {"amplitude": amplitude} | ({} if spring else {name: 0.0, TIME: scale})
     free = [FreeParameter(name, rate**2 * mass, logarithmic=True)] if spring else []
     damping = 2 * FIRST_RATIOS[0] * rate * mass if spring else 1 / scale * mass
-    if "damping_ratio" in stated and spring:
+    if stated.get("damping_ratio") and spring:
         damping = 2 * stated["damping_ratio"] * rate * mass
-    damping = stated.get("damping_coefficient", damping)
-    if damping > 0:
-        free.append(FreeParameter(DAMPING, damping, logarithmic=True, lower=1e-9 * (rate or 1 / scale) * mass))
-    else:
-        given[DAMPING] = 0.0
+    damping = stated.get("damping_coefficient") or damping
+    free.append(FreeParameter(DAMPING, damping, logarithmic=True, lower=1e-9 * (rate or 1 / scale) * mass))
     for drive, of_drive in system.gains.items():
         if drive in records[0].inputs:
             force = torch.cat([record.inputs[drive] for record in records])
@@ -76,9 +74,11 @@ def linear_model(
             free.append(FreeParameter(of_drive, gain, scale=abs(gain) or size))
     if _is_pushed(records, known):
         free.append(FreeParameter(FORCE, 0.0, scale=(rate**2 if spring else 1 / scale**2) * amplitude * mass))
-    free += [FreeParameter(one, stated[one], abs(stated[one]), logarithmic=stated[one] > 0) for one in _unsure(known)]
     expected = {LAWS.get(one, one): relative for one, relative in known.uncertainty.items() if stated[one]}
-    return [expected_about(p, expected.get(p.name)) for p in free], given, scale
+    free = [expected_about(p, expected.get(p.name)) for p in free]
+    declared = {parameter.name: parameter for parameter in system.parameters}
+    unsure = [uncertain_parameter(declared[one], stated[one], known.uncertainty[one]) for one in _unsure(known)]
+    return [*free, *unsure], given, scale
 
 
 def mass_of(known: Known) -> float:
@@ -103,6 +103,19 @@ def _stated(known: Known) -> dict[str, float]:
 def _unsure(known: Known) -> list[str]:
     """Those that are stated with an uncertainty."""
     return [name for name in _stated(known) if name in known.uncertainty and known.values[name]]
+
+
+def uncertain_parameter(declared: Parameter, value: float, relative: float) -> FreeParameter:
+    """What is stated with an uncertainty, free about that; what may have either sign can change it.
+
+    Args:
+        declared: The parameter as its system or effect declares it.
+        value: As it is stated.
+        relative: Its standard deviation over the value.
+    """
+    grows = value > 0 and declared.lower >= 0
+    scale = abs(value) * (1.0 if grows else max(1.0, relative))
+    return expected_about(FreeParameter(declared.name, value, scale, logarithmic=grows), relative)
 
 
 def expected_about(parameter: FreeParameter, relative: float | None) -> FreeParameter:

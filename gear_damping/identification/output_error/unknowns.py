@@ -185,7 +185,9 @@ def _own(template: FreeParameter, record: FitRecord) -> FreeParameter:
 
 def _gains(records: Sequence[FitRecord], settled: Collection[str]) -> list[FreeParameter]:
     """Gains of channels that are known with an uncertainty only."""
-    uncertain = {channel.name: channel.gain_uncertainty for record in records for channel in record.channels}
+    uncertain: dict[str, float] = {}
+    for channel in (channel for record in records for channel in record.channels):
+        uncertain[channel.name] = max(channel.gain_uncertainty, uncertain.get(channel.name, 0.0))
     return [
         FreeParameter(f"{GAIN}.{name}", 1.0, logarithmic=True, deviation=relative)
         for name, relative in uncertain.items()

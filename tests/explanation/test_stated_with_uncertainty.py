@@ -1,0 +1,20 @@
+"""A number that is stated with an uncertainty begins there, and one that may have either sign can change it."""
+
+import pytest
+
+from gear_damping.identification.oscillator.linear_model import uncertain_parameter
+from gear_damping.physics.systems.gear_pair import GearPair
+
+DECLARED = {parameter.name: parameter for parameter in GearPair.parameters}
+
+
+def test_an_offset_can_change_its_sign():
+    found = uncertain_parameter(DECLARED["torque_offset"], 2.0, 5.0)
+    assert not found.logarithmic
+    assert (found.start, found.expected, found.deviation, found.scale) == (2.0, 2.0, 10.0, 10.0)
+
+
+def test_a_size_is_fitted_by_its_logarithm():
+    found = uncertain_parameter(DECLARED["inertia_gear"], 1e-3, 0.1)
+    assert found.logarithmic
+    assert (found.expected, found.deviation) == (1e-3, pytest.approx(0.1))
