@@ -124,7 +124,9 @@ def fit_record(record: Record, system: type[System], spring: bool = True) -> Fit
         known | _means(inputs, record.sampling_rate),
         observed=first[0],
         others=tuple(others),
-        own=tuple(parameter for parameter in uncertain if parameter.name not in inputs),
+        own=tuple(
+            p for p in uncertain if p.name not in inputs and not (p.name == "pinion_speed" and "pinion_angle" in inputs)
+        ),
         stamps=None if record.uniform else _positions(record),
         held=tuple(name for name in inputs if name in record.channels and _is_held(record, record.channels[name])),
     )
