@@ -6,7 +6,9 @@ import re
 import pytest
 from casing import draw_case, write_case
 
+from gear_damping.explanation.casing.report_fields import explain_casing
 from gear_damping.explanation.report_schema import Explanation
+from gear_damping.measurement.load import load_measurement
 from gear_damping.tasks.command import main
 
 
@@ -48,3 +50,11 @@ def test_the_report_shows_orders_turns_and_kurtosis_beside_the_reference(explain
     assert page.count("<img") == 3
     assert page.count("Grey: the reference, run_1.") == 3  # the caption of each
     assert not re.findall(r"(?:src|href)=\"(?!data:|#)", page)
+
+
+def test_what_says_nothing_of_a_casing_is_named(tmp_path):
+    path = write_case([(draw_case(2020, "healthy", seconds=1.0), "holdout")], tmp_path / "rig")
+    text = path.read_text() + "segments: {value: 0.1, unit: s}\n"
+    path.write_text(text.replace("parameters:\n", "parameters:\n  module: {value: 9, unit: mm}\n"))
+    content = explain_casing(load_measurement(path), print)[0]
+    assert any(s.endswith("declared and not used: module, segments, role: holdout.") for s in content["sentences"])

@@ -72,6 +72,8 @@ def _content(measurement: Measurement, records: Sequence[Study], references: Seq
     if missing:
         teeth = dict(zip(NAMES, records[0].heard.teeth, strict=True))
         said.append(f"Not stated and taken from the default: {', '.join(f'{n} = {teeth[n]}' for n in missing)}.")
+    if unused := _unused(measurement):
+        said.append(f"A casing needs the teeth and the angle alone; declared and not used: {', '.join(unused)}.")
     return {
         "verdict": UNEXPLAINED if flagged else CONSISTENT,
         "sentences": [*said, NOTHING],
@@ -85,6 +87,16 @@ def _content(measurement: Measurement, records: Sequence[Study], references: Seq
             "sensor": SENSOR,
         },
     }
+
+
+def _unused(measurement: Measurement) -> list[str]:
+    """What the file declares that says nothing of a casing."""
+    found = [name for name in measurement.parameters if name not in NAMES]
+    found += ["segments"] if measurement.segment_s else []
+    roles = {record.role for record in measurement.records} - {REFERENCE, None}
+    found += [f"role: {role}" for role in sorted(roles)]
+    given = (name for record in measurement.records for name in record.conditions)
+    return [*found, *dict.fromkeys(name for name in given if name.endswith("torque"))]
 
 
 def _unsteady(one: Study) -> str:
