@@ -62,7 +62,18 @@ class Damping:
                 record.name: {name: self._plain(one, record) for name, one in self._laws_of(record.name).items()}
                 for record in self.measurement.records
             },
+            "not_used": self.not_used,
         }
+
+    @property
+    def not_used(self) -> list[str]:
+        """What the file declares and these estimators, which take each record by itself and whole, leave aside."""
+        records, rests = self.measurement.records, self.measurement.base.has(Trait.REST)
+        found = [f"parameters.{name}" for name in self.measurement.parameters if rests]
+        found += ["segments"] if self.measurement.segment_s else []
+        found += ["role"] if any(record.role for record in records) else []
+        channels = [record.channels[self.channels[record.name]] for record in records]
+        return found + [key for key in ("noise", "lowpass") if any(getattr(c, key) for c in channels)]
 
     @property
     def mean_percent(self) -> dict[str, float]:
@@ -91,7 +102,9 @@ class Damping:
                 amplitudes = f"{large} … {small} {pretty_unit(declared.declared_unit)}"
                 rows.append((record.name, name, ratio, interval, f"{one.frequency_hz:.5g}", amplitudes))
         said = [f"{name} says nothing of {', '.join(of)}: {why}" for (name, why), of in reasons.items()]
-        return "\n".join([damping_table(rows).rstrip(), *said, *doubts]) + "\n"
+        why = "estimators take each record by itself and whole"
+        unused = f"declared and not used here: {', '.join(self.not_used)} ({why})"
+        return "\n".join([damping_table(rows).rstrip(), *said, *doubts, *([unused] if self.not_used else [])]) + "\n"
 
     def plot(self) -> Figure:
         """The damping ratio against amplitude, record by record, with bands."""

@@ -175,3 +175,13 @@ def test_a_model_is_fitted_in_what_it_was_given(record):
     model = gd.Model(gd.Oscillator(stiffness=OMEGA**2), [gd.ViscousDamping(damping_coefficient=0.5)])
     found = gd.identify(record, model)
     assert {"stiffness", "viscous_damping.damping_coefficient"} <= set(found.parameters)
+
+
+def test_what_is_declared_and_not_used_is_said(measured, tmp_path):
+    text = measured.read_text().replace("file: ", f"file: {measured.parent}/")
+    assert gd.damping(gd.load(measured), "log_decrement").not_used == (["role"] if "role:" in text else [])
+    stated = "segments: {value: 1, unit: s}\nparameters:\n  stiffness: {value: 400, unit: 1/s^2}\n"
+    (tmp_path / "measurement.yaml").write_text(f"{text.rstrip()}\n{stated}")
+    found = gd.damping(gd.load(tmp_path / "measurement.yaml"), "log_decrement")
+    assert found.content["not_used"][:2] == ["parameters.stiffness", "segments"]
+    assert "declared and not used here: parameters.stiffness, segments" in found.table()
