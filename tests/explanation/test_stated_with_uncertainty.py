@@ -1,7 +1,10 @@
 """A number that is stated with an uncertainty begins there, and one that may have either sign can change it."""
 
+from types import SimpleNamespace
+
 import pytest
 
+from gear_damping.explanation.answer import report_fields
 from gear_damping.identification.oscillator.linear_model import uncertain_parameter
 from gear_damping.physics.systems.gear_pair import GearPair
 
@@ -18,3 +21,13 @@ def test_a_size_is_fitted_by_its_logarithm():
     found = uncertain_parameter(DECLARED["inertia_gear"], 1e-3, 0.1)
     assert found.logarithmic
     assert (found.expected, found.deviation) == (1e-3, pytest.approx(0.1))
+
+
+@pytest.mark.parametrize("stands", [True, False])
+def test_what_standing_shafts_do_not_use_is_said(stands, monkeypatch):
+    monkeypatch.setattr(report_fields, "is_standing", lambda evidence: stands)
+    evidence = SimpleNamespace(parameters={"contact_ratio": 1.3, "module": 3e-3}, has=lambda trait: True)
+    said = report_fields._of_standing_shafts(evidence)
+    assert said == (
+        ["The shafts stand, so that one stiffness is fitted: contact_ratio of the file is not used."] * stands
+    )

@@ -15,6 +15,7 @@ from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.covariance import covariance_of
 from gear_damping.explanation.model.hypothesis import Outcome
+from gear_damping.explanation.model.nominal_gear_pair import is_standing
 from gear_damping.explanation.report_schema import KEYS, SCHEMA_VERSION
 from gear_damping.explanation.statistics.paired import share_taken
 from gear_damping.explanation.steps.judge import CONSISTENT, DATA_PROBLEM, LARGEST_SET, Judged, is_visible, statuses
@@ -23,6 +24,7 @@ from gear_damping.explanation.trials.random_part import Random
 from gear_damping.explanation.trials.refit import block_samples
 from gear_damping.explanation.trials.score import Score, best_by_effect
 from gear_damping.measurement.record import Finding, Measurement
+from gear_damping.physics.systems.traits import Trait
 
 WHITE = 1.1  # sum of squared autocorrelations: with less of it noise is called white
 RAN_AWAY = "its prediction of conditions that are left out ran away"
@@ -177,7 +179,16 @@ def _steps(judged: Judged, evidence: Evidence) -> list[str]:
         f"The nominal simulation was fitted first, so that no wrong parameter passes for physics; the fit {ended}.",
         f"On held-out records it leaves {left}; more than {before.threshold:.2g} % counts as significant.",
         *([segments] if evidence.segments else []),
+        *_of_standing_shafts(evidence),
     ]
+
+
+def _of_standing_shafts(evidence: Evidence) -> list[str]:
+    """What is stated of the change of the stiffness, which shafts that stand do not see."""
+    unused = [name for name in ("contact_ratio", "mesh_stiffness_min") if name in evidence.parameters]
+    if not unused or not (evidence.has(Trait.TEETH) and is_standing(evidence)):
+        return []
+    return [f"The shafts stand, so that one stiffness is fitted: {' and '.join(unused)} of the file {"is" if len(unused) == 1 else "are"} not used."]
 
 
 def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
