@@ -188,7 +188,8 @@ def _of_standing_shafts(evidence: Evidence) -> list[str]:
     unused = [name for name in ("contact_ratio", "mesh_stiffness_min") if name in evidence.parameters]
     if not unused or not (evidence.has(Trait.TEETH) and is_standing(evidence)):
         return []
-    return [f"The shafts stand, so that one stiffness is fitted: {' and '.join(unused)} of the file {"is" if len(unused) == 1 else "are"} not used."]
+    said = f"{' and '.join(unused)} of the file {'are' if len(unused) > 1 else 'is'} not used"
+    return [f"The shafts stand, so that one stiffness is fitted: {said}."]
 
 
 def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
