@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from torch import Tensor
 
 from gear_damping.identification.output_error.records import FitRecord, Observed
 from gear_damping.measurement.record import Channel, Measurement
@@ -165,13 +166,17 @@ def _of_first_channels(records: Sequence[FitRecord], declared: Mapping[str, Mapp
 def scaled(records: Sequence[FitRecord], first: NoiseLevel, others: Mapping[str, NoiseLevel]) -> list[FitRecord]:
     """Records whose further channels count by their noise: in the unit of the first, at its noise."""
 
-    def scaled_channel(channel: Observed, record: FitRecord) -> Observed:
-        own = others[channel.name].by_record.get(record.name, others[channel.name].value)
-        return replace(channel, scale=first.by_record[record.name] / max(own, 1e-300))
+    def scaled_channel(channel: Observed, record: FitRecord, values: Tensor) -> Observed:
+        own, whole = others[channel.name].by_record.get(record.name, others[channel.name].value), first.by_record
+        if own <= 0 or whole[record.name] <= 0:  # of a record too short to tell: each counts by what it shows
+            return replace(channel, scale=_size(record.response) / _size(values))
+        return replace(channel, scale=whole[record.name] / own)
 
-    return [
-        replace(r, others=tuple((scaled_channel(channel, r), values) for channel, values in r.others)) for r in records
-    ]
+    return [replace(r, others=tuple((scaled_channel(c, r, values), values) for c, values in r.others)) for r in records]
+
+
+def _size(values: Tensor) -> float:
+    return float(values.square().mean().sqrt()) or 1.0
 
 
 def weighted(records: Sequence[FitRecord], noise: NoiseLevel) -> tuple[FitRecord, ...]:

@@ -6,6 +6,7 @@ from math import pi
 
 import numpy as np
 import torch
+from torch import Tensor
 
 from gear_damping.identification.observation import Known
 from gear_damping.identification.oscillator.first_frequency import first_frequency
@@ -24,6 +25,7 @@ TIME = "characteristic_time"
 LAWS = dict.fromkeys(("damping_coefficient", "damping_ratio"), DAMPING)  # words of a file for the viscous damping
 STRETCHES, GAINED = 20, 0.1  # of a record, whose mean speeds are compared; of the highest, what noise does not make
 FIRST_RATIOS = (0.01, 0.05, 0.2)  # damping ratios of the starts
+STAYS = 1e-9  # of the size of an input: less movement is rounding
 NOTHING = Known({}, {})
 
 
@@ -67,9 +69,12 @@ def linear_model(
     free.append(FreeParameter(DAMPING, damping, logarithmic=True, lower=1e-9 * (rate or 1 / scale) * mass))
     for drive, of_drive in system.gains.items():
         if drive in records[0].inputs:
-            force = torch.cat([record.inputs[drive] for record in records])
+            moved = _moved(torch.cat([record.inputs[drive] for record in records]))
+            if not moved:
+                given[of_drive] = stated.get(of_drive, 1.0)
+                continue
             per_amplitude = rate**2 * 2 * FIRST_RATIOS[1] if spring else 1 / scale**2
-            size = per_amplitude * amplitude * mass / float(force.std().clamp(min=1e-300))
+            size = per_amplitude * amplitude * mass / moved
             gain = stated.get(of_drive, size)
             free.append(FreeParameter(of_drive, gain, scale=abs(gain) or size))
     if _is_pushed(records, known):
@@ -79,6 +84,12 @@ def linear_model(
     declared = {parameter.name: parameter for parameter in system.parameters}
     unsure = [uncertain_parameter(declared[one], stated[one], known.uncertainty[one]) for one in _unsure(known)]
     return [*free, *unsure], given, scale
+
+
+def _moved(force: Tensor) -> float:
+    """How far an input moves, or how large it is where it stays; 0 where it is nothing."""
+    spread, size = float(force.std()), float(force.square().mean().sqrt())
+    return spread if spread > STAYS * size else size
 
 
 def mass_of(known: Known) -> float:

@@ -57,6 +57,8 @@ def _information(
     """Sensitivities, the records' own projected out, (records, time, n_shared), and the inverse of their products."""
     sensitivity = fitted.prediction.sensitivity[0]
     orthogonal = project_out(sensitivity[..., : problem.n_shared], nuisance_basis(sensitivity, problem.n_shared))
+    known = orthogonal.isfinite().all(1).all(0) & orthogonal.square().sum((0, 1)).isfinite()
+    orthogonal = torch.where(known, orthogonal, 0.0)  # of a fit that runs away with any change nothing is known
     jacobian = orthogonal.flatten(0, 1)
     expected = problem.expectation(fitted.shared)[1].square()
     information = jacobian.T @ jacobian + torch.diag(expected)
