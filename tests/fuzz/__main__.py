@@ -14,19 +14,20 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from .targets import TARGETS
+from .targets import RIGS, TARGETS
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "reliability.md"
-CASES = 10_000
+CASES, RIG_CASES = 10_000, 200
 PATIENCE = 120.0  # s without a word, after which a worker hangs where no alarm reaches it
 HEAD = """# Reliability
 
 Files, declarations and commands that were valid are damaged at random: bytes flipped, cut, doubled, fields set to
-extreme numbers; nodes of a `measurement.yaml` removed, renamed or replaced; words of a command cut or replaced. Each
-case must be read, or refused with one message that names key or file. A crash, a hang (60 s), more than 4 GiB of
-memory, a killed process and a file written outside of the case's folder are escapes. Each case follows from its number
-and the seed.
+extreme numbers; nodes of a `measurement.yaml` removed, renamed or replaced; words of a command cut or replaced. Under
+`identify` and `explain` oscillators are drawn (any channels, units, roles, clocks, loads and lengths in any mixture,
+among them rigs that run away) and identified, or explained in a search of three seconds with its report. Each case must
+be read, or refused with one message that names key or file. A crash, a hang (60 s), more than 4 GiB of memory, a killed
+process and a file written outside of the case's folder are escapes. Each case follows from its number and the seed.
 """
 
 
@@ -87,13 +88,14 @@ def main() -> int:
     """0 where nothing escaped."""
     parser = argparse.ArgumentParser(prog="make fuzz ARGS=...", description=__doc__)
     parser.add_argument("--target", action="append", choices=TARGETS, help="only this one; may be repeated")
-    parser.add_argument("--cases", type=int, default=CASES, help="of each")
+    parser.add_argument("--cases", type=int, help=f"of each; {CASES} where absent, of {' and '.join(RIGS)} {RIG_CASES}")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--page", action="store_true", help=f"write {PAGE.relative_to(ROOT)} too")
     parser.add_argument("--out", type=Path, default=ROOT / "outputs" / "fuzz")
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
-    rows = [asked(name, options.cases, options.seed, options.out) for name in options.target or TARGETS]
+    counts = {name: options.cases or (RIG_CASES if name in RIGS else CASES) for name in TARGETS}
+    rows = [asked(name, counts[name], options.seed, options.out) for name in options.target or TARGETS]
     (options.out / "reliability.md").write_text(page(rows, options.seed))
     if options.page:
         PAGE.write_text(page(rows, options.seed))

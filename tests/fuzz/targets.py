@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import random
 from collections.abc import Callable
 from pathlib import Path
@@ -10,10 +11,11 @@ import yaml
 
 from gear_damping.errors import InputError
 
-from . import seeds
+from . import rigs, seeds
 from .mutate import changed_tree, changed_words, damaged
 
 READ, REFUSED = "read", "refused"
+SHORT = 0.05  # min of a search
 Case = Callable[[random.Random, Path], str]
 
 
@@ -74,6 +76,23 @@ def command_target(folder: Path) -> Case:
     return _refusing(case)
 
 
+def rig_target(ask: str) -> Case:
+    """Oscillators of any make, through everything that task=identify or a short task=explain does."""
+    import gear_damping as gd
+
+    def case(source: random.Random, place: Path) -> str:
+        measured = gd.load(rigs.drawn(source, place))
+        if ask == "explain":
+            gd.explain(measured, minutes=SHORT).report(place / "report.html")
+        else:
+            found = gd.identify(measured)
+            json.dumps(found.content)
+            found.table()
+        return READ
+
+    return _refusing(case)
+
+
 def _refusing(case: Case) -> Case:
     def asked(source: random.Random, place: Path) -> str:
         try:
@@ -90,7 +109,10 @@ def target(name: str, folder: Path) -> Case:
     """The target of a name."""
     if name == "measurement.yaml":
         return declaration_target(folder)
+    if name in RIGS:
+        return rig_target(name)
     return command_target(folder) if name == "command" else file_target(name, folder)
 
 
-TARGETS = (*seeds.FILES, "measurement.yaml", "command")
+RIGS = ("identify", "explain")  # seconds a case, not thousandths
+TARGETS = (*seeds.FILES, "measurement.yaml", "command", *RIGS)

@@ -85,3 +85,24 @@ def test_a_second_sensor_makes_the_interval_no_wider(tmp_path):
         assert value == pytest.approx(3.0, rel=0.03)
         widths.append(high - low)
     assert widths[1] < 1.05 * widths[0]
+
+
+def test_records_too_short_for_their_noise_still_give_figures(tmp_path):
+    channels = f"{SHOWN}, velocity: {{column: v, unit: V/s}}"
+    write(tmp_path, [("a", 0.03, "role: fit, ", channels, 0), ("b", 0.03, "role: fit, slice: [0, 8], ", channels, 0)])
+    text = (tmp_path / "measurement.yaml").read_text()
+    (tmp_path / "short.yaml").write_text(text.replace("name: a, ", "name: a, slice: [0, 9], "))
+    found = gd.identify(gd.load(tmp_path / "short.yaml"))
+    assert all(np.isfinite(one["value"]) for one in found.parameters.values())
+
+
+def test_a_force_that_stays_tells_no_gain(tmp_path):
+    write(tmp_path, [("a", 0.03, "role: fit, ", SHOWN, 0)])
+    path = tmp_path / "measurement.yaml"
+    path.write_text(path.read_text().replace(SHOWN, f"{SHOWN}, force: {{column: f, unit: N}}"))
+    rows = np.loadtxt(tmp_path / "a.csv", delimiter=",", skiprows=1)
+    for level in (0.0, 70.3):
+        np.savetxt(tmp_path / "a.csv", np.c_[rows, np.full(N, level)], "%.9g", ",", header="t,x,v,f", comments="")
+        value, (low, high) = ratio_of(gd.identify(gd.load(path)))
+        assert value == pytest.approx(3.0, rel=0.1)
+        assert low < 3.0 < high

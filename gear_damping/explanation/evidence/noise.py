@@ -183,11 +183,13 @@ def weighted(records: Sequence[FitRecord], noise: NoiseLevel) -> tuple[FitRecord
     """Records that count by their noise, those of one channel within a range that no estimate of it can overturn."""
     low, high = WEIGHTS
 
-    def weight(name: str) -> float:
-        typical = max(noise.typical(name), 1e-300)
-        return max(noise.value, 1e-300) / typical * min(max(typical / max(noise.by_record[name], 1e-300), low), high)
+    def weight(record: FitRecord) -> float:
+        typical = noise.typical(record.name)
+        if noise.value <= 0 or typical <= 0:  # of records too short to tell
+            return _size(records[0].response) / _size(record.response) if noise.channels else 1.0
+        return noise.value / typical * min(max(typical / max(noise.by_record[record.name], 1e-300), low), high)
 
-    return tuple(replace(record, weight=weight(record.name)) for record in records)
+    return tuple(replace(record, weight=weight(record)) for record in records)
 
 
 def _floor(record: FitRecord, low: float, high: float) -> tuple[float, int]:
