@@ -147,6 +147,8 @@ class Cause:
             `phase` of what tells teeth apart is sought tooth by tooth in each of them.
         one_class: What else no record of this channel parts from it, as words for a sentence: then several names are
             one answer.
+        acts_as: What it comes to at the motion that was recorded, as words for a sentence with a size in N or in what
+            that is per unit of mass: of its values by own name, the mean stiffness and the amplitude of the motion.
     """
 
     sentence: str
@@ -156,6 +158,7 @@ class Cause:
     simpler: str | None = None
     turns_with: Literal["", "shaft", "tooth"] = ""
     one_class: tuple[str, ...] = ()
+    acts_as: Callable[[Mapping[str, float], float, float], tuple[str, float] | None] | None = None
 
     def recipes_for(self, rig: Rig) -> tuple[Recipe, ...]:
         """Its variants on this rig."""

@@ -1,5 +1,6 @@
 """Hysteresis of the mesh."""
 
+from collections.abc import Mapping
 from typing import ClassVar
 
 import torch
@@ -15,6 +16,16 @@ from gear_damping.physics.terms import DampingForce, ExtraStates, Values
 YIELDS = (0.05, 0.2, 0.6)  # amplitudes of the motion
 PRELOADED = (0.2,)  # in natural units: a loaded mesh moves about its deflection
 EXPONENTS = (0.5, 4.0)  # of the sharpness that is fitted
+EARLY = 0.1  # of the amplitude: the loss of a cycle is within a tenth that of dry friction, 4 F (A - z_y) of 4 F A
+
+
+def _as_friction(values: Mapping[str, float], stiffness: float, amplitude: float) -> tuple[str, float] | None:
+    """A dry friction where it yields early in every swing."""
+    if values["yield_deflection"] > EARLY * amplitude:
+        return None
+    share = 100 * values["yield_deflection"] / amplitude
+    words = f"`hysteretic_damping` yields at {share:.2g} % of the amplitude of the motion: it acts as a dry friction"
+    return words, values["share"] * stiffness * values["yield_deflection"]
 
 
 def _switched_on(rig: Rig) -> tuple[Recipe, ...]:
@@ -48,6 +59,7 @@ class HystereticDamping(ExtraStates, DampingForce):
         "a hysteretic force, whose loss does not depend on the rate",
         _switched_on,
         separated_by="speed",
+        acts_as=_as_friction,
     )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
