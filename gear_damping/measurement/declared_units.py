@@ -81,6 +81,8 @@ class UnitSystem:
         if reference is None:
             return _Reference(unit, text, 0)
         times = (order or 0) - reference.order if order is not None else 0
+        if times < 0:  # of a record that was not read, which is a problem of its own
+            return _Reference(unit, text, order or 0)
         dimension = reference.unit.dimension * _PER_SECOND**times
         return _Reference(Unit(reference.unit.factor, dimension), reference.text + _PER[times], order or 0)
 
