@@ -90,7 +90,7 @@ def _undamped(found: OscillatorFit, fit: Sequence[FitRecord]) -> str | None:
         return None
     text = f"no damping: these records do not tell it from none; it is at most {ratio.interval95[1]:.3g} %"
     if any(record.inputs for record in fit):
-        late = "an input that is late, or whose zero is not that of the force (`datum: arbitrary`), does that"
+        late = "an input that is late does that, and its `delay` in the file then tells it"
         return f"{text}, if this model is right: {late}"
     nepers = 2 * pi * frequency.value * ratio.value / 100 * max(record.duration for record in fit)
     if nepers > LEAST_FALL:
