@@ -16,5 +16,5 @@ records:
 def test_a_missing_file_beside_an_acceleration_is_what_is_said(tmp_path):
     np.savetxt(tmp_path / "seen.csv", np.sin(np.arange(200) / 9), header="a", comments="")
     (tmp_path / "measurement.yaml").write_text(TEXT)
-    with pytest.raises(InputError, match="gone.csv"):
+    with pytest.raises(InputError, match=r"gone\.csv"):
         load_measurement(tmp_path / "measurement.yaml")
