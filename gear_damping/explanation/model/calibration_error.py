@@ -36,7 +36,7 @@ def calibration_error(nominal: Outcome, evidence: Evidence, solver: Solver | Non
     samples = sum(len(segment.stacked) for segment in segmented)
     covariance = noise_covariance(nominal.problem, nominal.fitted)[:common, :common]
     shares = sensitivity.T @ sensitivity @ covariance
-    shares = shares / (samples * max(evidence.noise, 1e-300) ** 2)
+    shares = shares / (samples * max(evidence.noise**2, 1e-300))
     return Scatter(float(shares.trace()), float((2 * (shares @ shares).trace()).clamp(min=0).sqrt()))
 
 

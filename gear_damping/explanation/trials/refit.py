@@ -175,7 +175,7 @@ def again(refit: Refit, against: Outcome, evidence: Evidence, solver: Solver | N
 def compared(score: Score, found: Outcome, against: Outcome, evidence: Evidence) -> Refit:
     """A fit held against another model on left-out records."""
     gain, t = paired_gain(against.left_out, found.left_out, block_samples(against, evidence, evidence.judged))
-    fit_gain = (against.fitted.cost - found.fitted.cost) / max(evidence.noise, 1e-300) ** 2
+    fit_gain = (against.fitted.cost - found.fitted.cost) / max(evidence.noise**2, 1e-300)
     return Refit(score, found, gain, t, fit_gain, fit_gain > evidence.settings.seen_in_fit)
 
 

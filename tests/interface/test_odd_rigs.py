@@ -1,0 +1,27 @@
+"""Drawn oscillators that once ended in a traceback: each is answered, or refused with a message."""
+
+import json
+import random
+
+import pytest
+
+import gear_damping as gd
+from tests.fuzz.rigs import drawn
+
+
+@pytest.mark.parametrize("number", ["3 identify 4", "4 identify 116"])
+def test_it_is_identified_or_refused(number, tmp_path):
+    try:
+        found = gd.identify(gd.load(drawn(random.Random(number), tmp_path)))
+    except gd.InputError as error:
+        assert error.problems
+    else:
+        assert json.dumps(found.content)
+        assert found.table()
+
+
+@pytest.mark.parametrize("number", ["6 explain 15"])
+def test_it_is_explained(number, tmp_path):
+    answer = gd.explain(gd.load(drawn(random.Random(number), tmp_path)), minutes=0.05)
+    assert answer.verdict
+    assert answer.report(tmp_path / "report.html").exists()
