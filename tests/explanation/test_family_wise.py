@@ -119,6 +119,16 @@ def test_the_strongest_of_many_lines_is_chance_until_it_is_not():
     assert found_in(rng, [], rng.normal(size=SAMPLES), lines=[Lines("line", loud, 6.0)]).largest == "line"
 
 
+def test_what_gives_no_number_shows_nothing():
+    rng = np.random.default_rng(29)
+    none = Lines("line", torch.full((3,), torch.nan, dtype=torch.float64), 6.0)
+    found = found_in(rng, [], rng.normal(size=SAMPLES), lines=[none])
+    assert not found
+    assert found.largest is None
+    effect = Effect("e", orthonormal(rng, SAMPLES, 2))
+    assert found_in(rng, [effect], rng.normal(size=SAMPLES), lines=[none]).by_name.keys() == {"e"}
+
+
 def test_the_cube_root_is_normal():
     values = torch.as_tensor(stats.chi2(5).ppf([0.01, 0.1, 0.5, 0.9, 0.99, 0.9999]))
     expected = stats.norm.ppf([0.01, 0.1, 0.5, 0.9, 0.99, 0.9999])

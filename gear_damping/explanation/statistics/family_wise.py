@@ -9,6 +9,7 @@ distribution with the pooled variance takes their place.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import isfinite
 
 import torch
 from torch import Tensor
@@ -103,7 +104,7 @@ class Visible:
 def family_wise(
     residual: Residual, effects: Sequence[Effect], lines: Sequence[Lines] = (), draws: int = DRAWS, level: float = 0.01
 ) -> Visible:
-    """Test all effects at once.
+    """Test all effects at once; of what gives no number, as in records of a few samples, nothing is said.
 
     Args:
         residual: What is looked at.
@@ -140,6 +141,8 @@ def family_wise(
         uniform = torch.rand(draws, generator=generator, dtype=torch.float64)
         drawn.append(torch.special.ndtri((uniform ** (1 / len(family.values))).clamp(max=1 - 1e-15)))
         names.append(family.name)
+    told = [k for k, value in enumerate(found) if isfinite(value) and bool(drawn[k].isfinite().all())]
+    found, drawn, names = ([of[k] for k in told] for of in (found, drawn, names))
     if not found:
         return Visible(1.0, 0.0, 0.0, draws, 0.0, {}, level)
     largest = torch.stack(drawn).amax(0)

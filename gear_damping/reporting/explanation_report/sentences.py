@@ -111,7 +111,9 @@ def random_sentences(random: Mapping[str, Any] | None, visible: Mapping[str, Any
     return told
 
 
-def _stands_out(p: float, largest: str, level: float) -> str:
+def _stands_out(p: float, largest: str | None, level: float) -> str:
+    if largest is None:
+        return "nothing could be tested"
     name = listed([largest.removeprefix(UNNAMED)])
     if p < level:
         return f"something stands out of it that chance does not give (p = {number(p, 2)}), {name} first"
