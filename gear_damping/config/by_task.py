@@ -1,36 +1,21 @@
-"""Which keys act in which task: what would be accepted without any effect is refused."""
+"""What a task needs of the values that it reads, and which of them act beside the others."""
 
 from collections.abc import Callable
 from pathlib import Path
 
 import torch
 
+from gear_damping.config.acting import ACTS, Found, idle_keys
 from gear_damping.config.folders import RESUMABLE, resumable
 from gear_damping.config.light import no_file
-from gear_damping.config.measured import MEASURED
-from gear_damping.config.whole import Found, Whole, typed
+from gear_damping.config.whole import Whole
 from gear_damping.identification.network_files import holds_network
 from gear_damping.physics.terms import HeldLoad
 from gear_damping.simulation.prior import DAMPING_RATIO
 
-TAKEN_BY_PAPER = (  # how keys begin that task=paper takes
-    "task", "experiment", "name", "seed", "resume", "data_folder", "progress", "figures", "training", "hydra",
-    "simulator.n_runs", "simulator.n_samples", "simulator.solver.accuracy", "protocol.windows_per_epoch",
-    "protocol.evaluation_stride",
-)  # fmt: skip
-OWN_NOISE = "training.noise_snr_db"  # the paper's study has its own
-SEARCHED = ("explain.", "ruled_out")  # how keys of a search for causes begin
-PLAN = "plan"
-NOT_PLANNED = (
-    "family.", "protocol", "training", "model", "wavelet", "measurement", "seeds", "checkpoint", "resume",
-    "write_measurement", "data_folder", "simulator.n_runs", "simulator.n_samples", "simulator.diverged_share",
-)  # how keys begin that a plan does not read; a choice of family may say the rig's speed
-COLLECT = "collect"
-UNMEASURED = ("train", "simulate", "evaluate", COLLECT)  # plan and paper refuse a measurement with their own keys
-
 
 def _checkpoint(whole: Whole) -> Found:
-    path = whole["checkpoint"]
+    path = whole["checkpoint"] if whole["task"] in ACTS["checkpoint"] else None
     many = whole["task"] == "evaluate" and path is not None and any(Path(path).glob("*/seed_*/best.ckpt"))
     if path is not None and not many and not (Path(path).is_file() or holds_network(Path(path))):
         rule = "is a folder that holds no network" if Path(path).is_dir() else no_file(Path(path))
@@ -43,14 +28,14 @@ def _estimators(whole: Whole) -> Found:
     """Networks are trained and then asked by their checkpoint; estimators of records need neither."""
     task, names = whole["task"], whole["model"]["names"]
     of_records = () if whole.models is None else whole.models.of_records
-    if of_records and task != "identify":
+    if of_records and task == "train":
         rule = f"{', '.join(of_records)} has nothing to learn: it takes a record by itself, in task=identify"
         yield "model.names", rule, names, "choose task=identify, or name networks only"
     elif of_records and whole["checkpoint"] is not None:
         rule = f"is of a network, and model names {', '.join(of_records)}"
         yield "checkpoint", rule, whole["checkpoint"], "leave one of them out"
     elif task == "identify" and whole["checkpoint"] is None and set(names) - set(of_records):
-        is_asked = of_records or any(key in ("model", "model.names") for key, _ in typed(whole))
+        is_asked = of_records or any(key in ("model", "model.names") for key, _ in whole.origin.typed())
         rule = "names a network, which tells nothing before it is trained"
         remedy = "give its checkpoint=…/best.ckpt, or choose model=classical"
         yield from [("model.names", rule, names, remedy)] if is_asked else []
@@ -62,7 +47,7 @@ def _wavelet_of_networks(whole: Whole) -> Found:
     if models is None or models.transforming:
         return
     remedy = "leave it out; wavelet_ridge has model.omega0" if models.of_records else "leave it out, or name cwt_lstm"
-    for key, value in typed(whole) if models.of_records or models.whole else ():
+    for key, value in whole.origin.typed() if models.of_records or models.whole else ():
         if key == "wavelet" or key.startswith("wavelet."):
             yield key, "acts on networks of the transform, and none is named", value, remedy
 
@@ -73,16 +58,13 @@ def _whole_records(whole: Whole) -> Found:
     if names and whole["protocol"]["name"] != "by_run":
         rule = f"cuts inside records, and {', '.join(names)} sees whole ones"
         yield "protocol.name", rule, whole["protocol"]["name"], "choose protocol=by_run"
-    for key, value in typed(whole) if names and len(names) == len(whole.models.names) else ():
+    for key, value in whole.origin.typed() if names and len(names) == len(whole.models.names) else ():
         if key in ("protocol.window", "protocol.stride", "protocol.evaluation_stride"):
             yield key, f"acts on networks of windows, and {', '.join(names)} sees whole records", value, "leave it out"
 
 
 def _evaluated(whole: Whole) -> Found:
-    """What only an evaluation reads, and what it needs of the runs."""
-    for key, value in typed(whole) if whole["task"] != "evaluate" else ():
-        if key.startswith("evaluation."):
-            yield key, f"acts in task=evaluate, and this is task={whole['task']}", value, "leave it out"
+    """What an evaluation needs of the runs."""
     if whole["task"] == "evaluate" and DAMPING_RATIO not in whole.simulator.family.distributions:
         rule = "has no range of damping ratios, beside which an estimate could be good"
         yield "family", rule, whole.simulator.family.name, "choose family=bench, field or paper"
@@ -112,49 +94,13 @@ def _noise_twice(whole: Whole) -> Found:
 
 def _resume(whole: Whole) -> Found:
     path, task = whole["resume"], whole["task"]
-    if path is not None and not resumable(task if task in RESUMABLE else "train", Path(path)):
+    if path is not None and task in RESUMABLE and not resumable(task, Path(path)):
         what, kind = ("finished part", "study") if task == "paper" else ("checkpoint", "training")
         yield "resume", f"holds no {what} to go on from", path, f"give the folder of an interrupted {kind}"
 
 
-def _collected(whole: Whole) -> Found:
-    """The folder of a sweep, which only its task reads."""
-    path, task = whole["sweep"], whole["task"]
-    if task != COLLECT and path is not None:
-        yield "sweep", f"acts in task={COLLECT}, and this is task={task}", path, "leave it out"
-
-
-def _of_a_measurement(whole: Whole) -> Found:
-    """A measured record, which other tasks would not look at."""
-    for key, value in typed(whole) if whole["task"] in UNMEASURED else ():
-        if key.startswith("measurement.") or (key == "measurement" and value != "none"):
-            where = ", ".join(f"task={task}" for task in MEASURED)
-            yield key, f"acts in {where}, and this is task={whole['task']}", value, "leave it out"
-
-
-def _of_a_search(whole: Whole) -> Found:
-    """What only a search for causes reads would be accepted by other tasks without any effect."""
-    for key, value in typed(whole) if whole["task"] != "explain" else ():
-        if key.startswith(SEARCHED):
-            yield key, f"acts in task=explain, and this is task={whole['task']}", value, "leave it out"
-
-
-def _of_a_plan(whole: Whole) -> Found:
-    """What only a plan reads is refused elsewhere, and what a plan does not read is refused there."""
-    for key, value in typed(whole):
-        if whole["task"] != PLAN and key.startswith("plan."):
-            yield key, f"acts in task={PLAN}, and this is task={whole['task']}", value, "leave it out"
-        elif whole["task"] == PLAN and key.startswith(NOT_PLANNED):
-            yield key, f"has no effect in task={PLAN}", value, "leave it out"
-
-
-def _of_the_paper(whole: Whole) -> Found:
-    """The paper's study makes its own effects, families and protocols; other tasks have no figures of the paper."""
-    for key, value in typed(whole):
-        if whole["task"] != "paper" and key == "figures":
-            yield key, f"acts in task=paper, and this is task={whole['task']}", value, "leave it out"
-        elif whole["task"] == "paper" and (key == OWN_NOISE or not key.startswith(TAKEN_BY_PAPER)):
-            yield key, "has no effect: task=paper makes every effect, family and protocol itself", value, "leave it out"
+def _idle(whole: Whole) -> Found:
+    yield from idle_keys(whole.config, whole.origin)
 
 
 BY_TASK: tuple[tuple[tuple[str, ...], Callable[[Whole], Found]], ...] = (
@@ -166,9 +112,5 @@ BY_TASK: tuple[tuple[tuple[str, ...], Callable[[Whole], Found]], ...] = (
     (("task", "training", "simulator"), _noise_twice),
     (("training",), _devices),
     (("task", "resume"), _resume),
-    (("task", "explain", "ruled_out"), _of_a_search),
-    (("task", "measurement"), _of_a_measurement),
-    (("task", "sweep"), _collected),
-    (("task",), _of_a_plan),
-    (("task",), _of_the_paper),
+    (("task",), _idle),
 )

@@ -5,21 +5,21 @@ from pathlib import Path
 
 import torch
 
+from gear_damping.config.acting import SIMULATED, Found
 from gear_damping.config.by_task import BY_TASK
 from gear_damping.config.folders import unusable
 from gear_damping.config.light import wrong_measurement, wrong_name
 from gear_damping.config.simulator import SimulatorSettings
 from gear_damping.config.source import ORDER, Origin
-from gear_damping.config.whole import Found, Whole
+from gear_damping.config.whole import Whole
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.physics.catalogue import catalogue
 from gear_damping.simulation.prior import DAMPING_RATIO, coefficients_for
 from gear_damping.simulation.runs import reference_velocity
 from gear_damping.units import SUFFIXES
 
-SIMULATING = ("train", "simulate", "evaluate", "paper")  # tasks that simulate runs of the configured simulator
+SIMULATING = (*SIMULATED, "paper")  # tasks that simulate runs
 TRAINING = ("train", "paper")  # tasks that train networks
-PLAN = "plan"
 
 
 def combination_problems(whole: Whole, wrong: set[str]) -> list[Problem]:
@@ -40,11 +40,11 @@ def combination_problems(whole: Whole, wrong: set[str]) -> list[Problem]:
 
 
 def _name(whole: Whole) -> Found:
-    yield from wrong_name(whole.config)
+    yield from wrong_name(whole.config, whole.origin)
 
 
 def _measurement(whole: Whole) -> Found:
-    yield from wrong_measurement(whole.config)
+    yield from wrong_measurement(whole.config, whole.origin)
 
 
 def _ruled_out(whole: Whole) -> Found:
@@ -119,7 +119,7 @@ def _test_ratio(whole: Whole) -> Found:
 def _without_effect(whole: Whole) -> Found:
     """Values that were given and that something else decides."""
     simulator = whole.simulator
-    drawn = {} if whole["task"] == PLAN else simulator.family.distributions  # a plan is one for one rig
+    drawn = simulator.family.distributions if whole["task"] in SIMULATED else {}  # others are for one rig
     for name, distribution in drawn.items():
         key = None if name == DAMPING_RATIO else _given_on_top(name, whole.origin)
         if key and not distribution.relative:

@@ -1,18 +1,18 @@
 """Checks of a configuration that need no physics: they are done before anything that takes long is imported."""
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from gear_damping.config import keys
+from gear_damping.config.acting import Found, idle_keys
 from gear_damping.config.measured import INSPECT, MEASURED, measurement_file
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
 
 _NAME = re.compile(r"^[\w][\w.-]*$")
-Found = Iterator[tuple[str, str, Any, str]]  # key, rule, value, remedy
 
 
 @dataclass(frozen=True)
@@ -51,19 +51,20 @@ def light_problems(config: Mapping[str, Any], origin: Origin) -> list[Problem]:
     plain = {key: value for key, value in config.items() if key != "hydra"}
     _, problems = keys.check(plain, origin)
     wrong = {problem.key.split(".")[0] for problem in problems}
-    for needed, check in ((("name",), wrong_name), (("task", "measurement"), wrong_measurement)):
+    for needed, check in LIGHT:
         if not wrong & set(needed):
-            problems += [Problem(key, rule, value, remedy, origin.of(key)) for key, rule, value, remedy in check(plain)]
+            found = check(plain, origin)
+            problems += [Problem(key, rule, value, remedy, origin.of(key)) for key, rule, value, remedy in found]
     return problems
 
 
-def wrong_name(config: Mapping[str, Any]) -> Found:
+def wrong_name(config: Mapping[str, Any], origin: Origin) -> Found:
     """The name of the experiment is one of a folder."""
     if not _NAME.match(config["name"]):
         yield "name", "names a folder: letters, digits, '_', '-' and '.'", config["name"], "rename it"
 
 
-def wrong_measurement(config: Mapping[str, Any]) -> Found:
+def wrong_measurement(config: Mapping[str, Any], origin: Origin) -> Found:
     """A task that reads a measurement is given one."""
     path, task = config["measurement"]["path"], config["task"]
     if task not in MEASURED:
@@ -80,3 +81,6 @@ def wrong_measurement(config: Mapping[str, Any]) -> Found:
 def no_file(path: Path) -> str:
     """Why there is no file at a path."""
     return "is a folder, no file" if path.is_dir() else "no such file"
+
+
+LIGHT = ((("name",), wrong_name), (("task", "measurement"), wrong_measurement), (("task",), idle_keys))

@@ -1,6 +1,6 @@
 """Which file or override a value came from, for messages and where two spellings meet."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -11,11 +11,11 @@ import yaml
 from gear_damping.config.command_line import parse
 from gear_damping.config.locate import conf_folder, groups
 
-EXTENDED, COMMAND_LINE = "extended", "command line"
+EXTENDED, EXPERIMENT, COMMAND_LINE = "extended", "experiment", "command line"
 # Later ones beat earlier ones, as in the defaults list of config.yaml.
 ORDER = (
     "config", "simulator", EXTENDED, "family", "protocol", "wavelet", "model", "training", "measurement",
-    "plan", "experiment", COMMAND_LINE,
+    "plan", EXPERIMENT, COMMAND_LINE,
 )  # fmt: skip
 
 
@@ -65,12 +65,26 @@ class Origin:
         place = self.place(key)
         return -1 if place is None else ORDER.index(place)
 
+    def typed(self) -> Iterator[tuple[str, str]]:
+        """Key and value of what was typed."""
+        for override in self.overrides:
+            key, _, value = override.lstrip("+~").partition("=")
+            yield key, value
+
+    def given_by(self, group: str) -> dict[str, Any]:
+        """The full keys that the chosen file of a group gives, a quantity with its unit as one."""
+        return dict(_leaves({name: node for name, node in self._file(group).items() if name != "defaults"}))
+
     def _gives(self, place: str, key: str) -> bool:
         if place == EXTENDED:
             return self.extended is not None and _has({"simulator": self.extended[1]}, key)
+        return _has(self._file(place), key)
+
+    def _file(self, place: str) -> Mapping[str, Any]:
+        """The content of the chosen file of a group; empty where none is chosen."""
         chosen = dict(self.choices).get(place)
         name = "config.yaml" if place == "config" else f"{place}/{chosen}.yaml"
-        return (place == "config" or bool(chosen)) and _has(_content(conf_folder() / name, place), key)
+        return _content(conf_folder() / name, place) if place == "config" or chosen else {}
 
 
 @cache
@@ -81,6 +95,15 @@ def _content(path: Path, place: str) -> Mapping[str, Any]:
     text = path.read_text()
     content = yaml.safe_load(text) or {}
     return content if place == "config" or "@package _global_" in text else {place: content}
+
+
+def _leaves(node: Any, key: str = "") -> Iterator[tuple[str, Any]]:
+    """Key and value of all that mappings hold."""
+    if isinstance(node, Mapping) and node and "value" not in node:
+        for name, inner in node.items():
+            yield from _leaves(inner, f"{key}.{name}".lstrip("."))
+    elif key:
+        yield key, node
 
 
 def _has(node: Any, key: str) -> bool:

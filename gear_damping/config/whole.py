@@ -1,14 +1,12 @@
 """A configuration as its checks meet it."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from gear_damping.config.learners import ModelSettings
 from gear_damping.config.simulator import SimulatorSettings
 from gear_damping.config.source import Origin
-
-Found = Iterator[tuple[str, str, Any, str]]  # key, rule, value, remedy
 
 
 @dataclass(frozen=True)
@@ -22,10 +20,3 @@ class Whole:
 
     def __getitem__(self, key: str) -> Any:
         return self.config[key]
-
-
-def typed(whole: Whole) -> Iterator[tuple[str, str]]:
-    """Key and value of what was typed."""
-    for override in whole.origin.overrides:
-        key, _, value = override.lstrip("+~").partition("=")
-        yield key, value

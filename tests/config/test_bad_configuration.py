@@ -40,10 +40,10 @@ FAULTS = {
     "of_another_task": (["task=simulate", "explain.accepted_t=4"], ["explain.accepted_t", "acts in task=explain"]),
     "decided_by_the_study": (
         ["experiment=paper_figures", "protocol=by_run"],
-        ["protocol = 'by_run'", "task=paper makes every effect, family and protocol itself"],
+        ["protocol = 'by_run'", "has no effect in task=paper: it makes every effect, family and protocol itself"],
     ),
     "effect_of_the_study": (["experiment=paper_figures", "simulator.backlash.gap=1e-4"], ["simulator.backlash.gap"]),
-    "figures_of_another_task": (["figures=[figure_07]"], ["figures", "acts in task=paper", "task=train"]),
+    "figures_of_another_task": (["figures=[figure_07]"], ["figures", "no effect in task=train: it acts in task=paper"]),
     "no_such_figure": (["experiment=paper_figures", "figures=[figure_16]"], ["figures", "figure_15"]),
     "nothing_of_a_study": (["experiment=paper_figures", "resume=tests"], ["resume = 'tests'", "no finished part"]),
     "outside_a_search": (["task=explain", "explain.level=2"], ["explain.level = 2", "within 0.0001 and 0.5"]),

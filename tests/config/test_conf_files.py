@@ -21,6 +21,8 @@ def test_choice_is_valid(group, choice):
         overrides += ["++task=identify", "measurement=ship_roll_21337"]
     if group == "measurement" and choice != "none":
         overrides += ["++task=identify"]
+    if group == "explain":
+        overrides += ["++task=explain", "measurement=silverbox"]
     if group == "plan" or choice == "plan":
         overrides += ["++task=plan"]
     settings = read_settings(*composed(overrides))

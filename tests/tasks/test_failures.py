@@ -39,7 +39,12 @@ class OwnDamping(DampingForce):
 
 
 def place(tmp_path):
-    return [f"hydra.run.dir={tmp_path / 'run'}", f"data_folder={tmp_path / 'data'}"]
+    return [*own(tmp_path), f"data_folder={tmp_path / 'data'}"]
+
+
+def own(tmp_path):
+    """The folder of a run that keeps no simulated data."""
+    return [f"hydra.run.dir={tmp_path / 'run'}"]
 
 
 @pytest.fixture
@@ -66,7 +71,7 @@ def broken_effect(tmp_path, prepare="pass", force="pass"):
 @pytest.mark.parametrize("task", ["train", "simulate"])
 def test_a_line_of_the_users_effect_that_fails_in_a_task_is_named(task, tmp_path, said):
     plugin, path = broken_effect(tmp_path, force="p['missing']")
-    size = ["simulator.n_runs=12", *SMALL[1:], "protocol.window=50"]
+    size = ["simulator.n_runs=12", *SMALL[1:]]
     assert main([f"task={task}", *plugin, *size, *place(tmp_path)]) == 1
     text = said()
     assert f"simulator.plugins = '{path}': line " in text
@@ -132,7 +137,7 @@ def test_a_file_of_formats_that_is_missing_is_named_by_its_key(task, tmp_path, s
     data = tmp_path / "a.csv"
     data.write_text("t,x\n0,1\n0.1,2\n")
     missing = tmp_path / "nowhere.py"
-    words = [f"task={task}", f"measurement.path={data}", f"measurement.plugins=[{missing}]", *place(tmp_path)]
+    words = [f"task={task}", f"measurement.path={data}", f"measurement.plugins=[{missing}]", *own(tmp_path)]
     assert main(words) == 1
     text = said()
     assert f"measurement.plugins = '{missing}': no such file; remedy: give the path of a .py file" in text
@@ -144,14 +149,13 @@ def test_a_file_of_formats_that_is_missing_is_named_by_its_key(task, tmp_path, s
 @pytest.mark.parametrize("task", ["train", "simulate", "evaluate", "collect"])
 @pytest.mark.parametrize("word", ["measurement=silverbox", "measurement.plugins=[a.py]", "measurement.channel=force"])
 def test_a_measurement_is_refused_where_nothing_looks_at_it(task, word, tmp_path, said):
-    assert main([f"task={task}", word, "progress=false", *place(tmp_path)]) == 1
+    assert main([f"task={task}", word, "progress=false", *own(tmp_path)]) == 1
     key, _, value = word.partition("=")
-    assert f"{key} = '{value}': acts in task=identify, task=explain, task=inspect" in said()
+    where = "task=identify" if key == "measurement.channel" else "task=identify, task=explain, task=inspect"
+    assert f"{key} = '{value}': has no effect in task={task}: it acts in {where};" in said()
 
 
-def test_an_input_that_the_machine_does_not_give_is_named_by_the_key_of_the_configuration(
-    tmp_path, monkeypatch, said
-):
+def test_an_input_that_the_machine_does_not_give_is_named_by_the_key_of_the_configuration(tmp_path, monkeypatch, said):
     """Wherever it is met: no text of reading is that of an output."""
     path = tmp_path / "extended_simulator.yaml"
 
@@ -160,7 +164,7 @@ def test_an_input_that_the_machine_does_not_give_is_named_by_the_key_of_the_conf
 
     monkeypatch.setattr(dispatch, "task_of", lambda settings: unreadable)
     monkeypatch.setattr(dispatch, "_settings", lambda config, origin: None)
-    assert main(["task=collect", f"sweep={path}", *place(tmp_path)]) == 1
+    assert main(["task=collect", f"sweep={path}", *own(tmp_path)]) == 1
     text = said()
     assert f"sweep = '{path}': cannot be read: Permission denied; remedy: see that it is there" in text
     assert f"(from command line: sweep={path})" in text

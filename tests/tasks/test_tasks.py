@@ -12,15 +12,8 @@ from gear_damping.reporting.numbers import number
 from gear_damping.tasks import dispatch, train
 from gear_damping.tasks.command import main
 
-QUICK = [
-    "experiment=backlash",
-    "training=smoke",
-    "training.max_epochs=1",
-    "simulator.n_runs=12",
-    "simulator.n_samples=120",
-    "protocol.windows_per_epoch=128",
-    "progress=false",
-]
+SMALL = ["experiment=backlash", "simulator.n_runs=12", "simulator.n_samples=120", "progress=false"]
+QUICK = [*SMALL, "training=smoke", "training.max_epochs=1", "protocol.windows_per_epoch=128"]
 SCORES = {"rmse_percent", "rmse_paper", "median_relative_error", "skill", "epochs"}
 
 
@@ -119,18 +112,18 @@ def test_a_model_card_of_the_papers_protocol_does_not_speak_of_unseen_runs(tmp_p
 
 def test_evaluate_asks_a_shared_network(trained, tmp_path):
     shared = trained / "raw_lstm" / "seed_0" / "model.safetensors"
-    assert main([*QUICK, "task=evaluate", f"checkpoint={shared}", *own(tmp_path)]) == 0
+    assert main([*SMALL, "task=evaluate", f"checkpoint={shared}", *own(tmp_path)]) == 0
     assert set(record_of(tmp_path / "run")["inputs"]) == {str(shared), str(shared.with_suffix(".json"))}
 
 
 def test_a_folder_without_a_network_is_no_checkpoint(trained, tmp_path, said):
-    assert main([*QUICK, "task=evaluate", f"checkpoint={trained / 'raw_lstm'}", *own(tmp_path)]) == 1
+    assert main([*SMALL, "task=evaluate", f"checkpoint={trained / 'raw_lstm'}", *own(tmp_path)]) == 1
     assert "is a folder that holds no network" in said()
 
 
 def test_evaluate_scores_a_checkpoint_on_fresh_runs(trained, tmp_path):
     checkpoint = trained / "raw_lstm" / "seed_0" / "best.ckpt"
-    assert main([*QUICK, "task=evaluate", f"checkpoint={checkpoint}", *own(tmp_path)]) == 0
+    assert main([*SMALL, "task=evaluate", f"checkpoint={checkpoint}", *own(tmp_path)]) == 0
     found = json.loads((tmp_path / "run" / "evaluation.json").read_text())
     assert 0 < found["rmse_percent"] < 2
     assert list(record_of(tmp_path / "run")["inputs"]) == [str(checkpoint)]
@@ -139,7 +132,7 @@ def test_evaluate_scores_a_checkpoint_on_fresh_runs(trained, tmp_path):
 def test_evaluate_asks_every_network_of_a_training_and_what_knows_the_equation(trained, tmp_path):
     asked = [f"checkpoint={trained}", "evaluation.snr_db=[30,10]", "evaluation.known_model=true", "family=bench"]
     asked.append("evaluation.effects=['torque_variation:ramp',tooth_crack]")
-    assert main([*QUICK, "task=evaluate", *asked, *own(tmp_path)]) == 0
+    assert main([*SMALL, "task=evaluate", *asked, *own(tmp_path)]) == 0
     found = json.loads((tmp_path / "run" / "evaluation.json").read_text())
     networks = {"raw_lstm", "cwt_lstm", "white_noise"}
     for level in found["snr_db"].values():
@@ -181,14 +174,14 @@ def test_evaluate_asks_every_network_of_a_training_and_what_knows_the_equation(t
 )
 def test_what_cannot_be_evaluated_is_said(asked, rule, trained, tmp_path, said):
     checkpoint = trained / "raw_lstm" / "seed_0" / "best.ckpt"
-    assert main([*QUICK, "task=evaluate", f"checkpoint={checkpoint}", *asked, *own(tmp_path)]) == 1
+    assert main([*SMALL, "task=evaluate", f"checkpoint={checkpoint}", *asked, *own(tmp_path)]) == 1
     assert rule in said()
 
 
 def test_simulated_runs_come_back_as_a_measurement_and_are_identified(trained, tmp_path):
     """simulate -> measurement.yaml -> identify with a trained network."""
     arguments = ["task=simulate", "write_measurement=true", "simulator.n_runs=2", "simulator.sensor_offset={}"]
-    assert main([*QUICK, *arguments, *own(tmp_path)]) == 0
+    assert main([*SMALL, *arguments, *own(tmp_path)]) == 0
     folder = tmp_path / "run"
     with np.load(folder / "runs.npz") as runs:
         assert runs["transmission_error"].shape == (2, 120)
