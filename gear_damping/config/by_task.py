@@ -5,7 +5,7 @@ from pathlib import Path
 
 import torch
 
-from gear_damping.config.acting import ACTS, Found, idle_keys
+from gear_damping.config.acting import ACTS, Found
 from gear_damping.config.folders import RESUMABLE, resumable
 from gear_damping.config.light import no_file
 from gear_damping.config.whole import Whole
@@ -99,10 +99,6 @@ def _resume(whole: Whole) -> Found:
         yield "resume", f"holds no {what} to go on from", path, f"give the folder of an interrupted {kind}"
 
 
-def _idle(whole: Whole) -> Found:
-    yield from idle_keys(whole.config, whole.origin)
-
-
 BY_TASK: tuple[tuple[tuple[str, ...], Callable[[Whole], Found]], ...] = (
     (("task", "checkpoint"), _checkpoint),
     (("task", "checkpoint", "model"), _estimators),
@@ -112,5 +108,4 @@ BY_TASK: tuple[tuple[tuple[str, ...], Callable[[Whole], Found]], ...] = (
     (("task", "training", "simulator"), _noise_twice),
     (("training",), _devices),
     (("task", "resume"), _resume),
-    (("task",), _idle),
 )

@@ -5,42 +5,45 @@ from pathlib import Path
 
 import torch
 
-from gear_damping.config.acting import SIMULATED, Found
+from gear_damping.config.acting import SIMULATED, Found, idle_keys
 from gear_damping.config.by_task import BY_TASK
 from gear_damping.config.folders import unusable
 from gear_damping.config.light import wrong_measurement, wrong_name
+from gear_damping.config.overruled import OVERRULED, given_on_top
 from gear_damping.config.simulator import SimulatorSettings
-from gear_damping.config.source import ORDER, Origin
 from gear_damping.config.whole import Whole
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.physics.catalogue import catalogue
 from gear_damping.simulation.prior import DAMPING_RATIO, coefficients_for
 from gear_damping.simulation.runs import reference_velocity
-from gear_damping.units import SUFFIXES
 
 SIMULATING = (*SIMULATED, "paper")  # tasks that simulate runs
 TRAINING = ("train", "paper")  # tasks that train networks
 
 
 def combination_problems(whole: Whole, wrong: set[str]) -> list[Problem]:
-    """The problems of every check none of whose keys is wrong by itself.
+    """The problems of every check none of whose keys is wrong by itself; of each key the first.
 
     Args:
         whole: The configuration; its simulator and models are None where these are wrong.
         wrong: The keys that are wrong by themselves.
     """
-    problems = []
+    problems: dict[str, Problem] = {}
     groups = {key.split(".")[0] for key in wrong}
     for needed, check in CHECKS:
         if groups & set(needed) or ("simulator" in needed and whole.simulator is None):
             continue
-        found = check(whole)
-        problems += [Problem(key, rule, value, remedy, whole.origin.of(key)) for key, rule, value, remedy in found]
-    return problems
+        for key, rule, value, remedy in check(whole):
+            problems.setdefault(key, Problem(key, rule, value, remedy, whole.origin.of(key)))
+    return list(problems.values())
 
 
 def _name(whole: Whole) -> Found:
     yield from wrong_name(whole.config, whole.origin)
+
+
+def _idle(whole: Whole) -> Found:
+    yield from idle_keys(whole.config, whole.origin)
 
 
 def _measurement(whole: Whole) -> Found:
@@ -121,7 +124,7 @@ def _without_effect(whole: Whole) -> Found:
     simulator = whole.simulator
     drawn = simulator.family.distributions if whole["task"] in SIMULATED else {}  # others are for one rig
     for name, distribution in drawn.items():
-        key = None if name == DAMPING_RATIO else _given_on_top(name, whole.origin)
+        key = None if name == DAMPING_RATIO else given_on_top(name, whole.origin)
         if key and not distribution.relative:
             remedy = f"leave it out, or add family.spreads.{name}=null"
             yield key, "has no effect: the family draws it for every run", simulator.given[name], remedy
@@ -131,16 +134,10 @@ def _without_effect(whole: Whole) -> Found:
             yield "simulator.damping_law", "the family draws a damping ratio and no effect carries it", None, remedy
     elif DAMPING_RATIO in drawn or simulator.damping_ratio_percent is not None:
         for name in _set_by_ratio(simulator)[0]:
-            if _given_on_top(name, whole.origin):
+            if given_on_top(name, whole.origin):
                 remedy = f"leave it out, or add simulator.damping_law=null family.spreads.{DAMPING_RATIO}=null"
                 rule = "has no effect: the damping ratio decides it"
                 yield f"simulator.{name}", rule, simulator.given[name], remedy
-
-
-def _given_on_top(name: str, origin: Origin) -> str | None:
-    """The key under which an experiment or the command line gives a parameter, or None."""
-    keys = [f"simulator.{name}", *(f"simulator.{name}_{suffix}" for suffix in SUFFIXES)]
-    return next((key for key in keys if origin.rank(key) > ORDER.index("family")), None)
 
 
 def _set_by_ratio(simulator: SimulatorSettings) -> tuple[Iterable[str], list[Problem]]:
@@ -189,6 +186,7 @@ def _physics(whole: Whole) -> Found:
 
 
 CHECKS: tuple[tuple[tuple[str, ...], Callable[[Whole], Found]], ...] = (
+    (("task",), _idle),
     *BY_TASK,
     (("name",), _name),
     (("task", "measurement"), _measurement),
@@ -203,4 +201,5 @@ CHECKS: tuple[tuple[tuple[str, ...], Callable[[Whole], Found]], ...] = (
     (("task", "simulator"), _label),
     (("task", "simulator", "family"), _without_effect),
     (("simulator",), _physics),
+    *OVERRULED,
 )

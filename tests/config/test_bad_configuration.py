@@ -2,7 +2,9 @@
 
 import pytest
 
+from gear_damping.config.command_line import read_command_line
 from gear_damping.tasks.command import main
+from gear_damping.tasks.composed import problems_of
 
 FAULTS = {
     "unknown_effect": (["simulator.backlsh.gap=1"], ["simulator.backlsh", "did you mean 'backlash'"]),
@@ -95,6 +97,34 @@ FAULTS = {
     ),
     "run_folder_below_a_file": (["hydra.run.dir=README.md/run"], ["hydra.run.dir", "cannot be made"]),
     "no_extended_file": (["simulator.extended=nope.yaml"], ["simulator.extended", "nope.yaml", "cannot be read"]),
+    "torque_of_the_gear_that_follows": (
+        ["simulator.gear_torque=100"],
+        ["simulator.gear_torque = 100", "where simulator.gear_torque_mode is balanced", "gear_torque_mode=held"],
+    ),
+    "mass_that_the_paper_prints": (
+        ["simulator.as_printed=true", "simulator.inertia_gear=9e-3", "simulator.pressure_angle_deg=25"],
+        ["simulator.inertia_gear = 0.009: has no effect", "pressure_angle_deg", "beside simulator.as_printed=true"],
+    ),
+    "mass_that_friction_does_not_read": (
+        ["simulator.as_printed=true", "simulator.tooth_friction={}", "simulator.equivalent_mass=0.5"],
+        ["simulator.equivalent_mass = 0.5: has no effect beside simulator.as_printed=true"],
+    ),
+    "accuracy_of_given_steps": (
+        ["simulator.solver.accuracy=1e-8", "simulator.solver.substeps=4"],
+        [
+            "simulator.solver.accuracy = 1e-08: has no effect beside simulator.solver.substeps=4",
+            "leave one of them out",
+        ],
+    ),
+    "perturbed_rest": (
+        ["family.start=rest", "family.perturbation=0.2"],
+        ["family.perturbation = 0.2: has no effect where family.start is rest", "choose family.start=static"],
+    ),
+    "one_run_of_all": (
+        ["protocol.run=3"],
+        ["protocol.run = 3: acts in protocol=paper", "this is by_run", "choose protocol=paper"],
+    ),
+    "one_run_of_many": (["protocol=paper_many_runs", "protocol.run=3"], ["this is paper_many_runs"]),
     "family_of_a_gear_for_an_oscillator": (["simulator=oscillator"], ["pinion_speed_rpm", "conf/family/bench.yaml"]),
 }
 
@@ -108,6 +138,26 @@ def test_fault_is_named(name, caplog, capsys):
     for words in said:
         assert words in text
     assert "Traceback" not in text
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["simulator.gear_torque=100", "simulator.gear_torque_mode=held"],
+        ["simulator.as_printed=true"],
+        ["simulator.as_printed=true", "simulator.tooth_friction={}", "simulator.inertia_gear=9e-3"],
+        ["simulator.solver.substeps=4"],
+        ["family.start=rest"],
+        ["family=paper", "protocol=paper", "protocol.run=3"],
+    ],
+)
+def test_what_the_values_beside_it_leave_in_force_is_taken(words):
+    assert problems_of(read_command_line(words).overrides) == []
+
+
+def test_a_key_is_refused_once(caplog):
+    assert main(["task=simulate", "protocol.run=3"]) == 1
+    assert caplog.text.count("- protocol.run") == 1
 
 
 def test_all_problems_at_once(caplog):
