@@ -5,7 +5,7 @@ from pathlib import Path
 
 import torch
 
-from gear_damping.config.acting import ACTS, Found
+from gear_damping.config.acting import ACTS, OFF, Found
 from gear_damping.config.folders import RESUMABLE, resumable
 from gear_damping.config.light import no_file
 from gear_damping.config.whole import Whole
@@ -39,6 +39,21 @@ def _estimators(whole: Whole) -> Found:
         rule = "names a network, which tells nothing before it is trained"
         remedy = "give its checkpoint=…/best.ckpt, or choose model=classical"
         yield from [("model.names", rule, names, remedy)] if is_asked else []
+
+
+def _of_estimators(whole: Whole) -> Found:
+    """What only estimators read, where task=identify asks none: it fits every record through all channels."""
+    if whole["task"] != "identify" or whole.models is None or whole.models.of_records:
+        return
+    is_fit = whole["checkpoint"] is None
+    kept = ("model.names",) if is_fit else ("model.names", "model.plugins")
+    for key, value in whole.origin.typed():
+        if key == "measurement.channel" and is_fit and value != OFF[key]:
+            rule = "has no effect on a fit, which takes every channel of a record: estimators are asked about one"
+            yield key, rule, value, "leave it out, or add model=classical or checkpoint=…"
+        elif key.startswith("model.") and key not in kept:
+            rule = "has no effect: it acts on estimators that take a record by themselves, and none is named"
+            yield key, rule, value, "leave it out, or choose model=classical" if is_fit else "leave it out"
 
 
 def _wavelet_of_networks(whole: Whole) -> Found:
@@ -102,6 +117,7 @@ def _resume(whole: Whole) -> Found:
 BY_TASK: tuple[tuple[tuple[str, ...], Callable[[Whole], Found]], ...] = (
     (("task", "checkpoint"), _checkpoint),
     (("task", "checkpoint", "model"), _estimators),
+    (("task", "checkpoint", "model", "measurement"), _of_estimators),
     (("model", "wavelet"), _wavelet_of_networks),
     (("task", "model", "protocol"), _whole_records),
     (("task", "evaluation", "simulator", "family"), _evaluated),

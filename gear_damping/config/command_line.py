@@ -162,7 +162,7 @@ def _missing_launcher(name: str) -> list[Problem]:
         found = find_spec(module)
     except ModuleNotFoundError:  # no plugin of Hydra at all
         found = None
-    remedy = f"pip install gear-damping[{extra}]"
+    remedy = f"pip install 'gear-damping[{extra}]'"
     return [] if found else [Problem(LAUNCHER, "needs a plugin of Hydra that is not installed", name, remedy, SOURCE)]
 
 

@@ -17,6 +17,7 @@ PLAIN = {
     "perturbation": Number(0, 100),
 }
 KINDS = ("uniform", "factor")
+OTHER_FAMILY = "choose family=none, in which nothing varies, or a family for this system"
 RATIO = Parameter(DAMPING_RATIO, "1", 0.3, "equivalent damping ratio in % of critical", 0, 50)
 
 
@@ -54,7 +55,8 @@ def _distribution(
     key = f"family.spreads.{name}"
     source = reader.origin.of(key)
     if name not in declared:
-        raise InputError(Problem(key, "the model has no such parameter", None, nearest(name, list(declared)), source))
+        remedy = OTHER_FAMILY if reader.origin.place(key) == "family" else nearest(name, list(declared))
+        raise InputError(Problem(key, "the model has no such parameter", None, remedy, source))
     kind = _kind(reader, key, node)
     parameter = declared[name]
     unit, own_unit = ("1", None) if kind == "factor" else (parameter.unit, node.get("unit"))

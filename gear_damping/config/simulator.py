@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, get_args
 
 from gear_damping.config.extended import with_extended
-from gear_damping.config.prior import read_prior
+from gear_damping.config.prior import OTHER_FAMILY, read_prior
 from gear_damping.config.quantities import split_suffix
 from gear_damping.config.reader import Reader
 from gear_damping.config.source import COMMAND_LINE, Origin
@@ -183,8 +183,11 @@ def _refuse_unknown(
             ours = {*HOW, "system", *options}
             if key not in ours and split_suffix(key, numbers)[0] not in numbers:
                 remedy = nearest(key, [*known, *numbers, *ours])
-                own = "; an effect of your own needs simulator.plugins=[its file]" if isinstance(value, Mapping) else ""
-                reader.refuse(full, "no such effect or parameter", remedy=remedy + own)
+                remedy += (
+                    "; an effect of your own needs simulator.plugins=[its file]" if isinstance(value, Mapping) else ""
+                )
+                of_a_family = reader.origin.place(full) == "family"  # which is one for another system
+                reader.refuse(full, "no such effect or parameter", remedy=OTHER_FAMILY if of_a_family else remedy)
 
 
 def _effect(reader: Reader, kind: type[Effect], node: Any, given: dict[str, Any]) -> Effect | None:

@@ -111,6 +111,27 @@ def test_an_extended_rig_takes_what_comes_on_top_of_it_and_no_data_set(tmp_path)
     assert "task=identify" not in found.rule.partition(": ")[2]
 
 
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["measurement.channel=velocty"], "which takes every channel of a record"),
+        (["model.hidden_size=9"], "and none is named"),
+        (["model.hidden_size=9", "checkpoint=README.md"], "and none is named"),
+        (["model.plugins=[docs/examples/my_estimator.py]"], "and none is named"),
+    ],
+)
+def test_what_only_estimators_read_is_refused_where_none_is_asked(words, said):
+    (found,) = problems("identify", *words)
+    assert found.key == words[0].partition("=")[0]
+    assert said in found.rule
+    assert ("model=classical" in found.remedy) == (len(words) == 1)
+
+
+@pytest.mark.parametrize("word", ["model=classical", "checkpoint=README.md"])
+def test_estimators_are_asked_about_a_channel(word):
+    assert problems("identify", "measurement.channel=displacement", word) == []
+
+
 class OwnExperiment(Origin):
     """Where values come from with an experiment of one's own."""
 

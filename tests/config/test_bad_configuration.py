@@ -125,7 +125,14 @@ FAULTS = {
         ["protocol.run = 3: acts in protocol=paper", "this is by_run", "choose protocol=paper"],
     ),
     "one_run_of_many": (["protocol=paper_many_runs", "protocol.run=3"], ["this is paper_many_runs"]),
-    "family_of_a_gear_for_an_oscillator": (["simulator=oscillator"], ["pinion_speed_rpm", "conf/family/bench.yaml"]),
+    "family_of_a_gear_for_an_oscillator": (
+        ["task=identify", "measurement=silverbox", "simulator=oscillator"],
+        [
+            "simulator.pinion_speed_rpm: no such effect or parameter; remedy: choose family=none",
+            "family.spreads.pinion_torque: the model has no such parameter; remedy: choose family=none",
+            "conf/family/bench.yaml",
+        ],
+    ),
 }
 
 
@@ -153,6 +160,13 @@ def test_fault_is_named(name, caplog, capsys):
 )
 def test_what_the_values_beside_it_leave_in_force_is_taken(words):
     assert problems_of(read_command_line(words).overrides) == []
+
+
+def test_what_is_to_be_installed_can_be_pasted_into_any_shell(monkeypatch):
+    """A shell reads brackets without quotes as a pattern."""
+    monkeypatch.setattr("gear_damping.config.command_line.find_spec", lambda name: None)
+    (problem,) = read_command_line(["--multirun", "hydra/launcher=joblib"]).problems
+    assert problem.remedy == "pip install 'gear-damping[joblib]'"
 
 
 def test_a_key_is_refused_once(caplog):
