@@ -114,8 +114,8 @@ def _of_the_experiment(task: str, is_extended: bool, origin: Origin) -> Found:
             if given[key] not in (None, False) and origin.place(key) != COMMAND_LINE:
                 yield key, *_said(key, task, given[key])
     elif idle and len(idle) == len(given):
-        rule, _, remedy = _said(idle[0], task, None)
-        rule = f"{rule}; that holds for all that it gives: {', '.join(idle)}"
+        remedy = _said(idle[0], task, None)[-1]
+        rule = f"has no effect in task={task}: nothing that it gives acts there, {', '.join(idle)}"
         yield EXPERIMENT, rule, dict(origin.choices)[EXPERIMENT], remedy
 
 

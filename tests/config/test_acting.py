@@ -58,7 +58,7 @@ IDLE = [
     ("collect", "simulator.backlash.gap_um=5", "it acts in task=train"),
     ("identify", "simulator.backlash.gap_um=5", "give simulator.extended=…"),
     ("identify", "simulator.n_teeth_pinion=31", "give simulator.extended=…"),
-    ("identify", "experiment=eccentricity", "all that it gives: simulator.pinion_eccentricity.amplitude, simulator"),
+    ("identify", "experiment=eccentricity", "nothing that it gives acts there, simulator.pinion_eccentricity"),
     ("explain", "experiment=eccentricity", "what is known of the rig is said under parameters there"),
     ("explain", "simulator.backlash.gap_um=5", "what is known of the rig is said under parameters there"),
     ("explain", "simulator.extended=nowhere.yaml", "task=identify fits it to records"),
