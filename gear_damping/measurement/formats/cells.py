@@ -1,8 +1,4 @@
-"""Tables of cells, as texts and spreadsheets hold them.
-
-Where the header lies: titles before it, units below it or in its brackets. A cell that is no number is named with its
-row.
-"""
+"""Tables of cells, as texts and spreadsheets hold them; a cell that is no number is named with its row."""
 
 import re
 from collections.abc import Callable, Sequence
@@ -13,154 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.formats.header import is_number
 from gear_damping.measurement.formats.table import Table, is_real
-from gear_damping.units import parse_unit
 
-_BRACKETS = re.compile(r"[(\[]([^()\[\]]+)[)\]]\s*(?:run\s*#?\s*\d+\s*)?$", re.I)  # `Angle (rad) Run #2`, too
-_WITHIN = re.compile(r"[(\[]([^()\[\]]+)[)\]]")  # `Position (cm) Monitor Run`, where that is a unit
-_SLASH = re.compile(r"^[^/]+/\s*([^\W\d_][^\s]*|[°%µ][^\s]*)$")  # `Weg/mm`, as DIN 461 has it
-_INDEX = re.compile(r"\w\[\d+\]\s*$")  # `data[3]` is a name, no unit
-_NO_UNIT = ("", "-")
-_COMMENTS = ("%", "%%", ";", "//", "!", "'", "*")  # that other programs write before a line of names
-_TABLE = 3  # rows that a table begins with, none of them of texts alone
 MOMENT = "a date or a clock, which is not read from a text"
 _MOMENT = re.compile(r"\d{1,2}:\d{2}|\d{4}-\d{2}-\d{2}|\d{1,2}[./]\d{1,2}[./]\d{2,4}")
 NO_VALUE = ("", "-", "--", "?", "n/a", "na", "#n/a", "null", "none", "ovld", "overload", "err", "error")
 SHOWN = 3  # faults of one kind that are listed one by one
 LISTED = 8  # columns that a message lists
-
-
-@dataclass(frozen=True)
-class Header:
-    """The names and units of the columns, and the index of the first row of values.
-
-    Args:
-        names: One per column, () where the table has no header.
-        units: The row of units below the names, () where there is none.
-        first: The index of the first row of values among the rows that were looked at.
-        skipped: The rows before the header.
-    """
-
-    names: tuple[str, ...]
-    units: tuple[str, ...]
-    first: int
-    skipped: int = 0
-
-    def name(self, k: int) -> str:
-        """The name of column `k`, or ""."""
-        return self.names[k] if k < len(self.names) else ""
-
-    def unit(self, k: int) -> str | None:
-        """The unit below the name of column `k`, or in brackets at its end, as in `Acc DE (m/s^2)`."""
-        if k < len(self.units):
-            return self.units[k].strip("[]() ") or None
-        return bracket_unit(self.name(k))
-
-
-def find_header(rows: Sequence[Sequence[str]], width: int) -> Header:
-    """The header of a table.
-
-    Args:
-        rows: The first rows of cells.
-        width: The number of filled cells that a row of values has.
-
-    Returns:
-        The row of texts as wide as the values with the most different ones, of those before the first row of values,
-        the last of several; else a wider one, else the last one. Without a row of texts the values begin at the first
-        row.
-    """
-    end = _first_values(rows, width)
-    texts = [k for k in range(end) if not _has_number(rows[k])]
-    if not texts:
-        return Header((), (), 0)
-    rows = [_names(row, width) if k in texts else row for k, row in enumerate(rows)]
-    texts = [k for k in texts if not (_is_units(rows[k]) and k - 1 in texts and _filled(rows[k - 1]) == width)]
-    exact = [k for k in texts if _filled(rows[k]) == width]
-    wide = [k for k in texts if _filled(rows[k]) > width]
-    start = max(exact or wide or texts[-1:], key=lambda k: (len({*rows[k]}), k))
-    names, first = tuple(cell.strip() for cell in rows[start]), start + 1
-    units: tuple[str, ...] = ()
-    if first < len(rows) and _is_units(rows[first]):
-        units, first = tuple(cell.strip() for cell in rows[first]), first + 1
-    between = max(end - first, 0) if end < len(rows) else 0  # texts that are neither names nor units
-    return Header(names, units, first + between, start + between)
-
-
-def _names(row: Sequence[str], width: int) -> Sequence[str]:
-    """A row of texts, without a sign of comment before them and with units in brackets beside their names."""
-    if _filled(row) <= width and row[0].strip() not in _COMMENTS:
-        return row
-    cells = [cell for cell in row if cell.strip()]
-    cells = cells[1:] if cells[0].strip() in _COMMENTS else cells
-    joined: list[str] = []
-    for cell in cells:
-        if joined and cell.strip()[0] in "([":
-            joined[-1] += f" {cell.strip()}"
-        else:
-            joined.append(cell)
-    return joined if len(joined) == width else row
-
-
-def bracket_unit(name: str) -> str | None:
-    """What stands in brackets at the end of a name, or within it or behind its first stroke where that is a unit."""
-    if _INDEX.search(name):
-        return None
-    found = _BRACKETS.search(name)
-    if found is not None:
-        return found[1].strip()
-    within = [one.strip() for one in _WITHIN.findall(name)]
-    units = [one for one in within if not is_number(one) and _is_unit(one)]
-    if len(units) == 1:
-        return units[0]
-    behind = _SLASH.search(name.strip())
-    return behind[1] if behind is not None and _is_unit(behind[1]) else None
-
-
-def is_number(cell: str) -> bool:
-    """Whether a cell is a number with a decimal point."""
-    try:
-        float(cell)
-    except ValueError:
-        return False
-    return True
-
-
-def _has_number(row: Sequence[str]) -> bool:
-    return any(is_number(cell.replace(",", ".")) for cell in row)
-
-
-def _first_values(rows: Sequence[Sequence[str]], width: int) -> int:
-    """The first row of values: settings may be numbers too, but a table goes on for a few rows without one of texts."""
-    texts = [not _has_number(row) for row in rows]
-    values = (k for k, row in enumerate(rows) if _is_values(row, width))
-    return next((k for k in values if not any(texts[k : k + _TABLE])), len(rows))
-
-
-def _is_values(row: Sequence[str], width: int) -> bool:
-    """Whether a row holds numbers alone, or is as wide as the values and at least half of it are numbers."""
-    filled = [cell.replace(",", ".") for cell in row if cell.strip()]
-    numbers = sum(is_number(cell) for cell in filled)
-    return numbers > 0 and (numbers == len(filled) or (_filled(row) >= width and 2 * numbers >= len(filled)))
-
-
-def _filled(row: Sequence[str]) -> int:
-    """The cells of a row up to its last one that is not empty."""
-    return max((k + 1 for k, cell in enumerate(row) if cell.strip()), default=0)
-
-
-def _is_units(row: Sequence[str]) -> bool:
-    """Whether a row of texts holds units and nothing else, at least one of them."""
-    cells = [cell.strip("[]() ") for cell in row]
-    named = [cell for cell in cells if cell not in _NO_UNIT]
-    return bool(named) and not _has_number(row) and all(_is_unit(cell) for cell in named)
-
-
-def _is_unit(cell: str) -> bool:
-    try:
-        parse_unit(cell)
-    except InputError:
-        return False
-    return True
 
 
 def _not_a_number(cell: str) -> str:

@@ -13,15 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from gear_damping.errors import InputError, Problem, reading
-from gear_damping.measurement.formats.cells import (
-    SHOWN,
-    Cells,
-    CellTable,
-    Header,
-    decimal_commas,
-    find_header,
-    is_number,
-)
+from gear_damping.measurement.formats.cells import NO_VALUE, SHOWN, Cells, CellTable, decimal_commas
+from gear_damping.measurement.formats.header import Header, filled, find_header, is_number
 from gear_damping.measurement.formats.table import Table, is_real, refuse_size, unreadable
 
 SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".gz")
@@ -178,13 +171,28 @@ def _of_labview(header: Header, settings: list[list[str]]) -> Header:
 
 
 def _below_preamble(rows: list[list[str]], width: int) -> Header | None:
-    """No header, where lines of settings stand before a narrower table without one."""
-    wide = [k for k, row in enumerate(rows) if len(row) > width]
+    """The header of a table below lines of settings, some of which have more cells than it; None without such lines."""
+    wide = [k for k, row in enumerate(rows) if filled(row) > width]
     set_down = any(is_number(cell) for k in wide for cell in rows[k])  # a header alone has none
-    below = rows[wide[-1] + 1 :] if set_down and wide[-1] < _PREAMBLE else []
-    if len(below) < _BELOW or not all(len(row) == width and all(map(is_number, row)) for row in below):
+    start = wide[-1] + 1 if set_down and wide[-1] < _PREAMBLE else len(rows)
+    texts = next((k for k, row in enumerate(rows[start:]) if _is_body(row, width)), 0)
+    body = rows[start + texts :]
+    if len(body) < _BELOW or not all(_is_body(row, width) for row in body):
         return None
-    return Header(("",) * width, (), wide[-1] + 1, wide[-1] + 1)
+    if any(filled(row) == width and _is_body(row, width) for row in rows[:start]):
+        return None  # the table itself, a row of which has too many cells
+    if not texts:
+        return Header(("",) * width, (), start, start)
+    header = find_header(rows[start:], width)
+    return replace(header, first=header.first + start, skipped=header.skipped + start)
+
+
+def _is_body(row: list[str], width: int) -> bool:
+    """Whether a row holds numbers, or says that there is none, and nothing else."""
+    said = [cell.strip() for cell in row]
+    numbers = [is_number(cell.replace(",", ".")) for cell in said]
+    empty = [cell.lower() in NO_VALUE for cell in said]
+    return filled(row) <= width and any(numbers) and all(a or b for a, b in zip(numbers, empty, strict=True))
 
 
 def _decimal_comma(text: _Text, first_line: int) -> bool:

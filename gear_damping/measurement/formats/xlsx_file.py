@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.formats.cells import Cells, CellTable, find_header
+from gear_damping.measurement.formats.cells import Cells, CellTable
+from gear_damping.measurement.formats.header import find_header
 from gear_damping.measurement.formats.table import Table, extra_library, refuse_size, unreadable
 
 SUFFIXES = (".xlsx",)

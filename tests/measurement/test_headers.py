@@ -1,0 +1,41 @@
+"""Headers of text tables: settings with more cells than the table, and two rows of names one below the other."""
+
+import pytest
+
+from gear_damping.errors import InputError
+from gear_damping.measurement.formats.registry import read_table
+
+SETTINGS = [
+    "Date:;2020-07-06 15:34:41",
+    "Index:;0x30D3;0x30D2;0x0000;0x0000",
+    "Recorded samples:;60",
+    "Scale:;0;True;5.000;101.500;-121.500;-81.500",
+]
+TRIGGER = 'Trigger:;1;0.000000;"Parameter values";"Channel 1";"Rising above value"'
+QUOTED = '"Trigger:;1;0.000000;""Parameter values"";""Channel 1"";""Rising above value"""'
+NAMES = [";Velocity;Torque", "ms;rpm;%"]
+
+
+def table_of(folder, lines):
+    (folder / "run.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return read_table(folder / "run.csv")
+
+
+def rows(n, cells=3, sign=";"):
+    return [sign.join(f"{k + 0.5 * j:.3f}" for j in range(cells)) for k in range(n)]
+
+
+@pytest.mark.parametrize("trigger", [TRIGGER, QUOTED])
+def test_settings_with_more_cells_than_the_table_are_left_out(tmp_path, trigger):
+    table = table_of(tmp_path, [*SETTINGS, trigger, *NAMES, *rows(60)])
+    assert table.names == ("", "Velocity", "Torque")
+    assert [table.unit(k) for k in range(3)] == ["ms", "rpm", "%"]
+    assert [len(table.values(k)) for k in range(3)] == [60, 60, 60]
+    assert table.notes == ("run.csv: 5 line(s) before the header are left out",)
+
+
+def test_a_row_with_too_many_cells_is_a_fault_and_no_setting(tmp_path):
+    with pytest.raises(InputError, match=r"row 2 \(line 4\): 4 cells where the first line has 3"):
+        table_of(tmp_path, ["a;b;c", *rows(2), "1;2;3;4", *rows(60)])
+    with pytest.raises(InputError, match="4 cells where the first line has 3"):
+        table_of(tmp_path, [*rows(2), "1;2;3;4", "a;b;c", *rows(60)])
