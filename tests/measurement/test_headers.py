@@ -4,6 +4,7 @@ import pytest
 
 from gear_damping.errors import InputError
 from gear_damping.measurement.formats.registry import read_table
+from gear_damping.measurement.inspection import inspect_table
 
 SETTINGS = [
     "Date:;2020-07-06 15:34:41",
@@ -39,3 +40,34 @@ def test_a_row_with_too_many_cells_is_a_fault_and_no_setting(tmp_path):
         table_of(tmp_path, ["a;b;c", *rows(2), "1;2;3;4", *rows(60)])
     with pytest.raises(InputError, match="4 cells where the first line has 3"):
         table_of(tmp_path, [*rows(2), "1;2;3;4", "a;b;c", *rows(60)])
+
+
+SERVO = [
+    "Axis1",
+    "Sampling time interval(ms),0.667",
+    "Time,Analog 1,Analog 2,Analog 3,Analog 4,Digital 1",
+    "ms,Servo motor speed,Torque (%),Not selected,Not selected,Torque",
+]
+
+
+def test_a_row_of_units_and_names_below_generic_names_is_read(tmp_path):
+    table = table_of(tmp_path, [*SERVO, *rows(40, 6, ",")])
+    assert table.names == ("Time", "Servo motor speed", "Torque (%)", "Analog 3", "Analog 4", "Torque")
+    assert [table.unit(k) for k in range(6)] == ["ms", None, "%", None, None, None]
+    assert inspect_table(table).rate == pytest.approx(1000.0)
+    assert table.notes == (
+        "run.csv: 2 line(s) before the header are left out",
+        "run.csv: of two rows of names the lower one gives units, 'Servo motor speed' for 'Analog 1', 'Torque (%)' for "
+        "'Analog 2', 'Torque' for 'Digital 1'; left out of it: Not selected",
+    )
+
+
+def test_a_unit_that_nobody_knows_does_not_make_a_row_of_units_one_of_names(tmp_path):
+    table = table_of(tmp_path, ["Time,Force,Strain", "s,kN,ue", *rows(40, 3, ",")])
+    assert table.names == ("Time", "Force", "Strain")
+    assert [table.unit(k) for k in range(3)] == ["s", "kN", None]
+
+
+def test_of_two_rows_without_a_unit_of_time_the_lower_one_names(tmp_path):
+    table = table_of(tmp_path, ["Time,Left,Right", "t,V,x", *rows(40, 3, ",")])
+    assert table.names == ("t", "V", "x")

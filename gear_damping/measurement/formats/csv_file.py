@@ -49,6 +49,8 @@ def read(path: Path, max_bytes: int) -> Table:
     table = CellTable(path, columns, decimal_commas=text.delimiter != ",")
     if header.skipped:
         table.notes += (f"{path.name}: {header.skipped} line(s) before the header are left out",)
+    if header.says:
+        table.notes += (f"{path.name}: {header.says}",)
     if decimal == ",":
         table.notes += (decimal_commas(path),)
     return table

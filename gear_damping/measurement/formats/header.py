@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from gear_damping.errors import InputError
+from gear_damping.measurement.time_column import NAMED, is_time
 from gear_damping.units import parse_unit
 
 _BRACKETS = re.compile(r"[(\[]([^()\[\]]+)[)\]]\s*(?:run\s*#?\s*\d+\s*)?$", re.I)  # `Angle (rad) Run #2`, too
@@ -13,6 +14,9 @@ _SLASH = re.compile(r"^[^/]+/\s*([^\W\d_][^\s]*|[°%µ][^\s]*)$")  # `Weg/mm`, a
 _INDEX = re.compile(r"\w\[\d+\]\s*$")  # `data[3]` is a name, no unit
 _NO_UNIT = ("", "-")
 _COMMENTS = ("%", "%%", ";", "//", "!", "'", "*")  # that other programs write before a line of names
+_GENERIC = re.compile(
+    r"^(analog(ue)?|digital|channel|chan|ch|kanal|ai|ao|di|do|in(put)?|signal|sensor|col(umn)?)[ _.#-]*\d+$", re.I
+)
 _TABLE = 3  # rows that a table begins with, none of them of texts alone
 
 
@@ -25,12 +29,14 @@ class Header:
         units: The row of units below the names, () where there is none.
         first: The index of the first row of values among the rows that were looked at.
         skipped: The rows before the header.
+        says: What is to be noted of it.
     """
 
     names: tuple[str, ...]
     units: tuple[str, ...]
     first: int
     skipped: int = 0
+    says: str = ""
 
     def name(self, k: int) -> str:
         """The name of column `k`, or ""."""
@@ -60,6 +66,10 @@ def find_header(rows: Sequence[Sequence[str]], width: int) -> Header:
     if not texts:
         return Header((), (), 0)
     rows = [_names(row, width) if k in texts else row for k, row in enumerate(rows)]
+    if texts[-2:] == [end - 2, end - 1] and all(filled(rows[k]) == width for k in texts[-2:]):
+        both = _of_two_rows(*([cell.strip() for cell in rows[k][:width]] for k in texts[-2:]), end)
+        if both is not None:
+            return both
     texts = [k for k in texts if not (_is_units(rows[k]) and k - 1 in texts and filled(rows[k - 1]) == width)]
     exact = [k for k in texts if filled(rows[k]) == width]
     wide = [k for k in texts if filled(rows[k]) > width]
@@ -70,6 +80,27 @@ def find_header(rows: Sequence[Sequence[str]], width: int) -> Header:
         units, first = tuple(cell.strip() for cell in rows[first]), first + 1
     between = max(end - first, 0) if end < len(rows) else 0  # texts that are neither names nor units
     return Header(names, units, first + between, start + between)
+
+
+def _of_two_rows(upper: list[str], lower: list[str], first: int) -> Header | None:
+    """The header of two rows of names, of which the lower one says the unit of time; None of any other two.
+
+    Where the upper one is generic, `Analog 1`, the lower one names the column if no other bears that name.
+    """
+    said = [cell.strip("[]() ") for cell in lower]
+    units = [one if _is_unit(one) else "" for one in said]
+    by_time = [is_time(unit) for name, unit in zip(upper, units, strict=True) if unit and NAMED.search(name)]
+    if not any(by_time) or _is_units(lower):
+        return None
+    own = [bool(one) and not unit and lower.count(one) == 1 for one, unit in zip(lower, units, strict=True)]
+    taken = [k for k, name in enumerate(upper) if own[k] and _GENERIC.match(name) and lower[k] not in upper]
+    names = tuple(lower[k] if k in taken else name for k, name in enumerate(upper))
+    left = dict.fromkeys(one for k, one in enumerate(lower) if one and not units[k] and k not in taken)
+    says = "of two rows of names the lower one gives units"
+    says += "".join(f", '{lower[k]}' for '{upper[k]}'" for k in taken)
+    says += f"; left out of it: {', '.join(left)}" if left else ""
+    units = tuple(unit or bracket_unit(name) or "" for unit, name in zip(units, names, strict=True))
+    return Header(names, units, first, first - 2, says)
 
 
 def _names(row: Sequence[str], width: int) -> Sequence[str]:
