@@ -8,10 +8,11 @@ Unknown units are refused: a guess would be worse.
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from difflib import get_close_matches
 from functools import cache
 from math import pi
 
-from gear_damping.errors import InputError, Problem, nearest
+from gear_damping.errors import InputError, Problem
 
 
 @dataclass(frozen=True)
@@ -65,13 +66,23 @@ _ATOMS: dict[str, Unit] = {
     "rev": Unit(2 * pi, _RAD), "rpm": Unit(2 * pi / 60, _RAD * _S**-1),
     "V": Unit(1.0, _V), "mV": Unit(1e-3, _V), "uV": Unit(1e-6, _V),
     "A": Unit(1.0, _A), "mA": Unit(1e-3, _A),
-    "gn": Unit(9.80665, _M * _S**-2), "kNm": Unit(1e3, _N * _M), "mNm": Unit(1e-3, _N * _M),
+    "gn": Unit(9.80665, _M * _S**-2), "mgn": Unit(9.80665e-3, _M * _S**-2),
+    "kNm": Unit(1e3, _N * _M), "mNm": Unit(1e-3, _N * _M),
     "mil": Unit(2.54e-5, _M), "ips": Unit(0.0254, _M * _S**-1),
 }  # fmt: skip
 
+# What an accelerometer counts in. By itself it is no mass: a mass here is `gram` or `kg`.
+_OF_GRAVITY = {"g": "gn", "mg": "mgn", "milli-g": "mgn", "milli-G": "mgn"}
+# What people write where a value is a plain number.
+_COUNTED = (
+    "count", "counts", "ct", "cts", "pixel", "pixels", "pix", "px", "tick", "ticks", "step", "steps", "lsb", "lsbs",
+    "digit", "digits", "bit", "bits", "increment", "increments", "incr", "inc", "pulse", "pulses", "pls", "a.u.",
+    "a.u", "au", "arb", "arb.", "arbitrary", "adc", "raw", "unitless", "dimensionless", "none",
+)  # fmt: skip
+_ALIKE = 0.6  # share of the letters that a unit must have in common with a word to be meant by it
 _POUND = "write 'lbf' for a force, or give a mass in kg"
 _MEANT = {
-    "g": "write 'gram' or 'gn' (9.80665 m/s^2)",
+    "g": "write 'gram' or 'gn' (9.80665 m/s^2)", "mg": "write 'mgn' (9.80665e-3 m/s^2), or a mass in 'gram'",
     "lb": _POUND, "lbs": _POUND, "pound": _POUND, "pounds": _POUND,
 }  # fmt: skip
 
@@ -106,11 +117,11 @@ def parse_unit(text: str, key: str = "unit", source: str = "") -> Unit:
     """The unit that `text` names, for example `um`, `N*m`, `m/s^2` or `kg*m^2`.
 
     Raises:
-        InputError: the unit is unknown; `g` within a product is refused because it means gram to some and standard
-            gravity to others. By itself it is the unit of an accelerometer: nothing here is a mass.
+        InputError: the unit is unknown; `g` and `mg` within a product are refused because they mean gram to some and
+            standard gravity to others. By themselves they are units of an accelerometer.
     """
     plain = text.strip()
-    plain = "gn" if plain == "g" else _ALSO.get(plain, plain)
+    plain = _OF_GRAVITY.get(plain) or _ALSO.get(plain, plain)
     for spelling, ours in _SPELLINGS.items():
         plain = plain.replace(spelling, ours)
     plain = plain.replace("(", "").replace(")", "") if "/" not in plain else plain
@@ -161,9 +172,23 @@ def _parse_factor(piece: str, text: str, key: str, source: str) -> tuple[Unit, f
     name = _ALSO.get(name, name)
     alone = match and match["raised"] and "/" not in text and "*" not in text  # `V2` may be the name of a channel
     if not match or name not in _ATOMS or alone:
-        remedy = _MEANT.get(name.lower()) or _as_product(text) or nearest(name, list(_ATOMS))
-        raise InputError(Problem(key, f"unknown unit '{text}'", remedy=remedy, source=source))
+        raise InputError(_unknown(piece, name, text, key, source))
     return _ATOMS[name], float(match["power"] or match["raised"] or 1)
+
+
+def _unknown(piece: str, name: str, text: str, key: str, source: str) -> Problem:
+    """What is said of a factor `piece` of a text, whose letters are `name`, that is no unit."""
+    if piece.lower() in _COUNTED:
+        remedy = f"write '{text.strip().replace(piece, '1')}'"
+        return Problem(key, f"'{piece}' has no unit here: it is a plain number", remedy=remedy, source=source)
+    remedy = _MEANT.get(name.lower()) or _as_product(text) or _alike(name)
+    return Problem(key, f"unknown unit '{text}'", remedy=remedy, source=source)
+
+
+def _alike(name: str) -> str:
+    """The remedy for a unit that is nearly written like one that is known, else the list of them."""
+    found = get_close_matches(name.replace(" ", ""), list(_ATOMS), n=1, cutoff=_ALIKE)
+    return f"did you mean '{found[0]}'?" if found else f"choose one of {', '.join(sorted(_ATOMS))}"
 
 
 def _as_product(text: str) -> str:

@@ -50,8 +50,9 @@ def _lines() -> Iterator[str]:
     yield "`uncertainty` beside them is a Gaussian prior.\n"
     named = ", ".join(f"`{name}`" for name in unit_names())
     yield f"Units are {named}, and products and quotients of them with powers, such as `km/h`, `N*m`, `m/s^2` or"
-    yield "`kg*m^2`; `g` by itself is standard gravity. A response of an oscillator may be in any of them, volts and"
-    yield "degrees too: its parameters are then in that one. Counts of a converter are `1`.\n"
+    yield "`kg*m^2`; `g` by itself is standard gravity, `mg` a thousandth of it. A response of an oscillator may be in"
+    yield "any of them, volts and degrees too: its parameters are then in that one. Counts of a converter, pixels and"
+    yield "arbitrary units are `1`.\n"
     yield from _keys("The file", layout.GearFile)
     yield from _keys("A record", layout.AnyRecord)
     yield from _keys("A record of a gear pair also has", layout.GearRecord, layout.AnyRecord)

@@ -3,7 +3,7 @@
 import pytest
 
 from gear_damping.errors import InputError
-from gear_damping.units import parse_unit, spoken, unit_names
+from gear_damping.units import parse_unit, spoken, to_si, unit_names
 
 STANDARD_GRAVITY = 9.80665
 
@@ -25,6 +25,40 @@ def test_every_listed_unit_is_read_by_itself_and_in_a_quotient(name):
     unit = parse_unit(name)
     assert unit.factor > 0
     assert parse_unit(f"{name}/s").dimension.time == unit.dimension.time - 1
+
+
+@pytest.mark.parametrize(
+    ("text", "right"),
+    [
+        ("counts", "1"), ("count", "1"), ("pixel", "1"), ("px", "1"), ("ticks", "1"), ("steps", "1"), ("LSB", "1"),
+        ("a.u.", "1"), ("arb", "1"), ("px/s", "1/s"),
+    ],
+)  # fmt: skip
+def test_what_is_counted_has_no_unit(text, right):
+    with pytest.raises(InputError, match="has no unit here") as caught:
+        parse_unit(text)
+    assert caught.value.problems[0].remedy == f"write '{right}'"
+    assert parse_unit(right)
+
+
+@pytest.mark.parametrize("text", ["mg", "milli-g", "mgn"])
+def test_a_milli_g_is_one_of_an_accelerometer(text):
+    assert parse_unit(text).factor == pytest.approx(STANDARD_GRAVITY / 1000, rel=1e-12)
+    assert parse_unit(text).dimension == parse_unit("m/s^2").dimension
+
+
+def test_a_milligram_is_not_taken_for_one():
+    with pytest.raises(InputError, match="not one of the kind of 'kg'; remedy: give it in 'kg'"):
+        to_si(1.0, "mg", "kg")
+    with pytest.raises(InputError, match=r"write 'mgn' .* or a mass in 'gram'"):
+        parse_unit("mg*m^2")
+
+
+@pytest.mark.parametrize("text", ["furlong", "rounds/min", "knots", "bar"])
+def test_no_unit_is_suggested_that_shares_hardly_a_letter(text):
+    with pytest.raises(InputError) as caught:
+        parse_unit(text)
+    assert caught.value.problems[0].remedy.startswith("choose one of")
 
 
 def test_a_current_is_no_voltage_and_no_number():
