@@ -1,12 +1,13 @@
 """The channels of measurement.yaml: which keys each takes, what acts on them, and why the others are refused."""
 
+from collections.abc import Mapping
 from types import MappingProxyType as Frozen
 from typing import Annotated, ClassVar
 
 from pydantic import model_validator
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.quantities import Column, Corner, Cutoff, Measured
+from gear_damping.measurement.quantities import PERIODS, Column, Corner, Cutoff, Measured, Rate
 from gear_damping.measurement.record import Quantity
 from gear_damping.schema.mappings import Declared, key
 from gear_damping.schema.values import Flag, Number, OneOf, Text, refuse
@@ -27,8 +28,9 @@ class Stamps(Declared):
 class Timed(Declared):
     """Time stamps or a rate."""
 
+    meant: ClassVar[Mapping[str, str]] = PERIODS
     time: Stamps = key("Time stamps. Small jitter is put on a grid; uneven stamps are kept.", "time base")
-    sampling_rate: Annotated[Quantity, Measured("Hz")] = key("Constant rate, instead of `time`.", "time base")
+    sampling_rate: Annotated[Quantity, Rate()] = key("Constant rate, instead of `time`.", "time base")
 
     @model_validator(mode="after")
     def _one_time_base(self) -> "Timed":

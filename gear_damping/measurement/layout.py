@@ -1,5 +1,6 @@
 """The layout of measurement.yaml: encoders, channels, records and the file itself, for each system."""
 
+from collections.abc import Mapping
 from types import MappingProxyType as Frozen
 from typing import Annotated, ClassVar
 
@@ -7,7 +8,7 @@ from pydantic import model_validator
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement import channels as c
-from gear_damping.measurement.quantities import Column, Instant, Measured, Rows
+from gear_damping.measurement.quantities import PERIODS, Column, Instant, Measured, Rate, Rows
 from gear_damping.measurement.record import ROLES, Quantity
 from gear_damping.measurement.rig import (
     GEAR_TORQUE_MODES,
@@ -121,10 +122,25 @@ class GearChannels(c.Timed):
     acceleration: c.GearAcceleration = key("An accelerometer.", "response, or findings of a casing")
 
 
+_DRIVES, _ANSWERS = "write force, in any unit", "write displacement, in any unit"
+_BASE = (
+    "write the base's as force and that of the mass as displacement, both in one unit ('A moving base' in "
+    "docs/measurement.md), or measure base_acceleration"
+)
+
+
 class OscillatorChannels(c.Timed):
     """The channels of an oscillator."""
 
     title: ClassVar[str] = "an oscillator"
+    meant: ClassVar[Mapping[str, str]] = Frozen(
+        {
+            **PERIODS,
+            **dict.fromkeys(("angle", "position"), _ANSWERS),
+            **dict.fromkeys(("torque", "voltage", "current"), _DRIVES),
+            **dict.fromkeys(("base_velocity", "base_displacement", "base_speed", "base_position"), _BASE),
+        }
+    )
     displacement: c.Displacement = key("Displacement, in any unit.", "response")
     velocity: c.Velocity = key("Velocity.", "response")
     acceleration: c.Acceleration = key("Acceleration.", "response")
@@ -166,18 +182,20 @@ class Window(Declared):
 class AnyRecord(Declared):
     """What the records of every system have."""
 
+    meant: ClassVar[Mapping[str, str]] = PERIODS
     name: Annotated[str, Text()] = key("Name of the record; that of its file where absent.", "report")
     file: Annotated[str, Text()] = key(
         "The file, relative to this YAML; `${GEAR_DAMPING_DATA}` is filled in.", "values", missing=_NO_FILE
     )
     role: Annotated[str, OneOf(ROLES)] = key(
         "Fitted, held out, or a sound casing to compare with; absent, task=explain holds out a part by itself, and so "
-        "does task=identify of a gear pair.", "fit and score",
+        "does task=identify of a gear pair.",
+        "fit and score",
     )
     slice: Annotated[tuple[int, int], Rows()] = key("Rows a to b-1, counted from 0.", "rows")
     window: Window = key("The rows between two times, instead of `slice`.", "rows")
     resample: Annotated[Quantity, Measured("Hz")] = key("Rate to come down to, behind an anti-alias filter.", "values")
-    sampling_rate: Annotated[Quantity, Measured("Hz")] = key("Constant rate, here or under channels.", "time base")
+    sampling_rate: Annotated[Quantity, Rate()] = key("Constant rate, here or under channels.", "time base")
 
     @model_validator(mode="after")
     def _once(self) -> "AnyRecord":

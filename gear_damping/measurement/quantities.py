@@ -4,6 +4,7 @@ A check raises InputError with keys relative to the value ("" for the value itse
 """
 
 from dataclasses import dataclass
+from types import MappingProxyType as Frozen
 from typing import Any
 
 from gear_damping.errors import InputError, Problem, nearest
@@ -12,7 +13,16 @@ from gear_damping.schema.values import Number, OneOf, Text, Value, refuse
 from gear_damping.units import parse_unit, said_as, spoken, to_si
 
 ORDERS = (1, 2, 4)  # poles of a Butterworth filter that the simulated sensor has too (`sensor_lowpass`)
-NOT_UNCERTAIN = "has no meaning here: only parameters, conditions and the gain of a channel may be uncertain"
+NOT_UNCERTAIN = (
+    "has no meaning here: only parameters, conditions of a gear_pair and the gain of a channel may be uncertain"
+)
+# What people write for a rate.
+PERIODS = Frozen(
+    dict.fromkeys(
+        ("sampling_time", "sampling_period", "sample_time", "sampling_interval", "dt", "Ts"),
+        "write sampling_rate, which may be the time from one sample to the next: {value: 3, unit: ms}",
+    )
+)
 Found = list[Problem]
 
 
@@ -80,6 +90,7 @@ class Measured(Value):
         whole: Whether it is a count.
         within: Smallest and largest value that makes sense, in `unit`; beyond them a unit is wrong.
         beyond: What to do about a value beyond them.
+        excluded: What to do about a value that its sign excludes.
     """
 
     unit: str | None
@@ -88,6 +99,7 @@ class Measured(Value):
     whole: bool = False
     within: tuple[float, float] | None = None
     beyond: str = "check the value and its unit"
+    excluded: str = ""
 
     def keys(self) -> tuple[str, ...]:
         """The keys of the mapping."""
@@ -165,11 +177,11 @@ class Measured(Value):
     def _checked(self, found: Quantity) -> Quantity:
         number = found.value
         if self.sign == "positive" and not number > 0:
-            refuse("must be positive", number)
+            refuse("must be positive", number, self.excluded)
         if self.sign == "not negative" and number < 0:
-            refuse("must not be negative", number)
+            refuse("must not be negative", number, self.excluded)
         if self.sign == "not zero" and number == 0:
-            refuse("must not be 0", number)
+            refuse("must not be 0", number, self.excluded)
         if found.uncertainty and number == 0:
             rule = "an uncertainty is relative, and there is nothing to relate it to where the value is 0"
             remedy = "state a small value, as 0.1 with an uncertainty of 50 for 0.1 +- 5"
@@ -182,16 +194,35 @@ class Measured(Value):
 
     def _in_range(self, quantity: Quantity, found: Quantity) -> Quantity:
         """The quantity in SI, refused where it is no count or nothing that a rig has."""
+        plain = int(found.value) if found.value == round(found.value) else found.value
+        said = plain if found.unit == "1" else f"{found.value:g} {found.unit}"
         if self.whole and quantity.value != round(quantity.value):
-            refuse("must be a whole number", f"{found.value:g} {found.unit}")
+            refuse("must be a whole number", said)
         if self.within and not self.within[0] <= quantity.value <= self.within[1]:
-            refuse(f"lies outside {self._range}", f"{found.value:g} {found.unit}", self.beyond)
+            refuse(f"lies outside {self._range}", said, self.beyond)
         return quantity
 
     @property
     def _range(self) -> str:
         unit = "" if self.unit == "1" else f" {self.unit}"
         return f"{self.within[0]:g} to {self.within[1]:g}{unit}"
+
+
+@dataclass(frozen=True)
+class Rate(Measured):
+    """Samples a second, or the time from one to the next."""
+
+    unit: str | None = "Hz"
+
+    def says(self) -> str:
+        """Both."""
+        return "in `Hz`, or in `s` from one sample to the next, positive"
+
+    def _checked(self, found: Quantity) -> Quantity:
+        is_period = parse_unit(found.unit, "unit").dimension == parse_unit("s").dimension
+        if is_period and found.value > 0:
+            found = Quantity(1 / to_si(found.value, found.unit, "s"), "Hz")
+        return super()._checked(found)
 
 
 @dataclass(frozen=True)

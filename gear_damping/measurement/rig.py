@@ -1,6 +1,7 @@
 """What measurement.yaml says of a rig: the parameters and conditions of each system."""
 
 from dataclasses import dataclass
+from types import MappingProxyType as Frozen
 from typing import Annotated, Any, ClassVar
 
 from pydantic import model_validator
@@ -18,6 +19,29 @@ MORE_PAIRS = (
     "check the value; where two and three pairs alternate, as of helical teeth, state 1 and what is beyond the whole "
     "number, and the stiffness of three pairs and of two"
 )
+FALLS_AWAY = (
+    "leave the key out where its value is not known; a linear oscillator has a spring that pulls back, and a rig that "
+    "is pushed away from its place of rest, as a buckled beam, is outside of what one is here"
+)
+# What people know of a rig, and what it is here.
+_PER_MASS = "an oscillator is stated per unit of its mass, or of its inertia where it turns"
+_OF_A_MASS = "write force_gain: 1/m in 1/kg for a force in N and a motion in m, and stiffness: k/m in 1/s^2"
+_OF_AN_INERTIA = "write force_gain: 1/J in rad/s^2/(N*m) for a torque in N*m and an angle in rad, and stiffness: k/J"
+_OF_A_LENGTH = "write the stiffness of a pendulum, g/l: for .5 m stiffness: {value: 19.6, unit: 1/s^2}"
+_OF_A_FREQUENCY = "write stiffness: (2 pi f)^2 in 1/s^2, for 1.3 Hz {value: 66.7, unit: 1/s^2}"
+_OF_A_GEAR = "write the ratio as gain of the channel that was measured behind the gear: its values are divided by it"
+OF_A_RIG = Frozen(
+    {
+        "mass": (_PER_MASS, _OF_A_MASS),
+        "inertia": (_PER_MASS, _OF_AN_INERTIA),
+        "moment_of_inertia": (_PER_MASS, _OF_AN_INERTIA),
+        "length": (_PER_MASS, _OF_A_LENGTH),
+        "natural_frequency": ("its stiffness over its mass says how fast it swings", _OF_A_FREQUENCY),
+        "eigenfrequency": ("its stiffness over its mass says how fast it swings", _OF_A_FREQUENCY),
+        "gear_ratio": ("it is one mass that moves, and a gear before it scales what is read", _OF_A_GEAR),
+    }
+)
+_TEETH = "write n_teeth_pinion and n_teeth_gear; a worm or a gearbox of many teeth is declared as system: oscillator"
 
 
 @dataclass(frozen=True)
@@ -38,15 +62,12 @@ class GearParameters(Declared):
     """Nominal values of a gear pair."""
 
     title: ClassVar[str] = "a gear_pair"
+    refused: ClassVar[Frozen[str, tuple[str, str]]] = Frozen({"gear_ratio": ("its teeth say the ratio", _TEETH)})
     n_teeth_pinion: Annotated[Quantity, Measured("1", whole=True, within=(5, 500))] = key(
         "Teeth of the pinion.", "known"
     )
-    n_teeth_gear: Annotated[Quantity, Measured("1", whole=True, within=(5, 1000))] = key(
-        "Teeth of the gear.", "known"
-    )
-    module: Annotated[Quantity, Measured("m", uncertain=True, within=(1e-4, 0.1))] = key(
-        "Module of the teeth.", KNOWN
-    )
+    n_teeth_gear: Annotated[Quantity, Measured("1", whole=True, within=(5, 1000))] = key("Teeth of the gear.", "known")
+    module: Annotated[Quantity, Measured("m", uncertain=True, within=(1e-4, 0.1))] = key("Module of the teeth.", KNOWN)
     pressure_angle: Annotated[Quantity, Measured("rad", uncertain=True, within=(0.1, 0.7))] = key(
         "Pressure angle.", KNOWN
     )
@@ -98,7 +119,8 @@ class OscillatorParameters(Declared):
     """Nominal values of a mass-normalised oscillator."""
 
     title: ClassVar[str] = "an oscillator"
-    stiffness: Annotated[Quantity, Measured("1/s^2", "not negative", uncertain=True)] = key(
+    refused: ClassVar[Frozen[str, tuple[str, str]]] = OF_A_RIG
+    stiffness: Annotated[Quantity, Measured("1/s^2", "not negative", uncertain=True, excluded=FALLS_AWAY)] = key(
         "Stiffness over mass; 0 means that there is no spring.", START
     )
     damping_coefficient: Annotated[Quantity, Measured("1/s", uncertain=True)] = key(

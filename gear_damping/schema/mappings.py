@@ -23,12 +23,13 @@ _LEFT = "leave the group as it is"
 class Declared(BaseModel):
     """A mapping of the YAML.
 
-    `refused` holds key -> (reason, remedy) for keys that have a meaning elsewhere but not here; `title` says what
-    the mapping describes.
+    `refused` holds key -> (reason, remedy) for keys that have a meaning elsewhere but not here, `meant` name -> remedy
+    for what people write instead of a key; `title` says what the mapping describes.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, populate_by_name=False, arbitrary_types_allowed=True)
     refused: ClassVar[Mapping[str, tuple[str, str]]] = {}
+    meant: ClassVar[Mapping[str, str]] = {}
     title: ClassVar[str] = ""
     unknown: ClassVar[str] = "unknown key"
 
@@ -249,6 +250,8 @@ def _unknown(model: type[Declared], name: object, value: object) -> Problem:
     if name in model.refused:
         reason, remedy = model.refused[name]
         return Problem("", f"has no meaning for {model.title}: {reason}", value, remedy)
+    if name in model.meant:
+        return Problem("", model.unknown, None, model.meant[name])
     within = [part for part in names(model) if name in _names_at(model, (part,))]
     if within:
         return Problem("", model.unknown, None, f"it is a key of {' or of '.join(within)}: write it there")

@@ -116,7 +116,7 @@ def test_what_holds_together_is_accepted(tmp_path, text):
         (_oscillator(f"{TIME}, {MOTION}", more=", mesh_index: true"), "mesh_index", "only a gear_pair meshes"),
         (_oscillator(f"{TIME}, {MOTION}", top="segments: {value: 0, unit: s}"), "segments", "must be positive"),
         (_oscillator(f"{TIME}, {MOTION}", top="segments: {value: 1, unit: s, uncertainty: 0.1}"),
-         "segments.uncertainty", "only parameters, conditions and the gain"),
+         "segments.uncertainty", "only parameters, conditions of a gear_pair and the gain"),
     ],
 )  # fmt: skip
 def test_what_has_no_meaning_is_refused_with_the_reason(tmp_path, text, key, said):
