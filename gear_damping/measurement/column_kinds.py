@@ -8,12 +8,13 @@ from numpy.typing import NDArray
 from gear_damping.errors import InputError
 from gear_damping.units import parse_unit
 
-TIME, CONSTANT, EMPTY, UNREADABLE, TURNING, COUNTER, PULSES, SIGNAL = (
-    "time stamps", "constant", "empty", "not readable", "turning angle", "counter", "pulses", "signal",
+TIME, CONSTANT, EMPTY, UNREADABLE, TURNING, COUNTER, PULSES, SIGNAL, ROW_NUMBER = (
+    "time stamps", "constant", "empty", "not readable", "turning angle", "counter", "pulses", "signal", "row number",
 )  # fmt: skip
-_ANGLE = re.compile(r"angle|winkel|theta|phi|phase|encoder|azimuth|rotation|revol|position", re.I)
-_MOTION = re.compile(r"accel|veloc|displac|force|torque", re.I)  # what bears such a name is no pulse train
+ANGLE = re.compile(r"angle|winkel|theta|phi|phase|encoder|azimuth|rotation|revol|position", re.I)
+MOTION = re.compile(r"accel|veloc|displac|force|torque", re.I)  # what bears such a name is no pulse train
 _LEVELS, _AT_LEVEL, _FEWEST_PULSES = 0.15, 0.95, 4  # of the range; of the samples; rises
+_OFTEN, _HALF_WAY = 0.2, 0.5  # of the samples, at the rarer level; of those between the levels, that turn back
 _FEWEST_JUMPS, _ONE_WAY, _COARSE = 2, 0.9, 50  # wraps; of the steps; steps that a direction is seen by
 _TURNS = {"rad": 2 * np.pi, "deg": 360.0, "rev": 1.0}  # one turn in each unit that an angle is written in
 _NEAR_TURN = 0.03  # of a turn: a ramp that ends so near to it wraps there
@@ -31,11 +32,18 @@ def kind_of(values: NDArray[np.float64], name: str, unit: str | None) -> tuple[s
         return EMPTY, "no finite value"
     if np.ptp(values) == 0:
         return CONSTANT, f"every sample is {values[0]:.6g}"
+    if unit is None and not ANGLE.search(name) and counts_rows(values):
+        return ROW_NUMBER, f"counts the rows from {values[0]:.0f} on"
     for kind in (_pulses, _wrapping, _advancing):
         found = kind(values, name, unit)
         if found is not None:
             return found
     return SIGNAL, ""
+
+
+def counts_rows(values: NDArray[np.float64]) -> bool:
+    """Whether (n,) values are whole numbers that go on by 1 from row to row."""
+    return values.size > 1 and values[0] == round(values[0]) and bool(np.all(np.diff(values) == 1))
 
 
 def turn_of(values: NDArray[np.float64]) -> float | None:
@@ -61,11 +69,24 @@ def _pulses(values: NDArray, name: str, unit: str | None) -> tuple[str, str] | N
     high = values > low + span / 2
     at = np.minimum(np.abs(values - low), np.abs(values - low - span)) < _LEVELS * span
     rises = int(np.sum(high[1:] & ~high[:-1]))
-    if _MOTION.search(name):
+    if MOTION.search(name):
         return None
-    if rises < _FEWEST_PULSES or np.mean(at) < _AT_LEVEL:
+    if rises < _FEWEST_PULSES or np.mean(at) < _AT_LEVEL or _switches_partly(high, at):
         return None
     return PULSES, f"two levels, {low:.4g} and {low + span:.4g}, with {rises} rises"
+
+
+def _switches_partly(high: NDArray[np.bool_], at: NDArray[np.bool_]) -> bool:
+    """Whether a series often turns back half way between its levels, as a switched current; pulses reach the other one.
+
+    Args:
+        high: (n,) Whether a sample lies in the upper half of the range.
+        at: (n,) Whether it lies at one of the two levels.
+    """
+    before, between, after = at[:-2], ~at[1:-1], at[2:]
+    back = between & before & after & (high[:-2] == high[2:])
+    rarer = min(np.mean(high), 1 - np.mean(high))
+    return bool(rarer > _OFTEN and back.sum() >= max(_FEWEST_PULSES, _HALF_WAY * between.sum()))
 
 
 def _wrapping(values: NDArray, name: str, unit: str | None) -> tuple[str, str] | None:
@@ -86,7 +107,7 @@ def _advancing(values: NDArray, name: str, unit: str | None) -> tuple[str, str] 
     turn = _turn_in(unit)
     if turn is None and np.all(values == np.round(values)) and gone >= _COARSE:
         return COUNTER, f"whole numbers that advance by {gone:.0f}"
-    if gone > (turn or _TURNS["rad"]) and (turn is not None or (unit is None and _ANGLE.search(name))):
+    if gone > (turn or _TURNS["rad"]) and (turn is not None or (unit is None and ANGLE.search(name))):
         turns = f", by {gone / turn:.4g} turns" if turn else ""
         return TURNING, f"advances one way{turns}"
     return None

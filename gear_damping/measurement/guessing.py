@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from gear_damping.errors import InputError
 from gear_damping.measurement.column_kinds import COUNTER, PULSES, TURNING, turn_of, unit_of_turn
 from gear_damping.measurement.inspection import Column, Inspection
+from gear_damping.measurement.staircase import is_staircase
 from gear_damping.measurement.vocabulary import INPUTS
 from gear_damping.units import parse_unit
 
@@ -88,7 +89,7 @@ def guesses(found: Inspection, system: str) -> list[Guess]:
     read = _gear_channel if system == GEAR else _oscillator_channel
     named = [(column, *read(column)) for column in found.measured]
     if system == OSCILLATOR:
-        named = _completed(named)
+        named = _completed(_without_references(named))
     listed = [_guess(column, channel, why) for column, channel, why in named]
     listed = _one_each(listed)
     return _derived(listed, found) if system == OSCILLATOR else listed
@@ -116,6 +117,21 @@ def _channel_of_unit(unit: str | None) -> str | None:
     except InputError:
         return None
     return next((name for name, units in kinds.items() if dimension in [parse_unit(u).dimension for u in units]), None)
+
+
+def _without_references(named: list[tuple[Column, str | None, str]]) -> list[tuple[Column, str | None, str]]:
+    """The same where a column jumps that only by its name is a motion: beside one that moves it is its set value."""
+    motions = {"displacement", "velocity"}
+    jumps = [channel in motions and is_staircase(column.inside) for column, channel, _ in named]
+    moving = {channel: c for (c, channel, _), jump in zip(named, jumps, strict=True) if channel in motions and not jump}
+    found = []
+    for (column, channel, why), jump in zip(named, jumps, strict=True):
+        if jump and why == "by its name" and channel in moving:
+            said = f"jumps and stands still, as a set value beside '{moving[channel].reference}' does"
+            found.append((column, None, said))
+        else:
+            found.append((column, channel, why))
+    return found
 
 
 def _completed(named: list[tuple[Column, str | None, str]]) -> list[tuple[Column, str | None, str]]:

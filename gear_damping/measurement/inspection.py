@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.column_kinds import CONSTANT, EMPTY, SIGNAL, TIME, UNREADABLE, kind_of
+from gear_damping.measurement.column_kinds import CONSTANT, EMPTY, ROW_NUMBER, SIGNAL, TIME, UNREADABLE, kind_of
 from gear_damping.measurement.formats.table import Table
 from gear_damping.measurement.raw import LEAST_SAMPLES
 from gear_damping.measurement.resolution import step_of
@@ -95,7 +95,7 @@ class Inspection:
     @property
     def measured(self) -> list[Column]:
         """The columns of the record that say something: neither stamps, nor constant, nor of another length."""
-        dull = (TIME, CONSTANT, EMPTY, UNREADABLE)
+        dull = (TIME, CONSTANT, EMPTY, UNREADABLE, ROW_NUMBER)
         return [c for c in self.columns if c.values.size == self.length and c.kind not in dull]
 
 
@@ -109,7 +109,8 @@ def inspect_table(table: Table) -> Inspection:
     if not any(column.values.size for column in columns):
         rule = f"no column holds numbers; the first: {columns[0].says}"
         raise InputError(Problem("file", rule, str(table.path), "export the channels as numbers"))
-    stamps = find_stamps(columns)
+    untimed = not any(table.clock(k) or _may_be_rate(column) for k, column in enumerate(columns))
+    stamps = find_stamps(columns, untimed)
     length = _length(columns, stamps)
     rows = _rows([c for c in columns if c.values.size == length])
     base, faults = _base(table, columns, stamps, length, rows)
@@ -209,7 +210,7 @@ def _seen(
     if column.kind == UNREADABLE:
         return column
     kind, says = kind_of(column.inside, str(column.reference), column.unit)
-    if kind in (CONSTANT, EMPTY):
+    if kind in (CONSTANT, EMPTY, ROW_NUMBER):
         return replace(column, kind=kind, says=says)
     own = clock[1] if clock else None
     rate = base.sampling_rate if base is not None and column.values.size == length else own

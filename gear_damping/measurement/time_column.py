@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError
+from gear_damping.measurement.column_kinds import ANGLE, MOTION, counts_rows
 from gear_damping.units import to_si
 
 NAMED = re.compile(
@@ -23,6 +24,8 @@ _ADVANCING = 0.9  # share of the steps of a named column that go forward
 _SHORT = re.compile(r"^t[a-z]?\d*(_\w+)?$", re.I)  # t1, tb_n: a time only where its steps are even
 _FIRST = re.compile(r"\[0\]\s*$")  # the first column of a matrix, which says nothing of its own
 _LOOSELY = 0.5  # of the median step; how far the steps of a first column without a name may differ
+_NO_TIME = re.compile(r"speed|rpm|omega|drehzahl|freq|volt|curr|weg|^f$", re.I)  # what may rise evenly and is no time
+_NEARLY = 0.1  # of the median step; how far most steps of a column that no name calls time may differ
 _EVEN = 0.05  # of the median step; how far the steps of an unnamed column may differ
 
 
@@ -56,15 +59,24 @@ class _Column(Protocol):
     def inside(self) -> NDArray[np.float64]: ...
 
 
-def find_stamps(columns: Sequence[_Column]) -> Stamps | None:
-    """The column that advances and bears the unit or the name of time, else a first one that advances evenly."""
+def find_stamps(columns: Sequence[_Column], untimed: bool = False) -> Stamps | None:
+    """The column that advances and bears the unit or the name of time, else a first one that advances evenly.
+
+    Args:
+        columns: Those of the file.
+        untimed: Whether nothing else says the time, so that a first one of any name that rises evenly may be it.
+    """
     for by in (_by_unit, _by_name, _by_steps, _by_ramp):
         for index, column in enumerate(columns):
             says = by(index, column) if column.inside.size >= _FEWEST else ""
             if says:
                 unit, guessed = _unit(column)
                 return Stamps(index, unit, guessed, says)
-    return None
+    telling = (k for k, one in enumerate(columns) if one.inside.size >= _FEWEST and not counts_rows(one.inside))
+    first = next(telling, None) if untimed else None
+    if first is None or not _rises(columns[first]):
+        return None
+    return Stamps(first, *_unit(columns[first]), "is the first column and rises in nearly even steps")
 
 
 def stamped_rate(unit: str, values: NDArray[np.float64]) -> float | None:
@@ -97,6 +109,17 @@ def _by_steps(index: int, column: _Column) -> str:
 def _by_ramp(index: int, column: _Column) -> str:
     named = column.unit is None and _SHORT.search(_bare(column.reference))
     return "advances evenly, and its name begins with t" if named and _is_even(column) else ""
+
+
+def _rises(column: _Column) -> bool:
+    """Whether it rises from row to row in nearly even steps, as the stamps of a camera; counts may be of a shaft."""
+    name, values = _bare(column.reference), column.inside
+    if column.unit is not None or any(words.search(name) for words in (ANGLE, MOTION, _NO_TIME)):
+        return False
+    steps = np.diff(values)
+    median = float(np.median(steps))
+    nearly = median > 0 and np.mean(np.abs(steps / median - 1) < _NEARLY) > _ADVANCING
+    return bool(nearly and steps.min() > 0 and not np.all(values == np.round(values)))
 
 
 def _is_even(column: _Column) -> bool:

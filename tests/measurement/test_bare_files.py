@@ -1,0 +1,74 @@
+"""What a bare file is taken for where names mislead: switched currents, row numbers, set values, a camera's stamps."""
+
+import numpy as np
+import pytest
+
+from gear_damping.measurement.column_kinds import COUNTER, PULSES, ROW_NUMBER, SIGNAL
+from gear_damping.measurement.formats.registry import read_table
+from gear_damping.measurement.guessing import guesses
+from gear_damping.measurement.inspection import inspect_table
+
+N = 6000
+T = np.arange(N) / 1000.0
+RNG = np.random.default_rng
+
+
+def inspected(tmp_path, **columns):
+    np.savez(tmp_path / "a.npz", **columns)
+    return inspect_table(read_table(tmp_path / "a.npz"))
+
+
+def column(found, name):
+    return next(one for one in found.columns if one.reference == name)
+
+
+def test_a_switched_current_is_no_pulse_train(tmp_path):
+    rng = RNG(5)
+    switched = np.where(rng.random(N) < 0.6, 0.023, 0.0)
+    switched[7:-7:40] = 0.023  # where it is on, it is now and then on for a part of the time
+    switched[8:-7:40] = np.round(rng.uniform(0.005, 0.018, switched[8:-7:40].size), 5)
+    switched[9:-7:40] = 0.023
+    found = inspected(tmp_path, time=T, i=switched, tacho=5.0 * (np.mod(31 * T, 1) < 0.3))
+    assert column(found, "i").kind == SIGNAL
+    assert column(found, "tacho").kind == PULSES
+
+
+def test_a_number_of_rows_is_no_counter(tmp_path):
+    found = inspected(tmp_path, time=T, n=np.arange(N) + 1.0, count=np.round(700 * T), x=np.sin(9 * T))
+    assert (column(found, "n").kind, column(found, "n").says) == (ROW_NUMBER, "counts the rows from 1 on")
+    assert column(found, "count").kind == COUNTER
+    assert [one.reference for one in found.measured] == ["count", "x"]
+
+
+def test_a_set_value_beside_what_was_measured_is_none_by_its_name(tmp_path):
+    settled = np.concatenate([np.full(1500, 5.0), np.full(1500, -5.0)] * 2)
+    moving = 5 * np.sin(2 * np.pi * 1.3 * T) + RNG(3).normal(size=N)
+    guess = {
+        one.column.reference: one for one in guesses(inspected(tmp_path, t=T, xr=settled, x_m=moving), "oscillator")
+    }
+    assert (guess["xr"].channel, guess["x_m"].channel) == (None, "displacement")
+    assert "a set value beside 'x_m'" in guess["xr"].why
+    alone = guesses(inspected(tmp_path, t=T, x=settled), "oscillator")
+    assert [one.channel for one in alone] == ["displacement"]
+
+
+def _camera(folder, name, times, text="{time:.3f}\t{x:.6f}"):
+    rows = [text.format(time=time, x=0.3 * np.cos(5 * time)) for time in times]
+    (folder / "swing.txt").write_text("\n".join([f"{name}\ty", *rows]) + "\n")
+    return inspect_table(read_table(folder / "swing.txt"))
+
+
+@pytest.mark.parametrize("rate", [29.97, 59.94])
+def test_stamps_of_a_camera_need_no_name(tmp_path, rate):
+    found = _camera(tmp_path, "x", np.delete(np.arange(900) / rate, 450))  # of which one frame is lost
+    assert found.time.says == "is the first column and rises in nearly even steps"
+    assert (found.time.index, found.time.unit, bool(found.time.guessed)) == (0, "s", True)
+    assert found.rate == pytest.approx(rate, rel=1e-3)
+
+
+def test_what_rises_evenly_and_may_be_something_else_is_no_time(tmp_path):
+    times = np.arange(300) / 30
+    for name, values in (("theta", 3 * times), ("speed", 7 * times), ("x", np.round(100 * times)), ("x", times % 5)):
+        assert _camera(tmp_path, name, values).time is None, name
+    np.savez(tmp_path / "b.npz", x=times + 0.1, y=np.cos(times), fs=np.array([30.0]))  # which says its rate itself
+    assert inspect_table(read_table(tmp_path / "b.npz")).time is None
