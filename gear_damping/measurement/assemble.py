@@ -144,9 +144,7 @@ class Assembler:
             channels["pinion_speed"] = replace(speed, values=values)
             notes.append("pinion_speed: its mean is the one under conditions")
 
-    def _conditions(
-        self, raw: RawRecord, channels: dict[str, Channel], findings: list[Finding]
-    ) -> dict[str, Quantity]:
+    def _conditions(self, raw: RawRecord, channels: dict[str, Channel], findings: list[Finding]) -> dict[str, Quantity]:
         """A channel beats a condition of the same name, which is said."""
         kept = {}
         for name, quantity in raw.plan.conditions.items():
@@ -193,6 +191,8 @@ class Assembler:
 
 def _lost(recorded: NDArray[np.float64], kept: NDArray[np.float64], name: str, base: TimeBase) -> list[Finding]:
     """What a filter before a lower rate has taken of a channel, where that is much; uneven samples by their time."""
+    if np.ptp(recorded) == 0:
+        return []
     own = getattr(base, "recorded", None)
     weights = None if own is None or own.uniform else np.gradient(own.time)
     mean = np.average(recorded, weights=weights)

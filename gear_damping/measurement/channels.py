@@ -127,7 +127,7 @@ def _input_reasons(offset: str) -> Reasons:
             "highpass": (f"{driven}, and what a filter took away cannot be given back", offset),
             "coupling": (f"{driven}, with its mean", offset),
             "datum": (f"{driven}, with its mean", offset),
-            "noise": (f"{driven}; its noise is not weighed", "declare the uncertainty of its gain"),
+            "noise": (f"{driven}; its noise is not weighed", "leave it out: it is a part of what the fit leaves"),
         }
     )
 

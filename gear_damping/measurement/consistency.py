@@ -144,7 +144,7 @@ def _speed_of_known_gain(seen: _Seen) -> Found:
     speed = seen.channels.get("pinion_speed")
     if speed is not None and seen.error and speed.given("uncertainty"):
         rule = "has no meaning beside a transmission error: the pinion's speed gives the angle, as it was read"
-        remedy = "leave it out; a speed that is known to so much is conditions.pinion_speed with its uncertainty"
+        remedy = "leave it out, or state conditions.pinion_speed with its uncertainty instead of this channel"
         yield seen.problem("channels.pinion_speed.uncertainty", rule, remedy)
 
 

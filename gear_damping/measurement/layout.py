@@ -84,6 +84,9 @@ class Tacho(Pulses):
         if self.given("column"):
             unit = self.unit or "V"
             parse_unit(unit, "unit")
+            if self.unit and not self.threshold:
+                remedy = "leave it out, or state the threshold"
+                refuse("has no effect without a threshold: half way needs none", self.unit, remedy, "unit")
             if self.threshold:
                 to_si(self.threshold.value, self.threshold.unit, unit, "threshold")
         return self
@@ -219,6 +222,15 @@ class GearRecord(AnyRecord):
     encoders: Encoders = key("Encoders and tacho.", "values")
     conditions: GearConditions = key("What was constant. A channel of the same name is used before it.", "values")
     mesh_index: Annotated[bool, Flag()] = key("The zero of the pinion angle is that of the mesh.", "mesh phase", False)
+
+    @model_validator(mode="after")
+    def _zero_of_an_angle(self) -> "GearRecord":
+        angle, counted = getattr(self.channels, "pinion_angle", None), self.encoders
+        if self.mesh_index and angle is None and not (counted and (counted.pinion or counted.tacho)):
+            rule = "has no meaning without a measured angle: there is no zero that could be that of the mesh"
+            remedy = "leave it out, or declare pinion_angle, encoders.pinion or encoders.tacho"
+            refuse(rule, self.mesh_index, remedy, "mesh_index")
+        return self
 
 
 class OscillatorRecord(AnyRecord):

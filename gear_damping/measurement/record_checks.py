@@ -222,6 +222,7 @@ def check_record(record: Record) -> tuple[Finding, ...]:
     if not any(finding.severity == "data_problem" and finding.channel == "time" for finding in record.findings):
         found.append(stamps_against_values(record))
     found += [_magnitude(record), *check_shafts(record), *not_compared(record), _oversampled(record)]
+    found += _beyond_the_band(record)
     return tuple(replace(finding, record=record.name) for finding in found if finding)
 
 
@@ -266,6 +267,17 @@ def _oversampled(record: Record) -> Finding | None:
         "is far more than is needed; resample: {value: …, unit: Hz} saves time"
     )
     return Finding("oversampled", message, severity="note")
+
+
+def _beyond_the_band(record: Record) -> Iterator[Finding]:
+    """Low-passes that leave all of a record as it is, as one whose unit is wrong does."""
+    for channel in record.channels.values():
+        if channel.lowpass is not None and channel.lowpass >= record.sampling_rate:
+            message = (
+                f"its lowpass of {channel.lowpass:.6g} Hz lies beyond the band of a record of "
+                f"{record.sampling_rate:.6g} Hz and filters nothing in it; check its unit, or leave it out"
+            )
+            yield Finding("filter_beyond_band", message, channel=channel.name, severity="note")
 
 
 def _fastest_content(values: NDArray[np.float64], rate: float) -> float:

@@ -141,7 +141,6 @@ def _gear(listed: Sequence[Guess]) -> Iterator[str]:
         yield f"      pinion: {_mapping({'column': UNKNOWN, 'counts_per_revolution': UNKNOWN})}   # beside the gear's"
     for name in encoders:
         stated = {"column": used[name].column.reference, _COUNTS[name]: UNKNOWN}
-        stated |= {"unit": used[name].unit} if name == "tacho" else {}
         twice = "# " if name == "tacho" and "pinion" in used else ""
         yield f"      {twice}{name}: {_mapping(stated)}   # guess: {used[name].why}"
     missing = {}

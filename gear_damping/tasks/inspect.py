@@ -225,7 +225,8 @@ def _measurement_lines(measurement: Measurement) -> Iterator[str]:
             yield f"  {word}: {', '.join(named)}"
     free = [record.name for record in measurement.with_role(None)]
     if free:
-        yield f"  role not said: {', '.join(free)}" + ("" if len(free) < len(measurement.records) else _AUTOMATIC)
+        held_out = _CASINGS if all(_is_casing(record) for record in measurement.records) else _AUTOMATIC
+        yield f"  role not said: {', '.join(free)}" + ("" if len(free) < len(measurement.records) else held_out)
     if not free and not measurement.with_role("fit"):
         yield "  none is fitted: task=identify and task=explain need a record of role: fit"
     if measurement.segment_s:
@@ -235,6 +236,14 @@ def _measurement_lines(measurement: Measurement) -> Iterator[str]:
 
 
 _AUTOMATIC = "; task=explain holds out a part of them by itself, and so does task=identify of a gear pair"
+_CASINGS = "; task=explain looks into all of them, and task=identify finds no damping behind a casing"
+_OF_A_MESH = ("transmission_error", "gear_speed")  # responses beside which a casing is only a second sensor
+
+
+def _is_casing(record: Record) -> bool:
+    """Whether a casing is all that was heard in a record."""
+    heard = record.channels.get("acceleration")
+    return heard is not None and heard.mounting == "casing" and not {*record.channels} & {*_OF_A_MESH}
 
 
 def _record_lines(record: Record) -> Iterator[str]:

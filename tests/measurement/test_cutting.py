@@ -193,3 +193,10 @@ def with_plan_of_a_fork(tmp_path):
         findings = load.load_measurement(path).records[0].findings
         found.append([finding for finding in findings if finding.kind == "resampled_away"])
     return found
+
+
+def test_a_constant_torque_loses_nothing_at_a_lower_rate(bench, with_plan):
+    bench.record["resample"] = {"value": 8000, "unit": "Hz"}
+    bench.columns["T1"] = np.full(400, 150.0)
+    lost = [finding.channel for finding in bench.load().findings if finding.kind == "resampled_away"]
+    assert "pinion_torque" not in lost

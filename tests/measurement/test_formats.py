@@ -1,5 +1,7 @@
 """The readers: what each format gives, and how each says what is wrong."""
 
+import gzip
+
 import numpy as np
 import pytest
 from scipy.io import savemat, wavfile
@@ -106,6 +108,13 @@ def test_binary_under_the_name_of_text_is_refused(tmp_path):
     (tmp_path / "data.csv").write_bytes(b"\x00\x01\x02" * 50)
     with pytest.raises(InputError, match="not a text file"):
         read_table(tmp_path / "data.csv")
+
+
+def test_gzip_packs_text_only(tmp_path):
+    savemat(tmp_path / "a.mat", {"x": np.arange(100.0)})
+    (tmp_path / "a.mat.gz").write_bytes(gzip.compress((tmp_path / "a.mat").read_bytes()))
+    with pytest.raises(InputError, match=r"a\.mat\.gz.*remedy: unpack it: of what gzip packs only text is read"):
+        read_table(tmp_path / "a.mat.gz")
 
 
 def test_npz_gives_vectors_and_the_columns_of_matrices(tmp_path):

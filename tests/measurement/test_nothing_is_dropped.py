@@ -112,3 +112,12 @@ def test_parameters_lie_within_the_bounds_of_the_physics():
 def test_every_channel_of_an_oscillator_has_a_unit_where_a_simulation_is_recorded():
     assert {*OWN_UNITS} == {*OSCILLATOR_CHANNELS}
     assert {*UNITS} >= {"transmission_error", "pinion_torque", "gear_torque", "pinion_angle"}
+
+
+@pytest.mark.parametrize(("corner", "is_said"), [("5 MHz", True), ("1 kHz", True), ("990 Hz", False)])
+def test_a_lowpass_that_filters_nothing_of_its_record_is_said(load, corner, is_said):
+    motion = {"displacement": {"column": "x", "unit": "mm", "lowpass": corner}}
+    findings = load("oscillator", {"channels": TIME | motion}).findings
+    found = [one for one in findings if one.kind == "filter_beyond_band"]
+    assert [(one.channel, one.severity) for one in found] == ([("displacement", "note")] if is_said else [])
+    assert not found or "check its unit" in found[0].message

@@ -27,7 +27,7 @@ def _of(system: str, response: Channel, **others: Channel) -> Record:
     conditions = {"pinion_speed": Quantity(100.0, "rad/s", 0.005), "pinion_torque": Quantity(9.0, "N*m", 0.1)}
     return Record("one", Path("-"), "", "reference" if response.mounting == "casing" else "holdout", 1e4, time,
                   {response.name: response} | others, conditions if system == "gear_pair" else {},
-                  "balanced" if system == "gear_pair" else None, system == "gear_pair")  # fmt: skip
+                  "balanced" if system == "gear_pair" else None)  # fmt: skip
 
 
 @pytest.mark.parametrize("name", sorted({f.name for f in fields(Channel)} - UNLIKE))

@@ -21,6 +21,7 @@ def _record(name: str = "run_1", role: str | None = "fit") -> Record:
             coupling="AC", delay=1e-6, range=1e-3, uncertainty=0.01, datum="arbitrary",
         ),
         "pinion_torque": Channel("pinion_torque", 150 + rng.standard_normal(300), "N*m"),
+        "pinion_angle": Channel("pinion_angle", 480.1 * time, "rad"),  # whose zero is that of the mesh
         "acceleration": Channel(
             "acceleration", rng.standard_normal(300), "m/s^2", mounting="tangential", shaft="gear", radius=0.03
         ),

@@ -279,3 +279,17 @@ def test_what_the_steps_of_two_encoders_divide_by_is_told_as_no_step(tmp_path):
     said = dict(json.loads((tmp_path / "out" / "inspection.json").read_text())["records"][0]["channels"])
     assert "noise" in said["transmission_error"]
     assert "rounding" not in said["transmission_error"]
+
+
+def test_of_a_casing_no_holding_out_is_promised(tmp_path):
+    columns = np.column_stack([np.random.default_rng(1).normal(size=TIME.size), np.mod(12 * TIME, 1) < 0.3])
+    np.savetxt(tmp_path / "run.csv", columns, delimiter=",", header="a,tacho", comments="", fmt="%.6g")
+    tacho = {"tacho": {"column": "tacho", "pulses_per_revolution": 1}}
+    record = {"file": "run.csv", "sampling_rate": f"{RATE} Hz", "encoders": tacho}
+    record["channels"] = {"acceleration": {"column": "a", "unit": "g"}}
+    (tmp_path / "measurement.yaml").write_text(yaml.safe_dump({"system": "gear_pair", "records": [record]}))
+    code, _ = inspected(tmp_path / "measurement.yaml", tmp_path / "out")
+    assert code == 0
+    text = (tmp_path / "out" / "inspection.txt").read_text()
+    assert "role not said: run; task=explain looks into all of them" in text
+    assert "holds out" not in text

@@ -117,7 +117,9 @@ def _utf8(path: Path, raw: bytes) -> bytes:
     """The text in UTF-8; older programs write µ, ° and ² in Latin-1."""
     wide = raw.startswith((b"\xff\xfe", b"\xfe\xff"))
     if b"\0" in raw[:4096] and not wide:
-        raise InputError(Problem("file", "not a text file", str(path), "export it as CSV"))
+        packed = path.suffix.lower() == ".gz"
+        remedy = "unpack it: of what gzip packs only text is read" if packed else "export it as CSV"
+        raise InputError(Problem("file", "not a text file", str(path), remedy))
     try:
         return raw.decode("utf-16").encode() if wide else raw.removeprefix(b"\xef\xbb\xbf").decode().encode()
     except UnicodeDecodeError:

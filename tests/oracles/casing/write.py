@@ -42,7 +42,7 @@ def _record(folder: Path, number: int, case: CasingCase, role: str | None, kind:
     columns = {"casing": case.acceleration}
     if train or kind == "csv":
         columns["tacho"] = _train(case)
-        tacho = {"column": "tacho", "unit": "V"}
+        tacho = {"column": "tacho"}
     else:
         columns["pulses"] = case.pulses
         tacho = {"timestamps": "pulses", "unit": "s"}
