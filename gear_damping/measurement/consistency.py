@@ -292,8 +292,21 @@ def _one_mesh_index(file: layout.AnyFile, records: Numbered) -> Found:
         yield Problem(f"records[{k}].mesh_index", rule, None, "state it in all records, or in none")
 
 
+def _reference_beside_responses(file: layout.AnyFile, records: Numbered) -> Found:
+    """A reference is what casings are compared with; where shafts are simulated nothing is."""
+    seen = [(k, record, _Seen(file, record, f"records[{k}]")) for k, record in records]
+    simulated = [k for k, record, one in seen if record.role != "reference" and (one.error or one.on_a_shaft)]
+    for k, record, _ in seen:
+        if record.role == "reference" and simulated:
+            rule = f"records[{simulated[0]}] is compared with a simulation, and a reference only with other casings"
+            remedy = "write fit or holdout, leave the record out, or explain the casings in a file of their own"
+            yield Problem(f"records[{k}].role", rule, "reference", remedy)
+
+
 _Rule = Callable[[layout.AnyFile, Numbered], Found]
-_GEARS: tuple[_Rule, ...] = (_compared, _held_out_apart, _one_gear_torque, _one_mesh_index)
+_GEARS: tuple[_Rule, ...] = (
+    _compared, _held_out_apart, _one_gear_torque, _one_mesh_index, _reference_beside_responses,
+)  # fmt: skip
 _OSCILLATORS: tuple[_Rule, ...] = (
     _compared, _held_out_apart, _inputs_of_all, _force_that_tells, _gain_of_nothing, _gain_of_the_force,
 )  # fmt: skip

@@ -45,6 +45,7 @@ def _oscillator(*channels: str, top: str = "", more: str = "") -> str:
 
 
 SHAFT = "acceleration: {column: x, unit: m/s^2, mounting: tangential, shaft: gear, radius: {value: 3, unit: cm}}"
+CASING = "acceleration: {column: c, unit: m/s^2, mounting: casing}"
 BASE = "base_acceleration: {column: b, unit: m/s^2}"
 
 
@@ -87,6 +88,8 @@ def test_what_holds_together_is_accepted(tmp_path, text):
         (_gear(f"{TIME}, pinion_speed: {{column: x, unit: rpm, coupling: AC}}", f"conditions: {{{LOAD}}}"),
          "pinion_speed.coupling", "has lost it"),
         (_gear(ERROR, f"{SET}, role: reference"), "records[0].role", "no casing's acceleration"),
+        (_gear(ERROR) + f"  - {{file: b.csv, channels: {{{ERROR}, {CASING}}}, {SET}, role: reference}}\n",
+         "records[1].role", "a reference only with other casings"),
         (_gear(f"{ERROR}, gear_torque: held", f"conditions: {{gear_torque: {{value: 9, unit: N*m}}, {LOAD}, {SPEED}}}"),
          "conditions.gear_torque", "one of the two is a word"),
         (_gear(ERROR, f"{SET}, encoders: {{tacho: {{column: t, pulses_per_revolution: 1}}, pinion: {{column: p, "
