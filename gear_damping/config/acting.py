@@ -74,6 +74,10 @@ REASONS = {  # (task, key of the table): why it has no effect there, and what he
         f"the search begins with a fit {NOMINAL}",
         "leave it out; task=identify fits it to records, task=train, simulate, evaluate and plan simulate it",
     ),
+    (IDENTIFY, "wavelet"): (
+        "it acts on networks that are trained, in task=train",
+        "leave it out; the estimator wavelet_ridge has model.omega0",
+    ),
     ("train", "checkpoint"): (
         "networks begin untrained",
         "leave it out; resume=FOLDER goes on with the interrupted training in that folder",

@@ -61,10 +61,10 @@ def _wavelet_of_networks(whole: Whole) -> Found:
     models = whole.models
     if models is None or models.transforming:
         return
-    remedy = "leave it out; wavelet_ridge has model.omega0" if models.of_records else "leave it out, or name cwt_lstm"
-    for key, value in whole.origin.typed() if models.of_records or models.whole else ():
+    for key, value in whole.origin.typed() if models.whole else ():
         if key == "wavelet" or key.startswith("wavelet."):
-            yield key, "acts on networks of the transform, and none is named", value, remedy
+            rule = "acts on networks of the transform, and none is named"
+            yield key, rule, value, "leave it out, or name cwt_lstm"
 
 
 def _whole_records(whole: Whole) -> Found:

@@ -22,20 +22,23 @@ TRAINING = ("train", "paper")  # tasks that train networks
 
 
 def combination_problems(whole: Whole, wrong: set[str]) -> list[Problem]:
-    """The problems of every check none of whose keys is wrong by itself; of each key the first.
+    """The problems of every check none of whose keys is wrong by itself.
+
+    Of a key that cannot act nothing else is said.
 
     Args:
         whole: The configuration; its simulator and models are None where these are wrong.
         wrong: The keys that are wrong by themselves.
     """
-    problems: dict[str, Problem] = {}
+    problems: list[Problem] = []
+    idle = set() if "task" in wrong else {key for key, *_ in idle_keys(whole.config, whole.origin)}
     groups = {key.split(".")[0] for key in wrong}
     for needed, check in CHECKS:
         if groups & set(needed) or ("simulator" in needed and whole.simulator is None):
             continue
-        for key, rule, value, remedy in check(whole):
-            problems.setdefault(key, Problem(key, rule, value, remedy, whole.origin.of(key)))
-    return list(problems.values())
+        found = [one for one in check(whole) if check is _idle or one[0] not in idle]
+        problems += [Problem(key, rule, value, remedy, whole.origin.of(key)) for key, rule, value, remedy in found]
+    return problems
 
 
 def _name(whole: Whole) -> Found:

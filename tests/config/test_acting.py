@@ -32,7 +32,7 @@ def problems(task, *words):
 
 
 IDLE = [
-    *(("identify", word, "it acts in task=train") for word in OF_TRAINING),
+    *(("identify", word, "task=train") for word in OF_TRAINING),
     *(("explain", word, "it acts in task=train") for word in OF_TRAINING),
     *(("simulate", word, "it acts in task=train") for word in OF_TRAINING),
     *(("evaluate", word, "it acts in task=train") for word in OF_TRAINING),

@@ -90,8 +90,8 @@ def test_without_its_file_it_is_asked_for(tmp_path, caplog):
     assert "an effect of your own needs simulator.plugins=[its file]" in caplog.text
 
 
-def test_what_is_ruled_out_must_exist(tmp_path, caplog):
-    assert main(decay(tmp_path, "ruled_out=[backlsh]")) == 1
+def test_what_is_ruled_out_must_exist(caplog):
+    assert main(["task=explain", "measurement=silverbox", "ruled_out=[backlsh]"]) == 1
     assert "did you mean 'backlash'?" in caplog.text
 
 

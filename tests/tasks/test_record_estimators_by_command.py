@@ -76,7 +76,7 @@ def test_what_save_left_is_asked_as_its_settings_are(measured, tmp_path):
     [
         (["model=wavelet_ridge", "model.omega0=1"], "model.omega0 = 1: must lie within 5 and 100"),
         (["model=wavelet_ridge", "model.smoothing=0.2"], "model.smoothing: no such key"),
-        (["model=wavelet_ridge", "wavelet=morlet"], "wavelet = 'morlet': acts on networks"),
+        (["model=wavelet_ridge", "wavelet=morlet"], "the estimator wavelet_ridge has model.omega0"),
         (["model=half_power", "model.draws=20.5"], "model.draws = 20.5: must be a whole number"),
         (["model=cwt_lstm"], "names a network, which tells nothing before it is trained"),
         (["model.names=[wavelet_ridge,raw_lstm]"], "names a network, which tells nothing before it is trained"),
