@@ -51,7 +51,7 @@ class Encoder(Pulses):
         "Counts in one turn of its shaft.", "angle", missing="give the number in one turn of its shaft"
     )
     index: Annotated[str | int, Column()] = key(
-        "Column of the index pulse (of its times, beside `timestamps`).",
+        "Column of the index pulse (of its times, beside `timestamps`); the gear's is checked to come once a turn.",
         "zero of the angle; check: its pulses are a turn apart",
     )
 

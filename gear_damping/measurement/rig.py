@@ -152,7 +152,7 @@ class GearConditions(Declared):
     title: ClassVar[str] = "a gear_pair"
     pinion_speed: Annotated[Quantity, Measured("rad/s", "any", uncertain=True)] = key(
         "Speed of the pinion. A diagnosis lets it vary by a thousandth within a record without an angle.",
-        "angle of the shafts; checked against a measured angle; a prior with its uncertainty",
+        "angle of the shafts, a prior with its uncertainty; beside a measured angle no more than a check of it",
     )
     pinion_torque: Annotated[Quantity, Measured("N*m", "any", uncertain=True)] = key("Driving torque.", "load")
     gear_torque: Annotated[Quantity | str, Load("N*m", "any", uncertain=True)] = key(
