@@ -24,6 +24,7 @@ NEEDED = {  # what a launcher is made of: its module, and what brings it
     "joblib": ("hydra_plugins.hydra_joblib_launcher", "joblib"),
     "slurm": ("hydra_plugins.hydra_submitit_launcher", "slurm"),
 }
+OF_A_PATH = (PATH, "checkpoint", "resume", "sweep", "data_folder", "hydra.run.dir", "hydra.sweep.dir")
 OFF_BY_NULL = ("experiment",)  # groups that may be left out
 SHOWS = ("--cfg", "-c", "--info", "-i", "--resolve", "--version", "--hydra-help", "--shell-completion", "-sc")
 MANY = ("--multirun", "-m")
@@ -128,10 +129,10 @@ def _read_override(argument: str, many: bool, before: str) -> tuple[list[Problem
     if many and argument.startswith(f"{PATH}="):
         argument = f"{PATH}={all_named(argument.partition('=')[2])}"
     try:
-        parsed = parse(argument)
+        parsed, argument = _parsed(argument)
     except HydraException as error:
         rule = f"cannot be read: {str(error).splitlines()[0]}"
-        remedy = "close every bracket and quote; a value with '=' needs quotes of its own: key='\"value\"'"
+        remedy = "close every bracket and quote; a value with '=' or brackets needs quotes of its own: key='\"value\"'"
         return [Problem(argument, rule, remedy=remedy, source=SOURCE)], []
     key, value = parsed.key_or_group, argument.partition("=")[2]
     if not key:
@@ -148,6 +149,18 @@ def _read_override(argument: str, many: bool, before: str) -> tuple[list[Problem
         return [], []
     problems = _unknown_choices(key, value)
     return problems, [] if problems else [f"{key}={value}"]
+
+
+def _parsed(argument: str) -> tuple[Override, str]:
+    """The override, and the word that it was read from: a path that Hydra does not read, `run(2).csv`, in quotes."""
+    try:
+        return parse(argument), argument
+    except HydraException:
+        key, _, value = argument.partition("=")
+        if key not in OF_A_PATH or {"'", '"'} & set(value):
+            raise
+        quoted = f'{key}="{value}"'
+        return parse(quoted), quoted
 
 
 def _one_value(value: str) -> str:

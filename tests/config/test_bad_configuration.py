@@ -187,3 +187,10 @@ def test_help_names_tasks_groups_and_keys(capsys):
     said = capsys.readouterr().out
     for word in ("experiment", "backlash", "identify", "training.max_epochs", "--multirun"):
         assert word in said
+
+
+def test_a_file_whose_name_has_brackets_needs_no_quotes():
+    path = "/measured/run (2).csv"
+    typed = read_command_line(["task=inspect", f"measurement.path={path}"])
+    assert not typed.problems
+    assert f'++measurement.path="{path}"' in typed.overrides
