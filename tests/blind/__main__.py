@@ -8,8 +8,7 @@ from pathlib import Path
 
 from .command import ROOT, STOPPED, log, see_oracles, shown, stop_by_signals
 
-PAGE = ROOT / "docs" / "blind.md"
-KEPT = PAGE.with_name("blind_cases.jsonl")  # what the page follows from, and where a fresh clone goes on
+PAGES = ROOT / "docs"
 
 
 def arguments(given: list[str] | None = None) -> argparse.Namespace:
@@ -23,7 +22,8 @@ def arguments(given: list[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--minutes", type=float, default=85.0, help="begin no case after so many; call again to go on")
     parser.add_argument("--processes", type=int, default=2, choices=(1, 2))
     parser.add_argument("--redo", action="store_true", help="ask again what another version of the package answered")
-    parser.add_argument("--page", action="store_true", help=f"write {PAGE.relative_to(ROOT)} too")
+    parser.add_argument("--page", action="store_true", help="write docs/NAME.md too, and the cases beside it")
+    parser.add_argument("--name", default="blind", help="of the page; a fresh clone goes on from its cases")
     parser.add_argument("--out", type=Path, default=ROOT / "outputs" / "blind", help="folder of cases and rates")
     return parser.parse_args(given)
 
@@ -36,8 +36,9 @@ def main(given: list[str] | None = None) -> int:
     from .run import CASES, ask, begin_from, done_cases, keep, write
     from .strata import COUNTS, questions
 
+    page, kept = PAGES / f"{options.name}.md", PAGES / f"{options.name}_cases.jsonl"
     asked = questions(tuple(options.stratum or COUNTS), options.cases, options.seed)
-    begin_from(KEPT, options.out / CASES)
+    begin_from(kept, options.out / CASES)
     stopped = False
     try:
         cases = ask(asked, options.out, options.processes, log, options.minutes, redo=options.redo)
@@ -46,9 +47,9 @@ def main(given: list[str] | None = None) -> int:
         log(STOPPED)
     if not cases:
         return 130 if stopped else 0
-    found = write(cases, options.out, PAGE if options.page else None, shown("make blind", given))
+    found = write(cases, options.out, page if options.page else None, shown("make blind", given))
     if options.page:
-        keep(cases, KEPT)
+        keep(cases, kept)
     for claim, row in found["rates"].items():
         log(f"{claim}: {row['count']} of {row['n']} ({row['target']}: {row['met']})")
     log(f"rates and table: {options.out}")

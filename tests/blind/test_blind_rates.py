@@ -12,7 +12,7 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from tests.blind.__main__ import KEPT
+from tests.blind.__main__ import PAGES
 from tests.blind.accuracy import errors
 from tests.blind.judge import judged
 from tests.blind.rates import clopper_pearson, rates
@@ -281,4 +281,4 @@ def test_ctrl_c_keeps_what_is_done_and_leaves_no_process(tmp_path):
         rest, _ = running.communicate(timeout=60)
     assert running.returncode == 130
     assert "stopped; the cases done so far are kept" in rest
-    assert done_cases(tmp_path / CASES) == done_cases(KEPT)  # and none of its own
+    assert done_cases(tmp_path / CASES) == done_cases(PAGES / "blind_cases.jsonl")  # and none of its own
