@@ -19,6 +19,7 @@ MORE_PAIRS = (
     "check the value; where two and three pairs alternate, as of helical teeth, state 1 and what is beyond the whole "
     "number, and the stiffness of three pairs and of two"
 )
+UNDAMPED = "leave the key out where the damping is not known: the fit then begins at a usual one"
 FALLS_AWAY = (
     "leave the key out where its value is not known; a linear oscillator has a spring that pulls back, and a rig that "
     "is pushed away from its place of rest, as a buckled beam, is outside of what one is here"
@@ -86,7 +87,7 @@ class GearParameters(Declared):
     contact_ratio: Annotated[Quantity, Measured("1", uncertain=True, within=(1, 2), beyond=MORE_PAIRS)] = key(
         "Contact ratio.", START
     )
-    damping_ratio: Annotated[Quantity, Measured("1", uncertain=True)] = key(
+    damping_ratio: Annotated[Quantity, Measured("1", uncertain=True, excluded=UNDAMPED)] = key(
         "Viscous damping ratio of the mesh.", START
     )
     equivalent_mass: Annotated[Quantity, Measured("kg", uncertain=True, within=(0, 1e5))] = key(
@@ -123,10 +124,10 @@ class OscillatorParameters(Declared):
     stiffness: Annotated[Quantity, Measured("1/s^2", "not negative", uncertain=True, excluded=FALLS_AWAY)] = key(
         "Stiffness over mass; 0 means that there is no spring.", START
     )
-    damping_coefficient: Annotated[Quantity, Measured("1/s", uncertain=True)] = key(
+    damping_coefficient: Annotated[Quantity, Measured("1/s", uncertain=True, excluded=UNDAMPED)] = key(
         "Viscous damping over mass.", START
     )
-    damping_ratio: Annotated[Quantity, Measured("1", uncertain=True)] = key(
+    damping_ratio: Annotated[Quantity, Measured("1", uncertain=True, excluded=UNDAMPED)] = key(
         "Viscous damping over the critical one, instead of damping_coefficient.", START
     )
     force_gain: Annotated[Quantity, Measured("own", "not zero", uncertain=True)] = key(

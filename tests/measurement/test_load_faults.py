@@ -143,7 +143,7 @@ def test_a_bad_word_about_a_sensor_is_named(bench, key, value, said):
         ("module", {"value": 0, "unit": "mm"}, "must be positive"),
         ("n_teeth_pinion", 20.5, "whole number"),
         ("inertia_gear", {"value": 1, "unit": "kg"}, "kg*m^2"),
-        ("damping_ratio", -0.1, "must not be negative"),
+        ("damping_ratio", 0, "must be positive; remedy: leave the key out"),
     ],
 )
 def test_a_bad_parameter_is_named(bench, name, value, said):
