@@ -19,15 +19,16 @@ from .targets import RIGS, TARGETS
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "reliability.md"
 CASES, RIG_CASES = 10_000, 200
-PATIENCE = 120.0  # s without a word, after which a worker hangs where no alarm reaches it
+PATIENCE = 300.0  # s without a word, after which a worker hangs where no alarm reaches it
 HEAD = """# Reliability
 
 Files, declarations and commands that were valid are damaged at random: bytes flipped, cut, doubled, fields set to
 extreme numbers; nodes of a `measurement.yaml` removed, renamed or replaced; words of a command cut or replaced. Under
 `identify` and `explain` oscillators are drawn (any channels, units, roles, clocks, loads and lengths in any mixture,
 among them rigs that run away) and identified, or explained in a search of three seconds with its report. Each case must
-be read, or refused with one message that names key or file. A crash, a hang (60 s), more than 4 GiB of memory, a killed
-process and a file written outside of the case's folder are escapes. Each case follows from its number and the seed.
+be read, or refused with one message that names key or file. A crash, a hang (60 s; 3 minutes of a rig), more than 4 GiB
+of memory, a killed process and a file written outside of the case's folder are escapes. Each case follows from its
+number and the seed.
 """
 
 

@@ -17,6 +17,7 @@ import warnings
 from pathlib import Path
 
 SECONDS = 60  # of a case; a reader that does not end is given up after half of it
+RIG_SECONDS = 180  # of a rig that is fitted
 MEMORY = 4 * 1024**3  # bytes of address space beyond what is mapped before the first case
 
 
@@ -27,7 +28,9 @@ class TooSlow(BaseException):
 def main() -> None:
     """Arguments: target, first case, number of cases, seed."""
     name, first, count, seed = sys.argv[1], int(sys.argv[2]), int(sys.argv[3]), sys.argv[4]
-    from .targets import target
+    from .targets import RIGS, target
+
+    seconds = RIG_SECONDS if name in RIGS else SECONDS
 
     warnings.simplefilter("ignore")
     with tempfile.TemporaryDirectory() as folder:
@@ -41,7 +44,7 @@ def main() -> None:
             place = Path(folder) / f"case_{number}"
             place.mkdir()
             before = set(os.listdir(folder))
-            said = _answer(asked, random.Random(f"{seed} {name} {number}"), place)
+            said = _answer(asked, random.Random(f"{seed} {name} {number}"), place, seconds)
             written = set(os.listdir(folder)) - before
             if written:
                 said = {"escape": f"wrote {', '.join(sorted(written))}", "trace": ""}
@@ -51,12 +54,12 @@ def main() -> None:
             place.rmdir()
 
 
-def _answer(asked, source: random.Random, place: Path) -> dict[str, str]:
-    signal.alarm(SECONDS)
+def _answer(asked, source: random.Random, place: Path, seconds: int) -> dict[str, str]:
+    signal.alarm(seconds)
     try:
         return {"said": asked(source, place)}
     except TooSlow:
-        return {"escape": f"not answered within {SECONDS} s", "trace": ""}
+        return {"escape": f"not answered within {seconds} s", "trace": ""}
     except BaseException as error:
         trace = "".join(traceback.format_tb(error.__traceback__)[-3:])
         return {"escape": f"{type(error).__name__}: {error}"[:300], "trace": trace}
