@@ -11,11 +11,21 @@ def entry(arguments: Sequence[str] | None = None) -> None:
     """Run the command line and end with its exit code."""
     _wait_without_spinning()
     words = sys.argv[1:] if arguments is None else arguments
+    try:
+        code = _run(words)
+        sys.stdout.flush()
+    except BrokenPipeError:  # who read along, as `| head`, has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        code = 0
+    sys.exit(code)
+
+
+def _run(words: Sequence[str]) -> int:
     if answered(words):
-        sys.exit(WRONG_INPUT)
+        return WRONG_INPUT
     from gear_damping.tasks.command import main
 
-    sys.exit(main(words))
+    return main(words)
 
 
 def _wait_without_spinning() -> None:

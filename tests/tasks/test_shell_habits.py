@@ -79,3 +79,10 @@ def test_what_cannot_run_is_not_printed_and_said_as_when_it_is_run(tmp_path, cap
 def test_a_sweep_cannot_be_shown_as_one_job(caplog):
     assert main(["--multirun", "seed=0,1", *QUICK]) == 1
     assert "--multirun: runs many jobs, and --cfg shows one" in caplog.text
+
+
+def test_who_reads_the_first_lines_alone_gets_no_traceback():
+    command = f"{sys.executable} -m gear_damping --help | head -n 1"
+    found = subprocess.run(command, shell=True, capture_output=True, text=True, timeout=60)
+    assert found.stdout.count("\n") == 1
+    assert "Traceback" not in found.stderr
