@@ -25,6 +25,7 @@ NEEDED = {  # what a launcher is made of: its module, and what brings it
     "slurm": ("hydra_plugins.hydra_submitit_launcher", "slurm"),
 }
 OF_A_PATH = (PATH, "checkpoint", "resume", "sweep", "data_folder", "hydra.run.dir", "hydra.sweep.dir")
+LONGEST_KEY = 200  # letters; a folder of configurations is looked up by them, and file systems end at 255
 OFF_BY_NULL = ("experiment",)  # groups that may be left out
 SHOWS = ("--cfg", "-c", "--info", "-i", "--resolve", "--version", "--hydra-help", "--shell-completion", "-sc")
 MANY = ("--multirun", "-m")
@@ -137,6 +138,9 @@ def _read_override(argument: str, many: bool, before: str) -> tuple[list[Problem
     key, value = parsed.key_or_group, argument.partition("=")[2]
     if not key:
         return [Problem(argument, "has no key", remedy="write key=value", source=SOURCE)], []
+    if len(key) > LONGEST_KEY:
+        rule = f"a key of {len(key)} letters, which none has"
+        return [Problem(f"{key[:40]}…", rule, remedy="write key=value with a key of --help", source=SOURCE)], []
     if not many and not parsed.is_delete() and parsed.is_sweep_override():
         return [Problem(key, "has several values and this is one run", value, _one_value(value), SOURCE)], []
     if key == LAUNCHER and value in NEEDED:

@@ -66,6 +66,7 @@ FAULTS = {
     "spread_of_nothing": (["family.spreads.xx={uniform:[1,2]}"], ["family.spreads.xx", "no such parameter"]),
     "spread_upside_down": (["family.spreads.pinion_torque={factor:[2,1]}"], ["pinion_torque", "swap them"]),
     "spread_of_odd_form": (["family.spreads.pinion_torque=3"], ["pinion_torque", "uniform"]),
+    "endless_key": (["a" * 5000 + "=3"], ["a" * 40 + "…", "a key of 5000 letters", "--help"]),
     "broken_override": (["simulator.pinion_torque=[1"], ["simulator.pinion_torque=[1", "close every bracket"]),
     "several_values_without_multirun": (["seed=1,2"], ["seed = '1,2'", "add --multirun"]),
     "deletion_of_a_number": (["~model=1e-3"], ["configuration", "deletion value must be a string", "--help"]),
