@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from gear_damping.measurement.record import Finding, Record
-from gear_damping.measurement.timebase import CLOCK_JUMPS, LOST
+from gear_damping.measurement.timebase import CLOCK_JUMPS, LOST, counted
 
 _GAP, _BESIDE, _FEWEST_GAPS = 1.5, 4, 5  # usual steps in a gap; samples on either side; gaps that a share is had from
 _NEARER, _ERRORS = (
@@ -43,8 +43,7 @@ def _losses(record: Record) -> Record:
     lost = [finding for finding in record.findings if finding.kind == LOST]
     if not lost:
         return record
-    steps = np.diff(record.time)
-    missing = np.round(steps * record.sampling_rate).astype(int) - 1
+    missing = np.diff(counted(record.time)) - 1
     if missing.sum() > _MOST_LOST * len(record.time):
         return record
     if not all(follows_from_neighbours(channel.values, int(missing.max())) for channel in record.channels.values()):

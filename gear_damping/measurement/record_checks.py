@@ -43,7 +43,7 @@ _SLOPE_ERROR = 0.1  # of the power of s' e; nothing is weighted higher than this
 _FLOOR, _OVER = 0.1, 4.0  # quantile of the power that is noise; times this, what a line must be above
 _DECIDED = 0.35  # share below which the stamps are wrong
 _ERRORS = 4.0  # standard errors that the share must be nearer to none by
-_RESPONSES = ("transmission_error", "gear_speed")  # that make a record one of a simulation, not of a casing
+MESH_RESPONSES = ("transmission_error", "gear_speed")  # that make a record one of a simulation, not of a casing
 
 
 def check_shafts(record: Record) -> list[Finding | None]:
@@ -195,7 +195,7 @@ def _quiet(values: NDArray) -> NDArray:
 
 def not_compared(record: Record) -> Iterator[Finding]:
     """A note for every channel that the explanation leaves aside."""
-    if not any(name in record.channels for name in _RESPONSES):
+    if not any(name in record.channels for name in MESH_RESPONSES):
         return
     acceleration = record.channels.get("acceleration")
     if acceleration is not None and acceleration.mounting == "casing":

@@ -121,7 +121,7 @@ def stamped_time(stamps: NDArray[np.float64], key: str, source: str, first: int 
     return TimeBase(stamps, rate, uniform=False, findings=(jitter_note(stamps),))
 
 
-def _counted(stamps: NDArray[np.float64]) -> NDArray[np.float64]:
+def counted(stamps: NDArray[np.float64]) -> NDArray[np.float64]:
     """How many steps of the clock every stamp lies behind the first, (n,)."""
     steps = np.diff(stamps)
     step = float(np.mean(steps[steps < (1 + _HALF) * np.median(steps)]))
@@ -133,7 +133,7 @@ def _is_grid_with_holes(stamps: NDArray[np.float64]) -> bool:
 
     Rounding to a digit of almost the length of a step leaves holes too, but regular ones, and seldom so few.
     """
-    index = _counted(stamps)
+    index = counted(stamps)
     if not 0 < index[-1] + 1 - stamps.size <= _HOLES:
         return False
     step, start = np.polyfit(index, stamps - stamps[0], 1)
@@ -142,7 +142,7 @@ def _is_grid_with_holes(stamps: NDArray[np.float64]) -> bool:
 
 def _with_losses(stamps: NDArray[np.float64], found: Finding) -> TimeBase:
     """The stamps where samples were lost, freed of their rounding, at the rate of the steps that they count."""
-    index = _counted(stamps)
+    index = counted(stamps)
     written = written_in(stamps, index)
     if written is None:
         return TimeBase(stamps, index[-1] / float(stamps[-1] - stamps[0]), uniform=False, findings=(found,))

@@ -19,6 +19,7 @@ from gear_damping.measurement.guessing import UNKNOWN, Guess, guesses, system_of
 from gear_damping.measurement.inspection import Column, Inspection, inspect_table, of_columns
 from gear_damping.measurement.load import load_measurement
 from gear_damping.measurement.record import Channel, Measurement, Record
+from gear_damping.measurement.record_checks import MESH_RESPONSES
 from gear_damping.measurement.resolution import step_of
 from gear_damping.measurement.spectral_floor import Spectrum, spectrum_of
 from gear_damping.measurement.starting_yaml import starting_yaml
@@ -237,13 +238,12 @@ def _measurement_lines(measurement: Measurement) -> Iterator[str]:
 
 _AUTOMATIC = "; task=explain holds out a part of them by itself, and so does task=identify of a gear pair"
 _CASINGS = "; task=explain looks into all of them, and task=identify finds no damping behind a casing"
-_OF_A_MESH = ("transmission_error", "gear_speed")  # responses beside which a casing is only a second sensor
 
 
 def _is_casing(record: Record) -> bool:
     """Whether a casing is all that was heard in a record."""
     heard = record.channels.get("acceleration")
-    return heard is not None and heard.mounting == "casing" and not {*record.channels} & {*_OF_A_MESH}
+    return heard is not None and heard.mounting == "casing" and not {*record.channels} & {*MESH_RESPONSES}
 
 
 def _record_lines(record: Record) -> Iterator[str]:

@@ -7,19 +7,11 @@ from gear_damping.measurement.column_kinds import COUNTER, PULSES, ROW_NUMBER, S
 from gear_damping.measurement.formats.registry import read_table
 from gear_damping.measurement.guessing import guesses
 from gear_damping.measurement.inspection import inspect_table
+from tests.measurement.bare import column, inspected
 
 N = 6000
 T = np.arange(N) / 1000.0
 RNG = np.random.default_rng
-
-
-def inspected(tmp_path, **columns):
-    np.savez(tmp_path / "a.npz", **columns)
-    return inspect_table(read_table(tmp_path / "a.npz"))
-
-
-def column(found, name):
-    return next(one for one in found.columns if one.reference == name)
 
 
 def test_a_switched_current_is_no_pulse_train(tmp_path):

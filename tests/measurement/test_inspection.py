@@ -10,20 +10,12 @@ from gear_damping.measurement.guessing import UNKNOWN, guesses, system_of
 from gear_damping.measurement.inspection import inspect_table, of_columns
 from gear_damping.measurement.spectral_floor import spectrum_of
 from gear_damping.measurement.starting_yaml import starting_yaml
+from tests.measurement.bare import column, inspected
 
 RATE = 1000.0
 N = 6000
 T = np.arange(N) / RATE
 RNG = np.random.default_rng
-
-
-def inspected(tmp_path, **columns):
-    np.savez(tmp_path / "a.npz", **columns)
-    return inspect_table(read_table(tmp_path / "a.npz"))
-
-
-def column(found, name):
-    return next(one for one in found.columns if one.reference == name)
 
 
 @pytest.mark.parametrize("n", [400, 6000, 50_000])
