@@ -1,8 +1,9 @@
 """Which rows a window of time takes, and values brought to a lower rate by a filter that shifts nothing.
 
 The filter passes what lies below 0.4 of the new rate and stops, by 80 dB, what lies above half of it. It reaches 25
-samples of the new rate to either side. Beyond the ends of a record it meets what the last 50 samples of the new rate go
-on as: a cubic and waves that the filter passes, fitted to them by least squares. What is smooth so keeps its ends,
+samples of the new rate to either side. There it meets the rows that the file holds beside a slice or a window, for what
+it stops may be larger than what it passes. Beyond the ends of a file it meets what the last 50 samples of the new rate
+go on as: a cubic and waves that the filter passes, fitted to them by least squares. What is smooth so keeps its ends,
 where zeros, a held value or a reflection would bend it.
 """
 
@@ -54,12 +55,20 @@ def window_rows(
     return int(inside[0]), int(inside[-1]) + 1
 
 
-def slower(base: TimeBase, rate: float, key: str = "resample", source: str = "") -> TimeBase:
+def rows_beside(base: TimeBase, rate: float) -> int:
+    """How many rows the filter down to `rate` in Hz reaches to either side."""
+    return int(np.ceil(_REACH * base.sampling_rate / rate))
+
+
+def slower(
+    base: TimeBase, rate: float, key: str = "resample", source: str = "", within: tuple[float, float] | None = None
+) -> TimeBase:
     """The time base of a record at a lower rate; its `resample` filters the record's values.
 
     Args:
         base: The time base of the samples in the file.
         rate: The new rate in Hz.
+        within: The first and the last time in s that the record is to hold; absent, those of `base`.
         key: What the rate is called in messages.
         source: The file that declares it.
 
@@ -71,10 +80,11 @@ def slower(base: TimeBase, rate: float, key: str = "resample", source: str = "")
         raise InputError(Problem(key, rule, rate, "give a lower rate, or leave it out", source))
     if rate >= base.sampling_rate * (1 - _ROUNDING):
         return base
-    n = int(np.floor((base.time[-1] - base.time[0]) * rate * (1 + _ROUNDING))) + 1
+    begin, end = within or (base.time[0], base.time[-1])
+    n = int(np.floor((end - begin) * rate * (1 + _ROUNDING))) + 1
     note = f"resampled from {base.sampling_rate:.6g} to {rate:.6g} Hz; flat up to {PASS * rate:.6g} Hz"
     return SlowerTime(
-        base.time[0] + np.arange(n) / rate, rate, notes=(*base.notes, note), findings=base.findings, recorded=base
+        begin + np.arange(n) / rate, rate, notes=(*base.notes, note), findings=base.findings, recorded=base
     )
 
 

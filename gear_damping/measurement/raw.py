@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.checks import refuse_not_finite
-from gear_damping.measurement.cutting import slower, window_rows
+from gear_damping.measurement.cutting import rows_beside, slower, window_rows
 from gear_damping.measurement.declaration import ChannelPlan, EncoderPlan, RecordPlan, TimePlan
 from gear_damping.measurement.encoders import ReadColumn, ShaftAngle, shaft_angle
 from gear_damping.measurement.formats.table import Table
@@ -58,10 +58,11 @@ class RawReader:
 
     def read(self, sha256: str) -> RawRecord | None:
         """The record, or None where it has no time base; `complete` where all of it could be read."""
-        before, base = len(self.problems), None
+        before, base, within = len(self.problems), None, None
         with self.problems.collecting():
             self._find_rows()
             base = self._base()
+            base, within = self._with_rows_beside(base)
         channels = []
         for plan in self.plan.channels:
             with self.problems.collecting():
@@ -73,7 +74,7 @@ class RawReader:
         if base is None:
             return None
         with self.problems.collecting():
-            base = self._at_its_rate(base)
+            base = self._at_its_rate(base, within)
         complete = len(self.problems) == before
         return RawRecord(self.plan, self.table, sha256, base, channels, angles, complete)
 
@@ -197,12 +198,43 @@ class RawReader:
                 return self.table.clock(self.table.index(column, ""))
         return None
 
-    def _at_its_rate(self, base: TimeBase) -> TimeBase:
+    def _with_rows_beside(self, base: TimeBase | None) -> tuple[TimeBase | None, tuple[float, float] | None]:
+        """The time base with the sound rows beside the record that the filter of `resample` reaches, and its own ends.
+
+        Those rows are read as if they were the record's: an even clock and numbers in every column, else none is taken.
+        """
+        if base is None or self.plan.resample is None or not base.uniform or self.plan.resample >= base.sampling_rate:
+            return base, None
+        first, stop = self.first, self.stop
+        before, behind = self._sound_beside(rows_beside(base, self.plan.resample))
+        if not before + behind:
+            return base, None
+        self.first, self.stop = first - before, stop + behind
+        with suppress(InputError):  # of stamps that are none there
+            wider = self._base()
+            if wider.uniform and abs(wider.sampling_rate / base.sampling_rate - 1) <= _SAME_RATE:
+                return replace(wider, findings=base.findings), (float(base.time[0]), float(base.time[-1]))
+        self.first, self.stop = first, stop
+        return base, None
+
+    def _sound_beside(self, most: int) -> tuple[int, int]:
+        """How many rows before and behind the record hold numbers in all of its columns, at most so many each."""
+        columns = [plan.column for plan in self.plan.channels if plan.timing is None]
+        columns += [plan.column for plan in self.plan.encoders if not plan.timestamps]
+        before, behind = most, most
+        for column in columns:
+            with suppress(InputError):  # which its channel will say
+                values = np.isfinite(self._all(column, ""))
+                before = min(before, _leading(values[: self.first][::-1]))
+                behind = min(behind, _leading(values[self.stop :]))
+        return before, behind
+
+    def _at_its_rate(self, base: TimeBase, within: tuple[float, float] | None) -> TimeBase:
         """The time base at the rate that `resample` asks for."""
         if self.plan.resample is None:
             return base
         key = f"{self.plan.key}.resample"
-        base = slower(base, self.plan.resample, key, self.source)
+        base = slower(base, self.plan.resample, key, self.source, within)
         if base.time.size < LEAST_SAMPLES:
             rule = f"leaves {base.time.size} samples; a record needs at least {LEAST_SAMPLES}"
             raise InputError(Problem(key, rule, self.plan.resample, "give a higher rate", self.source))
@@ -267,6 +299,11 @@ class RawReader:
             rule = f"{base.time.size} time stamps for {n} samples"
             raise InputError(Problem(key, rule, None, "name the stamps of this very channel", self.file))
         return base
+
+
+def _leading(true: NDArray[np.bool_]) -> int:
+    """How many of (n,) are true before the first that is not."""
+    return int(true.size if true.all() else np.argmin(true))
 
 
 def _rate_conflict(rate: float, column: str, own: float) -> Finding:

@@ -5,8 +5,9 @@ to one: a step between 0.5 and 1.5 of the usual one is what two stamps within a 
 and a band-limited signal is determined by samples so placed (Kadec's theorem). Beyond, a step could as well be a lost
 or a doubled sample, and the stamps alone no longer say which. A few late stamps (one in a thousand) that the next ones
 make good again are a busy recorder's and are let pass. Another rate over an eighth of the record is a recorder's that
-slowed down, or one that writes events: samples are taken at their stamps, which is said. What stays unexplained is a
-data problem: a lasting shift of whole steps (samples were dropped), any other lasting shift (the clock jumps, or the
+slowed down, or one that writes events, and steps of which a tenth and more are odd are those of samples that come when
+they come, as by a serial line: samples are taken at their stamps, which is said. What stays unexplained is a data
+problem: a lasting shift of whole steps (samples were dropped), any other lasting shift (the clock jumps, or the
 recorder paused where the values move as long), steps all over the place. Whether the values were taken at their
 stamps is asked of them too (`record_checks`).
 """
@@ -33,7 +34,7 @@ _HALF = 0.5  # of a step; a stamp that far from where it is due counts as anothe
 _WHOLE = 0.05  # of a gap; how near a whole number of steps it must be, beside what the jitter allows
 _LISTED = 5  # gaps that a message lists
 _RUN = 0.8  # share of gaps behind a gap from which they are a lower rate, not losses
-_MANY = 0.1  # share of the steps; so many are no jumps but another rate
+_MANY = 0.1  # share of the steps; so many are no jumps but another rate, or none
 _LOOSE = 0.2  # of a step; all that jitter may add to that
 _SIDE = 8  # samples at either side of a gap that say whether the shift lasts
 _LATE_SHARE = 1e-3  # of the stamps that may come late
@@ -231,9 +232,9 @@ def irregularity(stamps: NDArray[np.float64], first: int = 0) -> Finding | None:
         first: The row of the first one, from which messages count, as slices do.
     """
     steps = np.diff(stamps)
-    usual = float(np.median(steps))
-    odd = np.flatnonzero(np.abs(steps / usual - 1) > _HALF)
-    lasting = np.array([k for k in odd if abs(_shift(stamps, usual, k)) > _HALF], int)
+    usual, slack = _usual_step(stamps, steps)
+    odd = np.flatnonzero(np.abs(steps / usual - 1) > _HALF + slack)
+    lasting = np.array([k for k in odd if abs(_shift(stamps, usual, k)) > _HALF + slack], int)
     gaps = steps[lasting] / usual
     run = np.mean(np.diff(lasting) == 1) if lasting.size > 2 else 0.0
     if lasting.size and run < _RUN and _are_whole(gaps, _scatter(steps) / usual):
@@ -242,6 +243,8 @@ def irregularity(stamps: NDArray[np.float64], first: int = 0) -> Finding | None:
     changes = _change_of_rate(np.delete(steps, lasting) if few else steps)
     if changes is not None:
         return _changing(steps, changes, first)
+    if odd.size >= _MANY * steps.size:
+        return _scattered(steps)
     if lasting.size:
         return replace(_unexplained(steps, int(lasting[0]) + 1, "the clock jumps", first), kind=CLOCK_JUMPS)
     if odd.size > 2 * max(1.0, _LATE_SHARE * steps.size):  # a late stamp has an odd step at either side
@@ -267,6 +270,16 @@ def _shift(stamps: NDArray, usual: float, k: int) -> float:
     late = stamps[first:last] - stamps[first] - usual * np.arange(last - first)
     at = k + 1 - first
     return float(np.median(late[at:]) - np.median(late[:at])) / usual
+
+
+def _usual_step(stamps: NDArray, steps: NDArray) -> tuple[float, float]:
+    """The usual step in s, and what the rounding of stamps may add to one, in steps; none where none shows."""
+    usual = float(np.median(steps))
+    digit = _last_digit(stamps - stamps[0], 4 * np.spacing(np.abs(stamps).max()))
+    if digit is None or np.mean(np.abs(np.abs(steps - usual) - digit) <= _EXACT * digit) < _MANY:
+        return usual, 0.0
+    usual = float(np.mean(steps[steps < (1 + _HALF) * usual]))
+    return usual, digit / usual
 
 
 def _scatter(steps: NDArray) -> float:
@@ -311,6 +324,14 @@ def _changing(steps: NDArray, where: int, first: int) -> Finding:
         "where the clock and not the sampling did that, give sampling_rate instead of the time column"
     )
     return Finding("uneven_stamps", message, channel="time", sample=where, severity="note")
+
+
+def _scattered(steps: NDArray) -> Finding:
+    message = (
+        f"{_range_of(steps)}, and many are long: samples are taken at their stamps; where the clock and not the "
+        "sampling did that, give sampling_rate instead of the time column"
+    )
+    return Finding("uneven_stamps", message, channel="time", severity="note")
 
 
 def _unexplained(steps: NDArray, where: int, what: str, first: int) -> Finding:

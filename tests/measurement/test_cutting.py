@@ -173,6 +173,26 @@ def test_resampling_to_a_higher_rate_or_to_nothing_is_one_problem(bench, with_pl
     assert "leaves 2 samples; a record needs at least 8" in bench.only_problem()
 
 
+@pytest.mark.parametrize("hole", [None, 805])
+def test_the_filter_reaches_into_the_rows_beside_a_window(hole, tmp_path):
+    """A ringing that the filter stops leaves nothing at the ends of a window, up to where a row beside it is no number."""
+    time = np.arange(4000) / RATE
+    swing = np.sin(2 * np.pi * 13.0 * time)
+    values = swing + 6 * np.sin(2 * np.pi * 311.0 * time + 1.0)
+    if hole is not None:
+        values[hole] = np.nan
+    np.savetxt(tmp_path / "a.csv", values, header="x", comments="")
+    channels = {"sampling_rate": "1 kHz", "displacement": {"column": "x", "unit": "mm"}}
+    record = {"file": "a.csv", "resample": "200 Hz", "window": {"from": 0.9, "to": 3.0, "unit": "s"}}
+    path = tmp_path / "measurement.yaml"
+    path.write_text(yaml.safe_dump({"system": "oscillator", "records": [record | {"channels": channels}]}))
+    found = load.load_measurement(path).records[0]
+    assert found.time[0] == pytest.approx(0.9)
+    assert found.time[-1] == pytest.approx(2.995)
+    left = found.channels["displacement"].values - np.sin(2 * np.pi * 13.0 * found.time)
+    assert np.max(np.abs(left)) < (2e-3 if hole is None else 0.2)
+
+
 def test_what_a_lower_rate_takes_away_is_said(with_plan_of_a_fork):
     kept, lost = with_plan_of_a_fork
     assert not kept

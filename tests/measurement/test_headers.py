@@ -42,6 +42,14 @@ def test_a_row_with_too_many_cells_is_a_fault_and_no_setting(tmp_path):
         table_of(tmp_path, [*rows(2), "1;2;3;4", "a;b;c", *rows(60)])
 
 
+def test_a_figure_that_a_sheet_left_beside_the_first_row_takes_no_header_away(tmp_path):
+    first = rows(1)[0] + ";;93,29286191"
+    table = table_of(tmp_path, ["seconds;speed;torque;;", first, *[row + ";;" for row in rows(60)[1:]]])
+    assert table.names[:3] == ("seconds", "speed", "torque")
+    assert len(table.values(0)) == 60
+    assert not any("left out" in note for note in table.notes)
+
+
 SERVO = [
     "Axis1",
     "Sampling time interval(ms),0.667",

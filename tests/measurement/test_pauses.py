@@ -104,3 +104,32 @@ def test_a_recorder_that_paused_is_simulated_to_its_end(tmp_path):
     stamps = stamps_with_gaps()
     record = loaded(tmp_path, stamps, moved(stamps, True, 0.001))
     assert (len(stamps) - 1) / record.sampling_rate == pytest.approx(stamps[-1] - stamps[0], rel=1e-6)
+
+
+@pytest.mark.parametrize("polled", [True, False])
+def test_samples_that_come_when_they_come_are_taken_so_unless_their_values_came_evenly(polled, tmp_path):
+    random = np.random.default_rng(5)
+    steps = np.resize([1, 1, 1, 3, 1, 1, 2.5, 1, 1, 1], SAMPLES) * random.uniform(0.7, 1.3, size=SAMPLES)
+    stamps = np.cumsum(STEP * steps)
+    time = stamps if polled else np.linspace(0, stamps[-1], SAMPLES)
+    values = np.sin(2 * np.pi * 2.1 * time) + 0.003 * random.normal(size=SAMPLES)
+    found = [one for one in loaded(tmp_path, stamps, values).findings if one.kind == "uneven_stamps"]
+    assert [one.severity for one in found] == (["note"] if polled else ["note", "data_problem"])
+    assert "many are long" in found[0].message
+
+
+def test_a_step_that_rounding_makes_long_loses_no_sample(tmp_path):
+    """2.43 ms on the average, written in whole ms: 4 ms stand for 3 ms and more, beside others that stand for 3."""
+    steps = 2.3e-3 * np.ones(400)
+    steps[::40] = 3.6e-3
+    stamps = np.round(np.cumsum(steps), 3)
+    assert np.sum(np.diff(stamps) > 3.5e-3) >= 3
+    (finding,) = [one for one in loaded(tmp_path, stamps, np.sin(60 * stamps)).findings if one.channel == "time"]
+    assert (finding.kind, finding.severity) == ("uneven_stamps", "note")
+    assert "scatter" in finding.message
+
+
+def test_a_sample_lost_beside_stamps_of_few_digits_is_still_seen(tmp_path):
+    stamps = np.delete(np.round(STEP * np.arange(400), 2), [77, 201, 202])
+    found = loaded(tmp_path, stamps, np.random.default_rng(7).normal(size=stamps.size)).findings
+    assert [one.kind for one in found if one.channel == "time"] == ["dropped_samples"]

@@ -185,10 +185,18 @@ def _below_preamble(rows: list[list[str]], width: int) -> Header | None:
         return None
     if any(filled(row) == width and _is_body(row, width) for row in rows[:start]):
         return None  # the table itself, a row of which has too many cells
+    if any(k and _is_named(rows[k - 1], width) and _is_body(rows[k][:width], width) for k in wide):
+        return None  # its first row, behind whose last column a sheet left a figure of its own
     if not texts:
         return Header(("",) * width, (), start, start)
     header = find_header(rows[start:], width)
     return replace(header, first=header.first + start, skipped=header.skipped + start)
+
+
+def _is_named(row: list[str], width: int) -> bool:
+    """Whether a row names every column of a table, and nothing else."""
+    names = [cell.strip() for cell in row[:width]]
+    return filled(row) == width and all(names) and not any(is_number(name.replace(",", ".")) for name in names)
 
 
 def _is_body(row: list[str], width: int) -> bool:

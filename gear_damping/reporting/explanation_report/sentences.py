@@ -25,6 +25,7 @@ CONDITIONAL = (
     " That interval is of the noise alone: where what is left is not all random, or a fit has not converged, the "
     "damping may lie outside it."
 )
+VISCOUS = "viscous_damping.damping_coefficient"
 ONLY_NOISE = 1.5  # noise variances that may be left for saying so
 MOST_PLACES = 4  # of a list, as errors of every tooth, that are told one by one
 MOST_SIZES = 6  # parameters in a line
@@ -40,13 +41,14 @@ def verdict_sentences(explanation: Mapping[str, Any]) -> list[str]:
     told += [ALL_THE_SAME] if explanation["verdict"] == "consistent" and explanation.get("not_observable") else []
     gain = explanation.get("gain")
     told += [misfit_sentence(explanation.get("misfit")), confirmed_sentence(gain), damping_sentence(gain)]
+    told.append(rate_sentence(explanation))
     return [sentence for sentence in told if sentence]
 
 
 def in_short(explanation: Mapping[str, Any]) -> list[str]:
     """What was found, how large it is, and what the damping is with it."""
     sizes = map(size_sentence, explanation["causes"])
-    told = (*explanation["sentences"], *sizes, damping_sentence(explanation.get("gain")))
+    told = (*explanation["sentences"], *sizes, damping_sentence(explanation.get("gain")), rate_sentence(explanation))
     return [sentence for sentence in told if sentence]
 
 
@@ -163,6 +165,15 @@ def damping_sentence(gain: Mapping[str, Any] | None) -> str:
     at = quantity(before.get("reference_velocity"), before.get("velocity_unit", "m/s"))
     at = f" at a velocity amplitude of {at}" if before.get("reference_velocity") else ""
     return f"{_damping(before, after, at)}{CONDITIONAL if damping.get('conditional') else ''}"
+
+
+def rate_sentence(explanation: Mapping[str, Any]) -> str:
+    """The viscous damping of a rig without a spring, where nothing is critical."""
+    viscous = (explanation.get("parameters") or {}).get(VISCOUS) or {}
+    ratio = ((explanation.get("gain") or {}).get("damping_ratio_percent") or {}).get("before") or {}
+    if not _known(viscous.get("value")) or _known(ratio.get("value")) or explanation["system"] == "gear_pair":
+        return ""
+    return f"The viscous damping is {estimate(viscous)}."
 
 
 def _damping(before: Mapping[str, Any], after: Mapping[str, Any], at: str) -> str:
