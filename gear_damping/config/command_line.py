@@ -130,7 +130,7 @@ def _read_override(argument: str, many: bool, before: str) -> tuple[list[Problem
     if many and argument.startswith(f"{PATH}="):
         argument = f"{PATH}={all_named(argument.partition('=')[2])}"
     try:
-        parsed, argument = _parsed(argument)
+        parsed, argument = _parsed(argument, many)
     except HydraException as error:
         rule = f"cannot be read: {str(error).splitlines()[0]}"
         remedy = "close every bracket and quote; a value with '=' or brackets needs quotes of its own: key='\"value\"'"
@@ -155,16 +155,23 @@ def _read_override(argument: str, many: bool, before: str) -> tuple[list[Problem
     return problems, [] if problems else [f"{key}={value}"]
 
 
-def _parsed(argument: str) -> tuple[Override, str]:
-    """The override, and the word that it was read from: a path that Hydra does not read, `run(2).csv`, in quotes."""
+def _parsed(argument: str, many: bool) -> tuple[Override, str]:
+    """The override, and the word that it was read from.
+
+    A path that Hydra does not read, `run(2).csv`, is put in quotes, and of one run one with commas, `5,5Nm.csv`.
+    """
+    key, _, value = argument.partition("=")
+    is_path = key in OF_A_PATH and not {"'", '"'} & set(value)
+    quoted = f'{key}="{value}"'
     try:
-        return parse(argument), argument
+        parsed = parse(argument)
     except HydraException:
-        key, _, value = argument.partition("=")
-        if key not in OF_A_PATH or {"'", '"'} & set(value):
+        if not is_path:
             raise
-        quoted = f'{key}="{value}"'
         return parse(quoted), quoted
+    if is_path and not many and not parsed.is_delete() and parsed.is_sweep_override():
+        return parse(quoted), quoted
+    return parsed, argument
 
 
 def _one_value(value: str) -> str:

@@ -142,6 +142,7 @@ def _observed(record: Record, channel: Channel, spring: bool) -> Observed:
         delay=channel.delay,
         shaft=channel.shaft,
         radius=channel.radius,
+        drifts=channel.name == "displacement" and not spring,
         absolute=channel.frame == "absolute" and "base_acceleration" in record.channels,
         gain_uncertainty=channel.uncertainty,
     )

@@ -35,6 +35,7 @@ from gear_damping.reporting import figures, tables
 from gear_damping.simulation.solver_settings import Solver
 
 SHOWN = ("mesh_stiffness_shape",)  # what is fitted in many numbers stands in the JSON alone
+MOTION = ("amplitude", "characteristic_time")  # of an oscillator: what damping ratios belong to, as the records move
 ITERATIONS = 40  # at most, of a fit of one's own model
 
 
@@ -81,7 +82,8 @@ def own_fit(measurement: Measurement, model: Model, free: Sequence[str], log: Lo
     stated = {name: first[name] if name == DAMPING else value for name, value in named.items() if name in first}
     names = {model.damping_coefficient if name == DAMPING_RATIO else name for name in free}
     initial = {name: first[name] for name in names if name in first}
-    given = initial | stated | model.given
+    motion = {name: first[name] for name in MOTION if name in first}
+    given = initial | motion | stated | model.given
     moved = free_parameters(model, given, free, stated, evidence.known.uncertainty)
     hypothesis = Hypothesis(model.system, model.effects, given, moved)
     solver, own = fitting_solver(solver), {}
@@ -89,6 +91,10 @@ def own_fit(measurement: Measurement, model: Model, free: Sequence[str], log: Lo
         evidence = with_own_angles(evidence)
         own = angles_of(hypothesis, evidence, evidence.duration, solver)
     outcome = fit_hypothesis(hypothesis, evidence, InitialValues(own=own), Rounds(ITERATIONS), solver=solver)
+    if not outcome.is_finite:
+        rule = "runs away when it is simulated with what the fit came to"
+        remedy = "begin with values nearer to those of the rig, or free fewer parameters"
+        raise InputError(Problem("model", rule, remedy=remedy, source=str(measurement.source)))
     return Fitted(evidence, noise, weighed(outcome, evidence))
 
 

@@ -108,9 +108,7 @@ class SlowerTime(TimeBase):
         return lowpassed_at(self.time, even, float(grid[0]), own.sampling_rate, self.sampling_rate)
 
 
-def moved(
-    base: TimeBase, own: TimeBase, values: NDArray[np.float64], key: str, source: str
-) -> NDArray[np.float64]:
+def moved(base: TimeBase, own: TimeBase, values: NDArray[np.float64], key: str, source: str) -> NDArray[np.float64]:
     """Values on their own time base at the times of `base`, through its filter where it has one.
 
     Raises:

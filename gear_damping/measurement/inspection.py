@@ -15,7 +15,7 @@ from gear_damping.measurement.raw import LEAST_SAMPLES
 from gear_damping.measurement.resolution import step_of
 from gear_damping.measurement.spectral_floor import Spectrum, spectrum_of
 from gear_damping.measurement.time_column import Stamps, find_stamps
-from gear_damping.measurement.timebase import TimeBase, stamped_time, steady_time
+from gear_damping.measurement.timebase import TimeBase, recordings, stamped_time, steady_time
 
 _SPARSE = 0.5  # of the longest stretch of values of any column: one with a shorter one is filled here and there
 _EVEN = 1e-6  # of an advance from sample to sample: differences below it are rounding
@@ -193,6 +193,8 @@ def _base(
         steps = np.diff(seconds)
         faults = tuple(problem.rule for problem in error.problems)
         span = float(np.abs(seconds[-1] - seconds[0])) or float(np.median(np.abs(steps))) * steps.size
+        if len(recordings(seconds)) > 1:
+            span = float(steps[steps > 0].mean()) * steps.size
         is_rate = span > steps.size * SHORTEST
         return (steady_time(steps.size / span, 0, seconds.size) if is_rate else None), faults
 

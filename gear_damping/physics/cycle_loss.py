@@ -1,16 +1,19 @@
 """What any damping force takes in a cycle, whether it follows the rate, the deflection or what was before."""
 
-from math import pi
+from math import ceil, pi
 
 import torch
 from torch import Tensor
 
 from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.model import Prepared
-from gear_damping.physics.terms import DampingForce, ExtraStates
+from gear_damping.physics.terms import DampingForce, ExtraStates, Values
 
 INSTANTS = 1000  # of a cycle over which a loss is summed; a sign change of a hundredth of it has sixteen of them
+MOST_INSTANTS = 20000  # of a cycle through which states are led; what yields in less of it is not summed
 CYCLES = 5  # until a state of its own comes back to where it was; the last one counts
+
+_TURNED = 3.0  # times the rate that is resolved in a simulation: one at which the midpoint rule is stable
 
 
 def damping_coefficient(effect: DampingForce, prepared: Prepared, speed: Tensor) -> Tensor:
@@ -18,7 +21,7 @@ def damping_coefficient(effect: DampingForce, prepared: Prepared, speed: Tensor)
 
     c_eq = (1 / (pi V)) integral of F cos(phi) over a cycle of x' = V cos(phi), about the deflection of the mean load
     where there is one, the flanks in contact. Of a force with states of its own these are led through the motion by
-    the midpoint rule.
+    the midpoint rule, in so many steps that none yields more than once in one; nan where that would be too many.
 
     Args:
         effect: The force.
@@ -30,7 +33,11 @@ def damping_coefficient(effect: DampingForce, prepared: Prepared, speed: Tensor)
     mean = torch.zeros_like(velocity)
     if "mean_load" in derived:
         mean = derived["mean_load"] / derived["mean_stiffness"] / scales.length
-    step = 2 * pi / INSTANTS
+    with_states = isinstance(effect, ExtraStates)
+    instants = _instants(velocity / frequency, p) if with_states else INSTANTS
+    if instants > MOST_INSTANTS:
+        return torch.full_like(velocity, torch.nan)
+    step = 2 * pi / instants
 
     def moved(phase: float, extra: dict[str, Tensor]) -> Kinematics:
         angle = torch.full_like(velocity, phase)
@@ -38,11 +45,10 @@ def damping_coefficient(effect: DampingForce, prepared: Prepared, speed: Tensor)
         named = {f"{effect.name}.{name}": value for name, value in extra.items()}
         return Kinematics(angle, place, rate, named, delta=place, delta_rate=rate, deflection=place)
 
-    with_states = isinstance(effect, ExtraStates)
     extra = effect.initial(p, prepared.base) if with_states else {}
-    first = (CYCLES - 1 if with_states else 0) * INSTANTS
+    first = (CYCLES - 1 if with_states else 0) * instants
     total = torch.zeros_like(velocity)
-    for instant in range(first + INSTANTS):
+    for instant in range(first + instants):
         phase = step * instant
         middle = extra
         if with_states:
@@ -52,7 +58,14 @@ def damping_coefficient(effect: DampingForce, prepared: Prepared, speed: Tensor)
             total = total + effect.damping_force(at, p) * at.velocity / velocity
         if with_states:
             extra = _after(effect, extra, effect.state_rates(at, p), step / frequency)
-    return 2 * total / INSTANTS / velocity * scales.mass / scales.time
+    return 2 * total / instants / velocity * scales.mass / scales.time
+
+
+def _instants(amplitude: Tensor, p: Values) -> int:
+    """Steps of a cycle of this amplitude, where a state says how fast it follows the motion."""
+    if "fastest_rate" not in p:
+        return INSTANTS
+    return max(INSTANTS, ceil(_TURNED * 2 * pi * float((amplitude * p["fastest_rate"]).max())))
 
 
 def _after(effect: ExtraStates, extra: dict[str, Tensor], rates: dict[str, Tensor], time: Tensor) -> dict[str, Tensor]:

@@ -51,3 +51,11 @@ def test_what_stands_for_none_is_left_as_it_is_and_a_folder_of_one_run_is_told_o
 def test_a_list_and_a_name_that_no_file_can_bear_are_left_to_others(folder):
     assert paths("a.yaml,b.yaml") == ["a.yaml", "b.yaml"]
     assert paths("x" * 5000) == ["x" * 5000]
+
+
+def test_a_path_with_a_comma_is_one_path_of_one_run_and_two_of_a_sweep():
+    one = read_command_line(["task=inspect", "measurement.path=runs/5,5Nm.yaml", "hydra.run.dir=out,5"])
+    assert "runs/5,5Nm.yaml" in {parse(word).value() for word in one.overrides if "measurement.path" in word}
+    assert "out,5" in {parse(word).value() for word in one.overrides if "hydra.run.dir" in word}
+    many = read_command_line(["--multirun", "task=inspect", "measurement.path=a.yaml,b.yaml"])
+    assert any(parse(word).is_sweep_override() for word in many.overrides if "measurement.path" in word)

@@ -47,3 +47,21 @@ def test_a_constant_force_of_motion_one_way_is_a_load_or_friction(said):
     assert len(told) == one_way
     assert all("1.29 of the measured force" in one and "dry friction and a steady load" in one for one in told)
     assert re.search(r"The viscous damping is 4\.(79|80)\d* 1/s", str(answer))
+
+
+def test_a_force_that_nothing_shows_is_said(tmp_path):
+    """A free decay beside the noise of a force sensor that nothing pushes on."""
+    time, random = np.arange(2000) / RATE, np.random.default_rng(11)
+    records = []
+    for number in range(3):
+        swing = np.exp(-0.4 * time) * np.cos(2 * np.pi * 8 * time + number) + 0.003 * random.normal(size=time.size)
+        name = f"run_{number}.csv"
+        columns = np.column_stack([0.1 * random.normal(size=time.size), swing])
+        np.savetxt(tmp_path / name, columns, "%.9g", ",", header="F,x", comments="")
+        channels = {"sampling_rate": f"{RATE:g} Hz", "displacement": {"column": "x", "unit": "mm"}}
+        channels["force"] = {"column": "F", "unit": "N"}
+        records.append({"file": name, "role": "holdout" if number == 2 else "fit", "channels": channels})
+    (tmp_path / "measurement.yaml").write_text(yaml.safe_dump({"system": "oscillator", "records": records}))
+    answer = gd.explain(gd.load(tmp_path / "measurement.yaml"))
+    assert answer.verdict == "consistent"
+    assert sum(one.startswith("What moved does not show the measured force") for one in answer.content["sentences"]) == 1

@@ -175,7 +175,7 @@ def test_resampling_to_a_higher_rate_or_to_nothing_is_one_problem(bench, with_pl
 
 @pytest.mark.parametrize("hole", [None, 805])
 def test_the_filter_reaches_into_the_rows_beside_a_window(hole, tmp_path):
-    """A ringing that the filter stops leaves nothing at the ends of a window, up to where a row beside it is no number."""
+    """A ringing that the filter stops leaves nothing at the ends of a window, unless a row beside it is no number."""
     time = np.arange(4000) / RATE
     swing = np.sin(2 * np.pi * 13.0 * time)
     values = swing + 6 * np.sin(2 * np.pi * 311.0 * time + 1.0)

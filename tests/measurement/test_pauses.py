@@ -3,7 +3,10 @@
 import numpy as np
 import pytest
 
+from gear_damping.errors import InputError
+from gear_damping.measurement.formats.registry import read_table
 from gear_damping.measurement.gaps import share_over_gaps
+from gear_damping.measurement.inspection import inspect_table
 from gear_damping.measurement.load import load_measurement
 
 SAMPLES, STEP, GAPS = 1200, 0.01, np.array([150, 320, 480, 700, 810, 990, 1100])
@@ -133,3 +136,21 @@ def test_a_sample_lost_beside_stamps_of_few_digits_is_still_seen(tmp_path):
     stamps = np.delete(np.round(STEP * np.arange(400), 2), [77, 201, 202])
     found = loaded(tmp_path, stamps, np.random.default_rng(7).normal(size=stamps.size)).findings
     assert [one.kind for one in found if one.channel == "time"] == ["dropped_samples"]
+
+
+def test_recordings_one_after_another_are_told_with_their_slices(tmp_path):
+    stamps = np.concatenate([0.02 * np.arange(n) + start for n, start in ((353, 0.1), (384, 0.02), (400, 0.0))])
+    with pytest.raises(InputError, match=r"the clock starts again at sample 353, 737: 3 recordings") as raised:
+        loaded(tmp_path, stamps, np.sin(stamps))
+    assert "slice: [0, 353], [353, 737], [737, 1137]" in str(raised.value)
+    (only,) = raised.value.problems
+    found = inspect_table(read_table(tmp_path / "swing.csv"))
+    assert found.rate == pytest.approx(50.0)
+    assert found.faults == (only.rule,)
+
+
+def test_a_stamp_out_of_order_is_no_recording(tmp_path):
+    stamps = STEP * np.arange(400.0)
+    stamps[200] -= 30 * STEP
+    with pytest.raises(InputError, match="1 backward time stamp"):
+        loaded(tmp_path, stamps, np.sin(stamps))

@@ -66,6 +66,18 @@ def test_hysteresis_counts_with_its_loop():
     assert coefficients == pytest.approx([of_hand(v) for v in SPEEDS], rel=2e-3)
 
 
+def test_hysteresis_that_yields_at_once_is_dry_friction():
+    """Of share * k * z_y, where it yields early in a swing; in a thousand steps of a cycle it would run away."""
+    given = {"share": 0.5, "yield_deflection": 1e-5, "exponent": 1.0}
+    assert found("hysteretic_damping", given, (2.0,)) == pytest.approx(
+        [4 * 0.5 * STIFFNESS * 1e-5 / (2 * np.pi)], rel=0.01
+    )
+
+
+def test_hysteresis_too_stiff_to_be_summed_has_no_figure():
+    assert np.isnan(found("hysteretic_damping", {"share": 0.5, "yield_deflection": 1e-9}, (2.0,))[0])
+
+
 def test_gears_move_about_the_deflection_of_their_load():
     effects = [effect_class(name)() for name in ("fourier_mesh_stiffness", "hunt_crossley_damping")]
     given = {"damping_coefficient": 50.0, "exponent": 1.0, "reference_deflection": 1e-5}

@@ -25,6 +25,22 @@ def acts_as(state: State) -> list[str]:
     return found
 
 
+def silent_inputs(state: State) -> list[str]:
+    """A sentence for each measured input that is not told from one that does nothing."""
+    outcome, evidence, found = state.outcome, state.bench.evidence, []
+    gains = {evidence.base.gains.get(name): name for name in outcome.problem.records[0].inputs}
+    fitted = [free.name for free in outcome.problem.free if free.name in gains]
+    told = final_parameters(outcome, covariance_of(outcome, evidence), evidence) if fitted else {}
+    for name in fitted:
+        low, high = told[name]["interval95"]
+        if low <= 0 <= high:
+            found.append(
+                f"What moved does not show the measured {gains[name]} ({name} {told[name]['value']:.2g}, {low:.2g} to "
+                f"{high:.2g}): what is said of the rig rests on its motion alone."
+            )
+    return found
+
+
 def steady_load(state: State) -> list[str]:
     """A sentence on the constant force of a rig without a spring that moves one way: a load, or friction.
 

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from gear_damping.explanation.answer.acting import acts_as, steady_load
+from gear_damping.explanation.answer.acting import acts_as, silent_inputs, steady_load
 from gear_damping.explanation.answer.gain import nrmse
 from gear_damping.explanation.answer.homogeneity import homogeneity
 from gear_damping.explanation.answer.stand_in import (
@@ -99,10 +99,10 @@ def _judged(found: Confirmed, notes: Sequence[str]) -> tuple[Judged, str]:
         not_random=_not_random(state),
     )
     said = verdict(state, before, after, known)
-    acting = acts_as(state) if said.word not in (CONSISTENT, UNEXPLAINED) else ()
-    said = said.saying(line_left(state), *notes, *acting, *steady_load(state), budget.sentence)
+    acting, left = acts_as(state) if said.word not in (CONSISTENT, UNEXPLAINED) else (), line_left(state)
     if said.word == CONSISTENT:  # what would take part of so little is no cause
         state, after = replace(state, accepted=(), outcome=state.nominal, left=state.seen), before
+    said = said.saying(left, *notes, *acting, *silent_inputs(state), *steady_load(state), budget.sentence)
     return Judged(state, before, after, said, not_tried, found.t), doubtful
 
 

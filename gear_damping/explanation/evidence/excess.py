@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import torch
 from torch import Tensor
 
 from gear_damping.explanation.evidence.noise import NoiseLevel
@@ -12,7 +13,7 @@ from gear_damping.identification.output_error.records import FitRecord
 
 @dataclass(frozen=True)
 class Excess:
-    """Mean squared residual of records left out of the fit, beyond the noise, in % of the channel's AC variance.
+    """Mean squared residual of records left out of the fit, beyond the noise, in % of the channel's variance.
 
     Args:
         percent: D.
@@ -75,6 +76,22 @@ def excess(
 
 
 def ac_energy(record: FitRecord) -> float:
-    """Sum of squares of a record's channels about their means, in the unit of the first."""
+    """Sum of squares of a record's channels, in the unit of the first, about what nothing but its beginning tells.
+
+    That is the mean; and of a displacement that runs on where nothing acts, the straight line in each segment that has
+    a state of its own: of a drive that turns slowly it would be nearly all, and whatever is missed nothing beside it.
+    """
     channels = record.stacked.unflatten(0, (len(record.channels), -1))
-    return float((channels - channels.mean(1, keepdim=True)).square().sum())
+    drifts = [channel.drifts for channel in record.channels]
+    total = channels[[not one for one in drifts]]
+    energy = float((total - total.mean(1, keepdim=True)).square().sum()) if len(total) else 0.0
+    for first, end in record.pieces or ((0, channels.shape[1]),):
+        energy += float(_about_its_line(channels[drifts, first:end]).square().sum()) if any(drifts) else 0.0
+    return energy
+
+
+def _about_its_line(values: Tensor) -> Tensor:
+    """(channels, n) about the straight line of each."""
+    values = values - values.mean(1, keepdim=True)
+    time = torch.linspace(-1, 1, values.shape[1], dtype=values.dtype)
+    return values - (values @ time / (time @ time).clamp(min=1e-300)).unsqueeze(1) * time

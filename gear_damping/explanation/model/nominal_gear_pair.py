@@ -46,7 +46,7 @@ ANGLES_KEPT = 0.12  # of those all around: after the first round one or two vall
 SHAPED = 3.0  # noise variances: what a fit with all its shapes may leave before angles are looked at again
 SCANNED = 0.99  # of the cost before: less is no reason for another scan
 UPRIGHT = 1.01  # of the cost: the same wave
-LEAST_DAMPING = 1e-5  # of the first guess, N s/m
+LEAST_DAMPING = 1e-4  # of critical: what rings longer stands for a line that folds from beyond the sampling rate
 
 
 def stated_mesh_frequency(evidence: Evidence) -> float:
@@ -88,7 +88,7 @@ def first_gear_pair(evidence: Evidence) -> Hypothesis:
         FreeParameter(f"{MESH}.minimum", low, logarithmic=True),
         FreeParameter(f"{MESH}.contact_ratio", contact_ratio, 0.2, lower=1.02, upper=1.98),
     ]
-    free = [FreeParameter(DAMPING, damping, logarithmic=True, lower=LEAST_DAMPING * damping), *free]
+    free = [FreeParameter(DAMPING, damping, logarithmic=True, lower=LEAST_DAMPING * damping / ratio), *free]
     if evidence.has_index:
         free = [FreeParameter("mesh_phase", 0.0, deviation=INDEX_ERROR if evidence.mesh_index else inf), *free]
     free = [expected_about(parameter, uncertain.pop(parameter.name, None)) for parameter in free]

@@ -75,7 +75,7 @@ def nuisance_basis(sensitivity: Tensor, n_shared: int) -> Tensor:
         sensitivity: Of one start, (records, time, n_shared + l).
         n_shared: Number of shared parameters.
     """
-    own = sensitivity[..., n_shared:]
+    own = sensitivity[..., n_shared:].nan_to_num(0, 0, 0)  # a motion that runs away with any change tells nothing
     columns = own / own.norm(dim=1, keepdim=True).clamp(min=1e-300)
     basis, sizes, _ = torch.linalg.svd(columns, full_matrices=False)
     return basis * (sizes > INDEPENDENT * sizes.amax(-1, keepdim=True)).unsqueeze(1)

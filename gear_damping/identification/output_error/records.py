@@ -122,6 +122,7 @@ class Observed:
         absolute: Of an acceleration on a moving base, whether that of the base is in it.
         gain_uncertainty: Relative standard deviation of its gain; 0 where it is known.
         slow: How its zero changes slowly, in every record on its own; None where it stays.
+        drifts: Whether it runs on where nothing acts: the displacement of a rig without a spring.
     """
 
     name: str = "displacement"
@@ -134,6 +135,7 @@ class Observed:
     absolute: bool = False
     gain_uncertainty: float = 0.0
     slow: "SlowChange | None" = None
+    drifts: bool = False
 
     @property
     def derivatives(self) -> int:
@@ -160,6 +162,8 @@ class FitRecord:
         stamps: Instants of the samples in sampling intervals, (time,), where they are not evenly spaced.
         held: Inputs that stay at a sample's value until the next one.
         input_errors: Autocovariance (time,) of what inputs are known wrong by, where they were measured with noise.
+        pieces: First and last sample of each segment that it is predicted in, each from a state of its own; () where it
+            is predicted from its start.
     """
 
     name: str
@@ -176,6 +180,7 @@ class FitRecord:
     stamps: Tensor | None = None
     held: tuple[str, ...] = ()
     input_errors: Mapping[str, Tensor] = field(default_factory=dict)
+    pieces: tuple[tuple[int, int], ...] = ()
 
     @property
     def record(self) -> str:

@@ -70,8 +70,11 @@ def in_segments(records: Sequence[FitRecord], segments: Segments) -> list[FitRec
 
 
 def covered(records: Sequence[FitRecord], segments: Segments) -> list[FitRecord]:
-    """The records without the ends that segments leave out."""
-    return [shortened(record, segments.ends(record)[-1][1]) if segments.exact else record for record in records]
+    """The records with the segments that they are predicted in, without the ends that these leave out."""
+    if not segments:
+        return list(records)
+    pieces = [tuple(segments.ends(record)) for record in records]
+    return [replace(shortened(r, own[-1][1]), pieces=own) for r, own in zip(records, pieces, strict=True)]
 
 
 def stretch(record: FitRecord, samples: slice) -> FitRecord:

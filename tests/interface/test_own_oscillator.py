@@ -1,0 +1,48 @@
+"""A law of one's own on a free decay: its damping belongs to the recorded motion, and no fault is a traceback."""
+
+import numpy as np
+import pytest
+import yaml
+from scipy.integrate import solve_ivp
+
+import gear_damping as gd
+from gear_damping.errors import InputError
+
+RATE, STIFFNESS, DAMPING = 600.0, 9e5, 6.0
+FREE = ["stiffness", "viscous_damping.damping_coefficient"]
+
+
+@pytest.fixture(scope="module")
+def decay(tmp_path_factory):
+    """The acceleration of a linear decay of 0.1 mm and 0.3 % of critical, by scipy."""
+    folder, time = tmp_path_factory.mktemp("decay"), np.arange(420) / RATE
+
+    def rates(_, state):
+        return [state[1], -STIFFNESS * state[0] - DAMPING * state[1]]
+
+    states = solve_ivp(rates, (0, time[-1]), [1e-4, 0.0], t_eval=time, rtol=1e-10, atol=1e-14).y
+    shown = -STIFFNESS * states[0] - DAMPING * states[1]
+    shown += 0.03 * np.random.default_rng(1).normal(size=time.size)
+    np.savetxt(folder / "a.csv", shown, header="a", comments="")
+    channels = {"sampling_rate": f"{RATE:g} Hz", "acceleration": {"column": "a", "unit": "m/s^2"}}
+    declared = {"system": "oscillator", "records": [{"file": "a.csv", "channels": channels}]}
+    (folder / "measurement.yaml").write_text(yaml.safe_dump(declared))
+    return gd.load(folder / "measurement.yaml")
+
+
+def test_the_damping_of_a_hysteresis_is_that_of_the_motion_recorded(decay):
+    """It was told at an amplitude of 1 m, where the sum over a cycle of one that yields at 0.05 mm ran away."""
+    hysteresis = gd.HystereticDamping(share=0.01, yield_deflection=5e-5, exponent=1.0)
+    model = gd.Model(gd.Oscillator(stiffness=STIFFNESS), [gd.ViscousDamping(damping_coefficient=3.0), hysteresis])
+    found = gd.identify(decay, model, free=[*FREE, "hysteretic_damping.share"]).content["damping_ratio_percent"]
+    assert found["value"] == pytest.approx(100 * DAMPING / (2 * STIFFNESS**0.5), rel=0.1)
+    assert found["reference_velocity"] == pytest.approx(0.5e-4 * STIFFNESS**0.5, rel=0.5)
+
+
+def test_what_runs_away_is_said(decay):
+    model = gd.Model(
+        gd.Oscillator(stiffness=STIFFNESS),
+        [gd.ViscousDamping(damping_coefficient=5.0), gd.CubicStiffness(coefficient=-1e17), gd.PowerLawDamping()],
+    )
+    with pytest.raises(InputError, match="runs away when it is simulated"):
+        gd.identify(decay, model, free=[*FREE, "cubic_stiffness.coefficient"])
