@@ -1,6 +1,6 @@
 """What any damping force takes in a cycle, whether it follows the rate, the deflection or what was before."""
 
-from math import ceil, pi
+from math import ceil, isfinite, pi
 
 import torch
 from torch import Tensor
@@ -65,7 +65,8 @@ def _instants(amplitude: Tensor, p: Values) -> int:
     """Steps of a cycle of this amplitude, where a state says how fast it follows the motion."""
     if "fastest_rate" not in p:
         return INSTANTS
-    return max(INSTANTS, ceil(_TURNED * 2 * pi * float((amplitude * p["fastest_rate"]).max())))
+    turned = _TURNED * 2 * pi * float((amplitude * p["fastest_rate"]).max())
+    return max(INSTANTS, ceil(turned)) if isfinite(turned) else INSTANTS
 
 
 def _after(effect: ExtraStates, extra: dict[str, Tensor], rates: dict[str, Tensor], time: Tensor) -> dict[str, Tensor]:

@@ -168,10 +168,10 @@ def damping_sentence(gain: Mapping[str, Any] | None) -> str:
 
 
 def rate_sentence(explanation: Mapping[str, Any]) -> str:
-    """The viscous damping of a rig without a spring, where nothing is critical."""
+    """The viscous damping where no ratio is told: without a spring nothing is critical."""
     viscous = (explanation.get("parameters") or {}).get(VISCOUS) or {}
     ratio = ((explanation.get("gain") or {}).get("damping_ratio_percent") or {}).get("before") or {}
-    if not _known(viscous.get("value")) or _known(ratio.get("value")) or explanation["system"] == "gear_pair":
+    if not _known(viscous.get("value")) or _known(ratio.get("value")):
         return ""
     return f"The viscous damping is {estimate(viscous)}."
 
