@@ -19,6 +19,7 @@ from gear_damping.measurement.timebase import TimeBase, recordings, stamped_time
 
 _SPARSE = 0.5  # of the longest stretch of values of any column: one with a shorter one is filled here and there
 _EVEN = 1e-6  # of an advance from sample to sample: differences below it are rounding
+MOST_LISTED = 6  # recordings in a line
 _RATE = re.compile(r"samp\w*[ _]?(freq|rate)|^(fs|f_s|sr|s_?rate)$|abtastrate", re.I)  # of a single number
 SHORTEST = 1e-15  # s between two samples: below it lie damaged stamps, and no sensor
 
@@ -76,6 +77,7 @@ class Inspection:
         rows: (first, stop) of the longest stretch in which every column of that length is finite.
         faults: What is wrong with the stamps, for people.
         rate_of: The column with a single number that may be the rate; None where none was needed.
+        taken: Which of several recordings one after another the rows are, for people; "" where there is one.
     """
 
     table: Table
@@ -86,6 +88,7 @@ class Inspection:
     rows: tuple[int, int]
     faults: tuple[str, ...] = ()
     rate_of: Column | None = None
+    taken: str = ""
 
     @property
     def rate(self) -> float | None:
@@ -112,12 +115,12 @@ def inspect_table(table: Table) -> Inspection:
     untimed = not any(table.clock(k) or _may_be_rate(column) for k, column in enumerate(columns))
     stamps = find_stamps(columns, untimed)
     length = _length(columns, stamps)
-    rows = _rows([c for c in columns if c.values.size == length])
+    rows, taken = _of_one_recording(columns, stamps, length, _rows([c for c in columns if c.values.size == length]))
     base, faults = _base(table, columns, stamps, length, rows)
     named = None if base or stamps else next((column for column in columns if _may_be_rate(column)), None)
     base = steady_time(float(named.values[0]), rows[0], rows[1] - rows[0]) if named else base
     found = [_seen(c, stamps, columns, base, length, table.clock(k)) for k, c in enumerate(columns)]
-    return Inspection(table, tuple(found), length, stamps, base, rows, faults, named)
+    return Inspection(table, tuple(found), length, stamps, base, rows, faults, named, taken)
 
 
 def of_columns(found: Inspection, used: Collection[Column]) -> Inspection:
@@ -129,8 +132,9 @@ def of_columns(found: Inspection, used: Collection[Column]) -> Inspection:
         return found
     if found.rate_of is not None:
         return replace(found, rows=rows, base=steady_time(found.rate, rows[0], rows[1] - rows[0]))
+    rows, taken = _of_one_recording(found.columns, found.time, found.length, rows)
     base, faults = _base(found.table, found.columns, found.time, found.length, rows)
-    return replace(found, rows=rows, base=base, faults=faults)
+    return replace(found, rows=rows, base=base, faults=faults, taken=taken)
 
 
 def _may_be_rate(column: Column) -> bool:
@@ -177,6 +181,20 @@ def _rows(columns: Sequence[Column]) -> tuple[int, int]:
     return _finite(np.where(np.logical_and.reduce(held), 0.0, np.nan)) if held else (0, 0)
 
 
+def _of_one_recording(
+    columns: Sequence[Column], stamps: Stamps | None, length: int, rows: tuple[int, int]
+) -> tuple[tuple[int, int], str]:
+    """The rows of the longest recording of a file that holds several, and where the others are; else the rows."""
+    if stamps is None or columns[stamps.index].values.size != length or rows[1] - rows[0] < LEAST_SAMPLES:
+        return rows, ""
+    parts = [(first + rows[0], end + rows[0]) for first, end in recordings(columns[stamps.index].values[slice(*rows)])]
+    if len(parts) == 1:
+        return rows, ""
+    listed = ", ".join(str(list(part)) for part in parts[:MOST_LISTED]) + (" …" if len(parts) > MOST_LISTED else "")
+    said = f"the longest of {len(parts)} recordings one after another, each with its own clock: rows {listed}"
+    return max(parts, key=lambda part: part[1] - part[0]), said
+
+
 def _base(
     table: Table, columns: Sequence[Column], stamps: Stamps | None, length: int, rows: tuple[int, int]
 ) -> tuple[TimeBase | None, tuple[str, ...]]:
@@ -193,8 +211,6 @@ def _base(
         steps = np.diff(seconds)
         faults = tuple(problem.rule for problem in error.problems)
         span = float(np.abs(seconds[-1] - seconds[0])) or float(np.median(np.abs(steps))) * steps.size
-        if len(recordings(seconds)) > 1:
-            span = float(steps[steps > 0].mean()) * steps.size
         is_rate = span > steps.size * SHORTEST
         return (steady_time(steps.size / span, 0, seconds.size) if is_rate else None), faults
 

@@ -59,7 +59,8 @@ def _rows(found: Inspection) -> list[str]:
     first, stop = found.rows
     if found.rows == (0, found.length):
         return [f"    # slice: [{first}, {stop}]   # rows; or window: {{from: …, to: …, unit: s}}"]
-    return [f"    slice: [{first}, {stop}]   # the longest stretch without values that are not finite"]
+    why = found.taken or "the longest stretch without values that are not finite"
+    return [f"    slice: [{first}, {stop}]   # {why}"]
 
 
 def _time(found: Inspection) -> Iterator[str]:

@@ -79,7 +79,8 @@ def _file_lines(found: Inspection) -> Iterator[str]:
     yield from (f"  time: {said}" for said in (*notes, *found.faults))
     if found.rows != (0, found.length):
         first, last = found.rows[0], found.rows[1] - 1
-        yield f"  rows {first} to {last} are the longest stretch in which all that is declared is finite"
+        why = found.taken or "the longest stretch in which all that is declared is finite"
+        yield f"  rows {first} to {last} are {why}"
 
 
 def _file_content(found: Inspection, listed: Sequence[Guess]) -> dict[str, Any]:

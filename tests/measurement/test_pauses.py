@@ -2,12 +2,14 @@
 
 import numpy as np
 import pytest
+import yaml
 
 from gear_damping.errors import InputError
 from gear_damping.measurement.formats.registry import read_table
 from gear_damping.measurement.gaps import share_over_gaps
 from gear_damping.measurement.inspection import inspect_table
 from gear_damping.measurement.load import load_measurement
+from gear_damping.measurement.starting_yaml import starting_yaml
 
 SAMPLES, STEP, GAPS = 1200, 0.01, np.array([150, 320, 480, 700, 810, 990, 1100])
 
@@ -143,10 +145,11 @@ def test_recordings_one_after_another_are_told_with_their_slices(tmp_path):
     with pytest.raises(InputError, match=r"the clock starts again at sample 353, 737: 3 recordings") as raised:
         loaded(tmp_path, stamps, np.sin(stamps))
     assert "slice: [0, 353], [353, 737], [737, 1137]" in str(raised.value)
-    (only,) = raised.value.problems
     found = inspect_table(read_table(tmp_path / "swing.csv"))
-    assert found.rate == pytest.approx(50.0)
-    assert found.faults == (only.rule,)
+    assert (found.rate, found.rows, found.faults) == (pytest.approx(50.0), (737, 1137), ())
+    assert "3 recordings one after another, each with its own clock: rows [0, 353], [353, 737], [7" in found.taken
+    text = starting_yaml(found, ("oscillator", "one column"), ())
+    assert yaml.safe_load(text)["records"][0]["slice"] == [737, 1137]
 
 
 def test_a_stamp_out_of_order_is_no_recording(tmp_path):
