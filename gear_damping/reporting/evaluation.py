@@ -10,19 +10,22 @@ from gear_damping.reporting.style import INK, colour_of, legend_above, marker_of
 from gear_damping.reporting.tables import markdown
 
 NO_NOISE = 120.0  # dB
+STRANGE = "unlike training"
 COLUMNS = (
     "SNR / dB", "bound / %", "estimator", "RMSE / %", "ratio to bound", "typical ratio", "RMSE over bound", "skill",
-    "90 % interval holds", "unlike training", "ms a record",
+    "90 % interval holds", STRANGE, "ms a record",
 )  # fmt: skip
 
 
 def evaluation_table(content: Mapping[str, Any]) -> str:
-    """A row for every level of noise and estimator, as Markdown.
+    """A row for every level of noise and estimator, as Markdown; without a column that no estimator has.
 
     Args:
         content: Of `evaluation.json`.
     """
-    return markdown(COLUMNS, evaluation_rows(content))
+    rows = evaluation_rows(content)
+    told = [place for place, name in enumerate(COLUMNS) if name != STRANGE or any(row[place] != "–" for row in rows)]
+    return markdown([COLUMNS[place] for place in told], [tuple(row[place] for place in told) for row in rows])
 
 
 def evaluation_rows(content: Mapping[str, Any]) -> list[tuple[str, ...]]:
@@ -67,7 +70,7 @@ def effect_table(content: Mapping[str, Any]) -> list[str]:
     """Error of networks where the runs have an effect more, a row for each, as Markdown; none where none was asked."""
     if not content["effects"]:
         return []
-    columns = ("effect", "SNR / dB", "estimator", "RMSE / %", "median error", "90 % interval holds", "unlike training")
+    columns = ("effect", "SNR / dB", "estimator", "RMSE / %", "median error", "90 % interval holds", STRANGE)
     rows = []
     for effect, levels in content["effects"].items():
         for snr, estimators in levels.items():
