@@ -19,7 +19,7 @@ from gear_damping.measurement.timebase import TimeBase, recordings, stamped_time
 
 _SPARSE = 0.5  # of the longest stretch of values of any column: one with a shorter one is filled here and there
 _EVEN = 1e-6  # of an advance from sample to sample: differences below it are rounding
-MOST_LISTED = 6  # recordings in a line
+MOST_LISTED = 6  # recordings of a file that a line lists
 _RATE = re.compile(r"samp\w*[ _]?(freq|rate)|^(fs|f_s|sr|s_?rate)$|abtastrate", re.I)  # of a single number
 SHORTEST = 1e-15  # s between two samples: below it lie damaged stamps, and no sensor
 

@@ -7,6 +7,7 @@ import pytest
 import torch
 
 from gear_damping.explanation.model.followed import followed_alone, of_one_flank
+from gear_damping.identification.output_error.records import Observed
 
 NOISE, SAMPLES = 0.01, 400
 
@@ -26,7 +27,8 @@ class Records:
 
 def record(name, kind=0):
     wave = torch.sin(torch.linspace(0, 40, SAMPLES, dtype=torch.float64))
-    return SimpleNamespace(name=name, kind=kind, stacked=wave, observed=SimpleNamespace(name="x"), channels=["x"])
+    shown = Observed()
+    return SimpleNamespace(name=name, kind=kind, stacked=wave, observed=shown, channels=[shown], pieces=())
 
 
 def calibrated(evidence):
