@@ -12,10 +12,11 @@ from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.column_kinds import CONSTANT, EMPTY, ROW_NUMBER, SIGNAL, TIME, UNREADABLE, kind_of
 from gear_damping.measurement.formats.table import Table
 from gear_damping.measurement.raw import LEAST_SAMPLES
+from gear_damping.measurement.recordings import recordings
 from gear_damping.measurement.resolution import step_of
 from gear_damping.measurement.spectral_floor import Spectrum, spectrum_of
 from gear_damping.measurement.time_column import Stamps, find_stamps
-from gear_damping.measurement.timebase import TimeBase, recordings, stamped_time, steady_time
+from gear_damping.measurement.timebase import TimeBase, stamped_time, steady_time
 
 _SPARSE = 0.5  # of the longest stretch of values of any column: one with a shorter one is filled here and there
 _EVEN = 1e-6  # of an advance from sample to sample: differences below it are rounding

@@ -14,13 +14,13 @@ stamps is asked of them too (`record_checks`).
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.record import Finding
+from gear_damping.measurement.recordings import refuse_recordings
 
 Curve = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 RATE_TOLERANCE = 0.01  # relative; rates within are one
@@ -34,7 +34,6 @@ CLOCK_JUMPS, LOST = "clock_jumps", "dropped_samples"  # kinds of findings
 _HALF = 0.5  # of a step; a stamp that far from where it is due counts as another sample's
 _WHOLE = 0.05  # of a gap; how near a whole number of steps it must be, beside what the jitter allows
 _LISTED = 5  # gaps that a message lists
-_RESTART = 10  # usual steps that a clock goes back by where it starts again
 _RUN = 0.8  # share of gaps behind a gap from which they are a lower rate, not losses
 _MANY = 0.1  # share of the steps; so many are no jumps but another rate, or none
 _LOOSE = 0.2  # of a step; all that jitter may add to that
@@ -101,7 +100,7 @@ def stamped_time(stamps: NDArray[np.float64], key: str, source: str, first: int 
     Raises:
         InputError: a stamp repeats the one before, or lies before it, or the clock starts again.
     """
-    _refuse_recordings(stamps, key, source, first)
+    refuse_recordings(stamps, key, source, first)
     _refuse_repeated_or_backward(np.diff(stamps), key, source, first)
     rate = (stamps.size - 1) / float(stamps[-1] - stamps[0])
     grid = np.linspace(stamps[0], stamps[-1], stamps.size)
@@ -153,32 +152,6 @@ def _with_losses(stamps: NDArray[np.float64], found: Finding) -> TimeBase:
     note = f"time stamps are rounded to {written.digit:.3g} s: taken as steps of an even {written.rate:.6g} Hz"
     time = written.start + index / written.rate
     return TimeBase(time, written.rate, uniform=False, notes=(note,), findings=(found,))
-
-
-def recordings(stamps: NDArray[np.float64]) -> list[tuple[int, int]]:
-    """First row, and the one behind the last, of recordings one after another, each with a clock that starts again.
-
-    One for stamps that never go back far, or that do so for another reason.
-    """
-    steps = np.diff(stamps)
-    far = _RESTART * float(np.median(np.abs(steps)))
-    again = np.flatnonzero(steps < -far) + 1
-    ends = list(pairwise([0, *again.tolist(), stamps.size]))
-    long = all(end - first >= _LEAST_PART for first, end in ends)
-    is_lasting = long and bool(np.all(steps[again] < far)) and np.sum(steps < 0) == again.size
-    return ends if is_lasting else [(0, stamps.size)]
-
-
-def _refuse_recordings(stamps: NDArray[np.float64], key: str, source: str, first: int) -> None:
-    """Refuse recordings one after another."""
-    found = recordings(stamps)
-    if len(found) > 1:
-        where = ", ".join(str(begin + first) for begin, _ in found[1 : 1 + _LISTED])
-        slices = ", ".join(f"[{begin + first}, {end + first}]" for begin, end in found[:_LISTED])
-        more = " and so on" if len(found) > _LISTED else ""
-        rule = f"the clock starts again at sample {where}{more}: {len(found)} recordings one after another"
-        remedy = f"make each of them a record, with slice: {slices}{more}"
-        raise InputError(Problem(key, rule, remedy=remedy, source=source))
 
 
 def _refuse_repeated_or_backward(steps: NDArray, key: str, source: str, first: int) -> None:

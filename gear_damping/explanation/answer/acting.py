@@ -1,6 +1,8 @@
 """What a cause, or a constant force, comes to at the motion that was recorded."""
 
+from collections.abc import Mapping
 from math import sqrt
+from typing import Any
 
 from gear_damping.explanation.answer.gain import final_parameters, mean_stiffness
 from gear_damping.explanation.evidence.declared_units import rig_unit
@@ -9,6 +11,7 @@ from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.state import State
 from gear_damping.identification.oscillator.linear_model import FORCE
 
+Told = Mapping[str, Mapping[str, Any]]  # fitted parameters by flat name, as `final_parameters` has them
 BACK = 0.02  # of the way that a record goes: what start and noise take it back
 
 
@@ -25,40 +28,44 @@ def acts_as(state: State) -> list[str]:
     return found
 
 
-def silent_inputs(state: State) -> list[str]:
+def inputs_and_loads(state: State) -> list[str]:
+    """Sentences on measured inputs that the motion does not show, and on a constant force that may be friction."""
+    outcome, evidence = state.outcome, state.bench.evidence
+    gains = {gain: name for name, gain in evidence.base.gains.items() if name in outcome.problem.records[0].inputs}
+    if not any(free.name in (FORCE, *gains) for free in outcome.problem.free):
+        return []
+    told = final_parameters(outcome, covariance_of(outcome, evidence), evidence)
+    return [*_silent_inputs(told, gains), *_steady_load(state, told, gains)]
+
+
+def _silent_inputs(told: Told, gains: Mapping[str, str]) -> list[str]:
     """A sentence for each measured input that is not told from one that does nothing."""
-    outcome, evidence, found = state.outcome, state.bench.evidence, []
-    gains = {evidence.base.gains.get(name): name for name in outcome.problem.records[0].inputs}
-    fitted = [free.name for free in outcome.problem.free if free.name in gains]
-    told = final_parameters(outcome, covariance_of(outcome, evidence), evidence) if fitted else {}
-    for name in fitted:
-        low, high = told[name]["interval95"]
+    found = []
+    for gain, name in gains.items():
+        low, high = told[gain]["interval95"] if gain in told else (1.0, 1.0)
         if low <= 0 <= high:
             found.append(
-                f"What moved does not show the measured {gains[name]} ({name} {told[name]['value']:.2g}, {low:.2g} to "
+                f"What moved does not show the measured {name} ({gain} {told[gain]['value']:.2g}, {low:.2g} to "
                 f"{high:.2g}): what is said of the rig rests on its motion alone."
             )
     return found
 
 
-def steady_load(state: State) -> list[str]:
+def _steady_load(state: State, told: Told, gains: Mapping[str, str]) -> list[str]:
     """A sentence on the constant force of a rig without a spring that moves one way: a load, or friction.
 
     Where it moves both ways a friction has a name of its own; beside a spring it is where the rig rests.
     """
-    outcome, evidence = state.outcome, state.bench.evidence
-    places = [place for place, free in enumerate(outcome.problem.free) if free.name == FORCE]
-    if evidence.has_spring or not places or not _is_one_way(outcome):
+    outcome = state.outcome
+    if FORCE not in told or state.bench.evidence.has_spring or not _is_one_way(outcome):
         return []
-    found = final_parameters(outcome, covariance_of(outcome, evidence), evidence)[FORCE]
-    low, high = found["interval95"]
+    value, (low, high) = told[FORCE]["value"], told[FORCE]["interval95"]
     if low <= 0 <= high:
         return []
-    gains = evidence.base.gains
-    drives = [name for name in outcome.problem.records[0].inputs if name in gains]
-    gain = (outcome.values | outcome.problem.given).get(gains[drives[0]], 1.0) if drives else 0.0
-    size = f"{found['value']:.3g} {found['unit']} ({low:.3g} to {high:.3g})"
-    size += f", which is {abs(found['value'] / gain):.3g} of the measured {drives[0]} in its unit," if gain else ""
+    size = f"{value:.3g} {told[FORCE]['unit']} ({low:.3g} to {high:.3g})"
+    for gain, name in list(gains.items())[:1]:
+        factor = (outcome.values | outcome.problem.given).get(gain, 1.0)
+        size += f", which is {abs(value / factor):.3g} of the measured {name} in its unit," if factor else ""
     return [
         f"A constant force of {size} acts: all records move one way, where dry friction and a steady load are one and "
         "the same."

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from gear_damping.explanation.answer.acting import acts_as, silent_inputs, steady_load
+from gear_damping.explanation.answer.acting import acts_as, inputs_and_loads
 from gear_damping.explanation.answer.gain import nrmse
 from gear_damping.explanation.answer.homogeneity import homogeneity
 from gear_damping.explanation.answer.stand_in import (
@@ -102,7 +102,7 @@ def _judged(found: Confirmed, notes: Sequence[str]) -> tuple[Judged, str]:
     acting, left = acts_as(state) if said.word not in (CONSISTENT, UNEXPLAINED) else (), line_left(state)
     if said.word == CONSISTENT:  # what would take part of so little is no cause
         state, after = replace(state, accepted=(), outcome=state.nominal, left=state.seen), before
-    said = said.saying(left, *notes, *acting, *silent_inputs(state), *steady_load(state), budget.sentence)
+    said = said.saying(left, *notes, *acting, *inputs_and_loads(state), budget.sentence)
     return Judged(state, before, after, said, not_tried, found.t), doubtful
 
 

@@ -1,0 +1,42 @@
+"""Recordings that stand one after another in a file, each with a clock of its own."""
+
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_damping.errors import InputError, Problem
+
+_RESTART = 10  # usual steps that a clock goes back by where it starts again
+_LEAST = 16  # stamps of a recording: fewer are rows in another order
+_LISTED = 5  # recordings that a message lists
+
+
+def recordings(stamps: NDArray[np.float64]) -> list[tuple[int, int]]:
+    """First row, and the one behind the last, of recordings one after another, each with a clock that starts again.
+
+    One for stamps that never go back far, or that do so for another reason.
+    """
+    steps = np.diff(stamps)
+    far = _RESTART * float(np.median(np.abs(steps)))
+    again = np.flatnonzero(steps < -far) + 1
+    ends = list(pairwise([0, *again.tolist(), stamps.size]))
+    long = all(end - first >= _LEAST for first, end in ends)
+    is_lasting = long and bool(np.all(steps[again] < far)) and np.sum(steps < 0) == again.size
+    return ends if is_lasting else [(0, stamps.size)]
+
+
+def refuse_recordings(stamps: NDArray[np.float64], key: str, source: str, first: int) -> None:
+    """Refuse recordings one after another.
+
+    Raises:
+        InputError: the clock starts again, with the slice of each recording.
+    """
+    found = recordings(stamps)
+    if len(found) > 1:
+        where = ", ".join(str(begin + first) for begin, _ in found[1 : 1 + _LISTED])
+        slices = ", ".join(f"[{begin + first}, {end + first}]" for begin, end in found[:_LISTED])
+        more = " and so on" if len(found) > _LISTED else ""
+        rule = f"the clock starts again at sample {where}{more}: {len(found)} recordings one after another"
+        remedy = f"make each of them a record, with slice: {slices}{more}"
+        raise InputError(Problem(key, rule, remedy=remedy, source=source))
