@@ -189,11 +189,14 @@ class RawReader:
                 found += [(index, own)] if own else []
         return tuple(_rate_conflict(rate, self.table.names[index], own) for index, own in found[:1])
 
+    def _on_its_clock(self) -> list[str | int]:
+        """The columns of channels and encoders that share the record's time."""
+        shared = [plan.column for plan in self.plan.channels if plan.timing is None]
+        return shared + [plan.column for plan in self.plan.encoders if not plan.timestamps]
+
     def _clock(self) -> tuple[float, float] | None:
         """Start in s and rate in Hz that the file gives for the first column that shares the record's time."""
-        shared = [plan.column for plan in self.plan.channels if plan.timing is None]
-        shared += [plan.column for plan in self.plan.encoders if not plan.timestamps]
-        for column in shared:
+        for column in self._on_its_clock():
             with suppress(InputError):  # which its channel will say
                 return self.table.clock(self.table.index(column, ""))
         return None
@@ -219,10 +222,8 @@ class RawReader:
 
     def _sound_beside(self, most: int) -> tuple[int, int]:
         """How many rows before and behind the record hold numbers in all of its columns, at most so many each."""
-        columns = [plan.column for plan in self.plan.channels if plan.timing is None]
-        columns += [plan.column for plan in self.plan.encoders if not plan.timestamps]
         before, behind = most, most
-        for column in columns:
+        for column in self._on_its_clock():
             with suppress(InputError):  # which its channel will say
                 values = np.isfinite(self._all(column, ""))
                 before = min(before, _leading(values[: self.first][::-1]))

@@ -41,8 +41,8 @@ def inputs_and_loads(state: State) -> list[str]:
 def _silent_inputs(told: Told, gains: Mapping[str, str]) -> list[str]:
     """A sentence for each measured input that is not told from one that does nothing."""
     found = []
-    for gain, name in gains.items():
-        low, high = told[gain]["interval95"] if gain in told else (1.0, 1.0)
+    for gain, name in ((gain, name) for gain, name in gains.items() if gain in told):
+        low, high = told[gain]["interval95"]
         if low <= 0 <= high:
             found.append(
                 f"What moved does not show the measured {name} ({gain} {told[gain]['value']:.2g}, {low:.2g} to "

@@ -99,7 +99,8 @@ def _judged(found: Confirmed, notes: Sequence[str]) -> tuple[Judged, str]:
         not_random=_not_random(state),
     )
     said = verdict(state, before, after, known)
-    acting, left = acts_as(state) if said.word not in (CONSISTENT, UNEXPLAINED) else (), line_left(state)
+    left = line_left(state)
+    acting = acts_as(state) if said.word not in (CONSISTENT, UNEXPLAINED) else ()
     if said.word == CONSISTENT:  # what would take part of so little is no cause
         state, after = replace(state, accepted=(), outcome=state.nominal, left=state.seen), before
     said = said.saying(left, *notes, *acting, *inputs_and_loads(state), budget.sentence)

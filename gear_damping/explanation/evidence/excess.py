@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import torch
 from torch import Tensor
 
 from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.settings import SearchSettings
+from gear_damping.identification.output_error.first_guess import about_its_line
 from gear_damping.identification.output_error.records import FitRecord
 
 
@@ -81,17 +81,9 @@ def ac_energy(record: FitRecord) -> float:
     That is the mean; and of a displacement that runs on where nothing acts, the straight line in each segment that has
     a state of its own: of a drive that turns slowly it would be nearly all, and whatever is missed nothing beside it.
     """
-    channels = record.stacked.unflatten(0, (len(record.channels), -1))
-    drifts = [channel.drifts for channel in record.channels]
-    total = channels[[not one for one in drifts]]
-    energy = float((total - total.mean(1, keepdim=True)).square().sum()) if len(total) else 0.0
-    for first, end in record.pieces or ((0, channels.shape[1]),):
-        energy += float(_about_its_line(channels[drifts, first:end]).square().sum()) if any(drifts) else 0.0
+    energy, rows = 0.0, record.stacked.unflatten(0, (len(record.channels), -1))
+    for channel, values in zip(record.channels, rows, strict=True):
+        pieces = record.pieces or ((0, len(values)),)
+        about = [about_its_line(values[a:b]) for a, b in pieces] if channel.drifts else [values - values.mean()]
+        energy += sum(float(one.square().sum()) for one in about)
     return energy
-
-
-def _about_its_line(values: Tensor) -> Tensor:
-    """(channels, n) about the straight line of each."""
-    values = values - values.mean(1, keepdim=True)
-    time = torch.linspace(-1, 1, values.shape[1], dtype=values.dtype)
-    return values - (values @ time / (time @ time).clamp(min=1e-300)).unsqueeze(1) * time

@@ -61,14 +61,19 @@ def _integrated(values: Tensor, step: float, slow: int) -> Tensor:
     recorded is no motion.
     """
     total = torch.cat([values.new_zeros(1), ((values[1:] + values[:-1]) / 2 * step).cumsum(0)])
-    time = torch.linspace(-1, 1, len(total), dtype=total.dtype)
-    total = total - total.mean() - time * (time @ total) / (time @ time)
+    total = about_its_line(total)
     if slow >= len(total):
         return total
     sums = torch.cat([total.new_zeros(1), total.cumsum(0)])
     places = torch.arange(len(total))
     first, last = (places - slow // 2).clamp(min=0), (places + slow // 2 + 1).clamp(max=len(total))
     return total - (sums[last] - sums[first]) / (last - first)
+
+
+def about_its_line(values: Tensor) -> Tensor:
+    """(n,) values about the straight line through them."""
+    time = torch.linspace(-1, 1, len(values), dtype=values.dtype)
+    return values - values.mean() - time * (time @ values) / (time @ time)
 
 
 def _slow(values: Tensor) -> int:
