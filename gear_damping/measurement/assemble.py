@@ -13,7 +13,7 @@ from gear_damping.measurement.encoders import FROM_ENCODERS, base_radius, mean_r
 from gear_damping.measurement.gaps import borne_out
 from gear_damping.measurement.raw import RawChannel, RawRecord
 from gear_damping.measurement.record import Channel, Finding, Quantity, Record
-from gear_damping.measurement.record_checks import check_record, tooth_ratio
+from gear_damping.measurement.record_checks import check_record, mesh_beyond_band, tooth_ratio
 from gear_damping.measurement.staircase import is_staircase
 from gear_damping.measurement.timebase import TimeBase
 from gear_damping.measurement.vocabulary import HOLDABLE
@@ -57,7 +57,12 @@ class Assembler:
         )  # fmt: skip
         named = tuple(replace(finding, record=name) for finding in findings)
         record = borne_out(replace(record, findings=named))
-        return replace(record, findings=(*record.findings, *check_record(record)))
+        return replace(record, findings=(*record.findings, *check_record(record), *self._mesh(record)))
+
+    def _mesh(self, record: Record) -> list[Finding]:
+        teeth = self.plan.parameters.get("n_teeth_pinion")
+        found = None if teeth is None else mesh_beyond_band(record, teeth.value)
+        return [found] if found else []
 
     def _channel(self, raw: RawChannel, record: RawRecord, notes: list[str], findings: list[Finding]) -> Channel:
         plan = raw.plan

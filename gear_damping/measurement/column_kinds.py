@@ -15,6 +15,7 @@ ANGLE = re.compile(r"angle|winkel|theta|phi|phase|encoder|azimuth|rotation|revol
 MOTION = re.compile(r"accel|veloc|displac|force|torque", re.I)  # what bears such a name is no pulse train
 _LEVELS, _AT_LEVEL, _FEWEST_PULSES = 0.15, 0.95, 4  # of the range; of the samples; rises
 _OFTEN, _HALF_WAY = 0.2, 0.5  # of the samples, at the rarer level; of those between the levels, that turn back
+_ALIKE = 0.25  # of an interval between pulses, how far the next may differ; at random a quarter of the pairs keep it
 _FEWEST_JUMPS, _ONE_WAY, _COARSE = 2, 0.9, 50  # wraps; of the steps; steps that a direction is seen by
 _TURNS = {"rad": 2 * np.pi, "deg": 360.0, "rev": 1.0}  # one turn in each unit that an angle is written in
 _NEAR_TURN = 0.03  # of a turn: a ramp that ends so near to it wraps there
@@ -71,7 +72,7 @@ def _pulses(values: NDArray, name: str, unit: str | None) -> tuple[str, str] | N
     rises = int(np.sum(high[1:] & ~high[:-1]))
     if MOTION.search(name):
         return None
-    if rises < _FEWEST_PULSES or np.mean(at) < _AT_LEVEL or _switches_partly(high, at):
+    if rises < _FEWEST_PULSES or np.mean(at) < _AT_LEVEL or _switches_partly(high, at) or _flickers(high):
         return None
     return PULSES, f"two levels, {low:.4g} and {low + span:.4g}, with {rises} rises"
 
@@ -87,6 +88,20 @@ def _switches_partly(high: NDArray[np.bool_], at: NDArray[np.bool_]) -> bool:
     back = between & before & after & (high[:-2] == high[2:])
     rarer = min(np.mean(high), 1 - np.mean(high))
     return bool(rarer > _OFTEN and back.sum() >= max(_FEWEST_PULSES, _HALF_WAY * between.sum()))
+
+
+def _flickers(high: NDArray[np.bool_]) -> bool:
+    """Whether a series goes to and fro at random, as a still sensor about the edge of a count; a shaft hardly changes
+    its speed from one pulse to the next.
+
+    Args:
+        high: (n,) Whether a sample lies in the upper half of the range.
+    """
+    apart = np.diff(np.flatnonzero(high[1:] & ~high[:-1]))
+    if apart.size <= _FEWEST_PULSES:
+        return False
+    alike = np.abs(np.diff(apart)) <= np.maximum(1, _ALIKE * apart[:-1])
+    return bool(np.mean(alike) < _HALF_WAY)
 
 
 def _wrapping(values: NDArray, name: str, unit: str | None) -> tuple[str, str] | None:

@@ -280,6 +280,31 @@ def _beyond_the_band(record: Record) -> Iterator[Finding]:
             yield Finding("filter_beyond_band", message, channel=channel.name, severity="note")
 
 
+def mesh_beyond_band(record: Record, n_teeth: float) -> Finding | None:
+    """The note that teeth mesh faster than half the sampling rate; of shafts whose speed is not told, None.
+
+    Args:
+        record: One of a gear pair.
+        n_teeth: Teeth of the pinion.
+    """
+    angle, speed = record.channels.get("pinion_angle"), record.channels.get("pinion_speed")
+    stated = record.conditions.get("pinion_speed")
+    if angle is not None:
+        rate = float(angle.values[-1] - angle.values[0]) / record.duration
+    elif speed is not None and speed.coupling != "AC":
+        rate = float(np.mean(speed.values))
+    else:
+        rate = stated.value if stated else 0.0
+    mesh, half = abs(rate) * n_teeth / _TURN, record.sampling_rate / 2
+    if mesh <= half:
+        return None
+    message = (
+        f"the teeth mesh at {mesh:.4g} Hz, above half the sampling rate, {half:.4g} Hz: "
+        "the mesh is filtered away, or folds back onto lower frequencies"
+    )
+    return Finding("mesh_beyond_band", message, record.name, severity="note")
+
+
 def _fastest_content(values: NDArray[np.float64], rate: float) -> float:
     """Hz below which 99.9 % of the energy about the mean lies; 0 for a constant."""
     if np.ptp(values) == 0:

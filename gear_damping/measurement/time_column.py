@@ -129,10 +129,16 @@ def _is_even(column: _Column) -> bool:
 
 
 def _is_nearly_even(column: _Column) -> bool:
-    """Whether it never goes back, and nearly all steps are one, as those of stamps that jitter or are rounded."""
+    """Whether it never goes back, and nearly all steps are one, as those of stamps that jitter or are rounded.
+
+    Whole numbers that rise at every row (milliseconds of a loop that takes 2 to 4) may differ by one of themselves.
+    """
     steps = np.diff(column.inside)
     median = float(np.median(steps))
-    return median > 0 and bool(steps.min() >= 0 and np.mean(np.abs(steps / median - 1) < _LOOSELY) > _ADVANCING)
+    is_whole = steps.min() >= 1 and bool(np.all(column.inside == np.round(column.inside)))
+    within = max(_LOOSELY * median, 1.0) if is_whole else _LOOSELY * median
+    near = np.abs(steps - median) <= within if is_whole else np.abs(steps - median) < within
+    return median > 0 and bool(steps.min() >= 0 and np.mean(near) > _ADVANCING)
 
 
 def _advances(column: _Column) -> bool:

@@ -64,3 +64,20 @@ def test_what_rises_evenly_and_may_be_something_else_is_no_time(tmp_path):
         assert _camera(tmp_path, name, values).time is None, name
     np.savez(tmp_path / "b.npz", x=times + 0.1, y=np.cos(times), fs=np.array([30.0]))  # which says its rate itself
     assert inspect_table(read_table(tmp_path / "b.npz")).time is None
+
+
+def test_a_still_sensor_about_the_edge_of_a_count_is_no_pulse_train(tmp_path):
+    flickering = np.where(RNG(8).random(N) < 0.2, 0.02, 0.01)
+    turns = np.mod(12 * T + 4 * T**2, 1) < 0.1  # a shaft that runs up
+    found = inspected(tmp_path, time=T, u=flickering, tach=1.0 * turns)
+    assert column(found, "u").kind == SIGNAL
+    assert column(found, "tach").kind == PULSES
+
+
+def test_whole_milliseconds_of_a_loop_that_waits_are_the_time(tmp_path):
+    stamps = 281 + np.cumsum(RNG(9).choice([2, 3, 4], 400, p=[0.55, 0.4, 0.05]))
+    rows = "\n".join(f"{stamp},{x}" for stamp, x in zip(stamps, np.round(100 * np.cos(0.05 * stamps)), strict=True))
+    (tmp_path / "loop.csv").write_text(rows + "\n")
+    found = inspect_table(read_table(tmp_path / "loop.csv"))
+    assert found.time is not None
+    assert (found.time.index, found.time.unit) == (0, "ms")

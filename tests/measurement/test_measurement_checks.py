@@ -170,6 +170,14 @@ def test_oversampling_is_a_note(bench):
     assert (finding.kind, finding.severity) == ("oversampled", "note")
 
 
+@pytest.mark.parametrize("teeth", [33, 34])
+def test_teeth_that_mesh_beyond_the_band_are_a_note(bench, teeth):
+    bench.content["parameters"]["n_teeth_pinion"] = {"value": teeth}
+    bench.columns["theta1"] = bench.columns["theta1"] * 10.1  # 303 turns a second, at 20 kHz
+    kinds = [finding.kind for finding in bench.load().findings if finding.severity == "note"]
+    assert kinds == ["mesh_beyond_band"] * (teeth == 34)
+
+
 @pytest.mark.parametrize("factor", [2, 10])
 def test_a_file_that_was_interpolated_is_said(bench, factor):
     rows = np.arange(400)
