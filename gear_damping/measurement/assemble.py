@@ -6,10 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.angular_error import base_radius
 from gear_damping.measurement.cutting import moved
 from gear_damping.measurement.declaration import Plan
 from gear_damping.measurement.declared_units import Conversion, UnitSystem
-from gear_damping.measurement.encoders import FROM_ENCODERS, base_radius, mean_rotation, transmission_error
+from gear_damping.measurement.encoders import FROM_ENCODERS, mean_rotation, transmission_error
 from gear_damping.measurement.gaps import borne_out
 from gear_damping.measurement.raw import RawChannel, RawRecord
 from gear_damping.measurement.record import Channel, Finding, Quantity, Record

@@ -7,6 +7,7 @@ from typing import Annotated, ClassVar
 from pydantic import model_validator
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.angular_error import is_angle
 from gear_damping.measurement.quantities import PERIODS, Column, Corner, Cutoff, Measured, Rate
 from gear_damping.measurement.record import Quantity
 from gear_damping.schema.mappings import Declared, key
@@ -254,6 +255,20 @@ class TransmissionError(Response):
 
     title: ClassVar[str] = "a transmission error"
     si: ClassVar[str | None] = "m"
+    shaft: Annotated[str, OneOf(("pinion", "gear"))] = key(
+        "Of a transmission error in a unit of an angle (`arcsec`, `urad`): the shaft whose angle it is.",
+        "length along the line of action: the angle times the base radius of that shaft",
+    )
+
+    @model_validator(mode="after")
+    def _of_a_shaft(self) -> "TransmissionError":
+        if self.unit is not None and is_angle(self.unit) and not self.given("shaft"):
+            rule = f"a transmission error in '{self.unit}' is the angle of a shaft, and nothing says of which"
+            refuse(rule, None, "write shaft: pinion (or gear), whose base radius makes it a length", "shaft")
+        if self.given("shaft") and not is_angle(self.unit):
+            rule = "has a meaning only for a transmission error in a unit of an angle"
+            refuse(rule, self.shaft, "leave it out, or state the unit, as arcsec", "shaft")
+        return self
 
 
 CASING = "the path from the mesh to a casing is unknown, its gain, delay and zero too"

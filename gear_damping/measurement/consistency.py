@@ -4,6 +4,7 @@ from collections.abc import Callable, Collection, Iterator
 
 from gear_damping.errors import Problem
 from gear_damping.measurement import layout
+from gear_damping.measurement.angular_error import GEOMETRY, NEEDED
 from gear_damping.schema.mappings import names
 
 _OSCILLATOR_RESPONSES = ("displacement", "velocity", "acceleration")
@@ -103,6 +104,16 @@ def _gear_load(seen: _Seen) -> Found:
         yield seen.problem("conditions.gear_torque", rule, "keep the one that is right")
 
 
+def _angle_needs_teeth(seen: _Seen) -> Found:
+    """What makes a length of a transmission error that is an angle."""
+    shaft = getattr(seen.channels.get("transmission_error"), "shaft", None)
+    known = given(seen.file.parameters)
+    missing = [name for name in (GEOMETRY[shaft], *NEEDED) if name not in known] if shaft else []
+    if missing:
+        rule = "a transmission error in a unit of an angle needs the base radius of its shaft"
+        yield seen.problem("channels.transmission_error.shaft", rule, f"give {', '.join(missing)} under parameters")
+
+
 def _shaft_needs_inertia(seen: _Seen) -> Found:
     parameters = seen.file.parameters
     if seen.on_a_shaft and parameters is not None and parameters.equivalent_mass is not None:
@@ -175,7 +186,7 @@ def _frame_without_base(seen: _Seen) -> Found:
 
 _GEAR: tuple[Callable[[_Seen], Found], ...] = (
     _something_measured, _gear_response, _gear_angle, _gear_load, _shaft_needs_inertia, _speed_as_an_angle,
-    _speed_has_its_mean, _encoder_beside_a_channel, _angle_twice, _speed_of_known_gain, _reference,
+    _angle_needs_teeth, _speed_has_its_mean, _encoder_beside_a_channel, _angle_twice, _speed_of_known_gain, _reference,
 )  # fmt: skip
 _OSCILLATOR: tuple[Callable[[_Seen], Found], ...] = (
     _something_measured, _oscillator_response, _frame_without_base, _reference,

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.measurement import layout
+from gear_damping.measurement.angular_error import along_the_line, is_angle_of_a_shaft
 from gear_damping.measurement.channels import AnyChannel, Response, Timed
 from gear_damping.measurement.consistency import inconsistencies
 from gear_damping.measurement.own_system import NONE, file_of, si_units
@@ -99,7 +100,6 @@ class Plan:
     si: Mapping[str, str] | None = None
 
 
-
 def declared_plan(
     content: object, problems: Problems, source: str, own: "Mapping[str, type[System]]" = NONE
 ) -> Plan | None:
@@ -125,7 +125,9 @@ def declared_plan(
     problems += [Problem(p.key, p.rule, p.value, p.remedy, source) for p in inconsistencies(file, wrong)]
     parameters, in_own_units = _parameters(file)
     records = tuple(
-        _record(record, f"records[{k}]", problems, source) for k, record in enumerate(file.records) if record
+        _record(record, f"records[{k}]", parameters, problems, source)
+        for k, record in enumerate(file.records)
+        if record
     )
     segment_s = file.segments.value if file.segments else None
     return Plan(system, parameters, in_own_units, records, segment_s, _kept(file, own.get(system)))
@@ -168,11 +170,17 @@ def _parameters(file: layout.AnyFile) -> tuple[dict[str, Quantity], dict[str, Qu
     return {name: quantity for name, quantity in found.items() if name not in own}, own
 
 
-def _record(record: layout.AnyRecord, key: str, problems: Problems, source: str) -> RecordPlan:
+def _record(
+    record: layout.AnyRecord, key: str, parameters: Mapping[str, Quantity], problems: Problems, source: str
+) -> RecordPlan:
     declared = _declared_channels(record)
     conditions, mode = _conditions(record)
     based = "base_acceleration" in declared
     gear = isinstance(record, layout.GearRecord)
+    channels = [
+        _channel(name, channel, f"{key}.channels.{name}", _resolved(name, channel, record, based), problems, source)
+        for name, channel in declared.items()
+    ]
     return RecordPlan(
         key=key,
         name=record.name,
@@ -180,10 +188,7 @@ def _record(record: layout.AnyRecord, key: str, problems: Problems, source: str)
         role=record.role,
         rows=record.slice,
         timing=_timing(record) or _timing(record.channels) or TimePlan(),
-        channels=tuple(
-            _channel(name, channel, f"{key}.channels.{name}", _resolved(name, channel, record, based), problems, source)
-            for name, channel in declared.items()
-        ),
+        channels=tuple(along_the_line(plan, parameters) if is_angle_of_a_shaft(plan) else plan for plan in channels),
         encoders=tuple(_encoders(record, key)) if gear else (),
         conditions=conditions,
         gear_torque_mode=mode,

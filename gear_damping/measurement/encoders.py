@@ -155,13 +155,6 @@ def mean_rotation(
     return pinion - radii[0] * inertias[1] / arms * error
 
 
-def base_radius(n_teeth: float, module: float, pressure_angle: float) -> float:
-    """m: half of n_teeth * module * cos(pressure_angle)."""
-    return n_teeth * module * float(np.cos(pressure_angle)) / 2
-
-
-
-
 def shaft_angle(
     plan: EncoderPlan, base: TimeBase, rows: ReadColumn, whole: ReadColumn, file: str
 ) -> ShaftAngle:
@@ -197,7 +190,11 @@ def _threshold(plan: EncoderPlan, signal: NDArray, file: str) -> float:
         return float(signal.min() + signal.max()) / 2
     key = f"{plan.key}.threshold"
     declared = to_si(plan.threshold.value, plan.threshold.unit, plan.unit, key, file)
-    return declared / parse_unit(plan.unit, f"{plan.key}.unit", file).factor
+    level, low, high = declared / parse_unit(plan.unit, f"{plan.key}.unit", file).factor, signal.min(), signal.max()
+    if not low < level < high:
+        rule = f"lies outside the column's values, {low:.4g} to {high:.4g}, in a WAV file shares of full scale"
+        raise InputError(Problem(key, rule, f"{level:g}", "state it in these, or leave it out: half way", file))
+    return level
 
 
 def _at_index_pulse(plan: EncoderPlan, angle: NDArray, rows: ReadColumn, file: str) -> float:

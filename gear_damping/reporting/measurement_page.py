@@ -112,20 +112,20 @@ def _channel_tables() -> Iterator[str]:
         yield from _table(("channel", "unit of the kind", "meaning", "acts as"), rows)
 
 
-def _sensor_keys() -> Mapping[str, tuple[object, dict[str, list[str]]]]:
-    """Each key of a channel: its declaration, and by system the channels that take it."""
-    found: dict[str, tuple[object, dict[str, list[str]]]] = {}
+def _sensor_keys() -> Mapping[tuple[str, str], tuple[object, dict[str, list[str]]]]:
+    """Each key of a channel in each of its meanings: its declaration, and by system the channels that take it."""
+    found: dict[tuple[str, str], tuple[object, dict[str, list[str]]]] = {}
     for system, models in CHANNEL_MODELS.items():
         for channel, model in models.items():
             for name, info in names(model).items():
-                found.setdefault(name, (info, {}))[1].setdefault(system, []).append(channel)
+                found.setdefault((name, info.description), (info, {}))[1].setdefault(system, []).append(channel)
     return found
 
 
 def _sensor_table() -> Iterator[str]:
     yield "### Keys of a channel\n"
     rows = []
-    for name, (info, taken) in _sensor_keys().items():
+    for (name, _), (info, taken) in _sensor_keys().items():
         by = "; ".join(
             f"{_SYSTEM[system]}: " + ("every" if len(found) == len(CHANNEL_MODELS[system]) else ", ".join(found))
             for system, found in taken.items()
@@ -145,6 +145,7 @@ def _refusals() -> Iterator[str]:
     casing = ", ".join(f"`{name}`" for name in c.OF_A_SHAFT)
     rows = [(f"`{name}`", ", ".join(where), reason, remedy) for (name, reason, remedy), where in because.items()]
     rows.append(("`datum: absolute`", "pinion_speed, gear_speed", "what is compared is a fluctuation", "leave it out"))
+    rows.append(("`coupling: AC`", "gear_speed", "what is compared is a fluctuation", "state its highpass"))
     rows.append((casing, "acceleration on a casing (gear pair)", c.CASING, "write mounting: tangential where it is"))
     for name, (reason, remedy) in layout.OscillatorRecord.refused.items():
         rows.append((f"`{name}`", "records of an oscillator", reason, remedy))

@@ -182,6 +182,9 @@ def _bases() -> list[dict]:
     sensor = _gear(error | tangential)
     for name in ("transmission_error", "acceleration"):
         sensor["records"][0]["channels"][name]["datum"] = "arbitrary"
+    angular = _gear(gear("transmission_error", unit="arcsec", shaft="pinion", range={"value": 9e3, "unit": "arcmin"},
+                         noise={"value": 0.01, "unit": "urad"})) | copy.deepcopy(rig)  # fmt: skip
+    angular["parameters"]["n_teeth_gear"]["value"] = 41.0
     speedy = _gear(_dated(speeds))
     oscillator_rate = _oscillator(motions | motion("force", "d"))
     oscillator_rate["records"][0]["channels"]["sampling_rate"] = {"value": 1000.0, "unit": "Hz"}
@@ -189,7 +192,7 @@ def _bases() -> list[dict]:
     oscillator_outside = _oscillator(motion("displacement", "a"), sampling_rate={"value": 1000.0, "unit": "Hz"})
     del oscillator_outside["records"][0]["channels"]["time"]
     return [
-        all_gear, sensor, speedy, _gear(speeds), all_motions, framed, dated,
+        all_gear, sensor, angular, speedy, _gear(speeds), all_motions, framed, dated,
         *(_own_time(all_gear, base) for base in own),
         *(_own_time(_gear(speeds), base) for base in own), *(_own_time(all_motions, base) for base in own),
         plain, worded, rate_inside, rate_outside, reference, oscillator_rate, oscillator_outside,

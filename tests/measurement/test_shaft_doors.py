@@ -103,3 +103,51 @@ def test_a_speed_whose_mean_is_lost_says_nothing_against_the_angle(bench):
     assert _shaft(bench, 3.8 * part) == []
     bench.columns["omega"] = 20.0 + bench.columns["omega"]
     assert _shaft(bench, 3.8 * part) == ["speed_mismatch"]
+
+
+def _in_arc_seconds(bench, shaft: str, teeth: int):
+    """The bench's record with its transmission error told as the angle of a shaft of so many teeth."""
+    bench.content["parameters"] = {
+        "n_teeth_pinion": 18, "n_teeth_gear": 55,
+        "module": {"value": 4, "unit": "mm"}, "pressure_angle": {"value": 20, "unit": "deg"},
+    }  # fmt: skip
+    radius = 4e-3 * teeth * np.cos(np.pi / 9) / 2
+    length = 1e-6 * bench.columns["dte"]
+    bench.columns["dte"] = length / radius * 180 / np.pi * 3600
+    noise = {"value": float(0.1 / radius), "unit": "urad"}
+    bench.channels["transmission_error"] = {"column": "dte", "unit": "arcsec", "shaft": shaft, "noise": noise}
+    return length
+
+
+@pytest.mark.parametrize(("shaft", "teeth"), [("pinion", 18), ("gear", 55)])
+def test_a_transmission_error_in_arc_seconds_is_a_length_by_its_shaft(bench, shaft, teeth):
+    length = _in_arc_seconds(bench, shaft, teeth)
+    channel = bench.load().records[0].channels["transmission_error"]
+    assert channel.values == pytest.approx(length, rel=1e-9)
+    assert channel.noise == pytest.approx(1e-7, rel=1e-9)
+
+
+def test_a_transmission_error_in_arc_seconds_says_what_it_lacks(bench):
+    _in_arc_seconds(bench, "pinion", 18)
+    del bench.content["parameters"]["module"]
+    (problem,) = bench.problems()
+    assert "give module under parameters" in problem
+    bench.channels["transmission_error"].pop("shaft")
+    (problem,) = bench.problems()
+    assert "transmission_error.shaft" in problem
+    assert "nothing says of which" in problem
+    bench.channels["transmission_error"] |= {"unit": "um", "shaft": "gear", "noise": {"value": 1, "unit": "um"}}
+    (problem,) = bench.problems()
+    assert "only for a transmission error in a unit of an angle" in problem
+
+
+def test_a_threshold_beyond_a_pulse_train_says_what_the_train_holds(bench):
+    bench.columns["pulse"] = 0.2 * (np.mod(bench.columns["theta1"] / TURN, 1) < 0.5)
+    del bench.channels["pinion_angle"]
+    threshold = {"value": 2, "unit": "V"}
+    bench.record["encoders"] = {
+        "tacho": {"column": "pulse", "unit": "V", "pulses_per_revolution": 1, "threshold": threshold}
+    }
+    (problem,) = bench.problems()
+    for words in ("encoders.tacho.threshold", "0 to 0.2", "WAV"):
+        assert words in problem

@@ -1,0 +1,59 @@
+"""A transmission error that is an angle of one of its shafts, as gear testers write it: its length along the line."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from math import cos
+from typing import TYPE_CHECKING
+
+from gear_damping.errors import InputError
+from gear_damping.measurement.record import Quantity
+from gear_damping.units import Unit, parse_unit
+
+if TYPE_CHECKING:
+    from gear_damping.measurement.declaration import ChannelPlan
+
+GEOMETRY = {"pinion": "n_teeth_pinion", "gear": "n_teeth_gear"}  # the teeth that make a shaft's base radius
+NEEDED = ("module", "pressure_angle")  # beside them
+_LENGTH = "um"  # that the channel is then told in
+
+
+def base_radius(n_teeth: float, module: float, pressure_angle: float) -> float:
+    """m: half of n_teeth * module * cos(pressure_angle)."""
+    return n_teeth * module * cos(pressure_angle) / 2
+
+
+def is_angle(unit: str | None) -> bool:
+    """Whether a unit is one of an angle."""
+    try:
+        return unit is not None and parse_unit(unit).dimension == parse_unit("rad").dimension
+    except InputError:
+        return False
+
+
+def is_angle_of_a_shaft(plan: "ChannelPlan") -> bool:
+    """Whether a channel is a transmission error that was declared as the angle of one of its shafts."""
+    return plan.name == "transmission_error" and "shaft" in plan.sensor and is_angle(plan.unit)
+
+
+def along_the_line(plan: "ChannelPlan", parameters: Mapping[str, Quantity]) -> "ChannelPlan":
+    """The channel as a length: the angle times the base radius of its shaft.
+
+    Args:
+        plan: A transmission error that is an angle of a shaft.
+        parameters: Of the file, in SI. A file that lacks some of the geometry is refused elsewhere.
+    """
+    sensor = dict(plan.sensor)
+    known = [parameters.get(name) for name in (GEOMETRY[sensor.pop("shaft")], *NEEDED)]
+    radius = base_radius(*(one.value for one in known)) if all(known) else 1.0
+    angle = parse_unit(plan.unit)
+    sensor["gain"] *= parse_unit(_LENGTH).factor / (radius * angle.factor)  # the declared unit in one micrometre
+    limits = {name: _length(quantity, radius, angle) for name, quantity in plan.limits.items()}
+    return replace(plan, unit=_LENGTH, sensor=sensor, limits=limits)
+
+
+def _length(quantity: Quantity, radius: float, angle: Unit) -> Quantity:
+    """A limit in any unit of an angle, or one that is a length already."""
+    own = parse_unit(quantity.unit)
+    if own.dimension != angle.dimension:
+        return quantity
+    return Quantity(quantity.value * own.factor * radius / parse_unit(_LENGTH).factor, _LENGTH, quantity.uncertainty)
