@@ -79,3 +79,19 @@ def test_a_unit_that_nobody_knows_does_not_make_a_row_of_units_one_of_names(tmp_
 def test_of_two_rows_without_a_unit_of_time_the_lower_one_names(tmp_path):
     table = table_of(tmp_path, ["Time,Left,Right", "t,V,x", *rows(40, 3, ",")])
     assert table.names == ("t", "V", "x")
+
+
+def test_lines_of_settings_above_a_definition_of_the_columns_are_no_values(tmp_path):
+    body = [row.replace(".", ",") for row in rows(30, sign="\t")]
+    head = ["MIN=0\t-0,4\t-4", "MAX=60\t0,4\t4", "DEC=1\t4\t2", 'DEF="Zeit" t / s\t"Weg" s_A1 / m\t"Winkel" w / rad']
+    table = table_of(tmp_path, [*head, *body])
+    assert table.names == ("Zeit t / s", "Weg s_A1 / m", "Winkel w / rad")
+    assert [table.unit(k) for k in range(3)] == ["s", "m", "rad"]
+    assert len(table.values(0)) == 30
+
+
+def test_names_with_blanks_between_them_stand_above_rows_with_tabs(tmp_path):
+    assert table_of(tmp_path, ["t       y", *rows(30, 2, "\t")]).names == ("t", "y")
+    titled = table_of(tmp_path, ["swing of the spring", *rows(30, 2, "\t")])
+    assert titled.names == ("", "")
+    assert "1 line(s) before the header" in titled.notes[0]

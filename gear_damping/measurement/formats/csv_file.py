@@ -25,6 +25,7 @@ _NAN = ("nan", "NaN", "NAN", "Nan", "-nan", "+nan")
 _NUMBER, _IS_COMMENT = re.compile(r"\d"), re.compile(r"\s*#")
 _PLACE = "X_Value"  # LabVIEW's name of what the values are over,
 _PLAIN = {"pounds": "lbf", "newtons": "N", "amps": "A", "meters": "m"}  # ... and its words for units
+_SETTING, _DEFINED = re.compile(r"[A-Za-z]\w*="), "DEF="
 _END_OF_HEADER = re.compile(r"^\*+ ?end[_ ]of[_ ]header", re.IGNORECASE)
 _COMMENT = re.compile(rb"^[ \t]*#", re.MULTILINE)
 
@@ -137,11 +138,13 @@ def _header(text: _Text) -> tuple[Header, int]:
         rows.append(row)
     if not rows:
         raise InputError(Problem("file", "no rows", str(text.path), "export it again"))
-    start = _behind_marks(rows)
+    start = _behind_marks(rows) or _behind_settings(rows)
     settings, lines, rows = rows[:start], lines[start:], rows[start:]
     header = _below_preamble(rows, text.width) or find_header(rows, text.width)
     header = _of_labview(header, settings) if start else header
-    if text.delimiter == " " and len(header.names) > text.width > 0:  # a title: names in words would be as many
+    header = _of_cassy(header, settings) if start and not any(header.names) else header
+    is_title = len(header.names) == 1 < text.width or (text.delimiter == " " and len(header.names) > text.width > 0)
+    if is_title:  # names in words would be as many as the columns
         header = Header(("",) * text.width, (), header.first, header.first)
     if header.first == len(rows):
         raise InputError(Problem("file", "a header and no rows of numbers", str(text.path), "export it again"))
@@ -157,6 +160,20 @@ def _behind_marks(rows: list[list[str]]) -> int:
     """The row behind the last line that says that a header ends (LabVIEW: `***End_of_Header***`), 0 without one."""
     ends = [k for k, row in enumerate(rows) if _END_OF_HEADER.match(row[0])]
     return ends[-1] + 1 if ends and ends[-1] + 1 < len(rows) else 0
+
+
+def _behind_settings(rows: list[list[str]]) -> int:
+    """The row behind lines that set something down, `MIN=0`, at the head of a file; 0 without them."""
+    above = next((k for k, row in enumerate(rows) if not _SETTING.match(row[0])), 0)
+    return above if above < len(rows) else 0
+
+
+def _of_cassy(header: Header, settings: list[list[str]]) -> Header:
+    """The header with the names that a line `DEF=` defines (CASSY Lab: `DEF="Zeit" t / s`, a cell for each column)."""
+    defined = next((row for row in settings if row[0].startswith(_DEFINED)), [])
+    names = tuple(cell.removeprefix(_DEFINED).replace('"', "").strip() for cell in defined if cell.strip())
+    skipped = header.skipped if names else header.skipped + len(settings)
+    return replace(header, names=names or header.names, skipped=skipped)
 
 
 def _of_labview(header: Header, settings: list[list[str]]) -> Header:

@@ -104,7 +104,12 @@ def _of_two_rows(upper: list[str], lower: list[str], first: int) -> Header | Non
 
 
 def _names(row: Sequence[str], width: int) -> Sequence[str]:
-    """A row of texts, without a sign of comment before them and with units in brackets beside their names."""
+    """A row of texts, without a sign of comment before them and with units in brackets beside their names.
+
+    Names with blanks between them may stand above values with other signs between them.
+    """
+    if filled(row) == 1 < width and len(row[0].split()) == width:
+        return row[0].split()
     if filled(row) <= width and row[0].strip() not in _COMMENTS:
         return row
     cells = [cell for cell in row if cell.strip()]
