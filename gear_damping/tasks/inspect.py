@@ -251,7 +251,7 @@ def _record_lines(record: Record) -> Iterator[str]:
     even = "" if record.uniform else ", uneven"
     yield (
         f"record '{record.name}', {record.role or 'role not said'}: {record.file.name}, {record.time.size} samples, "
-        f"{record.sampling_rate:.6g} Hz{even}, {record.duration:.4g} s from {record.time[0]:.4g} s on"
+        f"{record.sampling_rate:.6g} Hz{even}, {record.duration:.4g} s from {record.time[0]:.10g} s on"
     )
     for name, quantity in record.conditions.items():
         yield f"    {name}: constant, {_quantity(quantity)}"
