@@ -156,7 +156,10 @@ class Window(Declared):
 
     title: ClassVar[str] = "a window"
     start: Annotated[Quantity | float, Instant()] = key(
-        "First time, as the stamps of the file count, whatever their zero.", "rows", missing="give the first time", alias="from"
+        "First time, as the stamps of the file count, whatever their zero.",
+        "rows",
+        missing="give the first time",
+        alias="from",
     )
     stop: Annotated[Quantity | float, Instant()] = key("Last time.", "rows", missing="give the last time", alias="to")
     unit: Annotated[str, Text()] = key("Unit of those that are plain numbers, for example s.", "rows")
