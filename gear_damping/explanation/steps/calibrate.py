@@ -171,21 +171,29 @@ def _begun_short(evidence: Evidence, solver: Solver | None) -> tuple[Evidence, O
 
     Stiffness, damping and angles are found by many fits, of which a few thousand samples tell as much as all.
     """
+    part = _on_a_part(evidence)
+    begun, rough, nominal = _angles_counted(part, solver)
+    rough = rough or _rough_gear_pair(begun, solver)
+    nominal = nominal or shaped(rough, begun, SHAPE_ITERATIONS, solver)
+    if part is evidence:
+        return begun, rough, nominal
+    whole = evidence if begun.has_index else with_own_angles(evidence)
+    rough = _on_the_whole(rough, whole, ROUGH_ITERATIONS, solver)
+    return whole, rough, _on_the_whole(nominal, whole, SHAPE_ITERATIONS, solver)
+
+
+def _on_a_part(evidence: Evidence) -> Evidence:
+    """The evidence with the first of its long records; as it is where they are short enough."""
     share = fair_share([len(record.stacked) for record in evidence.fit], CALIBRATED)
     short = tuple(shortened(r, int(min(len(r.response), share / len(r.channels)))) for r in evidence.fit)
     is_whole = all(len(a.response) == len(b.response) for a, b in zip(short, evidence.fit, strict=True))
-    begun, rough, nominal = _angles_counted(evidence if is_whole else replace(evidence, fit=short), solver)
-    rough = rough or _rough_gear_pair(begun, solver)
-    nominal = nominal or shaped(rough, begun, SHAPE_ITERATIONS, solver)
-    if is_whole:
-        return begun, rough, nominal
-    whole = evidence if begun.has_index else with_own_angles(evidence)
-    rounds = Rounds(ROUGH_ITERATIONS), Rounds(SHAPE_ITERATIONS)
-    rough, nominal = (
-        fit_hypothesis(found.hypothesis, whole, InitialValues(after=found, is_near=True), some, solver=solver)
-        for found, some in zip((rough, nominal), rounds, strict=True)
-    )
-    return whole, rough, nominal
+    return evidence if is_whole else replace(evidence, fit=short)
+
+
+def _on_the_whole(found: Outcome, evidence: Evidence, iterations: int, solver: Solver | None) -> Outcome:
+    """What was fitted to a part of records, fitted to all of them."""
+    initial = InitialValues(after=found, is_near=True)
+    return fit_hypothesis(found.hypothesis, evidence, initial, Rounds(iterations), solver=solver)
 
 
 def _carried_over(found: Calibration, evidence: Evidence, solver: Solver | None) -> Calibration:
@@ -200,7 +208,9 @@ def _carried_over(found: Calibration, evidence: Evidence, solver: Solver | None)
 
 def _shaped(evidence: Evidence, solver: Solver | None) -> Outcome:
     """The nominal model of some of the records."""
-    return shaped(_rough_gear_pair(evidence, solver), evidence, SHAPE_ITERATIONS, solver)
+    part = _on_a_part(evidence)
+    found = shaped(_rough_gear_pair(part, solver), part, SHAPE_ITERATIONS, solver)
+    return found if part is evidence else _on_the_whole(found, evidence, SHAPE_ITERATIONS, solver)
 
 
 def _of_others(found: Outcome, followed: Evidence, evidence: Evidence, solver: Solver | None) -> Outcome:
