@@ -47,7 +47,8 @@ NOTHING, MUCH = excess_of(0.0, 1.0), excess_of(8.0, 40.0)
         (True, MUCH, 8.0, UNEXPLAINED),
         (True, excess_of(4.0, 9.0, threshold=20.0), 12.0, UNEXPLAINED),  # held-out records tell nothing, the others do
         (True, excess_of(-60.0, 0.04, threshold=68.0), 4.0, UNEXPLAINED),  # what would not show is no consistency
-        (False, excess_of(-60.0, 0.04, threshold=68.0), 4.0, CONSISTENT),
+        (False, excess_of(-60.0, 0.04, threshold=4.0), 4.0, CONSISTENT),
+        (False, excess_of(-60.0, 0.04, threshold=23.0), 4.0, UNEXPLAINED),  # a motor: 7 % missing, and far above noise
         (False, excess_of(-60.0, 0.04, threshold=520.0), 4.0, UNEXPLAINED),  # far more than a sensor makes, and untold
     ],
 )

@@ -10,7 +10,7 @@ from gear_damping.explanation.explain import best_is_lost, is_lost_by
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.trials.bench import Bench
 from gear_damping.explanation.trials.refit import chosen
-from gear_damping.explanation.trials.score import Score, with_other_sizes
+from gear_damping.explanation.trials.score import Score, contains, with_other_sizes
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.physics.catalogue import effect_class
 from gear_damping.physics.systems.known import SYSTEMS
@@ -104,6 +104,19 @@ def test_the_simpler_law_that_an_effect_contains_is_fitted_too():
     ranked = [score(name, 0.5 / 10**k) for k, name in enumerate(names)]
     assert "coulomb_friction" in {s.candidate.name for s in chosen(ranked, SearchSettings())}
     assert "coulomb_friction" not in {s.candidate.name for s in chosen(ranked[1:], SearchSettings(full_fits=3))}
+
+
+def test_what_is_contained_is_seen_whatever_else_was_uncertain_beside_it():
+    """Scored beside models of which one has two more uncertain parameters: two rows more below the samples."""
+
+    def columns_of(places, rows):
+        columns = torch.eye(8, dtype=torch.float64)[:, places]
+        columns = torch.cat([columns, torch.zeros(rows, len(places), dtype=torch.float64)])
+        return SimpleNamespace(columns=columns, direction=columns[:, 0])
+
+    assert contains(columns_of([3, 4, 5], 2), columns_of([4], 0))
+    assert contains(columns_of([3, 4, 5], 0), columns_of([4], 2))
+    assert not contains(columns_of([3, 4, 5], 0), columns_of([6], 2))
 
 
 @pytest.mark.parametrize(

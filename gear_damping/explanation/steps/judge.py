@@ -229,7 +229,7 @@ def _without_name(found: State, before: Excess, known: Known) -> Verdict:
             "sensor, and something in it is visible that is not random; no effect of the catalogue is validated."
         )
         return Verdict(UNEXPLAINED, (text, *known.unsettled))
-    if raised and before.threshold >= WHOLE:
+    if raised and before.threshold > settings.gross_percent:  # so large an effect could hide in what looks random
         text = (
             f"{beyond.percent:.3g} % of the signal's variance is more than the noise of the sensor, and the records "
             "are too short to tell whether a random load makes it or something is missing."

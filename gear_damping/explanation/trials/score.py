@@ -344,11 +344,15 @@ def _start(candidate: Candidate, coefficients: Tensor, n_free: int) -> Tensor:
 
 
 def collinearity(first: Score, second: Score) -> float:
-    """Largest cosine between what two candidates can do, less the nuisance; 1 means not to be told apart."""
+    """Largest cosine between what two candidates can do, less the nuisance; 1 means not to be told apart.
+
+    One may have been scored beside a model with fewer uncertain parameters, whose rows below the samples are fewer.
+    """
     if not first.columns.shape[1] or not second.columns.shape[1]:
         return 0.0
     one, other = first.direction, second.columns
-    return float((other.T @ one).norm())
+    rows = min(len(one), len(other))
+    return float((other[:rows].T @ one[:rows]).norm())
 
 
 def contains(larger: Score, smaller: Score) -> bool:
