@@ -68,6 +68,13 @@ def test_beside_a_rest_nothing_is_established_by_held_out_records_that_hardly_mo
         assert "%" not in said.sentences[0]
 
 
+@pytest.mark.parametrize(("left", "word"), [(1080.0, UNEXPLAINED), (98.0, PARTLY)])
+def test_a_model_that_predicts_worse_than_a_mean_establishes_nothing(left, word):
+    """A pendulum's swing of 3.5 s took a low-pass of 1.3 Hz for its friction; 98 % of a gap of 67 times was taken."""
+    found = search(accepted=(cause(),), left=True, sensor=1000.0, rest=900.0)
+    assert verdict(found, excess_of(67500.0, 1e6), excess_of(left, 1e4), is_one=True).word == word
+
+
 def test_a_cause_of_other_sizes_beside_something_visible_is_a_part():
     """Nearly all is taken, but not by one size in all records, and what is left is not all random."""
     sizes = {True: EXPLAINED, False: PARTLY, None: EXPLAINED}

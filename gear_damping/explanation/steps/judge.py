@@ -15,6 +15,7 @@ WHOLE = 100.0  # %: an effect that takes more than the whole signal is none
 LARGEST_SET = 4  # names that a sentence lists of causes that are not told apart
 TOO_STILL = "but something is left beside it, and the held-out records tell nothing of either."
 UNTOLD = "but there was no time to see whether it stands in for something else."
+WORSE = "but with it the held-out records are predicted worse than by their means."
 NOT_LESS = "but what is visible and not random stays."
 AT_BOUND = "but it has run into the end of what it can be, and leaves most: it stands in for something else."
 OTHER_SIZES = (
@@ -122,6 +123,8 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
         return _not_established(found, before, known, NOT_LESS)
     if not explains_all and before.threshold >= WHOLE and not before.significant:
         return _not_established(found, before, known, TOO_STILL)
+    if not explains_all and after.percent > WHOLE:
+        return _not_established(found, before, known, WORSE)
     if not explains_all and known.is_untold:
         return _not_established(found, before, known, UNTOLD)
     if not explains_all:
