@@ -6,6 +6,7 @@ mesh to what the impacts do, and from there no fit finds back to a gap. What is 
 
 from collections.abc import Mapping
 from dataclasses import replace
+from math import inf
 
 import numpy as np
 import torch
@@ -149,6 +150,7 @@ def _shaped(rough: Outcome, evidence: Evidence, harmonics: int, solver: Solver |
         whole = fit_hypothesis(found.hypothesis, evidence, initial, rounds, solver=solver)
         if whole.is_finite and whole.fitted.cost <= FAR * found.fitted.cost:
             return whole
+        growth = inf  # a fit of segments is none of whole records, however slowly errors grow
     return replace(found, error_amplification=growth)
 
 

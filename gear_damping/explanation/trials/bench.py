@@ -176,14 +176,14 @@ class Bench:
 
     def without(self, outcome: Outcome, name: str) -> Outcome:
         """A model without one of its causes, fitted from where it was."""
-        hypothesis, initial = _without(outcome.hypothesis, name), InitialValues(after=outcome)
+        hypothesis, initial = _without(outcome.hypothesis, name), InitialValues(after=outcome, is_near=True)
         return fit_hypothesis(hypothesis, self.evidence, initial, solver=self.solver)
 
     def until_converged(self, outcome: Outcome) -> Outcome:
         """A model whose fit is carried on where it had not converged."""
         if outcome.fitted.converged:
             return outcome
-        initial, rounds = InitialValues(after=outcome), Rounds(LAST_ITERATIONS)
+        initial, rounds = InitialValues(after=outcome, is_near=True), Rounds(LAST_ITERATIONS)
         further = fit_hypothesis(outcome.hypothesis, self.evidence, initial, rounds, solver=self.solver)
         return further if further.is_finite else outcome
 
