@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 import torch
@@ -14,6 +15,7 @@ from second_rig.sensors import Noise
 
 from gear_damping.explanation.evidence.records import evidence_of
 from gear_damping.explanation.explain import fitting_solver, with_noise
+from gear_damping.explanation.model import parting_flanks
 from gear_damping.explanation.model.parting_flanks import flanks_part, with_parting_flanks
 from gear_damping.explanation.steps.calibrate import calibrated
 from gear_damping.measurement.load import load_measurement
@@ -47,6 +49,26 @@ def test_damping_is_found_where_flanks_part(at_resonance):
     assert cost_over_noise(found, evidence) < 1.2
     assert found.values["viscous_damping.damping_coefficient"] == pytest.approx(rig.viscous, rel=0.05)
     assert cost_over_noise(nominal, evidence) > 3 * cost_over_noise(found, evidence)
+
+
+@pytest.mark.parametrize(("cost", "growth"), [(3.0, 1.5), (5.0, math.inf)])
+def test_a_fit_of_segments_counts_for_whole_records_only_where_these_bear_it_out(cost, growth, monkeypatch):
+    """Of a run-up through resonance whole records kept 40 times the cost, and errors grew by 1.5."""
+    near, whole = (
+        SimpleNamespace(name=name, is_finite=True, fitted=SimpleNamespace(cost=c), hypothesis=None)
+        for name, c in (("near", 1.0), ("whole", cost))
+    )
+    whole.error_amplification = 1.5
+    fits = iter([near, whole])
+    monkeypatch.setattr(parting_flanks, "fit_hypothesis", lambda *_, **__: next(fits))
+    monkeypatch.setattr(parting_flanks, "error_amplification_over", lambda *_: 1.5)
+    monkeypatch.setattr(parting_flanks, "with_shape", lambda *_: None)
+    monkeypatch.setattr(parting_flanks, "_in_short", lambda *_: None)
+    monkeypatch.setattr(parting_flanks, "replace", lambda one, **new: SimpleNamespace(**{**vars(one), **new}))
+    rough = SimpleNamespace(hypothesis=None, of_records={})
+    evidence = SimpleNamespace(fit=(), settings=SimpleNamespace(most_growth=2.0))
+    found = parting_flanks._shaped(rough, evidence, 4, None)
+    assert (found.name, found.error_amplification) == ("whole" if cost < 4 else "near", growth)
 
 
 def test_a_gap_that_is_stated_is_in_the_nominal_model_already(at_resonance):

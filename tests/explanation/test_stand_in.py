@@ -186,3 +186,20 @@ def test_numbers_that_mean_nothing_take_nothing_beyond_chance(numbers, blocks):
 
 def test_as_many_numbers_as_blocks_tell_nothing():
     assert beyond_chance(0.99, 24, 9.0) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("every", "misfit", "told"),
+    [(40, 5.0, True), (40, 2.0, False), (0, 5.0, False), (400, 5.0, False)],
+)
+def test_bursts_all_along_the_records_are_told_where_they_are_more_than_the_sensor_s_noise(every, misfit, told):
+    """Shocks of a damaged bearing passed for coloured noise. One transient, as a decay leaves it, is no series."""
+    rng = np.random.default_rng(7)
+    left = 0.2 * rng.standard_normal(4000)
+    for place in range(20, len(left) - 20, every) if every in (40,) else [20] * bool(every):
+        left[place : place + 8] += rng.choice([-3, 3]) * np.exp(-np.arange(8) / 2.0)
+    nominal = SimpleNamespace(fit_residuals=[torch.tensor(left)])
+    beyond = SimpleNamespace(misfit=misfit, percent=0.2)
+    bench = SimpleNamespace(settings=SearchSettings())
+    state = SimpleNamespace(nominal=nominal, bench=bench, beyond_sensor=lambda _: beyond, seen=None)
+    assert shape_without_name(state).startswith("bursts") is told

@@ -22,6 +22,7 @@ from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency
 from gear_damping.explanation.model.rig import strongest_frequencies
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import Accepted, State
+from gear_damping.explanation.statistics.bursts import BURST_KURTOSIS, kurtosis
 from gear_damping.explanation.statistics.projector import Projector
 from gear_damping.explanation.trials.assess import LINE_FAMILY, UNNAMED, orthonormal
 from gear_damping.explanation.trials.line import strongest_line
@@ -31,6 +32,7 @@ from gear_damping.physics.terms import ExtraStates
 
 MOST_OF_IT = 0.5  # of a residual: a line that takes more is what is left
 SWINGS_ON = "but `{}` does not die away within the records: a line looks the same."
+STRETCHES = 8  # of a record, most of which hold bursts where it is these; a decay is far from normal as a whole
 GOES_ON = 3.0  # times the longest record: what swings for so long has lost a quarter of its size at its end
 
 
@@ -115,8 +117,10 @@ def shape_without_name(state: State) -> str:
     """The family without a name that is most visible beside the nominal model, in words; a line before all others.
 
     A line takes few numbers, and others may follow it. Empty where none is visible, or where it is too small a part of
-    the signal to matter.
+    the signal to matter. Bursts all along the records are none of them: an autoregression takes them for noise.
     """
+    if _comes_in_bursts(state):
+        return "bursts, after each of which the motion rings"
     if state.seen is None or not state.seen.visible:
         return ""
     seen = state.seen.visible
@@ -133,6 +137,16 @@ def shape_without_name(state: State) -> str:
     if largest == LINE_FAMILY:
         return line.name if line else _line_in_segments(nominal, evidence)
     return f"some {largest.removeprefix(UNNAMED)}"
+
+
+def _comes_in_bursts(state: State) -> bool:
+    """Whether what the nominal model leaves is more than the noise of the sensor and comes in bursts all along."""
+    parts = [part for residual in state.nominal.fit_residuals for part in residual.chunk(STRETCHES)]
+    bursting = sum(kurtosis((part - part.mean()).numpy()) > BURST_KURTOSIS for part in parts)
+    if 2 * bursting <= len(parts):
+        return False
+    beyond, settings = state.beyond_sensor(state.nominal), state.bench.settings
+    return beyond.misfit > settings.small_misfit and beyond.percent > settings.least_excess
 
 
 def line_left(state: State) -> str:
