@@ -201,5 +201,6 @@ def test_bursts_all_along_the_records_are_told_where_they_are_more_than_the_sens
     nominal = SimpleNamespace(fit_residuals=[torch.tensor(left)])
     beyond = SimpleNamespace(misfit=misfit, percent=0.2)
     bench = SimpleNamespace(settings=SearchSettings())
-    state = SimpleNamespace(nominal=nominal, bench=bench, beyond_sensor=lambda _: beyond, seen=None)
+    noise = SimpleNamespace(correlation=1.0)
+    state = SimpleNamespace(nominal=nominal, bench=bench, noise=noise, beyond_sensor=lambda _: beyond, seen=None)
     assert shape_without_name(state).startswith("bursts") is told

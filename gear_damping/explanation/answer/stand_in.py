@@ -32,6 +32,7 @@ from gear_damping.physics.terms import ExtraStates
 
 MOST_OF_IT = 0.5  # of a residual: a line that takes more is what is left
 SWINGS_ON = "but `{}` does not die away within the records: a line looks the same."
+NORMAL_KURTOSIS, OF_KURTOSIS = 3.0, 24.0  # of normal samples, and over their number its variance (Fisher 1930)
 STRETCHES = 8  # of a record, most of which hold bursts where it is these; a decay is far from normal as a whole
 GOES_ON = 3.0  # times the longest record: what swings for so long has lost a quarter of its size at its end
 
@@ -140,12 +141,23 @@ def shape_without_name(state: State) -> str:
 
 
 def _comes_in_bursts(state: State) -> bool:
-    """Whether what the nominal model leaves is more than the noise of the sensor and comes in bursts all along."""
-    parts = [part for residual in state.nominal.fit_residuals for part in residual.chunk(STRETCHES)]
-    bursting = sum(kurtosis((part - part.mean()).numpy()) > BURST_KURTOSIS for part in parts)
-    if 2 * bursting <= len(parts):
+    """Whether what the nominal model leaves is more than the noise of the sensor and comes in bursts all along.
+
+    Most stretches of the records hold them, as far as so few independent samples can show it.
+    """
+    settings = state.bench.settings
+    whole = torch.cat([(residual - residual.mean()) / residual.std() for residual in state.nominal.fit_residuals])
+    if kurtosis(whole.numpy()) <= BURST_KURTOSIS:
         return False
-    beyond, settings = state.beyond_sensor(state.nominal), state.bench.settings
+    parts = [part for residual in state.nominal.fit_residuals for part in residual.chunk(STRETCHES)]
+    errors = [(OF_KURTOSIS * state.noise.correlation / len(part)) ** 0.5 for part in parts]
+    heavy = [
+        kurtosis((part - part.mean()).numpy()) > NORMAL_KURTOSIS + settings.standard_errors * error
+        for part, error in zip(parts, errors, strict=True)
+    ]
+    if 2 * sum(heavy) <= len(parts):
+        return False
+    beyond = state.beyond_sensor(state.nominal)
     return beyond.misfit > settings.small_misfit and beyond.percent > settings.least_excess
 
 
