@@ -9,7 +9,14 @@ import pytest
 import torch
 from scipy.integrate import solve_ivp
 
-from gear_damping.explanation.answer.stand_in import beyond_chance, is_untold, line_left, shape_without_name, stand_ins
+from gear_damping.explanation.answer.stand_in import (
+    StandIn,
+    beyond_chance,
+    is_untold,
+    line_left,
+    shape_without_name,
+    stand_ins,
+)
 from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.fitting import fit_hypothesis
@@ -204,3 +211,8 @@ def test_bursts_all_along_the_records_are_told_where_they_are_more_than_the_sens
     noise = SimpleNamespace(correlation=1.0)
     state = SimpleNamespace(nominal=nominal, bench=bench, noise=noise, beyond_sensor=lambda _: beyond, seen=None)
     assert shape_without_name(state).startswith("bursts") is told
+
+
+@pytest.mark.parametrize(("takes", "said"), [(0.97, "takes about as much (97 %"), (0.99, "takes more (99 %")])
+def test_what_takes_as_much_with_fewer_numbers_is_not_said_to_take_more(takes, said):
+    assert said in StandIn("hysteretic_damping", "a line at 3 Hz", takes, 0.98, "with 2 numbers for 3").sentence

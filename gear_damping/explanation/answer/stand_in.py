@@ -73,8 +73,9 @@ class StandIn:
     @property
     def sentence(self) -> str:
         """What is said of it."""
+        more = "more" if self.takes > self.cause_takes else "about as much"  # with fewer numbers that is more
         return (
-            f"but {self.alternative} takes more ({100 * self.takes:.3g} % of the residuals, `{self.cause}` "
+            f"but {self.alternative} takes {more} ({100 * self.takes:.3g} % of the residuals, `{self.cause}` "
             f"{100 * self.cause_takes:.3g} %), {self.why}: it stands in for something that has no name here."
         )
 
