@@ -220,7 +220,8 @@ def _compared(records: list[Record]) -> tuple[Record, ...]:
         same = next((rate for rate in rates if abs(record.sampling_rate / rate - 1) < ONE_RATE), record.sampling_rate)
         rates.append(same)
         record = replace(record, sampling_rate=same)
-        if abs(same / first.sampling_rate - 1) > OTHER_RATE:
+        sampled_evenly = record.uniform and first.uniform  # where events are stamped, they have no rate
+        if sampled_evenly and abs(same / first.sampling_rate - 1) > OTHER_RATE:
             message = (
                 f"sampled at {same:.6g} Hz, '{first.name}' at {first.sampling_rate:.6g} Hz; "
                 "check that both rates are right"

@@ -64,6 +64,18 @@ def test_records_of_different_rate_are_noted(bench):
     assert (finding.kind, finding.record, finding.severity) == ("mixed_rates", "run_2", "note")
 
 
+def test_stamps_of_events_have_no_rate_that_another_record_s_could_differ_from(bench):
+    """One row for each turn of a wheel that coasts: the rate is what it happened to have."""
+    bench.write_csv()
+    turned = np.linspace(0, 1, 400) ** 1.5 * 0.1
+    bench.columns["t"] = turned
+    bench.write_csv("run_2.csv")
+    bench.add_record(file="run_2.csv")
+    loaded = bench.load()
+    assert [record.uniform for record in loaded.records] == [True, False]
+    assert "mixed_rates" not in [finding.kind for finding in loaded.findings]
+
+
 def test_a_constant_response_is_a_problem_and_a_constant_torque_is_not(bench):
     _errors(bench)[:] = 3.0
     bench.columns["T1"][:] = 150.0

@@ -56,11 +56,14 @@ def left_out_ends(evidence: Evidence) -> str:
 
 def _characteristic(evidence: Evidence, nominal: Outcome) -> tuple[float, str]:
     """Seconds over which the motion forgets itself, and what so many of them are called."""
-    if not evidence.has_spring:
+    frequency = 0.0
+    if evidence.has_spring:
+        fitted = natural_frequency_hz(nominal.hypothesis.model, nominal.flat_given())
+        swings = fitted * evidence.duration >= 1.0  # in a period longer than every record there is no spring to see
+        frequency = stated_frequency(evidence) or fitted * swings
+    if not frequency:
         time = max(decorrelation_time(record) for record in evidence.fit)
         return time, f"times of {time:.3g} s, over which the motion forgets itself"
-    fitted = natural_frequency_hz(nominal.hypothesis.model, nominal.flat_given())
-    frequency = stated_frequency(evidence) or fitted
     return 1 / frequency, f"natural periods of {frequency:.3g} Hz"
 
 
