@@ -212,12 +212,14 @@ def bases() -> list[dict]:
         return [record(channels, **more), record(channels, **(more | later))]
 
     arbitrary = {"datum": "arbitrary"}
+    angular = {"column": "x", "unit": "arcsec", "gain": 0.0282 / 206265, "shaft": "pinion"}  # m in an arc second of it
     return [
         gear(*several(one, turning | error)),
         oscillator(*several(two, response)),
         gear(record(error | torques)),
         gear(record(only(one, "transmission_error") | turning)),
         gear(record(only(one, "transmission_error", **arbitrary) | turning, mesh_index=False), **segments),
+        gear(record({"transmission_error": angular} | turning), **inertias),
         gear(record(tangential | turning)),
         gear(record(apart(tangential, {"datum": "absolute"}) | turning)),
         gear(record(apart(tangential, arbitrary) | turning)),

@@ -154,6 +154,17 @@ def _shaped(rough: Outcome, evidence: Evidence, harmonics: int, solver: Solver |
     return replace(found, error_amplification=growth)
 
 
+def are_missed(found: Outcome, nominal: Outcome, evidence: Evidence, solver: Solver | None) -> bool:
+    """Whether a fit with a gap takes most of what a model without one leaves of the same segments.
+
+    Over segments, each with a start of its own, any model leaves less than over whole records.
+    """
+    short = _in_short(found.hypothesis, evidence)
+    initial = InitialValues(own=nominal.of_records)
+    without = fit_hypothesis(nominal.hypothesis, short, initial, Rounds(ROUGH_ITERATIONS), solver=solver)
+    return found.fitted.cost <= evidence.settings.lost_share * without.fitted.cost
+
+
 def _in_short(hypothesis: Hypothesis, evidence: Evidence) -> Evidence:
     """The evidence in segments: over more than these no motion of flanks that part is foretold from afar."""
     return replace(evidence, segments=segments_of(hypothesis, evidence))

@@ -7,7 +7,7 @@ from gear_damping.explanation.evidence.excess import is_settled
 from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Outcome, settled_at
 from gear_damping.explanation.model.nominal_gear_pair import SHAPE, shaped
-from gear_damping.explanation.model.parting_flanks import flanks_part, with_parting_flanks
+from gear_damping.explanation.model.parting_flanks import are_missed, flanks_part, with_parting_flanks
 from gear_damping.explanation.state import State
 from gear_damping.explanation.trials.refit import Refit, again, compared
 from gear_damping.explanation.trials.score import Score, best_by_effect
@@ -74,8 +74,12 @@ def _from_what_is_stated(fits: Sequence[Refit], state: State) -> list[Refit]:
     if bench.budget.refuses(f"{name} from what is stated of the rig"):
         return []
     harmonics = sum(p.name.startswith(SHAPE_IN_PHASE) for p in state.nominal.problem.free)
-    found = with_parting_flanks(bench.evidence, harmonics, bench.solver)
-    return [] if found is None else [compared(score, found, state.nominal, bench.evidence)]
+    evidence = bench.evidence
+    found = with_parting_flanks(evidence, harmonics, bench.solver)
+    is_cut = found is not None and found.error_amplification > bench.settings.most_growth and not evidence.segments
+    if found is None or (is_cut and not are_missed(found, state.nominal, evidence, bench.solver)):
+        return []
+    return [compared(score, found, state.nominal, evidence)]
 
 
 def _from_the_best(fits: Sequence[Refit], state: State) -> list[Refit]:
