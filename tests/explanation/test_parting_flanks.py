@@ -73,7 +73,7 @@ def test_a_fit_of_segments_counts_for_whole_records_only_where_these_bear_it_out
 
 @pytest.mark.parametrize(("left_without", "missed"), [(2.5, True), (1.5, False)])
 def test_a_gap_seen_in_segments_takes_half_of_what_is_left_of_the_same_segments(left_without, missed, monkeypatch):
-    """Any model leaves little of segments that begin anew, as whatever is hidden does beside a gap that is not there."""
+    """Any model leaves little of segments that begin anew, whatever is hidden beside it."""
     found, without = (SimpleNamespace(fitted=SimpleNamespace(cost=c), hypothesis=None) for c in (1.0, left_without))
     monkeypatch.setattr(parting_flanks, "fit_hypothesis", lambda *_, **__: without)
     monkeypatch.setattr(parting_flanks, "_in_short", lambda *_: None)
