@@ -32,7 +32,7 @@ def is_angle(unit: str | None) -> bool:
 
 def is_angle_of_a_shaft(plan: "ChannelPlan") -> bool:
     """Whether a channel is a transmission error that was declared as the angle of one of its shafts."""
-    return plan.name == "transmission_error" and "shaft" in plan.sensor and is_angle(plan.unit)
+    return plan.name == "transmission_error" and "shaft" in plan.sensor
 
 
 def along_the_line(plan: "ChannelPlan", parameters: Mapping[str, Quantity]) -> "ChannelPlan":

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.angular_error import base_radius
+from gear_damping.measurement.angular_error import GEOMETRY, NEEDED, base_radius
 from gear_damping.measurement.cutting import moved
 from gear_damping.measurement.declaration import Plan
 from gear_damping.measurement.declared_units import Conversion, UnitSystem
@@ -22,8 +22,8 @@ from gear_damping.schema.values import Problems
 from gear_damping.units import parse_unit
 
 LOST = 0.1  # of a channel's variance, from which it is said that resampling took it
-_TEETH = ("n_teeth_pinion", "n_teeth_gear")
-_GEOMETRY = (*_TEETH, "module", "pressure_angle")
+_TEETH = tuple(GEOMETRY.values())
+_GEOMETRY = (*_TEETH, *NEEDED)
 _INERTIAS = ("inertia_pinion", "inertia_gear")
 
 

@@ -5,7 +5,7 @@ import re
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_damping.errors import InputError
+from gear_damping.measurement.angular_error import is_angle
 from gear_damping.units import parse_unit
 
 TIME, CONSTANT, EMPTY, UNREADABLE, TURNING, COUNTER, PULSES, SIGNAL, ROW_NUMBER = (
@@ -130,9 +130,4 @@ def _advancing(values: NDArray, name: str, unit: str | None) -> tuple[str, str] 
 
 def _turn_in(unit: str | None) -> float | None:
     """One turn in a unit of angle; None for any other unit."""
-    try:
-        found = parse_unit(unit) if unit else None
-    except InputError:
-        return None
-    plain = found is not None and found.dimension == parse_unit("rad").dimension
-    return 2 * np.pi / found.factor if plain else None
+    return 2 * np.pi / parse_unit(unit).factor if unit and is_angle(unit) else None

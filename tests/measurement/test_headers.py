@@ -90,6 +90,12 @@ def test_lines_of_settings_above_a_definition_of_the_columns_are_no_values(tmp_p
     assert len(table.values(0)) == 30
 
 
+def test_lines_of_settings_that_define_no_column_are_counted_once(tmp_path):
+    table = table_of(tmp_path, ["MIN=0\t-0.4", "MAX=60\t0.4", *rows(30, 2, "\t")])
+    assert table.names == ("", "")
+    assert table.notes == ("run.csv: 2 line(s) before the header are left out",)
+
+
 def test_names_with_blanks_between_them_stand_above_rows_with_tabs(tmp_path):
     assert table_of(tmp_path, ["t       y", *rows(30, 2, "\t")]).names == ("t", "y")
     titled = table_of(tmp_path, ["swing of the spring", *rows(30, 2, "\t")])

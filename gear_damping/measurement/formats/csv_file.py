@@ -172,8 +172,7 @@ def _of_cassy(header: Header, settings: list[list[str]]) -> Header:
     """The header with the names that a line `DEF=` defines (CASSY Lab: `DEF="Zeit" t / s`, a cell for each column)."""
     defined = next((row for row in settings if row[0].startswith(_DEFINED)), [])
     names = tuple(cell.removeprefix(_DEFINED).replace('"', "").strip() for cell in defined if cell.strip())
-    skipped = header.skipped if names else header.skipped + len(settings)
-    return replace(header, names=names or header.names, skipped=skipped)
+    return replace(header, names=names or header.names)
 
 
 def _of_labview(header: Header, settings: list[list[str]]) -> Header:
