@@ -22,7 +22,7 @@ from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency
 from gear_damping.explanation.model.rig import strongest_frequencies
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import Accepted, State
-from gear_damping.explanation.statistics.bursts import BURST_KURTOSIS, kurtosis
+from gear_damping.explanation.statistics.bursts import BURST_KURTOSIS, kurtosis, pooled_kurtosis
 from gear_damping.explanation.statistics.projector import Projector
 from gear_damping.explanation.trials.assess import LINE_FAMILY, UNNAMED, orthonormal
 from gear_damping.explanation.trials.line import strongest_line
@@ -147,8 +147,7 @@ def _comes_in_bursts(state: State) -> bool:
     Most stretches of the records hold them, as far as so few independent samples can show it.
     """
     settings = state.bench.settings
-    whole = torch.cat([(residual - residual.mean()) / residual.std() for residual in state.nominal.fit_residuals])
-    if kurtosis(whole.numpy()) <= BURST_KURTOSIS:
+    if pooled_kurtosis((left - left.mean()).numpy() for left in state.nominal.fit_residuals) <= BURST_KURTOSIS:
         return False
     parts = [part for residual in state.nominal.fit_residuals for part in residual.chunk(STRETCHES)]
     errors = [(OF_KURTOSIS * state.noise.correlation / len(part)) ** 0.5 for part in parts]

@@ -11,7 +11,7 @@ from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.evidence.shaft import Shaft, shaft_of
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.linear import linear_of
-from gear_damping.explanation.statistics.bursts import BURST_KURTOSIS, kurtosis
+from gear_damping.explanation.statistics.bursts import BURST_KURTOSIS, pooled_kurtosis
 from gear_damping.explanation.trials.line import strongest_line
 from gear_damping.identification.output_error.records import FitRecord
 
@@ -43,11 +43,12 @@ def unexplained_residual(outcome: Outcome, evidence: Evidence) -> dict[str, obje
         for family in families
     }
     line, said = strongest_line(outcome, evidence), ("place", "unit", "hertz", "is_force", "share")
+    peaked = pooled_kurtosis(residual_test)
     found: dict[str, object] = {
         "shares": shares,
         "line": line and {name: getattr(line, name) for name in said},
-        "kurtosis": _kurtosis(residual_test),
-        "bursts": _kurtosis(residual_test) > BURST_KURTOSIS,
+        "kurtosis": peaked,
+        "bursts": peaked > BURST_KURTOSIS,
     }
     shafts = [shaft_of(record, evidence) for record in evidence.held]
     if all(shafts):
@@ -102,10 +103,6 @@ def _share(
     before = sum(float(r @ r) for r in held)
     after = sum(float(((r - f @ found) ** 2).sum()) for r, f in zip(held, tested, strict=True))
     return max(1 - after / before, 0.0) if before > 0 else 0.0
-
-
-def _kurtosis(residuals: Sequence[Array]) -> float:
-    return kurtosis(np.concatenate([r / (r.std() or 1.0) for r in residuals]))
 
 
 def _orders(residuals: Sequence[Array], shafts: Sequence[Shaft | None]) -> dict[str, float]:
