@@ -146,7 +146,7 @@ class GaussianNetwork(DampingNetwork):
 
     def calibrate(self, found: Tensor, deviation: Tensor, labels: Tensor) -> None:
         """Take the widths of the intervals from runs that training did not see, (runs,) each."""
-        edges = torch.linspace(0, 1, BINS + 1, dtype=torch.float64)[1:-1]
+        edges = torch.linspace(0, 1, BINS + 1, dtype=torch.float64, device=deviation.device)[1:-1]
         self.sureness.copy_(deviation.double().quantile(edges))
         place = torch.bucketize(deviation, self.sureness)
         off = ((labels - found) / deviation).abs().double()

@@ -83,7 +83,7 @@ class _GraphStepper(Stepper):
 
 def _displacement(kernel: Kernel, fixed: Tensor, series: Tensor, state: Tensor, substeps: int, block: int) -> Tensor:
     """The first state in natural units, (batch, time)."""
-    stepper = _GraphStepper(kernel, fixed, SharedSeries.written_out(series), compiled=False)
+    stepper = _GraphStepper(kernel, fixed, SharedSeries.written_out(series))
     intervals = len(series)
     with torch.no_grad():
         stepper.start(state)

@@ -1,4 +1,4 @@
-"""How a model is stepped on this machine: native kernel, on a GPU kernels fused by torch.compile, or eager."""
+"""How a model is stepped on this machine: by a native kernel, or eagerly in PyTorch."""
 
 import ctypes
 import logging
@@ -26,24 +26,23 @@ _libraries: dict[int, ctypes.CDLL | None] = {}
 
 @dataclass(frozen=True)
 class Choice:
-    """The engine that was chosen: a native library with the members that it steps together, torch.compile, or eager."""
+    """The engine that was chosen: a native library with the members that it steps together, or eager."""
 
     kernel_library: ctypes.CDLL | None = None
     group: int = 1
-    is_fused: bool = False
 
     def stepper(self, kernel: Kernel, fixed: Tensor, series: SharedSeries) -> Stepper:
         """A stepper for one batch."""
         if self.kernel_library is not None:
             return NativeStepper(kernel, fixed, series, self.kernel_library, self.group)
-        return Stepper(kernel, fixed, series, compiled=self.is_fused)
+        return Stepper(kernel, fixed, series)
 
 
 def choose(wish: Engine, kernel: Kernel, batch: Batch, state: Tensor) -> Choice:
     """The engine for a model: what was asked for, or the fastest that this machine has.
 
-    On a CPU that is the native kernel where there is a C++ compiler, on a GPU torch.compile. On a CPU torch.compile is
-    no choice: it needs the compiler too, and takes some 200 times as long as the native kernel.
+    That is the native kernel where there is a C++ compiler. torch.compile is no choice: on a CPU it needs the compiler
+    too and takes some 200 times as long, and on a GPU longer than the native kernel on one core (docs/speed.md).
 
     Raises:
         RuntimeError: an engine was asked for that this machine does not have.
@@ -53,8 +52,6 @@ def choose(wish: Engine, kernel: Kernel, batch: Batch, state: Tensor) -> Choice:
         raise ValueError(f"engine must be one of {', '.join(get_args(Engine))}, not {wish!r}")
     if wish == "eager":
         return Choice()
-    if wish == "auto" and state.is_cuda:
-        return Choice(is_fused=True)
     library = _native(kernel, batch, state)
     if library is None and wish == "native":
         raise RuntimeError("simulator.solver.engine=native needs a C++ compiler and terms with a native form")

@@ -31,16 +31,21 @@ def integrate(
     """Names of the states, their values (n_state, batch, time), and the acceleration (batch, time) where it is asked.
 
     In natural units, as the sampling interval, (batch,), perturbations and a held load are. Members that need the same
-    number of sub-steps go together, so that no member's answer depends on its batch-mates.
+    number of sub-steps go together, so that no member's answer depends on its batch-mates. What lies on a GPU is
+    stepped on the CPU and comes back there: see `place_of`.
     """
     layout, series = Layout(prepared), Series(tuple(sorted(driven.series)))
-    fixed, start = layout.pack(prepared, interval), initial_states(model, prepared, driven.initial_perturbations)
-    units = input_units(model, driven.series, prepared)
-    packed = series.shared(driven.series, units, n_samples - 1, interval.shape[0], driven.held).to(fixed.device)
+    home = interval.device
+    place = place_of(model, home)
+    fixed = layout.pack(prepared, interval).to(place)
+    start = initial_states(model, prepared, driven.initial_perturbations).to(place)
+    units = {name: unit.to(place) for name, unit in input_units(model, driven.series, prepared).items()}
+    given = {name: values.to(place) for name, values in driven.series.items()}
+    packed = series.shared(given, units, n_samples - 1, interval.shape[0], driven.held).to(place)
     example = Batch(fixed, packed[0], fixed.new_zeros(()))
     kernel = kernel_of(model, layout, series, example, start)
     choice = choose(solver.engine, kernel, example, start)
-    groups = groups_of(prepared, interval, n_samples - 1, solver)
+    groups = [(n, indices.to(place)) for n, indices in groups_of(prepared, interval, n_samples - 1, solver)]
     states = start.new_empty(*start.shape, n_samples)
     accelerations = start.new_empty(start.shape[1], n_samples) if solver.acceleration else None
     names = ["displacement", "velocity", *kernel.equation.extra_names]
@@ -53,12 +58,25 @@ def integrate(
         share = _share(solver.progress, done, n * len(indices), work)
         found = solve(stepper, start if whole else start[:, indices], n_samples, n, share)
         if whole:
-            return names, found, stepper.acceleration
+            return names, found.to(home), _at(home, stepper.acceleration)
         states[:, indices] = found
         if solver.acceleration:
             accelerations[indices] = stepper.acceleration
         done += n * len(indices)
-    return names, states, accelerations
+    return names, states.to(home), _at(home, accelerations)
+
+
+def place_of(model: Model, home: torch.device) -> torch.device:
+    """Where members are stepped whose values lie on `home`: the CPU, but for a network inside the model.
+
+    A trajectory is thousands of short steps in turn, which the native kernel takes in a hundredth of the time that a
+    GPU needs to be told of them (docs/speed.md). An effect that holds a network has its weights where the values are.
+    """
+    return home if any(holds_weights(part) for part in (model.system, *model.effects)) else torch.device("cpu")
+
+
+def _at(home: torch.device, acceleration: Tensor | None) -> Tensor | None:
+    return None if acceleration is None else acceleration.to(home)
 
 
 def solve(stepper: Stepper, start: Tensor, n_samples: int, substeps: int, progress: Progress | None) -> Tensor:

@@ -1,12 +1,10 @@
-"""The two functions that all time is spent in, written so that each can be fused into one kernel.
+"""The two functions that all time is spent in, written so that each can be traced into one native kernel.
 
 Both are pure: everything about the members comes in as packed tensors (see `Layout`, `Series`).
 Position is counted in output intervals, index + u with u in 0…1.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 
 import torch
 from torch import Tensor
@@ -51,21 +49,6 @@ class Kernel:
         self.series = series
         at, _, _, terms = self.kinematics(torch.zeros_like(state[0]), state, batch)
         self.switch_names = tuple(self.equation.switches(at, terms))
-
-    @cached_property
-    def fused_advance(self) -> Callable:
-        """`advance` as one compiled kernel for any batch size; the first call compiles it."""
-        return _fused(self.advance)
-
-    @cached_property
-    def fused_cross(self) -> Callable:
-        """`cross` as one compiled kernel."""
-        return _fused(self.cross)
-
-    @cached_property
-    def fused_rates(self) -> Callable:
-        """`rates` as one compiled kernel."""
-        return _fused(self.rates)
 
     def kinematics(self, u: Tensor, state: Tensor, batch: Batch) -> tuple[Kinematics, Tensor, dict, dict]:
         """The kinematics at position u of the interval, with interval, base and term values."""
@@ -178,22 +161,6 @@ def holds_weights(part: object) -> bool:
     """Whether a part keeps tensors or networks of its own; they may change, so no compiled kernel may hold them."""
     kept = {**vars(type(part)), **vars(part)}
     return any(isinstance(value, Tensor | torch.nn.Module) for value in kept.values())
-
-
-def _fused(function: Callable) -> Callable:
-    """Compile a function of (..., batch, active_branch); the compiler sees nothing but tensors."""
-
-    def flat(*given: Tensor | tuple) -> Tensor | tuple:
-        *front, fixed, series, index, active_branch = given
-        return function(*front, Batch(fixed, series, index), active_branch)
-
-    compiled = torch.compile(flat, dynamic=True, fullgraph=True)
-
-    def call(*given: Tensor | tuple | Batch) -> Tensor | tuple:
-        *front, batch, active_branch = given
-        return compiled(*front, batch.fixed, batch.series, batch.index, active_branch)
-
-    return call
 
 
 def _secant(low: Tensor, high: Tensor, at_low: Tensor, at_high: Tensor) -> Tensor:

@@ -5,7 +5,6 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import cache
-from importlib.metadata import version
 from pathlib import Path
 
 import torch
@@ -69,7 +68,6 @@ class SimulationPlan:
             "damping_law": self.damping_law,
             "damping_ratio_percent": self.damping_ratio_percent,
             "solver": {"accuracy": self.solver.accuracy, "substeps": self.solver.substeps},
-            "version": version("gear-damping"),
             "sources": _digest([path for part in PARTS for path in SOURCES.glob(part)]),
             "plugins": _digest([Path(path) for path in self.plugins]),
         }

@@ -16,8 +16,8 @@ class Solver:
         accuracy: Relative L2 error asked of a trajectory with smooth contact; sub-steps follow from it.
         substeps: Sub-steps per output interval for every member; None: chosen from `accuracy`.
         most_substeps: Of those that are chosen from `accuracy`; what would need more is less accurate.
-        engine: `native`: the model's terms written as C++ and compiled once; `eager`: plain PyTorch; `auto`: the
-            fastest there is, native on a CPU and each sub-step one torch.compile kernel on a GPU.
+        engine: `native`: the model's terms written as C++ and compiled once; `eager`: plain PyTorch; `auto`:
+            native where there is a C++ compiler. Values on a GPU are stepped on the CPU and come back there.
         chunk: Members integrated together; bounds the memory.
         block: Output intervals whose graph is kept together in backpropagation; bounds the memory.
         acceleration: Whether it keeps the acceleration too: the right-hand side of the equation of motion at the output

@@ -24,20 +24,16 @@ class Stepper:
     gathered_multiple = 4  # gathered members come in multiples of this, whole vector registers
     acceleration: Tensor | None = None
 
-    def __init__(self, kernel: Kernel, fixed: Tensor, series: SharedSeries, compiled: bool) -> None:
+    def __init__(self, kernel: Kernel, fixed: Tensor, series: SharedSeries) -> None:
         """Prepare a batch.
 
         Args:
             kernel: The model's steps.
             fixed: Packed parameters, (rows, batch).
             series: Packed inputs of the batch.
-            compiled: Whether each sub-step runs as one fused kernel.
         """
         self.kernel, self.fixed, self.series = kernel, fixed, series
-        self.advance: Callable = kernel.fused_advance if compiled else kernel.advance
-        self.cross: Callable = kernel.fused_cross if compiled else kernel.cross
         self.active_branch = fixed.new_zeros(len(kernel.switch_names), fixed.shape[1])
-        self._rates: Callable = kernel.fused_rates if compiled else kernel.rates
         self._index = fixed.new_zeros(())
 
     def batch(self, index: int) -> Batch:
@@ -57,7 +53,7 @@ class Stepper:
     def _accelerated(self, u: float, state: Tensor, batch: Batch) -> Tensor:
         """Rate of the velocity, (batch,), at position `u` of an interval on the branch that was reached."""
         place = self.fixed.new_full((state.shape[1],), u)
-        return self._rates(place, state, batch, self.active_branch)[VELOCITY] / batch.fixed[INTERVAL_ROW]
+        return self.kernel.rates(place, state, batch, self.active_branch)[VELOCITY] / batch.fixed[INTERVAL_ROW]
 
     def rates(self, time: Tensor, state: Tensor) -> Tensor:
         """Rates at any position on the branch of that very instant, for torchdiffeq's other methods."""
@@ -95,8 +91,8 @@ class Stepper:
 
     def _substep(self, state: Tensor, start: Tensor, length: Tensor, batch: Batch) -> Tensor:
         if not self.kernel.switch_names:
-            return self.advance(state, start, length, batch, self.active_branch)[0]
-        end, first, last, margin = self.advance(state, start, length, batch, self.active_branch)
+            return self.kernel.advance(state, start, length, batch, self.active_branch)[0]
+        end, first, last, margin = self.kernel.advance(state, start, length, batch, self.active_branch)
         left = margin < 0
         if left.any():
             indices = _padded(left.nonzero().squeeze(1), self.gathered_multiple)
@@ -115,13 +111,13 @@ class Stepper:
         """State at the end and branch there, of members that left their branch inside the step."""
         stop, crossing = start + length, torch.ones_like(start, dtype=torch.bool)
         for _ in range(MOST_SPLITS):
-            state, position, branch = self.cross(ends, start, length, batch, active_branch)
+            state, position, branch = self.kernel.cross(ends, start, length, batch, active_branch)
             state, start, active_branch = (
                 torch.where(crossing, new, old)
                 for new, old in ((state, ends[0]), (position, start), (branch, active_branch))
             )
             length = stop - start
-            end, first, last, margin = self.advance(state, start, length, batch, active_branch)
+            end, first, last, margin = self.kernel.advance(state, start, length, batch, active_branch)
             ends = (state, end, first, last)
             crossing = margin < 0
             if not crossing.any():

@@ -31,7 +31,7 @@ def stepper(bench_model):
     fixed, start = layout.pack(prepared, interval), initial_states(model, prepared)
     empty = fixed.new_zeros(50, 0, 3)
     kernel = kernel_of(model, layout, series, Batch(fixed, empty[0], fixed.new_zeros(())), start)
-    return Stepper(kernel, fixed, SharedSeries.written_out(empty), compiled=False), start, prepared
+    return Stepper(kernel, fixed, SharedSeries.written_out(empty)), start, prepared
 
 
 def test_dopri5_of_torchdiffeq_agrees_before_the_first_impact(stepper, bench_model):

@@ -21,7 +21,7 @@ class NativeStepper(Stepper):
 
     def __init__(self, kernel: object, fixed: Tensor, series: SharedSeries, library: ctypes.CDLL, group: int) -> None:
         """Prepare a batch; arguments as for `Stepper`, and the kernel's library with the members it steps together."""
-        super().__init__(kernel, fixed, series, compiled=False)
+        super().__init__(kernel, fixed, series)
         self.kernel_library, self.group = library, group
 
     def run(self, state: Tensor, out: Tensor, substeps: int, report: Callable[[int], None]) -> None:
