@@ -25,6 +25,7 @@ LOST = 0.1  # of a channel's variance, from which it is said that resampling too
 _TEETH = tuple(GEOMETRY.values())
 _GEOMETRY = (*_TEETH, *NEEDED)
 _INERTIAS = ("inertia_pinion", "inertia_gear")
+WITHIN_A_TURN = 1.01  # that an angle which begins again may span: a scale is a little off
 
 
 class Assembler:
@@ -78,8 +79,9 @@ class Assembler:
             factor = limits.get("range", factor)
             notes.append(f"{plan.name}: full scale is taken as {factor:.6g} {conversion.unit}")
         values = raw.values * (factor * plan.sensor["polarity"] / plan.sensor["gain"])
-        if plan.name == "pinion_angle":
-            values = _unwrapped(values, notes)
+        turn = _turn(conversion.unit)
+        if plan.name == "pinion_angle" or (turn and _begins_again(values, turn)):
+            values = _unwrapped(values, turn, plan.name, notes)
         if raw.own_time is None:
             recorded, values = values, record.base.resample(values)
             findings += _lost(recorded, values, plan.name, record.base) if record.plan.resample else []
@@ -217,12 +219,24 @@ def _mean_lost(channel: Channel) -> bool:
     return channel.coupling == "AC" or channel.highpass is not None
 
 
-def _unwrapped(angle: NDArray[np.float64], notes: list[str]) -> NDArray[np.float64]:
+def _turn(unit: str) -> float:
+    """One turn in a unit of angles; 0 in any other."""
+    parsed = parse_unit(unit)
+    return 2 * np.pi / parsed.factor if parsed.dimension == parse_unit("rad").dimension else 0.0
+
+
+def _unwrapped(angle: NDArray[np.float64], turn: float, name: str, notes: list[str]) -> NDArray[np.float64]:
     """An angle that goes on where the encoder began again at zero."""
-    whole = np.unwrap(angle)
+    whole = np.unwrap(angle, period=turn)
     if not np.array_equal(whole, angle):
-        notes.append("pinion_angle: unwrapped")
+        notes.append(f"{name}: unwrapped")
     return whole
+
+
+def _begins_again(angle: NDArray[np.float64], turn: float) -> bool:
+    """Whether an angle jumps by more than half a turn from sample to sample and yet stays within one turn."""
+    steps = np.abs(np.diff(angle))
+    return bool(np.ptp(angle) <= WITHIN_A_TURN * turn and np.any(steps > turn / 2) and np.median(steps) < turn / 4)
 
 
 def _unit_conflict(raw: RawChannel, conversion: Conversion) -> Finding | None:

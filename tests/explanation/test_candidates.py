@@ -276,7 +276,7 @@ def test_without_a_spring_nothing_takes_its_place():
     base, evidence = oscillator()
     free = base.free[1:]
     without = replace(base, free=free, given=base.given | {"stiffness": 0.0})
-    for name in ("sine_restoring", "hunt_crossley_damping"):
+    for name in ("sine_restoring", "hunt_crossley_damping", "sensor_drift"):
         assert of(name, base, evidence)
         assert not of(name, without, evidence), name
 

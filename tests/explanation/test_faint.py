@@ -9,7 +9,8 @@ from gear_damping.explanation.state import State
 from gear_damping.explanation.steps.faint import faint_cause
 from gear_damping.explanation.trials.refit import chosen
 from gear_damping.physics.systems.traits import Trait
-from tests.explanation.decisions.made_up import NAMES, outcome, scored
+from tests.explanation.decisions.made_up import NAMES, bench, fit, left, outcome, scored
+from tests.explanation.decisions.of_trials import is_determined_within
 
 SHOWING, LARGE, SMALL = NAMES[:3]
 
@@ -59,8 +60,10 @@ def test_where_fits_are_cheap_whatever_may_be_meant_is_tried(gains, shows, expec
     assert tried(gains, shows, cheap=True) == expected
 
 
-def test_beside_a_cause_only_what_shows_is_tried():
-    assert tried((0.01, 0.2, 0.1), (SHOWING,), cheap=True, accepted=(SimpleNamespace(name="other"),)) == [SHOWING]
+@pytest.mark.parametrize(("cheap", "expected"), [(False, [SHOWING]), (True, [SHOWING, LARGE, SMALL])])
+def test_what_is_tried_beside_a_cause(cheap, expected):
+    """A law of damping takes its part from what another one was fitted to, and no linear score foresees it."""
+    assert tried((0.01, 0.2, 0.1), (SHOWING,), cheap=cheap, accepted=(SimpleNamespace(name="other"),)) == expected
 
 
 @pytest.mark.parametrize(("every", "kept"), [(False, 4), (True, 6)])
@@ -68,3 +71,10 @@ def test_laws_that_do_not_resemble_the_first_are_chosen_where_every_one_is_asked
     """Seven along axes of their own: four come first, two more promise a third of the first one's gain."""
     ranked = [scored(place, gain) for place, gain in enumerate((0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.1))]
     assert len(chosen(ranked, SearchSettings(), every=every)) == kept
+
+
+@pytest.mark.parametrize(("before", "counts"), [(100.0, True), (50.0, False)])
+def test_a_law_of_no_known_size_counts_where_it_takes_most_of_what_was_left(before, counts):
+    found, beside = fit("a"), outcome()
+    tried_on = bench(SearchSettings(), [(found.outcome, left(40.0, 100.0)), (beside, left(before, 2.5 * before))])
+    assert is_determined_within(2.0, tried_on, found, beside) is counts

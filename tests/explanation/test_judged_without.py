@@ -35,8 +35,8 @@ def judge(words, doubts):
 
     def one(found, notes):
         names = found.state.accepted
-        verdict = SimpleNamespace(word=words.get(names, "unexplained"))
-        return SimpleNamespace(verdict=verdict, found=found.state), doubts.get(names, "")
+        verdict = SimpleNamespace(word=words.get(names, "unexplained"), notes=notes)
+        return SimpleNamespace(verdict=verdict, found=found.state), (doubts.get(names, ""), "but it has no size.")
 
     return one
 
@@ -63,7 +63,10 @@ def test_one_after_another_is_doubted():
     words = {("a",): "explained"}
     doubts = {("a", "b", "c"): "b", ("a", "c"): "c"}
     with patch.object(module, "_judged", judge(words, doubts)), patch.object(module, "without", without):
-        assert judged(search_of("a", "b", "c"), ()).found.accepted == ("a",)
+        found = judged(search_of("a", "b", "c"), ("Said before.",))
+    assert found.found.accepted == ("a",)
+    said = [f"`{name}` would take part of what is left too, but it has no size." for name in "bc"]
+    assert list(found.verdict.notes) == ["Said before.", *said]
 
 
 def test_a_cause_at_its_bound_is_doubted_where_nothing_else_is():
@@ -137,7 +140,7 @@ def test_they_are_named_where_they_take_nearly_all_that_the_others_leave(left, n
 
     def one(found, notes):
         told.extend(notes)
-        return SimpleNamespace(verdict=SimpleNamespace(word="explained"), found=found.state), ""
+        return SimpleNamespace(verdict=SimpleNamespace(word="explained"), found=found.state), ("", "")
 
     with (
         patch.object(module, "_judged", one),

@@ -235,3 +235,16 @@ def test_a_labview_text_file_is_read_below_its_last_header(tmp_path, sign, last)
         "Volts",
         "g",
     ]
+
+
+@pytest.mark.parametrize("sign", [",", "\t"])
+def test_labview_s_channels_of_one_sample_a_block_have_no_other_values(tmp_path, sign):
+    head, _, values = LABVIEW.format(s=sign, last="Drive").partition("Drive\n")
+    first, *others = values.splitlines()
+    table = _csv(
+        tmp_path,
+        head + "\n".join([f"Drive{sign}Comment", f"{first}{sign}42.05", *(f"{row}{sign}" for row in others)]) + "\n",
+    )
+    assert table.names == ("X_Value", "Voltage", "Acceleration", "Drive")
+    assert _column(table, "Acceleration") == [-0.016, -0.094, -0.066]
+    np.testing.assert_array_equal(_column(table, "Drive"), [42.05, np.nan, np.nan])

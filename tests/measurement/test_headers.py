@@ -101,3 +101,15 @@ def test_names_with_blanks_between_them_stand_above_rows_with_tabs(tmp_path):
     titled = table_of(tmp_path, ["swing of the spring", *rows(30, 2, "\t")])
     assert titled.names == ("", "")
     assert "1 line(s) before the header" in titled.notes[0]
+
+
+def test_channels_that_an_oscilloscope_numbers_have_the_units_below(tmp_path):
+    table = table_of(tmp_path, ["x-axis,1,2", "second,Volt,Volt", *rows(60, sign=",")])
+    assert table.names == ("x-axis", "1", "2")
+    assert [table.unit(k) for k in range(3)] == ["second", "Volt", "Volt"]
+    assert len(table.values(table.index("2", "column"))) == 60
+
+
+def test_a_row_of_numbers_behind_a_text_names_nothing_where_they_are_no_numbers_of_channels(tmp_path):
+    table = table_of(tmp_path, ["scale,0.5,0.5", "second,Volt,Volt", *rows(60, sign=",")])
+    assert table.names == ("second", "Volt", "Volt")

@@ -228,3 +228,39 @@ def test_a_gear_torque_that_is_held_needs_the_teeth(bench):
     said = bench.only_problem()
     for word in ("records[0]", "gear_torque", "needs the teeth", "n_teeth_pinion, n_teeth_gear"):
         assert word in said
+
+
+TURNING = """system: oscillator
+records:
+  - file: run.csv
+    channels: {time: {column: t, unit: s}, displacement: {column: angle, unit: UNIT}}
+"""
+
+
+def turning(folder, degrees, unit="deg"):
+    rows = "\n".join(f"{k / 1000:.3f},{angle:.6f}" for k, angle in enumerate(degrees))
+    (folder / "run.csv").write_text(f"t,angle\n{rows}\n")
+    (folder / "measurement.yaml").write_text(TURNING.replace("UNIT", unit))
+    return load_measurement(folder / "measurement.yaml").records[0]
+
+
+def test_a_deflection_that_begins_again_with_each_turn_is_unwrapped_and_said(tmp_path):
+    """A scale that is a little too long, as of an encoder whose counts a turn are not those that were assumed."""
+    whole = 100 + 20.0 * np.arange(200)
+    record = turning(tmp_path, np.mod(whole, 360) * 1.001)
+    found = record.channels["displacement"].values
+    np.testing.assert_allclose(np.diff(found), 20.0, atol=0.4)
+    assert record.notes == ("displacement: unwrapped",)
+
+
+@pytest.mark.parametrize(
+    ("degrees", "unit"),
+    [
+        (np.mod(100 + 20.0 * np.arange(200), 360), "mm"),  # no angle
+        (200.0 * np.arange(200), "deg"),  # counted on through all turns, few samples in each
+        (170.0 * np.sin(2 * np.pi * 40 * np.arange(200) / 1000), "deg"),  # a wide swing
+    ],
+    ids=["length", "counted on", "swing"],
+)
+def test_what_does_not_begin_again_stays(tmp_path, degrees, unit):
+    assert not turning(tmp_path, degrees, unit).notes

@@ -20,6 +20,8 @@ from gear_damping.explanation.state import State
 from gear_damping.explanation.steps.confirm import Confirmed, without
 from gear_damping.explanation.steps.judge import CONSISTENT, UNEXPLAINED, Judged, Known, verdict
 
+TOO = "`{}` would take part of what is left too, {}"
+AT_BOUND = "but has run into a bound of what it can be."
 WITHIN_FORM = "`{}` would take a little more: so little may as well be the form of the other causes, and is not named."
 
 
@@ -35,11 +37,11 @@ def judged(found: Confirmed, notes: Sequence[str]) -> Judged:
     """
     found, small = _without_form(found)
     notes = (*notes, *map(WITHIN_FORM.format, small))
-    said, doubtful = _judged(found, notes)
+    said, (doubtful, why) = _judged(found, notes)
     fewer = said
     while fewer.verdict.word == UNEXPLAINED and doubtful and len(fewer.found.accepted) > 1:
-        found = without(found, doubtful)
-        fewer, doubtful = _judged(found, notes)
+        found, notes = without(found, doubtful), (*notes, TOO.format(doubtful, why or AT_BOUND))
+        fewer, (doubtful, why) = _judged(found, notes)
     return _reported(said if fewer.verdict.word == UNEXPLAINED else fewer)
 
 
@@ -75,8 +77,8 @@ def _reported(said: Judged) -> Judged:
     return replace(said, found=replace(state, outcome=positive(state.outcome, tried))) if tried else said
 
 
-def _judged(found: Confirmed, notes: Sequence[str]) -> tuple[Judged, str]:
-    """The state with its verdict, and the name of a cause that may be none; empty where there is no such."""
+def _judged(found: Confirmed, notes: Sequence[str]) -> tuple[Judged, tuple[str, str]]:
+    """The state with its verdict, and a cause that may be none with the reason; both empty where there is no such."""
     state, before, after = found.state, found.before, found.after
     evidence, settings, budget = state.bench.evidence, state.bench.settings, state.bench.budget
     doubtful, stands_in = _doubtful(state)
@@ -104,7 +106,7 @@ def _judged(found: Confirmed, notes: Sequence[str]) -> tuple[Judged, str]:
     if said.word == CONSISTENT:  # what would take part of so little is no cause
         state, after = replace(state, accepted=(), outcome=state.nominal, left=state.seen), before
     said = said.saying(left, *notes, *acting, *inputs_and_loads(state), budget.sentence)
-    return Judged(state, before, after, said, not_tried, found.t), doubtful
+    return Judged(state, before, after, said, not_tried, found.t), (doubtful, stands_in)
 
 
 def _not_random(state: State) -> float:

@@ -28,8 +28,7 @@ def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
     names = sorted((n for n in best if seen.visible.shows(n)), key=lambda n: -seen.visible.by_name[n])
     names += [n for n in best if n not in names and best[n].gain >= bench.settings.least_share]
     names = names[: bench.settings.full_fits]
-    is_first = not state.accepted  # what shows may then be meant by any of the laws that promise much
-    if names and is_first and bench.evidence.has(Trait.REST):  # where fits are cheap
+    if names and bench.evidence.has(Trait.REST):  # where fits are cheap, and laws take their part from each other
         likely = chosen(state.ranked, bench.settings, laws=True, every=True)
         names += [name for name in best_by_effect(likely) if name not in names]
     names = [name for name in names if best[name].gain > 0 and not bench.budget.refuses(name)]
@@ -40,7 +39,9 @@ def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
     state = replace(state, rejected=tuple(fits), first_fits=state.first_fits or tuple(fits))
     validated = [fit for fit in fits if _is_validated(fit, state)]
     if state.needs_known_size:
-        worth, validated = ([fit for fit in some if bench.is_determined(fit)] for some in (worth, validated))
+        worth, validated = (
+            [fit for fit in some if bench.is_determined(fit, state.outcome)] for some in (worth, validated)
+        )
     if validated:
         best = min(validated, key=lambda fit: fit.outcome.left_out_cost)
         return state, *bench.simplest(best, fits)

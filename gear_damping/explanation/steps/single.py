@@ -33,7 +33,7 @@ def single_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
     fits = _converged_rivals(fits, state)
     state = replace(state, rejected=fits)
     best = _best(fits, state)
-    if best is None or (state.needs_known_size and not bench.is_determined(best)):
+    if best is None or (state.needs_known_size and not bench.is_determined(best, state.outcome)):
         return state, None, ()
     return state, *bench.simplest(best, fits)
 

@@ -272,13 +272,15 @@ class Bench:
         settings = self.settings
         return fit.gain >= settings.rival_share * best.gain and fit.fit_gain > best.fit_gain + settings.seen_in_fit
 
-    def is_determined(self, fit: Refit) -> bool:
-        """Whether the records tell the size of an effect, where its fit leaves more than noise.
+    def is_determined(self, fit: Refit, beside: Outcome) -> bool:
+        """Whether the records tell the size of an effect, where its fit leaves more than noise and little is taken.
 
         Where much is left that is not random, a test over blocks takes a further law that can bend to it for one that
-        is there; its parameters then hardly matter to the fit.
+        is there; its parameters then hardly matter to the fit. One that takes most of what a model without it leaves
+        is more than a bend, though its size may trade against another's (a dry friction against a viscous one).
         """
-        if self.excess(fit.outcome).misfit <= self.settings.small_misfit:
+        left, most = self.excess(fit.outcome), self.excess(beside).percent
+        if left.misfit <= self.settings.small_misfit or most - left.percent >= self.settings.taken_by_one * most:
             return True
         covariances = covariance_of(fit.outcome, self.evidence)
         problem, shared = fit.outcome.problem, fit.outcome.fitted.shared

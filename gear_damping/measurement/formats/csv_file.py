@@ -140,7 +140,9 @@ def _header(text: _Text) -> tuple[Header, int]:
         raise InputError(Problem("file", "no rows", str(text.path), "export it again"))
     start = _behind_marks(rows) or _behind_settings(rows)
     settings, lines, rows = rows[:start], lines[start:], rows[start:]
-    header = _below_preamble(rows, text.width) or find_header(rows, text.width)
+    # LabVIEW writes channels of one sample a block into the first row of each alone.
+    width = filled(rows[0]) if start and rows[0][0] == _PLACE else text.width
+    header = _below_preamble(rows, width) or find_header(rows, width)
     header = _of_labview(header, settings) if start else header
     header = _of_cassy(header, settings) if start and not any(header.names) else header
     is_title = len(header.names) == 1 < text.width or (text.delimiter == " " and len(header.names) > text.width > 0)

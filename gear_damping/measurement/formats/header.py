@@ -74,6 +74,7 @@ def find_header(rows: Sequence[Sequence[str]], width: int) -> Header:
     exact = [k for k in texts if filled(rows[k]) == width]
     wide = [k for k in texts if filled(rows[k]) > width]
     start = max(exact or wide or texts[-1:], key=lambda k: (len({*rows[k]}), k))
+    start -= bool(start and _is_units(rows[start]) and _are_numbered(rows[start - 1], width))
     names, first = tuple(cell.strip() for cell in rows[start]), start + 1
     units: tuple[str, ...] = ()
     if first < len(rows) and _is_units(rows[first]):
@@ -121,6 +122,13 @@ def _names(row: Sequence[str], width: int) -> Sequence[str]:
         else:
             joined.append(cell)
     return joined if len(joined) == width else row
+
+
+def _are_numbered(row: Sequence[str], width: int) -> bool:
+    """Whether a row names its columns by the numbers of channels behind the name of the first (`x-axis,1,2`)."""
+    first, *others = [cell.strip() for cell in row[:width]]
+    counted = [cell for cell in others if cell.isdecimal()]
+    return filled(row) == width > 1 and not is_number(first) and others == counted == list(dict.fromkeys(counted))
 
 
 def bracket_unit(name: str) -> str | None:

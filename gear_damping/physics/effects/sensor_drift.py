@@ -5,7 +5,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
-from gear_damping.physics.cause import Cause, Recipe
+from gear_damping.physics.cause import Cause, Recipe, where_there_is_a_spring
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import Recording, Sensor, Values
 
@@ -20,7 +20,8 @@ class SensorDrift(Sensor):
     position = 30  # in the chain, beside the offset
     cause: ClassVar = Cause(
         "a drift of the sensor",
-        (Recipe({"rate": 0.001}),),
+        # What coasts is slowed by a constant force as it would seem to be by a drift of its rate.
+        where_there_is_a_spring(Recipe({"rate": 0.001})),
     )
 
     def measure(self, signal: Tensor, values: Values, recording: Recording) -> Tensor:

@@ -7,7 +7,7 @@ import torch
 
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.trials import bench as benches
-from gear_damping.explanation.trials.refit import chosen, compared
+from gear_damping.explanation.trials.refit import Refit, chosen, compared
 from gear_damping.identification.output_error.uncertainty import QUANTILE
 from tests.explanation.decisions.declared import decides
 from tests.explanation.decisions.made_up import NAMES, bench, fit, left, outcome, scored
@@ -88,15 +88,18 @@ def rival_that_fits_better(settings: SearchSettings):
 
 @decides("determined", (True, False))
 def determined(settings: SearchSettings):
-    """Half intervals of .3 and of 2, where more than noise is left."""
+    """Half intervals of .3 and of 2, where more than noise is left and little of it is taken."""
+    found, beside = fit("a"), outcome()
+    tried = bench(settings, [(found.outcome, left(50.0, 100.0)), (beside, left(60.0, 120.0))])
+    return tuple(is_determined_within(half, tried, found, beside) for half in (0.3, 2.0))
+
+
+def is_determined_within(half: float, tried: benches.Bench, found: Refit, beside: SimpleNamespace) -> bool:
+    """Whether a law is of known size whose one strength has such a half interval, as a logarithm."""
     parameter = SimpleNamespace(name="a.strength", logarithmic=True)
     unknowns = SimpleNamespace(at_bound=lambda shared: torch.tensor([False]))
-    found = fit("a")
     found.outcome.problem = SimpleNamespace(free=[parameter], unknowns=unknowns)
     found.outcome.fitted.shared = None
-    tried, decided = bench(settings, [(found.outcome, left(50.0, 100.0))]), []
-    for half in (0.3, 2.0):
-        covariances = torch.full((1, 1), (half / QUANTILE) ** 2, dtype=torch.float64)
-        with patch.object(benches, "covariance_of", lambda *_, covariances=covariances: covariances):
-            decided.append(tried.is_determined(found))
-    return tuple(decided)
+    covariances = torch.full((1, 1), (half / QUANTILE) ** 2, dtype=torch.float64)
+    with patch.object(benches, "covariance_of", lambda *_: covariances):
+        return tried.is_determined(found, beside)
