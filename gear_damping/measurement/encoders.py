@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.declaration import EncoderPlan
-from gear_damping.measurement.timebase import TimeBase, monotone_spline
+from gear_damping.measurement.timebase import TimeBase, cubic_spline, monotone_spline
 from gear_damping.units import parse_unit, to_si
 
 TURN = 2 * np.pi  # rad in one turn of a shaft
@@ -16,6 +16,7 @@ FEWEST_PULSES = 2  # in a record: one alone tells no speed
 COUNTERS = (16, 24, 32)  # bits of the registers that run over in counter cards
 FROM_ENCODERS = "transmission_error: r_b1 theta_1 - r_b2 theta_2 from the encoders, without its mean"  # a note
 SQUARE = 0.1  # of a pulse's height: from one level to the other within a sample, so that the edge is known to that
+_CURVED, _ENDS = 4, 6  # pulses that a changing speed is told by, and those at an end by which it goes on
 _STEADIEST = 6  # degrees of polynomials that are tried through the edges of square pulses
 _WITHIN = 1.03  # samples between the earliest and the latest of edges about it: rounding moves them by one in all
 _TURN_TOLERANCE = 0.25  # of a turn; a pulse is known to a sample
@@ -90,12 +91,24 @@ def angle_from_pulses(
 
 
 def _extended(pulses: NDArray, angle: NDArray, time: NDArray) -> NDArray[np.float64]:
-    """Interpolated between the pulses and straight on beyond the first and last."""
-    inner = monotone_spline(pulses, angle)(np.clip(time, pulses[0], pulses[-1]))
-    slope_first = (angle[1] - angle[0]) / (pulses[1] - pulses[0])
-    slope_last = (angle[-1] - angle[-2]) / (pulses[-1] - pulses[-2])
-    beyond = np.minimum(time - pulses[0], 0) * slope_first + np.maximum(time - pulses[-1], 0) * slope_last
-    return inner + beyond
+    """Interpolated between the pulses, and beyond the first and last as the pulses next to these go on.
+
+    The spline of a shaft that speeds up is true to it; where it would turn back between uneven pulses, a monotone one
+    is taken instead.
+    """
+    within = np.clip(time, pulses[0], pulses[-1])
+    inner = cubic_spline(pulses, angle)(within) if pulses.size >= _CURVED else monotone_spline(pulses, angle)(within)
+    if np.any(np.diff(inner) < 0):
+        inner = monotone_spline(pulses, angle)(within)
+    first = _going_on(pulses[:_ENDS], angle[:_ENDS], pulses[0])
+    last = _going_on(pulses[-_ENDS:], angle[-_ENDS:], pulses[-1])
+    return inner + first(np.minimum(time - pulses[0], 0)) + last(np.maximum(time - pulses[-1], 0))
+
+
+def _going_on(pulses: NDArray, angle: NDArray, end: float) -> Callable[[NDArray], NDArray]:
+    """The angle turned since an end, by the time since it: a parabola through pulses, or the line of too few."""
+    found = np.polynomial.Polynomial.fit(pulses - end, angle, 2 if pulses.size >= _CURVED else 1)
+    return lambda since: found(since) - found(0.0)
 
 
 def rising_edges(signal: NDArray[np.float64], time: NDArray[np.float64], threshold: float) -> NDArray[np.float64]:
