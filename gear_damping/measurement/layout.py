@@ -144,7 +144,7 @@ class OscillatorChannels(c.Timed):
             **dict.fromkeys(("base_velocity", "base_displacement", "base_speed", "base_position"), _BASE),
         }
     )
-    displacement: c.Displacement = key("Displacement, in any unit; an angle may begin again with each turn.", "response")
+    displacement: c.Displacement = key("Displacement, in any unit; an angle may wrap.", "response")
     velocity: c.Velocity = key("Velocity.", "response")
     acceleration: c.Acceleration = key("Acceleration.", "response")
     force: c.Force = key("What drives it, in any unit; absent in a free decay.", "input")
