@@ -27,6 +27,7 @@ _TRAVEL = 16.0  # steps of its values that the signal must have moved through ov
 _HOLDS = 0.1  # share of them that repeat the one before, from which the values are coarse
 _JUMP = 5.0  # steps of the signal; an extreme reached by a larger one was jumped to
 _AT_RANGE = 0.999  # of a sensor's range, from which a value is at its end
+_BEYOND_RANGE = 1.1  # of it: converters go on for some per cent beyond what they are called by
 _BEYOND = 0.5  # share of the samples at the extreme that must stand in plateaus that were cut
 _BEND, _BENT_SHARE, _FEWEST_BENDS = 1e-4, 0.6, 10  # of the largest bend; of the samples; in a record
 _FEWEST_MARKS, _MOST_MARKED = 3, 0.1  # samples of one value; share of all
@@ -229,9 +230,24 @@ def _clipped(channel: Channel) -> Finding | None:
         return _clipping(channel, cut[1], f"exactly at the {cut[0]}")
     if channel.range is not None:
         at = np.abs(values) >= _AT_RANGE * channel.range
+        if np.abs(values).max() > _BEYOND_RANGE * channel.range:
+            return _beyond_range(channel, values)
         if at.sum() > 1:
             return _clipping(channel, at, f"at the sensor's range of {channel.range:.4g} {channel.unit}")
     return None
+
+
+def _beyond_range(channel: Channel, values: NDArray) -> Finding:
+    """No sensor tells more than its range: the range is another, or the scale of the values is."""
+    most = int(np.argmax(np.abs(values)))
+    reached, declared = (
+        f"{size / channel.declared_factor:.4g} {channel.declared_unit}" for size in (abs(values[most]), channel.range)
+    )
+    message = (
+        f"{channel.name} reaches {reached}, beyond its declared range of {declared}: state the range of the sensor, or "
+        "the unit or gain of the channel"
+    )
+    return Finding("clipped", message, channel=channel.name, sample=most)
 
 
 def _clipping(channel: Channel, at: NDArray, where: str) -> Finding:

@@ -126,6 +126,13 @@ def test_the_declared_range_shows_clipping_that_noise_hides(bench):
     assert bench.kinds() == []
 
 
+def test_values_far_beyond_a_declared_range_are_no_clipping(bench):
+    bench.channels["transmission_error"]["range"] = {"value": 2, "unit": "um"}
+    said = [finding for finding in bench.load().records[0].findings if finding.kind == "clipped"]
+    assert len(said) == 1
+    assert "beyond its declared range of 2 um: state the range" in said[0].message
+
+
 @pytest.mark.parametrize(
     ("unit", "kinds"), [("um", []), ("mm", ["implausible_magnitude"]), ("m", ["implausible_magnitude"])]
 )

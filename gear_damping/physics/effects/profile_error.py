@@ -23,7 +23,10 @@ def _visible_harmonics(rig: Rig) -> tuple[Recipe, ...]:
 
 
 class ProfileError(TransmissionErrorSource):
-    """The same deviation on every tooth: harmonics of the mesh, whatever the load."""
+    """The same deviation on every tooth: harmonics of the mesh, whatever the load.
+
+    A relief of the tips that every load closes is one: only where a light load leaves it open does it act otherwise.
+    """
 
     name = "profile_error"
     equation = "e = sum_h E_h cos(h theta_M + phi_h), h = 1, 2, …"
@@ -34,7 +37,7 @@ class ProfileError(TransmissionErrorSource):
     )
     needs: ClassVar = (Trait.TEETH,)
     cause: ClassVar = Cause(
-        "errors of the tooth profile",
+        "errors of the tooth profile, or a relief of it that every load closes",
         _visible_harmonics,
     )
 
