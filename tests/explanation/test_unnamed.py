@@ -99,3 +99,8 @@ def test_what_depends_on_earlier_motion_is_taken_by_the_family_of_it(motions):
 def test_noise_is_taken_by_none():
     found = taken(ringing(lambda y: (0.0, [])))
     assert max(found.values()) < 0.1
+
+
+def test_beside_a_decay_nothing_drifts():
+    """The amplitude falls as time goes on: a law of the amplitude would be a drift of the stiffness."""
+    assert "stiffness or damping that drifts" not in taken(ringing(cubic))
