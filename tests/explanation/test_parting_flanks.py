@@ -46,6 +46,7 @@ def cost_over_noise(outcome, evidence):
 def test_damping_is_found_where_flanks_part(at_resonance):
     rig, evidence, nominal = at_resonance
     found = with_parting_flanks(evidence, HARMONICS, fitting_solver(None))
+    assert found.hypothesis.causes == ("backlash",)
     assert cost_over_noise(found, evidence) < 1.2
     assert found.values["viscous_damping.damping_coefficient"] == pytest.approx(rig.viscous, rel=0.05)
     assert cost_over_noise(nominal, evidence) > 3 * cost_over_noise(found, evidence)

@@ -242,6 +242,7 @@ def with_shape(fitted: Outcome, evidence: Evidence, harmonics: int) -> Hypothesi
         (*(mesh if effect.name == MESH else effect for effect in rough.effects), MeshStiffnessShape()),
         given,
         (*free, *(_harmonic(name) for name in names)),
+        causes=rough.causes,
     )
 
 
