@@ -139,7 +139,8 @@ def edges_of_square_pulses(
         return edges, 0.0
     count = np.arange(edges.size)
     for degree in range(1, min(_STEADIEST, edges.size - 3) + 1):
-        smooth = np.polynomial.Polynomial.fit(count, edges, degree)(count)
+        turned = np.polynomial.Polynomial.fit(edges, count, degree)  # of a shaft that speeds up evenly a parabola
+        smooth = edges + (count - turned(edges)) / turned.deriv()(edges)
         if np.ptp(edges - smooth) <= _WITHIN * sample:
             return smooth, sample * ((degree + 1) / edges.size / 12) ** 0.5
     return edges, 0.0

@@ -109,6 +109,14 @@ def test_square_pulses_of_an_even_rotation_are_told_better_than_to_a_sample(drif
     assert np.abs(found - rises).max() < 0.6 / 50e3
 
 
+def test_few_edges_of_a_shaft_that_speeds_up_are_told_better_than_to_a_sample():
+    """Six turns from 814 to 1120 rpm: their times are no polynomial of their number, the angle is one of the time."""
+    time, signal, rises = tacho(lambda t: 0.3 + 85.2 * t + 80 * t**2 / 2, 50e3, 0.4)
+    rounded, (found, late) = (read(signal, time, 2.5) for read in (rising_edges, edges_of_square_pulses))
+    assert 0 < late < 0.25 / 50e3
+    assert np.std(found - rises) < 0.7 * np.std(rounded - rises)
+
+
 def test_edges_that_swing_by_more_than_a_sample_stay_where_they_are():
     time, signal, _ = tacho(lambda t: 0.3 + 140 * t + 0.05 * np.sin(2 * pi * 31 * t), 50e3, 0.7)
     found, late = edges_of_square_pulses(signal, time, 2.5)
