@@ -6,6 +6,7 @@ import pytest
 
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import State
+from gear_damping.explanation.steps import faint
 from gear_damping.explanation.steps.faint import faint_cause
 from gear_damping.explanation.trials.refit import chosen
 from gear_damping.physics.systems.traits import Trait
@@ -64,6 +65,26 @@ def test_where_fits_are_cheap_whatever_may_be_meant_is_tried(gains, shows, expec
 def test_what_is_tried_beside_a_cause(cheap, expected):
     """A law of damping takes its part from what another one was fitted to, and no linear score foresees it."""
     assert tried((0.01, 0.2, 0.1), (SHOWING,), cheap=cheap, accepted=(SimpleNamespace(name="other"),)) == expected
+
+
+@pytest.mark.parametrize("most", [(), (SMALL,)])
+def test_beside_a_cause_what_no_score_foresaw_has_to_take_most_of_what_is_left(most, monkeypatch):
+    """The second promises a third, the third a tenth, and neither shows."""
+    bench = SimpleNamespace(
+        settings=SearchSettings(),
+        evidence=SimpleNamespace(has=lambda trait: trait is Trait.REST),
+        budget=SimpleNamespace(refuses=lambda name: False),
+        full_fit=lambda score, *_, **__: SimpleNamespace(name=score.candidate.name, gain=1.0, fit_gain=1.0),
+        converged=lambda fit, _: fit,
+        takes_most=lambda fit, _: fit.name in most,
+    )
+    monkeypatch.setattr(faint, "_is_worth", lambda *_: False)
+    monkeypatch.setattr(faint, "_is_validated", lambda *_: False)
+    visible = SimpleNamespace(shows=lambda name: name == SHOWING, by_name={SHOWING: 10.0})
+    scores = tuple(scored(place, gain) for place, gain in enumerate((0.01, 0.3, 0.1)))
+    accepted = (SimpleNamespace(name="other"),)
+    state = State(bench, outcome(), outcome(), accepted=accepted, ranked=scores, left=SimpleNamespace(visible=visible))
+    assert [fit.name for fit in faint_cause(state)[0].rejected] == [SHOWING, LARGE, *most]
 
 
 @pytest.mark.parametrize(("every", "kept"), [(False, 4), (True, 6)])

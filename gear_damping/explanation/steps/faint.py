@@ -19,7 +19,8 @@ def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
     """The state with the fits that were made, the next cause and its rivals; None where none is confirmed.
 
     Tried is what shows, and what promises a good part of all that is left: beside coloured residuals, which may be its
-    own doing, it need not show.
+    own doing, it need not show. About a place of rest, where fits are cheap, every law is; beside a cause what no score
+    foresaw has to take most of what is left.
     """
     seen, bench = state.left, state.bench
     if seen is None:
@@ -28,13 +29,15 @@ def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
     names = sorted((n for n in best if seen.visible.shows(n)), key=lambda n: -seen.visible.by_name[n])
     names += [n for n in best if n not in names and best[n].gain >= bench.settings.least_share]
     names = names[: bench.settings.full_fits]
-    if names and bench.evidence.has(Trait.REST):  # where fits are cheap, and laws take their part from each other
+    foreseen = {*names} if state.accepted else {*best}  # at first what shows may be meant by any of the laws
+    if names and bench.evidence.has(Trait.REST):  # laws take their part from each other
         likely = chosen(state.ranked, bench.settings, laws=True, every=True)
         names += [name for name in best_by_effect(likely) if name not in names]
     names = [name for name in names if best[name].gain > 0 and not bench.budget.refuses(name)]
     found = (bench.full_fit(best[name], state.outcome, reach=state.outcome.fitted.cost) for name in names)
     fits = [fit for fit in found if fit is not None]
     fits = [bench.converged(fit, state.outcome) if fit.gain > 0 else fit for fit in fits]
+    fits = [fit for fit in fits if fit.name in foreseen or bench.takes_most(fit, state.outcome)]
     worth = [fit for fit in fits if _is_worth(fit, state.outcome, seen, bench)]
     state = replace(state, rejected=tuple(fits), first_fits=state.first_fits or tuple(fits))
     validated = [fit for fit in fits if _is_validated(fit, state)]

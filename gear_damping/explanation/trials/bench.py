@@ -272,6 +272,11 @@ class Bench:
         settings = self.settings
         return fit.gain >= settings.rival_share * best.gain and fit.fit_gain > best.fit_gain + settings.seen_in_fit
 
+    def takes_most(self, fit: Refit, beside: Outcome) -> bool:
+        """Whether an effect takes most of what a model without it leaves of operating conditions that are left out."""
+        left, most = self.excess(fit.outcome).percent, self.excess(beside).percent
+        return most - left >= self.settings.taken_by_one * most
+
     def is_determined(self, fit: Refit, beside: Outcome) -> bool:
         """Whether the records tell the size of an effect, where its fit leaves more than noise and little is taken.
 
@@ -279,8 +284,7 @@ class Bench:
         is there; its parameters then hardly matter to the fit. One that takes most of what a model without it leaves
         is more than a bend, though its size may trade against another's (a dry friction against a viscous one).
         """
-        left, most = self.excess(fit.outcome), self.excess(beside).percent
-        if left.misfit <= self.settings.small_misfit or most - left.percent >= self.settings.taken_by_one * most:
+        if self.excess(fit.outcome).misfit <= self.settings.small_misfit or self.takes_most(fit, beside):
             return True
         covariances = covariance_of(fit.outcome, self.evidence)
         problem, shared = fit.outcome.problem, fit.outcome.fitted.shared
