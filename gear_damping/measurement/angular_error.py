@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from math import cos
+from math import cos, pi
 from typing import TYPE_CHECKING
 
 from gear_damping.errors import InputError
@@ -28,6 +28,11 @@ def is_angle(unit: str | None) -> bool:
         return unit is not None and parse_unit(unit).dimension == parse_unit("rad").dimension
     except InputError:
         return False
+
+
+def turn_in(unit: str | None) -> float | None:
+    """One turn in a unit of angle; None for any other unit."""
+    return 2 * pi / parse_unit(unit).factor if unit and is_angle(unit) else None
 
 
 def is_angle_of_a_shaft(plan: "ChannelPlan") -> bool:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.angular_error import GEOMETRY, NEEDED, base_radius
+from gear_damping.measurement.angular_error import GEOMETRY, NEEDED, base_radius, turn_in
 from gear_damping.measurement.cutting import moved
 from gear_damping.measurement.declaration import Plan
 from gear_damping.measurement.declared_units import Conversion, UnitSystem
@@ -79,7 +79,7 @@ class Assembler:
             factor = limits.get("range", factor)
             notes.append(f"{plan.name}: full scale is taken as {factor:.6g} {conversion.unit}")
         values = raw.values * (factor * plan.sensor["polarity"] / plan.sensor["gain"])
-        turn = _turn(conversion.unit)
+        turn = turn_in(conversion.unit)
         if plan.name == "pinion_angle" or (turn and _begins_again(values, turn)):
             values = _unwrapped(values, turn, plan.name, notes)
         if raw.own_time is None:
@@ -217,12 +217,6 @@ def _lost(recorded: NDArray[np.float64], kept: NDArray[np.float64], name: str, b
 
 def _mean_lost(channel: Channel) -> bool:
     return channel.coupling == "AC" or channel.highpass is not None
-
-
-def _turn(unit: str) -> float:
-    """One turn in a unit of angles; 0 in any other."""
-    parsed = parse_unit(unit)
-    return 2 * np.pi / parsed.factor if parsed.dimension == parse_unit("rad").dimension else 0.0
 
 
 def _unwrapped(angle: NDArray[np.float64], turn: float, name: str, notes: list[str]) -> NDArray[np.float64]:

@@ -5,8 +5,7 @@ import re
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_damping.measurement.angular_error import is_angle
-from gear_damping.units import parse_unit
+from gear_damping.measurement.angular_error import turn_in
 
 TIME, CONSTANT, EMPTY, UNREADABLE, TURNING, COUNTER, PULSES, SIGNAL, ROW_NUMBER = (
     "time stamps", "constant", "empty", "not readable", "turning angle", "counter", "pulses", "signal", "row number",
@@ -119,15 +118,10 @@ def _advancing(values: NDArray, name: str, unit: str | None) -> tuple[str, str] 
     if max(np.mean(coarse > 0), np.mean(coarse < 0)) < _ONE_WAY or coarse.size < _FEWEST_PULSES:
         return None
     gone = float(abs(values[-1] - values[0]))
-    turn = _turn_in(unit)
+    turn = turn_in(unit)
     if turn is None and np.all(values == np.round(values)) and gone >= _COARSE:
         return COUNTER, f"whole numbers that advance by {gone:.0f}"
     if gone > (turn or _TURNS["rad"]) and (turn is not None or (unit is None and ANGLE.search(name))):
         turns = f", by {gone / turn:.4g} turns" if turn else ""
         return TURNING, f"advances one way{turns}"
     return None
-
-
-def _turn_in(unit: str | None) -> float | None:
-    """One turn in a unit of angle; None for any other unit."""
-    return 2 * np.pi / parse_unit(unit).factor if unit and is_angle(unit) else None

@@ -39,8 +39,8 @@ def integrate(
     place = place_of(model, home)
     fixed = layout.pack(prepared, interval).to(place)
     start = initial_states(model, prepared, driven.initial_perturbations).to(place)
-    units = {name: unit.to(place) for name, unit in input_units(model, driven.series, prepared).items()}
-    given = {name: values.to(place) for name, values in driven.series.items()}
+    units = {name: unit.cpu() for name, unit in input_units(model, driven.series, prepared).items()}
+    given = {name: values.cpu() for name, values in driven.series.items()}
     packed = series.shared(given, units, n_samples - 1, interval.shape[0], driven.held).to(place)
     example = Batch(fixed, packed[0], fixed.new_zeros(()))
     kernel = kernel_of(model, layout, series, example, start)
