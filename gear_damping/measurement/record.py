@@ -166,6 +166,12 @@ class Record:
         """Time from the first to the last sample, in s."""
         return float(self.time[-1] - self.time[0])
 
+    @property
+    def on_casing(self) -> bool:
+        """Whether an accelerometer on a casing is among its channels."""
+        acceleration = self.channels.get("acceleration")
+        return acceleration is not None and acceleration.mounting == "casing"
+
 
 @dataclass(frozen=True, eq=False)
 class Measurement:

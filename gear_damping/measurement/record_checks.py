@@ -197,8 +197,7 @@ def not_compared(record: Record) -> Iterator[Finding]:
     """A note for every channel that the explanation leaves aside."""
     if not any(name in record.channels for name in MESH_RESPONSES):
         return
-    acceleration = record.channels.get("acceleration")
-    if acceleration is not None and acceleration.mounting == "casing":
+    if record.on_casing:
         message = (
             "the path from the mesh to a casing is unknown, so that this accelerometer is not compared with the "
             "simulation; for its orders and its signs of damage, declare it in a file without the other responses"

@@ -227,7 +227,7 @@ def _measurement_lines(measurement: Measurement) -> Iterator[str]:
             yield f"  {word}: {', '.join(named)}"
     free = [record.name for record in measurement.with_role(None)]
     if free:
-        held_out = _CASINGS if all(_is_casing(record) for record in measurement.records) else _AUTOMATIC
+        held_out = _CASINGS if all(_is_casing_alone(record) for record in measurement.records) else _AUTOMATIC
         yield f"  role not said: {', '.join(free)}" + ("" if len(free) < len(measurement.records) else held_out)
     if not free and not measurement.with_role("fit"):
         yield "  none is fitted: task=identify and task=explain need a record of role: fit"
@@ -241,10 +241,9 @@ _AUTOMATIC = "; task=explain holds out a part of them by itself, and so does tas
 _CASINGS = "; task=explain looks into all of them, and task=identify finds no damping behind a casing"
 
 
-def _is_casing(record: Record) -> bool:
+def _is_casing_alone(record: Record) -> bool:
     """Whether a casing is all that was heard in a record."""
-    heard = record.channels.get("acceleration")
-    return heard is not None and heard.mounting == "casing" and not {*record.channels} & {*MESH_RESPONSES}
+    return record.on_casing and not {*record.channels} & {*MESH_RESPONSES}
 
 
 def _record_lines(record: Record) -> Iterator[str]:

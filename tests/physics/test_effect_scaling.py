@@ -108,22 +108,6 @@ def test_members_do_not_know_of_each_other(variant):
     assert torch.allclose(shuffled, everyone[order], rtol=1e-12, atol=0)
 
 
-def test_an_equation_compiles_without_a_break():
-    bench = Bench("backlash", others=("power_law_damping", "pinion_eccentricity", "tooth_friction", "shaft_torsion"))
-    state = (*bench.random(6), *bench.rest_of_state())
-    at = bench.kinematics(bench.times(), state)
-    base, terms, active_branch = bench.prepared.base, bench.prepared.terms, at.active_branch
-
-    def program(time: torch.Tensor, *inner: torch.Tensor) -> torch.Tensor:
-        here = bench.equation.kinematics(time, inner, {}, base)
-        here.active_branch = active_branch
-        return bench.equation.rates(here, base, terms)[1]
-
-    inner = (at.displacement, at.velocity, *at.extra.values())
-    compiled = torch.compile(program, backend="aot_eager", fullgraph=True)
-    assert torch.allclose(compiled(at.time, *inner), program(at.time, *inner), rtol=1e-12)
-
-
 def test_a_term_goes_through_vmap():
     bench = Bench("power_law_damping", others=("backlash",))
     state = bench.random(7)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from gear_damping.explanation.casing.cycles import Patterns, series
 from gear_damping.explanation.casing.localised import RUNOUT
+from gear_damping.explanation.statistics.bursts import kurtosis
 
 Array = NDArray[np.float64]
 FM4_DRAWS = 300  # surrogates of random phases: the 99 % quantile of them then rests on three
@@ -65,13 +66,6 @@ def average(found: Patterns, shaft: str) -> Average:
     turn = np.arange(residual.size) / residual.size
     fm4 = kurtosis(series(pattern, teeth, RUNOUT + 1).ravel())
     return Average(turn, (residual + found.mesh).ravel(), residual.ravel(), fm4, float(np.quantile(drawn, LIMIT)))
-
-
-def kurtosis(values: Array) -> float:
-    """Fourth moment over the square of the second, about the mean; 3 for noise."""
-    square = (values - values.mean()) ** 2
-    total = float(square.sum())
-    return float(square @ square) * square.size / total**2 if total > 0 else 3.0
 
 
 def by_revolution(found: Patterns) -> tuple[Array, float]:

@@ -67,7 +67,7 @@ def is_casing(measurement: Measurement) -> bool:
     """Whether a gear pair was heard through its casing and nothing else was measured of its response."""
     if not measurement.base.has(Trait.TEETH):
         return False
-    heard = [_is_casing(record) for record in measurement.records]
+    heard = [record.on_casing for record in measurement.records]
     return any(heard) and not any(_has_response(record, measurement.base) for record in measurement.records)
 
 
@@ -81,21 +81,16 @@ def heard_of(measurement: Measurement) -> list[Heard]:
     stated = {name: quantity.value for name, quantity in measurement.parameters.items()}
     teeth = tuple(round(stated.get(name, usual[name])) for name in NAMES)
     problems: list[Problem] = []
-    made = [_heard(record, teeth, problems) for record in measurement.records if _is_casing(record)]
+    made = [_heard(record, teeth, problems) for record in measurement.records if record.on_casing]
     if problems:
         raise InputError(problems)
     return [one for one in made if one is not None]
 
 
-def _is_casing(record: Record) -> bool:
-    channel = record.channels.get("acceleration")
-    return channel is not None and channel.mounting == "casing"
-
-
 def _has_response(record: Record, base: type[System]) -> bool:
     """Whether a simulation can be compared with the record; a speed beside a casing is what it is heard at."""
     names = set(response_names(record, base))
-    return bool(names - {"pinion_speed"} if _is_casing(record) else names)
+    return bool(names - {"pinion_speed"} if record.on_casing else names)
 
 
 def _heard(record: Record, teeth: tuple[int, int], problems: list[Problem]) -> Heard | None:
