@@ -5,11 +5,12 @@ import pytest
 from scipy.stats import kstest
 
 from gear_damping.explanation.casing import orders
-from gear_damping.explanation.casing.averages import by_revolution, kurtosis
+from gear_damping.explanation.casing.averages import by_revolution
 from gear_damping.explanation.casing.cycles import patterns, series
 from gear_damping.explanation.casing.heard import Heard
 from gear_damping.explanation.casing.localised import localised
 from gear_damping.explanation.casing.shafts import one_tooth, presence
+from gear_damping.explanation.statistics.bursts import kurtosis
 
 RATE, SPEED = 20e3, 25.0  # Hz, turns/s
 
