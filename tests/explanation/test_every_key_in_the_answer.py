@@ -261,7 +261,7 @@ def bases() -> list[dict]:
 
 BASES = bases()
 KEYS = list(declared_keys())
-QUICK = ("sampling_rate", "transmission_error")  # of the channels of a gear pair; its time is read as an oscillator's is
+QUICK = ("sampling_rate", "transmission_error")  # of a gear pair; its time is read as an oscillator's is
 
 
 def is_slow(path: tuple[str, ...]) -> bool:
