@@ -17,6 +17,7 @@ _OFTEN, _HALF_WAY = 0.2, 0.5  # of the samples, at the rarer level; of those bet
 _ALIKE = 0.25  # of an interval between pulses, how far the next may differ; at random a quarter of the pairs keep it
 _FEWEST_JUMPS, _ONE_WAY, _COARSE = 2, 0.9, 50  # wraps; of the steps; steps that a direction is seen by
 _TURNS = {"rad": 2 * np.pi, "deg": 360.0, "rev": 1.0}  # one turn in each unit that an angle is written in
+_FEWEST_PLACES = 8  # of a turn, assumed: what has fewer values is switched, and no angle
 _NEAR_TURN = 0.03  # of a turn: a ramp that ends so near to it wraps there
 
 
@@ -50,7 +51,7 @@ def turn_of(values: NDArray[np.float64]) -> float | None:
     """The height that an angle falls back by at each turn, None where the column is no sawtooth."""
     steps, span = np.diff(values), float(np.ptp(values))
     back = np.abs(steps) > span / 2
-    if not _FEWEST_JUMPS <= back.sum() <= steps.size / 4:
+    if not _FEWEST_JUMPS <= back.sum() <= steps.size / 4 or np.unique(values).size < _FEWEST_PLACES:
         return None
     jumps, forth = steps[back], steps[~back]
     direction = -np.sign(jumps[0])
@@ -73,6 +74,8 @@ def _pulses(values: NDArray, name: str, unit: str | None) -> tuple[str, str] | N
         return None
     if rises < _FEWEST_PULSES or np.mean(at) < _AT_LEVEL or _switches_partly(high, at) or _flickers(high):
         return None
+    if _rests_between(values[~at]):
+        return None
     return PULSES, f"two levels, {low:.4g} and {low + span:.4g}, with {rises} rises"
 
 
@@ -87,6 +90,12 @@ def _switches_partly(high: NDArray[np.bool_], at: NDArray[np.bool_]) -> bool:
     back = between & before & after & (high[:-2] == high[2:])
     rarer = min(np.mean(high), 1 - np.mean(high))
     return bool(rarer > _OFTEN and back.sum() >= max(_FEWEST_PULSES, _HALF_WAY * between.sum()))
+
+
+def _rests_between(values: NDArray[np.float64]) -> bool:
+    """Whether (n,) samples that lie at neither level are mostly of one value, as a drive's that is off at times."""
+    _, often = np.unique(values, return_counts=True)
+    return values.size >= _FEWEST_PULSES and bool(often.max() > _HALF_WAY * values.size)
 
 
 def _flickers(high: NDArray[np.bool_]) -> bool:

@@ -77,7 +77,7 @@ class Inspection:
         base: The time of the rows `rows`; None where no rate is known.
         rows: (first, stop) of the longest stretch in which every column of that length is finite.
         faults: What is wrong with the stamps, for people.
-        rate_of: The column with a single number that may be the rate; None where none was needed.
+        rate_of: What the file calls a single number that may be the rate; "" where none was needed.
         taken: Which of several recordings one after another the rows are, for people; "" where there is one.
     """
 
@@ -88,7 +88,7 @@ class Inspection:
     base: TimeBase | None
     rows: tuple[int, int]
     faults: tuple[str, ...] = ()
-    rate_of: Column | None = None
+    rate_of: str = ""
     taken: str = ""
 
     @property
@@ -113,13 +113,14 @@ def inspect_table(table: Table) -> Inspection:
     if not any(column.values.size for column in columns):
         rule = f"no column holds numbers; the first: {columns[0].says}"
         raise InputError(Problem("file", rule, str(table.path), "export the channels as numbers"))
-    untimed = not any(table.clock(k) or _may_be_rate(column) for k, column in enumerate(columns))
+    may_be_rate = _may_be_rate(columns)
+    untimed = may_be_rate is None and not any(table.clock(k) for k in range(len(columns)))
     stamps = find_stamps(columns, untimed)
     length = _length(columns, stamps)
     rows, taken = _of_one_recording(columns, stamps, length, _rows([c for c in columns if c.values.size == length]))
     base, faults = _base(table, columns, stamps, length, rows)
-    named = None if base or stamps else next((column for column in columns if _may_be_rate(column)), None)
-    base = steady_time(float(named.values[0]), rows[0], rows[1] - rows[0]) if named else base
+    named, rate = (may_be_rate or table.stated_rate or ("", None)) if base is None and stamps is None else ("", None)
+    base = steady_time(rate, rows[0], rows[1] - rows[0]) if rate else base
     found = [_seen(c, stamps, columns, base, length, table.clock(k)) for k, c in enumerate(columns)]
     return Inspection(table, tuple(found), length, stamps, base, rows, faults, named, taken)
 
@@ -131,17 +132,20 @@ def of_columns(found: Inspection, used: Collection[Column]) -> Inspection:
     rows = _rows(kept) if used else found.rows
     if rows == found.rows or rows[1] - rows[0] < found.rows[1] - found.rows[0]:
         return found
-    if found.rate_of is not None:
+    if found.rate_of:
         return replace(found, rows=rows, base=steady_time(found.rate, rows[0], rows[1] - rows[0]))
     rows, taken = _of_one_recording(found.columns, found.time, found.length, rows)
     base, faults = _base(found.table, found.columns, found.time, found.length, rows)
     return replace(found, rows=rows, base=base, faults=faults, taken=taken)
 
 
-def _may_be_rate(column: Column) -> bool:
-    """Whether it is one positive number under the name of a rate."""
-    name = str(column.reference).split(".")[-1].split("/")[-1].strip()
-    return column.values.size == 1 and column.values[0] > 0 and bool(_RATE.search(name))
+def _may_be_rate(columns: Sequence[Column]) -> tuple[str, float] | None:
+    """The name and the value in Hz of one positive number under the name of a rate."""
+    for column in columns:
+        name = str(column.reference).split(".")[-1].split("/")[-1].strip()
+        if column.values.size == 1 and column.values[0] > 0 and _RATE.search(name):
+            return str(column.reference), float(column.values[0])
+    return None
 
 
 def _column(table: Table, index: int) -> Column:

@@ -73,9 +73,9 @@ def _time(found: Inspection) -> Iterator[str]:
     elif found.faults:
         stated = {"value": float(f"{rate:.10g}") if rate else UNKNOWN, "unit": "Hz"}
         yield f"sampling_rate: {_mapping(stated)}   # guess: the mean of the time stamps, of which {found.faults[0]}"
-    elif found.rate_of is not None:
+    elif found.rate_of:
         stated = {"value": float(f"{rate:.10g}"), "unit": "Hz"}
-        yield f"sampling_rate: {_mapping(stated)}   # guess: what the file calls {found.rate_of.reference}"
+        yield f"sampling_rate: {_mapping(stated)}   # guess: what the file calls {found.rate_of}"
     elif rate is None:
         stated = {"value": UNKNOWN, "unit": "Hz"}
         yield f"sampling_rate: {_mapping(stated)}   # nothing in the file says it"

@@ -112,8 +112,8 @@ def _time(found: Inspection) -> str:
         return "no column looks like time stamps, and the file says no rate"
     n = found.rows[1] - found.rows[0]
     lasts = f"{found.rate:.6g} Hz, {n / found.rate:.4g} s" if found.rate else "no rate"
-    if found.rate_of is not None:
-        return f"{lasts}, a guess: what the file calls {found.rate_of.reference}"
+    if found.rate_of:
+        return f"{lasts}, a guess: what the file calls {found.rate_of}"
     if found.time is None:
         return f"{lasts}, as the file says"
     guessed = f", a guess: {found.time.guessed}" if found.time.guessed else ""

@@ -42,6 +42,12 @@ def test_offset_step_and_constant_are_seen(tmp_path):
     assert [one.reference for one in found.measured] == ["x", "y"]
 
 
+def test_a_drive_that_is_switched_to_and_fro_is_neither_pulses_nor_an_angle(tmp_path):
+    on = np.where(np.arange(1600) % 80 < 40, 4.0, -4.0)
+    on[np.arange(1600) % 80 == 79] = 0.0  # off for a sample before it is switched forth
+    assert column(inspected(tmp_path, time=np.arange(1600) / 100, current=on), "current").kind == SIGNAL
+
+
 def test_shafts_counters_and_pulses_are_told_from_signals(tmp_path):
     turns = 11.3 * T + 0.01 * np.sin(9 * T)
     found = inspected(
@@ -146,7 +152,28 @@ def test_a_number_named_like_a_rate_may_be_it(name, tmp_path):
     assert "# not declared: single numbers: " in text
     stamped = inspected(tmp_path, fs=np.array([50.0]), time=T, x=np.sin(9 * T))
     assert stamped.rate == pytest.approx(RATE)
-    assert stamped.rate_of is None
+    assert stamped.rate_of == ""
+
+
+@pytest.mark.parametrize(
+    ("above", "rate"),
+    [
+        ("Delta t,4.0E-5,4.0E-5", 25e3), ("Sample Interval,40,us", 25e3), ("Delta_X (ms),0.04", 25e3),
+        ("# sampling rate: 25 kHz", 25e3), ("fs = 25000", 25e3), ("Abtastintervall,4e-05", 25e3),
+        ("Delta t,4.0E-5,8.0E-5", None), ("Sample rate of the second board was never noted in 2019", None),
+        ("Record Length,2500", None), ("Sample Interval,0", None),
+    ],
+)  # fmt: skip
+def test_a_rate_above_a_table_of_texts_may_be_that_of_its_rows(above, rate, tmp_path):
+    values = np.sin(0.3 * np.arange(60.0)) + 0.1 * np.cos(np.arange(60.0) ** 2)
+    rows = [above, "a,b", *(f"{x:.6f},{-x * x:.6f}" for x in values)]
+    (tmp_path / "scope.csv").write_text("\n".join(rows))
+    found = inspect_table(read_table(tmp_path / "scope.csv"))
+    assert found.rate == (None if rate is None else pytest.approx(rate))
+    assert found.columns[0].values.size == 60
+    rows[1:] = ["t,b", *(f"{k / 50:.3f},{x:.6f}" for k, x in enumerate(values))]
+    (tmp_path / "timed.csv").write_text("\n".join(rows))
+    assert inspect_table(read_table(tmp_path / "timed.csv")).rate == pytest.approx(50.0)
 
 
 def test_what_is_not_declared_cuts_no_stretch(tmp_path):

@@ -15,6 +15,7 @@ from typing import Any
 from gear_damping.errors import InputError, Problem, reading
 from gear_damping.measurement.formats.cells import NO_VALUE, SHOWN, Cells, CellTable, decimal_commas
 from gear_damping.measurement.formats.header import Header, filled, find_header, is_number
+from gear_damping.measurement.formats.stated_rate import stated_rate
 from gear_damping.measurement.formats.table import Table, is_real, refuse_size, unreadable
 
 SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".gz")
@@ -48,6 +49,8 @@ def read(path: Path, max_bytes: int) -> Table:
     lines = _Lines(path, max_bytes, first_line)
     columns = [Cells(header.name(k), header.unit(k), frame[k].to_numpy(), lines) for k in range(width)]
     table = CellTable(path, columns, decimal_commas=text.delimiter != ",")
+    above = [row for line, row in islice(text.rows(), _HEAD) if line < first_line]
+    table.stated_rate = stated_rate(above)
     if header.skipped:
         table.notes += (f"{path.name}: {header.skipped} line(s) before the header are left out",)
     if header.says:

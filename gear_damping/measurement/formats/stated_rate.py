@@ -1,0 +1,54 @@
+"""The rate that lines above a table of texts state: `Sample Interval,4e-05,s`, `Delta_X 0.001`, `# fs: 2 kHz`."""
+
+import re
+from collections.abc import Iterable, Sequence
+
+from gear_damping.errors import InputError
+from gear_damping.units import to_si
+
+_STEP = re.compile(
+    r"\b(delta[ _]?[tx]|d[tx]|t ?interval|[tx][ _]?incr(ement)?|(samp(le|ling)|time|horizontal|record|abtast)[ _-]?"
+    r"(interval\w*|period\w*|increment\w*|step\w*))\b", re.I,
+)  # fmt: skip
+_RATE = re.compile(
+    r"\b(samp(le|ling)[ _-]?(rate|freq(uency)?)|samples (per|a) second|abtast(rate|frequenz)|fs)\b", re.I
+)
+_NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?", re.I)
+_LONGEST_NAME = 40  # characters, assumed: what is longer is a sentence
+
+
+def stated_rate(rows: Iterable[Sequence[str]]) -> tuple[str, float] | None:
+    """The words that state a rate and the rate in Hz; None where none does, or two of them disagree.
+
+    Args:
+        rows: The cells of the lines above the table, comments among them.
+    """
+    found = [one for row in rows if (one := _of_row(row)) is not None]
+    rates = {f"{rate:.5g}" for _, rate in found}
+    return found[0] if len(rates) == 1 else None
+
+
+def _of_row(row: Sequence[str]) -> tuple[str, float] | None:
+    text = " ".join(cell.strip().strip('"') for cell in row if cell.strip()).lstrip("#%/;*! ")
+    number = next((one for one in _NUMBER.finditer(text) if not text[one.start() - 1 : one.start()].isalpha()), None)
+    if number is None:
+        return None
+    name, behind = text[: number.start()], text[number.end() :].split()
+    is_step = _STEP.search(name)
+    if len(name) > _LONGEST_NAME or not (is_step or _RATE.search(name)):
+        return None
+    value = float(number[0])
+    if any(_NUMBER.fullmatch(other) and float(other) != value for other in behind):
+        return None  # of each channel its own
+    unit = next((one for one in (*re.findall(r"[(\[]([^)\]]+)[)\]]", name), *behind[:1]) if one), "")
+    size = value * _factor(unit, "s" if is_step else "Hz")
+    words = (is_step or _RATE.search(name))[0]
+    return (words, 1 / size if is_step else size) if size > 0 else None
+
+
+def _factor(unit: str, plain: str) -> float:
+    """The size of a unit, of the plain one where it is none of its kind: something else stands there."""
+    try:
+        return to_si(1.0, unit, plain)
+    except InputError:
+        return 1.0
