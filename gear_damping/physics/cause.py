@@ -53,6 +53,11 @@ class Rig:
         """Whether its system has a trait."""
         return trait in self.traits
 
+    @property
+    def swings_freely(self) -> bool:
+        """Whether nothing that was measured moves it: it dies away about its place of rest."""
+        return self.has(Trait.REST) and not self.inputs
+
     def teeth(self, shaft: str) -> int:
         """Teeth of the gear on a shaft."""
         return {"pinion": self.n_teeth_pinion, "gear": self.n_teeth_gear}[shaft]

@@ -6,12 +6,17 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
-from gear_damping.physics.cause import Cause, Recipe
+from gear_damping.physics.cause import Cause, Recipe, Rig
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.record_filter import filtered
 from gear_damping.physics.terms import Recording, Sensor, Values
 
 MODES = 3  # powers of time by which a short beginning is free
+
+
+def _switched_on(rig: Rig) -> tuple[Recipe, ...]:
+    """None of a free swing: it is the same one begun earlier, and the unknown beginning would take what dies away."""
+    return () if rig.swings_freely else (Recipe({"delay": 0.05}),)
 
 
 class SensorDelay(Sensor):
@@ -24,7 +29,7 @@ class SensorDelay(Sensor):
     position = 50  # in the chain, behind the filter
     cause: ClassVar = Cause(
         "a delay of the sensor",
-        (Recipe({"delay": 0.05}),),
+        _switched_on,
         separated_by="speed",
     )
 

@@ -8,7 +8,6 @@ from torch import Tensor
 from gear_damping.physics.cause import Cause, Recipe, Rig
 from gear_damping.physics.parameter import Option, Parameter
 from gear_damping.physics.record_filter import butterworth_modes, butterworth_response, filtered
-from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import Recording, Sensor, Values
 
 SIZES = (0.5, 1.5, 4.0)  # of the unit of frequency; a mode lies at 1 / (2 pi)
@@ -21,7 +20,7 @@ def _switched_on(rig: Rig) -> tuple[Recipe, ...]:
 
     What drives a rig or turns its shafts makes it move at several.
     """
-    if rig.has(Trait.REST) and not rig.inputs:
+    if rig.swings_freely:
         return ()
     coasts = rig.values.get("natural_frequency", 1.0) == 0
     slowest = SLOWEST / (rig.values.get("characteristic_time", 0.0) or 1.0)

@@ -1,8 +1,11 @@
-"""How a low-pass is tried: not of a free swing, and of a rig without a spring none slower than the motion."""
+"""How a low-pass and a delay are tried: not of a free swing; without a spring none slower than the motion."""
 
 from dataclasses import replace
 
+import pytest
+
 from gear_damping.physics.cause import Rig
+from gear_damping.physics.effects.sensor_delay import SensorDelay
 from gear_damping.physics.effects.sensor_lowpass import SensorLowpass
 from gear_damping.physics.systems.traits import Trait
 
@@ -23,8 +26,9 @@ def test_beside_a_mode_a_sensor_may_be_slower():
     assert not any(recipe.within for recipe in recipes)
 
 
-def test_of_a_free_swing_none_is_tried():
+@pytest.mark.parametrize("sensor", [SensorLowpass, SensorDelay])
+def test_of_a_free_swing_none_is_tried(sensor):
     free = Rig("oscillator", values={"natural_frequency": 30.0}, traits=frozenset({Trait.REST}))
-    assert SensorLowpass.cause.recipes_for(free) == ()
-    assert SensorLowpass.cause.recipes_for(replace(free, inputs=("force",)))
-    assert SensorLowpass.cause.recipes_for(replace(free, traits=frozenset({Trait.SHAFTS})))
+    assert sensor.cause.recipes_for(free) == ()
+    assert sensor.cause.recipes_for(replace(free, inputs=("force",)))
+    assert sensor.cause.recipes_for(replace(free, traits=frozenset({Trait.SHAFTS})))
