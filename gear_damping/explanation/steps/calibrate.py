@@ -34,10 +34,11 @@ from gear_damping.explanation.model.parting_flanks import flanks_part
 from gear_damping.explanation.trials.noisy_load import moves_with_noise
 from gear_damping.identification.observation import MESH_PHASE
 from gear_damping.identification.oscillator.fit import fit_oscillator
-from gear_damping.identification.oscillator.linear_model import DAMPING, linear_model, linear_oscillator
+from gear_damping.identification.oscillator.linear_model import DAMPING, TIME, linear_model, linear_oscillator, mass_of
 from gear_damping.identification.output_error.least_squares import NONE, Rounds
 from gear_damping.identification.output_error.records import SEPARATOR, FreeParameter
 from gear_damping.identification.output_error.segments import shortened
+from gear_damping.identification.time_scale import characteristic_time
 from gear_damping.physics.systems.traits import Trait, by_trait
 from gear_damping.simulation.solver_settings import Solver
 
@@ -116,6 +117,8 @@ def _oscillator(evidence: Evidence, solver: Solver | None) -> Outcome:
     """Stiffness, damping, gain; offsets of force and response as nuisances."""
     found = fit_oscillator(evidence.fit, known=evidence.known, segments=evidence.segments)
     free, given, _ = linear_model(evidence.fit, evidence.known)
+    if TIME in given:  # without a spring: known now
+        given[TIME] = characteristic_time(evidence.fit, 0.0, found.given[DAMPING] / mass_of(evidence.known))
     gains = evidence.base.gains.values()
     free = [_from_here(parameter, found.given[parameter.name], parameter.name in gains) for parameter in free]
     model = linear_oscillator(evidence.fit, evidence.known)
