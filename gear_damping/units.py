@@ -209,7 +209,15 @@ def to_si(value: float, unit: str, expected: str, key: str = "value", source: st
     found, wanted = parse_unit(unit, key, source), parse_unit(expected)
     if found.dimension != wanted.dimension:
         rule = f"the unit '{unit}' is not one of the kind of '{expected}'"
-        turns = found.dimension * _RAD == wanted.dimension == _RAD * _S**-1
-        remedy = "say what it counts: 'rpm', 'rev/s' or 'rad/s'" if turns else f"give it in '{expected}'"
-        raise InputError(Problem(key, rule, value, remedy, source))
+        raise InputError(Problem(key, rule, value, other_kind(found, expected), source))
     return value * found.factor
+
+
+def other_kind(found: Unit, expected: str) -> str:
+    """What helps where a unit is of another kind than the one that is expected."""
+    wanted = parse_unit(expected)
+    if found.dimension * _RAD == wanted.dimension == _RAD * _S**-1:
+        return "say what it counts: 'rpm', 'rev/s' or 'rad/s'"
+    if wanted.dimension == _ONE:
+        return "give it as a share, 0.005 or '0.5 %'"
+    return f"give it in '{expected}'"

@@ -7,8 +7,9 @@ from numpy.typing import NDArray
 
 from gear_damping.measurement.angular_error import turn_in
 
-TIME, CONSTANT, EMPTY, UNREADABLE, TURNING, COUNTER, PULSES, SIGNAL, ROW_NUMBER = (
+TIME, CONSTANT, EMPTY, UNREADABLE, TURNING, COUNTER, PULSES, SIGNAL, ROW_NUMBER, ELSEWHERE = (
     "time stamps", "constant", "empty", "not readable", "turning angle", "counter", "pulses", "signal", "row number",
+    "another record",
 )  # fmt: skip
 ANGLE = re.compile(r"angle|winkel|theta|phi|phase|encoder|azimuth|rotation|revol|position", re.I)
 MOTION = re.compile(r"accel|veloc|displac|force|torque", re.I)  # what bears such a name is no pulse train
@@ -63,6 +64,14 @@ def turn_of(values: NDArray[np.float64]) -> float | None:
 def unit_of_turn(turn: float) -> str | None:
     """The unit in which a turn has a height, None where it is none of a plain angle."""
     return next((unit for unit, one in _TURNS.items() if abs(turn / one - 1) < _NEAR_TURN), None)
+
+
+def counts_of_turn(values: NDArray[np.float64]) -> int | None:
+    """The counts of a turn of a counter that begins again with each; None of anything else, an angle in a unit too."""
+    turn = turn_of(values)
+    if turn is None or unit_of_turn(turn) or not np.all(values == np.round(values)):
+        return None
+    return round(turn)
 
 
 def _pulses(values: NDArray, name: str, unit: str | None) -> tuple[str, str] | None:

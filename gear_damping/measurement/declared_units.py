@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.record import Quantity
 from gear_damping.measurement.vocabulary import OSCILLATOR_CHANNELS
-from gear_damping.units import Dimension, Unit, parse_unit
+from gear_damping.units import Dimension, Unit, other_kind, parse_unit
 
 _PER_SECOND = Dimension(time=-1)  # exponent of a derivative in time
 _PER = {0: "", 1: "/s", 2: "/s^2"}
@@ -72,7 +72,7 @@ class UnitSystem:
             kept = self._oscillator_unit(name, text, unit)
         if unit.dimension != kept.unit.dimension:
             rule = f"the unit '{text}' is not one of the kind of '{kept.text}'"
-            raise InputError(Problem(key, rule, text, f"give {name} in '{kept.text}'", source))
+            raise InputError(Problem(key, rule, text, other_kind(unit, kept.text), source))
         return Conversion(unit.factor / kept.unit.factor, kept.text)
 
     def _oscillator_unit(self, name: str, text: str, unit: Unit) -> _Reference:

@@ -206,7 +206,8 @@ def _threshold(plan: EncoderPlan, signal: NDArray, file: str) -> float:
     declared = to_si(plan.threshold.value, plan.threshold.unit, plan.unit, key, file)
     level, low, high = declared / parse_unit(plan.unit, f"{plan.key}.unit", file).factor, signal.min(), signal.max()
     if not low < level < high:
-        rule = f"lies outside the column's values, {low:.4g} to {high:.4g}, in a WAV file shares of full scale"
+        of_scale = ", shares of full scale" if file.lower().endswith(".wav") else ""
+        rule = f"lies outside the column's values, {low:.4g} to {high:.4g}{of_scale}"
         raise InputError(Problem(key, rule, f"{level:g}", "state it in these, or leave it out: half way", file))
     return level
 

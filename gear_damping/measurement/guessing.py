@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError
-from gear_damping.measurement.column_kinds import COUNTER, PULSES, TURNING, turn_of, unit_of_turn
+from gear_damping.measurement.column_kinds import COUNTER, PULSES, TURNING, counts_of_turn, turn_of, unit_of_turn
 from gear_damping.measurement.inspection import Column, Inspection
 from gear_damping.measurement.staircase import is_staircase
 from gear_damping.measurement.vocabulary import INPUTS
@@ -20,7 +20,7 @@ _OF_THE_PINION = r"pinion|ritzel|_?1$|drive|(?<![a-z])in"
 _OF_THE_GEAR = r"gear|wheel|_?2$|driven|(?<![a-z])out"
 # The first that fits counts; names in lower case without units and paths.
 _GEAR_NAMES = (
-    ("transmission_error", r"transmission|^d?te$|dte|^te_|_te$"),
+    ("transmission_error", r"transmission|^d?te$|dte|^te[_ ]|[_ ]te$"),
     ("torque", r"torque|moment|^t[12]$|^m[12]$"),
     ("speed", r"speed|rpm|omega|drehzahl|^n[12]?$"),
     ("angle", r"angle|theta|phi|winkel|encoder|enc"),
@@ -40,6 +40,7 @@ _OSCILLATOR_NAMES = (
 _NAMED_UNITS = {
     "mm": "mm", "um": "um", "cm": "cm", "deg": "deg", "mrad": "mrad", "rad": "rad", "rpm": "rpm", "nm": "N*m",
     "mv": "mV", "volt": "V", "volts": "V", "degrees": "deg", "radians": "rad", "mps2": "m/s^2",
+    "urad": "urad", "arcsec": "arcsec",
 }  # fmt: skip
 _OF_FREQUENCY = ("Hz", "kHz", "MHz")  # an axis of a spectrum, or what an exciter was set to
 _OTHERWISE = {"torque": "N*m", "tacho": "V"}
@@ -159,6 +160,8 @@ def _gear_channel(column: Column) -> tuple[str | None, str]:
         return shaft, column.says
     if column.kind == PULSES:
         return "tacho", column.says
+    if column.kind == TURNING and (counts := counts_of_turn(column.inside)):
+        return shaft, f"{column.says}: begins again after {counts} counts"
     if column.kind == TURNING:
         return ("pinion_angle", column.says) if shaft == "pinion" else (None, "the angle of the gear")
     if name == "angle":
@@ -166,8 +169,11 @@ def _gear_channel(column: Column) -> tuple[str | None, str]:
     if name in ("torque", "speed"):
         return f"{shaft}_{name}", "by its name"
     unit = column.unit or _unit_of_name(column)
-    if name is None and _channel_of_unit(unit) == "acceleration":
-        return "acceleration", f"by its unit {unit}"
+    by_unit = _channel_of_unit(unit) if name is None else None
+    if by_unit == "acceleration":
+        return by_unit, f"by its unit {unit}"
+    if by_unit == "velocity" and parse_unit(unit).dimension == parse_unit("rad/s").dimension:
+        return f"{shaft}_speed", f"by its unit {unit}"
     return name, "by its name" if name else ""
 
 
@@ -188,6 +194,8 @@ def _plain(column: Column) -> str:
     """The last word of a name, without the path before it and a unit at its end."""
     words = [word for word in re.split(r"[/\s]+|\.(?=\D)", _bare(column)) if word]
     kept = words[-1] if words else ""
+    if len(words) > 1 and kept in _NAMED_UNITS:
+        return words[-2]
     head, _, tail = kept.rpartition("_")
     return head if head and tail in _NAMED_UNITS else kept
 

@@ -9,8 +9,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.column_kinds import CONSTANT, EMPTY, ROW_NUMBER, SIGNAL, TIME, UNREADABLE, kind_of
-from gear_damping.measurement.formats.table import Table
+from gear_damping.measurement.column_kinds import (
+    CONSTANT,
+    ELSEWHERE,
+    EMPTY,
+    ROW_NUMBER,
+    SIGNAL,
+    TIME,
+    TURNING,
+    UNREADABLE,
+    kind_of,
+    turn_of,
+)
+from gear_damping.measurement.formats.table import ArrayTable, Table
 from gear_damping.measurement.raw import LEAST_SAMPLES
 from gear_damping.measurement.recordings import recordings
 from gear_damping.measurement.resolution import step_of
@@ -20,6 +31,7 @@ from gear_damping.measurement.timebase import TimeBase, stamped_time, steady_tim
 
 _SPARSE = 0.5  # of the longest stretch of values of any column: one with a shorter one is filled here and there
 _EVEN = 1e-6  # of an advance from sample to sample: differences below it are rounding
+_ANY_SIGNAL = re.compile(r"^(values?|data|signal|[xyzt]|time\w*)$", re.I)  # a name that tells no record from a channel
 MOST_LISTED = 6  # recordings of a file that a line lists
 _RATE = re.compile(r"samp\w*[ _]?(freq|rate)|^(fs|f_s|sr|s_?rate)$|abtastrate", re.I)  # of a single number
 SHORTEST = 1e-15  # s between two samples: below it lie damaged stamps, and no sensor
@@ -99,7 +111,7 @@ class Inspection:
     @property
     def measured(self) -> list[Column]:
         """The columns of the record that say something: neither stamps, nor constant, nor of another length."""
-        dull = (TIME, CONSTANT, EMPTY, UNREADABLE, ROW_NUMBER)
+        dull = (TIME, CONSTANT, EMPTY, UNREADABLE, ROW_NUMBER, ELSEWHERE)
         return [c for c in self.columns if c.values.size == self.length and c.kind not in dull]
 
 
@@ -110,6 +122,7 @@ def inspect_table(table: Table) -> Inspection:
         InputError: none of them holds numbers.
     """
     columns = [_column(table, index) for index in range(len(table.names))]
+    columns = _of_one_group(columns) if isinstance(table, ArrayTable) else columns
     if not any(column.values.size for column in columns):
         rule = f"no column holds numbers; the first: {columns[0].says}"
         raise InputError(Problem("file", rule, str(table.path), "export the channels as numbers"))
@@ -156,6 +169,22 @@ def _column(table: Table, index: int) -> Column:
     except InputError as error:
         return Column(reference, np.empty(0), (0, 0), None, UNREADABLE, error.problems[0].rule)
     return Column(reference, values, _finite(values), table.unit(index))
+
+
+def _of_one_group(columns: list[Column]) -> list[Column]:
+    """The columns, of groups with members of the same names (`run1/acc`, `run2/acc`) those of the first alone."""
+    groups: dict[str, list[str]] = {}
+    for column in columns:
+        group, stroke, member = str(column.reference).rpartition("/")
+        if stroke and not isinstance(column.reference, int):
+            groups.setdefault(group, []).append(member)
+    first = next(iter(groups), "")
+    own = {member for member in groups.get(first, ()) if not _ANY_SIGNAL.search(member)}
+    others = [group for group in groups if group != first and own & {*groups[group]}]
+    if not others or sum(map(len, groups.values())) < len(columns):
+        return columns
+    nothing = {"values": np.empty(0), "finite": (0, 0), "kind": ELSEWHERE, "says": f"as that of '{first}'"}
+    return [replace(c, **nothing) if str(c.reference).rpartition("/")[0] in others else c for c in columns]
 
 
 def _finite(values: NDArray[np.float64]) -> tuple[int, int]:
@@ -230,14 +259,16 @@ def _seen(
 ) -> Column:
     if stamps is not None and column is columns[stamps.index]:
         return replace(column, kind=TIME, says=stamps.says)
-    if column.kind == UNREADABLE:
+    if column.kind in (UNREADABLE, ELSEWHERE):
         return column
     kind, says = kind_of(column.inside, str(column.reference), column.unit)
     if kind in (CONSTANT, EMPTY, ROW_NUMBER):
         return replace(column, kind=kind, says=says)
     own = clock[1] if clock else None
     rate = base.sampling_rate if base is not None and column.values.size == length else own
-    spectrum = spectrum_of(column.inside, rate or 1.0)
+    turn = turn_of(column.inside) if kind == TURNING else None
+    whole = column.inside if turn is None else np.unwrap(column.inside, period=turn)
+    spectrum = spectrum_of(whole, rate or 1.0)
     return replace(column, kind=kind, says=says, step=_step_of(column.inside), spectrum=spectrum, rate=rate)
 
 

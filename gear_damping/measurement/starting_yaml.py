@@ -4,6 +4,8 @@ import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
 
+from gear_damping.measurement.angular_error import is_angle
+from gear_damping.measurement.column_kinds import ELSEWHERE, counts_of_turn
 from gear_damping.measurement.guessing import GEAR, UNKNOWN, Guess
 from gear_damping.measurement.inspection import Inspection
 
@@ -103,7 +105,13 @@ def _gear_channels(used: set[str | None]) -> Iterator[str]:
 
 
 def _declared(guess: Guess) -> str:
-    return _mapping({"column": guess.column.reference, "unit": guess.unit})
+    stated = {"column": guess.column.reference, "unit": guess.unit}
+    return _mapping(stated | ({"shaft": UNKNOWN} if _is_of_a_shaft(guess) else {}))
+
+
+def _is_of_a_shaft(guess: Guess) -> bool:
+    """Whether it is a transmission error that is an angle, of which only the user knows whose."""
+    return guess.channel == "transmission_error" and is_angle(guess.unit)
 
 
 def _comment(guess: Guess, found: Inspection) -> str:
@@ -112,6 +120,8 @@ def _comment(guess: Guess, found: Inspection) -> str:
         said += f"; fill in its unit{': ' + guess.unit_by if guess.unit_by else ''}"
     elif guess.unit_by:
         said += f"; unit {guess.unit}: {guess.unit_by}"
+    if _is_of_a_shaft(guess):
+        said += "; shaft: whose angle it is, pinion or gear"
     if guess.channel == "acceleration" and guess.used and any(c.kind != "signal" for c in found.measured):
         said += f"; {_CASING}"
     if found.table.full_scale is not None:
@@ -141,7 +151,8 @@ def _gear(listed: Sequence[Guess]) -> Iterator[str]:
     if "gear" in used and "pinion" not in used:
         yield f"      pinion: {_mapping({'column': UNKNOWN, 'counts_per_revolution': UNKNOWN})}   # beside the gear's"
     for name in encoders:
-        stated = {"column": used[name].column.reference, _COUNTS[name]: UNKNOWN}
+        counts = counts_of_turn(used[name].column.inside) or UNKNOWN
+        stated = {"column": used[name].column.reference, _COUNTS[name]: counts}
         twice = "# " if name == "tacho" and "pinion" in used else ""
         yield f"      {twice}{name}: {_mapping(stated)}   # guess: {used[name].why}"
     missing = {}
@@ -159,11 +170,14 @@ def _left_out(found: Inspection, listed: Sequence[Guess]) -> Iterator[str]:
     """What the YAML says nothing of, as comments."""
     stamps = found.columns[found.time.index] if found.time else None
     told = {id(guess.column): guess for guess in listed}
+    others = [_scalar(column.reference) for column in found.columns if column.kind == ELSEWHERE]
+    if others:
+        yield f"    # further records: {', '.join(others)}"
     numbers = [column for column in found.columns if column.values.size == 1 and found.length > 1]
     if numbers:
         yield f"    # not declared: single numbers: {', '.join(_scalar(column.reference) for column in numbers)}"
     for column in found.columns:
-        if column in numbers:
+        if column in numbers or column.kind == ELSEWHERE:
             continue
         guess = told.get(id(column))
         if column is stamps or (guess is not None and guess.channel):

@@ -1,5 +1,6 @@
 """What an inspection says of columns that were made to be known."""
 
+import h5py
 import numpy as np
 import pytest
 from scipy.io import savemat
@@ -40,6 +41,45 @@ def test_offset_step_and_constant_are_seen(tmp_path):
     assert column(found, "y").step == 0
     assert (column(found, "level").kind, column(found, "time").kind) == (CONSTANT, TIME)
     assert [one.reference for one in found.measured] == ["x", "y"]
+
+
+def test_groups_with_members_of_the_same_names_are_records_of_their_own(tmp_path):
+    with h5py.File(tmp_path / "campaign.h5", "w") as file:
+        for group, rows in (("low", 900), ("high", 1000), ("up", 1000)):
+            file.create_group(group).attrs["fs"] = 2000.0
+            file[f"{group}/acc"] = np.sin(0.3 * np.arange(rows))
+            file[f"{group}/volt"] = np.cos(0.3 * np.arange(rows))
+    found = inspect_table(read_table(tmp_path / "campaign.h5"))
+    assert {str(c.reference) for c in found.measured} == {"high/acc", "high/volt"}
+    assert (found.length, found.rate) == (1000, pytest.approx(2000.0))
+    text = starting_yaml(found, system_of(found), guesses(found, "oscillator"))
+    assert "# further records: low/acc, low/volt, up/acc, up/volt" in text
+    assert "guess: what the file calls fs" in text
+
+
+def test_groups_of_one_signal_each_are_one_record(tmp_path):
+    with h5py.File(tmp_path / "one.h5", "w") as file:
+        for group in ("speed", "volt"):
+            file[f"{group}/value"] = np.sin(0.3 * np.arange(900) + len(group))
+    assert len(inspect_table(read_table(tmp_path / "one.h5")).measured) == 2
+
+
+def test_a_counter_that_begins_again_is_an_encoder_of_as_many_counts(tmp_path):
+    counts = (np.arange(4000) * 37) % 2048
+    found = inspected(tmp_path, time=np.arange(4000) / 1e4, TE_arcsec=np.sin(0.2 * np.arange(4000)), encoder=counts)
+    assert column(found, "encoder").spectrum.noise < 20, "what falls back is no noise"
+    text = starting_yaml(found, system_of(found), guesses(found, "gear_pair"))
+    assert "pinion: {column: encoder, counts_per_revolution: 2048}" in text
+    assert 'transmission_error: {column: TE_arcsec, unit: arcsec, shaft: "???"}' in text
+
+
+@pytest.mark.parametrize(("name", "unit", "channel"), [("n_out", "rpm", "gear_speed"), ("n_in", "rpm", "pinion_speed")])
+def test_the_speed_of_a_shaft_is_told_by_its_unit(name, unit, channel, tmp_path):
+    rows = ["t,phi,X", f"s,deg,{unit}"]
+    rows += [f"{k / 1e4:.4f},{0.9 * k:.4f},{1500 + 9 * np.sin(0.2 * k):.4f}" for k in range(2000)]
+    (tmp_path / "run.csv").write_text("\n".join(rows).replace("X", name))
+    found = inspect_table(read_table(tmp_path / "run.csv"))
+    assert {g.channel for g in guesses(found, "gear_pair")} == {"pinion_angle", channel}
 
 
 def test_a_drive_that_is_switched_to_and_fro_is_neither_pulses_nor_an_angle(tmp_path):

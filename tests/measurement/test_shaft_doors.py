@@ -149,5 +149,5 @@ def test_a_threshold_beyond_a_pulse_train_says_what_the_train_holds(bench):
         "tacho": {"column": "pulse", "unit": "V", "pulses_per_revolution": 1, "threshold": threshold}
     }
     (problem,) = bench.problems()
-    for words in ("encoders.tacho.threshold", "0 to 0.2", "WAV"):
+    for words in ("encoders.tacho.threshold", "0 to 0.2; remedy"):
         assert words in problem

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gear_damping.measurement.formats.stated_rate import stated_rate
 from gear_damping.measurement.formats.table import (
     ArrayTable,
     Held,
@@ -43,7 +44,10 @@ def read(path: Path, max_bytes: int) -> Table:
                 left_out.append(f"{dataset.name.strip('/')} ({kind if dataset.size else 'empty'})")
                 continue
             held += [_held(h5py, path, dataset, field) for field in found]
-    return ArrayTable(path, held, left_out)
+        settings = _settings(h5py, file)
+    table = ArrayTable(path, held, left_out)
+    table.stated_rate = stated_rate(settings)
+    return table
 
 
 def _datasets(h5py: Any, file: Any) -> list[Any]:
@@ -51,6 +55,13 @@ def _datasets(h5py: Any, file: Any) -> list[Any]:
     found = []
     file.visititems(lambda _, item: found.append(item) if isinstance(item, h5py.Dataset) else None)
     return found
+
+
+def _settings(h5py: Any, file: Any) -> list[list[str]]:
+    """The numbers that are attributes of the file and its groups, each beside its name."""
+    groups = [file]
+    file.visititems(lambda _, item: groups.append(item) if isinstance(item, h5py.Group) else None)
+    return [[name, str(value)] for group in groups for name, value in group.attrs.items() if np.size(value) == 1]
 
 
 def _fields(dataset: Any) -> Iterator[tuple[str, str | None, np.dtype, tuple[int, ...]]]:

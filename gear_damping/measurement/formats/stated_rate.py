@@ -1,4 +1,4 @@
-"""The rate that lines above a table of texts state: `Sample Interval,4e-05,s`, `Delta_X 0.001`, `# fs: 2 kHz`."""
+"""The rate that is stated beside a table, above its rows or as an attribute: `Sample Interval,4e-05,s`, `fs: 2 kHz`."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -21,7 +21,7 @@ def stated_rate(rows: Iterable[Sequence[str]]) -> tuple[str, float] | None:
     """The words that state a rate and the rate in Hz; None where none does, or two of them disagree.
 
     Args:
-        rows: The cells of the lines above the table, comments among them.
+        rows: The cells of the lines above a table of texts, comments among them, or attributes: a name and its value.
     """
     found = [one for row in rows if (one := _of_row(row)) is not None]
     rates = {f"{rate:.5g}" for _, rate in found}

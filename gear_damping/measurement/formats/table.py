@@ -42,7 +42,7 @@ class Table(ABC):
         self.lengths = tuple(column[3] for column in columns)
         self._place = [(column[1], column[2]) for column in columns]
         self.sampling_rate: float | None = None  # Hz, where the format itself holds one for the whole file
-        self.stated_rate: tuple[str, float] | None = None  # what lines above the table call it, and Hz; a guess
+        self.stated_rate: tuple[str, float] | None = None  # its name in lines above, or attributes; Hz; a guess
         self.full_scale: float | None = None  # the value of full scale, where samples are fractions of it
         self.notes: tuple[str, ...] = ()
 
