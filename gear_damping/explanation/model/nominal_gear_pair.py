@@ -8,7 +8,7 @@ import torch
 
 from gear_damping.explanation.evidence.records import Evidence, all_stand
 from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
-from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, natural_frequency_hz, settled_at
+from gear_damping.explanation.model.hypothesis import Given, Hypothesis, Outcome, natural_frequency_hz, settled_at
 from gear_damping.identification.oscillator.linear_model import DAMPING, expected_about, uncertain_parameter
 from gear_damping.identification.output_error.angles import STARTS, angle_bases, harmonics_to_resonance, scanned
 from gear_damping.identification.output_error.least_squares import NONE, Rounds
@@ -197,16 +197,17 @@ def _shape_harmonics(rough: Outcome, evidence: Evidence, solver: Solver | None) 
 
     Up to the sampling rate: without a filter before it, those above half of it are folded back among the lower ones.
     """
-    model, given, count = rough.hypothesis.model, rough.flat_given(), _passed_harmonics(rough, evidence)
+    model, given = rough.hypothesis.model, rough.flat_given()
+    count = passed_harmonics(model, given, evidence)
     resonance = harmonics_to_resonance(model, given, evidence.fit)
     sampled = resonance * evidence.sampling_rate / natural_frequency_hz(model, given)
     most = min(MOST_HARMONICS, floor(sampled))
     return max(count, _seen_harmonics(rough, most, evidence, solver)) if most > count else count
 
 
-def _passed_harmonics(rough: Outcome, evidence: Evidence) -> int:
+def passed_harmonics(model: Model, given: Given, evidence: Evidence) -> int:
     """Harmonics of the mesh that the natural frequency lets through."""
-    resonance = harmonics_to_resonance(rough.hypothesis.model, rough.flat_given(), evidence.fit)
+    resonance = harmonics_to_resonance(model, given, evidence.fit)
     return min(max(ceil(SHAPE_BAND * resonance), FEWEST_HARMONICS), MOST_OF_BAND)
 
 
@@ -230,25 +231,26 @@ def with_shape(fitted: Outcome, evidence: Evidence, harmonics: int) -> Hypothesi
     The ideal wave gets edges, and every harmonic that the natural frequency lets through: a load may move the edges.
     """
     rough = fitted.hypothesis
-    names = [f"{SHAPE}.{part}[{h}]" for part in ("in_phase", "quadrature") for h in range(harmonics)]
     free = tuple(p for p in rough.free if p.name not in PHASED)
     zeros = (0.0,) * harmonics
     edge = max(EDGE, float(rough.given.get(f"{MESH}.edge", 0.0)))
     given = rough.given | {f"{SHAPE}.in_phase": zeros, f"{SHAPE}.quadrature": zeros, f"{MESH}.edge": edge}
-    passed = min(_passed_harmonics(fitted, evidence), harmonics)
+    passed = min(passed_harmonics(rough.model, fitted.flat_given(), evidence), harmonics)
     mesh = FourierMeshStiffness(n_harmonics=min(length for length in SERIES if length >= passed))
     return Hypothesis(
         rough.system,
         (*(mesh if effect.name == MESH else effect for effect in rough.effects), MeshStiffnessShape()),
         given,
-        (*free, *(_harmonic(name) for name in names)),
+        (*free, *free_harmonics(harmonics)),
         causes=rough.causes,
     )
 
 
-def _harmonic(name: str) -> FreeParameter:
+def free_harmonics(count: int) -> list[FreeParameter]:
     """Free within what teeth can be: a harmonic that the fitted speeds hardly show must not be driven by noise."""
-    return FreeParameter(name, 0.0, scale=0.02, lower=-0.5, upper=0.5, deviation=EXPECTED_SHAPE / _order(name))
+    names = [f"{SHAPE}.{part}[{h}]" for part in ("in_phase", "quadrature") for h in range(count)]
+    within = {"scale": 0.02, "lower": -0.5, "upper": 0.5}
+    return [FreeParameter(name, 0.0, **within, deviation=EXPECTED_SHAPE / _order(name)) for name in names]
 
 
 def _order(name: str) -> int:

@@ -15,6 +15,7 @@ from gear_damping.explanation.evidence.useful_samples import fair_share
 from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.followed import followed_alone, of_one_flank
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, natural_frequency_hz
+from gear_damping.explanation.model.mesh_alignment import begun_aligned
 from gear_damping.explanation.model.nominal_gear_pair import (
     ANGLES_KEPT,
     ROUGH_ITERATIONS,
@@ -52,6 +53,7 @@ STIFFNESSES = (1.0, 0.85, 0.92, 1.08, 1.17)  # times where it begins: with a wro
 APART = 1.5  # times the cost of a phase for every record: one phase of all leaves that much where there is none; angles
 # that begin anywhere agree that well once in a thousand times, for three records
 EQUIVOCAL = 1.05  # times: less than a twentieth of what the rough wave lacks is what its phases bend to in any records
+POORLY = 0.05  # of what moved: so much few causes leave, and angles that are wrong always
 FEWEST_PHASES = 4  # of records: two more than a line has numbers
 SLOPES = 201  # of a line that is tried through phases, up to half a mesh period between rest and the highest speed
 IN_LINE = 0.1  # rad, root mean square: four random phases are so near to a line once in 250 times, six once in 10 000
@@ -178,11 +180,37 @@ def _begun_short(evidence: Evidence, solver: Solver | None) -> tuple[Evidence, O
     begun, rough, nominal = _angles_counted(part, solver)
     rough = rough or _rough_gear_pair(begun, solver)
     nominal = nominal or shaped(rough, begun, SHAPE_ITERATIONS, solver)
+    begun, rough, nominal = _realigned(begun, rough, nominal, solver)
     if part is evidence:
         return begun, rough, nominal
     whole = evidence if begun.has_index else with_own_angles(evidence)
     rough = _on_the_whole(rough, whole, ROUGH_ITERATIONS, solver)
     return whole, rough, _on_the_whole(nominal, whole, SHAPE_ITERATIONS, solver)
+
+
+def _realigned(
+    evidence: Evidence, rough: Outcome, nominal: Outcome, solver: Solver | None
+) -> tuple[Evidence, Outcome, Outcome]:
+    """The same, or what follows better, begun from where the meshes of the records stand to each other.
+
+    The ideal wave lacks the harmonics of real teeth, which an accelerometer and slow speeds show above all: then its
+    own best angles, stiffness and damping lead astray. No other reason is looked for while much of the signal is left.
+    """
+    is_told = len(evidence.fit) < 2 or (evidence.has_index and evidence.mesh_index)
+    if is_told or flanks_part(evidence) or nominal.fitted.cost < POORLY * _moved(evidence):
+        return evidence, rough, nominal
+    apart = with_own_angles(evidence) if evidence.has_index else evidence
+    for wave in begun_aligned(apart, solver):
+        again = shaped(wave, apart, SHAPE_ITERATIONS, solver)
+        if again.fitted.cost < SCANNED * nominal.fitted.cost:
+            evidence, rough, nominal = apart, wave, again
+    return evidence, rough, nominal
+
+
+def _moved(evidence: Evidence) -> float:
+    """Sum of the squares of all channels about their means, as residuals count."""
+    series = [record.weight * record.stacked.reshape(len(record.channels), -1) for record in evidence.fitted]
+    return sum(float((one - one.mean(1, keepdim=True)).square().sum()) for one in series)
 
 
 def _on_a_part(evidence: Evidence) -> Evidence:
