@@ -187,7 +187,8 @@ def shaft_angle(
     time = base.time if base.stamps is None else base.stamps
     if plan.name != "tacho" and not plan.timestamps:
         angle = angle_from_counts(rows(plan.column, f"{plan.key}.column"), plan.per_revolution, plan.direction)
-        return ShaftAngle(angle - (0.0 if plan.index is None else _at_index_pulse(plan, angle, rows, file)))
+        zero, late = (0.0, 0.0) if plan.index is None else _at_index_pulse(plan, angle, time, rows, file)
+        return ShaftAngle(angle - zero, late)
     key = f"{plan.key}.{'timestamps' if plan.timestamps else 'column'}"
     if plan.timestamps:
         pulses, late = whole(plan.column, key) * to_si(1.0, plan.unit, "s", f"{plan.key}.unit", file), 0.0
@@ -212,14 +213,30 @@ def _threshold(plan: EncoderPlan, signal: NDArray, file: str) -> float:
     return level
 
 
-def _at_index_pulse(plan: EncoderPlan, angle: NDArray, rows: ReadColumn, file: str) -> float:
-    """The angle at the first index pulse, which is the shaft's zero."""
+def _at_index_pulse(
+    plan: EncoderPlan, angle: NDArray, time: NDArray, rows: ReadColumn, file: str
+) -> tuple[float, float]:
+    """The angle at the first index pulse, which is the shaft's zero, and by how much it may be late, in s.
+
+    A pulse began between the sample that shows it first and the one before. Every turn says so anew, and the zero lies
+    where all of them allow it: a good part of a sample for one turn, a tenth of that for ten.
+    """
     signal = rows(plan.index, f"{plan.key}.index")
     high = np.flatnonzero(signal > (signal.min() + signal.max()) / 2)
     if not high.size:
         raise InputError(Problem(f"{plan.key}.index", "holds no pulse", plan.index, "leave it out", file))
-    _refuse_turns(plan, angle[high[np.r_[True, np.diff(high) > 1]]], file)
-    return float(angle[high[0]])
+    first = high[np.r_[True, np.diff(high) > 1]]
+    _refuse_turns(plan, angle[first], file)
+    seen = first[first > 0]  # one that has begun before the record says nothing of when
+    if not seen.size:
+        return float(angle[first[0]]), 0.0
+    turns = TURN * np.round((angle[seen] - angle[first[0]]) / TURN)
+    ends = np.sort([angle[seen - 1] - turns, angle[seen] - turns], axis=0)
+    low, high = float(ends[0].max()), float(ends[1].min())
+    rate = abs(float(angle[-1] - angle[0])) / float(time[-1] - time[0])
+    width = (high - low) if high > low else float(np.median(ends[1] - ends[0]))  # jitter: no angle fits all
+    centre = (low + high) / 2 if high > low else float(ends.mean())
+    return centre, width / 12**0.5 / max(rate, 1e-300)
 
 
 def _refuse_turns(plan: EncoderPlan, at: NDArray, file: str) -> None:

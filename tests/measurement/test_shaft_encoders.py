@@ -181,8 +181,26 @@ def test_the_index_pulse_is_the_zero_of_the_angle(bench):
     record["encoders"] = {"pinion": {"column": "p", "counts_per_revolution": 4096, "index": "z"}}
     record["mesh_index"] = True
     loaded = bench.load_as_it_is().records[0]
-    assert loaded.channels["pinion_angle"].values[400] == pytest.approx(0, abs=1e-12)
+    angle = loaded.channels["pinion_angle"]
+    assert angle.values[400] == pytest.approx(60 * pi / 20000 / 2), "it began in the sample before"
+    assert angle.timing_error == pytest.approx(1 / 20000 / 12**0.5)
     assert loaded.mesh_index
+
+
+@pytest.mark.parametrize("direction", [1, -1])
+def test_many_turns_tell_the_index_to_a_part_of_a_sample(bench, direction):
+    """The longest sample lasts 0.065 rad; a pulse is seen by the sample behind it."""
+    time = np.arange(4000) / 20000
+    shaft = 1300 * time + 2000 * time**2
+    index = np.r_[0.0, np.diff(np.floor((shaft - 1.234) / (2 * pi)))] > 0
+    record = _rig(bench, t=time, p=direction * shaft * 2**20 / (2 * pi), z=index.astype(float), x=np.sin(3000 * time))
+    record["channels"]["transmission_error"] = {"column": "x", "unit": "um"}
+    encoder = {"column": "p", "counts_per_revolution": 2**20, "index": "z", "direction": direction}
+    record["encoders"] = {"pinion": encoder}
+    angle = bench.load_as_it_is().records[0].channels["pinion_angle"]
+    off = (angle.values - (shaft - 1.234) + pi) % (2 * pi) - pi
+    assert np.abs(off).max() < 0.01
+    assert np.abs(off).max() < 5 * 1300 * angle.timing_error < 0.05
 
 
 @pytest.mark.parametrize("stamped", [True, False])
