@@ -47,6 +47,8 @@ _OTHERWISE = {"torque": "N*m", "tacho": "V"}
 _LOWEST, _CLEARLY = 4, 1.2  # lines of a spectrum that hold drifts; ratio by which one column beats an earlier one
 _DERIVED = 0.98  # correlation of a column with the slope of another
 _HIGHER = 1.3  # ratio of the mean frequencies from which the faster column may be the input
+_FEWEST_TURNS = 3  # between pulses of an index, assumed
+_ROUND = (1000, 100, 10)  # encoders have a power of two of counts, or a round number of them
 _SOME_TURNS = 7.0  # an angle within this is more likely in rad than in deg
 
 
@@ -61,6 +63,8 @@ class Guess:
         unit: Its unit, or UNKNOWN.
         unit_by: What the unit was guessed by; "" where the file says it.
         used: Whether it is the one of its channel that the YAML declares.
+        counts: How many counts of a shaft's counter make a turn; None where nothing says it.
+        index: The column that pulses once a turn of it; None where none does.
     """
 
     column: Column
@@ -69,6 +73,8 @@ class Guess:
     unit: str
     unit_by: str
     used: bool = True
+    counts: int | None = None
+    index: Column | None = None
 
 
 def system_of(found: Inspection) -> tuple[str, str]:
@@ -92,7 +98,7 @@ def guesses(found: Inspection, system: str) -> list[Guess]:
     if system == OSCILLATOR:
         named = _completed(_without_references(named))
     listed = [_guess(column, channel, why) for column, channel, why in named]
-    listed = _one_each(listed)
+    listed = _one_each(_counted(listed) if system == GEAR else listed)
     return _derived(listed, found) if system == OSCILLATOR else listed
 
 
@@ -160,8 +166,8 @@ def _gear_channel(column: Column) -> tuple[str | None, str]:
         return shaft, column.says
     if column.kind == PULSES:
         return "tacho", column.says
-    if column.kind == TURNING and (counts := counts_of_turn(column.inside)):
-        return shaft, f"{column.says}: begins again after {counts} counts"
+    if column.kind == TURNING and counts_of_turn(column.inside):
+        return shaft, column.says
     if column.kind == TURNING:
         return ("pinion_angle", column.says) if shaft == "pinion" else (None, "the angle of the gear")
     if name == "angle":
@@ -240,6 +246,43 @@ def _unit_by_meaning(column: Column, channel: str | None) -> tuple[str, str]:
             return "rad", f"an angle within {np.max(np.abs(column.inside)):.3g}"
         return ("deg", "an angle by its name") if column.kind != TURNING else (UNKNOWN, "")
     return UNKNOWN, ""
+
+
+def _counted(listed: list[Guess]) -> list[Guess]:
+    """The same with the counts of a turn: those after which a counter begins again, or between the pulses of an index.
+
+    What pulses once a turn of a counter is no tacho. In gears the pulses of one shaft fit the counter of the other too,
+    and the rounder number tells whose they are.
+    """
+    found = [replace(guess, counts=counts_of_turn(guess.column.inside)) for guess in listed]
+    pairs = [
+        (*between, at, place)
+        for at, counter in enumerate(found)
+        for place, pulses in enumerate(found)
+        if (between := _counts_between(counter.column, pulses.column)) is not None
+    ]
+    for _, counts, at, place in sorted(pairs):
+        counter, pulses = found[at], found[place]
+        if counter.counts or pulses.channel is None:
+            continue  # told by a rounder number
+        found[at] = replace(counter, counts=counts, index=pulses.column)
+        why = f"pulses once in {counts} counts of '{counter.column.reference}', as the index of an encoder"
+        found[place] = replace(pulses, channel=None, why=why, used=False)
+    return found
+
+
+def _counts_between(counter: Column, pulses: Column) -> tuple[int, int] | None:
+    """How little round the counts from pulse to pulse are, and they, as round as may be; None where they differ."""
+    if counter.kind != COUNTER or pulses.kind != PULSES or counter.values.size != pulses.values.size:
+        return None
+    high = pulses.values > (np.nanmin(pulses.values) + np.nanmax(pulses.values)) / 2
+    at = counter.values[np.flatnonzero(high[1:] & ~high[:-1]) + 1]
+    apart, step = np.abs(np.diff(at)), float(np.abs(np.diff(counter.values)).max())
+    if apart.size < _FEWEST_TURNS or not np.ptp(apart) <= 2 * step:
+        return None
+    mean, within = float(apart.mean()), step / apart.size
+    tried = (2 ** round(np.log2(mean)), *(round(mean / unit) * unit for unit in _ROUND), round(mean))
+    return next((how, int(counts)) for how, counts in enumerate(tried) if abs(counts - mean) <= max(within, 1.0))
 
 
 def _one_each(listed: list[Guess]) -> list[Guess]:

@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 
 from gear_damping.measurement.angular_error import is_angle
-from gear_damping.measurement.column_kinds import ELSEWHERE, counts_of_turn
+from gear_damping.measurement.column_kinds import ELSEWHERE
 from gear_damping.measurement.guessing import GEAR, UNKNOWN, Guess
 from gear_damping.measurement.inspection import Inspection
 
@@ -151,8 +151,8 @@ def _gear(listed: Sequence[Guess]) -> Iterator[str]:
     if "gear" in used and "pinion" not in used:
         yield f"      pinion: {_mapping({'column': UNKNOWN, 'counts_per_revolution': UNKNOWN})}   # beside the gear's"
     for name in encoders:
-        counts = counts_of_turn(used[name].column.inside) or UNKNOWN
-        stated = {"column": used[name].column.reference, _COUNTS[name]: counts}
+        stated = {"column": used[name].column.reference, _COUNTS[name]: used[name].counts or UNKNOWN}
+        stated |= {"index": used[name].index.reference} if used[name].index else {}
         twice = "# " if name == "tacho" and "pinion" in used else ""
         yield f"      {twice}{name}: {_mapping(stated)}   # guess: {used[name].why}"
     missing = {}

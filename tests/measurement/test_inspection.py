@@ -73,6 +73,28 @@ def test_a_counter_that_begins_again_is_an_encoder_of_as_many_counts(tmp_path):
     assert 'transmission_error: {column: TE_arcsec, unit: arcsec, shaft: "???"}' in text
 
 
+@pytest.mark.parametrize("counts", [2**20, 3600, 7200])
+def test_what_pulses_once_a_turn_of_a_counter_is_its_index(counts, tmp_path):
+    turned = np.arange(8000) * 0.0021 + 0.3
+    index = (np.diff(np.floor(turned), prepend=0.0) > 0).astype(float)
+    found = inspected(tmp_path, time=np.arange(8000) / 2e4, c1=np.floor(counts * turned), z1=index)
+    text = starting_yaml(found, system_of(found), guesses(found, "gear_pair"))
+    assert f"pinion: {{column: c1, counts_per_revolution: {counts}, index: z1}}" in text
+    assert "tacho:" not in text
+
+
+def test_each_of_two_encoders_has_its_own_index(tmp_path):
+    turned = np.arange(9000) * 0.0021 + 0.3
+    shafts = {"one": (turned, 4096), "two": (turned * 41 / 24 + 0.2, 4096)}
+    columns = {}
+    for name, (turns, counts) in shafts.items():
+        columns |= {f"c_{name}": np.floor(counts * turns)}
+        columns |= {f"z_{name}": (np.diff(np.floor(turns), prepend=np.floor(turns[0])) > 0).astype(float)}
+    found = guesses(inspected(tmp_path, time=np.arange(9000) / 2e4, **columns), "gear_pair")
+    index = {g.column.reference: (g.counts, g.index.reference) for g in found if g.index is not None}
+    assert index == {"c_one": (4096, "z_one"), "c_two": (4096, "z_two")}
+
+
 @pytest.mark.parametrize(("name", "unit", "channel"), [("n_out", "rpm", "gear_speed"), ("n_in", "rpm", "pinion_speed")])
 def test_the_speed_of_a_shaft_is_told_by_its_unit(name, unit, channel, tmp_path):
     rows = ["t,phi,X", f"s,deg,{unit}"]
