@@ -21,9 +21,10 @@ STIFF, SOFT = 3.6e8, 2e8
 
 
 def with_shape(monkeypatch, passed, harmonics=20):
-    monkeypatch.setattr(nominal_gear_pair, "_passed_harmonics", lambda fitted, evidence: passed)
+    monkeypatch.setattr(nominal_gear_pair, "passed_harmonics", lambda model, given, evidence: passed)
     known = {f"{MESH}.maximum": STIFF, f"{MESH}.minimum": SOFT, f"{MESH}.contact_ratio": RATIO}
-    rough = SimpleNamespace(hypothesis=Hypothesis(GearPair(), (FourierMeshStiffness(),), known, ()))
+    hypothesis = Hypothesis(GearPair(), (FourierMeshStiffness(),), known, ())
+    rough = SimpleNamespace(hypothesis=hypothesis, flat_given=lambda: known)
     return nominal_gear_pair.with_shape(rough, None, harmonics)
 
 
