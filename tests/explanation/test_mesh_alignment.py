@@ -80,5 +80,7 @@ def evidence(tmp_path_factory):
 def test_a_fit_from_there_leaves_nothing_but_noise(evidence):
     samples = sum(len(record.response) for record in evidence.fit)
     assert len(evidence.fit) > 1
-    found = shaped(begun_aligned(evidence)[0], evidence, 30)
+    signal = sum(float(record.response.square().sum()) for record in evidence.fit)
+    assert not begun_aligned(evidence, samples * evidence.noise**2), "a fit down to the noise has not failed"
+    found = shaped(begun_aligned(evidence, signal)[0], evidence, 30)
     assert found.fitted.cost < 1.15 * samples * evidence.noise**2

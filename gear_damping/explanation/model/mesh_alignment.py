@@ -97,15 +97,16 @@ class Regression:
         return -torch.linalg.solve(matrix, pull)
 
 
-def begun_aligned(evidence: Evidence, solver: Solver | None = None) -> list[Outcome]:
+def begun_aligned(evidence: Evidence, cost: float, solver: Solver | None = None) -> list[Outcome]:
     """The ideal wave where it stands best to the records, not fitted, of each likely set of angles.
 
     Args:
         evidence: Records with angles of their own.
+        cost: What a fit of the whole model leaves: where the linear one leaves more, nothing says that it has failed.
         solver: Settings of the solver.
     """
     first = first_gear_pair(evidence)
-    return [_placed(first, one, evidence, solver) for one in alignments(first, evidence, solver)]
+    return [_placed(first, one, evidence, solver) for one in alignments(first, evidence, solver) if one.cost < cost]
 
 
 def alignments(first: Hypothesis, evidence: Evidence, solver: Solver | None = None) -> list[Aligned]:

@@ -53,7 +53,7 @@ STIFFNESSES = (1.0, 0.85, 0.92, 1.08, 1.17)  # times where it begins: with a wro
 APART = 1.5  # times the cost of a phase for every record: one phase of all leaves that much where there is none; angles
 # that begin anywhere agree that well once in a thousand times, for three records
 EQUIVOCAL = 1.05  # times: less than a twentieth of what the rough wave lacks is what its phases bend to in any records
-POORLY = 0.05  # of what moved: so much few causes leave, and angles that are wrong always
+POORLY = 0.05  # of what moved: a stiffness that varies by a fifth leaves about so much behind a model linear in it
 FEWEST_PHASES = 4  # of records: two more than a line has numbers
 SLOPES = 201  # of a line that is tried through phases, up to half a mesh period between rest and the highest speed
 IN_LINE = 0.1  # rad, root mean square: four random phases are so near to a line once in 250 times, six once in 10 000
@@ -194,13 +194,13 @@ def _realigned(
     """The same, or what follows better, begun from where the meshes of the records stand to each other.
 
     The ideal wave lacks the harmonics of real teeth, which an accelerometer and slow speeds show above all: then its
-    own best angles, stiffness and damping lead astray. No other reason is looked for while much of the signal is left.
+    own best angles, stiffness and damping lead astray, to a fit that leaves more than a poorer model does.
     """
     is_told = len(evidence.fit) < 2 or (evidence.has_index and evidence.mesh_index)
     if is_told or flanks_part(evidence) or nominal.fitted.cost < POORLY * _moved(evidence):
         return evidence, rough, nominal
     apart = with_own_angles(evidence) if evidence.has_index else evidence
-    for wave in begun_aligned(apart, solver):
+    for wave in begun_aligned(apart, nominal.fitted.cost, solver):
         again = shaped(wave, apart, SHAPE_ITERATIONS, solver)
         if again.fitted.cost < SCANNED * nominal.fitted.cost:
             evidence, rough, nominal = apart, wave, again
