@@ -278,7 +278,7 @@ def _counts_between(counter: Column, pulses: Column) -> tuple[int, int] | None:
     high = pulses.values > (np.nanmin(pulses.values) + np.nanmax(pulses.values)) / 2
     at = counter.values[np.flatnonzero(high[1:] & ~high[:-1]) + 1]
     apart, step = np.abs(np.diff(at)), float(np.abs(np.diff(counter.values)).max())
-    if apart.size < _FEWEST_TURNS or not np.ptp(apart) <= 2 * step:
+    if apart.size < _FEWEST_TURNS or not np.ptp(apart) <= 2 * step or not apart.min() > step:
         return None
     mean, within = float(apart.mean()), step / apart.size
     tried = (2 ** round(np.log2(mean)), *(round(mean / unit) * unit for unit in _ROUND), round(mean))

@@ -73,6 +73,12 @@ def test_a_counter_that_begins_again_is_an_encoder_of_as_many_counts(tmp_path):
     assert 'transmission_error: {column: TE_arcsec, unit: arcsec, shaft: "???"}' in text
 
 
+def test_a_rate_above_a_table_may_have_a_decimal_comma(tmp_path):
+    rows = ["Delta t;4.0E-5", "a;b", *(f"{np.sin(0.3 * k):.4f};{np.cos(k**2):.4f}" for k in range(60))]
+    (tmp_path / "scope.csv").write_text("\n".join(rows).replace(".", ","))
+    assert inspect_table(read_table(tmp_path / "scope.csv")).rate == pytest.approx(25e3)
+
+
 @pytest.mark.parametrize("counts", [2**20, 3600, 7200])
 def test_what_pulses_once_a_turn_of_a_counter_is_its_index(counts, tmp_path):
     turned = np.arange(8000) * 0.0021 + 0.3
@@ -223,7 +229,7 @@ def test_a_number_named_like_a_rate_may_be_it(name, tmp_path):
         ("Delta t,4.0E-5,4.0E-5", 25e3), ("Sample Interval,40,us", 25e3), ("Delta_X (ms),0.04", 25e3),
         ("# sampling rate: 25 kHz", 25e3), ("fs = 25000", 25e3), ("Abtastintervall,4e-05", 25e3),
         ("Delta t,4.0E-5,8.0E-5", None), ("Sample rate of the second board was never noted in 2019", None),
-        ("Record Length,2500", None), ("Sample Interval,0", None),
+        ("Record Length,2500", None), ("Sample Interval,0", None), ("Sample Interval,1e999", None),
     ],
 )  # fmt: skip
 def test_a_rate_above_a_table_of_texts_may_be_that_of_its_rows(above, rate, tmp_path):

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterable, Sequence
+from math import inf
 
 from gear_damping.errors import InputError
 from gear_damping.units import to_si
@@ -14,6 +15,7 @@ _RATE = re.compile(
     r"\b(samp(le|ling)[ _-]?(rate|freq(uency)?)|samples (per|a) second|abtast(rate|frequenz)|fs)\b", re.I
 )
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?", re.I)
+_DECIMAL_COMMA = re.compile(r"(?<=\d),(?=\d)")  # within a cell: one that parts cells is in none
 _LONGEST_NAME = 40  # characters, assumed: what is longer is a sentence
 
 
@@ -29,7 +31,8 @@ def stated_rate(rows: Iterable[Sequence[str]]) -> tuple[str, float] | None:
 
 
 def _of_row(row: Sequence[str]) -> tuple[str, float] | None:
-    text = " ".join(cell.strip().strip('"') for cell in row if cell.strip()).lstrip("#%/;*! ")
+    cells = (_DECIMAL_COMMA.sub(".", cell.strip().strip('"')) for cell in row if cell.strip())
+    text = " ".join(cells).lstrip("#%/;*! ")
     number = next((one for one in _NUMBER.finditer(text) if not text[one.start() - 1 : one.start()].isalpha()), None)
     if number is None:
         return None
@@ -43,7 +46,7 @@ def _of_row(row: Sequence[str]) -> tuple[str, float] | None:
     unit = next((one for one in (*re.findall(r"[(\[]([^)\]]+)[)\]]", name), *behind[:1]) if one), "")
     size = value * _factor(unit, "s" if is_step else "Hz")
     words = (is_step or _RATE.search(name))[0]
-    return (words, 1 / size if is_step else size) if size > 0 else None
+    return (words, 1 / size if is_step else size) if 0 < size < inf else None
 
 
 def _factor(unit: str, plain: str) -> float:
