@@ -29,6 +29,7 @@ from gear_damping.tasks.run_folder import EDITED, RunFolder
 
 YAML_NAME, TEXT_NAME, FIGURE_NAME = EDITED["inspect"], "inspection.txt", "inspection.png"
 JSON_NAME = "inspection.json"  # what the report is made of
+ROUNDED = 1e-9  # of the range: less is what a difference of large angles or a sum of many values is rounded by
 log = logging.getLogger("gear_damping").info
 
 
@@ -150,7 +151,7 @@ def _looks(column: Column, found: Inspection) -> Iterator[str]:
     if missing:
         yield f"{missing} of {column.values.size} values are not finite"
     if values.size and column.kind != CONSTANT:
-        yield f"from {values.min() + 0.0:.5g} to {values.max() + 0.0:.5g}, offset (mean) {values.mean():.5g}"  # no -0
+        yield f"from {values.min() + 0.0:.5g} to {values.max() + 0.0:.5g}, offset (mean) {_mean(values):.5g}"  # no -0
     yield _noise(column.spectrum, column.step, column.rate)
 
 
@@ -217,6 +218,12 @@ def _spectrum(record: Record, channel: Channel) -> Spectrum | None:
     return None if constant else spectrum_of(channel.values / channel.declared_factor, record.sampling_rate)
 
 
+def _mean(values: np.ndarray) -> float:
+    """The mean; 0 where it is what is left of one that was taken out."""
+    mean = float(values.mean())
+    return mean if abs(mean) > ROUNDED * float(np.ptp(values)) else 0.0
+
+
 def _measurement_lines(measurement: Measurement) -> Iterator[str]:
     yield f"{measurement.source.name}: {measurement.system}, {len(measurement.records)} records"
     for name, quantity in measurement.parameters.items():
@@ -264,7 +271,7 @@ def _channel(record: Record, channel: Channel, values: np.ndarray, spectrum: Spe
         turns = float(channel.values[-1] - channel.values[0]) / (2 * np.pi)
         seconds = max(values.size - 1, 1) / record.sampling_rate
         return f"{said}, {turns:.4g} turns, on average {60 * turns / seconds:.5g} rpm"
-    said += f", offset (mean) {values.mean():.5g}"
+    said += f", offset (mean) {_mean(values):.5g}"
     is_difference = channel.name == "transmission_error" and FROM_ENCODERS in record.notes
     step = 0.0 if is_difference else step_of(values)  # what the steps of two encoders divide by is no step of either
     noise = _noise(spectrum, step, record.sampling_rate)

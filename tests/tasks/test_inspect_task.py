@@ -293,3 +293,10 @@ def test_of_a_casing_no_holding_out_is_promised(tmp_path):
     text = (tmp_path / "out" / "inspection.txt").read_text()
     assert "role not said: run; task=explain looks into all of them" in text
     assert "holds out" not in text
+
+
+def test_a_mean_that_was_taken_out_is_no_number_of_rounding(tmp_path):
+    values = 3.0 + np.sin(0.37 * np.arange(4000))
+    np.savez(tmp_path / "run.npz", t=np.arange(4000) / 1e3, x=values - values.mean())
+    inspected(tmp_path / "run.npz", tmp_path / "out")
+    assert "offset (mean) 0\n" in (tmp_path / "out" / "inspection.txt").read_text()
