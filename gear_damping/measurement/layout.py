@@ -51,7 +51,8 @@ class Encoder(Pulses):
         "Counts in one turn of its shaft.", "angle", missing="give the number in one turn of its shaft"
     )
     index: Annotated[str | int, Column()] = key(
-        "Column of the index pulse (of its times, beside `timestamps`); the gear's is checked to come once a turn.",
+        "Column of the index pulse (of its times, beside `timestamps`), which began between the sample that shows it "
+        "and the one before; the gear's is checked to come once a turn.",
         "zero of the angle; check: its pulses are a turn apart",
     )
 
