@@ -74,18 +74,23 @@ def counts_of_turn(values: NDArray[np.float64]) -> int | None:
     return round(turn)
 
 
+def rises(high: NDArray[np.bool_]) -> NDArray[np.intp]:
+    """(m,) the last samples before (n,) a series becomes high."""
+    return np.flatnonzero(high[1:] & ~high[:-1])
+
+
 def _pulses(values: NDArray, name: str, unit: str | None) -> tuple[str, str] | None:
     low, span = float(values.min()), float(np.ptp(values))
     high = values > low + span / 2
     at = np.minimum(np.abs(values - low), np.abs(values - low - span)) < _LEVELS * span
-    rises = int(np.sum(high[1:] & ~high[:-1]))
+    begun = rises(high).size
     if MOTION.search(name):
         return None
-    if rises < _FEWEST_PULSES or np.mean(at) < _AT_LEVEL or _switches_partly(high, at) or _flickers(high):
+    if begun < _FEWEST_PULSES or np.mean(at) < _AT_LEVEL or _switches_partly(high, at) or _flickers(high):
         return None
     if _rests_between(values[~at]):
         return None
-    return PULSES, f"two levels, {low:.4g} and {low + span:.4g}, with {rises} rises"
+    return PULSES, f"two levels, {low:.4g} and {low + span:.4g}, with {begun} rises"
 
 
 def _switches_partly(high: NDArray[np.bool_], at: NDArray[np.bool_]) -> bool:
@@ -114,7 +119,7 @@ def _flickers(high: NDArray[np.bool_]) -> bool:
     Args:
         high: (n,) Whether a sample lies in the upper half of the range.
     """
-    apart = np.diff(np.flatnonzero(high[1:] & ~high[:-1]))
+    apart = np.diff(rises(high))
     if apart.size <= _FEWEST_PULSES:
         return False
     alike = np.abs(np.diff(apart)) <= np.maximum(1, _ALIKE * apart[:-1])

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.column_kinds import rises
 from gear_damping.measurement.declaration import EncoderPlan
 from gear_damping.measurement.timebase import TimeBase, cubic_spline, monotone_spline
 from gear_damping.units import parse_unit, to_si
@@ -113,14 +114,9 @@ def _going_on(pulses: NDArray, angle: NDArray, end: float) -> Callable[[NDArray]
 
 def rising_edges(signal: NDArray[np.float64], time: NDArray[np.float64], threshold: float) -> NDArray[np.float64]:
     """(m,) the times in s at which a pulse train rises through `threshold`, between samples too."""
-    last = _before_edges(signal, threshold)
+    last = rises(signal >= threshold)
     share = (threshold - signal[last]) / (signal[last + 1] - signal[last])
     return time[last] + share * (time[last + 1] - time[last])
-
-
-def _before_edges(signal: NDArray[np.float64], threshold: float) -> NDArray[np.intp]:
-    """(m,) the last samples below a threshold that the next one is not below any more."""
-    return np.flatnonzero((signal[:-1] < threshold) & (signal[1:] >= threshold))
 
 
 def edges_of_square_pulses(
@@ -132,7 +128,7 @@ def edges_of_square_pulses(
     some even turning leaves no more than that rounding, the edges lie on the smoothest one that does.
     """
     edges, sample = rising_edges(signal, time, threshold), float(np.median(np.diff(time)))
-    last = _before_edges(signal, threshold)
+    last = rises(signal >= threshold)
     low, high = float(signal.min()), float(signal.max())
     margin = SQUARE * (high - low)
     if not (np.all(signal[last] < low + margin) and np.all(signal[last + 1] > high - margin)):
@@ -222,20 +218,20 @@ def _at_index_pulse(
     where all of them allow it: a good part of a sample for one turn, a tenth of that for ten.
     """
     signal = rows(plan.index, f"{plan.key}.index")
-    high = np.flatnonzero(signal > (signal.min() + signal.max()) / 2)
-    if not high.size:
+    high = signal > (signal.min() + signal.max()) / 2
+    before = rises(high)  # of one that has begun before the record, nothing says when
+    first = np.r_[np.flatnonzero(high[:1]), before + 1]
+    if not first.size:
         raise InputError(Problem(f"{plan.key}.index", "holds no pulse", plan.index, "leave it out", file))
-    first = high[np.r_[True, np.diff(high) > 1]]
     _refuse_turns(plan, angle[first], file)
-    seen = first[first > 0]  # one that has begun before the record says nothing of when
-    if not seen.size:
+    if not before.size:
         return float(angle[first[0]]), 0.0
-    turns = TURN * np.round((angle[seen] - angle[first[0]]) / TURN)
-    ends = np.sort([angle[seen - 1] - turns, angle[seen] - turns], axis=0)
-    low, high = float(ends[0].max()), float(ends[1].min())
+    turns = TURN * np.round((angle[before + 1] - angle[first[0]]) / TURN)
+    ends = np.sort([angle[before] - turns, angle[before + 1] - turns], axis=0)
+    least, most = float(ends[0].max()), float(ends[1].min())
     rate = abs(float(angle[-1] - angle[0])) / float(time[-1] - time[0])
-    width = (high - low) if high > low else float(np.median(ends[1] - ends[0]))  # jitter: no angle fits all
-    centre = (low + high) / 2 if high > low else float(ends.mean())
+    width = most - least if most > least else float(np.median(ends[1] - ends[0]))  # jitter: no angle fits all
+    centre = (least + most) / 2 if most > least else float(ends.mean())
     return centre, width / 12**0.5 / max(rate, 1e-300)
 
 

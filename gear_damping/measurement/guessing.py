@@ -8,7 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError
-from gear_damping.measurement.column_kinds import COUNTER, PULSES, TURNING, counts_of_turn, turn_of, unit_of_turn
+from gear_damping.measurement.column_kinds import (
+    COUNTER,
+    PULSES,
+    TURNING,
+    counts_of_turn,
+    rises,
+    turn_of,
+    unit_of_turn,
+)
 from gear_damping.measurement.inspection import Column, Inspection
 from gear_damping.measurement.staircase import is_staircase
 from gear_damping.measurement.vocabulary import INPUTS
@@ -276,7 +284,7 @@ def _counts_between(counter: Column, pulses: Column) -> tuple[int, int] | None:
     if counter.kind != COUNTER or pulses.kind != PULSES or counter.values.size != pulses.values.size:
         return None
     high = pulses.values > (np.nanmin(pulses.values) + np.nanmax(pulses.values)) / 2
-    at = counter.values[np.flatnonzero(high[1:] & ~high[:-1]) + 1]
+    at = counter.values[rises(high) + 1]
     apart, step = np.abs(np.diff(at)), float(np.abs(np.diff(counter.values)).max())
     if apart.size < _FEWEST_TURNS or not np.ptp(apart) <= 2 * step or not apart.min() > step:
         return None

@@ -13,7 +13,7 @@ from second_rig.pair import steel_rig
 from second_rig.sensors import Noise, Sensor
 
 from gear_damping.explanation.evidence.records import evidence_of, with_own_angles
-from gear_damping.explanation.model.mesh_alignment import Regression, aligned, begun_aligned, turned
+from gear_damping.explanation.model.mesh_alignment import Regression, aligned, all_around, begun_aligned, turned
 from gear_damping.explanation.model.nominal_gear_pair import shaped
 from gear_damping.identification.output_error.segments import shortened
 from gear_damping.measurement.load import load_measurement
@@ -56,7 +56,7 @@ def test_angles_are_found_to_a_common_turn(seed):
     told = Regression(
         torch.stack(quadratic), torch.stack(linear), torch.stack(constant), torch.full((12,), 1e-9).double()
     )
-    cost, found = aligned(told)
+    cost, found = aligned(told, all_around(6))
     apart = np.angle(np.exp(1j * (np.array(found) - angles)))
     assert np.abs(np.angle(np.exp(1j * (apart - apart[0])))).max() < 2 * 2 * np.pi / 48
     assert cost < 0.2 * sum(constant)

@@ -112,11 +112,12 @@ def begun_aligned(evidence: Evidence, cost: float, solver: Solver | None = None)
 def alignments(first: Hypothesis, evidence: Evidence, solver: Solver | None = None) -> list[Aligned]:
     """The best of each set of angles, the likeliest first; at most `KEPT`."""
     harmonics = free_harmonics(passed_harmonics(first.model, first.given, evidence))
+    turns = all_around(len(harmonics) // 2)
     found = []
     for stiffness in STIFFNESSES:
         for damping in DAMPINGS:
             names, told = _regression(_flat(first, stiffness, damping, harmonics), evidence, solver)
-            cost, angles = aligned(told)
+            cost, angles = aligned(told, turns)
             found.append(Aligned(cost, stiffness, damping, dict(zip(names, angles, strict=True))))
     kept: list[Aligned] = []
     for one in sorted(found, key=lambda one: one.cost):
@@ -125,14 +126,18 @@ def alignments(first: Hypothesis, evidence: Evidence, solver: Solver | None = No
     return kept[:KEPT]
 
 
-def aligned(told: Regression) -> tuple[float, list[float]]:
+def all_around(count: int) -> tuple[Tensor, Tensor]:
+    """Angles (n,) of the mesh at which none of its harmonics is missed, and what turns those by each (n, 2 H, 2 H)."""
+    angles = torch.linspace(0, 2 * pi, PER_HARMONIC * count + 1, dtype=torch.float64)[:-1]
+    return angles, torch.stack([turned(float(angle), count) for angle in angles])
+
+
+def aligned(told: Regression, around: tuple[Tensor, Tensor]) -> tuple[float, list[float]]:
     """Sum of squares that one set of harmonics leaves of all records, and how far the mesh is turned in each, in rad.
 
-    Begun from the harmonics that each record has for itself.
+    Begun from the harmonics that each record has for itself. `around` are the angles that are tried.
     """
-    count = len(told.ridge) // 2
-    angles = torch.linspace(0, 2 * pi, PER_HARMONIC * count + 1, dtype=torch.float64)[:-1]
-    turns = torch.stack([turned(float(angle), count) for angle in angles])
+    angles, turns = around
     records = range(len(told.constant))
     best: tuple[float, list[float]] | None = None
     for lead in records:

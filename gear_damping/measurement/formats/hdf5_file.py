@@ -1,6 +1,6 @@
 """HDF5 files: every dataset of real numbers under its path, fields of compound datasets as `path.field`."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -35,7 +35,8 @@ def read(path: Path, max_bytes: int) -> Table:
     h5py = extra_library("h5py", path)
     held, left_out = [], []
     with unreadable(path, "not a readable HDF5 file", "export it again"), h5py.File(path, "r") as file:
-        datasets = _datasets(h5py, file)
+        items = _items(file)
+        datasets = [item for item in items if isinstance(item, h5py.Dataset)]
         refuse_size(path, sum(one.size * one.dtype.itemsize for one in datasets if one.size), max_bytes)
         for dataset in datasets:
             found = [field for field in _fields(dataset) if is_real(field[2])]
@@ -44,23 +45,21 @@ def read(path: Path, max_bytes: int) -> Table:
                 left_out.append(f"{dataset.name.strip('/')} ({kind if dataset.size else 'empty'})")
                 continue
             held += [_held(h5py, path, dataset, field) for field in found]
-        settings = _settings(h5py, file)
+        settings = _settings(one for one in items if not isinstance(one, h5py.Dataset))
     table = ArrayTable(path, held, left_out)
     table.stated_rate = stated_rate(settings)
     return table
 
 
-def _datasets(h5py: Any, file: Any) -> list[Any]:
-    """The datasets in the order of their paths; links to other files are not followed."""
-    found = []
-    file.visititems(lambda _, item: found.append(item) if isinstance(item, h5py.Dataset) else None)
+def _items(file: Any) -> list[Any]:
+    """The file, its groups and datasets in the order of their paths; links to other files are not followed."""
+    found = [file]
+    file.visititems(lambda _, item: found.append(item))
     return found
 
 
-def _settings(h5py: Any, file: Any) -> list[list[str]]:
+def _settings(groups: Iterable[Any]) -> list[list[str]]:
     """The numbers that are attributes of the file and its groups, each beside its name."""
-    groups = [file]
-    file.visititems(lambda _, item: groups.append(item) if isinstance(item, h5py.Group) else None)
     return [[name, str(value)] for group in groups for name, value in group.attrs.items() if np.size(value) == 1]
 
 

@@ -38,15 +38,15 @@ def _of_row(row: Sequence[str]) -> tuple[str, float] | None:
         return None
     name, behind = text[: number.start()], text[number.end() :].split()
     is_step = _STEP.search(name)
-    if len(name) > _LONGEST_NAME or not (is_step or _RATE.search(name)):
+    words = is_step or _RATE.search(name)
+    if len(name) > _LONGEST_NAME or words is None:
         return None
     value = float(number[0])
     if any(_NUMBER.fullmatch(other) and float(other) != value for other in behind):
         return None  # of each channel its own
     unit = next((one for one in (*re.findall(r"[(\[]([^)\]]+)[)\]]", name), *behind[:1]) if one), "")
     size = value * _factor(unit, "s" if is_step else "Hz")
-    words = (is_step or _RATE.search(name))[0]
-    return (words, 1 / size if is_step else size) if 0 < size < inf else None
+    return (words[0], 1 / size if is_step else size) if 0 < size < inf else None
 
 
 def _factor(unit: str, plain: str) -> float:
