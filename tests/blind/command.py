@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import os
 import signal
 import sys
@@ -28,6 +29,13 @@ def shown(target: str, given: list[str] | None) -> str:
     """The command as a user types it."""
     words = sys.argv[1:] if given is None else given
     return f'{target} ARGS="{" ".join(words)}"' if words else target
+
+
+def count(text: str) -> int:
+    """A number of things of which there is at least one, as an argument."""
+    if not text.isdigit() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number of at least 1")
+    return int(text)
 
 
 def log(text: str) -> None:
