@@ -6,7 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from .command import ROOT, STOPPED, count, log, see_oracles, shown, stop_by_signals
+from .command import ROOT, STOPPED, at_least_one, log, see_oracles, shown, stop_by_signals
 
 PAGES = ROOT / "docs"
 
@@ -20,7 +20,7 @@ def arguments(given: list[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--cases", type=int, help="of each stratum; the counts of a full run where absent")
     parser.add_argument("--seed", type=int, default=1000, help="the first; seeds below 1000 are for tuning")
     parser.add_argument("--minutes", type=float, default=85.0, help="begin no case after so many; call again to go on")
-    parser.add_argument("--processes", type=count, default=2, help="side by side, each on one core")
+    parser.add_argument("--processes", type=at_least_one, default=2, help="side by side, each on one core")
     parser.add_argument("--redo", action="store_true", help="ask again what another version of the package answered")
     parser.add_argument("--page", action="store_true", help="write docs/NAME.md too, and the cases beside it")
     parser.add_argument("--name", default="blind", help="of the page; a fresh clone goes on from its cases")

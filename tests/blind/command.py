@@ -31,7 +31,7 @@ def shown(target: str, given: list[str] | None) -> str:
     return f'{target} ARGS="{" ".join(words)}"' if words else target
 
 
-def count(text: str) -> int:
+def at_least_one(text: str) -> int:
     """A number of things of which there is at least one, as an argument."""
     if not text.isdigit() or int(text) < 1:
         raise argparse.ArgumentTypeError(f"{text!r} is not a whole number of at least 1")

@@ -6,7 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from ..blind.command import ROOT, STOPPED, count, log, see_oracles, shown, stop_by_signals
+from ..blind.command import ROOT, STOPPED, at_least_one, log, see_oracles, shown, stop_by_signals
 
 PAGE, DRAWN_PAGE = (ROOT / "docs" / name for name in ("second_rig.md", "second_rig_drawn.md"))
 
@@ -20,7 +20,7 @@ def arguments(given: list[str] | None = None) -> argparse.Namespace:
     chosen.add_argument("--set", choices=tuple(SETS), help="only this one; both where absent")
     chosen.add_argument("--case", nargs="+", choices=tuple(CASES), metavar="NAME", help="only these, such as c03 d10")
     chosen.add_argument("--drawn", nargs=2, type=int, metavar=("FIRST", "N"), help="N cases that are drawn by number")
-    parser.add_argument("--processes", type=count, default=2, help="side by side, each on one core")
+    parser.add_argument("--processes", type=at_least_one, default=2, help="side by side, each on one core")
     parser.add_argument("--page", action="store_true", help=f"write {PAGE.relative_to(ROOT)} or its drawn one too")
     parser.add_argument("--out", type=Path, default=ROOT / "outputs" / "second_rig", help="folder of the answers")
     return parser.parse_args(given)

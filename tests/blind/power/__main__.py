@@ -7,7 +7,7 @@ import json
 import sys
 from pathlib import Path
 
-from ..command import ROOT, STOPPED, count, log, see_oracles, stop_by_signals
+from ..command import ROOT, STOPPED, at_least_one, log, see_oracles, stop_by_signals
 
 DOCS = ROOT / "docs"
 KEPT = "power_cases.jsonl"  # beside the page: what its figures are worked out from, and where a fresh clone goes on
@@ -25,7 +25,7 @@ def main(given: list[str] | None = None) -> int:
     parser.add_argument("--cases", type=int, default=20, help="of each effect")
     parser.add_argument("--seed", type=int, default=40000, help="the first; seeds below 20000 are for tuning")
     parser.add_argument("--minutes", type=float, default=85.0, help="begin no case after so many; call again to go on")
-    parser.add_argument("--processes", type=count, default=2, help="side by side, each on one core")
+    parser.add_argument("--processes", type=at_least_one, default=2, help="side by side, each on one core")
     parser.add_argument("--page", action="store_true", help="write docs/power.md, docs/power.json and the figure too")
     parser.add_argument("--out", type=Path, default=ROOT / "outputs" / "power", help="folder of cases and power.json")
     options = parser.parse_args(given)
