@@ -10,6 +10,8 @@ from gear_damping.explanation.settings import SearchSettings
 from gear_damping.identification.output_error.first_guess import about_its_line
 from gear_damping.identification.output_error.records import FitRecord
 
+WHOLE = 100.0  # %, all of the signal
+
 
 @dataclass(frozen=True)
 class Excess:
@@ -34,6 +36,11 @@ class Excess:
         """Whether the data show that something is missing."""
         return self.percent > self.threshold
 
+    @property
+    def of_signal(self) -> float:
+        """How much of the signal is missing, in %: at most all of it, however wrong a prediction is."""
+        return min(self.percent, WHOLE)
+
 
 def is_settled(left: Excess, first: Excess, settings: SearchSettings) -> bool:
     """Whether nothing is left of a first excess that is worth another cause."""
@@ -42,12 +49,12 @@ def is_settled(left: Excess, first: Excess, settings: SearchSettings) -> bool:
 
 def is_form(left: Excess, first: Excess, settings: SearchSettings) -> bool:
     """Whether what is left of a first excess is no more than the form of an effect that is right may leave."""
-    return left.percent <= settings.settled_share * first.percent and left.misfit <= settings.settled_misfit
+    return left.percent <= settings.settled_share * first.of_signal and left.misfit <= settings.settled_misfit
 
 
 def is_all(left: Excess, first: Excess, settings: SearchSettings) -> bool:
     """Whether causes explain a first excess: what they leave is settled, and noise or a small part of it."""
-    part = max(left.chance, settings.named_share * first.percent)
+    part = max(left.chance, settings.named_share * first.of_signal)
     return is_settled(left, first, settings) and left.percent <= part
 
 

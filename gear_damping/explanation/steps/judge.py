@@ -4,14 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import inf
 
-from gear_damping.explanation.evidence.excess import Excess, is_all
+from gear_damping.explanation.evidence.excess import WHOLE, Excess, is_all
 from gear_damping.explanation.state import Accepted, State
 from gear_damping.explanation.trials.assess import Assessment
 from gear_damping.physics.catalogue import builtin_effects
 
 CONSISTENT, EXPLAINED, AMBIGUOUS = "consistent", "explained", "ambiguous"
 PARTLY, UNEXPLAINED, DATA_PROBLEM = "partly_explained", "unexplained", "data_problem"
-WHOLE = 100.0  # %: an effect that takes more than the whole signal is none
 LARGEST_SET = 4  # names that a sentence lists of causes that are not told apart
 TOO_STILL = "but something is left beside it, and the held-out records tell nothing of either."
 UNTOLD = "but there was no time to see whether it stands in for something else."
@@ -146,6 +145,8 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
         text = f"{missing}. Part of it has a name: {said}. What is left looks random, and is more than that."
         return Verdict(PARTLY, (text, *further))
     if known.is_one is False and found.left is not None and found.left.visible:
+        if known.is_untold:
+            return _not_established(found, before, known, UNTOLD)
         text = f"{missing}. Part of it has a name: {said}, though not of one size in all records, and what is left is "
         return Verdict(PARTLY, (f"{text}not all random.", *further))
     if classes or confused:
@@ -167,9 +168,10 @@ def _is_all(found: State, before: Excess, after: Excess) -> bool:
     if not is_visible(found.left):
         return True
     first, beyond = (found.beyond_sensor(outcome) for outcome in (found.nominal, found.outcome))
-    if beyond.misfit <= settings.small_misfit:
+    tells = after.threshold < WHOLE  # or the calibration is too uncertain for held-out records to refute anything
+    if tells and beyond.misfit <= settings.small_misfit:
         return True
-    return beyond.percent <= max(settings.least_excess, settings.named_share * first.percent)
+    return beyond.percent <= max(settings.least_excess, settings.named_share * first.of_signal)
 
 
 def _not_established(found: State, before: Excess, known: Known, why: str) -> Verdict:
@@ -252,7 +254,7 @@ def _without_name(found: State, before: Excess, known: Known) -> Verdict:
 
 def _missing(before: Excess) -> str:
     if before.percent > WHOLE:
-        return "The simulation misses more than the held-out records move, which hold little motion"
+        return "The simulation is farther from the held-out records than their means are"
     if before.percent > 0:
         return f"The simulation misses {before.percent:.3g} % of the signal's variance"
     if before.threshold >= WHOLE:
@@ -291,8 +293,8 @@ def _taken(found: State, before: Excess, after: Excess) -> _Taken:
     seen, left = found.seen, found.left
     if not before.significant and seen is not None and left is not None and seen.taken:
         return _Taken(1 - min(left.taken / seen.taken, 1.0), "what is not random in the fitted records", is_faint=True)
-    fall = before.percent - after.percent
-    share = fall / before.percent if before.percent > 0 else 0.0
+    missing = before.of_signal
+    share = (missing - after.percent) / missing if missing > 0 else 0.0
     return _Taken(min(share, 1.0), "the held-out excess")  # what is left may by chance be below noise
 
 
