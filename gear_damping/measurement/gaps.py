@@ -7,6 +7,8 @@ it. How well it follows is tried where nothing was lost: a hole as long is fille
 beside it.
 
 A clock that jumps by part of a step and a recorder that paused look alike in the stamps; the values tell them apart.
+Where every step is another one, a program asked for the samples one by one and wrote down when: a long step is one
+that came late, at its stamp, and the same two things are asked of it as of a gap.
 """
 
 from dataclasses import replace
@@ -17,7 +19,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from gear_damping.measurement.record import Finding, Record
-from gear_damping.measurement.timebase import CLOCK_JUMPS, LOST, counted
+from gear_damping.measurement.timebase import CLOCK_JUMPS, LOST, counted, scatter
 
 _GAP, _BESIDE, _FEWEST_GAPS = 1.5, 4, 5  # usual steps in a gap; samples on either side; gaps that a share is had from
 _NEARER, _ERRORS = (
@@ -28,11 +30,12 @@ _FOLLOWS = 0.1  # of a channel's standard deviation: what a spline may miss of w
 _NO_WORSE = 1.5  # times what it misses of a single sample: what is missed is noise then, and would be without a gap
 _MOST_LOST = 0.02  # of the samples; beyond, another clock is as likely
 _FEWEST_HOLES = 20  # that can be tried in a record
+_POLLED = 0.05  # of a step, by which steps scatter: the clock of a recorder keeps to a thousandth
 
 
 def borne_out(record: Record) -> Record:
     """The record, whose gaps are notes where its values bear them out, with samples at their stamps."""
-    findings = _pauses(_losses(record))
+    findings = _pauses(_polled(_losses(record)))
     if findings == record.findings:
         return record
     mean = (len(record.time) - 1) / float(record.time[-1] - record.time[0])  # a grid of as many samples covers them all
@@ -53,6 +56,28 @@ def _losses(record: Record) -> Record:
         replace(f, message=f"{f.message.partition(';')[0]}, {said}", severity="note") if f in lost else f
         for f in record.findings
     ))  # fmt: skip
+
+
+def _polled(record: Record) -> Record:
+    """The record, with a note where a program asked for its samples, came late now and then, and little was missed."""
+    late = [
+        finding for finding in record.findings if finding.kind in (LOST, CLOCK_JUMPS) and finding.severity != "note"
+    ]
+    steps = np.diff(record.time)
+    usual = float(np.median(steps))
+    if not late or scatter(steps) < _POLLED * usual:
+        return record
+    if any(share_over_gaps(channel.values, record.time)[1] < np.inf for channel in record.channels.values()):
+        return record  # enough gaps for the values to tell
+    missing = max(1, round(float(steps.max()) / usual) - 1)
+    if not all(follows_from_neighbours(channel.values, missing) for channel in record.channels.values()):
+        return record
+    message = (
+        f"time steps from {steps.min():.4g} to {steps.max():.4g} s about a median of {usual:.4g} s, as of a program "
+        "that asks for its samples and comes late now and then: samples are taken at their stamps"
+    )
+    note = Finding("uneven_stamps", message, channel="time", severity="note")
+    return replace(record, findings=(*(f for f in record.findings if f not in late), note))
 
 
 def follows_from_neighbours(values: NDArray[np.float64], lost: int) -> bool:

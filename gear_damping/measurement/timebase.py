@@ -239,7 +239,7 @@ def irregularity(stamps: NDArray[np.float64], first: int = 0) -> Finding | None:
     lasting = np.array([k for k in odd if abs(_shift(stamps, usual, k)) > _HALF + slack], int)
     gaps = steps[lasting] / usual
     run = np.mean(np.diff(lasting) == 1) if lasting.size > 2 else 0.0
-    if lasting.size and run < _RUN and _are_whole(gaps, _scatter(steps) / usual):
+    if lasting.size and run < _RUN and _are_whole(gaps, scatter(steps) / usual):
         return _dropped(np.round(gaps).astype(int) - 1, stamps, lasting, first)
     few = run < _RUN and lasting.size < _MANY * steps.size
     changes = _change_of_rate(np.delete(steps, lasting) if few else steps)
@@ -284,7 +284,7 @@ def _usual_step(stamps: NDArray, steps: NDArray) -> tuple[float, float]:
     return usual, digit / usual
 
 
-def _scatter(steps: NDArray) -> float:
+def scatter(steps: NDArray) -> float:
     """Standard deviation of steps in s; neither gaps nor changes of the rate count."""
     return 1.4826 * float(np.median(np.abs(np.diff(steps)))) / np.sqrt(2)
 
@@ -303,7 +303,7 @@ def _change_of_rate(steps: NDArray) -> int | None:
     time = np.r_[0.0, np.cumsum(steps)]
     local = (time[part:] - time[:-part]) / part
     mean = float(np.median(local))
-    allowed = _RATE + _SIGMAS * _scatter(steps) / mean / np.sqrt(part)
+    allowed = _RATE + _SIGMAS * scatter(steps) / mean / np.sqrt(part)
     if np.max(np.abs(local / mean - 1)) <= allowed:
         return None
     return int(np.argmax(np.abs(time - np.linspace(0.0, time[-1], time.size)))) + 1

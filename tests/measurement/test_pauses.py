@@ -67,6 +67,23 @@ def test_few_gaps_tell_nothing():
     assert share_over_gaps(moved(stamps, True, 0.0), stamps) == (1.0, np.inf)
 
 
+@pytest.mark.parametrize(
+    ("scatter", "frequency", "severity"),
+    [(0.1, 0.7, "note"), (0.01, 0.7, "data_problem"), (0.1, 20.0, "data_problem")],
+)
+@pytest.mark.parametrize("longest", [2.6, 4.45])
+def test_a_program_that_asks_for_its_samples_may_come_late(scatter, frequency, severity, longest, tmp_path):
+    """A clock that is steady jumps instead, and what is fast beside so long a step is lost."""
+    random = np.random.default_rng(5)
+    steps = STEP * (1 + scatter * random.normal(size=SAMPLES))
+    steps[[300, 700]] = longest * STEP
+    stamps = np.cumsum(steps)
+    values = np.sin(2 * np.pi * frequency * stamps) + 1e-3 * random.normal(size=SAMPLES)
+    (finding,) = [one for one in loaded(tmp_path, stamps, values).findings if one.kind != "resampled"]
+    assert finding.severity == severity
+    assert ("comes late" in finding.message) is (severity == "note")
+
+
 def kept(lost, frequency, rate=100.0, noise=1e-4):
     """Stamps and values of a decaying swing whose samples `lost` are not there."""
     time = np.delete(np.arange(3000), lost) / rate

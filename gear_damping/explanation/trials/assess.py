@@ -10,7 +10,15 @@ from torch import Tensor
 
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency_hz
-from gear_damping.explanation.statistics.family_wise import Effect, Lines, Residual, Visible, block_numbers, family_wise
+from gear_damping.explanation.statistics.family_wise import (
+    Effect,
+    Lines,
+    Residual,
+    Visible,
+    block_numbers,
+    cube_root,
+    family_wise,
+)
 from gear_damping.explanation.statistics.projector import Projector
 from gear_damping.explanation.statistics.tall import tall_svd
 from gear_damping.explanation.trials.innovations import load_errors, random_loads
@@ -21,6 +29,7 @@ from gear_damping.explanation.trials.unnamed import unnamed_columns
 
 COLUMNS_PER_SAMPLE = 0.2  # at most so many columns are taken out of white noise, whose variance then stays known,
 SHOWN_PER_SAMPLE = 0.05  # and so many before the colour of the noise is fitted, which they take with them
+STANDS_OUT = 3.0  # standard deviations of a normal variable: noise alone reaches them once in 700 times
 INDEPENDENT = 1e-6  # of the largest: a direction of an effect, less the nuisance, that counts
 ALIKE = 1e-6  # of the largest eigenvalue: below it a direction repeats others
 COLUMNS_AT_ONCE = 64  # are made white together
@@ -144,10 +153,9 @@ def _tested(
     rows = problem.response.weights.reshape(-1, problem.response.length)
     samples = float(white.used.sum())
     nuisance = project.nuisance
-    bases = [e.columns for e in effects]
-    left, taken = _without(seen.unsqueeze(1), bases)
-    degrees = max(samples - nuisance.shape[1] - taken, 1.0)
-    variance = float(left.square().sum()) / degrees
+    free = samples - nuisance.shape[1]
+    left, taken = _without_what_shows(seen.unsqueeze(1), [effect.columns for effect in effects], free)
+    variance = float(left.square().sum()) / max(free - taken, 1.0)
     length = _block_length(seen[:count].reshape(rows.shape), outcome)
     blocks = block_numbers([problem.response.length] * len(rows), length)
     blocks = torch.cat([blocks, torch.full((len(seen) - count,), int(blocks.max()) + 1)])
@@ -205,6 +213,36 @@ def orthonormal(columns: Tensor) -> Tensor:
         return columns
     basis, sizes, _ = tall_svd(columns / columns.norm(dim=0))
     return basis[:, sizes > INDEPENDENT * sizes[0]]
+
+
+def _without_what_shows(signal: Tensor, bases: Sequence[Tensor], free: float) -> tuple[Tensor, float]:
+    """`signal` (samples, 1) without the bases that take more of it than chance would, and how many columns these are.
+
+    Of bases chosen by what they take, those of noise take more than their number, and the variance of the rest would
+    be too small.
+
+    Args:
+        signal: White but for what is in it.
+        bases: Orthonormal columns of each.
+        free: Degrees of freedom of the signal.
+    """
+    left, count, out = signal, 0.0, []
+    waiting = [basis for basis in bases if basis.shape[1]]
+    while waiting:
+        variance = float(left.square().sum()) / max(free - count, 1.0)
+        shown = [_stands_out(basis, left, variance) for basis in waiting]
+        if not any(shown):
+            break
+        out += [basis for basis, one in zip(waiting, shown, strict=True) if one]
+        waiting = [basis for basis, one in zip(waiting, shown, strict=True) if not one]
+        left, count = _without(signal, out)
+    return left, count
+
+
+def _stands_out(basis: Tensor, signal: Tensor, variance: float) -> bool:
+    """Whether a signal has more on orthonormal columns than noise of a variance has."""
+    width, energy = basis.shape[1], float((basis.T @ signal).square().sum())
+    return float(cube_root(torch.tensor(energy), width * max(variance, 1e-300), width)) > STANDS_OUT
 
 
 def _without(signal: Tensor, bases: Sequence[Tensor], share: float = COLUMNS_PER_SAMPLE) -> tuple[Tensor, float]:
