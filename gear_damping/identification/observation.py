@@ -128,7 +128,7 @@ def fit_record(record: Record, system: type[System], spring: bool = True) -> Fit
             p for p in uncertain if p.name not in inputs and not (p.name == "pinion_speed" and "pinion_angle" in inputs)
         ),
         stamps=None if record.uniform else _positions(record),
-        held=tuple(name for name in inputs if name in record.channels and _is_held(record, record.channels[name])),
+        held=tuple(name for name in inputs if name in record.channels and record.channels[name].hold),
     )
 
 
@@ -157,16 +157,22 @@ def _input(record: Record, channel: Channel) -> Tensor:
     """An input at evenly spaced instants, moved by what its sensor is late."""
     values = channel.values
     if not record.uniform or channel.delay:
-        grid = record.time if record.uniform else _grid(record)
-        held = 0.5 / record.sampling_rate if channel.hold else 0.0  # on average, a value that stays is so much older
-        at = np.clip(grid + channel.delay - held, record.time[0], record.time[-1])
-        values = CubicSpline(record.time, values)(at)
+        grid = (record.time if record.uniform else _grid(record)) + channel.delay
+        at = np.clip(grid, record.time[0], record.time[-1])
+        values = _kept(record, values, grid) if channel.hold else CubicSpline(record.time, values)(at)
     return torch.as_tensor(values, dtype=torch.float64)
 
 
-def _is_held(record: Record, channel: Channel) -> bool:
-    """Whether an input stays at each value until the next; between uneven or shifted stamps that cannot be."""
-    return channel.hold and record.uniform and not channel.delay
+def _kept(record: Record, values: np.ndarray, grid: np.ndarray) -> np.ndarray:
+    """The mean over every step of an even grid of what stays at each value until the next: it gives the same impulse.
+
+    Before the first sample it was that, and after the last one it stays.
+    """
+    given = np.concatenate([[0.0], np.cumsum(values[:-1] * np.diff(record.time))])
+    edges = np.append(grid, grid[-1] + 1 / record.sampling_rate)
+    inside = np.interp(edges, record.time, given)
+    before, after = np.minimum(edges - record.time[0], 0.0), np.maximum(edges - record.time[-1], 0.0)
+    return np.diff(inside + values[0] * before + values[-1] * after) * record.sampling_rate
 
 
 def _grid(record: Record) -> np.ndarray:

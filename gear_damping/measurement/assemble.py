@@ -94,7 +94,7 @@ class Assembler:
 
     def _held(self, raw: RawChannel, record: RawRecord, values: NDArray, notes: list[str]) -> bool:
         """Whether an input stays at each value: as stated, or as it looks."""
-        stated, moved_to = raw.plan.sensor.get("hold"), record.plan.resample or raw.own_time or not record.base.uniform
+        stated, moved_to = raw.plan.sensor.get("hold"), record.plan.resample or raw.own_time
         if stated and moved_to:
             rule = "cannot be held where its samples are moved to other instants"
             remedy = "leave out hold, and give half of its sampling interval as a delay of -T/2"

@@ -171,11 +171,18 @@ def _marked(channel: Channel) -> Finding | None:
     if not _FEWEST_MARKS <= count < _MOST_MARKED * at.size or away.max() < _LONE * away[~at].max():
         return None
     where = int(np.argmax(at))
+    if channel.name in INPUTS and values[where] == 0 and _is_one_end(at):  # not switched on yet, or off again
+        return None
     message = (
         f"{channel.name} is {values[where]:.6g} {channel.unit} at {count} samples, the first at {where}, and nowhere "
         "else near it: a mark for a missing value; put what was measured there, or use slices beside it"
     )
     return Finding("marked_values", message, channel=channel.name, sample=where)
+
+
+def _is_one_end(at: NDArray[np.bool_]) -> bool:
+    """Whether some samples are all those of the beginning, or all those of the end."""
+    return bool((at[0] or at[-1]) and np.count_nonzero(np.diff(at)) == 1)
 
 
 def _spike(channel: Channel, strokes: NDArray[np.int64]) -> Finding | None:

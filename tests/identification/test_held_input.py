@@ -1,6 +1,7 @@
 """An input that a controller puts out in steps: exact against the matrix exponential, whatever the sampling."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,10 +9,14 @@ import torch
 from scipy.linalg import expm
 
 from gear_damping.identification.decimation import decimated
+from gear_damping.identification.observation import fit_record
 from gear_damping.identification.oscillator.fit import fit_oscillator
 from gear_damping.identification.output_error.records import FitRecord, Observed
+from gear_damping.measurement.record import Channel, Record
+from gear_damping.physics.systems.oscillator import Oscillator
 
 OMEGA, RATIO, GAIN, RATE = 2 * math.pi * 2.0, 0.05, 30.0, 20.0
+FAST = 100.0  # Hz, 50 samples a period: within one the force is known by its mean
 
 
 def stepped(force, rate):
@@ -57,3 +62,37 @@ def test_a_lower_rate_keeps_the_time_at_which_a_held_force_acts():
         assert not slow.held
         errors.append(fitted(slow)[1])
     assert errors[0] < 0.5 * errors[1]
+
+
+def through(force, stamps, at):
+    """Displacement at instants, each value of the force staying from its stamp until the next."""
+    a = np.array([[0, 1, 0], [-(OMEGA**2), -2 * RATIO * OMEGA, GAIN], [0, 0, 0]])
+    events, state, found = np.union1d(stamps, at), np.zeros(2), {}
+    for begin, end in zip(events, np.append(events[1:], events[-1]), strict=True):
+        found[begin] = state[0]
+        acting = force[max(np.searchsorted(stamps, begin, side="right") - 1, 0)]
+        state = (expm(a * (end - begin)) @ np.array([*state, acting]))[:2]
+    return np.array([found[one] for one in at])
+
+
+@pytest.mark.parametrize(("late", "jitter"), [(0.0, 0.2), (0.37, 0.0), (0.37, 0.2)])
+def test_a_force_in_steps_is_held_between_uneven_and_late_stamps(late, jitter):
+    """Late: its sensor, by a share of a step; the response was sampled at the same stamps."""
+    random = np.random.default_rng(3)
+    stamps = (np.arange(1500) + jitter * random.uniform(-1, 1, 1500)) / FAST
+    force = np.repeat(random.choice([-1.0, 1.0], 60), 25)
+    acts = stamps - late / FAST
+    response = through(force, acts, np.maximum(stamps, acts[0]))
+    left = {}
+    for hold in (True, False):
+        channels = {
+            "displacement": Channel("displacement", response, "m", datum="arbitrary"),
+            "force": Channel("force", force, "N", hold=hold, delay=late / FAST),
+        }
+        rate = (len(stamps) - 1) / (stamps[-1] - stamps[0])
+        measured = Record("a", Path("a.csv"), "", "fit", rate, stamps, channels, {}, None, False, jitter == 0)
+        one = fit_record(measured, Oscillator)
+        assert one.held == ("force",) * hold
+        left[hold] = fitted(one)[1] / response.std()
+    assert left[True] < 0.003
+    assert left[False] > 5 * left[True]

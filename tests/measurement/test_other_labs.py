@@ -7,10 +7,12 @@ from nptdms import ChannelObject, TdmsWriter
 from scipy.io import wavfile
 
 from gear_damping.errors import InputError
+from gear_damping.measurement.checks import check_channel
 from gear_damping.measurement.encoders import angle_from_counts, angle_from_pulses
 from gear_damping.measurement.formats.registry import read_table
 from gear_damping.measurement.inspection import inspect_table
 from gear_damping.measurement.load import load_measurement
+from gear_damping.measurement.record import Channel
 from gear_damping.measurement.record_checks import check_record
 from gear_damping.units import parse_unit, to_si
 
@@ -139,6 +141,18 @@ def test_marks_for_missing_values_are_no_motion(tmp_path, places):
     said = [f for f in check_record(found.records[0]) if f.severity == "data_problem"]
     assert [f.kind for f in said] == ["marked_values"]
     assert f"-9999 m at {len(places)} samples, the first at {places[0]}" in said[0].message
+
+
+@pytest.mark.parametrize(
+    ("places", "resting", "faults"),
+    [(range(6), 0.0, 0), (range(590, 600), 0.0, 0), (range(6), -9999.0, 1), ((70, 71, 72), 0.0, 1)],
+)
+def test_an_input_that_is_not_switched_on_yet_is_not_missing(places, resting, faults):
+    """A duty that steps from 0 to its constant value; what comes back in between, and what is no rest, is a mark."""
+    force = np.full(600, 0.5)
+    force[list(places)] = resting
+    found = check_channel(Channel("force", force, "N"), np.array([], int))
+    assert [one.kind for one in found if one] == ["marked_values"] * faults
 
 
 def test_a_blow_of_a_hammer_is_no_fault(tmp_path):
