@@ -196,7 +196,8 @@ def _is_part_named(found: State, share: float, after: Excess, known: Known) -> b
     nobody_knows = known.is_one is None and known.of_fit >= settings.taken_by_all  # but nearly all of one record
     is_small = after.misfit <= settings.small_misfit
     is_alone = len(found.accepted) == 1 and (is_small or bool(known.is_one) or nobody_knows)
-    return share >= (settings.taken_by_one if is_alone else settings.taken_by_all)
+    in_fitted = sum(cause.share for cause in found.accepted)  # a held-out record or two may favour what stands in
+    return min(share, in_fitted) >= (settings.taken_by_one if is_alone else settings.taken_by_all)
 
 
 def _without_name(found: State, before: Excess, known: Known) -> Verdict:

@@ -166,7 +166,7 @@ def told_alone(settings: SearchSettings):
 def said(settings: SearchSettings, before, after, *, count=1, seen=True, rest=True, **known) -> str:
     """The word for a search that ended with so many causes."""
     declared = SimpleNamespace(sentence="a law", one_class=(), looks_like=())
-    own = {"confusable": (), "effect": SimpleNamespace(cause=declared)}
+    own = {"confusable": (), "share": 1.0, "effect": SimpleNamespace(cause=declared)}
     causes = tuple(SimpleNamespace(name=name, **own) for name in NAMES[:count])
     looked = [SimpleNamespace(visible=one, taken=0.5) for one in (seen, rest)]
     found = SimpleNamespace(
