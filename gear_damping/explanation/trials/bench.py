@@ -224,15 +224,17 @@ class Bench:
         """The explanation with its rivals, the effects whose full fit is not worse by the paired test.
 
         Of two of which one contains the other (a friction with two sides contains one with equal sides), the
-        smaller is taken where the larger does no better; and of several that the data do not tell apart the one
-        with the fewest parameters is named first. A rival beside which the best one is still visible, and that is
+        smaller is taken where the larger does no better; and of several that the data do not tell apart and that
+        take about as much the one with the fewest parameters is named first: few records tell hardly anything apart.
+        A rival beside which the best one is still visible, and that is
         not visible beside it, is none (Davidson & MacKinnon 1981, Econometrica 49).
         """
         alike = [f for f in fits if f is best or (f.is_seen_in_fit and self._is_rival(f, best))]
         inner = [f for f in alike if any(contains(o.score, f.score) for o in alike if o.name != f.name)]
         outer = {f.name for f in alike if any(contains(f.score, o.score) for o in inner if o.name != f.name)}
         kept = self._not_encompassed(best, [f for f in alike if f.name not in outer] or alike)
-        first = self._within_bounds(smallest(kept), fits)
+        near = [f for f in kept if f.gain >= self.settings.rival_share * best.gain]
+        first = self._within_bounds(smallest(near or kept), fits)
         plain = self._plain_form(first, fits)
         return plain, tuple(dict.fromkeys(f.name for f in kept if f.name not in (first.name, plain.name)))
 

@@ -1,0 +1,50 @@
+"""Which of several effects that the data do not tell apart is named first, on made-up fits."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from gear_damping.explanation.settings import SearchSettings
+from gear_damping.explanation.trials import bench as benches
+from tests.explanation.decisions.made_up import NAMES, bench, fit
+
+SATURATION, POWER, CRACK = NAMES[9], NAMES[1], NAMES[11]
+
+
+def tried(name, parameters, gain):
+    one = fit(name, squares=1.0 / gain, gain=gain)
+    one.outcome.hypothesis = SimpleNamespace(free=range(parameters))
+    return one
+
+
+@pytest.fixture
+def named_first(monkeypatch):
+    """Of fits, none of which is told apart or contains another."""
+    monkeypatch.setattr(benches.Bench, "_is_rival", lambda *_: True)
+    monkeypatch.setattr(benches, "contains", lambda *_: False)
+    monkeypatch.setattr(benches.Bench, "_not_encompassed", lambda self, best, alike: list(alike))
+    monkeypatch.setattr(benches.Bench, "_plain_form", lambda self, one, fits: one)
+
+    def first(*fits):
+        best, others = bench(SearchSettings()).simplest(max(fits, key=lambda one: one.gain), fits)
+        assert {best.name, *others} == {one.name for one in fits}
+        return best.name
+
+    return first
+
+
+def with_scores(*fits):
+    for one in fits:
+        one.score = None
+    return fits
+
+
+def test_the_simpler_of_two_that_take_as_much(named_first):
+    assert named_first(*with_scores(tried(POWER, 3, 1.0), tried(SATURATION, 2, 0.97))) == SATURATION
+
+
+def test_not_the_simpler_where_it_takes_far_less_and_records_are_few(named_first):
+    """A coasting car: saturation took 42 % of what was missing, a power law 68 %; one record told neither away."""
+    assert named_first(*with_scores(tried(POWER, 3, 0.68), tried(SATURATION, 2, 0.42))) == POWER
+    three = with_scores(tried(POWER, 3, 0.68), tried(SATURATION, 2, 0.42), tried(CRACK, 2, 0.66))
+    assert named_first(*three) == CRACK
