@@ -16,7 +16,7 @@ from second_rig.sensors import Noise
 from gear_damping.explanation.evidence.records import evidence_of
 from gear_damping.explanation.explain import fitting_solver, with_noise
 from gear_damping.explanation.model import parting_flanks
-from gear_damping.explanation.model.parting_flanks import flanks_part, with_parting_flanks
+from gear_damping.explanation.model.parting_flanks import flanks_part, stay_closed, with_parting_flanks
 from gear_damping.explanation.steps.calibrate import calibrated
 from gear_damping.measurement.load import load_measurement
 
@@ -120,13 +120,24 @@ def test_a_mesh_that_carries_nothing_for_long_shows_it_wherever_the_zero_lies(at
     angle = 2 * torch.pi * 0.04 * torch.arange(4000, dtype=torch.float64)  # 25 samples a period
     size = load / mass / (2 * torch.pi * 0.04 * first.sampling_rate) ** 2  # the force just reaches zero
 
-    def part(share, noise=0.0, **more):
+    def seen(share, noise=0.0, **more):
         response = 1.0 + share * size * torch.sin(angle)
         one = replace(first, response=response, observed=replace(first.observed, offset=True), **more)
-        return flanks_part(replace(evidence, fit=(one,), noise=noise))
+        return replace(evidence, fit=(one,), noise=noise)
+
+    def part(*args, **more):
+        return flanks_part(seen(*args, **more))
 
     assert part(1.0)
     assert not part(0.7)
+    for share, closed in ((0.7, True), (0.85, False)):  # the mesh carries 30 and 15 % of the load at least
+        assert stay_closed(seen(share)) is closed
+    assert not stay_closed(seen(0.7, noise=0.1 * float(size)))  # nobody sees
+    assert stay_closed(
+        seen(0.7, conditions=first.conditions | {"pinion_torque": 2 * first.conditions["pinion_torque"]})
+    )
+    both = replace(evidence, fit=(*seen(0.7).fit, *seen(1.0).fit), noise=0.0)
+    assert not stay_closed(both)
     assert not part(1.0, noise=0.1 * float(size))  # nothing to be seen behind it
     assert part(1.0, noise=0.003 * float(size))
     assert not part(1.0, conditions=first.conditions | {"pinion_torque": 2 * first.conditions["pinion_torque"]})

@@ -4,7 +4,7 @@ Where flanks part in most records, a model in which they cannot bends its stiffn
 mesh to what the impacts do, and from there no fit finds back to a gap. What is stated of the rig is the better start.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from math import inf
 
@@ -64,33 +64,49 @@ def _crosses_zero(evidence: Evidence) -> bool:
 
 
 def _is_unloaded(evidence: Evidence) -> bool:
-    """Whether the force in the mesh stays near zero in a record: flanks push and do not pull.
+    """Whether the force in the mesh stays near zero in a record: flanks push and do not pull."""
+    return any(float(np.mean(carried < LIGHT)) > LONG for carried in _carried(evidence) if carried is not None)
+
+
+def stay_closed(evidence: Evidence) -> bool:
+    """Whether the mesh carries a part of the load all the time, in every record: then no gap has ever opened."""
+    return evidence.has(Trait.TEETH) and all(
+        carried is not None and float(carried.min()) > LIGHT for carried in _carried(evidence)
+    )
+
+
+def _carried(evidence: Evidence) -> Iterator[NDArray | None]:
+    """By record, the force in the mesh over the load; None where the noise does not let it be seen.
 
     It is the load less the inertia of the relative motion, F - m_e x'' (d'Alembert), whatever the stiffness, the errors
-    of the teeth or the zero of the sensor are. What noise hides says nothing.
+    of the teeth or the zero of the sensor are. The motion is differentiated by the narrowest window through which noise
+    is small beside the load.
     """
-    first = first_gear_pair(evidence)
-    values = rig_of(first, evidence).values
-    return any(_share_unloaded(record, first, values, evidence.noise) > LONG for record in evidence.fit)
+    rig = first_gear_pair(evidence)
+    values = rig_of(rig, evidence).values
+    for record in evidence.fit:
+        load = (values["load_per_pinion_torque"] * _stated(record, TORQUE)).numpy()
+        curved = _curved(record, LIGHT * float(np.abs(load).mean()), rig, values, evidence.noise)
+        if curved is None:
+            yield None
+        else:  # where there is no load nothing is said
+            yield np.divide(load - curved, load, out=np.ones_like(load), where=load != 0)
 
 
-def _share_unloaded(record: FitRecord, rig: Hypothesis, values: Mapping[str, float], noise: float) -> float:
-    """Share of a record in which the mesh carries next to nothing; 0 where the noise does not let that be seen.
-
-    The motion is differentiated by the narrowest window through which noise is small beside the load.
-    """
+def _curved(
+    record: FitRecord, near: float, rig: Hypothesis, values: Mapping[str, float], noise: float
+) -> NDArray | None:
+    """The inertia of the relative motion in N, known to within `near`; None where noise hides it."""
     rate, order = record.sampling_rate, 2 - record.observed.derivatives
-    load = (values["load_per_pinion_torque"] * _stated(record, TORQUE)).numpy()
     inertia = values["equivalent_mass"] / participation(record.observed, rig.model, rig.given) * rate**order
-    for width in range(SHORTEST, len(load), 2):
+    for width in range(SHORTEST, len(record.response), 2):
         weights = savgol_coeffs(width, PARABOLA, deriv=order)
         if _shown(weights, values["natural_frequency"] / rate, order) < SHOWN:
-            return 0.0
-        if CLEAR * noise * abs(inertia) * float(np.linalg.norm(weights)) <= LIGHT * float(np.abs(load).mean()):
+            return None
+        if CLEAR * noise * abs(inertia) * float(np.linalg.norm(weights)) <= near:
             curved = savgol_filter(record.response.numpy(), width, PARABOLA, deriv=order)
-            carried = load - inertia * (curved - curved.mean())
-            return float(np.mean(carried * np.sign(load) < LIGHT * np.abs(load)))
-    return 0.0
+            return inertia * (curved - curved.mean())
+    return None
 
 
 def _shown(weights: NDArray, angle: float, order: int) -> float:

@@ -7,7 +7,7 @@ from gear_damping.explanation.evidence.excess import is_settled
 from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Outcome, settled_at
 from gear_damping.explanation.model.nominal_gear_pair import SHAPE, shaped
-from gear_damping.explanation.model.parting_flanks import are_missed, flanks_part, with_parting_flanks
+from gear_damping.explanation.model.parting_flanks import are_missed, flanks_part, stay_closed, with_parting_flanks
 from gear_damping.explanation.state import State
 from gear_damping.explanation.trials.refit import Refit, again, compared
 from gear_damping.explanation.trials.score import Score, best_by_effect
@@ -68,6 +68,8 @@ def _first_fits(state: State) -> tuple[Refit, ...]:
 def _from_what_is_stated(fits: Sequence[Refit], state: State) -> list[Refit]:
     """The gap between flanks fitted from what is stated of the rig, where nothing else leaves as little as noise."""
     bench, name = state.bench, Backlash.name
+    if stay_closed(bench.evidence):
+        return []
     score = best_by_effect(state.first_scores).get(name)
     if score is None or any(is_settled(bench.excess(fit.outcome), state.first, bench.settings) for fit in fits):
         return []
