@@ -22,6 +22,7 @@ from gear_damping.schema.values import Flag, Number, OneOf, Text, refuse
 from gear_damping.units import parse_unit, to_si
 
 SYSTEMS = ("gear_pair", "oscillator")
+COUNTS = ("1", "count", "counts")  # what the column of an encoder may be said to be in
 _NO_FILE = "name the file of the record, relative to this YAML"
 
 
@@ -58,7 +59,7 @@ class Encoder(Pulses):
 
     @model_validator(mode="after")
     def _counts(self) -> "Encoder":
-        if self.given("column") and self.unit:
+        if self.given("column") and self.unit and self.unit not in COUNTS:
             refuse("counts have no unit", self.unit, "leave it out; an angle with a unit is a channel", "unit")
         return self
 
@@ -69,7 +70,9 @@ class Tacho(Pulses):
     title: ClassVar[str] = "a tacho"
     refused: ClassVar[c.Reasons] = Frozen({"index": ("the zero of its angle is its first pulse", "leave it out")})
     unit: Annotated[str, Text()] = key(
-        "Unit of the column; where absent that of the file, else V, or s of `timestamps`.", "threshold; angle"
+        "Unit of the column; where absent that of the file, else V, or s of `timestamps`. Half way between two levels "
+        "needs none.",
+        "threshold; angle",
     )
     pulses_per_revolution: Annotated[float, Number(least=1)] = key(
         "Pulses in one turn of its shaft.", "angle", missing="give the number in one turn of its shaft"
@@ -85,9 +88,6 @@ class Tacho(Pulses):
         if self.given("column"):
             unit = self.unit or "V"
             parse_unit(unit, "unit")
-            if self.unit and not self.threshold:
-                remedy = "leave it out, or state the threshold"
-                refuse("has no effect without a threshold: half way needs none", self.unit, remedy, "unit")
             if self.threshold:
                 to_si(self.threshold.value, self.threshold.unit, unit, "threshold")
         return self

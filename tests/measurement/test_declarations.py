@@ -61,6 +61,10 @@ BASE = "base_acceleration: {column: b, unit: m/s^2}"
               "pulses_per_revolution: 1}}"),
         _gear(f"{TIME}, acceleration: {{column: x, unit: gn}}", "encoders: {tacho: {column: t, unit: mV, "
               "threshold: {value: 2, unit: V}, pulses_per_revolution: 1}}, mesh_index: true"),
+        _gear(f"{TIME}, acceleration: {{column: x, unit: gn}}", "encoders: {tacho: {column: t, unit: V, "
+              "pulses_per_revolution: 1}}"),  # said of a column, and needed for none of its pulses
+        _gear(f"{TIME}", "encoders: {pinion: {column: p, unit: counts, counts_per_revolution: 9}, gear: {column: g, "
+              f"unit: '1', counts_per_revolution: 9}}}}, {SET}"),
         _oscillator(DRIVEN, top="parameters: {force_gain: {value: 2}, damping_ratio: {value: 2, unit: '%'}}"),
         _oscillator(f"{TIME}, {BASE}, acceleration: {{column: x, unit: gn, frame: relative}}"),
         _oscillator(DRIVEN, f"{TIME}, {MOTION}, force: {{column: F, unit: mN}}"),
@@ -101,8 +105,10 @@ def test_what_holds_together_is_accepted(tmp_path, text):
          "pinion_angle.datum", "mesh_index"),
         (_gear(f"{TIME}, transmission_error: {{column: x, unit: um, coupling: AC, datum: absolute}}"),
          "transmission_error.datum", "lost its mean"),
-        (_gear(f"{TIME}, acceleration: {{column: x, unit: gn}}", "encoders: {tacho: {column: t, unit: mV, "
-               "pulses_per_revolution: 1}}"), "encoders.tacho.unit", "has no effect without a threshold"),
+        (_gear(f"{TIME}, acceleration: {{column: x, unit: gn}}", "encoders: {tacho: {column: t, unit: mVV, "
+               "pulses_per_revolution: 1}}"), "encoders.tacho.unit", "unknown unit"),
+        (_gear(f"{TIME}, acceleration: {{column: x, unit: gn}}", "encoders: {pinion: {column: t, unit: deg, "
+               "counts_per_revolution: 9}}"), "encoders.pinion.unit", "counts have no unit"),
         (_gear(ERROR, f"{SET}, mesh_index: true"), "records[0].mesh_index", "no zero that could be that of the mesh"),
         (_gear(f"{ERROR}, pinion_speed: {{column: n, unit: rpm}}", f"conditions: {{{LOAD}}}, mesh_index: true"),
          "records[0].mesh_index", "declare pinion_angle"),
