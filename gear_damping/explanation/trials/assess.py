@@ -1,6 +1,6 @@
 """Step 4: what is random in the residuals, and is anything in them that is not?"""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from math import log
@@ -133,16 +133,15 @@ def _effects(
     return found + [Effect(name, own) for name, own in zip(unnamed, nameless, strict=True)]
 
 
-def _formed(columns: Sequence[Tensor], form: Callable[[Tensor], Tensor]) -> list[Tensor]:
-    """All columns brought to a form, many at once: it costs hardly more of many than of one."""
-    widths, chunks, found = [one.shape[1] for one in columns], [[]], []
+def _formed(columns: Sequence[Tensor], form: Callable[[Tensor], Tensor]) -> Iterator[Tensor]:
+    """All columns brought to a form, many at once, as that costs hardly more of many than of one; never all of them."""
+    chunks: list[list[Tensor]] = [[]]
     for one in columns:
         if sum(other.shape[1] for other in chunks[-1]) >= COLUMNS_AT_ONCE:
             chunks.append([])
         chunks[-1].append(one)
     for chunk in filter(None, chunks):
-        found += form(torch.cat(chunk, 1)).split(widths[len(found) : len(found) + len(chunk)], 1)
-    return found
+        yield from form(torch.cat(chunk, 1)).split([one.shape[1] for one in chunk], 1)
 
 
 def _tested(
