@@ -30,6 +30,7 @@ _FOLLOWS = 0.1  # of a channel's standard deviation: what a spline may miss of w
 _NO_WORSE = 1.5  # times what it misses of a single sample: what is missed is noise then, and would be without a gap
 _MOST_LOST = 0.02  # of the samples; beyond, another clock is as likely
 _FEWEST_HOLES = 20  # that can be tried in a record
+_SUM = 16  # steps over which stamps wander, or do not: a few beside a record, and many beside one
 _POLLED = 0.05  # of a step, by which steps scatter: the clock of a recorder keeps to a thousandth
 
 
@@ -65,7 +66,7 @@ def _polled(record: Record) -> Record:
     ]
     steps = np.diff(record.time)
     usual = float(np.median(steps))
-    if not late or scatter(steps) < _POLLED * usual:
+    if not late or scatter(steps) < _POLLED * usual or not _wander(np.minimum(steps, _GAP * usual)):
         return record
     if any(share_over_gaps(channel.values, record.time)[1] < np.inf for channel in record.channels.values()):
         return record  # enough gaps for the values to tell
@@ -78,6 +79,16 @@ def _polled(record: Record) -> Record:
     )
     note = Finding("uneven_stamps", message, channel="time", severity="note")
     return replace(record, findings=(*(f for f in record.findings if f not in late), note))
+
+
+def _wander(steps: NDArray[np.float64]) -> bool:
+    """Whether stamps wander away from an even grid, as those of steps that follow one another do.
+
+    Over m steps the variance is m times that of one then, and once that of one where each stamp jitters about its own
+    place on the grid: what is nearer to which.
+    """
+    over = np.cumsum(np.r_[0.0, steps])
+    return steps.size > 2 * _SUM and float(np.var(over[_SUM:] - over[:-_SUM])) > _SUM**0.5 * float(np.var(steps))
 
 
 def follows_from_neighbours(values: NDArray[np.float64], lost: int) -> bool:
