@@ -209,7 +209,12 @@ def written_in(stamps: NDArray[np.float64], index: NDArray[np.float64] | None = 
     """
     since, index = stamps - stamps[0], np.arange(stamps.size) if index is None else index
     digit = _last_digit(since, 4 * np.spacing(np.abs(stamps).max()))
-    rate = 1 / float(np.polyfit(index, since, 1)[0])
+    centred = index - index.mean()
+    with np.errstate(over="ignore", invalid="ignore"):
+        step = float(centred @ since / (centred @ centred))
+    if not step > 0:  # a stamp so far away that rounding hides all others
+        return None
+    rate = 1 / step
     if digit is None or np.ptp(since - index / rate) > _WRITTEN * digit:
         return None
     plain = (float(f"{rate:.{places}g}") for places in range(1, 7))
@@ -240,7 +245,7 @@ def irregularity(stamps: NDArray[np.float64], first: int = 0) -> Finding | None:
     gaps = steps[lasting] / usual
     run = np.mean(np.diff(lasting) == 1) if lasting.size > 2 else 0.0
     if lasting.size and run < _RUN and _are_whole(gaps, scatter(steps) / usual):
-        return _dropped(np.round(gaps).astype(int) - 1, stamps, lasting, first)
+        return _dropped(np.round(gaps) - 1, stamps, lasting, first)
     few = run < _RUN and lasting.size < _MANY * steps.size
     changes = _change_of_rate(np.delete(steps, lasting) if few else steps)
     if changes is not None:
@@ -314,7 +319,7 @@ def _dropped(lost: NDArray, stamps: NDArray, gaps: NDArray, first: int) -> Findi
     times = ", ".join(f"{stamps[gap + 1]:.6g}" for gap in gaps[:_LISTED].tolist())
     more = " and others" if gaps.size > _LISTED else ""
     message = (
-        f"about {lost.sum()} sample(s) were dropped in {gaps.size} gap(s), before row(s) {rows} of the file "
+        f"about {lost.sum():.12g} sample(s) were dropped in {gaps.size} gap(s), before row(s) {rows} of the file "
         f"(at {times} s){more}; use slices or windows between the gaps"
     )
     return Finding(LOST, message, channel="time", sample=int(gaps[0]) + 1)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from gear_damping.measurement.record_checks import share_at_stamps
-from gear_damping.measurement.timebase import irregularity
+from gear_damping.measurement.timebase import irregularity, stamped_time
 
 RATE = 1000.0
 TURN = 2 * np.pi
@@ -122,6 +122,17 @@ def test_stamps_of_events_are_kept(bench):
     record = _stamped(bench, stamps)
     assert _problems(record) == []
     np.testing.assert_array_equal(record.time, stamps)
+
+
+@pytest.mark.parametrize("far", [1e12, 1e20, 1e160, 1e300])
+def test_a_last_stamp_beyond_all_others_is_a_gap(far):
+    """What rounding hides of all other steps beside it is no rate."""
+    stamps = np.arange(1000) / RATE
+    stamps[-1] += far
+    base = stamped_time(stamps, "t", "a.csv")
+    (finding,) = base.findings
+    assert (finding.kind, finding.severity, finding.sample) == ("dropped_samples", "data_problem", 999)
+    assert base.sampling_rate == pytest.approx(RATE, rel=1e-3)
 
 
 @pytest.mark.parametrize("jitter", [0.0, 0.08])
