@@ -334,6 +334,15 @@ def test_a_tdms_file_that_was_cut_off_says_so(tdms, tmp_path, capsys):
     assert "segment" not in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("step", [0.0, -1e-3, 5e-324, float("inf"), float("nan"), True, "fast"])
+def test_a_tdms_channel_whose_properties_say_nothing_has_neither_unit_nor_rate(step, tmp_path):
+    with TdmsWriter(str(tmp_path / "a.tdms")) as writer:
+        writer.write_segment([_channel("g", "x", WAVE, unit_string=True, wf_increment=step)])
+    table = read_table(tmp_path / "a.tdms")
+    place = table.index("g/x", "")
+    assert (table.unit(place), table.clock(place)) == (None, None)
+
+
 def test_a_damaged_tdms_file_is_one_message(tdms, tmp_path):
     content = bytearray(tdms.read_bytes())
     content[28:60] = b"\xff" * 32

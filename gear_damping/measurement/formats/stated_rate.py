@@ -3,6 +3,9 @@
 import re
 from collections.abc import Iterable, Sequence
 from math import inf
+from typing import Any
+
+import numpy as np
 
 from gear_damping.errors import InputError
 from gear_damping.units import to_si
@@ -46,7 +49,17 @@ def _of_row(row: Sequence[str]) -> tuple[str, float] | None:
         return None  # of each channel its own
     unit = next((one for one in (*re.findall(r"[(\[]([^)\]]+)[)\]]", name), *behind[:1]) if one), "")
     size = value * _factor(unit, "s" if is_step else "Hz")
-    return (words[0], 1 / size if is_step else size) if 0 < size < inf else None
+    rate = rate_of(size) if is_step else size
+    return (words[0], rate) if rate is not None and 0 < rate < inf else None
+
+
+def rate_of(step: Any) -> float | None:
+    """The rate of a step that a file states; None of what is no number, or none that a rate is had from."""
+    is_number = isinstance(step, (int, float, np.number)) and not isinstance(step, bool)
+    if not is_number or not 0 < step < inf:
+        return None
+    rate = 1 / float(step)
+    return rate if rate < inf else None
 
 
 def _factor(unit: str, plain: str) -> float:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.formats.stated_rate import rate_of
 from gear_damping.measurement.formats.table import (
     ArrayTable,
     Held,
@@ -99,14 +100,13 @@ def _held(nptdms: Any, path: Path, name: str, channel: Any) -> Held:
             values = file[group][own][:]
         return (values - values[0]) / np.timedelta64(1, "s") if stamps else values
 
-    unit = "s" if stamps else next((channel.properties[u] for u in _UNIT_PROPERTIES if channel.properties.get(u)), None)
+    said = (channel.properties.get(name) for name in _UNIT_PROPERTIES)
+    unit = "s" if stamps else next((one for one in said if one and isinstance(one, str)), None)
     return Held(name, (len(channel),), read, unit, _clock(channel.properties))
 
 
 def _clock(properties: dict[str, Any]) -> tuple[float, float] | None:
     """Start in s and rate in Hz of a waveform; the increment of one over time is in s, over frequency in Hz."""
-    step = properties.get("wf_increment")
+    rate, start = rate_of(properties.get("wf_increment")), properties.get("wf_start_offset", 0.0)
     in_time = properties.get("wf_xname", "Time") != "Frequency" and properties.get("wf_xunit_string", "s") == "s"
-    if not step or step <= 0 or not in_time:
-        return None
-    return float(properties.get("wf_start_offset", 0.0)), 1 / float(step)
+    return (float(start), rate) if rate and in_time and isinstance(start, (int, float)) else None

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.formats.stated_rate import rate_of
 from gear_damping.measurement.formats.table import ArrayTable, Held, Table, extra_library, unreadable
 
 SUFFIXES = (".uff", ".unv", ".uff58")
@@ -67,11 +68,11 @@ def _abscissa(one: dict[str, Any]) -> Held:
 
 def _clock(one: dict[str, Any]) -> tuple[float, float] | None:
     """Start in s and rate in Hz of an even abscissa in time."""
-    step = one["abscissa_inc"]
+    rate = rate_of(one["abscissa_inc"])
     in_time = one["abscissa_spec_data_type"] == _TIME and _unit(one["abscissa_axis_units_lab"]) in (None, "s", "sec")
-    if not in_time or not one["abscissa_spacing"] or not step > 0:
+    if not in_time or not one["abscissa_spacing"] or rate is None:
         return None
-    return float(one["abscissa_min"]), rounded_rate(1 / step)
+    return float(one["abscissa_min"]), rounded_rate(rate)
 
 
 def rounded_rate(rate: float) -> float:
