@@ -50,7 +50,7 @@ def _losses(record: Record) -> Record:
     missing = np.diff(counted(record.time)) - 1
     if missing.sum() > _MOST_LOST * len(record.time):
         return record
-    if not all(follows_from_neighbours(channel.values, int(missing.max())) for channel in record.channels.values()):
+    if not _all_follow(record, int(missing.max())):
         return record
     said = "which follow from their neighbours: samples are taken at their stamps"
     return replace(record, findings=tuple(
@@ -71,7 +71,7 @@ def _polled(record: Record) -> Record:
     if any(share_over_gaps(channel.values, record.time)[1] < np.inf for channel in record.channels.values()):
         return record  # enough gaps for the values to tell
     missing = max(1, round(float(steps.max()) / usual) - 1)
-    if not all(follows_from_neighbours(channel.values, missing) for channel in record.channels.values()):
+    if not _all_follow(record, missing):
         return record
     message = (
         f"time steps from {steps.min():.4g} to {steps.max():.4g} s about a median of {usual:.4g} s, as of a program "
@@ -89,6 +89,11 @@ def _wander(steps: NDArray[np.float64]) -> bool:
     """
     over = np.cumsum(np.r_[0.0, steps])
     return steps.size > 2 * _SUM and float(np.var(over[_SUM:] - over[:-_SUM])) > _SUM**0.5 * float(np.var(steps))
+
+
+def _all_follow(record: Record, lost: int) -> bool:
+    """Whether every channel tells what was in a hole of `lost` samples."""
+    return all(follows_from_neighbours(channel.values, lost) for channel in record.channels.values())
 
 
 def follows_from_neighbours(values: NDArray[np.float64], lost: int) -> bool:
