@@ -21,6 +21,7 @@ from gear_damping.physics.systems.gear_pair import GearPair
 from gear_damping.simulation.simulate import simulate
 
 RATE, SAMPLES, SPEEDS, PHASES = 20_000.0, 1200, (300.0, 410.0), (0.7, 4.1)
+NOISE = 1e-10  # m; of the transmission error's micrometres, so that no cost is that of rounding alone
 MESH = "fourier_mesh_stiffness"
 TRUE = {f"{MESH}.maximum": 3.4e8, f"{MESH}.minimum": 2.1e8, f"{MESH}.contact_ratio": 1.45}
 
@@ -30,15 +31,16 @@ def mirrored():
     """A fit that stands at the mirror of what made the records, one phase a record; and its evidence."""
     effects = (FourierMeshStiffness(), ViscousDamping())
     model, records = Model(GearPair(), list(effects)), []
+    noise = NOISE * torch.randn(len(PHASES), SAMPLES, dtype=torch.float64, generator=torch.Generator().manual_seed(3))
     for number, (speed, phase) in enumerate(zip(SPEEDS, PHASES, strict=True)):
         given = {"pinion_speed": speed, "mesh_phase": phase, "pinion_torque": 100.0}
         runs = simulate(model, model.values(1, **TRUE, **given), sampling_rate=RATE, n_samples=SAMPLES)
         conditions = {"pinion_speed": speed, "pinion_torque": 100.0}
         seen = Observed("transmission_error")
         known = {"observed": seen, "own": (MESH_PHASE,)}
-        records.append(FitRecord(f"r{number}", runs.response[0], RATE, {}, conditions, **known))
+        records.append(FitRecord(f"r{number}", runs.response[0] + noise[number], RATE, {}, conditions, **known))
     channel = Channel("transmission_error", np.zeros(1), "m")
-    evidence = Evidence("gear_pair", tuple(records), tuple(records[:1]), Known({}, {}), channel, False, noise=1e-8)
+    evidence = Evidence("gear_pair", tuple(records), tuple(records[:1]), Known({}, {}), channel, False, noise=NOISE)
     high, low, ratio = TRUE.values()
     begun = {f"{MESH}.maximum": low, f"{MESH}.minimum": high, f"{MESH}.contact_ratio": 3 - ratio}
     free = [FreeParameter(name, value, 0.2 if value < 3 else value) for name, value in begun.items()]
@@ -49,7 +51,7 @@ def mirrored():
 
 def test_it_is_turned_and_the_phases_with_it(mirrored):
     found, evidence = mirrored
-    assert found.fitted.cost < SAMPLES * evidence.noise**2  # the mirror is the same wave
+    assert found.fitted.cost < 1.1 * len(PHASES) * SAMPLES * evidence.noise**2  # the mirror is the same wave
     assert found.values[f"{MESH}.maximum"] < found.values[f"{MESH}.minimum"]
     turned = upright(found, evidence)
     for name, value in TRUE.items():
