@@ -59,7 +59,7 @@ def _kept(snr: int, seed: int, out: Path) -> dict[str, Any]:
 
 def measured(snr: int, seed: int, folder: Path) -> dict[str, Any]:
     """Root mean square errors of everybody on the same windows, %."""
-    words = ["experiment=baseline", "family=paper", "protocol=by_run", f"seed={seed}"]
+    words = ["experiment=baseline", "family=paper", "protocol=by_run", "training.max_epochs=40", f"seed={seed}"]
     settings: Settings = read_settings(*composed(words))
     plan = plan_of(settings)
     runs, protocol = run_set_of(run_plan(plan), plan), Protocol(**settings.protocol)

@@ -55,7 +55,7 @@ class Training:
         devices: Processes that share every batch: on as many GPUs where this machine has them, else on its cores.
     """
 
-    max_epochs: int = 40
+    max_epochs: int = 32
     batch_size: int = 256
     patience: int = 8
     learning_rate: float = 1e-3

@@ -148,8 +148,8 @@ class Assembler:
         """A speed that has lost its mean gets the one under conditions."""
         speed, stated = channels.get("pinion_speed"), raw.plan.conditions.get("pinion_speed")
         if speed is not None and stated is not None and _mean_lost(speed):
-            values = speed.values - speed.values.mean() + stated.value
-            channels["pinion_speed"] = replace(speed, values=values)
+            added = stated.value - float(speed.values.mean())
+            channels["pinion_speed"] = replace(speed, values=speed.values + added, mean_added=added)
             notes.append("pinion_speed: its mean is the one under conditions")
 
     def _conditions(self, raw: RawRecord, channels: dict[str, Channel], findings: list[Finding]) -> dict[str, Quantity]:

@@ -231,24 +231,25 @@ def _clipped(channel: Channel) -> Finding | None:
     cut = None if channel.name in APPLIED else clipped_at(values)
     if channel.name in _SPEEDS and cut and values[cut[1]][0] == 0:
         cut = None  # a shaft or a drive that stands still
-    if channel.range is not None and np.abs(values).max() < _AT_RANGE * channel.range:
+    seen = np.abs(values - channel.mean_added)  # by the sensor
+    if channel.range is not None and seen.max() < _AT_RANGE * channel.range:
         cut = None  # the sensor could have gone on
     if cut:
         return _clipping(channel, cut[1], f"exactly at the {cut[0]}")
     if channel.range is not None:
-        at = np.abs(values) >= _AT_RANGE * channel.range
-        if np.abs(values).max() > _BEYOND_RANGE * channel.range:
-            return _beyond_range(channel, values)
+        at = seen >= _AT_RANGE * channel.range
+        if seen.max() > _BEYOND_RANGE * channel.range:
+            return _beyond_range(channel, seen)
         if at.sum() > 1:
             return _clipping(channel, at, f"at the sensor's range of {channel.range:.4g} {channel.unit}")
     return None
 
 
-def _beyond_range(channel: Channel, values: NDArray) -> Finding:
+def _beyond_range(channel: Channel, seen: NDArray) -> Finding:
     """No sensor tells more than its range: the range is another, or the scale of the values is."""
-    most = int(np.argmax(np.abs(values)))
+    most = int(np.argmax(seen))
     reached, declared = (
-        f"{size / channel.declared_factor:.4g} {channel.declared_unit}" for size in (abs(values[most]), channel.range)
+        f"{size / channel.declared_factor:.4g} {channel.declared_unit}" for size in (seen[most], channel.range)
     )
     message = (
         f"{channel.name} reaches {reached}, beyond its declared range of {declared}: state the range of the sensor, or "

@@ -68,6 +68,7 @@ class Channel:
         coupling: `DC` or `AC`; an AC channel knows nothing of the mean.
         delay: How late the channel is, in s.
         range: Full scale, in `unit`.
+        mean_added: What was added to values that had lost their mean, in `unit`; the sensor never saw it.
         noise: Standard deviation of the sensor noise, in `unit`.
         uncertainty: Relative uncertainty of the gain; 0 means known.
         polarity: The sign that the file's values were multiplied by.
@@ -93,6 +94,7 @@ class Channel:
     coupling: str = "DC"
     delay: float = 0.0
     range: float | None = None
+    mean_added: float = 0.0
     noise: float | None = None
     uncertainty: float = 0.0
     polarity: int = 1

@@ -95,7 +95,8 @@ def _write_csv(path: Path, record: Record) -> None:
     """Seventeen digits bring every float64 back exactly, where the file holds the quantity itself."""
     columns = [record.time]
     for channel in record.channels.values():
-        columns.append(channel.values * (channel.polarity * channel.gain / channel.declared_factor))
+        seen = channel.values - channel.mean_added
+        columns.append(seen * (channel.polarity * channel.gain / channel.declared_factor))
     with path.open("x", encoding="utf-8") as file:
         file.write(",".join(["time", *record.channels]) + "\n")
         np.savetxt(file, np.column_stack(columns), delimiter=",", fmt="%.17g")

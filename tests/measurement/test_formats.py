@@ -48,6 +48,12 @@ def test_a_decimal_comma_is_said_and_never_guessed_against_points(tmp_path):
         _column(_csv(tmp_path, "t;a\n0;1,500\n1;2.5\n"), "a")
 
 
+def test_bars_part_columns_and_stand_in_names_where_others_do(tmp_path):
+    table = _csv(tmp_path, "TE [um]|angle [deg]\n3.5|228.6\n3.25|229\n")
+    assert (_column(table, 0), _column(table, "angle [deg]")) == ([3.5, 3.25], [228.6, 229])
+    assert _csv(tmp_path, "|X|,Y\n1,2\n").names == ("|X|", "Y")
+
+
 def test_a_header_names_units_and_may_hold_the_delimiter(tmp_path):
     table = _csv(tmp_path, '"Acc DE, radial (m/s^2)",Speed [rpm],Note\n1,2,3\n')
     assert table.names == ("Acc DE, radial (m/s^2)", "Speed [rpm]", "Note")

@@ -126,6 +126,18 @@ def test_the_declared_range_shows_clipping_that_noise_hides(bench):
     assert bench.kinds() == []
 
 
+def test_the_range_of_a_speed_without_its_mean_is_that_of_its_fluctuation(bench):
+    speed = {"column": "dte", "unit": "rpm", "coupling": "AC", "range": {"value": 20, "unit": "rpm"}}
+    bench.columns["dte"], bench.channels["pinion_speed"] = 10 * np.sin(np.arange(400) / 7), speed
+    for name in ("pinion_angle", "transmission_error"):
+        del bench.channels[name]
+    bench.record["conditions"] = {"pinion_speed": "3000 rpm"}
+    bench.write_csv()
+    assert "clipped" not in bench.kinds()
+    speed["range"]["value"] = 9.5
+    assert "clipped" in bench.kinds()
+
+
 def test_values_far_beyond_a_declared_range_are_no_clipping(bench):
     bench.channels["transmission_error"]["range"] = {"value": 2, "unit": "um"}
     said = [finding for finding in bench.load().records[0].findings if finding.kind == "clipped"]

@@ -13,7 +13,7 @@ from gear_damping.measurement.record import Channel, Quantity, Record
 from gear_damping.measurement.write import write_measurement
 from gear_damping.physics.systems.gear_pair import GearPair
 
-UNLIKE = {"name", "values", "unit", "hold", "timing_error"}  # none that an acceleration has
+UNLIKE = {"name", "values", "unit", "hold", "timing_error", "mean_added"}  # none that an acceleration has
 DIFFERENT = {
     "lowpass": 3e3, "lowpass_order": 4, "highpass": 2.0, "highpass_order": 2, "coupling": "AC", "delay": 1e-4,
     "range": 4.0, "noise": 0.25, "uncertainty": 0.03, "polarity": -1, "gain": -4.0, "datum": "arbitrary",
@@ -53,6 +53,19 @@ def test_every_field_of_a_channel_is_written_and_read(name, tmp_path):
     told = {key: value for key, value in vars(channel).items() if key != "values"}
     assert {key: vars(found)[key] for key in told} == told
     assert getattr(found, name) != getattr(Channel("acceleration", values, "m/s^2"), name)
+
+
+def test_a_speed_that_was_given_its_mean_comes_back_with_what_its_sensor_saw(tmp_path):
+    values = np.random.default_rng(1).standard_normal(40)
+    speed = Channel(
+        "pinion_speed", values + 100.0, "rad/s", coupling="AC", datum="arbitrary", range=5.0, mean_added=99.0
+    )
+    measurement = load_measurement(write_measurement(tmp_path, "gear_pair", [_of("gear_pair", speed)], None, 0.002))
+    found = measurement.records[0].channels["pinion_speed"]
+    np.testing.assert_allclose(found.values - found.values.mean(), values - values.mean(), rtol=1e-12, atol=1e-12)
+    assert found.values.mean() == pytest.approx(100.0)
+    np.testing.assert_allclose(found.values - found.mean_added, values + 1.0, rtol=1e-12)
+    assert [finding.kind for finding in measurement.findings if finding.kind == "clipped"] == []
 
 
 def test_what_could_not_be_read_back_is_not_written(tmp_path):

@@ -1,4 +1,4 @@
-"""Text tables: comma, semicolon, tab or blanks, decimal point or comma, with or without a header, also in gzip."""
+"""Text tables: comma, semicolon, tab, bar or blanks, decimal point or comma, with or without a header, also in gzip."""
 
 import csv
 import gzip
@@ -67,10 +67,10 @@ class _Text:
         self.path = path
         self.utf8 = _utf8(path, raw)
         ending = self.utf8[-(2**16) :].decode("utf-8", "replace").splitlines()
-        kept = [line for line in ending if line.strip(" \t;,\r") and not _IS_COMMENT.match(line)]
+        kept = [line for line in ending if line.strip(" \t;|,\r") and not _IS_COMMENT.match(line)]
         last = next((line for line in reversed(kept) if _NUMBER.search(line)), kept[-1] if kept else "")
         # Headers hold all kinds of signs, numbers only one.
-        self.delimiter = next((sign for sign in (";", "\t", ",") if sign in last), " ")
+        self.delimiter = next((sign for sign in (";", "\t", "|", ",") if sign in last), " ")
         self.width = max((k + 1 for k, cell in enumerate(next(self._cells([last]), [])) if cell.strip()), default=0)
 
     def open(self) -> io.TextIOWrapper:

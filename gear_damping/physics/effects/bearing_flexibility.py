@@ -15,10 +15,12 @@ PLACE, RATE = "bearing_flexibility.displacement", "bearing_flexibility.velocity"
 STIFFNESSES = (1.5, 6.0, 30.0, 120.0)  # of the mean mesh stiffness
 MASSES = (5.5, 15.0)  # of the equivalent mass; a disc alone has twice it
 HEAVIEST = 100.0  # of it: no pinion with its shaft weighs more
+LIGHTEST = 0.5  # of it: less than the lightest pinion, a ring of its outer radius
 
 
 def _beside_the_mesh(rig: Rig) -> tuple[Recipe, ...]:
-    within = {"bearing_flexibility.mass": (0.0, HEAVIEST * rig.values["equivalent_mass"])}
+    equivalent = rig.values["equivalent_mass"]
+    within = {"bearing_flexibility.mass": (LIGHTEST * equivalent, HEAVIEST * equivalent)}
     return tuple(
         Recipe({"stiffness": k}, non_nested=True, scanned={"mass": m, "damping_ratio": 0.02}, within=within)
         for k in STIFFNESSES

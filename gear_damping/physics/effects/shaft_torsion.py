@@ -16,6 +16,8 @@ TWIST, RATE = "shaft_torsion.twist", "shaft_torsion.twist_rate"
 SOFTNESS = (0.012, 0.04, 0.12, 0.4)  # of the mesh as the shaft feels it
 SOFTEST = 1e-4  # of it: what twists by a radian under its load is no shaft but a slow change of the torque
 INERTIAS = (2.9, 10.8)  # of both gears as the shaft feels them
+LIGHTEST = 0.1  # of them: what carries the torque weighs more than a hub, and a lighter one is any linear memory
+MOST_DAMPED = 0.3  # twice what rubber couplings reach: a relative damping of 2 (DIN 740) is a ratio of 2 / 4 pi
 
 
 def _on_either_shaft(rig: Rig) -> tuple[Recipe, ...]:
@@ -26,12 +28,21 @@ def _on_either_shaft(rig: Rig) -> tuple[Recipe, ...]:
             scanned={"motor_inertia": j * _inertia(rig, shaft), "damping_ratio": 0.02},
             in_si=True,
             options={"shaft": shaft},
-            within={"shaft_torsion.stiffness": (SOFTEST * _mesh_stiffness(rig, shaft), inf)},
+            within=_of_a_machine(rig, shaft),
         )
         for shaft in SHAFTS
         for k in SOFTNESS
         for j in INERTIAS
     )
+
+
+def _of_a_machine(rig: Rig, shaft: str) -> dict[str, tuple[float, float]]:
+    """What a shaft with a machine on it can be."""
+    return {
+        "shaft_torsion.stiffness": (SOFTEST * _mesh_stiffness(rig, shaft), inf),
+        "shaft_torsion.motor_inertia": (LIGHTEST * _inertia(rig, shaft), inf),
+        "shaft_torsion.damping_ratio": (0.0, MOST_DAMPED),
+    }
 
 
 def _mesh_stiffness(rig: Rig, shaft: str) -> float:
