@@ -1,5 +1,6 @@
 """Reading what a record's plan asks for out of its file, before units are compared."""
 
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
@@ -55,6 +56,7 @@ class RawReader:
         self.plan, self.table, self.problems, self.source = plan, table, problems, source
         self.file = str(table.path)
         self.first, self.stop = plan.rows or (0, 0)
+        self.blank = 0  # rows at the end that hold nothing
 
     def read(self, sha256: str) -> RawRecord | None:
         """The record, or None where it has no time base; `complete` where all of it could be read."""
@@ -63,6 +65,7 @@ class RawReader:
             self._find_rows()
             base = self._base()
             base, within = self._with_rows_beside(base)
+            base = base and self._said_of_blanks(base)
         channels = []
         for plan in self.plan.channels:
             with self.problems.collecting():
@@ -99,7 +102,7 @@ class RawReader:
             self.stop = n
             rule, remedy = f"{self.table.path.name} has {n} rows", f"end the slice at {n} or before"
             raise InputError(Problem(f"{self.plan.key}.slice", rule, list(self.plan.rows), remedy, self.source))
-        self.stop = self.stop or n
+        self.stop = self.stop or n - self._blank_at_the_end([column for column, _ in columns], n)
         if self.plan.window:
             rows = window_rows(self._seconds(), self.plan.window, f"{self.plan.key}.window", self.source)
             self.first, self.stop = self.first + rows[0], self.first + rows[1]
@@ -111,6 +114,32 @@ class RawReader:
                 remedy = f"name another column: {self.table.path.name} holds {self.table.listing(True)}"
                 remedy = remedy if max(self.table.lengths) >= LEAST_SAMPLES else "use a longer file"
             raise InputError(Problem(self.plan.key, rule, None, remedy, self.source))
+
+    def _blank_at_the_end(self, columns: Sequence[str | int], n: int) -> int:
+        """How many of the last of n rows hold nothing in any column: those of a longer run beside this one.
+
+        A few in which the stamps alone go on count too.
+        """
+        filled = [self._filled(column, n) for column in columns]
+        last = max(filled)
+        own = max(filled[1:], default=last) if self.plan.timing.column is not None else last
+        last = own if last - own <= MOST_MISSING * last else last
+        self.blank = n - last if last else 0
+        return self.blank
+
+    def _filled(self, column: str | int, n: int) -> int:
+        """How many of n rows there are up to the last that holds a number in a column."""
+        if self._size(column) is None:
+            return 0
+        places = np.flatnonzero(np.isfinite(self._all(column, "")[:n]))
+        return int(places[-1]) + 1 if places.size else 0
+
+    def _said_of_blanks(self, base: TimeBase) -> TimeBase:
+        """The time base, with a note of the rows that hold nothing."""
+        if not self.blank:
+            return base
+        message = f"the last {self.blank} rows hold nothing in the columns of the record, which ends before them"
+        return replace(base, findings=(*base.findings, Finding("blank_rows", message, severity="note")))
 
     def _seconds(self) -> NDArray[np.float64]:
         """The times of the record's rows as they stand in the file, which may be no times at all."""

@@ -140,21 +140,48 @@ def test_an_empty_column_is_named_once_with_those_that_hold_numbers(tmp_path):
     assert "name another column: t, x" in problems[0]
 
 
-@pytest.mark.parametrize(("missing", "is_last_cell"), [(1, True), (100, False)])
-def test_a_column_that_ends_early_ends_the_slice_or_is_a_channel_of_its_own(tmp_path, missing, is_last_cell):
-    openpyxl = pytest.importorskip("openpyxl")
-    book = openpyxl.Workbook()
-    for row in [("t", "x"), *((0.01 * k, k * k if k < 200 - missing else None) for k in range(200))]:
-        book.active.append(row)
-    book.save(tmp_path / "run.xlsx")
+def _runs_beside_each_other(tmp_path, columns, rows="", is_text=False):
+    """A measurement of a table whose columns t and x hold so many numbers, and then nothing."""
+    times, values = columns
+    table = [(0.01 * k if k < times else None, k * k if k < values else None, k) for k in range(200)]
+    table = [("t", "x", "longer"), *table]
+    if is_text:
+        lines = (",".join("" if cell is None else str(cell) for cell in row) for row in table)
+        (tmp_path / "run.csv").write_text("\n".join(lines) + "\n")
+    else:
+        book = pytest.importorskip("openpyxl").Workbook()
+        for row in table:
+            book.active.append(row)
+        book.save(tmp_path / "run.xlsx")
     record = (
-        "system: oscillator\nrecords:\n  - file: run.xlsx\n    channels:\n"
+        f"system: oscillator\nrecords:\n  - file: run.{'csv' if is_text else 'xlsx'}\n{rows}    channels:\n"
         "      time: {column: t, unit: s}\n      displacement: {column: x, unit: m}\n"
     )
     (tmp_path / "measurement.yaml").write_text(record)
+    return tmp_path / "measurement.yaml"
+
+
+@pytest.mark.parametrize(("missing", "is_last_cell"), [(1, True), (100, False)])
+def test_a_column_that_ends_early_ends_the_slice_or_is_a_channel_of_its_own(tmp_path, missing, is_last_cell):
+    path = _runs_beside_each_other(tmp_path, (200, 200 - missing), "    slice: [0, 200]\n")
     with pytest.raises(InputError, match="give the channel its own time") as caught:
-        load_measurement(tmp_path / "measurement.yaml")
+        load_measurement(path)
     assert ("end the slice at 199, or" in str(caught.value)) == is_last_cell
+
+
+@pytest.mark.parametrize("is_text", [True, False])
+@pytest.mark.parametrize("columns", [(150, 150), (150, 149)])  # the last stamp may stand alone
+def test_a_run_beside_a_longer_one_ends_where_its_columns_do(tmp_path, columns, is_text):
+    (record,) = load_measurement(_runs_beside_each_other(tmp_path, columns, is_text=is_text)).records
+    assert record.time.size == columns[1]
+    blank = 200 - columns[1] if is_text else 150 - columns[1]  # a sheet's columns end where their cells do
+    said = f"the last {blank} rows hold nothing in the columns of the record, which ends before them"
+    assert [found.message for found in record.findings if found.kind == "blank_rows"] == [said] * bool(blank)
+
+
+def test_stamps_that_go_on_alone_are_no_end_of_a_run(tmp_path):
+    with pytest.raises(InputError, match="give the channel its own time"):
+        load_measurement(_runs_beside_each_other(tmp_path, (200, 100)))
 
 
 def test_a_problem_of_a_record_with_a_name_says_it(bench):
