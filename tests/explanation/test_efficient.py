@@ -1,6 +1,7 @@
 """Parameters weighed by a random load, against generalised least squares with the whole covariance of the residuals."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import torch
@@ -80,15 +81,20 @@ def generalised(seen, weight):
     return point[1], math.sqrt(np.linalg.inv(matrix)[1, 1])
 
 
-def weighed(seen):
-    """The same by least squares, and one step on: (coordinate, deviation) of each."""
+def fitted(seen):
+    """A plain fit to a record, and its evidence."""
     records = (FitRecord("run", torch.as_tensor(seen), RATE),)
     evidence = Evidence("oscillator", records, (), Known({}, {}), None, one_record=False, noise=NOISE, sealed=True)
     free = (
         FreeParameter("stiffness", STIFFNESS, logarithmic=True),
         FreeParameter(COEFFICIENT, 1.2 * DAMPING, logarithmic=True),
     )
-    plain = fit_hypothesis(Hypothesis(Oscillator(), (ViscousDamping(),), {"amplitude": 0.05}, free), evidence)
+    return fit_hypothesis(Hypothesis(Oscillator(), (ViscousDamping(),), {"amplitude": 0.05}, free), evidence), evidence
+
+
+def weighed(seen):
+    """The same by least squares, and one step on: (coordinate, deviation) of each."""
+    plain, evidence = fitted(seen)
     better = efficient(plain, assessed(plain, [], evidence).random)
     assert better.values == {p.name: p.start for p in better.hypothesis.free}
     return [
@@ -113,3 +119,13 @@ def test_one_step_on_whitened_residuals_is_as_good_as_the_whole_covariance():
     assert size(better[:, 0] - best[:, 0]) < 0.1 * size(best[:, 0] - true)
     assert 0.85 < np.median(better[:, 1] / best[:, 1]) < 1.2
     assert 0.7 < size((better[:, 0] - true) / better[:, 1]) < 1.4  # of 30: three deviations of their mean square
+
+
+def test_a_step_that_leaves_more_is_not_taken():
+    plain, evidence = fitted(pushed(np.random.default_rng(7)))
+    random = assessed(plain, [], evidence).random
+    assert efficient(plain, random) is not plain
+    prediction = plain.fitted.prediction  # a state that hardly shows is sent anywhere, against what it really does
+    wrong = replace(prediction, sensitivity=prediction.sensitivity * torch.tensor([1.0, 1.0, 1.0, -1e-4]))
+    astray = replace(plain, fitted=replace(plain.fitted, prediction=wrong))
+    assert efficient(astray, random) is astray

@@ -19,17 +19,24 @@ from gear_damping.identification.output_error.step import Points, moves, newton_
 def efficient(outcome: Outcome, random: Random) -> Outcome:
     """The outcome one step on, with its linearisation made white; itself where what is random is white.
 
+    A step that does not leave less is not taken.
+
     Args:
         outcome: A fit that leaves nothing but what is random.
         random: What that is.
     """
     if not random.loads and not any(law.order for law in random.laws):
         return outcome
-    problem, fitted = outcome.problem, outcome.fitted
-    white = _whitened(outcome, random)
+    problem, fitted, whiten = outcome.problem, outcome.fitted, Whitener(random, outcome)
+    white = _whitened(fitted.prediction, whiten)
     initial = Points(fitted.shared.unsqueeze(0), fitted.states.unsqueeze(0))
     end = newton_step(problem, initial, white, fitted.shared.new_full((1,), SMALLEST_DAMPING))
-    if not bool(end.shared.isfinite().all()):
+    after = whiten(problem.residuals(end.shared, end.states).reshape(-1, 1))
+    begun, ended = (
+        float(residual.square().sum() + problem.expectation(points.shared)[0].square().sum())
+        for residual, points in ((white.residual, initial), (after, end))
+    )
+    if not ended <= begun:  # nor where it is not finite: what hardly tells a state sends it anywhere
         return outcome
     shared, states = end.shared[0], end.states[0]
     values = {name: float(value) for name, value in problem.unknowns.parameters(shared).items()}
@@ -49,8 +56,7 @@ def weighed(outcome: Outcome, evidence: Evidence) -> Outcome:
     return outcome if seen is None or seen.visible else efficient(outcome, seen.random)
 
 
-def _whitened(outcome: Outcome, random: Random) -> Prediction:
-    found, white = outcome.fitted.prediction, Whitener(random, outcome)
+def _whitened(found: Prediction, whiten: Whitener) -> Prediction:
     sensitivity, residual = found.sensitivity, found.residual
-    columns = white(sensitivity[0].flatten(0, 1)).reshape(sensitivity.shape)
-    return replace(found, sensitivity=columns, residual=white(residual.reshape(-1, 1)).reshape(residual.shape))
+    columns = whiten(sensitivity[0].flatten(0, 1)).reshape(sensitivity.shape)
+    return replace(found, sensitivity=columns, residual=whiten(residual.reshape(-1, 1)).reshape(residual.shape))
