@@ -125,7 +125,6 @@ def test_a_step_that_leaves_more_is_not_taken():
     plain, evidence = fitted(pushed(np.random.default_rng(7)))
     random = assessed(plain, [], evidence).random
     assert efficient(plain, random) is not plain
-    prediction = plain.fitted.prediction  # a state that hardly shows is sent anywhere, against what it really does
-    wrong = replace(prediction, sensitivity=prediction.sensitivity * torch.tensor([1.0, 1.0, 1.0, -1e-4]))
+    wrong = replace(plain.fitted.prediction, sensitivity=-plain.fitted.prediction.sensitivity)  # uphill
     astray = replace(plain, fitted=replace(plain.fitted, prediction=wrong))
     assert efficient(astray, random) is astray
