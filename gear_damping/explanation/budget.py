@@ -8,6 +8,7 @@ from time import monotonic
 
 SEARCH_SHARE = 0.85  # of the time; the rest is for what is under way, for opening held-out records,
 LAST_SHARE = 0.97  # and for seeing whether what was found is what it seems
+SCORED_SHARE = 0.92  # of it: no effect is scored later, as what scores are for took 5 to 8 % of five slow minutes
 MORE = 4  # times the minutes that were too few: the next try should not be too short too
 MOST_KEPT = 0.5  # of the time, for the last looks, however long they take: the other half is for trying causes
 LOOKS_LEFT = 2.5  # after the search: beside the last cause, once more where one is dropped, and half a one to spare
@@ -47,6 +48,13 @@ class Budget:
     def all_spent(self) -> bool:
         """Whether that which is kept for what comes last is over too."""
         return self._is_over(LAST_SHARE)
+
+    def refuses_score(self, name: str) -> bool:
+        """Whether there is no time to score an effect beside the present model, which is then noted."""
+        refused = self._is_over(SCORED_SHARE)
+        if refused and name not in self.not_tried:
+            self.not_tried.append(name)
+        return refused
 
     @contextmanager
     def looking(self) -> Iterator[None]:

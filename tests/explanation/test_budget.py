@@ -41,6 +41,15 @@ def test_what_comes_last_has_time_when_the_search_is_over():
         assert made.all_spent is is_over
 
 
+def test_effects_are_scored_until_what_scores_are_for_needs_the_time():
+    clock = Clock()
+    made = Budget(5.0, clock)
+    for second, is_over in ((260.0, False), (274.0, False), (278.0, True), (279.0, True)):
+        clock.now = second
+        assert made.refuses_score("tooth_crack") is is_over
+    assert made.not_tried == ["tooth_crack"]
+
+
 def test_the_first_cause_is_tried_in_the_time_that_is_kept_too():
     clock = Clock()
     made = Budget(5.0, clock)

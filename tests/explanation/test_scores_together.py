@@ -50,3 +50,17 @@ def test_together_they_score_as_alone(nominal, monkeypatch):
         other = alone[id(score.candidate)]
         assert score.gain == pytest.approx(other.gain, abs=1e-9)
         torch.testing.assert_close(score.start, other.start, rtol=1e-6, atol=1e-9)
+
+
+def test_effects_for_which_there_is_no_time_are_not_scored(nominal):
+    outcome, evidence = nominal
+    tried = [c for c in candidates_for(outcome.hypothesis, evidence) if c.name in ("torque_ripple", "sensor_offset")]
+    asked = []
+
+    def refuses(name):
+        asked.append(name)
+        return name == "torque_ripple"
+
+    found = ranking.scores(outcome, tried, 1e-7, ranking.Scoring(refuses=refuses))
+    assert set(asked) == {"torque_ripple", "sensor_offset"}
+    assert {score.candidate.name for score in found} == {"sensor_offset"}

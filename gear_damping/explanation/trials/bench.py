@@ -18,7 +18,7 @@ from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.statistics.paired import confirmation, paired_gain
 from gear_damping.explanation.trials.assess import Assessment, assessed
 from gear_damping.explanation.trials.refit import Refit, block_samples, chosen, compared, refitted
-from gear_damping.explanation.trials.score import Score, contains, scores
+from gear_damping.explanation.trials.score import Score, Scoring, contains, scores
 from gear_damping.identification.output_error.least_squares import Rounds
 from gear_damping.identification.output_error.records import FreeParameter
 from gear_damping.identification.output_error.uncertainty import QUANTILE
@@ -83,7 +83,8 @@ class Bench:
         residuals = list(zip(self.evidence.fitted, outcome.fit_residuals, strict=True))
         tried = candidates_for(outcome.hypothesis, self.evidence, residuals)
         tried = tried if names is None else [candidate for candidate in tried if candidate.name in names]
-        return scores(outcome, tried, self.noise.value, self.solver, self.settings.taken_by_all)
+        scoring = Scoring(self.solver, self.settings.taken_by_all, self.budget.refuses_score)
+        return scores(outcome, tried, self.noise.value, scoring)
 
     def noise_cost(self, outcome: Outcome) -> float:
         """Sum of squares that noise alone leaves of the fitted records."""

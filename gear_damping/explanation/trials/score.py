@@ -1,6 +1,6 @@
 """Step 5b: what each candidate could explain, by its sensitivity with the nuisance projected out (score test)."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import inf
 
@@ -101,29 +101,38 @@ class Base:
     solver: Solver | None
 
 
-def scores(
-    outcome: Outcome,
-    candidates: Sequence[Candidate],
-    noise: float,
-    solver: Solver | None = None,
-    enough: float = inf,
-) -> list[Score]:
-    """Every candidate's score, the most promising first.
+@dataclass(frozen=True)
+class Scoring:
+    """How candidates are scored.
 
-    Those of many columns, as of an error of every tooth, are left out where another promises `enough` of the residual's
-    energy: what that leaves is asked about in the next round, by all of them.
+    Args:
+        solver: Settings of the solver.
+        enough: Share of the residual's energy; where one candidate promises it, those of many columns, as of an error
+            of every tooth, are left out: what that leaves is asked about in the next round, by all of them.
+        refuses: Whether there is no time for an effect.
     """
+
+    solver: Solver | None = None
+    enough: float = inf
+    refuses: Callable[[str], bool] = lambda name: False
+
+
+def scores(
+    outcome: Outcome, candidates: Sequence[Candidate], noise: float, scoring: Scoring = Scoring()
+) -> list[Score]:
+    """Every candidate's score, the most promising first."""
     if not bool(outcome.fitted.prediction.sensitivity.isfinite().all()):
         return []  # beside a model that runs away nothing can be told
     project, residual = projected(outcome)
     orthogonal, residual = project(residual)[:, 0], residual[:, 0]
-    base = Base(outcome, project, residual, orthogonal, _predicted(outcome), noise, solver)
+    base = Base(outcome, project, residual, orthogonal, _predicted(outcome), noise, scoring.solver)
     found: list[Score] = []
     groups = sorted(_alike(candidates, len(residual)), key=_is_wide)
     hypotheses = [group[0].hypothesis for group in groups]
-    prepare_predictions([(h.model, h.given) for h in hypotheses], outcome.problem.records, solver)
+    prepare_predictions([(h.model, h.given) for h in hypotheses], outcome.problem.records, scoring.solver)
     for group in groups:
-        if max((score.gain for score in found), default=0.0) < enough or not _is_wide(group):
+        is_spared = max((score.gain for score in found), default=0.0) >= scoring.enough and _is_wide(group)
+        if not is_spared and not scoring.refuses(group[0].name):
             found += _score_together(group, base)
     return with_other_sizes(sorted(found, key=lambda score: -score.gain))
 
