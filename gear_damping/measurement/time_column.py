@@ -62,6 +62,8 @@ class _Column(Protocol):
 def find_stamps(columns: Sequence[_Column], untimed: bool = False) -> Stamps | None:
     """The column that advances and bears the unit or the name of time, else a first one that advances evenly.
 
+    Else the one without a name that goes like a clock.
+
     Args:
         columns: Those of the file.
         untimed: Whether nothing else says the time, so that a first one of any name that rises evenly may be it.
@@ -72,11 +74,15 @@ def find_stamps(columns: Sequence[_Column], untimed: bool = False) -> Stamps | N
             if says:
                 unit, guessed = _unit(column)
                 return Stamps(index, unit, guessed, says)
-    telling = (k for k, one in enumerate(columns) if one.inside.size >= _FEWEST and not counts_rows(one.inside))
-    first = next(telling, None) if untimed else None
-    if first is None or not _rises(columns[first]):
+    telling = [k for k, one in enumerate(columns) if one.inside.size >= _FEWEST and not counts_rows(one.inside)]
+    if not untimed or not telling:
         return None
-    return Stamps(first, *_unit(columns[first]), "is the first column and rises in nearly even steps")
+    if _rises(columns[telling[0]]):
+        return Stamps(telling[0], *_unit(columns[telling[0]]), "is the first column and rises in nearly even steps")
+    steady = [k for k in telling if _goes_like_a_clock(columns[k])]
+    if len(steady) != 1:
+        return None
+    return Stamps(steady[0], *_unit(columns[steady[0]]), "goes on by the same whole number in nearly all rows")
 
 
 def stamped_rate(unit: str, values: NDArray[np.float64]) -> float | None:
@@ -120,6 +126,17 @@ def _rises(column: _Column) -> bool:
     median = float(np.median(steps))
     nearly = median > 0 and np.mean(np.abs(steps / median - 1) < _NEARLY) > _ADVANCING
     return bool(nearly and steps.min() > 0 and not np.all(values == np.round(values)))
+
+
+def _goes_like_a_clock(column: _Column) -> bool:
+    """Whether a column without a name or unit goes on by one whole number, as no count of a shaft that moves does."""
+    values = column.inside
+    if column.unit is not None or (isinstance(column.reference, str) and column.reference.strip()):
+        return False
+    steps = np.diff(values)
+    median = float(np.median(steps))
+    whole = bool(np.all(values == np.round(values)))
+    return bool(whole and median > 0 and steps.min() >= 0 and np.mean(steps == median) > _ADVANCING)
 
 
 def _is_even(column: _Column) -> bool:

@@ -58,6 +58,25 @@ def test_stamps_of_a_camera_need_no_name(tmp_path, rate):
     assert found.rate == pytest.approx(rate, rel=1e-3)
 
 
+def _logged(folder, *columns):
+    """A log without a header."""
+    rows = (" ".join(f"{value:g}" for value in row) for row in zip(*columns, strict=True))
+    (folder / "log.txt").write_text("\n".join(rows) + "\n")
+    return inspect_table(read_table(folder / "log.txt"))
+
+
+def test_stamps_without_a_name_in_any_column_go_on_by_one_whole_number(tmp_path):
+    count = np.arange(400)
+    falling, stamps = 900 * np.exp(-count / 150), 21527 + 20 * count + 20 * (count > 300)  # of which one row is lost
+    found = _logged(tmp_path, falling, stamps)
+    assert found.time.says == "goes on by the same whole number in nearly all rows"
+    assert (found.time.index, found.time.unit, bool(found.time.guessed)) == (1, "ms", True)
+    assert found.rate == pytest.approx(50, rel=0.01)
+    turning = np.round(np.cumsum(20 + 3 * np.sin(count / 9)))  # counts of a shaft
+    assert _logged(tmp_path, falling, turning).time is None
+    assert _logged(tmp_path, falling, stamps, stamps).time is None  # either
+
+
 def test_what_rises_evenly_and_may_be_something_else_is_no_time(tmp_path):
     times = np.arange(300) / 30
     for name, values in (("theta", 3 * times), ("speed", 7 * times), ("x", np.round(100 * times)), ("x", times % 5)):
