@@ -28,6 +28,7 @@ from gear_damping.tasks.simulated import plan_of, run_set_of
 PAGE = Path(__file__).parents[1] / "docs" / "limit.md"
 BEFORE, AFTER = "<!-- measured by `make window` -->", "<!-- end of one window -->"
 NETWORKS = ("raw_lstm", "cwt_lstm")
+TRAINING = ("training.max_epochs=40", "training.learning_rate=1e-3", "training.schedule=constant")
 SNRS = (30, 20, 10, 1)  # dB
 ASKED = 4000  # windows of unseen runs
 
@@ -59,7 +60,7 @@ def _kept(snr: int, seed: int, out: Path) -> dict[str, Any]:
 
 def measured(snr: int, seed: int, folder: Path) -> dict[str, Any]:
     """Root mean square errors of everybody on the same windows, %."""
-    words = ["experiment=baseline", "family=paper", "protocol=by_run", "training.max_epochs=40", f"seed={seed}"]
+    words = ["experiment=baseline", "family=paper", "protocol=by_run", *TRAINING, f"seed={seed}"]
     settings: Settings = read_settings(*composed(words))
     plan = plan_of(settings)
     runs, protocol = run_set_of(run_plan(plan), plan), Protocol(**settings.protocol)

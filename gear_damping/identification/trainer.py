@@ -58,8 +58,8 @@ class Training:
     max_epochs: int = 32
     batch_size: int = 256
     patience: int = 8
-    learning_rate: float = 1e-3
-    schedule: str = CONSTANT
+    learning_rate: float = 3e-3
+    schedule: str = COSINE
     gradient_clip: float | None = None
     noise_snr_db: tuple[float, float] | None = None
     devices: int = 1
@@ -73,7 +73,7 @@ class Training:
 
 
 # The budget of Yousfi et al. (2026), section 2.3.
-PAPER_TRAINING = Training(max_epochs=200, batch_size=32, patience=20)
+PAPER_TRAINING = Training(max_epochs=200, batch_size=32, patience=20, learning_rate=1e-3, schedule=CONSTANT)
 
 
 @dataclass(frozen=True)

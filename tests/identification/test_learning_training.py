@@ -26,7 +26,7 @@ from gear_damping.identification.windows import gather_windows
 RICKER = {"kind": "ricker", "frequency_min_hz": 20.0, "frequency_max_hz": 240.0, "n_scales": 4}
 RAW = replace(RAW_LSTM, settings={"hidden_size": 8})
 CWT = replace(CWT_LSTM, settings={"hidden_size": 8}, wavelet=RICKER)
-TRAINING = Training(max_epochs=4, batch_size=64, learning_rate=0.02)
+TRAINING = Training(max_epochs=4, batch_size=64, learning_rate=0.02, schedule="constant")
 SMALL = replace(BY_RUN, windows_per_epoch=640)
 
 
