@@ -9,6 +9,7 @@ from matplotlib.ticker import LogLocator, NullLocator
 from gear_damping.reporting.style import BLUE, INK, PALE, RED, legend_above, mark_empty, new_figure, styled
 
 MOST_FINE_RANGE = 2000.0  # of an axis with 1, 2, 5 in every decade
+MARKER = 0.02  # of the axis: more than half a marker, which is drawn whole at its ends
 
 
 def misfit_figure(records: Mapping[str, Mapping[str, float | None]], *, floor: float = 1.0) -> Figure:
@@ -35,7 +36,9 @@ def misfit_figure(records: Mapping[str, Mapping[str, float | None]], *, floor: f
         axes.axvline(floor, color=INK, linestyle="--", linewidth=1.0, label="floor: noise alone")
         axes.set_yticks(places, labels=names)
         known = np.array([floor, *before, *after])
-        limits = (0.85 * np.nanmin(known), max(1.15 * np.nanmax(known), 2.2 * floor))
+        least, most = np.nanmin(known), np.nanmax(known)
+        room = max(1.15, (most / least) ** MARKER)
+        limits = (least / room, max(most * room, 2.2 * floor))
         axes.set(xscale="log", xlim=limits, ylim=(len(names) - 0.5, -0.5))
         wide = limits[1] / limits[0] > MOST_FINE_RANGE
         axes.xaxis.set_major_locator(LogLocator() if wide else LogLocator(subs=(1, 2, 5)))
