@@ -167,18 +167,27 @@ def test_what_has_a_shaft_is_tried_on_both():
 
 @pytest.mark.parametrize("teeth", RIGS)
 def test_what_no_machine_has_is_not_tried(teeth):
-    """A shaft that twists by a radian and more under any load, a pinion of a hundred masses of the mesh."""
+    """A shaft that any load twists by a radian, with hardly a hub on it, or damped as no rubber coupling; a pinion of a
+    hundred masses of the mesh, or of half of one.
+    """
     base, evidence = gear_pair(teeth)
-    values = base.model.prepare(base.model.values(1, **base.given))
+    stated = base.model.values(1, **base.given)
+    values = base.model.prepare(stated)
     stiffness, mass = float(values.derived["mean_stiffness"][0]), float(values.derived["equivalent_mass"][0])
     for candidate in of("shaft_torsion", base, evidence):
         own = next(p for p in candidate.hypothesis.free if p.name == "shaft_torsion.stiffness")
         radius = float(values.derived[f"base_radius_{dict(candidate.options)['shaft']}"][0])
         assert own.lower == pytest.approx(1e-4 * stiffness * radius**2)
         assert own.lower < own.start / 100
+        bounds = {p.name: (p.lower, p.upper) for p in candidate.hypothesis.free}
+        inertias = (float(stated[f"inertia_{shaft}"][0]) for shaft in ("pinion", "gear"))
+        radii = (float(values.derived[f"base_radius_{shaft}"][0]) for shaft in ("pinion", "gear"))
+        both = sum(i * (radius / r) ** 2 for i, r in zip(inertias, radii, strict=True))
+        assert bounds["shaft_torsion.motor_inertia"][0] == pytest.approx(0.1 * both)
+        assert bounds["shaft_torsion.damping_ratio"] == (0.0, 0.3)
     for candidate in of("bearing_flexibility", base, evidence):
         own = next(p for p in candidate.hypothesis.free if p.name == "bearing_flexibility.mass")
-        assert own.upper == pytest.approx(100 * mass)
+        assert (own.lower, own.upper) == (pytest.approx(0.5 * mass), pytest.approx(100 * mass))
         assert own.start < own.upper / 6
 
 
