@@ -10,6 +10,7 @@ from gear_damping.errors import InputError, Problem
 from gear_damping.explanation.answer.gain import damping_ratio, final_parameters, rmse
 from gear_damping.explanation.answer.unexplained import first_channel
 from gear_damping.explanation.casing.heard import is_casing
+from gear_damping.explanation.evidence.declared_units import radian_of
 from gear_damping.explanation.evidence.excess import excess
 from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.evidence.records import Evidence, evidence_of, with_own_angles
@@ -83,7 +84,7 @@ def own_fit(measurement: Measurement, model: Model, free: Sequence[str], log: Lo
     names = {model.damping_coefficient if name == DAMPING_RATIO else name for name in free}
     initial = {name: first[name] for name in names if name in first}
     motion = {name: first[name] for name in MOTION if name in first}
-    given = initial | motion | stated | model.given
+    given = initial | motion | _radians(model, evidence) | stated | model.given
     moved = free_parameters(model, given, free, stated, evidence.known.uncertainty)
     hypothesis = Hypothesis(model.system, model.effects, given, moved)
     solver, own = fitting_solver(solver), {}
@@ -96,6 +97,12 @@ def own_fit(measurement: Measurement, model: Model, free: Sequence[str], log: Lo
         remedy = "begin with values nearer to those of the rig, or free fewer parameters"
         raise InputError(Problem("model", rule, remedy=remedy, source=str(measurement.source)))
     return Fitted(evidence, noise, weighed(outcome, evidence))
+
+
+def _radians(model: Model, evidence: Evidence) -> dict[str, float]:
+    """What follows of a model's parameters from the unit of an angle that was recorded."""
+    radian = radian_of(evidence)
+    return {f"{effect.name}.{effect.radian}": radian for effect in model.effects if effect.radian and radian}
 
 
 def _refuse_casing(measurement: Measurement) -> None:

@@ -37,6 +37,7 @@ class Effect(Declared, ABC):
     requires: ClassVar[tuple[str, ...]] = ()  # names of effects that must be there too
     cause: ClassVar[Cause | None] = None  # what `task=explain` tries and says of it; None: it is no candidate
     mean_free: ClassVar[tuple[str, ...]] = ()  # lists of which only the differences act: their mean is taken as 0
+    radian: ClassVar[str] = ""  # parameter that is one radian in the unit of the response, where that is an angle
     refinement: ClassVar[float] = 1.0  # of the steps, where the force bends too sharply for them; measured
 
     def __str__(self) -> str:

@@ -46,3 +46,23 @@ def test_what_runs_away_is_said(decay):
     )
     with pytest.raises(InputError, match="runs away when it is simulated"):
         gd.identify(decay, model, free=[*FREE, "cubic_stiffness.coefficient"])
+
+
+def test_a_pendulum_in_degrees_is_one_in_radians(tmp_path):
+    """The sine asks what a radian is in the unit of the response, which the record knows."""
+    time = np.arange(900) / 100
+
+    def rates(_, state):
+        return [state[1], -40.0 * np.sin(state[0]) - 0.2 * state[1]]
+
+    angle = np.degrees(solve_ivp(rates, (0, time[-1]), [1.5, 0.0], t_eval=time, rtol=1e-10, atol=1e-12).y[0])
+    angle += 0.05 * np.random.default_rng(2).normal(size=time.size)
+    np.savetxt(tmp_path / "a.csv", angle, header="a", comments="")
+    channels = {"sampling_rate": "100 Hz", "displacement": {"column": "a", "unit": "deg", "datum": "absolute"}}
+    declared = {"system": "oscillator", "records": [{"file": "a.csv", "channels": channels}]}
+    (tmp_path / "measurement.yaml").write_text(yaml.safe_dump(declared))
+    sine, damping = gd.SineRestoring(stiffness=38.0), gd.ViscousDamping(damping_coefficient=0.3)
+    model = gd.Model(gd.Oscillator(stiffness=0.0), [damping, sine])
+    found = gd.identify(gd.load(tmp_path / "measurement.yaml"), model).content["parameters"]
+    assert found["sine_restoring.stiffness"]["value"] == pytest.approx(40.0, rel=1e-3)
+    assert found["viscous_damping.damping_coefficient"]["value"] == pytest.approx(0.2, rel=0.02)

@@ -1,11 +1,12 @@
 """Units of a rig's parameters: SI where its mass is known, else per unit of mass, with the response's own unit."""
 
+from gear_damping.errors import InputError
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.measurement.record import Channel
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import Sensor
-from gear_damping.units import parse_unit
+from gear_damping.units import Dimension, parse_unit
 
 CYCLES = "Hz"  # and not 1/s, which would be read as rad/s
 DERIVATIVES = {"velocity": 1, "acceleration": 2}  # in time, of a displacement
@@ -43,6 +44,16 @@ def length_unit(channel: Channel) -> str:
     """The unit of the displacement, from that of whatever response was recorded."""
     length, seconds = _length(channel)
     return f"{length}*{_power('s', seconds)}" if seconds else length
+
+
+def radian_of(evidence: Evidence) -> float | None:
+    """One radian in the unit behind a response: of an angle, its rate or acceleration; None of any other."""
+    try:
+        found = parse_unit(length_unit(evidence.channel)) if evidence.channel else None
+    except InputError:
+        return None
+    rates = [Dimension(angle=1, time=-derivatives) for derivatives in range(3)]
+    return 1 / found.factor if found and found.dimension in rates else None
 
 
 def _length(channel: Channel) -> tuple[str, int]:

@@ -6,14 +6,12 @@ from math import ceil, floor, log, pi, sqrt
 import torch
 from torch import Tensor
 
-from gear_damping.errors import InputError
-from gear_damping.explanation.evidence.declared_units import length_unit
+from gear_damping.explanation.evidence.declared_units import radian_of
 from gear_damping.explanation.evidence.records import Evidence, all_stand
 from gear_damping.explanation.model.hypothesis import Hypothesis
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.physics.cause import Rig
 from gear_damping.physics.systems.traits import Trait
-from gear_damping.units import Dimension, parse_unit
 
 Residuals = Sequence[tuple[FitRecord, Tensor]]
 MESHES = 3  # orders are looked at up to so many mesh orders
@@ -49,7 +47,7 @@ def rig_of(base: Hypothesis, evidence: Evidence, residuals: Residuals | None = N
     common = {"system": base.system.name, "traits": base.system.traits, "values": values}
     common |= {"spring": base.system.spring, "inputs": inputs}
     if not base.system.has(Trait.SHAFTS):
-        radian = _radian(length_unit(evidence.channel)) if evidence.channel else None
+        radian = radian_of(evidence)
         natural = values["natural_frequency"] / (2 * pi)
         return Rig(radian=radian, frequencies=strongest_frequencies(residuals or (), natural), **common)
     values["contact_ratio"] = float(prepared.base["contact_ratio"][0])
@@ -203,17 +201,3 @@ def _harmonics(record: FitRecord, teeth: int, speed: float) -> int:
     angle = shaft_angle(record, speed)
     turns_per_sample = float((angle[-1] - angle[0]).abs()) / (2 * pi * max(len(angle) - 1, 1))
     return floor(0.5 / max(teeth * turns_per_sample, 1e-6))
-
-
-def _radian(unit: str) -> float | None:
-    """One radian in the unit of the displacement behind a response; None where that is no angle.
-
-    Args:
-        unit: Of the response: an angle, its rate or its acceleration.
-    """
-    try:
-        found = parse_unit(unit)
-    except InputError:
-        return None
-    rates = [Dimension(angle=1, time=-derivatives) for derivatives in range(3)]
-    return 1 / found.factor if found.dimension in rates else None

@@ -46,6 +46,7 @@ class SineRestoring(ElasticForce, SystemChange):
         Parameter("length", "m", 1.0, "l, one radian in the unit of the displacement", 1e-9, 1e9),
     )
     needs: ClassVar = (Trait.REST,)
+    radian: ClassVar = "length"
     cause: ClassVar = Cause(
         "the restoring force of a pendulum",
         _instead_of_a_spring,
