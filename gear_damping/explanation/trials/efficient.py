@@ -15,11 +15,13 @@ from gear_damping.identification.output_error.descent import SMALLEST_DAMPING
 from gear_damping.identification.output_error.problem import Prediction
 from gear_damping.identification.output_error.step import Points, moves, newton_step
 
+FAR_MORE = 2.0  # times the sum of squares: from one estimate to another it changes by a share of a few in all samples
+
 
 def efficient(outcome: Outcome, random: Random) -> Outcome:
     """The outcome one step on, with its linearisation made white; itself where what is random is white.
 
-    A step that does not leave less is not taken.
+    A step that leaves far more is not taken.
 
     Args:
         outcome: A fit that leaves nothing but what is random.
@@ -36,7 +38,7 @@ def efficient(outcome: Outcome, random: Random) -> Outcome:
         float(residual.square().sum() + problem.expectation(points.shared)[0].square().sum())
         for residual, points in ((white.residual, initial), (after, end))
     )
-    if not ended <= begun:  # nor where it is not finite: what hardly tells a state sends it anywhere
+    if not ended <= FAR_MORE * begun:  # nor what is not finite: what hardly tells a state sends it anywhere
         return outcome
     shared, states = end.shared[0], end.states[0]
     values = {name: float(value) for name, value in problem.unknowns.parameters(shared).items()}
