@@ -51,10 +51,7 @@ class Budget:
 
     def refuses_score(self, name: str) -> bool:
         """Whether there is no time to score an effect beside the present model, which is then noted."""
-        refused = self._is_over(SCORED_SHARE)
-        if refused and name not in self.not_tried:
-            self.not_tried.append(name)
-        return refused
+        return self._noted(name, self._is_over(SCORED_SHARE))
 
     @contextmanager
     def looking(self) -> Iterator[None]:
@@ -85,7 +82,9 @@ class Budget:
 
     def refuses(self, what: str, is_last: bool = False) -> bool:
         """Whether there is no time for it, which is then noted; for what comes last there is more."""
-        refused = self.all_spent if is_last else self.spent
+        return self._noted(what, self.all_spent if is_last else self.spent)
+
+    def _noted(self, what: str, refused: bool) -> bool:
         if refused and what not in self.not_tried:
             self.not_tried.append(what)
         return refused
