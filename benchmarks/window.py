@@ -12,6 +12,7 @@ from typing import Any
 
 import torch
 
+from benchmarks.limit.networks import OF_WINDOWS
 from benchmarks.marked import put
 from gear_damping.config.settings import Settings, read_settings
 from gear_damping.identification.datamodule import Material, WindowDataModule
@@ -20,7 +21,7 @@ from gear_damping.identification.known_model.known_runs import range_of
 from gear_damping.identification.lightning_module import EstimatorConfig
 from gear_damping.identification.noise import SensorNoise
 from gear_damping.identification.protocols import Protocol
-from gear_damping.identification.trainer import Place, Training, fit_estimator, predict_windows
+from gear_damping.identification.trainer import Place, fit_estimator, predict_windows
 from gear_damping.simulation.plan import run_plan
 from gear_damping.tasks.composed import composed
 from gear_damping.tasks.simulated import plan_of, run_set_of
@@ -28,7 +29,6 @@ from gear_damping.tasks.simulated import plan_of, run_set_of
 PAGE = Path(__file__).parents[1] / "docs" / "limit.md"
 BEFORE, AFTER = "<!-- measured by `make window` -->", "<!-- end of one window -->"
 NETWORKS = ("raw_lstm", "cwt_lstm")
-TRAINING = ("training.max_epochs=40", "training.learning_rate=1e-3", "training.schedule=constant")
 SNRS = (30, 20, 10, 1)  # dB
 ASKED = 4000  # windows of unseen runs
 
@@ -60,14 +60,14 @@ def _kept(snr: int, seed: int, out: Path) -> dict[str, Any]:
 
 def measured(snr: int, seed: int, folder: Path) -> dict[str, Any]:
     """Root mean square errors of everybody on the same windows, %."""
-    words = ["experiment=baseline", "family=paper", "protocol=by_run", *TRAINING, f"seed={seed}"]
+    words = ["experiment=baseline", "family=paper", "protocol=by_run", f"seed={seed}"]
     settings: Settings = read_settings(*composed(words))
     plan = plan_of(settings)
     runs, protocol = run_set_of(run_plan(plan), plan), Protocol(**settings.protocol)
     data = WindowDataModule(Material(runs, protocol, SensorNoise(float(snr))), seed=seed)
-    training, found = Training(**settings.training), {}
+    found = {}
     for name in NETWORKS:
-        fit = fit_estimator(EstimatorConfig(name), data, training, Place(folder / name), seed=seed)
+        fit = fit_estimator(EstimatorConfig(name), data, OF_WINDOWS, Place(folder / name), seed=seed)
         true, said = predict_windows(fit.estimator, data.test_dataloader())
         found[name] = _rms(said[:ASKED], true[:ASKED])
     batches = list(data.test_dataloader())

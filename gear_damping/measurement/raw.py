@@ -102,7 +102,8 @@ class RawReader:
             self.stop = n
             rule, remedy = f"{self.table.path.name} has {n} rows", f"end the slice at {n} or before"
             raise InputError(Problem(f"{self.plan.key}.slice", rule, list(self.plan.rows), remedy, self.source))
-        self.stop = self.stop or n - self._blank_at_the_end([column for column, _ in columns], n)
+        self.blank = 0 if self.stop else self._blank_at_the_end([column for column, _ in columns], n)
+        self.stop = self.stop or n - self.blank
         if self.plan.window:
             rows = window_rows(self._seconds(), self.plan.window, f"{self.plan.key}.window", self.source)
             self.first, self.stop = self.first + rows[0], self.first + rows[1]
@@ -120,19 +121,12 @@ class RawReader:
 
         A few in which the stamps alone go on count too.
         """
-        filled = [self._filled(column, n) for column in columns]
+        sound = (self._all(column, "") if self._size(column) is not None else np.zeros(0) for column in columns)
+        filled = [_filled(values[:n]) for values in sound]
         last = max(filled)
         own = max(filled[1:], default=last) if self.plan.timing.column is not None else last
         last = own if last - own <= MOST_MISSING * last else last
-        self.blank = n - last if last else 0
-        return self.blank
-
-    def _filled(self, column: str | int, n: int) -> int:
-        """How many of n rows there are up to the last that holds a number in a column."""
-        if self._size(column) is None:
-            return 0
-        places = np.flatnonzero(np.isfinite(self._all(column, "")[:n]))
-        return int(places[-1]) + 1 if places.size else 0
+        return n - last if last else 0
 
     def _said_of_blanks(self, base: TimeBase) -> TimeBase:
         """The time base, with a note of the rows that hold nothing."""
@@ -312,8 +306,7 @@ class RawReader:
     def unsliced(self, column: str | int, key: str) -> NDArray[np.float64]:
         """All finite values of a column, without the empty rows behind a slower one."""
         values = self._all(column, key)
-        filled = np.flatnonzero(np.isfinite(values))
-        values = values[: filled[-1] + 1] if filled.size else values
+        values = values[: _filled(values) or None]
         self._refuse_cells(column, key, 0, values.size)
         refuse_not_finite(values, self._named(key, column), self.file)
         return values
@@ -329,6 +322,12 @@ class RawReader:
             rule = f"{base.time.size} time stamps for {n} samples"
             raise InputError(Problem(key, rule, None, "name the stamps of this very channel", self.file))
         return base
+
+
+def _filled(values: NDArray[np.float64]) -> int:
+    """How many of (n,) values there are up to the last that is a number."""
+    places = np.flatnonzero(np.isfinite(values))
+    return int(places[-1]) + 1 if places.size else 0
 
 
 def _leading(true: NDArray[np.bool_]) -> int:

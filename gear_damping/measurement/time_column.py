@@ -104,7 +104,7 @@ def _by_name(index: int, column: _Column) -> str:
 
 
 def _by_steps(index: int, column: _Column) -> str:
-    name = column.reference.strip() if isinstance(column.reference, str) else ""
+    name = _named(column)
     if column.unit is not None or (name and not _FIRST.search(name)) or (index and not name):
         return ""
     if index:
@@ -131,7 +131,7 @@ def _rises(column: _Column) -> bool:
 def _goes_like_a_clock(column: _Column) -> bool:
     """Whether a column without a name or unit goes on by one whole number, as no count of a shaft that moves does."""
     values = column.inside
-    if column.unit is not None or (isinstance(column.reference, str) and column.reference.strip()):
+    if column.unit is not None or _named(column):
         return False
     steps = np.diff(values)
     median = float(np.median(steps))
@@ -162,6 +162,11 @@ def _advances(column: _Column) -> bool:
     """Whether it goes on; stamps of data that came in bursts repeat, and never go back."""
     steps = np.diff(column.inside)
     return bool(np.mean(steps > 0) > _ADVANCING or (steps.min() >= 0 and np.count_nonzero(steps) >= _FEWEST))
+
+
+def _named(column: _Column) -> str:
+    """The name of a column; empty where it has but a number."""
+    return column.reference.strip() if isinstance(column.reference, str) else ""
 
 
 def _bare(reference: str | int) -> str:

@@ -14,6 +14,7 @@ from gear_damping.explanation.trials.assess import assessed
 from gear_damping.explanation.trials.efficient import efficient
 from gear_damping.identification.observation import Known
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
+from gear_damping.identification.output_error.step import Points
 from gear_damping.physics.effects.viscous_damping import ViscousDamping
 from gear_damping.physics.systems.oscillator import Oscillator
 
@@ -121,10 +122,13 @@ def test_one_step_on_whitened_residuals_is_as_good_as_the_whole_covariance():
     assert 0.7 < size((better[:, 0] - true) / better[:, 1]) < 1.4  # of 30: three deviations of their mean square
 
 
-def test_a_step_that_leaves_far_more_is_not_taken():
+def test_a_step_that_leaves_far_more_is_not_taken(monkeypatch):
     plain, evidence = fitted(pushed(np.random.default_rng(7)))
     random = assessed(plain, [], evidence).random
     assert efficient(plain, random) is not plain
     wrong = replace(plain.fitted.prediction, sensitivity=-1e-2 * plain.fitted.prediction.sensitivity)  # uphill, and far
     astray = replace(plain, fitted=replace(plain.fitted, prediction=wrong))
     assert efficient(astray, random) is astray
+    nowhere = Points(torch.full((1, 2), math.nan, dtype=torch.float64), plain.fitted.states.unsqueeze(0))
+    monkeypatch.setattr("gear_damping.explanation.trials.efficient.newton_step", lambda *args: nowhere)
+    assert efficient(plain, random) is plain

@@ -20,6 +20,7 @@ from gear_damping.measurement.formats.table import Table, is_real, refuse_size, 
 
 SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".gz")
 
+_DELIMITERS = (";", "\t", "|", ",")  # in the order in which they are taken for it; blanks where none stands
 _HEAD = 100  # rows among which the header is looked for
 _PREAMBLE, _BELOW = 20, 20  # rows that may be settings; rows of the table below them, at least
 _NAN = ("nan", "NaN", "NAN", "Nan", "-nan", "+nan")
@@ -67,10 +68,10 @@ class _Text:
         self.path = path
         self.utf8 = _utf8(path, raw)
         ending = self.utf8[-(2**16) :].decode("utf-8", "replace").splitlines()
-        kept = [line for line in ending if line.strip(" \t;|,\r") and not _IS_COMMENT.match(line)]
+        kept = [line for line in ending if line.strip(" \r" + "".join(_DELIMITERS)) and not _IS_COMMENT.match(line)]
         last = next((line for line in reversed(kept) if _NUMBER.search(line)), kept[-1] if kept else "")
         # Headers hold all kinds of signs, numbers only one.
-        self.delimiter = next((sign for sign in (";", "\t", "|", ",") if sign in last), " ")
+        self.delimiter = next((sign for sign in _DELIMITERS if sign in last), " ")
         self.width = max((k + 1 for k, cell in enumerate(next(self._cells([last]), [])) if cell.strip()), default=0)
 
     def open(self) -> io.TextIOWrapper:
