@@ -33,14 +33,12 @@ def efficient(outcome: Outcome, random: Random) -> Outcome:
     white = _whitened(fitted.prediction, whiten)
     initial = Points(fitted.shared.unsqueeze(0), fitted.states.unsqueeze(0))
     end = newton_step(problem, initial, white, fitted.shared.new_full((1,), SMALLEST_DAMPING))
-    if not bool(end.shared.isfinite().all()):
-        return outcome
     after = whiten(problem.residuals(end.shared, end.states).reshape(-1, 1))
     begun, ended = (
         float(residual.square().sum() + problem.expectation(points.shared)[0].square().sum())
         for residual, points in ((white.residual, initial), (after, end))
     )
-    if not ended <= FAR_MORE * begun:  # nor what runs away: what hardly tells a state sends it anywhere
+    if not ended <= FAR_MORE * begun:  # nor what is not finite: what hardly tells a state sends it anywhere
         return outcome
     shared, states = end.shared[0], end.states[0]
     values = {name: float(value) for name, value in problem.unknowns.parameters(shared).items()}
