@@ -59,3 +59,15 @@ def test_more_columns_of_the_records_own_are_taken_out_too(drawn, count):
     assert taken == pytest.approx(float(project(signal).square().sum()) - float((expected**2).sum()))
     assert float(project.with_nuisance(more)(alone).norm()) < 1e-12 < float(project(alone).norm())
     assert project.with_nuisance(more[..., :0]) is project
+
+
+def test_what_single_records_have_is_projected_as_with_zeros_in_the_others(drawn):
+    sensitivity, _ = drawn
+    slope = torch.tensor([0.5, 0.0, 2.0, 0.0], dtype=torch.float64)
+    signals = torch.randn(2, RECORDS * TIME, generator=torch.Generator().manual_seed(6), dtype=torch.float64)
+    reach = torch.tensor([[1, 0, 1], [0, 1, 0]], dtype=torch.float64)  # two segments of one record, and another
+    found = Projector(sensitivity, torch.zeros(SHARED), slope).by_record(signals, reach).numpy()
+    split = np.einsum("nrt,mr->nmrt", signals.reshape(2, RECORDS, TIME).numpy(), reach.numpy()).reshape(4, -1)
+    padded, columns = np.pad(split.T, ((0, SHARED), (0, 0))), whole(sensitivity, slope)
+    expected = padded - columns @ np.linalg.lstsq(columns, padded, rcond=None)[0]
+    np.testing.assert_allclose(found, expected, atol=1e-12)

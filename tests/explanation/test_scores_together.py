@@ -64,3 +64,25 @@ def test_effects_for_which_there_is_no_time_are_not_scored(nominal):
     found = ranking.scores(outcome, tried, 1e-7, ranking.Scoring(refuses=refuses))
     assert set(asked) == {"torque_ripple", "sensor_offset"}
     assert {score.candidate.name for score in found} == {"sensor_offset"}
+
+
+@pytest.mark.parametrize("effect", ["pitch_error", "tooth_crack"])
+def test_teeth_without_numbers_are_not_simulated_again(nominal, monkeypatch, effect):
+    outcome, evidence = nominal
+    tried = [c for c in candidates_for(outcome.hypothesis, evidence) if c.name == effect]
+    apart = [c for c in tried if c.own_tooth]
+    members, original = [], ranking.OutputErrorProblem.predict
+
+    def predict(problem, shared, states, horizon=None):
+        members.append(len(shared))
+        return original(problem, shared, states, horizon)
+
+    monkeypatch.setattr(ranking.OutputErrorProblem, "predict", predict)
+    together = ranking.scores(outcome, tried, 1e-7)
+    assert apart and sum(members) == sum(len(c.strengths) for c in tried if not c.own_tooth)
+    alone = {id(score.candidate): score for score in ranking.scores(outcome, apart, 1e-7)}
+    assert sum(members) > sum(len(c.strengths) for c in tried if not c.own_tooth), "by themselves they are"
+    for score in (one for one in together if one.candidate.own_tooth):
+        other = alone[id(score.candidate)]
+        assert score.gain == pytest.approx(other.gain, abs=1e-9)
+        assert score.own == pytest.approx(other.own)

@@ -18,7 +18,7 @@ def test_of_no_columns_there_is_nothing():
 
 
 @pytest.mark.parametrize("dependent", [1.0, 1e-3, 1e-6, 0.0])
-@pytest.mark.parametrize("n", [1, 2, 7])
+@pytest.mark.parametrize("n", [1, 2, 7, 40])
 def test_it_is_that_of_the_general_one(n, dependent):
     given = columns(500, n, dependent)
     basis, sizes, turned = tall_svd(given)

@@ -69,6 +69,11 @@ class Candidate:
         return (*self.options, bool(self.own_phases or self.own_tooth))
 
     @property
+    def tells_teeth_apart(self) -> bool:
+        """Whether it is of single teeth, as an error of each."""
+        return self.hypothesis.effects[-1].cause.turns_with == "tooth"
+
+    @property
     def is_law(self) -> bool:
         """Whether it is a law of the restoring or of the damping force."""
         return isinstance(self.hypothesis.effects[-1], ElasticForce | DampingForce)

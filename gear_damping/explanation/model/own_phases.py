@@ -25,11 +25,10 @@ def turn_own_phases(points: Tensor, candidate: Candidate, problem: OutputErrorPr
                 points[2 * number + 1, place] = parameter.coordinate(torch.pi / 2)
 
 
-def by_record(columns: Tensor, problem: OutputErrorProblem) -> Tensor:
-    """Columns (n, samples) split into those of single records, (n * records, samples)."""
-    shaped = columns.unflatten(1, (len(problem.records), -1))
-    reach = torch.tensor([[float(r.record == name) for r in problem.records] for name in _record_names(problem)])
-    return (shaped.unsqueeze(1) * reach[None, :, :, None]).flatten(2).flatten(0, 1)
+def reach_of_records(problem: OutputErrorProblem) -> Tensor:
+    """(names, records): 1 where a record, or a segment of one, bears a name."""
+    of_name = [[float(record.record == name) for record in problem.records] for name in _record_names(problem)]
+    return torch.tensor(of_name, dtype=torch.float64)
 
 
 def start_by_record(

@@ -32,7 +32,8 @@ def one_tooth(columns: Tensor, residual: Tensor, records: int) -> Teeth:
         residual: What is to be explained, (samples,).
         records: How many.
     """
-    parts, gram, pull = _products(columns, residual, records)
+    parts, pull = _apart(columns, residual, records)
+    gram = (columns.T @ columns).unflatten(1, (-1, records)).unflatten(0, (-1, records))
     each = torch.arange(records)
     sizes = gram.diagonal(dim1=0, dim2=2).diagonal(dim1=0, dim2=1)  # (teeth, records)
     found = _taken(pull, sizes).argmax(0)
@@ -53,8 +54,8 @@ def every_tooth(columns: Tensor, residual: Tensor, records: int) -> Teeth:
 
     Arguments as in `one_tooth`. Records are joined one after another, the one that says most first.
     """
-    parts, gram, pull = _products(columns, residual, records)
-    own = torch.stack([gram[:, r, :, r] for r in range(records)])
+    parts, pull = _apart(columns, residual, records)
+    own = torch.stack([parts[:, :, r].T @ parts[:, :, r] for r in range(records)])
     order = own.diagonal(dim1=1, dim2=2).sum(1).argsort(descending=True).tolist()
     turns = {order[0]: 0}
     for record in [*order[1:], *(PASSES * order[1:])]:
@@ -66,10 +67,9 @@ def every_tooth(columns: Tensor, residual: Tensor, records: int) -> Teeth:
     return Teeth([turns[r] for r in range(records)], _solved(column.T @ column, column.T @ residual), column)
 
 
-def _products(columns: Tensor, residual: Tensor, records: int) -> tuple[Tensor, Tensor, Tensor]:
-    parts = columns.unflatten(1, (-1, records))
-    gram = (columns.T @ columns).unflatten(1, (-1, records)).unflatten(0, (-1, records))
-    return parts, gram, (columns.T @ residual).unflatten(0, (-1, records))
+def _apart(columns: Tensor, residual: Tensor, records: int) -> tuple[Tensor, Tensor]:
+    """The columns by record, (samples, teeth, records), and what each has in common with the residual."""
+    return columns.unflatten(1, (-1, records)), (columns.T @ residual).unflatten(0, (-1, records))
 
 
 def _taken(pull: Tensor, size: Tensor) -> Tensor:

@@ -38,6 +38,23 @@ class Projector:
         orthogonal = torch.cat([project_out(rows, self.own).flatten(0, 1), signal[samples:]])
         return orthogonal - self.basis @ (self.basis.T @ orthogonal)
 
+    def by_record(self, signals: Tensor, reach: Tensor) -> Tensor:
+        """Signals (n, samples) split into those of single records and projected, (samples + n, n * names).
+
+        Nothing but a record's own samples is worked through for its part.
+
+        Args:
+            signals: Of all records one after another.
+            reach: (names, records), 1 where a row of sensitivities is of the record of that name.
+        """
+        records, time = self.own.shape[:2]
+        own = project_out(signals.unflatten(1, (records, time)).permute(1, 2, 0), self.own)
+        shared = self.basis[: records * time].unflatten(0, (records, time))
+        taken = torch.einsum("rkn,mr->knm", shared.transpose(1, 2) @ own, reach)
+        split = (own.unsqueeze(-1) * reach.T[:, None, None]).reshape(records * time, -1)
+        split = torch.nn.functional.pad(split, (0, 0, 0, len(self.slope)))
+        return torch.addmm(split, self.basis, taken.flatten(1), alpha=-1)
+
     @property
     def nuisance(self) -> Tensor:
         """Orthonormal columns of everything that is projected out, (samples + n, m)."""

@@ -16,6 +16,7 @@ from gear_damping.physics.effects.backlash import Backlash
 from gear_damping.physics.systems.traits import Trait
 
 SHAPE_IN_PHASE = f"{SHAPE}.in_phase["  # one of every harmonic
+LEAST_OF_TEETH = 0.1  # of the largest gain: with less, an effect of single teeth is not the first to be named
 FAR = 10.0  # times the cost of the best fit: a law that leaves so much more has not converged where it could
 
 
@@ -121,7 +122,19 @@ def _unshaped(state: State) -> tuple[Outcome, Sequence[Score]] | None:
     if bench.budget.refuses("effects from before the shape of the stiffness was fitted"):
         return None
     outcome = shaped(bench.rough, bench.evidence, 0, bench.solver)
-    return outcome, bench.ranked(outcome)
+    return outcome, bench.ranked(outcome, _hidden_by_shape(state.first_scores))
+
+
+def _hidden_by_shape(scores: Sequence[Score]) -> set[str]:
+    """Effects of which a shape that has bent may have taken something, so that their scores beside it say too little.
+
+    What tells teeth apart has orders of a shaft, and the shape but those of the mesh: their scores stand, and those
+    that promise little need not be found anew, which for a hundred teeth takes most of the time.
+    """
+    best = best_by_effect(scores)
+    most = max((score.gain for score in scores), default=0.0)
+    stand = {n for n, one in best.items() if one.candidate.tells_teeth_apart and one.gain < LEAST_OF_TEETH * most}
+    return set(best) - stand
 
 
 def _converged_rivals(fits: Sequence[Refit], state: State) -> tuple[Refit, ...]:

@@ -11,7 +11,7 @@ from gear_damping.explanation.model.candidates import Candidate
 from gear_damping.explanation.model.fitting import initial_states_from, own_from
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.own_phases import (
-    by_record,
+    reach_of_records,
     start_by_record,
     start_of_teeth,
     teeth_of,
@@ -90,6 +90,7 @@ class Base:
         predicted: What it predicts of them, (samples,).
         noise: Standard deviation of the noise.
         solver: Settings of the solver.
+        kept: What effects that tell teeth apart would predict, by what was simulated.
     """
 
     outcome: Outcome
@@ -99,6 +100,7 @@ class Base:
     predicted: Tensor
     noise: float
     solver: Solver | None
+    kept: dict[tuple[object, ...], Tensor] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -198,17 +200,47 @@ def _score_together(group: Sequence[Candidate], base: Base) -> list[Score]:
     for candidate, rows in zip(group, points.split(counts), strict=True):
         turn_own_phases(rows, candidate, problem)
     states = initial_states_from(problem, base.outcome, len(points))
-    found = (problem.predict(points, states) * problem.response.weights).reshape(len(points), -1)
+    found = _found(group[0], problem, points, states, base)
     columns = (found - base.predicted) / torch.cat([steps for _, steps in probes]).unsqueeze(1)
-    apart = bool(group[0].own_phases or group[0].own_tooth)
-    parts = [by_record(c, problem) if apart else c for c in columns.split(counts)]
-    columns = torch.nn.functional.pad(torch.cat(parts), (0, len(base.project.expected))).T
-    orthogonal = base.project(columns)
-    # What the nuisance takes but for rounding is nothing of its own.
-    own = orthogonal.norm(dim=0) > 1e-6 * columns.norm(dim=0).clamp(min=1e-300)
-    orthogonal = torch.where(own | ~columns.isfinite().all(0), orthogonal, torch.zeros_like(orthogonal))
-    split = orthogonal.split([len(part) for part in parts], 1)
+    orthogonal = _projected(columns, reach_of_records(problem) if _is_apart(group[0]) else None, base.project)
+    split = orthogonal.split([count * orthogonal.shape[1] // len(points) for count in counts], 1)
     return [_score(one, part, problem, states[:1], base) for one, part in zip(group, split, strict=True)]
+
+
+def _found(candidate: Candidate, problem: OutputErrorProblem, points: Tensor, states: Tensor, base: Base) -> Tensor:
+    """What is predicted at some points, (points, samples).
+
+    Teeth whose numbers no index tells are simulated as those with numbers are, so what is known of these is kept.
+    """
+    if not candidate.tells_teeth_apart:
+        return (problem.predict(points, states) * problem.response.weights).reshape(len(points), -1)
+    values = problem.unknowns.by_record(points)
+    for name, value in candidate.hypothesis.given.items():
+        if not isinstance(value, tuple) and name not in values:
+            values[name] = points.new_full((len(points), len(problem.records)), float(value))
+    numbers = torch.stack([values[name] for name in sorted(values)]).float().numpy().tobytes()  # but for rounding
+    key = (candidate.name, candidate.options, *sorted(values), numbers, states.numpy().tobytes())
+    if key not in base.kept:
+        base.kept[key] = (problem.predict(points, states) * problem.response.weights).reshape(len(points), -1)
+    return base.kept[key]
+
+
+def _is_apart(candidate: Candidate) -> bool:
+    """Whether what it changes in one record says nothing of another: each has its own phase."""
+    return bool(candidate.own_phases or candidate.own_tooth)
+
+
+def _projected(columns: Tensor, reach: Tensor | None, project: Projector) -> Tensor:
+    """Columns (n, samples) with the nuisance projected out, (samples + n, columns), those of single records apart."""
+    if reach is None:
+        padded = torch.nn.functional.pad(columns, (0, len(project.expected))).T
+        orthogonal, sizes = project(padded), columns.norm(dim=1)
+    else:
+        orthogonal = project.by_record(columns, reach)
+        sizes = (columns.unflatten(1, (reach.shape[1], -1)).square().sum(-1) @ reach.T).sqrt().flatten()
+    # What the nuisance takes but for rounding is nothing of its own.
+    own = orthogonal.norm(dim=0) > 1e-6 * sizes.clamp(min=1e-300)
+    return orthogonal if bool(own.all()) else torch.where(own | ~sizes.isfinite(), orthogonal, 0.0)
 
 
 def _placed_at(rows: Tensor, candidate: Candidate, varied: Sequence[FreeParameter]) -> Tensor:
