@@ -79,7 +79,8 @@ def test_teeth_without_numbers_are_not_simulated_again(nominal, monkeypatch, eff
 
     monkeypatch.setattr(ranking.OutputErrorProblem, "predict", predict)
     together = ranking.scores(outcome, tried, 1e-7)
-    assert apart and sum(members) == sum(len(c.strengths) for c in tried if not c.own_tooth)
+    assert apart
+    assert sum(members) == sum(len(c.strengths) for c in tried if not c.own_tooth)
     alone = {id(score.candidate): score for score in ranking.scores(outcome, apart, 1e-7)}
     assert sum(members) > sum(len(c.strengths) for c in tried if not c.own_tooth), "by themselves they are"
     for score in (one for one in together if one.candidate.own_tooth):

@@ -11,7 +11,10 @@ from gear_damping.explanation import explain as module
 from gear_damping.explanation.evidence.useful_samples import at_useful_rate
 from gear_damping.explanation.steps.confirm import confirmed
 from gear_damping.measurement.load import load_measurement
+from gear_damping.physics.catalogue import builtin_effects
 
+# of each kind one or two, as every step of a search asks for
+EFFECTS = ("pinion_eccentricity", "gear_eccentricity", "power_law_damping", "shaft_torsion", "sensor_gain")
 RECORDS, DURATION = (0, 3, 4, 6), 0.02  # of the full plan, the last one held out; s
 
 
@@ -30,7 +33,8 @@ def poisoned(record):
 
 def test_nothing_of_them_is_read_before_the_search_is_over(tmp_path):
     measurement = load_measurement(of_gears(tmp_path))
-    plain = module.explain(measurement)
+    library = {name: kind for name, kind in builtin_effects().items() if name in EFFECTS}
+    plain = module.explain(measurement, library=library)
     assert plain.content["causes"][0]["status"] == "established"
     whole = module.evidence_of(measurement)
     assert whole.holdout
@@ -45,5 +49,5 @@ def test_nothing_of_them_is_read_before_the_search_is_over(tmp_path):
         patch.object(module, "confirmed", opened),
         patch.object(module, "mesh_order_faults", lambda _: []),  # it looks whether the data are whole
     ):
-        blind = module.explain(measurement)
+        blind = module.explain(measurement, library=library)
     assert blind.content == plain.content

@@ -286,7 +286,8 @@ def _wave_of_gear_pair(evidence: Evidence, solver: Solver | None) -> Outcome:
 
 
 def _wave(hypothesis: Hypothesis, evidence: Evidence, rounds: Rounds, solver: Solver | None) -> Outcome:
-    """One fit, from the best angles of the mesh."""
+    """One fit of many, from the best angles of the mesh; by what is left out of it none of them is chosen."""
+    evidence = replace(evidence, holdout=())
     if evidence.has_index:
         initial, few = InitialValues(phase_starts(hypothesis)), replace(rounds, kept=ANGLES_KEPT)
         return fit_hypothesis(hypothesis, evidence, initial, few, solver=solver)

@@ -15,6 +15,7 @@ from gear_damping.physics.model import Model
 MESH_PHASE, SPEED = "mesh_phase", "pinion_speed"
 TURNED, LIKELY = 0.25, 2.0  # of a cycle that a harmonic may turn away; standard deviations of the speed that do so
 PER_HARMONIC, MOST_STARTS = 4.0, 120  # angles for each harmonic up to the natural frequency
+MOST_SAMPLES = 1_000_000  # that are predicted at once: the sensitivities of all starts would be large
 STARTS = 18  # angles that are tried where a parameter asks for no more, 20 degrees apart
 
 
@@ -113,12 +114,16 @@ def _costs(
 ) -> Tensor:
     """Sum of squares by start and record, (starts, records), beside what the record's own start and zero can do."""
     own = [i for i in range(problem.unknowns.n_common, problem.n_shared) if i not in set(tried)]
+    columns = problem.n_shared + len(problem.local) + 1
+    samples = columns * len(problem.records) * problem.response.samples_within(horizon)
     rows = []
-    for start in starts:  # one at a time: the sensitivities of all would be large
-        prediction = problem.linearise(start.unsqueeze(0), states.unsqueeze(0), horizon, own)
-        residual, sensitivity = prediction.residual[0], prediction.sensitivity[0]
-        columns = torch.cat([sensitivity[..., own], sensitivity[..., problem.n_shared :]], -1)
-        good = bool(columns.isfinite().all() & residual.isfinite().all())
-        left = project_out(residual.unsqueeze(-1), nuisance_basis(columns, 0)).squeeze(-1) if good else residual
-        rows.append(left.square().sum(-1).nan_to_num(torch.inf))
-    return torch.stack(rows)
+    for some in starts.split(max(1, MOST_SAMPLES // samples)):
+        prediction = problem.linearise(some, states.expand(len(some), *states.shape), horizon, own)
+        residual, sensitivity = prediction.residual, prediction.sensitivity
+        nuisance = torch.cat([sensitivity[..., own], sensitivity[..., problem.n_shared :]], -1)
+        good = nuisance.isfinite().flatten(1).all(1) & residual.isfinite().flatten(1).all(1)
+        nuisance = torch.where(good[:, None, None, None], nuisance, 0.0).flatten(0, 1)
+        each = residual.flatten(0, 1).unsqueeze(-1)
+        left = project_out(each, nuisance_basis(nuisance, 0)).unflatten(0, residual.shape[:2])
+        rows.append(left.squeeze(-1).square().sum(-1).nan_to_num(torch.inf))
+    return torch.cat(rows)
