@@ -3,7 +3,7 @@
 import hashlib
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from difflib import get_close_matches
 from pathlib import Path
 
@@ -25,6 +25,7 @@ _CURES = {"appears twice": "keep the one that is right", "'\\t'": "indent with s
 _ALIKE = 0.8  # share of the letters that two names of files must have in common to be taken for one
 _CURE = "mind indentation, and quote texts that hold any of : # [ ] { } ,"
 DATA_VARIABLE = "GEAR_DAMPING_DATA"
+UNKNOWN = "???"  # in a measurement.yaml that task=inspect began: what nobody can guess
 
 
 class _Loader(yaml.SafeLoader):
@@ -72,6 +73,17 @@ def read_yaml(path: Path) -> object:
         rule, remedy = "holds text without keys, which is no measurement.yaml", f"write `key: value` lines; {data}"
         raise InputError(Problem("measurement.path", rule, str(path), remedy))
     return content
+
+
+def unfilled(content: object, key: str = "") -> Iterator[str]:
+    """Keys that still hold what a started measurement.yaml has where nobody can guess."""
+    if content == UNKNOWN:
+        yield key
+    inside = content.items() if isinstance(content, dict) else enumerate(content) if isinstance(content, list) else ()
+    for name, value in inside:
+        part = f"[{name}]" if isinstance(content, list) else f".{name}" if key else str(name)
+        yield from unfilled(value, key + part)
+
 
 def data_root() -> Path:
     """The folder of measured records: GEAR_DAMPING_DATA, or `shared/data` beside the checkout."""

@@ -17,13 +17,13 @@ from gear_damping.measurement.column_kinds import (
     turn_of,
     unit_of_turn,
 )
+from gear_damping.measurement.files import UNKNOWN
 from gear_damping.measurement.inspection import Column, Inspection
 from gear_damping.measurement.staircase import is_staircase
 from gear_damping.measurement.vocabulary import INPUTS
 from gear_damping.units import parse_unit
 
 GEAR, OSCILLATOR = "gear_pair", "oscillator"
-UNKNOWN = "???"
 _OF_THE_PINION = r"pinion|ritzel|_?1$|drive|(?<![a-z])in"
 _OF_THE_GEAR = r"gear|wheel|_?2$|driven|(?<![a-z])out"
 # The first that fits counts; names in lower case without units and paths.

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.declaration import Plan, RecordPlan, declared_plan
 from gear_damping.measurement.declared_units import UnitSystem
-from gear_damping.measurement.files import Files, read_yaml
+from gear_damping.measurement.files import UNKNOWN, Files, read_yaml, unfilled
 from gear_damping.measurement.formats.registry import MAX_BYTES, readers
 from gear_damping.measurement.own_system import own_systems
 from gear_damping.measurement.record import Finding, Measurement, Quantity, Record
@@ -42,7 +42,7 @@ def check_declaration(path: str | Path, plugins: Sequence[str | Path] = ()) -> P
     Raises:
         InputError: everything that is wrong with the YAML, all at once.
     """
-    content = read_yaml(Path(path))
+    content = _filled(path)
     with _telling_names(content):
         return _checked(content, str(path), plugins)
 
@@ -61,9 +61,23 @@ def load_measurement(path: str | Path, max_bytes: int | None = None, plugins: Se
     Raises:
         InputError: everything that cannot be read or understood, all at once.
     """
-    content = read_yaml(Path(path))
+    content = _filled(path)
     with _telling_names(content):
         return _loaded(content, Path(path), max_bytes, plugins)
+
+
+def _filled(path: str | Path) -> object:
+    """The content of a measurement.yaml.
+
+    Raises:
+        InputError: it cannot be read, or something in it waits to be filled in.
+    """
+    content = read_yaml(Path(path))
+    rule, remedy = f"{UNKNOWN} stands for what is not filled in yet", "write what the rig or its recorder says"
+    if missing := list(unfilled(content)):
+        with _telling_names(content):
+            raise InputError([Problem(key, rule, remedy=remedy, source=str(path)) for key in missing])
+    return content
 
 
 @contextmanager

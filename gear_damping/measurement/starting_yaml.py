@@ -6,7 +6,8 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from gear_damping.measurement.angular_error import is_angle
 from gear_damping.measurement.column_kinds import ELSEWHERE
-from gear_damping.measurement.guessing import GEAR, UNKNOWN, Guess
+from gear_damping.measurement.files import UNKNOWN
+from gear_damping.measurement.guessing import GEAR, Guess
 from gear_damping.measurement.inspection import Inspection
 
 _PLAIN = re.compile(r"^[A-Za-z_/][\w./*^-]*$")

@@ -14,8 +14,9 @@ from gear_damping.config.light import InspectSettings
 from gear_damping.config.measured import YAML_SUFFIXES
 from gear_damping.measurement.column_kinds import CONSTANT
 from gear_damping.measurement.encoders import FROM_ENCODERS
+from gear_damping.measurement.files import UNKNOWN
 from gear_damping.measurement.formats.registry import read_table, readers
-from gear_damping.measurement.guessing import UNKNOWN, Guess, guesses, system_of
+from gear_damping.measurement.guessing import Guess, guesses, system_of
 from gear_damping.measurement.inspection import Column, Inspection, inspect_table, of_columns
 from gear_damping.measurement.load import load_measurement
 from gear_damping.measurement.record import Channel, Measurement, Record
