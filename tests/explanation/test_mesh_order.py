@@ -82,3 +82,28 @@ def test_one_speed_is_enough_where_the_comb_has_harmonics():
 @pytest.mark.parametrize(("teeth", "speed"), [(33, 2.0), (20, 3.0)])
 def test_less_than_a_turn_tells_no_order(teeth, speed):
     assert _found(teeth, {0.5: 5.0, 1: 1.0}, speeds=(speed, speed)) == []
+
+
+@pytest.mark.parametrize("factor", [0.25, 0.5, 2, 4])
+def test_turns_that_were_counted_by_another_number_of_counts_are_found(factor):
+    (message,) = _found(24, {factor * order: size for order, size in {24: 1.0, 48: 0.25, 72: 0.1, 96: 0.1}.items()})
+    assert f"the teeth mesh {24 * factor:g} times a turn" in message
+    assert "counts_per_revolution" in message
+
+
+@pytest.mark.parametrize(
+    "orders",
+    [
+        {24: 1.0, 48: 0.4, 12: 1.5, 6: 0.5},  # a motor of twelve poles beside the mesh
+        {24: 0.12, 48: 1.0, 72: 0.1},  # the second harmonic near the resonance
+        {24: 0.12, 96: 1.0},
+        {12: 1.0, 24: 0.4, 36: 0.1},
+    ],
+    ids=["a ripple at half of it", "mostly the second harmonic", "mostly the fourth", "either the mesh or its half"],
+)
+def test_a_mesh_that_is_there_is_not_miscounted(orders):
+    assert _found(24, orders) == []
+
+
+def test_of_one_speed_no_harmonic_is_told_from_a_line_of_the_structure():
+    assert _found(24, {48: 1.0, 96: 0.3}, speeds=(150.0, 150.0)) == []

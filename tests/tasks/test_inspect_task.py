@@ -123,7 +123,7 @@ def test_the_start_of_a_file_that_says_nothing_asks_for_what_is_missing(tmp_path
     start = tmp_path / "out" / "measurement.yaml"
     text = start.read_text()
     assert "# nothing in the file says it" in text
-    with pytest.raises(InputError, match="sampling_rate.value: .* not filled in yet") as error:
+    with pytest.raises(InputError, match=r"sampling_rate\.value: .* not filled in yet") as error:
         load_measurement(start)
     assert len(error.value.problems) == 3
     start.write_text(text.replace('{value: "???", unit: Hz}', "{value: 500, unit: Hz}").replace('"???"', "V"))

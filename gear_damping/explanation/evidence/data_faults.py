@@ -19,6 +19,8 @@ HARMONIC = 0.01  # share of a comb's energy that a second harmonic must have
 OTHER_SPEED = 0.05  # relative; speeds that differ by this tell an order from a line of the structure
 FEWEST_TEETH = 4  # that pass in every record: over fewer, every comb of four harmonics fits as well as the next
 LEAST_ORDER = 0.6  # of the tooth count, from which other combs are compared with the mesh
+DECODED = 4  # counts that an encoder gives for a line of it at most; 1 and 2 are usual too
+LACKING = 0.01  # of the energy: of a wave of two stiffnesses the first harmonic is never smaller than the second
 
 
 def data_faults(measurement: Measurement) -> list[Finding]:
@@ -39,8 +41,14 @@ def mesh_order_faults(evidence: Evidence) -> list[Finding]:
     shafts = [shaft_of(record, evidence).angle for record in records]
     if teeth * min(float(np.ptp(angle)) for angle in shafts) < FEWEST_TEETH * 2 * np.pi:
         return []
-    orders = [n for n in range(max(5, round(LEAST_ORDER * teeth)), 2 * teeth) if n == teeth or n % teeth]
     series = [record.response.numpy() - float(record.response.mean()) for record in records]
+    if (factor := _miscounted(series, shafts, teeth)) and _at_other_speeds(records, shafts):
+        message = (
+            f"the teeth mesh {factor * teeth:g} times a turn of the angle that is given, and the pinion has {teeth}: "
+            "check counts_per_revolution (lines, or the two or four counts of each) and the unit of the angle"
+        )
+        return [Finding("turns_miscounted", message, channel=evidence.channel.name)]
+    orders = [n for n in range(max(5, round(LEAST_ORDER * teeth)), 2 * teeth) if n == teeth or n % teeth]
     shares = _shares(series, shafts, orders)
     combs = shares.sum(2)  # (records, orders)
     energy, own = combs.sum(0), orders.index(teeth)
@@ -60,6 +68,39 @@ def mesh_order_faults(evidence: Evidence) -> list[Finding]:
     return [Finding("mesh_order_absent", message, channel=evidence.channel.name)]
 
 
+def _miscounted(series: Sequence[NDArray], shafts: Sequence[NDArray], teeth: int) -> float:
+    """By what the order of the mesh is off where turns were counted by another number of counts; 0 where by none.
+
+    Of all harmonics of a quarter of the tooth count, those of the mesh that is there hold the energy of every record.
+    Records that are too short for the lowest of them, or too coarse for the highest, tell nothing.
+    """
+    passed = [teeth * float(np.ptp(angle)) / (2 * np.pi) for angle in shafts]
+    if any(
+        one < DECODED * FEWEST_TEETH or 2 * DECODED * one > len(angle)
+        for one, angle in zip(passed, shafts, strict=True)
+    ):
+        return 0.0
+    shares = np.array(
+        [
+            (_waves(values, angle, teeth / DECODED, DECODED**2) ** 2).sum(0) / max(values @ values, 1e-300)
+            for values, angle in zip(series, shafts, strict=True)
+        ]
+    )  # (records, harmonics)
+    number = np.arange(1, DECODED**2 + 1)
+    own = number % DECODED == 0
+    for step in (2, 1):
+        others = (number % step == 0) & ~own
+        is_there = shares[:, others].sum(1).min() >= STRONG
+        if is_there and (shares[:, own].sum(1) < FAINT * shares[:, others].sum(1)).all():
+            return step / DECODED
+    for factor in (DECODED, 2):
+        there = number % (factor * DECODED) == 0
+        lacking = shares[:, own & ~there].sum(1) < LACKING * shares[:, there].sum(1)
+        if shares[:, there].sum(1).min() >= STRONG and lacking.all():
+            return float(factor)
+    return 0.0
+
+
 def _declared(name: str, evidence: Evidence) -> float:
     """The value of a parameter that the system has where nothing is said."""
     return next(float(parameter.default) for parameter in evidence.base.parameters if parameter.name == name)
@@ -74,11 +115,11 @@ def _shares(series: Sequence[NDArray], shafts: Sequence[NDArray], orders: Sequen
     return np.array(energies)
 
 
-def _waves(values: NDArray, angle: NDArray, order: int) -> NDArray:
+def _waves(values: NDArray, angle: NDArray, order: float, count: int = HARMONICS) -> NDArray:
     """The first harmonics of an order in a record, fitted together, (samples, harmonics)."""
-    phase = np.arange(1, HARMONICS + 1) * order * angle[:, None]
+    phase = np.arange(1, count + 1) * order * angle[:, None]
     waves = np.stack([np.cos(phase), np.sin(phase)], 2)  # (samples, harmonics, 2)
-    found = np.linalg.lstsq(waves.reshape(len(values), -1), values, rcond=1e-8)[0].reshape(HARMONICS, 2)
+    found = np.linalg.lstsq(waves.reshape(len(values), -1), values, rcond=1e-8)[0].reshape(count, 2)
     return np.einsum("thp,hp->th", waves, found)
 
 
