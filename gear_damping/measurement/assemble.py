@@ -111,6 +111,11 @@ class Assembler:
         self, raw: RawRecord, channels: dict[str, Channel], notes: list[str], findings: list[Finding]
     ) -> None:
         """The pinion angle, and the transmission error where both shafts are measured."""
+        for name, one in raw.angles.items():
+            if one.lost:
+                message = f"{one.lost} pulses are missing between others, the first after {one.lost_after:.6g} s; "
+                message += "the turn of the shaft there is counted as if they were there"
+                findings.append(Finding("lost_pulses", message, channel=name, severity="note"))
         told = raw.angles.get("pinion", raw.angles.get("tacho"))
         shaft = None if told is None else told.values
         if {"pinion", "gear"} <= {*raw.angles} and "transmission_error" not in channels:

@@ -20,6 +20,7 @@ SQUARE = 0.1  # of a pulse's height: from one level to the other within a sample
 _CURVED, _ENDS = 4, 6  # pulses that a changing speed is told by, and those at an end by which it goes on
 _STEADIEST = 6  # degrees of polynomials that are tried through the edges of square pulses
 _WITHIN = 1.03  # samples between the earliest and the latest of edges about it: rounding moves them by one in all
+_EVEN, _WHOLE = 0.2, 0.1  # share by which steps beside a lost pulse may differ, and a step from a whole number of them
 _TURN_TOLERANCE = 0.25  # of a turn; a pulse is known to a sample
 ReadColumn = Callable[[str | int, str], NDArray[np.float64]]
 
@@ -31,10 +32,14 @@ class ShaftAngle:
     Args:
         values: (n,) rad at the record's samples.
         timing_error: Standard deviation in s by which all of it may be late, where edges are known to a sample.
+        lost: How many pulses are missing between others; their turns are counted.
+        lost_after: Time in s of the last pulse before the first that is missing.
     """
 
     values: NDArray[np.float64]
     timing_error: float = 0.0
+    lost: int = 0
+    lost_after: float = 0.0
 
 
 def angle_from_counts(counts: NDArray[np.float64], per_revolution: float, direction: int = 1) -> NDArray[np.float64]:
@@ -87,8 +92,26 @@ def angle_from_pulses(
         rule = f"pulses from {pulses[0]:.6g} to {pulses[-1]:.6g} s, and fewer than {FEWEST_PULSES} of them in the"
         rule += f" record ({time[0]:.6g} to {time[-1]:.6g} s)"
         raise InputError(Problem(key, rule, remedy="check the unit of the pulses and the clock", source=source))
-    angle = TURN * np.arange(pulses.size) / per_revolution
+    angle = TURN * pulse_numbers(pulses) / per_revolution
     return direction * _extended(pulses, angle, time)
+
+
+def pulse_numbers(pulses: NDArray[np.float64]) -> NDArray[np.int64]:
+    """(m,) which pulse each is, from the times in s (m,): between even steps one of twice the length has lost a pulse.
+
+    So has a wheel with a gap for its mark, every turn.
+    """
+    steps = np.diff(pulses)
+    if steps.size < _CURVED:
+        return np.arange(pulses.size)
+    before, after = np.r_[steps[1], steps[:-1]], np.r_[steps[1:], steps[-2]]
+    before[0], after[-1] = steps[2], steps[-3]
+    usual = (before + after) / 2
+    passed = np.round(steps / usual)
+    is_lost = (
+        (passed > 1) & (np.abs(steps / usual - passed) < _WHOLE * passed) & (np.abs(before - after) < _EVEN * usual)
+    )
+    return np.r_[0, np.cumsum(np.where(is_lost, passed, 1))].astype(np.int64)
 
 
 def _extended(pulses: NDArray, angle: NDArray, time: NDArray) -> NDArray[np.float64]:
@@ -133,7 +156,7 @@ def edges_of_square_pulses(
     margin = SQUARE * (high - low)
     if not (np.all(signal[last] < low + margin) and np.all(signal[last + 1] > high - margin)):
         return edges, 0.0
-    count = np.arange(edges.size)
+    count = pulse_numbers(edges)
     for degree in range(1, min(_STEADIEST, edges.size - 3) + 1):
         turned = np.polynomial.Polynomial.fit(edges, count, degree)  # of a shaft that speeds up evenly a parabola
         smooth = edges + (count - turned(edges)) / turned.deriv()(edges)
@@ -165,9 +188,7 @@ def mean_rotation(
     return pinion - radii[0] * inertias[1] / arms * error
 
 
-def shaft_angle(
-    plan: EncoderPlan, base: TimeBase, rows: ReadColumn, whole: ReadColumn, file: str
-) -> ShaftAngle:
+def shaft_angle(plan: EncoderPlan, base: TimeBase, rows: ReadColumn, whole: ReadColumn, file: str) -> ShaftAngle:
     """The angle at the record's samples as they are stamped in the file.
 
     Args:
@@ -192,7 +213,9 @@ def shaft_angle(
         signal = rows(plan.column, key)
         pulses, late = edges_of_square_pulses(signal, time, _threshold(plan, signal, file))
     angle = angle_from_pulses(pulses, time, plan.per_revolution, plan.direction, key, file)
-    return ShaftAngle(angle - (0.0 if plan.index is None else _at_index_stamp(plan, angle, time, whole, file)), late)
+    zero = 0.0 if plan.index is None else _at_index_stamp(plan, angle, time, whole, file)
+    gaps = np.diff(pulse_numbers(pulses)) - 1
+    return ShaftAngle(angle - zero, late, int(gaps.sum()), float(pulses[int((gaps > 0).argmax())]))
 
 
 def _threshold(plan: EncoderPlan, signal: NDArray, file: str) -> float:

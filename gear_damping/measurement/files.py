@@ -75,14 +75,22 @@ def read_yaml(path: Path) -> object:
     return content
 
 
-def unfilled(content: object, key: str = "") -> Iterator[str]:
-    """Keys that still hold what a started measurement.yaml has where nobody can guess."""
-    if content == UNKNOWN:
+def unfilled(content: object, key: str = "", above: tuple[int, ...] = ()) -> Iterator[str]:
+    """Keys that still hold what a started measurement.yaml has where nobody can guess.
+
+    Args:
+        content: Of the file, or of a key.
+        key: The key.
+        above: What holds it: a YAML may hold itself.
+    """
+    if id(content) in above:
+        return
+    if isinstance(content, str) and content == UNKNOWN:
         yield key
     inside = content.items() if isinstance(content, dict) else enumerate(content) if isinstance(content, list) else ()
     for name, value in inside:
         part = f"[{name}]" if isinstance(content, list) else f".{name}" if key else str(name)
-        yield from unfilled(value, key + part)
+        yield from unfilled(value, key + part, (*above, id(content)))
 
 
 def data_root() -> Path:

@@ -10,6 +10,7 @@ from gear_damping.measurement.encoders import (
     angle_from_counts,
     angle_from_pulses,
     edges_of_square_pulses,
+    pulse_numbers,
     rising_edges,
 )
 
@@ -81,6 +82,44 @@ def test_between_uneven_pulses_a_shaft_does_not_turn_back():
     pulses = np.array([0.0, 0.1, 0.2, 0.21, 0.31, 0.41, 0.51])
     found = angle_from_pulses(pulses, np.linspace(0, 0.51, 3000), 1, 1, "key", "file")
     assert np.all(np.diff(found) >= 0)
+
+
+def running_up(per_revolution):
+    """Times of the pulses of a shaft that speeds up from 50 to 60 rad/s in a second, in closed form."""
+    turned = np.arange(1, int(55 * per_revolution / (2 * pi))) * 2 * pi / per_revolution
+    return ((50**2 + 2 * 10 * turned) ** 0.5 - 50) / 10
+
+
+@pytest.mark.parametrize("lost", [[20], [20, 21], [1], [-2], [7, 30, 31, 32], [*range(5, 60, 6)]])
+@pytest.mark.parametrize("per_revolution", [12, 60])
+def test_the_turn_of_lost_pulses_is_counted(lost, per_revolution):
+    pulses, time = running_up(per_revolution), np.linspace(0.05, 0.95, 900)
+    kept = np.delete(pulses, [i for i in lost if i < len(pulses)])
+    found = angle_from_pulses(kept, time, per_revolution, 1, "key", "file")
+    true = 50 * time + 5 * time**2
+    np.testing.assert_allclose(found - found[0], true - true[0], atol=1e-3)
+
+
+def test_pulses_of_a_shaft_that_swings_or_starts_are_all_there():
+    starting = (2 * np.arange(1, 40)) ** 0.5  # from rest: each step shorter, the first 2.4 times the second
+    assert pulse_numbers(starting).tolist() == list(range(39))
+    fine = np.linspace(0, 4, 400_001)
+    swinging = np.interp(np.arange(0.5, 150, 2 * pi / 5), 50 * fine + 0.9 * np.sin(2 * pi * 4 * fine), fine)
+    assert pulse_numbers(swinging).tolist() == list(range(len(swinging)))
+
+
+def test_a_wheel_that_has_lost_pulses_is_said(bench):
+    pulses = np.delete(running_up(60), [100, 200])
+    time = np.arange(0.05, 0.95, 1e-3)
+    _rig(bench, t=time, x=np.sin(50 * time), p=np.r_[pulses, np.full(len(time) - len(pulses), np.nan)])
+    bench.content["records"][0]["channels"]["transmission_error"] = {"column": "x", "unit": "um"}
+    bench.content["records"][0]["encoders"] = {
+        "tacho": {"timestamps": "p", "unit": "s", "pulses_per_revolution": 60, "direction": 1}
+    }
+    found = [finding for finding in bench.load_as_it_is().findings if finding.kind == "lost_pulses"]
+    assert [(one.severity, one.message.partition(",")[0]) for one in found] == [
+        ("note", "2 pulses are missing between others")
+    ]
 
 
 def test_edges_are_found_between_samples():
