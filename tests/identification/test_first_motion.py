@@ -6,8 +6,6 @@ import torch
 
 from gear_damping.identification.output_error.first_guess import first_motion
 from gear_damping.identification.output_error.records import FitRecord, Observed
-from gear_damping.physics.model import Model
-from gear_damping.physics.systems.oscillator import Oscillator
 
 CHANNELS = ("displacement", "velocity", "acceleration")
 
@@ -22,5 +20,5 @@ def test_a_decay_is_as_large_as_it_is_whatever_was_recorded_of_it(derivatives, r
     noise = 1e-4 * motion[derivatives].std() * np.random.default_rng(0).normal(size=time.size)
     shown = torch.from_numpy(motion[derivatives] + noise)
     record = FitRecord("decay", shown, rate, observed=Observed(CHANNELS[derivatives]))
-    _, scale = first_motion(record, 0.0, 0.0, Model(Oscillator(), ()), {})
+    _, scale = first_motion(record, 0.0, 0.0)
     assert scale.tolist() == pytest.approx([motion[0].std(), motion[1].std()], rel=0.4)

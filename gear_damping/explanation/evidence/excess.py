@@ -7,8 +7,8 @@ from torch import Tensor
 
 from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.settings import SearchSettings
-from gear_damping.identification.output_error.first_guess import about_its_line
 from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.identification.output_error.running_integral import about_its_line
 
 WHOLE = 100.0  # %, all of the signal
 

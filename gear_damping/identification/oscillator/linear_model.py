@@ -18,7 +18,6 @@ from gear_damping.physics.effects.offset_force import OffsetForce
 from gear_damping.physics.effects.viscous_damping import ViscousDamping
 from gear_damping.physics.model import Model
 from gear_damping.physics.parameter import Parameter
-from gear_damping.physics.systems.base import System
 
 DAMPING, FORCE = "viscous_damping.damping_coefficient", "offset_force.force"
 TIME = "characteristic_time"
@@ -56,7 +55,7 @@ def linear_model(
     records: Sequence[FitRecord], known: Known = NOTHING
 ) -> tuple[list[FreeParameter], dict[str, float], float]:
     """Free parameters of the linear oscillator with their starts, its given values, and its characteristic time."""
-    stated, amplitude, system, mass = known.values, _amplitude(records, known.system), known.system, mass_of(known)
+    stated, amplitude, system, mass = known.values, _amplitude(records), known.system, mass_of(known)
     name, spring = system.spring, stated.get(system.spring, 1.0) > 0
     rate = ((stated[name] / mass) ** 0.5 if stated.get(name) else 2 * pi * first_frequency(records[0])) * spring
     scale = characteristic_time(records, rate, stated.get("damping_coefficient", 0.0) / mass)
@@ -137,7 +136,7 @@ def expected_about(parameter: FreeParameter, relative: float | None) -> FreePara
     return replace(parameter, deviation=deviation, expected=parameter.start)
 
 
-def _amplitude(records: Sequence[FitRecord], system: type[System]) -> float:
+def _amplitude(records: Sequence[FitRecord]) -> float:
     """Typical displacement, from whatever was recorded."""
-    scales = [first_motion(record, 0.0, 0.0, Model(system(), ()), {})[1][0] for record in records]
+    scales = [first_motion(record, 0.0, 0.0)[1][0] for record in records]
     return float(torch.stack(scales).square().mean().sqrt())

@@ -9,7 +9,6 @@ from gear_damping.identification.output_error.records import FitRecord, Observed
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.traits import Trait
 
-SLOWEST, PERIODS = 0.01, 3  # share of the energy that is no slow motion; periods of one that its mean is taken over
 TAIL = 0.25  # of a free decay: where it has come nearest to its rest
 
 
@@ -35,53 +34,21 @@ def first_offset(segments: Sequence[FitRecord], channel: Observed, static: float
     return float(rest.mean()) - static, deviation
 
 
-def first_motion(
-    record: FitRecord, offset: float, static: float, model: Model, given: Mapping[str, object]
-) -> tuple[Tensor, Tensor]:
+def first_motion(record: FitRecord, offset: float, static: float, factor: float = 1.0) -> tuple[Tensor, Tensor]:
     """Displacement and velocity at the start of a record, (2,), and the scale of either.
 
     From a rate or an acceleration by integration: the mean of a displacement that was not recorded is not known.
+
+    Args:
+        record: The record.
+        offset: The zero of its first channel.
+        static: Where its load holds it, in m or the rig's own unit.
+        factor: What that channel shows of the motion (`participation`).
     """
-    shown = record.response.to(torch.float64) - offset
-    step = 1 / record.sampling_rate
-    factor = participation(record.observed, model, given)
-    slow = _slow(shown) if record.observed.derivatives else 0
-    for _ in range(record.observed.derivatives):
-        shown = _integrated(shown - shown.mean(), step, slow)
-    place = shown / factor + (static if record.observed.derivatives else 0.0)
-    rate = place.diff() / step
+    place = record.shown_motion / factor + static if record.observed.derivatives else record.response - offset
+    rate = place.diff() * record.sampling_rate
     scale = torch.stack([place.std().clamp(min=1e-300), rate.std().clamp(min=1e-300)])
     return torch.stack([place[0], rate[0]]), scale
-
-
-def _integrated(values: Tensor, step: float, slow: int) -> Tensor:
-    """Running integral without its straight line, and without its mean over so many samples about each.
-
-    An integral adds up what a record does not tell, its mean first of all: what is slower than anything that was
-    recorded is no motion.
-    """
-    total = torch.cat([values.new_zeros(1), ((values[1:] + values[:-1]) / 2 * step).cumsum(0)])
-    total = about_its_line(total)
-    if slow >= len(total):
-        return total
-    sums = torch.cat([total.new_zeros(1), total.cumsum(0)])
-    places = torch.arange(len(total))
-    first, last = (places - slow // 2).clamp(min=0), (places + slow // 2 + 1).clamp(max=len(total))
-    return total - (sums[last] - sums[first]) / (last - first)
-
-
-def about_its_line(values: Tensor) -> Tensor:
-    """(n,) values about the straight line through them."""
-    time = torch.linspace(-1, 1, len(values), dtype=values.dtype)
-    return values - values.mean() - time * (time @ values) / (time @ time)
-
-
-def _slow(values: Tensor) -> int:
-    """Samples of some periods of the slowest motion that a record shows."""
-    power = torch.fft.rfft((values - values.mean()) * torch.hann_window(len(values), dtype=values.dtype)).abs().square()
-    energy = power.cumsum(0) / power.sum().clamp(min=1e-300)
-    slowest = int((energy < SLOWEST).sum())
-    return round(PERIODS * len(values) / max(slowest, 1))
 
 
 def participation(channel: Observed, model: Model, given: Mapping[str, object]) -> float:

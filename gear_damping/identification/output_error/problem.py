@@ -8,8 +8,19 @@ from math import inf
 import torch
 from torch import Tensor
 
-from gear_damping.identification.output_error.first_guess import first_motion, first_offset, static_deflection
-from gear_damping.identification.output_error.records import DIFFERENCE, SEPARATOR, FitRecord, FreeParameter
+from gear_damping.identification.output_error.first_guess import (
+    first_motion,
+    first_offset,
+    participation,
+    static_deflection,
+)
+from gear_damping.identification.output_error.records import (
+    DIFFERENCE,
+    SEPARATOR,
+    FitRecord,
+    FreeParameter,
+    Observed,
+)
 from gear_damping.identification.output_error.response import Response
 from gear_damping.identification.output_error.unknowns import (
     GAIN,
@@ -126,6 +137,11 @@ class OutputErrorProblem:
             groups.setdefault(key, []).append(i)
         return list(groups.values())
 
+    @cached_property
+    def _factors(self) -> dict[Observed, float]:
+        """What first channels show of the motion."""
+        return {one: participation(one, self.model, self.given) for one in {r.observed for r in self.records}}
+
     def first_states(self) -> Tensor:
         """A first guess of every initial state in its own scale, (records, local), from the records' beginnings."""
         guesses = torch.zeros_like(self.scales)
@@ -157,7 +173,7 @@ class OutputErrorProblem:
     def _first_motion(self, record: FitRecord, place: int) -> tuple[Tensor, Tensor]:
         name = _offset_of(record, record.observed.name)
         offset = next((parameter.start for parameter in self.free if parameter.name == name), 0.0)
-        return first_motion(record, offset, float(self.static[place]), self.model, self.given)
+        return first_motion(record, offset, float(self.static[place]), self._factors[record.observed])
 
     def states_of(self, other: "OutputErrorProblem", states: Tensor, places: Sequence[int]) -> Tensor:
         """Initial states found by another problem, (..., its records, local), as they are called here.

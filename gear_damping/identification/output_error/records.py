@@ -2,10 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from math import inf, isinf, log
 
 import torch
 from torch import Tensor
+
+from gear_damping.identification.output_error.running_integral import integrated
 
 DIFFERENCE = 1e-6  # step of the sensitivities, in units of each parameter's scale
 SEPARATOR = "@"  # between a parameter and the record whose own it is, `mesh_phase@run_1`
@@ -203,3 +206,8 @@ class FitRecord:
     def duration(self) -> float:
         """Length in s."""
         return len(self.response) / self.sampling_rate
+
+    @cached_property
+    def shown_motion(self) -> Tensor:
+        """What its first channel shows, (time,), of a rate or an acceleration the displacement about its mean."""
+        return integrated(self.response.to(torch.float64), self.sampling_rate, self.observed.derivatives)
