@@ -93,6 +93,7 @@ _ALSO = {
     "micron": "um", "microns": "um", "mils": "mil", "thou": "mil", "inch": "in", "inches": "in", "Inch": "in",
     "RPM": "rpm", "U/min": "rpm", "Volt": "V", "Volts": "V", "volt": "V", "volts": "V", "Newton": "N", "hz": "Hz",
     "HZ": "Hz", "Deg": "deg", "degree": "deg", "degrees": "deg", "radian": "rad", "radians": "rad",
+    "turn": "rev", "turns": "rev", "revs": "rev",
 }  # fmt: skip
 _DIGITS = r"\s*(?P<number>[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?)\s*"
 _NUMBER, _SPOKEN = re.compile(f"^{_DIGITS}$"), re.compile(rf"^{_DIGITS}(?P<unit>([A-Za-zµμ°%]|(?<=\s)1/).*?)\s*$")

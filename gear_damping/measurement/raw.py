@@ -15,11 +15,19 @@ from gear_damping.measurement.encoders import ReadColumn, ShaftAngle, shaft_angl
 from gear_damping.measurement.formats.table import Table
 from gear_damping.measurement.record import Finding
 from gear_damping.measurement.time_column import is_time, stamped_rate
-from gear_damping.measurement.timebase import RATE_TOLERANCE, TimeBase, stamped_time, steady_time
+from gear_damping.measurement.timebase import (
+    RATE_TOLERANCE,
+    TimeBase,
+    stamped_time,
+    steady_time,
+    written_significantly,
+)
 from gear_damping.schema.values import Problems
 from gear_damping.units import to_si
 
 LEAST_SAMPLES = 8  # of a record, for a spectrum at all
+MOST_DOUBLED = 0.01  # of the rows of a record; where more come twice, something else is wrong
+DOUBLED_WITHIN = 100  # rows behind the one that a row is stored again of
 MOST_MISSING = 0.01  # of a record: a sheet whose last cells are blank, and no channel of another rate
 _SAME_RATE = 1e-3  # how far a declared rate may lie from the file's
 _SAME_UNIT = 1e-9  # the same of units
@@ -57,15 +65,17 @@ class RawReader:
         self.file = str(table.path)
         self.first, self.stop = plan.rows or (0, 0)
         self.blank = 0  # rows at the end that hold nothing
+        self.doubled: list[int] = []  # rows that hold what an earlier one does, and no later stamp
 
     def read(self, sha256: str) -> RawRecord | None:
         """The record, or None where it has no time base; `complete` where all of it could be read."""
         before, base, within = len(self.problems), None, None
         with self.problems.collecting():
             self._find_rows()
+            self.doubled = self._find_doubled()
             base = self._base()
             base, within = self._with_rows_beside(base)
-            base = base and self._said_of_blanks(base)
+            base = base and self._said_of_rows(base)
         channels = []
         for plan in self.plan.channels:
             with self.problems.collecting():
@@ -128,12 +138,44 @@ class RawReader:
         last = own if last - own <= MOST_MISSING * last else last
         return n - last if last else 0
 
-    def _said_of_blanks(self, base: TimeBase) -> TimeBase:
-        """The time base, with a note of the rows that hold nothing."""
-        if not self.blank:
-            return base
-        message = f"the last {self.blank} rows hold nothing in the columns of the record, which ends before them"
-        return replace(base, findings=(*base.findings, Finding("blank_rows", message, severity="note")))
+    def _find_doubled(self) -> list[int]:
+        """Rows with the values of an earlier one where stamps do not go on: a recorder has stored that again.
+
+        It is the row of such a stamp or the one before it. None where that does not mend all of them.
+        """
+        column = self.plan.timing.column
+        if column is None:
+            return []
+        stamps = self._all(column, "")[self.first : self.stop]
+        late = np.flatnonzero(np.diff(stamps) <= 0) + 1 + self.first
+        if not 0 < late.size <= MOST_DOUBLED * stamps.size or written_significantly(stamps) is not None:
+            return []
+        columns = [self._all(one, "") for one in self._on_its_clock()]
+        if not columns or any(values.size < self.stop for values in columns):
+            return []
+        rows = np.stack([values[: self.stop] for values in columns], 1)
+
+        def is_again(k: int) -> bool:
+            """Whether a row holds the values of one before it."""
+            return bool(np.any(np.all(rows[max(self.first, k - DOUBLED_WITHIN) : k] == rows[k], 1)))
+
+        again = [next((row for row in (k, k - 1) if is_again(row)), None) for k in late.tolist()]
+        kept = np.delete(stamps, [k - self.first for k in again if k is not None])
+        return [] if None in again or np.any(np.diff(kept) <= 0) else again
+
+    def _said_of_rows(self, base: TimeBase) -> TimeBase:
+        """The time base, with notes of the rows that hold nothing and of those that come twice."""
+        found = []
+        if self.blank:
+            message = f"the last {self.blank} rows hold nothing in the columns of the record, which ends before them"
+            found.append(Finding("blank_rows", message, severity="note"))
+        if self.doubled:
+            message = (
+                f"{len(self.doubled)} row(s) hold the values of an earlier one where stamps do not go on, the first "
+            )
+            message += f"row {self.doubled[0]} of the file; they are left out"
+            found.append(Finding("doubled_rows", message, severity="note"))
+        return replace(base, findings=(*base.findings, *found)) if found else base
 
     def _seconds(self) -> NDArray[np.float64]:
         """The times of the record's rows as they stand in the file, which may be no times at all."""
@@ -165,7 +207,7 @@ class RawReader:
         values = values[self.first : self.stop]
         self._refuse_cells(column, key, self.first, self.stop)
         refuse_not_finite(values, self._named(key, column), self.file, self.first)
-        return values
+        return np.delete(values, np.array(self.doubled, int) - self.first)
 
     def _refuse_cells(self, column: str | int, key: str, first: int, stop: int) -> None:
         """Cells that are no numbers are faults in the rows that are used, and nowhere else."""

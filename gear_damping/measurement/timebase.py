@@ -44,6 +44,8 @@ _PARTS, _LEAST_PART = 8, 16  # a rate is looked at over an eighth of the record,
 _SIGMAS = 5.0  # of the jitter, that a rate over a part must leave the mean by
 _WRITTEN = 1.2  # last digits over which rounded stamps may spread about their grid
 _PLACES = range(10)  # decimal places that are tried
+_SIGNIFICANT = range(2, 6)  # digits of stamps that may come out alike; with more, rows are stored twice
+_CLOSELY = 1e-12  # of a step: to which it is sought that the first of ten thousand stamps allow
 _HOLES = 2  # in stamps of few digits that are lost samples, where more of them, regular, are rounding
 _EXACT = 1e-4  # of the last digit; how near a whole number of it stamps must be
 
@@ -101,6 +103,8 @@ def stamped_time(stamps: NDArray[np.float64], key: str, source: str, first: int 
         InputError: a stamp repeats the one before, or lies before it, or the clock starts again.
     """
     refuse_recordings(stamps, key, source, first)
+    if np.any(np.diff(stamps) == 0) and (few := written_significantly(stamps)) is not None:
+        return few
     _refuse_repeated_or_backward(np.diff(stamps), key, source, first)
     rate = (stamps.size - 1) / float(stamps[-1] - stamps[0])
     grid = np.linspace(stamps[0], stamps[-1], stamps.size)
@@ -115,6 +119,8 @@ def stamped_time(stamps: NDArray[np.float64], key: str, source: str, first: int 
     if written is not None:
         note = f"time stamps are rounded to {written.digit:.3g} s: taken as an even {written.rate:.6g} Hz"
         return TimeBase(written.start + np.arange(stamps.size) / written.rate, written.rate, notes=(note,))
+    if (few := written_significantly(stamps)) is not None:
+        return few
     found = irregularity(stamps, first)
     if found and found.kind == LOST:
         return _with_losses(stamps, found)
@@ -221,6 +227,52 @@ def written_in(stamps: NDArray[np.float64], index: NDArray[np.float64] | None = 
     rate = next((r for r in plain if np.ptp(since - index / r) <= (1 + _EXACT) * digit), rate)
     off = since - index / rate
     return Written(digit, float(stamps[0] + (off.max() + off.min()) / 2), rate)
+
+
+def written_significantly(stamps: NDArray[np.float64]) -> TimeBase | None:
+    """The even grid that (n,) stamps in s of a few significant digits stand for, as some programs write all numbers.
+
+    Later ones are rounded to longer steps, until two come out alike. None where they have more digits than a few, or
+    where no even grid rounds to them.
+    """
+    steps = np.diff(stamps)
+    if stamps[0] < 0 or np.any(steps < 0):
+        return None
+    for digits in _SIGNIFICANT:
+        with np.errstate(divide="ignore"):
+            last = 10.0 ** (np.floor(np.log10(stamps)) - digits + 1)  # of 0: 0
+        wholes = stamps / np.where(last > 0, last, 1.0)
+        if np.all(np.abs(wholes - np.round(wholes)) <= _EXACT):
+            is_gap = steps.max() > 2 * (last.max() + float(np.median(steps[steps > 0])))
+            found = None if is_gap else _even(stamps, last / 2)
+            if found is None:
+                return None
+            start, rate = found
+            note = f"time stamps have {digits} significant digits: taken as an even {rate:.6g} Hz"
+            return TimeBase(start + np.arange(stamps.size) / rate, rate, notes=(note,))
+    return None
+
+
+def _even(stamps: NDArray, half: NDArray) -> tuple[float, float] | None:
+    """Start and rate of the plainest grid from which no stamp lies farther than half of its last digit."""
+    from scipy.optimize import minimize_scalar
+
+    index, slope = np.arange(stamps.size), np.polyfit(np.arange(stamps.size), stamps, 1)[0]
+    half = (1 + _EXACT) * half + GRID_TOLERANCE * slope
+
+    def starts(step: float) -> tuple[float, float]:
+        """The latest of the earliest starts that the stamps allow, and the earliest of the latest."""
+        return float(np.max(stamps - half - index * step)), float(np.min(stamps + half - index * step))
+
+    def apart(step: float) -> float:  # convex, and no more than 0 where the grid is possible
+        return starts(step)[0] - starts(step)[1]
+
+    near = (1 - _RATE) * slope, (1 + _RATE) * slope
+    best = 1 / minimize_scalar(apart, bounds=near, method="bounded", options={"xatol": _CLOSELY * slope}).x
+    for rate in (*(float(f"{best:.{places}g}") for places in range(1, 7)), float(best)):
+        if apart(1 / rate) <= 0:
+            return sum(starts(1 / rate)) / 2, rate
+    return None
 
 
 def _last_digit(since: NDArray, rounding: float) -> float | None:

@@ -13,8 +13,18 @@ from gear_damping.explanation.trials.refit import Refit
 from gear_damping.physics.catalogue import effect_class
 
 
+class Cause(str):
+    """A cause that is nothing but its name."""
+
+    __slots__ = ()
+
+    @property
+    def name(self):
+        return str(self)
+
+
 def search_of(*names):
-    return SimpleNamespace(state=SimpleNamespace(accepted=names))
+    return SimpleNamespace(state=SimpleNamespace(accepted=tuple(map(Cause, names))))
 
 
 def without(found, name):
@@ -46,10 +56,11 @@ def judge(words, doubts):
     [
         ({("ripple",): "partly_explained"}, {("ripple", "pitch"): "pitch"}, ("ripple",)),
         ({("ripple",): "partly_explained"}, {("ripple", "pitch"): "ripple"}, ("ripple", "pitch")),
-        ({("ripple",): "partly_explained"}, {}, ("ripple", "pitch")),
+        ({("ripple",): "partly_explained"}, {}, ("ripple",)),
+        ({}, {}, ("ripple", "pitch")),
         ({("ripple", "pitch"): "explained"}, {("ripple", "pitch"): "pitch"}, ("ripple", "pitch")),
     ],
-    ids=["the rest is named", "the rest is none either", "nothing is doubted", "all is well"],
+    ids=["the rest is named", "the rest is none either", "one is enough by itself", "none is", "all is well"],
 )
 @pytest.mark.usefixtures("waves_as_they_are")
 def test_what_is_left_without_a_cause_that_is_none_is_judged_by_itself(words, doubts, kept):

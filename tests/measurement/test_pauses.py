@@ -171,6 +171,7 @@ def test_recordings_one_after_another_are_told_with_their_slices(tmp_path):
 
 def test_a_stamp_out_of_order_is_no_recording(tmp_path):
     stamps = STEP * np.arange(400.0)
+    values = np.sin(stamps)
     stamps[200] -= 30 * STEP
     with pytest.raises(InputError, match="1 backward time stamp"):
-        loaded(tmp_path, stamps, np.sin(stamps))
+        loaded(tmp_path, stamps, values)

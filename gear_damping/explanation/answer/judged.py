@@ -21,6 +21,7 @@ from gear_damping.explanation.steps.confirm import Confirmed, without
 from gear_damping.explanation.steps.judge import CONSISTENT, UNEXPLAINED, Judged, Known, verdict
 
 TOO = "`{}` would take part of what is left too, {}"
+SO_MUCH = "but beside it too much is left that has no name."
 AT_BOUND = "but has run into a bound of what it can be."
 WITHIN_FORM = "`{}` would take a little more: so little may as well be the form of the other causes, and is not named."
 
@@ -39,7 +40,9 @@ def judged(found: Confirmed, notes: Sequence[str]) -> Judged:
     notes = (*notes, *map(WITHIN_FORM.format, small))
     said, (doubtful, why) = _judged(found, notes)
     fewer = said
-    while fewer.verdict.word == UNEXPLAINED and doubtful and len(fewer.found.accepted) > 1:
+    while fewer.verdict.word == UNEXPLAINED and len(fewer.found.accepted) > 1:
+        if not doubtful:  # more search must not lose what less of it had found
+            doubtful, why = fewer.found.accepted[-1].name, SO_MUCH
         found, notes = without(found, doubtful), (*notes, TOO.format(doubtful, why or AT_BOUND))
         fewer, (doubtful, why) = _judged(found, notes)
     return _reported(said if fewer.verdict.word == UNEXPLAINED else fewer)

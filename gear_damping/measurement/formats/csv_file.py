@@ -70,6 +70,11 @@ class _Text:
         ending = self.utf8[-(2**16) :].decode("utf-8", "replace").splitlines()
         kept = [line for line in ending if line.strip(" \r" + "".join(_DELIMITERS)) and not _IS_COMMENT.match(line)]
         last = next((line for line in reversed(kept) if _NUMBER.search(line)), kept[-1] if kept else "")
+        if ends := _line_end(last):
+            self.utf8, last = (
+                re.sub(rb"%s[ \t]*(?=\r?\n|$)" % ends.encode(), b"", self.utf8),
+                last.rstrip().rstrip(ends),
+            )
         # Headers hold all kinds of signs, numbers only one.
         self.delimiter = next((sign for sign in _DELIMITERS if sign in last), " ")
         self.width = max((k + 1 for k, cell in enumerate(next(self._cells([last]), [])) if cell.strip()), default=0)
@@ -91,6 +96,14 @@ class _Text:
         except csv.Error as error:
             rule = f"line {reader.line_num} is no row of a table ({error})"
             raise InputError(Problem("file", rule, str(self.path), "export it again")) from None
+
+
+def _line_end(line: str) -> str:
+    """The sign that stands behind the last cell of a row and between no two of them; else ""."""
+    body, last = line.rstrip()[:-1], line.rstrip()[-1:]
+    others = [sign for sign in _DELIMITERS if sign in body]
+    is_decimal = others == [","] and body.count(",") == 1 and "." not in body
+    return last if last in _DELIMITERS and others and last not in others and not is_decimal else ""
 
 
 class _Lines:

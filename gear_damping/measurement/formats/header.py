@@ -12,7 +12,8 @@ _BRACKETS = re.compile(r"[(\[]([^()\[\]]+)[)\]]\s*(?:run\s*#?\s*\d+\s*)?$", re.I
 _WITHIN = re.compile(r"[(\[]([^()\[\]]+)[)\]]")  # `Position (cm) Monitor Run`, where that is a unit
 _SLASH = re.compile(r"^[^/]+/\s*([^\W\d_][^\s]*|[°%µ][^\s]*)$")  # `Weg/mm`, as DIN 461 has it
 _INDEX = re.compile(r"\w\[\d+\]\s*$")  # `data[3]` is a name, no unit
-_NO_UNIT = ("", "-")
+_NO_UNIT = ("", "-", "#")
+_COMMENTED = re.compile(r"^%+(?=[\w\[])")  # names behind the sign of comments of MATLAB
 _COMMENTS = ("%", "%%", ";", "//", "!", "'", "*")  # that other programs write before a line of names
 _GENERIC = re.compile(
     r"^(analog(ue)?|digital|channel|chan|ch|kanal|ai|ao|di|do|in(put)?|signal|sensor|col(umn)?)[ _.#-]*\d+$", re.I
@@ -65,7 +66,7 @@ def find_header(rows: Sequence[Sequence[str]], width: int) -> Header:
     texts = [k for k in range(end) if not _has_number(rows[k])]
     if not texts:
         return Header((), (), 0)
-    rows = [_names(row, width) if k in texts else row for k, row in enumerate(rows)]
+    rows = [_names(_uncommented(row), width) if k in texts else row for k, row in enumerate(rows)]
     if texts[-2:] == [end - 2, end - 1] and all(filled(rows[k]) == width for k in texts[-2:]):
         both = _of_two_rows(*([cell.strip() for cell in rows[k][:width]] for k in texts[-2:]), end)
         if both is not None:
@@ -102,6 +103,10 @@ def _of_two_rows(upper: list[str], lower: list[str], first: int) -> Header | Non
     says += f"; left out of it: {', '.join(left)}" if left else ""
     units = tuple(unit or bracket_unit(name) or "" for unit, name in zip(units, names, strict=True))
     return Header(names, units, first, first - 2, says)
+
+
+def _uncommented(row: Sequence[str]) -> Sequence[str]:
+    return [_COMMENTED.sub("", row[0]), *row[1:]]
 
 
 def _names(row: Sequence[str], width: int) -> Sequence[str]:

@@ -48,6 +48,7 @@ def _of_row(row: Sequence[str]) -> tuple[str, float] | None:
     if any(_NUMBER.fullmatch(other) and float(other) != value for other in behind):
         return None  # of each channel its own
     unit = next((one for one in (*re.findall(r"[(\[]([^)\]]+)[)\]]", name), *behind[:1]) if one), "")
+    is_step = is_step and not _is_of(unit, "Hz")  # steps at 8 kHz
     size = value * _factor(unit, "s" if is_step else "Hz")
     rate = rate_of(size) if is_step else size
     return (words[0], rate) if rate is not None and 0 < rate < inf else None
@@ -62,9 +63,14 @@ def rate_of(step: Any) -> float | None:
     return rate if rate < inf else None
 
 
+def _is_of(unit: str, plain: str) -> bool:
+    """Whether a text is a unit of the kind of a plain one."""
+    try:
+        return bool(unit) and to_si(1.0, unit, plain) > 0
+    except InputError:
+        return False
+
+
 def _factor(unit: str, plain: str) -> float:
     """The size of a unit, of the plain one where it is none of its kind: something else stands there."""
-    try:
-        return to_si(1.0, unit, plain)
-    except InputError:
-        return 1.0
+    return to_si(1.0, unit, plain) if _is_of(unit, plain) else 1.0
