@@ -135,6 +135,13 @@ def test_a_small_friction_is_no_other_form_of_a_stiffness():
     assert module._small(state) == ("c",)
 
 
+def test_a_sensor_that_is_off_by_little_may_be_a_form_of_any_law():
+    state = searched_for((0.98, 0.013)).state
+    state.accepted[0].effect = effect_class("hysteretic_damping")()
+    state.accepted[1].effect = effect_class("sensor_drift")()
+    assert module._small(state) == ("b",)
+
+
 def searched_for(shares, visible=True, left=1.0):
     spring = effect_class("cubic_stiffness")()
     accepted = tuple(

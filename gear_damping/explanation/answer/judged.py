@@ -19,6 +19,7 @@ from gear_damping.explanation.model.positive import positive
 from gear_damping.explanation.state import State
 from gear_damping.explanation.steps.confirm import Confirmed, without
 from gear_damping.explanation.steps.judge import CONSISTENT, UNEXPLAINED, Judged, Known, verdict
+from gear_damping.physics.terms import Sensor
 
 TOO = "`{}` would take part of what is left too, {}"
 SO_MUCH = "but beside it too much is left that has no name."
@@ -64,12 +65,16 @@ def _without_form(found: Confirmed) -> tuple[Confirmed, tuple[str, ...]]:
 def _small(state: State) -> tuple[str, ...]:
     """The causes beside the largest that take no more than its form may be wrong by, where something is left.
 
-    What takes energy out of the motion is no other form of what stores it.
+    What takes energy out of the motion is no other form of what stores it; a sensor that is off bends to either.
     """
     if state.left is None or not state.left.visible or not state.accepted:
         return ()
     largest, *others = sorted(state.accepted, key=lambda cause: -cause.share)
-    alike = [cause for cause in others if cause.effect.dissipative == largest.effect.dissipative]
+    alike = [
+        cause
+        for cause in others
+        if isinstance(cause.effect, Sensor) or cause.effect.dissipative == largest.effect.dissipative
+    ]
     return tuple(cause.name for cause in alike if cause.share < state.bench.settings.settled_share)
 
 
