@@ -65,6 +65,7 @@ class RawReader:
         self.file = str(table.path)
         self.first, self.stop = plan.rows or (0, 0)
         self.blank = 0  # rows at the end that hold nothing
+        self.begins = 0.0  # s, of a record that nothing but pulses of encoders tells
         self.doubled: list[int] = []  # rows that hold what an earlier one does, and no later stamp
 
     def read(self, sha256: str) -> RawRecord | None:
@@ -103,16 +104,13 @@ class RawReader:
         counted = [plan for plan in self.plan.encoders if not plan.timestamps]
         columns = [(self.plan.timing.column, time)] if self.plan.timing.column is not None else []
         columns += [(plan.column, f"{plan.key}.column") for plan in (*shared, *counted)]
-        if not columns:
-            rule, remedy = "no column gives the number of samples", "declare a time column"
-            raise InputError(Problem(self.plan.key, rule, None, remedy, self.source))
         sizes = (self._size(column) for column, _ in columns)
-        n = next((size for size in sizes if size is not None), None) or self._all(*columns[0]).size
+        n = next((size for size in sizes if size is not None), None) or self._samples(columns)
         if self.stop > n:
             self.stop = n
             rule, remedy = f"{self.table.path.name} has {n} rows", f"end the slice at {n} or before"
             raise InputError(Problem(f"{self.plan.key}.slice", rule, list(self.plan.rows), remedy, self.source))
-        self.blank = 0 if self.stop else self._blank_at_the_end([column for column, _ in columns], n)
+        self.blank = 0 if self.stop or not columns else self._blank_at_the_end([column for column, _ in columns], n)
         self.stop = self.stop or n - self.blank
         if self.plan.window:
             rows = window_rows(self._seconds(), self.plan.window, f"{self.plan.key}.window", self.source)
@@ -120,11 +118,27 @@ class RawReader:
         if self.stop - self.first < LEAST_SAMPLES:
             rule = f"{self.stop - self.first} samples; a record needs at least {LEAST_SAMPLES}"
             remedy = "use a longer slice, window or file"
-            if n < LEAST_SAMPLES:
+            if n < LEAST_SAMPLES and columns:
                 rule += f", and {columns[0][1]} = {columns[0][0]!r} holds {n}"
                 remedy = f"name another column: {self.table.path.name} holds {self.table.listing(True)}"
                 remedy = remedy if max(self.table.lengths) >= LEAST_SAMPLES else "use a longer file"
             raise InputError(Problem(self.plan.key, rule, None, remedy, self.source))
+
+    def _samples(self, columns: Sequence[tuple[str | int, str]]) -> int:
+        """The number of rows where no column can be read: of times of pulses alone those that all of them cover."""
+        if columns:
+            return self._all(*columns[0]).size
+        rate = self.plan.timing.sampling_rate
+        if not self.plan.encoders or rate is None:
+            rule, remedy = "no column gives the number of samples", "declare a time column"
+            remedy += ", or sampling_rate, at which the angles are taken" if self.plan.encoders else ""
+            raise InputError(Problem(self.plan.key, rule, None, remedy, self.source))
+        pulses = []
+        for plan in map(self._with_unit, self.plan.encoders):
+            seconds = to_si(1.0, plan.unit, "s", f"{plan.key}.unit", self.source)
+            pulses.append(self.unsliced(plan.column, f"{plan.key}.timestamps") * seconds)
+        self.begins = max(float(one[0]) for one in pulses)
+        return max(0, int((min(float(one[-1]) for one in pulses) - self.begins) * rate) + 1)
 
     def _blank_at_the_end(self, columns: Sequence[str | int], n: int) -> int:
         """How many of the last of n rows hold nothing in any column: those of a longer run beside this one.
@@ -235,7 +249,8 @@ class RawReader:
         if rate and clock and abs(rate / clock[1] - 1) > _SAME_RATE:
             rule, remedy = f"the file itself says {clock[1]:g} Hz", "leave sampling_rate out"
             raise InputError(Problem(f"{self.plan.key}.sampling_rate", rule, rate, remedy, self.source))
-        base = steady_time(rate or clock[1], self.first, self.stop - self.first, clock[0] if clock else 0.0)
+        start = clock[0] if clock else self.begins
+        base = steady_time(rate or clock[1], self.first, self.stop - self.first, start)
         return base if clock else replace(base, findings=self._other_rate(rate))
 
     def _other_rate(self, rate: float) -> tuple[Finding, ...]:

@@ -295,3 +295,27 @@ def test_an_oscillator_has_no_encoders(bench):
     bench.content |= {"system": "oscillator", "parameters": {}}
     bench.record["conditions"] = {}
     assert "only a gear_pair has encoders" in bench.only_problem(write=False)
+
+
+@pytest.mark.parametrize("rate", [{}, {"sampling_rate": {"value": 5, "unit": "kHz"}}], ids=["no rate", "a rate"])
+def test_two_encoders_that_stamp_their_edges_need_no_column_but_a_rate(bench, rate):
+    time = np.linspace(0, 1, 400_001)
+    pinion = 60 * time + 1e-4 * np.sin(2 * pi * 9 * time)
+    gear = 30 * time
+    edges = [
+        np.interp(np.arange(0.5, shaft[-1] * 900 / (2 * pi)), shaft * 900 / (2 * pi), time) for shaft in (pinion, gear)
+    ]
+    _rig(bench, a=edges[0], b=edges[1])
+    record = bench.content["records"][0]
+    record["channels"] = rate
+    stamped = {"unit": "s", "counts_per_revolution": 900}
+    record["encoders"] = {"pinion": {"timestamps": "a"} | stamped, "gear": {"timestamps": "b"} | stamped}
+    if not rate:
+        assert "or sampling_rate, at which the angles are taken" in bench.only_problem(write=False)
+        return
+    loaded = bench.load_as_it_is().records[0]
+    begins = max(one[0] for one in edges)
+    seen = loaded.channels["transmission_error"].values
+    assert len(seen) == int((min(one[-1] for one in edges) - begins) * 5000) + 1
+    true = RADIUS_PINION * 1e-4 * np.sin(2 * pi * 9 * (begins + np.arange(len(seen)) / 5000))
+    assert np.std(seen - true) < 0.01 * np.std(true)
