@@ -131,7 +131,7 @@ class Bench:
 
         Those with few strengths are fitted first: one that takes nearly all spares the many of another, as of an error
         of every tooth, and one that can do all that it does and more waits for the next round. What promises too little
-        for that comes last, but for the simpler one that a law contains: it may be all that there is of that.
+        for that comes last.
         """
         if not ranked:
             return ()
@@ -140,13 +140,7 @@ class Bench:
         worth = chosen(ranked, self.settings, predicted_gain, laws=self.evidence.has(Trait.REST))
         largest = max((score.gain for score in worth), default=0.0)
         enough = self.settings.taken_by_one * largest
-        larger = (score.candidate.hypothesis.effects[-1] for score in worth if score.gain >= enough)
-        within = {effect.cause.simpler for effect in larger}
-
-        def place(score: Score) -> tuple[bool, int]:
-            return score.gain < enough and score.candidate.name not in within, len(score.candidate.strengths)
-
-        for score in sorted(worth, key=place):
+        for score in sorted(worth, key=lambda score: (score.gain < enough, len(score.candidate.strengths))):
             if any(self._is_enough(fit, score, base) for fit in fits):
                 continue
             with self.budget.trying(is_first=not fits and not outcome.hypothesis.causes):
