@@ -164,10 +164,10 @@ class RawReader:
         late = np.flatnonzero(np.diff(stamps) <= 0) + 1 + self.first
         if not 0 < late.size <= MOST_DOUBLED * stamps.size or written_significantly(stamps) is not None:
             return []
-        columns = [self._all(one, "") for one in self._on_its_clock()]
-        if not columns or any(values.size < self.stop for values in columns):
+        columns = [one for one in self._on_its_clock() if self._size(one) is not None]
+        if not columns or any(self._size(one) < self.stop for one in columns):
             return []
-        rows = np.stack([values[: self.stop] for values in columns], 1)
+        rows = np.stack([self._all(one, "")[: self.stop] for one in columns], 1)
 
         def is_again(k: int) -> bool:
             """Whether a row holds the values of one before it."""
@@ -175,7 +175,7 @@ class RawReader:
 
         again = [next((row for row in (k, k - 1) if is_again(row)), None) for k in late.tolist()]
         kept = np.delete(stamps, [k - self.first for k in again if k is not None])
-        return [] if None in again or np.any(np.diff(kept) <= 0) else again
+        return [] if None in again or np.any(np.diff(kept) <= 0) else sorted({*again})
 
     def _said_of_rows(self, base: TimeBase) -> TimeBase:
         """The time base, with notes of the rows that hold nothing and of those that come twice."""

@@ -236,7 +236,7 @@ def written_significantly(stamps: NDArray[np.float64]) -> TimeBase | None:
     where no even grid rounds to them.
     """
     steps = np.diff(stamps)
-    if stamps[0] < 0 or np.any(steps < 0):
+    if stamps[0] < 0 or np.any(steps < 0) or not np.any(steps):
         return None
     for digits in _SIGNIFICANT:
         with np.errstate(divide="ignore"):

@@ -33,6 +33,19 @@ def test_a_clock_that_jitters_is_no_grid_for_all_its_few_digits():
         stamped_time(significant(np.cumsum(steps), 3), "t", "a.csv")
 
 
+@pytest.mark.parametrize("at", [0.0, 2.5])
+def test_a_clock_that_stands_is_refused(at):
+    with pytest.raises(ValueError, match="49 repeated time stamp"):
+        stamped_time(np.full(50, at), "t", "a.csv")
+
+
+def test_beside_rows_stored_again_a_column_that_cannot_be_read_is_said_once(bench):
+    table = phone()
+    table[200] = table[199]
+    declared(bench, table).content["records"][0]["channels"]["force"] = {"column": "no such", "unit": "N"}
+    assert "no such" in bench.only_problem(write=False)
+
+
 def phone(rows=400):
     """Stamps in s and two signals, of which no two rows are alike."""
     time = 0.0062290 + np.arange(rows) / 100
@@ -92,6 +105,13 @@ def test_rows_may_end_in_another_sign_below_names_that_stand_as_comments(tmp_pat
 @pytest.mark.parametrize(("said", "rate"), [("%Timestep increments at 8kHz", 8000.0), ("time step: 8 ms", 125.0)])
 def test_steps_at_a_frequency_are_no_steps_of_its_size(said, rate):
     assert stated_rate([[said]])[1] == rate
+
+
+@pytest.mark.parametrize("sign", [";", "|"])
+def test_any_sign_may_end_a_row(tmp_path, sign):
+    table = read(tmp_path, f"x,y{sign}\n" + "".join(f"{k}.5,{k % 7}.25{sign}\n" for k in range(40)))
+    np.testing.assert_allclose(table.values(0), np.arange(40) + 0.5)
+    np.testing.assert_allclose(table.values(1), np.arange(40) % 7 + 0.25)
 
 
 def test_one_column_of_decimal_commas_ends_in_its_sign_too(tmp_path):

@@ -212,8 +212,12 @@ def _found(candidate: Candidate, problem: OutputErrorProblem, points: Tensor, st
 
     Teeth whose numbers no index tells are simulated as those with numbers are, so what is known of these is kept.
     """
-    if not candidate.tells_teeth_apart:
+
+    def simulated() -> Tensor:
         return (problem.predict(points, states) * problem.response.weights).reshape(len(points), -1)
+
+    if not candidate.tells_teeth_apart:
+        return simulated()
     values = problem.unknowns.by_record(points)
     for name, value in candidate.hypothesis.given.items():
         if not isinstance(value, tuple) and name not in values:
@@ -221,7 +225,7 @@ def _found(candidate: Candidate, problem: OutputErrorProblem, points: Tensor, st
     numbers = torch.stack([values[name] for name in sorted(values)]).float().numpy().tobytes()  # but for rounding
     key = (candidate.name, candidate.options, *sorted(values), numbers, states.numpy().tobytes())
     if key not in base.kept:
-        base.kept[key] = (problem.predict(points, states) * problem.response.weights).reshape(len(points), -1)
+        base.kept[key] = simulated()
     return base.kept[key]
 
 

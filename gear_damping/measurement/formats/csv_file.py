@@ -72,7 +72,7 @@ class _Text:
         last = next((line for line in reversed(kept) if _NUMBER.search(line)), kept[-1] if kept else "")
         if ends := _line_end(last):
             self.utf8, last = (
-                re.sub(rb"%s[ \t]*(?=\r?\n|$)" % ends.encode(), b"", self.utf8),
+                re.sub(rb"%s[ \t]*(?=\r?\n|$)" % re.escape(ends).encode(), b"", self.utf8),
                 last.rstrip().rstrip(ends),
             )
         # Headers hold all kinds of signs, numbers only one.
