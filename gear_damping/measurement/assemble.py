@@ -8,9 +8,15 @@ from numpy.typing import NDArray
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.angular_error import GEOMETRY, NEEDED, base_radius, turn_in
 from gear_damping.measurement.cutting import moved
-from gear_damping.measurement.declaration import Plan
+from gear_damping.measurement.declaration import ChannelPlan, Plan
 from gear_damping.measurement.declared_units import Conversion, UnitSystem
-from gear_damping.measurement.encoders import FROM_ENCODERS, mean_rotation, transmission_error
+from gear_damping.measurement.encoders import (
+    FROM_ENCODERS,
+    WITHIN_A_TURN,
+    ShaftAngle,
+    mean_rotation,
+    transmission_error,
+)
 from gear_damping.measurement.gaps import borne_out
 from gear_damping.measurement.raw import RawChannel, RawRecord
 from gear_damping.measurement.record import Channel, Finding, Quantity, Record
@@ -25,7 +31,6 @@ LOST = 0.1  # of a channel's variance, from which it is said that resampling too
 _TEETH = tuple(GEOMETRY.values())
 _GEOMETRY = (*_TEETH, *NEEDED)
 _INERTIAS = ("inertia_pinion", "inertia_gear")
-WITHIN_A_TURN = 1.01  # that an angle which begins again may span: a scale is a little off
 
 
 class Assembler:
@@ -68,10 +73,10 @@ class Assembler:
 
     def _channel(self, raw: RawChannel, record: RawRecord, notes: list[str], findings: list[Finding]) -> Channel:
         plan = raw.plan
-        conversion = self.units.conversion(plan.name, raw.unit, f"{plan.key}.unit", self.source)
+        conversion = self._conversion(plan, raw.unit, f"{plan.key}.unit")
         findings += [found] if (found := _unit_conflict(raw, conversion)) else []
         limits = {
-            name: quantity.value * self._limit(plan.name, quantity, f"{plan.key}.{name}").factor
+            name: quantity.value * self._conversion(plan, quantity.unit, f"{plan.key}.{name}").factor
             for name, quantity in plan.limits.items()
         }
         factor = conversion.factor
@@ -89,8 +94,13 @@ class Assembler:
             values = moved(record.base, raw.own_time, values, plan.key, str(record.table.path))
             rate = raw.own_time.sampling_rate
             notes.append(f"{plan.name}: interpolated from {rate:.6g} Hz to the record's time")
-        sensor = plan.sensor | ({"hold": self._held(raw, record, values, notes)} if plan.name in HOLDABLE else {})
+        sensor = dict(plan.sensor) | ({"hold": self._held(raw, record, values, notes)} if plan.name in HOLDABLE else {})
+        if plan.speed_radius:
+            del sensor["radius"]  # the values are divided by it
         return Channel(plan.name, values, conversion.unit, raw.unit, conversion.factor, **limits, **sensor)
+
+    def _conversion(self, plan: ChannelPlan, unit: str, key: str) -> Conversion:
+        return self.units.conversion(plan.name, unit, key, self.source, plan.speed_radius)
 
     def _held(self, raw: RawChannel, record: RawRecord, values: NDArray, notes: list[str]) -> bool:
         """Whether an input stays at each value: as stated, or as it looks."""
@@ -104,9 +114,6 @@ class Assembler:
         notes.append(f"{raw.plan.name}: comes in steps, and stays at each value until the next (else hold: false)")
         return True
 
-    def _limit(self, name: str, quantity: Quantity, key: str) -> Conversion:
-        return self.units.conversion(name, quantity.unit, key, self.source)
-
     def _from_encoders(
         self, raw: RawRecord, channels: dict[str, Channel], notes: list[str], findings: list[Finding]
     ) -> None:
@@ -117,6 +124,8 @@ class Assembler:
                 message += "the turn of the shaft there is counted as if they were there"
                 findings.append(Finding("lost_pulses", message, channel=name, severity="note"))
         told = raw.angles.get("pinion", raw.angles.get("tacho"))
+        if told is None and "pinion_angle" not in channels and "gear" in raw.angles:
+            told = self._behind_the_gear(raw.angles["gear"], f"{raw.plan.key}.encoders.gear", notes)
         shaft = None if told is None else told.values
         if {"pinion", "gear"} <= {*raw.angles} and "transmission_error" not in channels:
             angles = {name: one.values for name, one in raw.angles.items()}
@@ -129,6 +138,16 @@ class Assembler:
             datum = "absolute" if raw.plan.mesh_index else "arbitrary"
             values, late = raw.base.resample(shaft), told.timing_error
             channels["pinion_angle"] = Channel("pinion_angle", values, "rad", datum=datum, timing_error=late)
+
+    def _behind_the_gear(self, gear: ShaftAngle, key: str, notes: list[str]) -> ShaftAngle:
+        """The pinion's angle where the gear's alone is measured: the teeth that have passed, over the pinion's."""
+        missing = [name for name in _TEETH if name not in self.plan.parameters]
+        if missing:
+            rule = "the angle of the pinion from the gear's encoder needs the teeth of both"
+            raise InputError(Problem(key, rule, None, f"give {', '.join(missing)} under parameters", self.source))
+        teeth_1, teeth_2 = (self.plan.parameters[name].value for name in _TEETH)
+        notes.append("pinion_angle: from the gear's encoder by the ratio of the teeth")
+        return replace(gear, values=gear.values * teeth_2 / teeth_1)
 
     def _error(
         self, angles: dict[str, NDArray], key: str, findings: list[Finding]
@@ -168,7 +187,7 @@ class Assembler:
                 continue
             kept[name] = quantity
             with self.problems.collecting():
-                unit = self._limit(name, quantity, f"{raw.plan.key}.conditions.{name}")
+                unit = self.units.conversion(name, quantity.unit, f"{raw.plan.key}.conditions.{name}", self.source)
                 kept[name] = Quantity(quantity.value * unit.factor, unit.unit, quantity.uncertainty)
         return kept
 

@@ -228,6 +228,10 @@ class Speed(Response):
     title: ClassVar[str] = "a speed"
     si: ClassVar[str | None] = "rad/s"
     usual_datum: ClassVar[str] = "arbitrary"
+    radius: Annotated[Quantity, Measured("m")] = key(
+        "Of a velocity along the circumference (a vibrometer's, `unit: mm/s`): the radius at which it is measured.",
+        "values: the velocity is divided by it",
+    )
 
     @model_validator(mode="after")
     def _fluctuates(self) -> "Speed":

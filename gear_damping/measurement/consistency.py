@@ -78,9 +78,11 @@ def _is_gear(seen: _Seen) -> bool:
 
 def _gear_response(seen: _Seen) -> Found:
     """Something that a simulation, or the orders of a casing, can be compared with."""
-    if "gear" in seen.encoders and "pinion" not in seen.encoders:
-        yield seen.problem("encoders", "the gear's encoder needs the pinion's beside it", "declare encoders.pinion")
-    elif not (seen.error or seen.on_a_shaft or seen.casing):
+    if not (seen.error or seen.on_a_shaft or seen.casing):
+        if "gear" in seen.encoders:
+            rule, remedy = "the gear's encoder alone is no response", "declare encoders.pinion beside it, or a channel"
+            yield seen.problem("encoders", rule, remedy)
+            return
         rule = "the record lacks a transmission_error or another response"
         remedy = "declare a transmission_error, pinion_speed, gear_speed, acceleration, or two encoders"
         yield seen.problem("channels", rule, remedy)
@@ -88,7 +90,7 @@ def _gear_response(seen: _Seen) -> Found:
 
 def _gear_angle(seen: _Seen) -> Found:
     have = {*seen.channels, *seen.conditions}
-    if not have & {"pinion_angle", "pinion_speed"} and not {*seen.encoders} & {"pinion", "tacho"}:
+    if not have & {"pinion_angle", "pinion_speed"} and not seen.encoders:
         needed = "pinion_speed under conditions, or a pinion_angle"
         yield seen.problem("channels", f"the record lacks {needed}", f"declare {needed}, or encoders.tacho")
 
@@ -160,8 +162,13 @@ def _speed_of_known_gain(seen: _Seen) -> Found:
 
 
 def _encoder_beside_a_channel(seen: _Seen) -> Found:
-    if "gear" in seen.encoders and "transmission_error" in seen.channels:
+    """The gear's encoder where it gives neither a transmission error nor the angle."""
+    if seen.both_encoders and "transmission_error" in seen.channels:
         rule = "has no meaning beside channels.transmission_error, which it would give"
+        yield seen.problem("encoders.gear", rule, "keep one of the two")
+    other = "channels.pinion_angle" if "pinion_angle" in seen.channels else "encoders.tacho"
+    if "gear" in seen.encoders and not seen.both_encoders and ("tacho" in seen.encoders or "channels" in other):
+        rule = f"has no meaning without encoders.pinion beside {other}, which gives the angle"
         yield seen.problem("encoders.gear", rule, "keep one of the two")
 
 
@@ -186,7 +193,8 @@ def _frame_without_base(seen: _Seen) -> Found:
 
 _GEAR: tuple[Callable[[_Seen], Found], ...] = (
     _something_measured, _gear_response, _gear_angle, _gear_load, _shaft_needs_inertia, _speed_as_an_angle,
-    _angle_needs_teeth, _speed_has_its_mean, _encoder_beside_a_channel, _angle_twice, _speed_of_known_gain, _reference,
+    _angle_needs_teeth, _speed_has_its_mean, _encoder_beside_a_channel, _angle_twice,
+    _speed_of_known_gain, _reference,
 )  # fmt: skip
 _OSCILLATOR: tuple[Callable[[_Seen], Found], ...] = (
     _something_measured, _oscillator_response, _frame_without_base, _reference,

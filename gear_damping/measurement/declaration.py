@@ -11,7 +11,7 @@ from gear_damping.measurement.channels import AnyChannel, Response, Timed
 from gear_damping.measurement.consistency import inconsistencies
 from gear_damping.measurement.own_system import NONE, file_of, si_units
 from gear_damping.measurement.record import Quantity
-from gear_damping.measurement.vocabulary import GEAR_CHANNELS, channels_of, units_of
+from gear_damping.measurement.vocabulary import GEAR_CHANNELS, SHAFT_SPEEDS, channels_of, units_of
 from gear_damping.schema.mappings import names, read_declared
 from gear_damping.schema.values import OneOf, Problems
 from gear_damping.units import parse_unit
@@ -43,6 +43,11 @@ class ChannelPlan:
     sensor: Mapping[str, object]
     limits: Mapping[str, Quantity]
     timing: TimePlan | None
+
+    @property
+    def speed_radius(self) -> float | None:
+        """m, at which the speed of a shaft is measured as a velocity along the circumference; None elsewhere."""
+        return self.sensor.get("radius") if self.name in SHAFT_SPEEDS else None
 
 
 @dataclass(frozen=True)

@@ -9,11 +9,12 @@ from dataclasses import dataclass
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.record import Quantity
-from gear_damping.measurement.vocabulary import OSCILLATOR_CHANNELS
+from gear_damping.measurement.vocabulary import OSCILLATOR_CHANNELS, SHAFT_SPEEDS
 from gear_damping.units import Dimension, Unit, other_kind, parse_unit
 
 _PER_SECOND = Dimension(time=-1)  # exponent of a derivative in time
 _PER = {0: "", 1: "/s", 2: "/s^2"}
+_VELOCITY = parse_unit("m/s")
 _BASE = "base_acceleration"  # an input in the unit of the response's acceleration
 
 
@@ -59,13 +60,22 @@ class UnitSystem:
             elif self._response is None or order < self._response.order:
                 self._response = _Reference(unit, text, order)
 
-    def conversion(self, name: str, text: str, key: str, source: str) -> Conversion:
+    def conversion(self, name: str, text: str, key: str, source: str, radius: float | None = None) -> Conversion:
         """How values of channel `name` in the unit `text` are converted.
+
+        Args:
+            name: The channel.
+            text: The unit.
+            key: What is at fault in messages.
+            source: The file that declares it.
+            radius: m, at which the speed of a shaft is measured as a velocity along the circumference.
 
         Raises:
             InputError: the unit is unknown or of another kind than the channel.
         """
         unit = parse_unit(text, key, source)
+        if name in SHAFT_SPEEDS and (radius or unit.dimension == _VELOCITY.dimension):
+            return _around(unit, radius, self.si[name], key, text, source)
         if self.si is not None:
             kept = _Reference(parse_unit(self.si[name]), self.si[name], 0)
         else:
@@ -100,3 +110,15 @@ class UnitSystem:
             raise InputError(Problem(key, rule, quantity.value, f"give it in '{text}'", source))
         factor = unit.factor / self._response.unit.factor * self._force.unit.factor
         return Quantity(quantity.value * factor, text, quantity.uncertainty)
+
+
+def _around(unit: Unit, radius: float | None, kept: str, key: str, text: str, source: str) -> Conversion:
+    """Of a velocity along the circumference, to the speed of the shaft."""
+    if radius is None:
+        rule = f"'{text}' is a velocity along the circumference, which is a speed of the shaft at a known radius only"
+        remedy = "add where it is measured, radius: {value: 30, unit: mm}, or give it in 'rad/s'"
+        raise InputError(Problem(key, rule, text, remedy, source))
+    if unit.dimension != _VELOCITY.dimension:
+        rule = f"'{text}' is no velocity along the circumference, which alone a radius has a meaning for"
+        raise InputError(Problem(key, rule, text, "leave out radius, or give the unit of the velocity, mm/s", source))
+    return Conversion(unit.factor / radius, kept)

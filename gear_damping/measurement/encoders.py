@@ -14,6 +14,7 @@ from gear_damping.units import parse_unit, to_si
 
 TURN = 2 * np.pi  # rad in one turn of a shaft
 FEWEST_PULSES = 2  # in a record: one alone tells no speed
+WITHIN_A_TURN = 1.01  # that an angle which begins again may span: a scale is a little off, and an end is rounded
 COUNTERS = (16, 24, 32)  # bits of the registers that run over in counter cards
 FROM_ENCODERS = "transmission_error: r_b1 theta_1 - r_b2 theta_2 from the encoders, without its mean"  # a note
 SQUARE = 0.1  # of a pulse's height: from one level to the other within a sample, so that the edge is known to that
@@ -44,13 +45,24 @@ class ShaftAngle:
 
 def angle_from_counts(counts: NDArray[np.float64], per_revolution: float, direction: int = 1) -> NDArray[np.float64]:
     """(n,) rad from counts per sample; a counter may begin again after each revolution, or at the end of its range."""
-    span = float(np.ptp(counts))
-    for bits in COUNTERS:
-        if span < 2**bits and np.any(np.abs(np.diff(counts)) > 2 ** (bits - 1)):
-            counts, span = np.unwrap(counts, period=2**bits), np.inf
-            break
-    angle = TURN * counts / per_revolution
-    return direction * (np.unwrap(angle) if span < per_revolution else angle)
+    period = _begins_again_after(counts, per_revolution)
+    whole = counts if period is None else np.unwrap(counts, period=period)
+    return direction * TURN * whole / per_revolution
+
+
+def _begins_again_after(counts: NDArray[np.float64], per_revolution: float) -> float | None:
+    """The counts of a turn, or those of a register, whichever its falls are nearer to; None where it goes on.
+
+    Where an angle is rounded, the end of a turn is written beside the zero of the next.
+    """
+    steps, span = np.abs(np.diff(counts)), float(np.ptp(counts))
+    fitting = [2.0**bits for bits in COUNTERS if span < 2**bits]
+    fitting += [per_revolution] if span <= WITHIN_A_TURN * per_revolution else []
+    fitting = [period for period in fitting if np.any(steps > period / 2)]
+    if not fitting:
+        return None
+    fall = float(np.median(steps[steps > min(fitting) / 2]) + np.median(steps))
+    return min(fitting, key=lambda period: abs(period - fall))
 
 
 def angle_from_pulses(

@@ -107,9 +107,9 @@ def _checked(content: object, source: str, plugins: Sequence[str | Path]) -> Pla
     if plan is not None:
         _names(plan.records, problems, source)
         declared = list(_units(plan))
-        if plan.si is not None or all(unit for _, unit, _ in declared):
-            known = [(name, unit, key) for name, unit, key in declared if unit]
-            units = UnitSystem(plan.si, [(name, unit) for name, unit, _ in known])
+        if plan.si is not None or all(unit for _, unit, _, _ in declared):
+            known = [(name, unit) for name, unit, _, _ in declared if unit]
+            units = UnitSystem(plan.si, known)
             _compare_units(plan, units, problems, source)
     problems.raise_any()
     return plan
@@ -140,23 +140,23 @@ def _loaded(content: object, path: Path, max_bytes: int | None, plugins: Sequenc
     return Measurement(plan.system, parameters, kept, path.resolve(), plan.segment_s, own_system)
 
 
-def _units(plan: Plan) -> Iterable[tuple[str, str | None, str]]:
-    """Name, unit and key of what is declared with a unit that must fit the others."""
+def _units(plan: Plan) -> Iterable[tuple[str, str | None, str, float | None]]:
+    """Name, unit, key and the radius of a speed, of what is declared with a unit that must fit the others."""
     for record in plan.records:
         for channel in record.channels:
-            yield channel.name, channel.unit, f"{channel.key}.unit"
+            yield channel.name, channel.unit, f"{channel.key}.unit", channel.speed_radius
             for limit, quantity in channel.limits.items():
-                yield channel.name, quantity.unit, f"{channel.key}.{limit}"
+                yield channel.name, quantity.unit, f"{channel.key}.{limit}", channel.speed_radius
         for name, quantity in record.conditions.items():
-            yield name, quantity.unit, f"{record.key}.conditions.{name}"
+            yield name, quantity.unit, f"{record.key}.conditions.{name}", None
 
 
 def _compare_units(plan: Plan, units: UnitSystem, problems: Problems, source: str) -> dict[str, Quantity]:
     """Note every unit that is not of its kind; returns the parameters in the rig's own units."""
-    for name, unit, key in _units(plan):
+    for name, unit, key, radius in _units(plan):
         with problems.collecting():
             if unit:
-                units.conversion(name, unit, key, source)
+                units.conversion(name, unit, key, source, radius)
     own = {}
     for name, quantity in plan.own.items():
         with problems.collecting():

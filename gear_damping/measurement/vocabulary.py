@@ -3,7 +3,7 @@
 from types import MappingProxyType as Frozen
 
 from gear_damping.measurement import layout, rig
-from gear_damping.measurement.channels import AnyChannel, Held
+from gear_damping.measurement.channels import AnyChannel, Held, Speed
 from gear_damping.schema.mappings import Declared, inner_model, kind_of, names
 
 SYSTEMS = layout.SYSTEMS
@@ -30,6 +30,7 @@ GEAR_CHANNELS = Frozen({name: kind.si for name, kind in _GEAR.items()})
 OSCILLATOR_CHANNELS = Frozen({name: kind.derivative for name, kind in _OSCILLATOR.items()})
 # given to the system, not its response
 HOLDABLE = tuple(name for name, kind in (_GEAR | _OSCILLATOR).items() if issubclass(kind, Held))
+SHAFT_SPEEDS = tuple(name for name, kind in _GEAR.items() if issubclass(kind, Speed))
 INPUTS = tuple(name for name, kind in (_GEAR | _OSCILLATOR).items() if kind.is_input)
 # name -> SI unit; "own": in the units that the oscillator was measured in
 PARAMETERS = Frozen({"gear_pair": units_of(rig.GearParameters), "oscillator": units_of(rig.OscillatorParameters)})

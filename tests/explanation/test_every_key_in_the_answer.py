@@ -54,9 +54,20 @@ REFUSED = {
     ("gear_pair", "records", "encoders", "gear", "index"): "turns of|holds no pulse",
     ("gear_pair", "records", "encoders", "tacho", "threshold", "unit"): "do not cover the record",
     ("oscillator", "parameters", "stiffness", "unit"): "show nothing beyond",
-    **{("gear_pair", "parameters", name, "unit"): "lies outside|must be a whole number|finite"
-       for name in ("n_teeth_pinion", "n_teeth_gear", "module", "pressure_angle", "inertia_pinion", "inertia_gear",
-                    "mesh_stiffness_max", "mesh_stiffness_min", "contact_ratio")},
+    **{
+        ("gear_pair", "parameters", name, "unit"): "lies outside|must be a whole number|finite"
+        for name in (
+            "n_teeth_pinion",
+            "n_teeth_gear",
+            "module",
+            "pressure_angle",
+            "inertia_pinion",
+            "inertia_gear",
+            "mesh_stiffness_max",
+            "mesh_stiffness_min",
+            "contact_ratio",
+        )
+    },
     **{(system, "records", "window", "unit"): "the record goes from" for system in ("gear_pair", "oscillator")},
     **{(system, "segments", "unit"): "longer than every record" for system in ("gear_pair", "oscillator")},
     ("oscillator", "records", "role"): "is held out, and all rows of it are fitted",
@@ -175,6 +186,8 @@ def bases() -> list[dict]:
     still = load | {"pinion_speed": {"value": 1200.0, "unit": "rad/s", "uncertainty": 0.001},
                     "gear_torque": {"value": 300.0, "unit": "N*m", "uncertainty": 0.01}}  # fmt: skip
     speed = {"pinion_speed": {"value": 1200.0, "unit": "rad/s"}}
+    around = {"unit": "mm/s", "radius": {"value": 30.0, "unit": "mm"}, "range": {"value": 1e9, "unit": "mm/s"},
+              "noise": {"value": 2.0, "unit": "mm/s"}}  # fmt: skip
     rate = {"sampling_rate": {"value": RATE, "unit": "Hz"}}
     cut = {"window": {"from": 1e-3, "to": 9e-3, "unit": "s"}, "resample": {"value": 3e4, "unit": "Hz"}}
     segments = {"segments": {"value": 2e-3, "unit": "s"}}
@@ -224,6 +237,8 @@ def bases() -> list[dict]:
         gear(record(apart(tangential, {"datum": "absolute"}) | turning)),
         gear(record(apart(tangential, arbitrary) | turning)),
         gear(record(only(one, "gear_speed") | turning)),
+        gear(record(only(one, "pinion_speed", **around) | balanced, conditions=speed)),
+        gear(record(only(one, "gear_speed", **around) | balanced, conditions=speed)),
         gear(record(only(one, "pinion_speed") | balanced, conditions=speed)),
         gear(record(apart(only(one, "pinion_speed", "gear_speed"), arbitrary) | balanced, conditions=speed)),
         oscillator(record(only(two, "displacement") | inputs), **segments),

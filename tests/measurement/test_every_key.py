@@ -32,8 +32,10 @@ REFUSED = {
     ("gear_pair", "records", "channels", "acceleration", "mounting"): "no meaning on a casing",
     ("gear_pair", "records", "encoders", "pinion", "index"): "turns of",
     ("gear_pair", "records", "encoders", "gear", "index"): "turns of",
-    **{("gear_pair", "parameters", name, "unit"): "lies outside|must be a whole number"
-       for name in ("module", "pressure_angle", "n_teeth_pinion", "n_teeth_gear", "contact_ratio")},
+    **{
+        ("gear_pair", "parameters", name, "unit"): "lies outside|must be a whole number"
+        for name in ("module", "pressure_angle", "n_teeth_pinion", "n_teeth_gear", "contact_ratio")
+    },
 }
 # Where the next value of the kind would be refused beside the others.
 CHOSEN = {
@@ -129,6 +131,9 @@ def _bases() -> list[dict]:
     error = gear("transmission_error", range={"value": 9e3, "unit": "m"})
     tangential = gear("acceleration", mounting="tangential", shaft="pinion", radius={"value": 0.03, "unit": "m"})
     speeds = gear("pinion_speed", "d") | gear("gear_speed", "e")
+    around = {"unit": "mm/s", "radius": {"value": 0.03, "unit": "m"}, "range": {"value": 9e9, "unit": "mm/s"},
+              "noise": {"value": 0.5, "unit": "mm/s"}}  # fmt: skip
+    vibrometers = _gear(gear("pinion_speed", "d", **around) | gear("gear_speed", "e", **around))
     all_gear = _gear(error | tangential | gear("gear_speed", "e"))
     motions = motion("displacement", "a") | motion("velocity", "b") | motion("acceleration", "c")
     all_motions = _oscillator(motions | motion("force", "d") | motion("base_acceleration", "e"))
@@ -192,7 +197,7 @@ def _bases() -> list[dict]:
     oscillator_outside = _oscillator(motion("displacement", "a"), sampling_rate={"value": 1000.0, "unit": "Hz"})
     del oscillator_outside["records"][0]["channels"]["time"]
     return [
-        all_gear, sensor, angular, speedy, _gear(speeds), all_motions, framed, dated,
+        all_gear, sensor, angular, speedy, _gear(speeds), vibrometers, all_motions, framed, dated,
         *(_own_time(all_gear, base) for base in own),
         *(_own_time(_gear(speeds), base) for base in own), *(_own_time(all_motions, base) for base in own),
         plain, worded, rate_inside, rate_outside, reference, oscillator_rate, oscillator_outside,

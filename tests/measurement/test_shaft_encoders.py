@@ -278,7 +278,7 @@ def test_an_encoder_beside_a_measured_angle_is_refused(bench):
         ({"pinion": {"column": "p"}}, "counts_per_revolution: is missing"),
         ({"pinion": {"counts_per_revolution": 9}}, "either column"),
         ({"pinion": {"column": "p", "counts_per_revolution": 0}}, "at least 1"),
-        ({"gear": {"column": "p", "counts_per_revolution": 9}}, "needs the pinion's"),
+        ({"gear": {"column": "p", "counts_per_revolution": 9}}, "gear's encoder alone is no response"),
         ({"pinion": {"column": "q", "counts_per_revolution": 9}}, "no such column"),
     ],
 )
@@ -319,3 +319,93 @@ def test_two_encoders_that_stamp_their_edges_need_no_column_but_a_rate(bench, ra
     assert len(seen) == int((min(one[-1] for one in edges) - begins) * 5000) + 1
     true = RADIUS_PINION * 1e-4 * np.sin(2 * pi * 9 * (begins + np.arange(len(seen)) / 5000))
     assert np.std(seen - true) < 0.01 * np.std(true)
+
+
+@pytest.mark.parametrize("turn", [2048, 32800, 36000, 65535, 65536, 100_000, 9_000_000])
+@pytest.mark.parametrize("direction", [1, -1])
+def test_a_counter_begins_again_after_a_turn_whatever_register_its_counts_would_fill(turn, direction):
+    angle = direction * np.linspace(0, 60, 2000)
+    counts = np.floor(np.mod(angle / (2 * pi) * turn, turn))
+    found = angle_from_counts(counts, turn)
+    np.testing.assert_allclose(found - found[0], angle - angle[0], atol=1.01 * 2 * pi / turn)
+
+
+@pytest.mark.parametrize(("turn", "bits"), [(200_000, 16), (70_000, 16), (1000, 16), (2**25, 24)])
+def test_a_register_that_runs_over_is_told_from_a_turn_by_the_height_of_its_fall(turn, bits):
+    angle = np.linspace(0, 60, 2000)
+    found = angle_from_counts(np.floor(np.mod(angle / (2 * pi) * turn, 2**bits)), turn)
+    np.testing.assert_allclose(found, angle, atol=1.01 * 2 * pi / turn)
+
+
+def test_an_angle_that_is_rounded_to_a_whole_turn_begins_again_too():
+    angle = np.linspace(0.1, 40, 3000)
+    rounded = np.round(np.mod(np.degrees(angle), 360), 1)
+    rounded[np.argmin(np.abs(rounded - 360))] = 360.0
+    found = angle_from_counts(rounded, 360)
+    np.testing.assert_allclose(found, angle, atol=1.1e-3)
+
+
+def test_the_encoder_of_the_gear_tells_the_angle_beside_a_measured_error(bench):
+    time = np.arange(2000) / 20000
+    gear = 25 * time + 0.01 * np.sin(25 * time)
+    record = _rig(bench, t=time, x=np.sin(3000 * time), p=np.mod(np.degrees(gear), 360))
+    record["channels"]["transmission_error"] = {"column": "x", "unit": "um"}
+    record["encoders"] = {"gear": {"column": "p", "counts_per_revolution": 360}}
+    loaded = bench.load_as_it_is().records[0]
+    np.testing.assert_allclose(loaded.channels["pinion_angle"].values, 2 * gear, atol=1e-9)
+    assert any("from the gear's encoder by the ratio of the teeth" in note for note in loaded.notes)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda content: content["parameters"].pop("n_teeth_gear"), "give n_teeth_gear under parameters"),
+        (
+            lambda content: content["records"][0].update(mesh_index=True),
+            "mesh_index = True: has no meaning without a measured angle",
+        ),
+        (
+            lambda content: content["records"][0]["encoders"].update(tacho={"column": "x", "pulses_per_revolution": 1}),
+            "without encoders.pinion beside encoders.tacho",
+        ),
+        (
+            lambda content: content["records"][0]["channels"].update(pinion_angle={"column": "p", "unit": "deg"}),
+            "without encoders.pinion beside channels.pinion_angle",
+        ),
+    ],
+)
+def test_where_the_encoder_of_the_gear_tells_no_angle_it_is_refused(bench, change, said):
+    time = np.arange(2000) / 20000
+    record = _rig(bench, t=time, x=np.sin(3000 * time), p=np.degrees(25 * time))
+    record["channels"]["transmission_error"] = {"column": "x", "unit": "um"}
+    record["encoders"] = {"gear": {"column": "p", "counts_per_revolution": 360}}
+    change(bench.content)
+    with pytest.raises(InputError, match=said):
+        bench.load_as_it_is()
+
+
+@pytest.mark.parametrize(
+    ("keys", "said"),
+    [
+        ({"unit": "mm/s"}, "at a known radius only; remedy: add where it is measured, radius"),
+        ({"unit": "rad/s", "radius": "30 mm"}, "is no velocity along the circumference"),
+    ],
+)
+def test_a_velocity_around_a_shaft_and_its_radius_belong_together(bench, keys, said):
+    time = np.arange(2000) / 20000
+    record = _rig(bench, t=time, v=np.sin(3000 * time))
+    record["channels"]["gear_speed"] = {"column": "v"} | keys
+    record["conditions"]["pinion_speed"] = {"value": 600, "unit": "rpm"}
+    with pytest.raises(InputError, match=said):
+        bench.load_as_it_is()
+
+
+def test_a_vibrometer_at_a_radius_tells_the_speed_of_its_shaft(bench):
+    time = np.arange(2000) / 20000
+    speed = 30 + 0.2 * np.sin(3000 * time)
+    record = _rig(bench, t=time, v=speed * 31)  # mm/s at 31 mm
+    record["channels"]["gear_speed"] = {"column": "v", "unit": "mm/s", "radius": "31 mm", "noise": "3.1 mm/s"}
+    record["conditions"]["pinion_speed"] = {"value": 600, "unit": "rpm"}
+    found = bench.load_as_it_is().records[0].channels["gear_speed"]
+    np.testing.assert_allclose(found.values, speed, rtol=1e-12)
+    assert (found.unit, found.noise, found.radius) == ("rad/s", pytest.approx(0.1), None)

@@ -2,20 +2,21 @@
 
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.formats.header import is_number
+from gear_damping.measurement.formats.number_texts import is_absent, is_number, is_written, parts_thousands, plain
 from gear_damping.measurement.formats.table import Table, is_real
 
 MOMENT = "a date or a clock, which is not read from a text"
 _MOMENT = re.compile(r"\d{1,2}:\d{2}|\d{4}-\d{2}-\d{2}|\d{1,2}[./]\d{1,2}[./]\d{2,4}")
-NO_VALUE = ("", "-", "--", "?", "n/a", "na", "#n/a", "null", "none", "ovld", "overload", "err", "error")
+MOST_WORDS = 0.5  # of the cells of a column of numbers: with more than half words it is one of words
 SHOWN = 3  # faults of one kind that are listed one by one
+MOST_BELOW = 20  # rows that may lie below a table, and more of its own
 LISTED = 8  # columns that a message lists
 
 
@@ -46,6 +47,32 @@ class Cells:
     line: Callable[[int], int]
 
 
+def without_footer(columns: Sequence[Cells]) -> tuple[list[Cells], str]:
+    """Columns without the rows below a table that begin to hold words (`Min`, `Mean`), and what is noted of these."""
+    rows = max((len(one.values) for one in columns), default=0)
+    begins = [_first_word(one.values) for one in columns if not is_real(one.values.dtype)]
+    first = min((row for row in begins if row is not None), default=rows)
+    if not 0 < rows - first <= MOST_BELOW < first:
+        return list(columns), ""
+    below = [[str(one.values[k]) for one in columns if k < len(one.values)] for k in range(first, rows)]
+    if not all(any(_is_word(cell) for cell in row) for row in below):
+        return list(columns), ""
+    said = next(cell for cell in below[0] if _is_word(cell))
+    note = f"the last {rows - first} row(s), from '{said}' on (line {columns[0].line(first)}), lie below the table and "
+    return [replace(one, values=one.values[:first]) for one in columns], note + "are left out"
+
+
+def _first_word(cells: NDArray) -> int | None:
+    """The row of the first of the words that a column of numbers ends in; None where it does in none, or has more."""
+    words = [_is_word(str(cell)) for cell in cells]
+    count = next((k for k, is_word in enumerate(reversed(words)) if not is_word), len(words))
+    return len(words) - count if 0 < count == sum(words) < len(words) else None
+
+
+def _is_word(cell: str) -> bool:
+    return not is_absent(cell) and not is_written(cell) and _MOMENT.search(cell) is None
+
+
 class CellTable(Table):
     """Columns of cells that become numbers when they are asked for; `decimal_commas` may be in their texts."""
 
@@ -60,10 +87,10 @@ class CellTable(Table):
         return self._columns[index].unit
 
     def values(self, index: int) -> NDArray[np.float64]:
-        """(n,) float64: a column, nan where a cell says that there is no value.
+        """(n,) float64: a column, nan where a cell is no number; `bad_cells` tells of these.
 
         Raises:
-            InputError: another cell is no number, with its row; or none of them is one.
+            InputError: too many cells are neither numbers nor say that there is none, or none of them is a number.
         """
         if index not in self._read:
             values = self._columns[index].values
@@ -71,12 +98,13 @@ class CellTable(Table):
         return self._read[index]
 
     def _numbers(self, index: int) -> NDArray[np.float64]:
-        cells = self._decimal_points([str(cell) for cell in self._columns[index].values])
+        cells = [plain(cell) for cell in self._decimal_points([str(one) for one in self._columns[index].values], index)]
         try:
             return np.array(cells, dtype=np.float64)
         except ValueError:
             bad = [k for k, cell in enumerate(cells) if not is_number(cell)]
-            if len(bad) == len(cells) or any(cells[k].strip().lower() not in NO_VALUE for k in bad):
+            told = [k for k in bad if not is_absent(cells[k])]
+            if len(bad) == len(cells) or len(told) > MOST_WORDS * len(cells):
                 raise InputError(self._problems(index, cells, bad)) from None
             self._bad[index] = cells, bad
             missing = set(bad)
@@ -87,13 +115,25 @@ class CellTable(Table):
         cells, bad = self._bad.get(index, ([], []))
         return self._problems(index, cells, [k for k in bad if first <= k < stop])
 
-    def _decimal_points(self, cells: list[str]) -> list[str]:
-        """Cells with decimal points; where a column has points and commas the commas stay, and fail."""
+    def _decimal_points(self, cells: list[str], index: int) -> list[str]:
+        """Cells with decimal points and thousands in one piece; points and commas of another use stay, and fail."""
+        for sign in ".,":
+            if parts_thousands(cells, sign):
+                cells = self._in_one_piece(cells, sign, index)
         if not self._commas or not any("," in cell for cell in cells) or any("." in cell for cell in cells):
             return cells
-        note = decimal_commas(self.path)
-        self.notes = self.notes if note in self.notes else (*self.notes, note)
+        self._note(decimal_commas(self.path))
         return [cell.replace(",", ".") for cell in cells]
+
+    def _in_one_piece(self, cells: list[str], sign: str, index: int) -> list[str]:
+        first = next(cell for cell in cells if sign in cell and not is_absent(cell)).strip()
+        said = f"'{self.names[index]}'" if self.names[index] else str(index)
+        whole = first.replace(sign, "")
+        self._note(f"{self.path.name}: in column {said} '{sign}' parts thousands, {first} is read as {whole}")
+        return [cell.replace(sign, "") for cell in cells]
+
+    def _note(self, note: str) -> None:
+        self.notes = self.notes if note in self.notes else (*self.notes, note)
 
     def _with_numbers(self) -> str:
         """The columns that begin with numbers, as a list in a message."""

@@ -13,8 +13,15 @@ from pathlib import Path
 from typing import Any
 
 from gear_damping.errors import InputError, Problem, reading
-from gear_damping.measurement.formats.cells import NO_VALUE, SHOWN, Cells, CellTable, decimal_commas
-from gear_damping.measurement.formats.header import Header, filled, find_header, is_number
+from gear_damping.measurement.formats.cells import SHOWN, Cells, CellTable, decimal_commas, without_footer
+from gear_damping.measurement.formats.header import Header, filled, find_header
+from gear_damping.measurement.formats.number_texts import (
+    are_decimals_alone,
+    is_absent,
+    is_number,
+    is_written,
+    parts_thousands,
+)  # fmt: skip
 from gear_damping.measurement.formats.stated_rate import stated_rate
 from gear_damping.measurement.formats.table import Table, is_real, refuse_size, unreadable
 
@@ -22,14 +29,16 @@ SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".gz")
 
 _DELIMITERS = (";", "\t", "|", ",")  # in the order in which they are taken for it; blanks where none stands
 _HEAD = 100  # rows among which the header is looked for
+_ALONE = 80  # last lines that are asked whether they hold a number each
+_SAMPLE = 2000  # rows by which it is seen whether a column's numbers have signs between thousands
 _PREAMBLE, _BELOW = 20, 20  # rows that may be settings; rows of the table below them, at least
 _NAN = ("nan", "NaN", "NAN", "Nan", "-nan", "+nan")
-_NUMBER, _IS_COMMENT = re.compile(r"\d"), re.compile(r"\s*#")
+_NUMBER, _IS_COMMENT = re.compile(r"\d"), re.compile(r"\s*(#|%|//)")
 _PLACE = "X_Value"  # LabVIEW's name of what the values are over,
 _PLAIN = {"pounds": "lbf", "newtons": "N", "amps": "A", "meters": "m"}  # ... and its words for units
 _SETTING, _DEFINED = re.compile(r"[A-Za-z]\w*="), "DEF="
 _END_OF_HEADER = re.compile(r"^\*+ ?end[_ ]of[_ ]header", re.IGNORECASE)
-_COMMENT = re.compile(rb"^[ \t]*#", re.MULTILINE)
+_COMMENT = re.compile(rb"^[ \t]*(#|%|//)", re.MULTILINE)
 
 
 def read(path: Path, max_bytes: int) -> Table:
@@ -40,8 +49,9 @@ def read(path: Path, max_bytes: int) -> Table:
     """
     text = _Text(path, _bytes(path, max_bytes))
     header, first_line = _header(text)
-    decimal = "," if _decimal_comma(text, first_line) else "."
-    frame = _frame(text, header, first_line, decimal)
+    parted = _parted(text, first_line)
+    decimal = "," if _decimal_comma(text, first_line, parted) else "."
+    frame = _frame(text, header, first_line, decimal, parted)
     width = frame.shape[1] - 1
     if any(not is_real(frame[k].dtype) for k in range(width)) or not (frame[width] == "").all():
         _refuse_ragged(text, header.names or ("",) * width, first_line)
@@ -49,13 +59,16 @@ def read(path: Path, max_bytes: int) -> Table:
             frame = frame[~(frame == "").all(axis=1)]  # rows of delimiters alone
     lines = _Lines(path, max_bytes, first_line)
     columns = [Cells(header.name(k), header.unit(k), frame[k].to_numpy(), lines) for k in range(width)]
-    table = CellTable(path, columns, decimal_commas=text.delimiter != ",")
+    columns, below = without_footer(columns)
+    table = CellTable(path, columns, decimal_commas=True)  # between cells only where they stand in quotes
     above = [row for line, row in islice(text.rows(), _HEAD) if line < first_line]
     table.stated_rate = stated_rate(above)
     if header.skipped:
         table.notes += (f"{path.name}: {header.skipped} line(s) before the header are left out",)
     if header.says:
         table.notes += (f"{path.name}: {header.says}",)
+    if below:
+        table.notes += (f"{path.name}: {below}",)
     if decimal == ",":
         table.notes += (decimal_commas(path),)
     return table
@@ -77,6 +90,8 @@ class _Text:
             )
         # Headers hold all kinds of signs, numbers only one.
         self.delimiter = next((sign for sign in _DELIMITERS if sign in last), " ")
+        if self.delimiter == ",":
+            self.delimiter = _beside_decimal_commas(kept[-_HEAD:], last)
         self.width = max((k + 1 for k, cell in enumerate(next(self._cells([last]), [])) if cell.strip()), default=0)
 
     def open(self) -> io.TextIOWrapper:
@@ -96,6 +111,14 @@ class _Text:
         except csv.Error as error:
             rule = f"line {reader.line_num} is no row of a table ({error})"
             raise InputError(Problem("file", rule, str(self.path), "export it again")) from None
+
+
+def _beside_decimal_commas(lines: list[str], last: str) -> str:
+    """What parts the cells of a text whose lines hold commas and no other sign: blanks, where each number has one."""
+    numbers = last.split()
+    if len(numbers) > 1 and all("," in one and is_written(one) for one in numbers):
+        return " "
+    return ";" if are_decimals_alone(lines[-_ALONE:]) else ","  # a sign that is in no line: one column
 
 
 def _line_end(line: str) -> str:
@@ -231,29 +254,38 @@ def _below_preamble(rows: list[list[str]], width: int) -> Header | None:
 def _is_named(row: list[str], width: int) -> bool:
     """Whether a row names every column of a table, and nothing else."""
     names = [cell.strip() for cell in row[:width]]
-    return filled(row) == width and all(names) and not any(is_number(name.replace(",", ".")) for name in names)
+    return filled(row) == width and all(names) and not any(is_written(name) for name in names)
 
 
 def _is_body(row: list[str], width: int) -> bool:
     """Whether a row holds numbers, or says that there is none, and nothing else."""
     said = [cell.strip() for cell in row]
-    numbers = [is_number(cell.replace(",", ".")) for cell in said]
-    empty = [cell.lower() in NO_VALUE for cell in said]
+    numbers = [is_written(cell) for cell in said]
+    empty = [is_absent(cell) for cell in said]
     return filled(row) <= width and any(numbers) and all(a or b for a, b in zip(numbers, empty, strict=True))
 
 
-def _decimal_comma(text: _Text, first_line: int) -> bool:
+def _parted(text: _Text, first_line: int) -> set[int]:
+    """The columns in which a sign parts thousands, by their first cells."""
+    rows = [row for _, row in islice(_values(text, first_line), _SAMPLE)]
+    columns = list(zip(*(row for row in rows if len(row) >= text.width), strict=False))
+    return {k for k, cells in enumerate(columns) for sign in ".," if parts_thousands(cells, sign)}
+
+
+def _decimal_comma(text: _Text, first_line: int, parted: set[int]) -> bool:
     """Whether numbers among the first values have a comma; columns that have points are read by themselves."""
-    first = (cell for _, row in islice(_values(text, first_line), _HEAD) for cell in row)
-    return text.delimiter != "," and any("," in cell and is_number(cell.replace(",", ".")) for cell in first)
+    rows = (row for _, row in islice(_values(text, first_line), _HEAD))
+    first = (cell for row in rows for k, cell in enumerate(row) if k not in parted)
+    return text.delimiter != "," and any("," in cell and is_written(cell) for cell in first)
 
 
-def _frame(text: _Text, header: Header, first_line: int, decimal: str) -> Any:
+def _frame(text: _Text, header: Header, first_line: int, decimal: str, parted: set[int]) -> Any:
     """The values by pandas, with one column more than the header has: it takes what is too much in a row."""
     import pandas as pd  # here, since it takes long to import and most of the program does not need it
 
     width = len(header.names)
-    handle = text.open()
+    has_comments = _COMMENT.search(text.utf8)
+    handle = io.BytesIO(_COMMENT.sub(b"#", text.utf8) if has_comments else text.utf8)
     for _ in range(first_line - 1):
         handle.readline()
     try:
@@ -263,7 +295,8 @@ def _frame(text: _Text, header: Header, first_line: int, decimal: str) -> Any:
                 handle, sep=r"\s+" if text.delimiter == " " else text.delimiter, header=None,
                 names=range(width + 1), index_col=False, skipinitialspace=True, keep_default_na=False,
                 na_values=list(_NAN), low_memory=False, decimal=decimal,
-                comment="#" if _COMMENT.search(text.utf8) else None,
+                dtype=dict.fromkeys(parted, str),
+                comment="#" if has_comments else None,
             )  # fmt: skip
     except (pd.errors.ParserError, pd.errors.EmptyDataError) as error:
         _refuse_ragged(text, header.names, first_line)
@@ -272,7 +305,7 @@ def _frame(text: _Text, header: Header, first_line: int, decimal: str) -> Any:
 
 
 def _values(text: _Text, first_line: int) -> Iterator[tuple[int, list[str]]]:
-    return ((line, row) for line, row in text.rows() if line >= first_line and not row[0].startswith("#"))
+    return ((line, row) for line, row in text.rows() if line >= first_line and not _IS_COMMENT.match(row[0]))
 
 
 def _refuse_ragged(text: _Text, names: tuple[str, ...], first_line: int) -> None:

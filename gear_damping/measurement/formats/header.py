@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from gear_damping.errors import InputError
+from gear_damping.measurement.formats.number_texts import is_number, is_written
 from gear_damping.measurement.time_column import NAMED, is_time
 from gear_damping.units import parse_unit
 
@@ -13,7 +14,7 @@ _WITHIN = re.compile(r"[(\[]([^()\[\]]+)[)\]]")  # `Position (cm) Monitor Run`, 
 _SLASH = re.compile(r"^[^/]+/\s*([^\W\d_][^\s]*|[°%µ][^\s]*)$")  # `Weg/mm`, as DIN 461 has it
 _INDEX = re.compile(r"\w\[\d+\]\s*$")  # `data[3]` is a name, no unit
 _NO_UNIT = ("", "-", "#")
-_COMMENTED = re.compile(r"^%+(?=[\w\[])")  # names behind the sign of comments of MATLAB
+_COMMENTED = re.compile(r"^(?:%+|//+)\s*(?=[\w\[])")  # names behind the sign of comments of MATLAB and of C
 _COMMENTS = ("%", "%%", ";", "//", "!", "'", "*")  # that other programs write before a line of names
 _GENERIC = re.compile(
     r"^(analog(ue)?|digital|channel|chan|ch|kanal|ai|ao|di|do|in(put)?|signal|sensor|col(umn)?)[ _.#-]*\d+$", re.I
@@ -151,17 +152,8 @@ def bracket_unit(name: str) -> str | None:
     return behind[1] if behind is not None and _is_unit(behind[1]) else None
 
 
-def is_number(cell: str) -> bool:
-    """Whether a cell is a number with a decimal point."""
-    try:
-        float(cell)
-    except ValueError:
-        return False
-    return True
-
-
 def _has_number(row: Sequence[str]) -> bool:
-    return any(is_number(cell.replace(",", ".")) for cell in row)
+    return any(is_written(cell) for cell in row)
 
 
 def _first_values(rows: Sequence[Sequence[str]], width: int) -> int:
@@ -173,8 +165,8 @@ def _first_values(rows: Sequence[Sequence[str]], width: int) -> int:
 
 def _is_values(row: Sequence[str], width: int) -> bool:
     """Whether a row holds numbers alone, or is as wide as the values and at least half of it are numbers."""
-    said = [cell.replace(",", ".") for cell in row if cell.strip()]
-    numbers = sum(is_number(cell) for cell in said)
+    said = [cell for cell in row if cell.strip()]
+    numbers = sum(is_written(cell) for cell in said)
     return numbers > 0 and (numbers == len(said) or (filled(row) >= width and 2 * numbers >= len(said)))
 
 

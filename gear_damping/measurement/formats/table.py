@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from gear_damping.errors import InputError, Problem, nearest
 
 _SHOWN = 20  # arrays that a message lists
+_UNIT_BEHIND = re.compile(r"\s*[(\[](?![\d, ]*[)\]])[^()\[\]]*[)\]]$")
 _INDEXED = re.compile(r"^(.*)\[[\d, ]+\]$")
 
 
@@ -29,9 +30,7 @@ class Table(ABC):
         left_out: What the file holds besides real numbers, for messages.
     """
 
-    def __init__(
-        self, path: Path, shapes: Sequence[tuple[str, tuple[int, ...]]], left_out: Sequence[str] = ()
-    ) -> None:
+    def __init__(self, path: Path, shapes: Sequence[tuple[str, tuple[int, ...]]], left_out: Sequence[str] = ()) -> None:
         self.path, self.shapes, self.left_out = path, tuple(shapes), tuple(left_out)
         columns = [
             (_column_name(name, rest), array, rest, max(shape))
@@ -82,11 +81,13 @@ class Table(ABC):
         return []
 
     def _named(self, column: str) -> list[int]:
-        """Those of the very name, else of its letters in other codes (µ and μ), else of the last part of its path."""
+        """Those of the very name, else of its letters in other codes (µ and μ), of the last part of its path, or of
+        all of it before a unit in brackets.
+        """
         own = [normalize("NFKC", name) for name in self.names]
         last = [name.rpartition("/")[2] for name in own]
-        alike = normalize("NFKC", column)
-        for names, sought in ((self.names, column), (own, alike), (last, alike)):
+        alike, bare = normalize("NFKC", column), [_UNIT_BEHIND.sub("", name) for name in own]
+        for names, sought in ((self.names, column), (own, alike), (last, alike), (bare, alike)):
             if found := [index for index, name in enumerate(names) if name and name == sought]:
                 return found
         return []
@@ -94,9 +95,7 @@ class Table(ABC):
     def _absent(self, column: str, key: str) -> Problem:
         named = [name for name in self.names if name]
         if not named:
-            return Problem(
-                key, "no such column", column, f"give a 0-based index: {self.listing(True)}", str(self.path)
-            )
+            return Problem(key, "no such column", column, f"give a 0-based index: {self.listing(True)}", str(self.path))
         indexed = _INDEXED.match(column)
         shapes = dict(self.shapes)
         base = (indexed[1] if indexed else column).strip().strip("/")

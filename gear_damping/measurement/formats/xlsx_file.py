@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.formats.cells import Cells, CellTable
+from gear_damping.measurement.formats.cells import Cells, CellTable, without_footer
 from gear_damping.measurement.formats.header import find_header
 from gear_damping.measurement.formats.table import Table, extra_library, refuse_size, unreadable
 
@@ -32,10 +32,16 @@ def read(path: Path, max_bytes: int) -> Table:
         sheets = {sheet.title: [list(row) for row in sheet.iter_rows(values_only=True)] for sheet in book.worksheets}
         book.close()
     several = sum(bool(rows) for rows in sheets.values()) > 1
-    columns = [one for title, rows in sheets.items() for one in _columns(rows, f"{title}/" if several else "")]
+    columns, notes = [], []
+    for title, rows in sheets.items():
+        own, below = without_footer(_columns(rows, f"{title}/" if several else ""))
+        columns += own
+        notes += [f"{path.name}, {title}: {below}"] if below else []
     if not columns:
         raise InputError(Problem("file", "no rows", str(path), "export it again"))
-    return CellTable(path, columns, decimal_commas=True)
+    table = CellTable(path, columns, decimal_commas=True)
+    table.notes += tuple(notes)
+    return table
 
 
 def _columns(rows: list[list[Any]], prefix: str) -> list[Cells]:
