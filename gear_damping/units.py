@@ -58,9 +58,12 @@ _ATOMS: dict[str, Unit] = {
     "km": Unit(1e3, _M), "m": Unit(1.0, _M),
     "in": Unit(0.0254, _M), "ft": Unit(0.3048, _M), "lbf": Unit(4.4482216152605, _N), "kgf": Unit(9.80665, _N),
     "cm": Unit(1e-2, _M), "mm": Unit(1e-3, _M), "um": Unit(1e-6, _M), "nm": Unit(1e-9, _M),
-    "s": Unit(1.0, _S), "ms": Unit(1e-3, _S), "us": Unit(1e-6, _S), "min": Unit(60.0, _S), "h": Unit(3600.0, _S),
+    "dm": Unit(0.1, _M), "pm": Unit(1e-12, _M),
+    "s": Unit(1.0, _S), "ms": Unit(1e-3, _S), "us": Unit(1e-6, _S), "ns": Unit(1e-9, _S), "min": Unit(60.0, _S),
+    "h": Unit(3600.0, _S), "day": Unit(86400.0, _S),
     "Hz": Unit(1.0, _S**-1), "kHz": Unit(1e3, _S**-1), "MHz": Unit(1e6, _S**-1),
     "N": Unit(1.0, _N), "kN": Unit(1e3, _N), "mN": Unit(1e-3, _N),
+    "MN": Unit(1e6, _N), "daN": Unit(10.0, _N), "uN": Unit(1e-6, _N),
     "Nm": Unit(1.0, _N * _M), "rad": Unit(1.0, _RAD), "mrad": Unit(1e-3, _RAD), "urad": Unit(1e-6, _RAD),
     "deg": Unit(pi / 180, _RAD), "arcmin": Unit(pi / 10800, _RAD), "arcsec": Unit(pi / 648000, _RAD),
     "rev": Unit(2 * pi, _RAD), "rpm": Unit(2 * pi / 60, _RAD * _S**-1),
@@ -72,7 +75,7 @@ _ATOMS: dict[str, Unit] = {
 }  # fmt: skip
 
 # What an accelerometer counts in. By itself it is no mass: a mass here is `gram` or `kg`.
-_OF_GRAVITY = {"g": "gn", "mg": "mgn", "milli-g": "mgn", "milli-G": "mgn"}
+_OF_GRAVITY = {"g": "gn", "G": "gn", "gs": "gn", "g's": "gn", "g_n": "gn", "mg": "mgn", "milli-g": "mgn", "milli-G": "mgn"}
 # What people write where a value is a plain number.
 _COUNTED = (
     "count", "counts", "ct", "cts", "pixel", "pixels", "pix", "px", "tick", "ticks", "step", "steps", "lsb", "lsbs",
@@ -83,17 +86,20 @@ _ALIKE = 0.6  # share of the letters that a unit must have in common with a word
 _POUND = "write 'lbf' for a force, or give a mass in kg"
 _MEANT = {
     "g": "write 'gram' or 'gn' (9.80665 m/s^2)", "mg": "write 'mgn' (9.80665e-3 m/s^2), or a mass in 'gram'",
-    "lb": _POUND, "lbs": _POUND, "pound": _POUND, "pounds": _POUND,
+    "d": "write 'day'", "lb": _POUND, "lbs": _POUND, "pound": _POUND, "pounds": _POUND,
 }  # fmt: skip
 
-_SPELLINGS = {"µ": "u", "μ": "u", "·": "*", "²": "^2", "³": "^3", "°": "deg", "**": "^"}
+_SPELLINGS = {"⁻¹": "^-1", "⁻²": "^-2", "µ": "u", "μ": "u", "·": "*", "²": "^2", "³": "^3", "°": "deg", "**": "^"}
 _SPELLINGS |= {"N.m": "N*m", "N m": "N*m"}
 _ALSO = {
     "sec": "s", "secs": "s", "second": "s", "seconds": "s", "msec": "ms", "usec": "us", "minutes": "min",
     "micron": "um", "microns": "um", "mils": "mil", "thou": "mil", "inch": "in", "inches": "in", "Inch": "in",
     "RPM": "rpm", "U/min": "rpm", "Volt": "V", "Volts": "V", "volt": "V", "volts": "V", "Newton": "N", "hz": "Hz",
-    "HZ": "Hz", "Deg": "deg", "degree": "deg", "degrees": "deg", "radian": "rad", "radians": "rad",
-    "turn": "rev", "turns": "rev", "revs": "rev",
+    "HZ": "Hz", "Deg": "deg", "DEG": "deg", "Grad": "deg", "degree": "deg", "degrees": "deg", "radian": "rad", "radians": "rad",
+    "turn": "rev", "turns": "rev", "revs": "rev", "nsec": "ns", "days": "day", "kp": "kgf",
+    "dps": "deg/s", "rps": "rev/s", "Meter": "m", "meter": "m", "meters": "m", "metre": "m", "metres": "m",
+    "min-1": "1/min", "/min": "1/min", "r/min": "rpm", "tr/min": "rpm",
+    "ms^-2": "m/s^2", "ms^-1": "m/s", "ms-2": "m/s^2", "ms-1": "m/s",  # no milliseconds: their powers are no motion
 }  # fmt: skip
 _DIGITS = r"\s*(?P<number>[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?)\s*"
 _NUMBER, _SPOKEN = re.compile(f"^{_DIGITS}$"), re.compile(rf"^{_DIGITS}(?P<unit>([A-Za-zµμ°%]|(?<=\s)1/).*?)\s*$")
@@ -122,9 +128,9 @@ def parse_unit(text: str, key: str = "unit", source: str = "") -> Unit:
             standard gravity to others. By themselves they are units of an accelerometer.
     """
     plain = text.strip()
-    plain = _OF_GRAVITY.get(plain) or _ALSO.get(plain, plain)
     for spelling, ours in _SPELLINGS.items():
         plain = plain.replace(spelling, ours)
+    plain = _OF_GRAVITY.get(plain) or _ALSO.get(plain, plain)
     plain = plain.replace("(", "").replace(")", "") if "/" not in plain else plain
     unit = Unit(1.0, _ONE)
     for index, part in enumerate(plain.split("/")):
@@ -207,11 +213,18 @@ def to_si(value: float, unit: str, expected: str, key: str = "value", source: st
     Raises:
         InputError: the unit is unknown or has another dimension than `expected`.
     """
-    found, wanted = parse_unit(unit, key, source), parse_unit(expected)
+    wanted = parse_unit(expected)
+    found = of_a_shaft(parse_unit(unit, key, source), wanted)
     if found.dimension != wanted.dimension:
         rule = f"the unit '{unit}' is not one of the kind of '{expected}'"
         raise InputError(Problem(key, rule, value, other_kind(found, expected), source))
     return value * found.factor
+
+
+def of_a_shaft(unit: Unit, wanted: Unit) -> Unit:
+    """A unit where one of the speed of a shaft is wanted: what counts by the minute, `1/min`, is turns (DIN 1301)."""
+    is_by_minute = unit == parse_unit("1/min") and wanted.dimension == parse_unit("rpm").dimension
+    return parse_unit("rpm") if is_by_minute else unit
 
 
 def other_kind(found: Unit, expected: str) -> str:
@@ -219,6 +232,8 @@ def other_kind(found: Unit, expected: str) -> str:
     wanted = parse_unit(expected)
     if found.dimension * _RAD == wanted.dimension == _RAD * _S**-1:
         return "say what it counts: 'rpm', 'rev/s' or 'rad/s'"
+    if found.dimension in (_V, _A):
+        return f"write unit: {expected} (or another of its kind) and gain: what the file holds for one {expected}"
     if wanted.dimension == _ONE:
         return "give it as a share, 0.005 or '0.5 %'"
     return f"give it in '{expected}'"

@@ -25,7 +25,7 @@ from gear_damping.measurement.staircase import is_staircase
 from gear_damping.measurement.timebase import TimeBase
 from gear_damping.measurement.vocabulary import HOLDABLE
 from gear_damping.schema.values import Problems
-from gear_damping.units import parse_unit
+from gear_damping.units import of_a_shaft, parse_unit
 
 LOST = 0.1  # of a channel's variance, from which it is said that resampling took it
 _TEETH = tuple(GEOMETRY.values())
@@ -261,11 +261,11 @@ def _unit_conflict(raw: RawChannel, conversion: Conversion) -> Finding | None:
     """The header names a unit and the YAML another one."""
     if raw.header_unit is None or raw.header_unit == raw.unit:
         return None
+    stated = parse_unit(raw.unit)
     try:
-        header = parse_unit(raw.header_unit)
+        header = of_a_shaft(parse_unit(raw.header_unit), stated)
     except InputError:
         return None  # brackets that hold no unit
-    stated = parse_unit(raw.unit)
     if header.dimension != stated.dimension and raw.plan.sensor["gain"] != 1:
         return None  # a gain of another kind lies between: volts in the file, what they stand for in the YAML
     if (header.dimension, header.factor) == (stated.dimension, stated.factor):

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.record import Quantity
 from gear_damping.measurement.vocabulary import OSCILLATOR_CHANNELS, SHAFT_SPEEDS
-from gear_damping.units import Dimension, Unit, other_kind, parse_unit
+from gear_damping.units import Dimension, Unit, of_a_shaft, other_kind, parse_unit
 
 _PER_SECOND = Dimension(time=-1)  # exponent of a derivative in time
 _PER = {0: "", 1: "/s", 2: "/s^2"}
@@ -78,6 +78,7 @@ class UnitSystem:
             return _around(unit, radius, self.si[name], key, text, source)
         if self.si is not None:
             kept = _Reference(parse_unit(self.si[name]), self.si[name], 0)
+            unit = of_a_shaft(unit, kept.unit)
         else:
             kept = self._oscillator_unit(name, text, unit)
         if unit.dimension != kept.unit.dimension:

@@ -74,6 +74,7 @@ class Recipe:
         phases: Phase parameter of each strength that turns with a shaft.
         scanned: Other parameters with the value that is tried; freed in the full fit.
         within: Narrower bounds by flat name: beyond them it costs steps and shows no more.
+        most: Largest values of scanned parameters, by own name: one that ends there is no law of this motion any more.
         timed: As `scanned` for times and frequencies, in durations of the longest record and cycles of it.
         jointly_fitted: Parameters of other effects that are fitted with it; with the value at which the full fit
             begins, where they have no size yet.
@@ -99,6 +100,7 @@ class Recipe:
     phases: Mapping[str, str] = field(default_factory=dict)
     scanned: Mapping[str, float] = field(default_factory=dict)
     within: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    most: Mapping[str, float] = field(default_factory=dict)
     timed: Mapping[str, float] = field(default_factory=dict)
     jointly_fitted: Mapping[str, float | None] = field(default_factory=dict)
     restart_scaling: Mapping[str, float] = field(default_factory=dict)

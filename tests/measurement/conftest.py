@@ -55,9 +55,7 @@ class Bench:
 
     def write_csv(self, name: str = "run_1.csv") -> Path:
         lines = [",".join(self.columns)]
-        lines += [
-            ",".join(f"{value:.17g}" for value in row) for row in zip(*self.columns.values(), strict=True)
-        ]
+        lines += [",".join(f"{value:.17g}" for value in row) for row in zip(*self.columns.values(), strict=True)]
         return self.write_lines(lines, name)
 
     def write_lines(self, lines: list[str], name: str = "run_1.csv") -> Path:

@@ -260,9 +260,7 @@ def test_a_ragged_row_is_named(bench):
     assert "3 cells where the first line has 4" in problem
 
 
-@pytest.mark.parametrize(
-    ("cell", "said"), [("n/a", "not a number"), ("", "an empty cell"), ("1,5", "cells where")]
-)
+@pytest.mark.parametrize(("cell", "said"), [("n/a", "not a number"), ("", "an empty cell"), ("1,5", "cells where")])
 def test_a_cell_that_is_no_number_names_row_and_column(bench, cell, said):
     lines = _lines(bench)
     cells = lines[33].split(",")

@@ -9,6 +9,7 @@ from scipy.io import wavfile
 from gear_damping.errors import InputError
 from gear_damping.measurement.checks import check_channel
 from gear_damping.measurement.encoders import angle_from_counts, angle_from_pulses
+from gear_damping.measurement.formats.moments import seconds_of
 from gear_damping.measurement.formats.registry import read_table
 from gear_damping.measurement.inspection import inspect_table
 from gear_damping.measurement.load import load_measurement
@@ -237,16 +238,48 @@ def test_the_name_of_a_channel_is_no_unit(name):
         parse_unit(name)
 
 
-@pytest.mark.parametrize("unit", ["Hz", "1/min"])
+@pytest.mark.parametrize("unit", ["1/min", "min^-1", "min-1", "min⁻¹", "r/min", "U/min"])
+def test_what_counts_by_the_minute_is_turns_where_a_shaft_is_meant(unit):
+    assert to_si(60.0, unit, "rad/s") == pytest.approx(2 * np.pi)
+
+
+def test_by_the_minute_is_a_rate_elsewhere():
+    assert to_si(60.0, "1/min", "Hz") == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("unit", ["Hz", "1/s"])
 def test_a_speed_says_what_it_counts(unit):
     with pytest.raises(InputError, match="say what it counts: 'rpm', 'rev/s' or 'rad/s'"):
         to_si(1.0, unit, "rad/s")
 
 
-def test_a_clock_in_a_text_is_named_as_one(tmp_path):
-    rows = "\n".join(f"2023-11-05T23:59:{t:06.3f}Z,{x:.6g}" for t, x in zip(TIME, DECAY, strict=True))
+@pytest.mark.parametrize(
+    ("before", "behind"),
+    [
+        ("2023-10-31T23:59:{:06.3f}Z", "2023-11-01T00:00:{:06.3f}Z"),
+        ("31.10.2023 23:59:{:06.3f}", "01.11.2023 00:00:{:06.3f}"),
+        ("10/31/2023 11:59:{:06.3f} PM", "11/1/2023 12:00:{:06.3f} AM"),
+        ("23:59:{:06.3f}", "00:00:{:06.3f}"),
+    ],
+)
+def test_dates_and_clocks_are_seconds_from_the_first(tmp_path, before, behind):
+    times = np.round(np.arange(0, 20, 0.02), 3)
+    clocks = [before.format(50 + t) if t < 10 else behind.format(t - 10) for t in times]
+    rows = "\n".join(f"{clock}\t{np.sin(t):.6g}" for clock, t in zip(clocks, times, strict=True))
+    channels = {"time": {"column": "t"}, "displacement": {"column": "x", "unit": "m"}}
+    record = loaded(tmp_path, "t\tx\n" + rows, channels).records[0]
+    np.testing.assert_allclose(record.time, times, atol=1e-9)
+
+
+def test_minutes_and_seconds_since_a_start_are_a_clock():
+    assert seconds_of(["00:59.5", "01:00.0", "01:00.5"]).tolist() == [0, 0.5, 1]
+    assert seconds_of(["00:59.5", "end"]) is None
+
+
+def test_a_date_alone_is_no_clock(tmp_path):
+    rows = "\n".join(f"2023-11-05,{x:.6g}" for x in DECAY)
     channels = {"time": {"column": "t", "unit": "s"}, "displacement": {"column": "x", "unit": "m"}}
-    with pytest.raises(InputError, match="a date or a clock, which is not read from a text; remedy: give sampling"):
+    with pytest.raises(InputError, match="a date or a clock in a form that is not read; remedy: give sampling"):
         loaded(tmp_path, "t,x\n" + rows, channels)
 
 

@@ -66,9 +66,7 @@ def test_silverbox_slices_are_whole_periods_of_odd_lines_up_to_200_hz(silverbox)
     assert excited.min() > 0.5 * excited.max()
     assert np.ptp(excited, axis=0).max() < 0.03 * excited.max()  # all realisations alike
     assert levels[:, lines[rest]].max() < 0.05 * excited.min()
-    phases = np.angle(np.fft.rfft([r.channels["force"].values for r in silverbox.records[:10]]))[
-        :, lines[odd]
-    ]
+    phases = np.angle(np.fft.rfft([r.channels["force"].values for r in silverbox.records[:10]]))[:, lines[odd]]
     assert np.abs(np.exp(1j * phases).mean(axis=0)).mean() < 0.5  # but for their phases
 
 

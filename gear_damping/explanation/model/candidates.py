@@ -142,7 +142,8 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Si
                 free.append(FreeParameter(phase, 0.0))
                 phases[place] = place + 1
     joining = [(declared, f"{kind.name}.{declared.name}") for declared in _declared(kind, recipe)]
-    later = [_freed(declared, flat, given, recipe.within) for declared, flat in joining if flat != own_tooth]
+    within = {**recipe.within, **sizes.most(kind, recipe)}
+    later = [_freed(declared, flat, given, within) for declared, flat in joining if flat != own_tooth]
     if recipe.non_nested:
         free, later = [*free, *later], []
     initial_values = {}
@@ -215,6 +216,14 @@ class _Sizes:
         if kind.name == "power_law_damping" and parameter.name == "coefficient":
             return value * float(self.scales.force[0] / self.scales.velocity[0] ** exponent)
         return value * float(self.scales.unit_of(parse_unit(parameter.unit).dimension)[0])
+
+    def most(self, kind: type[Effect], recipe: Recipe) -> dict[str, tuple[float, float]]:
+        """The bounds of the scanned parameters that have a largest value, by flat name."""
+        declared = {p.name: p for p in kind.parameters}
+        return {
+            f"{kind.name}.{name}": (-inf, self.natural(kind, declared[name], value))
+            for name, value in recipe.most.items()
+        }
 
     def size(self, kind: type[Effect], name: str, size: float | None, recipe: Recipe) -> float:
         """The size of a strength that is tried."""

@@ -1,6 +1,5 @@
 """Tables of cells, as texts and spreadsheets hold them; a cell that is no number is named with its row."""
 
-import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -9,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.formats.moments import is_moment, is_told, seconds_of
 from gear_damping.measurement.formats.number_texts import is_absent, is_number, is_written, parts_thousands, plain
 from gear_damping.measurement.formats.table import Table, is_real
 
-MOMENT = "a date or a clock, which is not read from a text"
-_MOMENT = re.compile(r"\d{1,2}:\d{2}|\d{4}-\d{2}-\d{2}|\d{1,2}[./]\d{1,2}[./]\d{2,4}")
+MOMENT = "a date or a clock in a form that is not read"
 MOST_WORDS = 0.5  # of the cells of a column of numbers: with more than half words it is one of words
 SHOWN = 3  # faults of one kind that are listed one by one
 MOST_BELOW = 20  # rows that may lie below a table, and more of its own
@@ -22,7 +21,7 @@ LISTED = 8  # columns that a message lists
 
 def _not_a_number(cell: str) -> str:
     """What is said of a cell; a date or a clock, which many tables have for their time, is no number of seconds."""
-    return MOMENT if _MOMENT.search(cell) else "not a number"
+    return MOMENT if is_told(cell) else "not a number"
 
 
 def decimal_commas(path: Path) -> str:
@@ -70,7 +69,7 @@ def _first_word(cells: NDArray) -> int | None:
 
 
 def _is_word(cell: str) -> bool:
-    return not is_absent(cell) and not is_written(cell) and _MOMENT.search(cell) is None
+    return not is_absent(cell) and not is_written(cell) and not is_told(cell)
 
 
 class CellTable(Table):
@@ -83,8 +82,10 @@ class CellTable(Table):
         self._bad: dict[int, tuple[list[str], list[int]]] = {}
 
     def unit(self, index: int) -> str | None:
-        """The unit in the header of a column, or None."""
-        return self._columns[index].unit
+        """The unit in the header of a column, or None; of dates and clocks s."""
+        column = self._columns[index]
+        first = next((str(cell) for cell in column.values if not is_real(column.values.dtype)), "")
+        return "s" if is_moment(first) else column.unit
 
     def values(self, index: int) -> NDArray[np.float64]:
         """(n,) float64: a column, nan where a cell is no number; `bad_cells` tells of these.
@@ -98,7 +99,10 @@ class CellTable(Table):
         return self._read[index]
 
     def _numbers(self, index: int) -> NDArray[np.float64]:
-        cells = [plain(cell) for cell in self._decimal_points([str(one) for one in self._columns[index].values], index)]
+        texts = [str(cell) for cell in self._columns[index].values]
+        if texts and is_moment(texts[0]) and (seconds := seconds_of(texts)) is not None:
+            return seconds
+        cells = [plain(cell) for cell in self._decimal_points(texts, index)]
         try:
             return np.array(cells, dtype=np.float64)
         except ValueError:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.formats.cells import Cells, CellTable, without_footer
 from gear_damping.measurement.formats.header import find_header
+from gear_damping.measurement.formats.moments import past_midnight
 from gear_damping.measurement.formats.table import Table, extra_library, refuse_size, unreadable
 
 SUFFIXES = (".xlsx",)
@@ -73,7 +74,7 @@ def _values(cells: list[Any]) -> tuple[NDArray, str | None]:
     if all(isinstance(cell, datetime) for cell in cells):
         return np.array([(cell - cells[0]).total_seconds() for cell in cells]), "s"
     if all(isinstance(cell, time | timedelta) for cell in cells):
-        seconds = np.array([_seconds(cell) for cell in cells])
+        seconds = past_midnight(np.array([_seconds(cell) for cell in cells]))
         return seconds - seconds[0], "s"
     return np.array(["" if cell is None else str(cell) for cell in cells], dtype=object), None
 

@@ -16,6 +16,7 @@ from gear_damping.physics.terms import DampingForce, ExtraStates, Values
 YIELDS = (0.05, 0.2, 0.6)  # amplitudes of the motion
 PRELOADED = (0.2,)  # in natural units: a loaded mesh moves about its deflection
 EXPONENTS = (0.5, 4.0)  # of the sharpness that is fitted
+LATEST = 10.0  # amplitudes of the motion: what yields later is a spring, from wherever each stretch of a record begins
 EARLY = 0.1  # of the amplitude: the loss of a cycle is within a tenth that of dry friction, 4 F (A - z_y) of 4 F A
 
 
@@ -32,7 +33,12 @@ def _switched_on(rig: Rig) -> tuple[Recipe, ...]:
     """From several yields, or one where flanks hold a load and hardly tell them apart."""
     within = {"hysteretic_damping.exponent": EXPONENTS}
     return tuple(
-        Recipe({"share": 0.02}, scanned={"yield_deflection": size, "exponent": 1.0}, within=within)
+        Recipe(
+            {"share": 0.02},
+            scanned={"yield_deflection": size, "exponent": 1.0},
+            within=within,
+            most={"yield_deflection": LATEST},
+        )
         for size in (PRELOADED if rig.has(Trait.PRELOAD) else YIELDS)
     )
 

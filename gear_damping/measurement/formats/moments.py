@@ -1,0 +1,78 @@
+"""Dates and clocks that tables have for their time, as texts: seconds from the first."""
+
+import re
+from collections.abc import Sequence
+from datetime import date
+
+import numpy as np
+from numpy.typing import NDArray
+
+DAY = 86400.0  # s
+_DIGITS = 9  # of a second: a difference of floats of a day's seconds is true to 1e-11 of one
+_DATE = r"(?P<date>\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/.]\d{1,2}[-/.]\d{2,4})"
+_CLOCK = r"(?P<hours>\d{1,3}):(?P<minutes>\d{2})(:(?P<seconds>\d{2})([.,:](?P<part>\d+))?)?\s*(?P<half>[ap]\.?m\.?)?"
+_ZONE = r"\s*(Z|UTC|[+-]\d{2}:?\d{2})?"
+_MOMENT = re.compile(rf"({_DATE}[T ,;_]+)?{_CLOCK}{_ZONE}", re.I)
+_MINUTES = re.compile(r"(?P<minutes>\d{1,4}):(?P<seconds>\d{2})[.,](?P<part>\d+)")  # and seconds since a start
+_TOLD = re.compile(r"\d{1,2}:\d{2}|\d{4}-\d{2}-\d{2}|\d{1,2}[./]\d{1,2}[./]\d{2,4}")
+
+
+def is_told(cell: str) -> bool:
+    """Whether a date or a clock stands in a text, in any form."""
+    return _TOLD.search(cell) is not None
+
+
+def is_moment(cell: str) -> bool:
+    """Whether a text is a clock that is read, with a date or without one."""
+    return _MINUTES.fullmatch(cell.strip()) is not None or _MOMENT.fullmatch(cell.strip()) is not None
+
+
+def seconds_of(cells: Sequence[str]) -> NDArray[np.float64] | None:
+    """(n,) s from the first of n clocks; None where one of them is none.
+
+    Without dates a clock that falls back by more than half a day has passed midnight.
+    """
+    texts = [cell.strip() for cell in cells]
+    elapsed = [_MINUTES.fullmatch(text) for text in texts]
+    if all(elapsed):
+        times = [60 * int(one["minutes"]) + int(one["seconds"]) + _part(one["part"]) for one in elapsed]
+        return np.round(np.array(times) - times[0], _DIGITS)
+    found = [_MOMENT.fullmatch(text) for text in texts]
+    if not found or not all(found):
+        return None
+    clock = np.array([_of_day(one) for one in found])
+    days = _days([one["date"] for one in found])
+    whole = past_midnight(clock) if days is None else clock + DAY * days
+    return np.round(whole - whole[0], _DIGITS)
+
+
+def past_midnight(clock: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(n,) s of the day that go on where a day ends."""
+    return clock + DAY * np.r_[0, np.cumsum(np.diff(clock) < -DAY / 2)]
+
+
+def _of_day(moment: re.Match[str]) -> float:
+    hours = int(moment["hours"])
+    if moment["half"]:
+        hours = hours % 12 + 12 * (moment["half"][0] in "pP")
+    return 3600 * hours + 60 * int(moment["minutes"]) + int(moment["seconds"] or 0) + _part(moment["part"])
+
+
+def _part(digits: str | None) -> float:
+    return float(f"0.{digits}") if digits else 0.0
+
+
+def _days(texts: Sequence[str | None]) -> NDArray[np.float64] | None:
+    """(n,) days since the first date; None without dates, or where a date cannot be."""
+    if None in texts:
+        return None
+    numbers = {text: [int(part) for part in re.split(r"[-/.]", text)] for text in dict.fromkeys(texts)}
+    for order in ((0, 1, 2), (2, 1, 0), (2, 0, 1)):  # year, month, day; day first; month first
+        try:
+            ordinals = {text: date(*(one[k] for k in order)).toordinal() for text, one in numbers.items()}
+        except ValueError:
+            continue
+        steps = np.diff([ordinals[text] for text in numbers])
+        if np.all((steps >= 0) & (steps <= 1)):  # one day follows the next
+            return np.array([ordinals[text] for text in texts], dtype=np.float64) - ordinals[texts[0]]
+    return None
