@@ -75,7 +75,9 @@ _ATOMS: dict[str, Unit] = {
 }  # fmt: skip
 
 # What an accelerometer counts in. By itself it is no mass: a mass here is `gram` or `kg`.
-_OF_GRAVITY = {"g": "gn", "G": "gn", "gs": "gn", "g's": "gn", "g_n": "gn", "mg": "mgn", "milli-g": "mgn", "milli-G": "mgn"}
+_OF_GRAVITY = {
+    "g": "gn", "G": "gn", "gs": "gn", "g's": "gn", "g_n": "gn", "mg": "mgn", "milli-g": "mgn", "milli-G": "mgn",
+}  # fmt: skip
 # What people write where a value is a plain number.
 _COUNTED = (
     "count", "counts", "ct", "cts", "pixel", "pixels", "pix", "px", "tick", "ticks", "step", "steps", "lsb", "lsbs",
@@ -95,7 +97,8 @@ _ALSO = {
     "sec": "s", "secs": "s", "second": "s", "seconds": "s", "msec": "ms", "usec": "us", "minutes": "min",
     "micron": "um", "microns": "um", "mils": "mil", "thou": "mil", "inch": "in", "inches": "in", "Inch": "in",
     "RPM": "rpm", "U/min": "rpm", "Volt": "V", "Volts": "V", "volt": "V", "volts": "V", "Newton": "N", "hz": "Hz",
-    "HZ": "Hz", "Deg": "deg", "DEG": "deg", "Grad": "deg", "degree": "deg", "degrees": "deg", "radian": "rad", "radians": "rad",
+    "HZ": "Hz", "Deg": "deg", "DEG": "deg", "Grad": "deg", "degree": "deg", "degrees": "deg",
+    "radian": "rad", "radians": "rad",
     "turn": "rev", "turns": "rev", "revs": "rev", "nsec": "ns", "days": "day", "kp": "kgf",
     "dps": "deg/s", "rps": "rev/s", "Meter": "m", "meter": "m", "meters": "m", "metre": "m", "metres": "m",
     "min-1": "1/min", "/min": "1/min", "r/min": "rpm", "tr/min": "rpm",
