@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.angular_error import GEOMETRY, NEEDED, base_radius, turn_in
-from gear_damping.measurement.cutting import moved
+from gear_damping.measurement.cutting import is_faster, moved
 from gear_damping.measurement.declaration import ChannelPlan, Plan
 from gear_damping.measurement.declared_units import Conversion, UnitSystem
 from gear_damping.measurement.encoders import (
@@ -91,9 +91,11 @@ class Assembler:
             recorded, values = values, record.base.resample(values)
             findings += _lost(recorded, values, plan.name, record.base) if record.plan.resample else []
         else:
-            values = moved(record.base, raw.own_time, values, plan.key, str(record.table.path))
-            rate = raw.own_time.sampling_rate
-            notes.append(f"{plan.name}: interpolated from {rate:.6g} Hz to the record's time")
+            recorded, own = values, raw.own_time
+            values = moved(record.base, own, values, plan.key, str(record.table.path))
+            findings += _lost(own.resample(recorded), values, plan.name, own) if is_faster(own, record.base) else []
+            done = "filtered and taken" if is_faster(own, record.base) else "interpolated"
+            notes.append(f"{plan.name}: {done} from {own.sampling_rate:.6g} Hz to the record's time")
         sensor = dict(plan.sensor) | ({"hold": self._held(raw, record, values, notes)} if plan.name in HOLDABLE else {})
         if plan.speed_radius:
             del sensor["radius"]  # the values are divided by it
@@ -233,7 +235,7 @@ def _lost(recorded: NDArray[np.float64], kept: NDArray[np.float64], name: str, b
     if share < LOST:
         return []
     message = (
-        f"resample takes {100 * share:.0f} % of the variance of {name} away, which lies above half of the new rate; "
+        f"the lower rate takes {100 * share:.0f} % of the variance of {name} away, which lies above half of it; "
         "where that is the motion, give a higher rate"
     )
     return [Finding("resampled_away", message, channel=name, severity="note")]

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.timebase import TimeBase, cubic_spline, moved_to, refuse_uncovered
+from gear_damping.measurement.timebase import RATE_TOLERANCE, TimeBase, cubic_spline, moved_to, refuse_uncovered
 
 PASS, STOP = 0.4, 0.5  # of the new rate
 _ATTENUATION = 80.0  # dB that the filter stops by: what is left lies below the noise of a sensor
@@ -100,23 +100,33 @@ class SlowerTime(TimeBase):
 
     def taken(self, own: TimeBase, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """Values of a channel with its own, faster time base, through the same filter, at the new samples."""
-        values = own.resample(values)
-        if own.uniform:
-            return lowpassed_at(self.time, values, float(own.time[0]), own.sampling_rate, self.sampling_rate)
-        grid = np.arange(own.time[0], own.time[-1] + 0.5 / own.sampling_rate, 1 / own.sampling_rate)
-        even = cubic_spline(own.time, values)(np.minimum(grid, own.time[-1]))
-        return lowpassed_at(self.time, even, float(grid[0]), own.sampling_rate, self.sampling_rate)
+        return _filtered(self, own, values)
+
+
+def _filtered(base: TimeBase, own: TimeBase, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Values on a faster time base at the times of `base`, without what lies above half of its rate."""
+    values = own.resample(values)
+    if own.uniform:
+        return lowpassed_at(base.time, values, float(own.time[0]), own.sampling_rate, base.sampling_rate)
+    grid = np.arange(own.time[0], own.time[-1] + 0.5 / own.sampling_rate, 1 / own.sampling_rate)
+    even = cubic_spline(own.time, values)(np.minimum(grid, own.time[-1]))
+    return lowpassed_at(base.time, even, float(grid[0]), own.sampling_rate, base.sampling_rate)
+
+
+def is_faster(own: TimeBase, base: TimeBase) -> bool:
+    """Whether a channel's rate is so much above the record's that what it holds beyond would fold into its band."""
+    return own.sampling_rate > base.sampling_rate * (1 + RATE_TOLERANCE)
 
 
 def moved(base: TimeBase, own: TimeBase, values: NDArray[np.float64], key: str, source: str) -> NDArray[np.float64]:
-    """Values on their own time base at the times of `base`, through its filter where it has one.
+    """Values on their own time base at the times of `base`: a faster channel through a filter before it.
 
     Raises:
         InputError: the record lasts longer than the channel.
     """
-    if isinstance(base, SlowerTime) and own.sampling_rate > base.sampling_rate:
+    if is_faster(own, base):
         refuse_uncovered(base.time, own, key, source)
-        return base.taken(own, values)
+        return _filtered(base, own, values)
     return moved_to(base.time, own, values, key, source)
 
 

@@ -67,6 +67,7 @@ class RawReader:
         self.blank = 0  # rows at the end that hold nothing
         self.begins = 0.0  # s, of a record that nothing but pulses of encoders tells
         self.doubled: list[int] = []  # rows that hold what an earlier one does, and no later stamp
+        self.filled: slice | None = None  # rows of the record in which its slower channels have values
 
     def read(self, sha256: str) -> RawRecord | None:
         """The record, or None where it has no time base; `complete` where all of it could be read."""
@@ -74,6 +75,7 @@ class RawReader:
         with self.problems.collecting():
             self._find_rows()
             self.doubled = self._find_doubled()
+            self.filled = None if self.doubled else self._find_filled()
             base = self._base()
             base, within = self._with_rows_beside(base)
             base = base and self._said_of_rows(base)
@@ -177,12 +179,24 @@ class RawReader:
         kept = np.delete(stamps, [k - self.first for k in again if k is not None])
         return [] if None in again or np.any(np.diff(kept) <= 0) else sorted({*again})
 
+    def _find_filled(self) -> slice | None:
+        """Every k-th row, where slower channels have blank cells in all others; None where none has, or they differ."""
+        found = set()
+        for column in self._on_its_clock():
+            with suppress(InputError):  # which its channel will say
+                found.add(_every(self._all(column, "")[self.first : self.stop]))
+        found -= {None}
+        return slice(*found.pop()) if len(found) == 1 else None
+
     def _said_of_rows(self, base: TimeBase) -> TimeBase:
         """The time base, with notes of the rows that hold nothing and of those that come twice."""
         found = []
         if self.blank:
             message = f"the last {self.blank} rows hold nothing in the columns of the record, which ends before them"
             found.append(Finding("blank_rows", message, severity="note"))
+        if self.filled:
+            message = f"the record holds every {self.filled.step}th row, in which its slower channels have values"
+            found.append(Finding("filled_rows", message, severity="note"))
         if self.doubled:
             message = (
                 f"{len(self.doubled)} row(s) hold the values of an earlier one where stamps do not go on, the first "
@@ -219,7 +233,10 @@ class RawReader:
             remedy = f"end the slice at {last}, or {remedy}" if few and last > self.first else remedy
             raise InputError(Problem(key, rule, remedy=remedy, source=self.file))
         values = values[self.first : self.stop]
-        self._refuse_cells(column, key, self.first, self.stop)
+        if self.filled:
+            values = values[self.filled]
+        else:
+            self._refuse_cells(column, key, self.first, self.stop)
         refuse_not_finite(values, self._named(key, column), self.file, self.first)
         return np.delete(values, np.array(self.doubled, int) - self.first)
 
@@ -235,7 +252,10 @@ class RawReader:
     def _base(self) -> TimeBase | None:
         if self.plan.timing.column is not None:
             return self._stamped(self.plan.timing, f"{self.plan.key}.channels.time", self.sliced, self.first)
-        return self._steady()
+        base = self._steady()
+        if base is None or not self.filled:
+            return base
+        return replace(base, time=base.time[self.filled], sampling_rate=base.sampling_rate / self.filled.step)
 
     def _steady(self) -> TimeBase | None:
         """The time base of the declared rate, else of the file's; None where the missing rate is said already."""
@@ -286,7 +306,13 @@ class RawReader:
 
         Those rows are read as if they were the record's: an even clock and numbers in every column, else none is taken.
         """
-        if base is None or self.plan.resample is None or not base.uniform or self.plan.resample >= base.sampling_rate:
+        if (
+            base is None
+            or self.filled
+            or self.plan.resample is None
+            or not base.uniform
+            or self.plan.resample >= base.sampling_rate
+        ):
             return base, None
         first, stop = self.first, self.stop
         before, behind = self._sound_beside(rows_beside(base, self.plan.resample))
@@ -346,10 +372,20 @@ class RawReader:
             raise InputError(Problem(f"{plan.key}.unit", "is missing", None, remedy, self.source))
         clock = self._other_clock(plan)
         if plan.timing is None and clock is None:
+            if self.filled and _every(self._all(plan.column, "")[self.first : self.stop]) is None:
+                return self._faster(plan, unit, header)
             return RawChannel(plan, self.sliced(plan.column, f"{plan.key}.column"), unit, header)
         values = self.unsliced(plan.column, f"{plan.key}.column")
         own = self._own_time(plan, values.size) if clock is None else steady_time(clock[1], 0, values.size, clock[0])
         return RawChannel(plan, values, unit, header, own)
+
+    def _faster(self, plan: ChannelPlan, unit: str, header: str | None) -> RawChannel:
+        """A channel that has values in all rows, beside slower ones."""
+        slower, self.filled = self.filled, None
+        try:
+            return RawChannel(plan, self.sliced(plan.column, f"{plan.key}.column"), unit, header, self._base())
+        finally:
+            self.filled = slower
 
     def _other_clock(self, plan: ChannelPlan) -> tuple[float, float] | None:
         """The file's own clock of a channel where the record follows another one of the file."""
@@ -364,6 +400,8 @@ class RawReader:
         """All finite values of a column, without the empty rows behind a slower one."""
         values = self._all(column, key)
         values = values[: _filled(values) or None]
+        if every := _every(values):
+            return values[slice(*every)]
         self._refuse_cells(column, key, 0, values.size)
         refuse_not_finite(values, self._named(key, column), self.file)
         return values
@@ -385,6 +423,16 @@ def _filled(values: NDArray[np.float64]) -> int:
     """How many of (n,) values there are up to the last that is a number."""
     places = np.flatnonzero(np.isfinite(values))
     return int(places[-1]) + 1 if places.size else 0
+
+
+def _every(values: NDArray[np.float64]) -> tuple[int, int, int] | None:
+    """First, end and step of the rows that hold numbers, where (n,) values do in every second or later row alone."""
+    rows = np.flatnonzero(np.isfinite(values))
+    if rows.size < LEAST_SAMPLES:
+        return None
+    steps = np.diff(rows)
+    is_regular = steps[0] > 1 and bool(np.all(steps == steps[0]))
+    return (int(rows[0]), int(rows[-1]) + 1, int(steps[0])) if is_regular else None
 
 
 def _leading(true: NDArray[np.bool_]) -> int:
