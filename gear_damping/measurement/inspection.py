@@ -22,16 +22,17 @@ from gear_damping.measurement.column_kinds import (
     turn_of,
 )
 from gear_damping.measurement.formats.table import ArrayTable, Table
-from gear_damping.measurement.raw import LEAST_SAMPLES
+from gear_damping.measurement.raw import LEAST_SAMPLES, filled_in
 from gear_damping.measurement.recordings import recordings
 from gear_damping.measurement.resolution import step_of
 from gear_damping.measurement.spectral_floor import Spectrum, spectrum_of
-from gear_damping.measurement.time_column import Stamps, find_stamps
+from gear_damping.measurement.time_column import Stamps, counts_from_1970, find_stamps
 from gear_damping.measurement.timebase import TimeBase, stamped_time, steady_time
 
 _SPARSE = 0.5  # of the longest stretch of values of any column: one with a shorter one is filled here and there
 _EVEN = 1e-6  # of an advance from sample to sample: differences below it are rounding
 _ANY_SIGNAL = re.compile(r"^(values?|data|signal|[xyzt]|time\w*)$", re.I)  # a name that tells no record from a channel
+MOST_BETWEEN = 20  # blank cells between two values of a slower channel; what has more is no motion beside the others
 MOST_LISTED = 6  # recordings of a file that a line lists
 _RATE = re.compile(r"samp\w*[ _]?(freq|rate)|^(fs|f_s|sr|s_?rate)$|abtastrate", re.I)  # of a single number
 SHORTEST = 1e-15  # s between two samples: below it lie damaged stamps, and no sensor
@@ -129,13 +130,27 @@ def inspect_table(table: Table) -> Inspection:
     may_be_rate = _may_be_rate(columns)
     untimed = may_be_rate is None and not any(table.clock(k) for k in range(len(columns)))
     stamps = find_stamps(columns, untimed)
+    columns, some = _where_filled(columns) if stamps else (columns, "")
     length = _length(columns, stamps)
     rows, taken = _of_one_recording(columns, stamps, length, _rows([c for c in columns if c.values.size == length]))
     base, faults = _base(table, columns, stamps, length, rows)
     named, rate = (may_be_rate or table.stated_rate or ("", None)) if base is None and stamps is None else ("", None)
     base = steady_time(rate, rows[0], rows[1] - rows[0]) if rate else base
     found = [_seen(c, stamps, columns, base, length, table.clock(k)) for k, c in enumerate(columns)]
-    return Inspection(table, tuple(found), length, stamps, base, rows, faults, named, taken)
+    return Inspection(table, tuple(found), length, stamps, base, rows, faults, named, taken or some)
+
+
+def _where_filled(columns: list[Column]) -> tuple[list[Column], str]:
+    """The columns in the rows that slower ones have values in, and what is said of that; all rows where none has."""
+    found = {filled_in(column.values) for column in columns} - {None}
+    if len(found) != 1:
+        return columns, ""
+    (every,) = found
+    if every[2] > MOST_BETWEEN:
+        return columns, ""
+    kept = [column.values[slice(*every)] for column in columns]
+    some = [replace(one, values=values, finite=_finite(values)) for one, values in zip(columns, kept, strict=True)]
+    return some, f"every {every[2]}th row, in which slower columns have values"
 
 
 def of_columns(found: Inspection, used: Collection[Column]) -> Inspection:
@@ -264,6 +279,8 @@ def _seen(
     kind, says = kind_of(column.inside, str(column.reference), column.unit)
     if kind in (CONSTANT, EMPTY, ROW_NUMBER):
         return replace(column, kind=kind, says=says)
+    if stamps is not None and counts_from_1970(column.inside):
+        return replace(column, kind=TIME, says="advances, and may be counted from 1970: another clock")
     own = clock[1] if clock else None
     rate = base.sampling_rate if base is not None and column.values.size == length else own
     turn = turn_of(column.inside) if kind == TURNING else None

@@ -184,7 +184,7 @@ class RawReader:
         found = set()
         for column in self._on_its_clock():
             with suppress(InputError):  # which its channel will say
-                found.add(_every(self._all(column, "")[self.first : self.stop]))
+                found.add(filled_in(self._all(column, "")[self.first : self.stop]))
         found -= {None}
         return slice(*found.pop()) if len(found) == 1 else None
 
@@ -372,7 +372,7 @@ class RawReader:
             raise InputError(Problem(f"{plan.key}.unit", "is missing", None, remedy, self.source))
         clock = self._other_clock(plan)
         if plan.timing is None and clock is None:
-            if self.filled and _every(self._all(plan.column, "")[self.first : self.stop]) is None:
+            if self.filled and filled_in(self._all(plan.column, "")[self.first : self.stop]) is None:
                 return self._faster(plan, unit, header)
             return RawChannel(plan, self.sliced(plan.column, f"{plan.key}.column"), unit, header)
         values = self.unsliced(plan.column, f"{plan.key}.column")
@@ -400,7 +400,7 @@ class RawReader:
         """All finite values of a column, without the empty rows behind a slower one."""
         values = self._all(column, key)
         values = values[: _filled(values) or None]
-        if every := _every(values):
+        if every := filled_in(values):
             return values[slice(*every)]
         self._refuse_cells(column, key, 0, values.size)
         refuse_not_finite(values, self._named(key, column), self.file)
@@ -425,7 +425,7 @@ def _filled(values: NDArray[np.float64]) -> int:
     return int(places[-1]) + 1 if places.size else 0
 
 
-def _every(values: NDArray[np.float64]) -> tuple[int, int, int] | None:
+def filled_in(values: NDArray[np.float64]) -> tuple[int, int, int] | None:
     """First, end and step of the rows that hold numbers, where (n,) values do in every second or later row alone."""
     rows = np.flatnonzero(np.isfinite(values))
     if rows.size < LEAST_SAMPLES:

@@ -9,7 +9,26 @@ from gear_damping.errors import InputError, Problem
 
 _RESTART = 10  # usual steps that a clock goes back by where it starts again
 _LEAST = 16  # stamps of a recording: fewer are rows in another order
+_NEAR = 2.0  # usual steps from the end of a register and from its beginning
+_PERIODS = [2.0**bits * unit for bits in (16, 24, 32) for unit in (1.0, 1e-3, 1e-6)]  # of registers of clocks
 _LISTED = 5  # recordings that a message lists
+
+
+def past_overflow(stamps: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(n,) stamps that go on where the register of a clock was full: in counts, or in s of its milli- or microseconds.
+
+    The last stamp before such a fall lies at the end of the register, the first one behind it at its beginning.
+    """
+    steps = np.diff(stamps)
+    falls = np.flatnonzero(steps < 0)
+    if not falls.size:
+        return stamps
+    near = _NEAR * float(np.median(steps))
+    for period in _PERIODS:
+        is_full = stamps[falls] > period - near
+        if np.all(is_full & (stamps[falls + 1] < near)) and stamps.min() >= 0 and stamps.max() < period:
+            return stamps + period * np.r_[0, np.cumsum(steps < 0)]
+    return stamps
 
 
 def recordings(stamps: NDArray[np.float64]) -> list[tuple[int, int]]:
@@ -17,7 +36,7 @@ def recordings(stamps: NDArray[np.float64]) -> list[tuple[int, int]]:
 
     One for stamps that never go back far, or that do so for another reason.
     """
-    steps = np.diff(stamps)
+    steps = np.diff(past_overflow(stamps))
     far = _RESTART * float(np.median(np.abs(steps)))
     again = np.flatnonzero(steps < -far) + 1
     ends = list(pairwise([0, *again.tolist(), stamps.size]))

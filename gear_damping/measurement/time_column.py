@@ -15,10 +15,10 @@ from gear_damping.units import to_si
 NAMED = re.compile(
     r"^(t|ts|tt|x_value)$|time|zeit|temps|tiempo|stamp|second|millis|micros|elapsed|clock|abscissa", re.I
 )
-_SUFFIX = re.compile(r"[_ .\-/](s|sec|ms|us|µs|min|h)$", re.I)
+_SUFFIX = re.compile(r"[_ .\-/](s|sec|ms|us|µs|ns|min|h)$", re.I)
 _SLOW = 200  # whole numbers a step: as milliseconds less than 5 Hz, and few vibrate as slowly
 # Ranges that a time counted from 1970 lies in, by its unit: from 1973 on, and they do not meet.
-_EPOCHS = ((1e8, 1e10, "s"), (1e11, 1e13, "ms"), (1e14, 1e16, "us"))
+_EPOCHS = ((1e8, 1e10, "s"), (1e11, 1e13, "ms"), (1e14, 1e16, "us"), (1e17, 1e19, "ns"))
 _FEWEST = 8  # stamps, as many as a record needs
 _ADVANCING = 0.9  # share of the steps of a named column that go forward
 _SHORT = re.compile(r"^t[a-z]?\d*(_\w+)?$", re.I)  # t1, tb_n: a time only where its steps are even
@@ -83,6 +83,12 @@ def find_stamps(columns: Sequence[_Column], untimed: bool = False) -> Stamps | N
     if len(steady) != 1:
         return None
     return Stamps(steady[0], *_unit(columns[steady[0]]), "goes on by the same whole number in nearly all rows")
+
+
+def counts_from_1970(values: NDArray[np.float64]) -> bool:
+    """Whether (n,) values never fall and lie where a finer clock than that of seconds stands since 1973."""
+    inside = any(low < values[0] < high for low, high, _ in _EPOCHS[1:])
+    return bool(inside and np.all(np.diff(values) >= 0) and values[-1] > values[0])
 
 
 def stamped_rate(unit: str, values: NDArray[np.float64]) -> float | None:
@@ -191,7 +197,7 @@ def _unit(column: _Column) -> tuple[str, str]:
     if suffix:
         return {"sec": "s", "µs": "us"}.get(suffix[1].lower(), suffix[1].lower()), "from its name"
     name = _bare(column.reference).lower()
-    for word, unit in (("milli", "ms"), ("micro", "us")):
+    for word, unit in (("milli", "ms"), ("micro", "us"), ("nano", "ns")):
         if word in name:
             return unit, "from its name"
     first = float(column.inside[0])

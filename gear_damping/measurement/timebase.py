@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.record import Finding
-from gear_damping.measurement.recordings import refuse_recordings
+from gear_damping.measurement.recordings import past_overflow, refuse_recordings
 
 Curve = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 RATE_TOLERANCE = 0.01  # relative; rates within are one
@@ -102,6 +102,7 @@ def stamped_time(stamps: NDArray[np.float64], key: str, source: str, first: int 
     Raises:
         InputError: a stamp repeats the one before, or lies before it, or the clock starts again.
     """
+    stamps = past_overflow(stamps)
     refuse_recordings(stamps, key, source, first)
     if np.any(np.diff(stamps) == 0) and (few := written_significantly(stamps)) is not None:
         return few

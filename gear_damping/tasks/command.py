@@ -161,7 +161,7 @@ def help_text() -> str:
         "keys        set with key=value:",
         "  seed, seeds, checkpoint, resume, measurement.path, training.max_epochs, training.batch_size",
         "  simulator.<effect>.<parameter>, simulator.damping_ratio_percent, simulator.solver.accuracy",
-        "  values      in SI, or with their unit: 80um, 3kHz, \"4600 rpm\", {value: 80, unit: um}",
+        '  values      in SI, or with their unit: 80um, 3kHz, "4600 rpm", {value: 80, unit: um}',
         "  --cfg job   shows the whole configuration with every key; with --resolve as it will run",
         'completion  eval "$(gear-damping -sc install=bash)", or fish or zsh',
     ]

@@ -83,6 +83,8 @@ def _file_lines(found: Inspection) -> Iterator[str]:
         first, last = found.rows[0], found.rows[1] - 1
         why = found.taken or "the longest stretch in which all that is declared is finite"
         yield f"  rows {first} to {last} are {why}"
+    elif found.taken:
+        yield f"  rows: {found.taken}"
 
 
 def _file_content(found: Inspection, listed: Sequence[Guess]) -> dict[str, Any]:

@@ -336,3 +336,31 @@ def test_segments_and_delays_lie_within_the_records(tmp_path):
     (tmp_path / "measurement.yaml").write_text(yaml.safe_dump(content))
     with pytest.raises(InputError, match=r"segments = '50 s': is longer than every record, the longest of 0.798 s"):
         load_measurement(tmp_path / "measurement.yaml")
+
+
+@pytest.mark.parametrize(("unit", "step"), [("us", 2000), ("ms", 2)])
+def test_a_clock_goes_on_where_its_register_is_full(tmp_path, unit, step):
+    ticks = (2**32 - 150 * step + step * np.arange(TIME.size)) % 2**32
+    rows = "\n".join(f"{tick},{x:.6g}" for tick, x in zip(ticks, DECAY, strict=True))
+    channels = {"time": {"column": "t", "unit": unit}, "displacement": {"column": "x", "unit": "m"}}
+    time = loaded(tmp_path, "t,x\n" + rows, channels).records[0].time
+    np.testing.assert_allclose(time - time[0], TIME, atol=1e-9)
+    assert inspect_table(read_table(tmp_path / "data.csv")).rows == (0, TIME.size)
+
+
+def test_a_clock_that_starts_again_elsewhere_has_no_full_register(tmp_path):
+    ticks = 2000 * (np.arange(TIME.size) % 200)
+    rows = "\n".join(f"{tick},{x:.6g}" for tick, x in zip(ticks, DECAY, strict=True))
+    channels = {"time": {"column": "t", "unit": "us"}, "displacement": {"column": "x", "unit": "m"}}
+    with pytest.raises(InputError, match="2 recordings one after another"):
+        loaded(tmp_path, "t,x\n" + rows, channels)
+
+
+def test_the_rate_of_a_dataset_is_the_file_s_and_a_scale_beside_it_is_said(tmp_path):
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["acc"] = DECAY
+        file["acc"].attrs.update({"sampling_rate": 500.0, "unit": "m", "scale": 0.5})
+    table = read_table(tmp_path / "a.h5")
+    assert table.clock(0) == (0.0, 500.0)
+    assert any("scale = 0.5, which is not applied" in note for note in table.notes)

@@ -23,6 +23,7 @@ from gear_damping.measurement.formats.table import (
 SUFFIXES = (".h5", ".hdf5", ".hdf")
 DEADLY = True  # a damaged file may end the process
 
+_FACTORS = ("scale", "scale_factor", "factor", "gain", "sensitivity", "calibration", "slope")
 _UNIT_ATTRIBUTES = ("unit", "units", "Unit", "Units", "unit_string")
 
 
@@ -46,9 +47,18 @@ def read(path: Path, max_bytes: int) -> Table:
                 continue
             held += [_held(h5py, path, dataset, field) for field in found]
         settings = _settings(one for one in items if not isinstance(one, h5py.Dataset))
+        notes = [note for dataset in datasets for note in _not_applied(path, dataset)]
     table = ArrayTable(path, held, left_out)
     table.stated_rate = stated_rate(settings)
+    table.notes += tuple(notes)
     return table
+
+
+def _not_applied(path: Path, dataset: Any) -> Iterator[str]:
+    """A note for each attribute by which stored numbers may have to be multiplied: nothing says that they have not."""
+    for name, value in dataset.attrs.items():
+        if name.lower() in _FACTORS and np.size(value) == 1 and value != 1:
+            yield f"{path.name}: '{dataset.name.strip('/')}' has an attribute {name} = {value}, which is not applied"
 
 
 def _items(file: Any) -> list[Any]:
@@ -59,7 +69,7 @@ def _items(file: Any) -> list[Any]:
 
 
 def _settings(groups: Iterable[Any]) -> list[list[str]]:
-    """The numbers that are attributes of the file and its groups, each beside its name."""
+    """The numbers that are attributes of groups or datasets, each beside its name."""
     return [[name, str(value)] for group in groups for name, value in group.attrs.items() if np.size(value) == 1]
 
 
@@ -81,7 +91,9 @@ def _held(h5py: Any, path: Path, dataset: Any, field: tuple[str, str | None, np.
         with h5py.File(path, "r") as file:
             return file[place][()] if part is None else file[place][part]
 
-    return Held(name, squeezed(shape), read, _unit(dataset) if part is None else None)
+    stated = stated_rate(_settings([dataset]))
+    clock = (0.0, stated[1]) if stated else None
+    return Held(name, squeezed(shape), read, _unit(dataset) if part is None else None, clock)
 
 
 def _unit(dataset: Any) -> str | None:
