@@ -30,6 +30,8 @@ from gear_damping.units import of_a_shaft, parse_unit
 LOST = 0.1  # of a channel's variance, from which it is said that resampling took it
 _TEETH = tuple(GEOMETRY.values())
 _GEOMETRY = (*_TEETH, *NEEDED)
+_BESIDE = 4  # steps at either side of a jump of an angle, by which it is seen whether it is a whole turn
+_AS_BESIDE, _NEARLY_WHOLE = 3.0, 0.02  # times their median, and of a turn, as where it turns back or is rounded
 _INERTIAS = ("inertia_pinion", "inertia_gear")
 
 
@@ -254,9 +256,16 @@ def _unwrapped(angle: NDArray[np.float64], turn: float, name: str, notes: list[s
 
 
 def _begins_again(angle: NDArray[np.float64], turn: float) -> bool:
-    """Whether an angle jumps by more than half a turn from sample to sample and yet stays within one turn."""
+    """Whether an angle jumps by about a turn from sample to sample and yet stays within one turn.
+
+    Beside a whole turn a jump goes on as its neighbours do; a single wrong sample jumps by anything.
+    """
     steps = np.abs(np.diff(angle))
-    return bool(np.ptp(angle) <= WITHIN_A_TURN * turn and np.any(steps > turn / 2) and np.median(steps) < turn / 4)
+    jumps = np.flatnonzero(steps > turn / 2)
+    if not jumps.size or np.ptp(angle) > WITHIN_A_TURN * turn or np.median(steps) >= turn / 4:
+        return False
+    usual = [np.median(steps[max(0, k - _BESIDE) : k + _BESIDE + 1]) for k in jumps]
+    return bool(np.all(np.abs(turn - steps[jumps]) <= _AS_BESIDE * np.array(usual) + _NEARLY_WHOLE * turn))
 
 
 def _unit_conflict(raw: RawChannel, conversion: Conversion) -> Finding | None:

@@ -34,6 +34,15 @@ _FEWEST_MARKS, _MOST_MARKED = 3, 0.1  # samples of one value; share of all
 _WITH_A_STROKE = 5  # samples between an input's largest value and a leap that it made
 STRUCK = ("force", "base_acceleration")  # which one blow may make
 _LONE = 5.0  # times as far from the median as any other sample
+_ABOUT, _STRETCH = (
+    5,
+    101,
+)  # samples whose median a single wrong one leaves, and by whose steps it is seen how wrong it is
+_STRAY = 12.0  # usual steps away; the largest of a sine of 4 samples a period is 1.4, of a million of noise 7
+_ALONE = 3.0  # times what its two neighbours differ by
+_LEAST_STRAY = 0.1  # of the deviation of all values, below which one tells nothing
+_MOST_STRAYS = 0.01  # of the samples; more are no single ones
+_CONTINUOUS = ("displacement", "transmission_error")  # what a shock bends and does not break
 _SPEEDS = ("velocity", "pinion_speed", "gear_speed")
 APPLIED = (*INPUTS, "pinion_angle", "pinion_speed")  # what drives the system
 
@@ -150,7 +159,10 @@ def check_channel(channel: Channel, strokes: NDArray[np.int64]) -> list[Finding 
     """
     marked = _marked(channel)
     found = [marked or _constant(channel) or _clipped(channel) or _straight_lines(channel)]
-    return found if marked or channel.name in STRUCK else [*found, _spike(channel, strokes)]
+    if marked or channel.name in STRUCK:
+        return found
+    spike = _spike(channel, strokes)
+    return [*found, spike or (_strays(channel) if channel.name in _CONTINUOUS else None)]
 
 
 def _constant(channel: Channel) -> Finding | None:
@@ -202,6 +214,29 @@ def _spike(channel: Channel, strokes: NDArray[np.int64]) -> Finding | None:
         "the transmission or of the file; repair it there, or use slices beside it"
     )
     return Finding("spike", message, channel=channel.name, sample=int(places[0]))
+
+
+def _strays(channel: Channel) -> Finding | None:
+    """Single samples, here and there, that lie far beside those before and behind them: no mass moves so."""
+    from scipy.ndimage import median_filter  # here, since it takes long to import
+
+    values = channel.values
+    half = _STRETCH // 2
+    if values.size < 2 * _STRETCH:
+        return None
+    steps = np.abs(np.diff(values, prepend=values[0]))
+    usual = np.maximum(median_filter(steps, _STRETCH, mode="nearest"), step_of(values))
+    away = np.abs(values - median_filter(values, _ABOUT, mode="nearest"))
+    at = np.flatnonzero((away > _STRAY * usual) & (away > _LEAST_STRAY * np.std(values)))
+    at = at[(at >= half) & (at < values.size - half)]
+    at = at[away[at] > _ALONE * np.abs(values[at + 1] - values[at - 1])]  # a motion may begin with a leap, and goes on
+    if not 0 < at.size <= _MOST_STRAYS * values.size:
+        return None
+    message = (
+        f"{at.size} single sample(s) of {channel.name} lie far beside their neighbours, the first at {at[0]} "
+        f"({values[at[0]]:.4g} {channel.unit}): faults of the sensor or of the transmission; they count as they are"
+    )
+    return Finding("stray_samples", message, channel=channel.name, sample=int(at[0]), severity="note")
 
 
 def _straight_lines(channel: Channel) -> Finding | None:

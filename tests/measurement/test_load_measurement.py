@@ -264,3 +264,32 @@ def test_a_deflection_that_begins_again_with_each_turn_is_unwrapped_and_said(tmp
 )
 def test_what_does_not_begin_again_stays(tmp_path, degrees, unit):
     assert not turning(tmp_path, degrees, unit).notes
+
+
+def test_single_wrong_samples_of_an_angle_are_no_turns(tmp_path):
+    time = np.arange(600) / 50
+    angle = 0.3 * np.sin(6 * time)
+    angle[[100, 250, 251, 400]] = [-0.54, 0.49, 0.45, -0.5]  # within a turn, and some more than half a turn away
+    np.savez(tmp_path / "a.npz", t=time, a=angle)
+    channels = {"time": {"column": "t", "unit": "s"}, "displacement": {"column": "a", "unit": "rev"}}
+    content = {"system": "oscillator", "records": [{"file": "a.npz", "channels": channels}]}
+    (tmp_path / "measurement.yaml").write_text(yaml.safe_dump(content))
+    (record,) = load_measurement(tmp_path / "measurement.yaml").records
+    assert np.ptp(record.channels["displacement"].values) < 1.1
+    assert not record.notes
+
+
+def test_single_wrong_samples_are_told_and_a_blow_or_a_coarse_step_is_none(tmp_path):
+    time = np.arange(3000) / 100
+    swing = np.exp(-0.2 * time) * np.sin(9 * time)
+    coarse = np.round(swing, 1) + 1e-6 * np.random.default_rng(0).normal(size=time.size)
+    struck = np.where(time > 10, np.exp(10 - time) * np.sin(9 * (time - 10)), 0.0) + 1e-4 * swing
+    wrong = swing.copy()
+    wrong[[700, 1500]] += 0.4
+    for name, values, said in (("a", swing, False), ("b", coarse, False), ("c", struck, False), ("d", wrong, True)):
+        np.savez(tmp_path / f"{name}.npz", t=time, a=values)
+        channels = {"time": {"column": "t", "unit": "s"}, "displacement": {"column": "a", "unit": "mm"}}
+        content = {"system": "oscillator", "records": [{"file": f"{name}.npz", "channels": channels}]}
+        (tmp_path / "measurement.yaml").write_text(yaml.safe_dump(content))
+        (record,) = load_measurement(tmp_path / "measurement.yaml").records
+        assert [finding.sample for finding in record.findings if finding.kind == "stray_samples"] == [700] * said

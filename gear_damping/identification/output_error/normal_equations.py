@@ -55,16 +55,17 @@ class NormalEquations:
 
 
 def normal_equations(prediction: Prediction, n_shared: int) -> NormalEquations:
-    """J'J and J'r of a linearisation."""
+    """J'J and J'r of a linearisation: one product of all columns of each record, of which the shared ones add up."""
     sensitivity, residual = prediction.sensitivity, prediction.residual.unsqueeze(-1)
-    shared, own = sensitivity[..., :n_shared], sensitivity[..., n_shared:]
-    flat = shared.flatten(1, 2)
+    turned = sensitivity.transpose(-1, -2)
+    products = (turned @ sensitivity).nan_to_num(0, 0, 0)
+    pulls = (turned @ residual).squeeze(-1).nan_to_num(0, 0, 0)
     return NormalEquations(
-        (flat.transpose(1, 2) @ flat).nan_to_num(0, 0, 0),
-        (shared.transpose(-1, -2) @ own).nan_to_num(0, 0, 0),
-        (own.transpose(-1, -2) @ own).nan_to_num(0, 0, 0),
-        (flat.transpose(1, 2) @ residual.flatten(1, 2)).squeeze(-1).nan_to_num(0, 0, 0),
-        (own.transpose(-1, -2) @ residual).squeeze(-1).nan_to_num(0, 0, 0),
+        products[..., :n_shared, :n_shared].sum(1),
+        products[..., :n_shared, n_shared:],
+        products[..., n_shared:, n_shared:],
+        pulls[..., :n_shared].sum(1),
+        pulls[..., n_shared:],
     )
 
 
