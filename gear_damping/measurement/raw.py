@@ -162,7 +162,7 @@ class RawReader:
         column = self.plan.timing.column
         if column is None:
             return []
-        stamps = self._all(column, "")[self.first : self.stop]
+        stamps = self._all(column, f"{self.plan.key}.channels.time.column")[self.first : self.stop]
         late = np.flatnonzero(np.diff(stamps) <= 0) + 1 + self.first
         if not 0 < late.size <= MOST_DOUBLED * stamps.size or written_significantly(stamps) is not None:
             return []

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from gear_damping.measurement.checks import APPLIED, STRUCK, check_channel
 from gear_damping.measurement.encoders import FROM_ENCODERS
 from gear_damping.measurement.record import Finding, Record
+from gear_damping.measurement.timebase import written_on_change
 
 WHOLE_SPEEDS = ("pinion_speed", "gear_speed")  # hold the rotation, beside which what is fitted is little
 LARGEST_TRANSMISSION_ERROR = 1e-3  # m; a gear pair deflects by micrometres
@@ -133,7 +134,7 @@ def _speed(record: Record) -> Finding | None:
 
 def stamps_against_values(record: Record) -> Finding | None:
     """The data problem of a record with uneven stamps whose values were sampled evenly; None for any other."""
-    if record.uniform or record.time.size < _FEWEST:
+    if record.uniform or record.time.size < _FEWEST or written_on_change(record.time):
         return None
     for channel in record.channels.values():
         if _is_counted(channel.values):

@@ -297,7 +297,8 @@ def irregularity(stamps: NDArray[np.float64], first: int = 0) -> Finding | None:
     lasting = np.array([k for k in odd if abs(_shift(stamps, usual, k)) > _HALF + slack], int)
     gaps = steps[lasting] / usual
     run = np.mean(np.diff(lasting) == 1) if lasting.size > 2 else 0.0
-    if lasting.size and run < _RUN and _are_whole(gaps, scatter(steps) / usual):
+    is_lost = lasting.size and run < _RUN and not written_on_change(stamps)
+    if is_lost and _are_whole(gaps, scatter(steps) / usual):
         return _dropped(np.round(gaps) - 1, stamps, lasting, first)
     few = run < _RUN and lasting.size < _MANY * steps.size
     changes = _change_of_rate(np.delete(steps, lasting) if few else steps)
@@ -311,6 +312,12 @@ def irregularity(stamps: NDArray[np.float64], first: int = 0) -> Finding | None:
         what = "more than jitter, for some steps are nearer to none or to two"
         return _unexplained(steps, int(odd[0]) + 1, what, first)
     return None
+
+
+def written_on_change(stamps: NDArray[np.float64]) -> bool:
+    """Whether a recorder writes when something changes: at many places, it would have lost more than it kept."""
+    steps = np.diff(stamps) / np.median(np.diff(stamps))
+    return bool(np.mean(steps > 1 + _HALF) >= _MANY and np.sum(steps - 1) > steps.size)
 
 
 def jitter_note(stamps: NDArray[np.float64]) -> Finding:

@@ -499,3 +499,27 @@ def test_a_library_is_said_to_be_missing_only_where_its_import_fails(tmp_path, m
         read_table(path)
     np.savez(tmp_path / "b.npz", x=WAVE)
     assert read_table(tmp_path / "b.npz").names == ("x",)
+
+
+def test_one_array_of_numpy_is_its_columns_and_a_structured_one_its_fields(tmp_path):
+    np.save(tmp_path / "a.npy", np.column_stack([np.arange(9.0), np.arange(9.0) ** 2]))
+    assert read_table(tmp_path / "a.npy").values(1).tolist() == [k * k for k in range(9)]
+    np.save(tmp_path / "b.npy", np.array([(1.0, 2), (3.0, 4)], dtype=[("t", float), ("x", int)]))
+    table = read_table(tmp_path / "b.npy")
+    assert (table.names, table.values(1).tolist()) == (("t", "x"), [2, 4])
+    np.save(tmp_path / "c.npy", np.array([{}], dtype=object), allow_pickle=True)
+    with pytest.raises(InputError, match="not a readable NPY file"):
+        read_table(tmp_path / "c.npy")
+
+
+def test_columns_are_found_by_what_people_call_them(tmp_path):
+    from scipy.io import savemat
+
+    runs = np.array([(np.arange(9.0),), (np.arange(8.0),)], dtype=[("t", object)])
+    savemat(tmp_path / "a.mat", {"runs": runs})
+    table = read_table(tmp_path / "a.mat")
+    assert table.index("runs[1].t", "column") == table.index("runs.t[1]", "column")
+    np.save(tmp_path / "a.npy", np.zeros((9, 2)))
+    assert read_table(tmp_path / "a.npy").index("1", "column") == 1
+    (tmp_path / "a.csv").write_text("Weg [mm],Weg (2)\n1,2\n")
+    assert read_table(tmp_path / "a.csv").index("Weg", "column") == 0

@@ -124,3 +124,11 @@ def test_a_fault_outside_the_rows_of_a_record_is_none(bench):
     assert "row 3 (line 5), column 1 'x' = 'broken': not a number" in bench.only_problem()
     bench.content["records"][0]["slice"] = [4, 100]
     assert bench.load_as_it_is().records[0].channels["displacement"].values.size == 96
+
+
+@pytest.mark.parametrize("above", [["t x"], ["# run", "t x", "s mm"], ["Rate 10", "t x"]])
+def test_blocks_with_a_header_each_are_one_table(tmp_path, above):
+    blocks = ["\n".join([*above, *(f"{k / 10} {k + 100 * run}" for k in range(30))]) for run in range(3)]
+    table = _table(tmp_path, "\n\n".join(blocks), "a.txt")
+    assert table.values(1).tolist() == [k + 100 * run for run in range(3) for k in range(30)]
+    assert any("2 more block(s) with a header" in note for note in table.notes)

@@ -364,3 +364,16 @@ def test_the_rate_of_a_dataset_is_the_file_s_and_a_scale_beside_it_is_said(tmp_p
     table = read_table(tmp_path / "a.h5")
     assert table.clock(0) == (0.0, 500.0)
     assert any("scale = 0.5, which is not applied" in note for note in table.notes)
+
+
+def test_rows_that_are_written_when_something_changes_have_lost_nothing(tmp_path):
+    """A wheel of 2 s a period whose way an interface writes in steps of a millimetre, at hundredths of a second."""
+    time = np.arange(0, 15, 0.01)
+    way = np.round(np.exp(-0.2 * time) * np.cos(3.1 * time) * 0.13, 3)
+    kept = np.r_[True, np.diff(way) != 0]
+    kept[300:600] &= np.arange(300) % 12 == 0  # slow here
+    rows = "\n".join(f"{t:.2f}\t{x:.3f}" for t, x in zip(time[kept], way[kept], strict=True))
+    channels = {"time": {"column": "t", "unit": "s"}, "displacement": {"column": "x", "unit": "m"}}
+    (record,) = loaded(tmp_path, "t\tx\n" + rows, channels).records
+    assert not [finding for finding in record.findings if finding.severity == "data_problem"]
+    assert not record.uniform

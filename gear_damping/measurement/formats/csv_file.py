@@ -25,7 +25,7 @@ from gear_damping.measurement.formats.number_texts import (
 from gear_damping.measurement.formats.stated_rate import stated_rate
 from gear_damping.measurement.formats.table import Table, is_real, refuse_size, unreadable
 
-SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".gz")
+SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".log", ".prn", ".gz")
 
 _DELIMITERS = (";", "\t", "|", ",")  # in the order in which they are taken for it; blanks where none stands
 _HEAD = 100  # rows among which the header is looked for
@@ -38,6 +38,7 @@ _PLACE = "X_Value"  # LabVIEW's name of what the values are over,
 _PLAIN = {"pounds": "lbf", "newtons": "N", "amps": "A", "meters": "m"}  # ... and its words for units
 _SETTING, _DEFINED = re.compile(r"[A-Za-z]\w*="), "DEF="
 _END_OF_HEADER = re.compile(r"^\*+ ?end[_ ]of[_ ]header", re.IGNORECASE)
+_VALUES = re.compile(rb"^[\s;,|\"]*[+-]?\.?\d")  # a line that begins with a number
 _COMMENT = re.compile(rb"^[ \t]*(#|%|//)", re.MULTILINE)
 
 
@@ -49,6 +50,7 @@ def read(path: Path, max_bytes: int) -> Table:
     """
     text = _Text(path, _bytes(path, max_bytes))
     header, first_line = _header(text)
+    blocks = _without_other_headers(text, first_line)
     parted = _parted(text, first_line)
     decimal = "," if _decimal_comma(text, first_line, parted) else "."
     frame = _frame(text, header, first_line, decimal, parted)
@@ -67,6 +69,8 @@ def read(path: Path, max_bytes: int) -> Table:
         table.notes += (f"{path.name}: {header.skipped} line(s) before the header are left out",)
     if header.says:
         table.notes += (f"{path.name}: {header.says}",)
+    if blocks:
+        table.notes += (f"{path.name}: {blocks} more block(s) with a header of their own follow the first",)
     if below:
         table.notes += (f"{path.name}: {below}",)
     if decimal == ",":
@@ -196,6 +200,26 @@ def _header(text: _Text) -> tuple[Header, int]:
         names = names if len(names) == width else [""] * width
         header = Header(tuple(names), (), header.first, header.skipped)
     return header, lines[header.first]
+
+
+def _without_other_headers(text: _Text, first_line: int) -> int:
+    """Make comments of the headers of further blocks, and return how many there are.
+
+    The last line above the values comes again in each; what stands before it up to the numbers or a blank line is its
+    header too.
+    """
+    lines = text.utf8.split(b"\n")
+    named = next((line.strip() for line in reversed(lines[: first_line - 1]) if line.strip()), b"")
+    again = [k for k in range(first_line, len(lines)) if named and lines[k].strip() == named]
+    if not again or _VALUES.match(named):
+        return 0
+    for last in again:
+        for k in range(last, first_line, -1):
+            if not lines[k].strip() or _VALUES.match(lines[k]):
+                break
+            lines[k] = b"#" + lines[k]
+    text.utf8 = b"\n".join(lines)
+    return len(again)
 
 
 def _behind_marks(rows: list[list[str]]) -> int:

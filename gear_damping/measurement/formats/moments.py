@@ -7,7 +7,7 @@ from datetime import date
 import numpy as np
 from numpy.typing import NDArray
 
-DAY = 86400.0  # s
+DAY = 86400.0  # s in a day of a clock, which knows no leap seconds
 _DIGITS = 9  # of a second: a difference of floats of a day's seconds is true to 1e-11 of one
 _DATE = r"(?P<date>\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/.]\d{1,2}[-/.]\d{2,4})"
 _CLOCK = r"(?P<hours>\d{1,3}):(?P<minutes>\d{2})(:(?P<seconds>\d{2})([.,:](?P<part>\d+))?)?\s*(?P<half>[ap]\.?m\.?)?"

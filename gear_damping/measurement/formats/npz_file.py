@@ -1,24 +1,34 @@
-"""NPZ archives of numpy arrays; nothing in them is ever executed."""
+"""Arrays of numpy, one in an NPY file or several in an NPZ archive; nothing in them is ever executed."""
 
 from pathlib import Path
 from zipfile import ZipFile
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gear_damping.measurement.formats.table import ArrayTable, Table, held_arrays, refuse_size, unreadable
 
-SUFFIXES = (".npz",)
+SUFFIXES = (".npz", ".npy")
 
 
 def read(path: Path, max_bytes: int) -> Table:
-    """The arrays of an NPZ file as columns.
+    """The arrays of an NPZ file as columns, or those of the one array of an NPY file; fields of a structured one too.
 
     Raises:
-        InputError: not an NPZ file, too large when unpacked, or it holds Python objects.
+        InputError: neither of them, too large when unpacked, or it holds Python objects.
     """
-    with unreadable(path, "not a readable NPZ file", "save plain numeric arrays with numpy.savez"):
+    kind = path.suffix[1:].upper()
+    with unreadable(path, f"not a readable {kind} file", "save plain numeric arrays with numpy.savez"):
+        if kind == "NPY":
+            return ArrayTable(path, *held_arrays(_fields("", np.load(path, allow_pickle=False))))
         with ZipFile(path) as archive:
             refuse_size(path, sum(member.file_size for member in archive.infolist()), max_bytes)
         with np.load(path, allow_pickle=False) as archive:
-            arrays = {name: archive[name] for name in archive.files}
-    return ArrayTable(path, *held_arrays(arrays))
+            parts = [_fields(name, archive[name]) for name in archive.files]
+    return ArrayTable(path, *held_arrays({name: array for part in parts for name, array in part.items()}))
+
+
+def _fields(name: str, array: NDArray) -> dict[str, NDArray]:
+    if array.dtype.names is None:
+        return {name: array}
+    return {f"{name}.{field}" if name else field: array[field] for field in array.dtype.names}

@@ -17,6 +17,7 @@ from gear_damping.errors import InputError, Problem, nearest
 
 _SHOWN = 20  # arrays that a message lists
 _UNIT_BEHIND = re.compile(r"\s*[(\[](?![\d, ]*[)\]])[^()\[\]]*[)\]]$")
+_OF_ARRAY = re.compile(r"^(.+)\[(\d+)\]\.(\w+)$")  # `runs[0].t`, the member of a structure in an array of them
 _INDEXED = re.compile(r"^(.*)\[[\d, ]+\]$")
 
 
@@ -68,7 +69,9 @@ class Table(ABC):
                 return column
             rule, remedy = f"{self.path.name} has {len(self.names)} columns", f"count from 0: {self.listing(True)}"
             raise InputError(Problem(key, rule, column, remedy, str(self.path)))
-        found = self._named(column) or self._named(column.strip().strip("/"))
+        found = self._named(column) or self._named(_OF_ARRAY.sub(r"\1.\3[\2]", column.strip().strip("/")))
+        if not found and column.strip().isdecimal() and not any(self.names):
+            return self.index(int(column), key)
         if len(found) == 1:
             return found[0]
         if found:
