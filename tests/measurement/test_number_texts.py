@@ -132,3 +132,10 @@ def test_blocks_with_a_header_each_are_one_table(tmp_path, above):
     table = _table(tmp_path, "\n\n".join(blocks), "a.txt")
     assert table.values(1).tolist() == [k + 100 * run for run in range(3) for k in range(30)]
     assert any("2 more block(s) with a header" in note for note in table.notes)
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_lines_may_end_in_any_way(tmp_path, end):
+    rows = ["t,x", *(f"{k},{2 * k}" for k in range(40)), "# the end"]
+    (tmp_path / "a.csv").write_bytes(end.join(rows).encode())
+    assert read_table(tmp_path / "a.csv").values(1).tolist() == [2 * k for k in range(40)]

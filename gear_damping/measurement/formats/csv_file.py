@@ -84,6 +84,8 @@ class _Text:
     def __init__(self, path: Path, raw: bytes) -> None:
         self.path = path
         self.utf8 = _utf8(path, raw)
+        if b"\n" not in self.utf8:
+            self.utf8 = self.utf8.replace(b"\r", b"\n")  # as computers of the nineties end lines
         ending = self.utf8[-(2**16) :].decode("utf-8", "replace").splitlines()
         kept = [line for line in ending if line.strip(" \r" + "".join(_DELIMITERS)) and not _IS_COMMENT.match(line)]
         last = next((line for line in reversed(kept) if _NUMBER.search(line)), kept[-1] if kept else "")
