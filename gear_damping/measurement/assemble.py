@@ -98,7 +98,7 @@ class Assembler:
             findings += _lost(own.resample(recorded), values, plan.name, own) if is_faster(own, record.base) else []
             done = "filtered and taken" if is_faster(own, record.base) else "interpolated"
             notes.append(f"{plan.name}: {done} from {own.sampling_rate:.6g} Hz to the record's time")
-        sensor = dict(plan.sensor) | ({"hold": self._held(raw, record, values, notes)} if plan.name in HOLDABLE else {})
+        sensor = plan.sensor | ({"hold": self._held(raw, record, values, notes)} if plan.name in HOLDABLE else {})
         if plan.speed_radius:
             del sensor["radius"]  # the values are divided by it
         return Channel(plan.name, values, conversion.unit, raw.unit, conversion.factor, **limits, **sensor)

@@ -34,10 +34,8 @@ _FEWEST_MARKS, _MOST_MARKED = 3, 0.1  # samples of one value; share of all
 _WITH_A_STROKE = 5  # samples between an input's largest value and a leap that it made
 STRUCK = ("force", "base_acceleration")  # which one blow may make
 _LONE = 5.0  # times as far from the median as any other sample
-_ABOUT, _STRETCH = (
-    5,
-    101,
-)  # samples whose median a single wrong one leaves, and by whose steps it is seen how wrong it is
+_ABOUT = 5  # samples whose median a single wrong one leaves as it is
+_STRETCH = 101  # samples by whose steps it is seen how wrong it is
 _STRAY = 12.0  # usual steps away; the largest of a sine of 4 samples a period is 1.4, of a million of noise 7
 _ALONE = 3.0  # times what its two neighbours differ by
 _LEAST_STRAY = 0.1  # of the deviation of all values, below which one tells nothing

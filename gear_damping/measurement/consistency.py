@@ -166,9 +166,10 @@ def _encoder_beside_a_channel(seen: _Seen) -> Found:
     if seen.both_encoders and "transmission_error" in seen.channels:
         rule = "has no meaning beside channels.transmission_error, which it would give"
         yield seen.problem("encoders.gear", rule, "keep one of the two")
-    other = "channels.pinion_angle" if "pinion_angle" in seen.channels else "encoders.tacho"
-    if "gear" in seen.encoders and not seen.both_encoders and ("tacho" in seen.encoders or "channels" in other):
-        rule = f"has no meaning without encoders.pinion beside {other}, which gives the angle"
+    angles = [("pinion_angle", seen.channels, "channels"), ("tacho", seen.encoders, "encoders")]
+    others = [f"{place}.{name}" for name, there, place in angles if name in there]
+    if "gear" in seen.encoders and not seen.both_encoders and others:
+        rule = f"has no meaning without encoders.pinion beside {others[0]}, which gives the angle"
         yield seen.problem("encoders.gear", rule, "keep one of the two")
 
 

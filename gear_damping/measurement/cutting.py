@@ -96,11 +96,7 @@ class SlowerTime(TimeBase):
 
     def resample(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """Values at the recorded samples, filtered and taken at the new ones."""
-        return self.taken(self.recorded, values)
-
-    def taken(self, own: TimeBase, values: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Values of a channel with its own, faster time base, through the same filter, at the new samples."""
-        return _filtered(self, own, values)
+        return _filtered(self, self.recorded, values)
 
 
 def _filtered(base: TimeBase, own: TimeBase, values: NDArray[np.float64]) -> NDArray[np.float64]:

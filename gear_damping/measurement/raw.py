@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from contextlib import suppress
+from copy import copy
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -381,11 +382,9 @@ class RawReader:
 
     def _faster(self, plan: ChannelPlan, unit: str, header: str | None) -> RawChannel:
         """A channel that has values in all rows, beside slower ones."""
-        slower, self.filled = self.filled, None
-        try:
-            return RawChannel(plan, self.sliced(plan.column, f"{plan.key}.column"), unit, header, self._base())
-        finally:
-            self.filled = slower
+        whole = copy(self)
+        whole.filled = None
+        return RawChannel(plan, whole.sliced(plan.column, f"{plan.key}.column"), unit, header, whole._base())
 
     def _other_clock(self, plan: ChannelPlan) -> tuple[float, float] | None:
         """The file's own clock of a channel where the record follows another one of the file."""

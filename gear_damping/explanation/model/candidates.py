@@ -142,7 +142,7 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Si
                 free.append(FreeParameter(phase, 0.0))
                 phases[place] = place + 1
     joining = [(declared, f"{kind.name}.{declared.name}") for declared in _declared(kind, recipe)]
-    within = {**recipe.within, **sizes.most(kind, recipe)}
+    within = sizes.within(kind, recipe)
     later = [_freed(declared, flat, given, within) for declared, flat in joining if flat != own_tooth]
     if recipe.non_nested:
         free, later = [*free, *later], []
@@ -217,13 +217,11 @@ class _Sizes:
             return value * float(self.scales.force[0] / self.scales.velocity[0] ** exponent)
         return value * float(self.scales.unit_of(parse_unit(parameter.unit).dimension)[0])
 
-    def most(self, kind: type[Effect], recipe: Recipe) -> dict[str, tuple[float, float]]:
-        """The bounds of the scanned parameters that have a largest value, by flat name."""
+    def within(self, kind: type[Effect], recipe: Recipe) -> dict[str, tuple[float, float]]:
+        """The narrower bounds of a recipe by flat name, and those of what has a largest value in natural units."""
         declared = {p.name: p for p in kind.parameters}
-        return {
-            f"{kind.name}.{name}": (-inf, self.natural(kind, declared[name], value))
-            for name, value in recipe.most.items()
-        }
+        most = {name: self.natural(kind, declared[name], value) for name, value in recipe.most.items()}
+        return {**recipe.within, **{f"{kind.name}.{name}": (-inf, value) for name, value in most.items()}}
 
     def size(self, kind: type[Effect], name: str, size: float | None, recipe: Recipe) -> float:
         """The size of a strength that is tried."""

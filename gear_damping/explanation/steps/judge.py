@@ -141,8 +141,7 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
         return Verdict(UNEXPLAINED, (text, *known.unsettled))
     if (is_part or is_unsteady) and any(found.is_at_bound(cause) for cause in found.accepted):
         return _not_established(found, before, known, AT_BOUND)
-    is_less = before.significant and before.percent - after.percent < settings.least_excess
-    if is_part and is_less:  # than what counts, beside what is random
+    if is_part and before.significant and before.percent - after.percent < settings.least_excess:
         return _not_established(found, before, known, NOT_LESS)
     if is_part or is_unsteady:  # most of the gap is still there
         text = f"{missing}. Part of it has a name: {said}. What is left looks random, and is more than that."

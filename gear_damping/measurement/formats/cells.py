@@ -84,8 +84,8 @@ class CellTable(Table):
     def unit(self, index: int) -> str | None:
         """The unit in the header of a column, or None; of dates and clocks s."""
         column = self._columns[index]
-        first = next((str(cell) for cell in column.values if not is_real(column.values.dtype)), "")
-        return "s" if is_moment(first) else column.unit
+        is_clock = column.values.size and not is_real(column.values.dtype) and is_moment(str(column.values[0]))
+        return "s" if is_clock else column.unit
 
     def values(self, index: int) -> NDArray[np.float64]:
         """(n,) float64: a column, nan where a cell is no number; `bad_cells` tells of these.

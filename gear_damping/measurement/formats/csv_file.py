@@ -210,11 +210,12 @@ def _without_other_headers(text: _Text, first_line: int) -> int:
     The last line above the values comes again in each; what stands before it up to the numbers or a blank line is its
     header too.
     """
-    lines = text.utf8.split(b"\n")
-    named = next((line.strip() for line in reversed(lines[: first_line - 1]) if line.strip()), b"")
-    again = [k for k in range(first_line, len(lines)) if named and lines[k].strip() == named]
-    if not again or _VALUES.match(named):
+    above = text.utf8.split(b"\n", first_line)[: first_line - 1]
+    named = next((line.strip() for line in reversed(above) if line.strip()), b"")
+    if not named or _VALUES.match(named) or text.utf8.count(named) == 1:  # as in nearly every file
         return 0
+    lines = text.utf8.split(b"\n")
+    again = [k for k in range(first_line, len(lines)) if lines[k].strip() == named]
     for last in again:
         for k in range(last, first_line, -1):
             if not lines[k].strip() or _VALUES.match(lines[k]):
