@@ -113,3 +113,30 @@ def test_channels_that_an_oscilloscope_numbers_have_the_units_below(tmp_path):
 def test_a_row_of_numbers_behind_a_text_names_nothing_where_they_are_no_numbers_of_channels(tmp_path):
     table = table_of(tmp_path, ["scale,0.5,0.5", "second,Volt,Volt", *rows(60, sign=",")])
     assert table.names == ("second", "Volt", "Volt")
+
+
+def test_a_column_may_be_asked_for_by_any_row_of_the_header(tmp_path):
+    devices = "MX840B Time;MX840B CH 1;MX840B CH 2"
+    table = table_of(tmp_path, ["Time [s];Shaker [N];Mass [mm]", devices, "s;N;mm", *rows(40)])
+    assert table.names == tuple(devices.split(";"))
+    assert [table.index(name, "column") for name in ("Time [s]", "Mass [mm]", "MX840B CH 2")] == [0, 2, 2]
+    with pytest.raises(InputError, match="2 columns bear this name"):
+        table_of(tmp_path, ["Time;Force;Force", "t;x;y", "s;N;mm", *rows(40)]).index("Force", "column")
+
+
+SCOPE = ["X,CH1,CH2,Start,Increment,", "Sequence,Volt,Volt,-1.200000e-02,2.000000e-05"]
+
+
+def test_an_oscilloscope_states_start_and_step_beside_the_names_of_its_columns(tmp_path):
+    table = table_of(tmp_path, [*SCOPE, *[f"{k},{0.1 * k:.2f},{-0.2 * k:.2f}," for k in range(40)]])
+    assert table.names == ("X", "CH1", "CH2")
+    assert [table.unit(k) for k in range(3)] == [None, "Volt", "Volt"]
+    assert len(table.values(2)) == 40
+    assert table.stated_rate[1] == pytest.approx(50e3)
+    assert not table.notes
+
+
+def test_columns_named_start_and_increment_are_columns_where_rows_hold_them(tmp_path):
+    table = table_of(tmp_path, ["X,Start,Increment", *rows(40, 3, ",")])
+    assert table.names == ("X", "Start", "Increment")
+    assert table.stated_rate is None

@@ -38,12 +38,14 @@ class Cells:
         unit: The unit that the header gives.
         values: The cells.
         line: The line of the file that a row stands in.
+        also: Other names of it, in further rows of the header.
     """
 
     name: str
     unit: str | None
     values: NDArray
     line: Callable[[int], int]
+    also: tuple[str, ...] = ()
 
 
 def without_footer(columns: Sequence[Cells]) -> tuple[list[Cells], str]:
@@ -80,6 +82,9 @@ class CellTable(Table):
         self._columns, self._commas = list(columns), decimal_commas
         self._read: dict[int, NDArray[np.float64]] = {}
         self._bad: dict[int, tuple[list[str], list[int]]] = {}
+
+    def _named(self, column: str) -> list[int]:
+        return super()._named(column) or [k for k, one in enumerate(self._columns) if column.strip() in one.also]
 
     def unit(self, index: int) -> str | None:
         """The unit in the header of a column, or None; of dates and clocks s."""

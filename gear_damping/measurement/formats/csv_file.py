@@ -37,6 +37,7 @@ _NUMBER, _IS_COMMENT = re.compile(r"\d"), re.compile(r"\s*(#|%|//)")
 _PLACE = "X_Value"  # LabVIEW's name of what the values are over,
 _PLAIN = {"pounds": "lbf", "newtons": "N", "amps": "A", "meters": "m"}  # ... and its words for units
 _SETTING, _DEFINED = re.compile(r"[A-Za-z]\w*="), "DEF="
+_SCOPE, _COUNTED = ("Start", "Increment"), "Sequence"  # behind the names of an oscilloscope; no unit
 _END_OF_HEADER = re.compile(r"^\*+ ?end[_ ]of[_ ]header", re.IGNORECASE)
 _VALUES = re.compile(rb"^[\s;,|\"]*[+-]?\.?\d")  # a line that begins with a number
 _COMMENT = re.compile(rb"^[ \t]*(#|%|//)", re.MULTILINE)
@@ -50,6 +51,8 @@ def read(path: Path, max_bytes: int) -> Table:
     """
     text = _Text(path, _bytes(path, max_bytes))
     header, first_line = _header(text)
+    scope = _of_oscilloscope([row for _, row in islice(text.rows(), 2)])
+    header = header if scope is None else replace(header, names=scope[0], units=scope[1], skipped=0)
     blocks = _without_other_headers(text, first_line)
     parted = _parted(text, first_line)
     decimal = "," if _decimal_comma(text, first_line, parted) else "."
@@ -60,11 +63,11 @@ def read(path: Path, max_bytes: int) -> Table:
         if all(frame[k].dtype == frame[width].dtype for k in range(width)):
             frame = frame[~(frame == "").all(axis=1)]  # rows of delimiters alone
     lines = _Lines(path, max_bytes, first_line)
-    columns = [Cells(header.name(k), header.unit(k), frame[k].to_numpy(), lines) for k in range(width)]
+    columns = [Cells(header.name(k), header.unit(k), frame[k].to_numpy(), lines, header.also(k)) for k in range(width)]
     columns, below = without_footer(columns)
     table = CellTable(path, columns, decimal_commas=True)  # between cells only where they stand in quotes
     above = [row for line, row in islice(text.rows(), _HEAD) if line < first_line]
-    table.stated_rate = stated_rate(above)
+    table.stated_rate = stated_rate(above if scope is None else [*above, *scope[2]])
     if header.skipped:
         table.notes += (f"{path.name}: {header.skipped} line(s) before the header are left out",)
     if header.says:
@@ -257,6 +260,22 @@ def _of_labview(header: Header, settings: list[list[str]]) -> Header:
         is_time = "Time" in said.get("X_Dimension", ("Time",))[:1]
         units = ("s" if is_time else "", *labels[: kept - 1])
     return replace(header, names=names, units=units, skipped=header.skipped + len(settings))
+
+
+def _of_oscilloscope(rows: list[list[str]]) -> tuple[tuple[str, ...], tuple[str, ...], list[list[str]]] | None:
+    """Names and units of columns, and settings, where the first row names both (Rigol: `X,CH1,Start,Increment,`).
+
+    The second row holds the units of the columns and the values of the settings.
+    """
+    names, below = [[cell.strip() for cell in row] for row in rows] if len(rows) == 2 else ([], [])
+    kept = names.index(_SCOPE[0]) if _SCOPE[0] in names else 0
+    settings = [[f"X {name}", *below[k : k + 1]] for k, name in enumerate(names) if k >= kept and name]
+    if not kept or [name for name in names[kept:] if name] != list(_SCOPE):
+        return None
+    if not all(is_number(value) for _, *values in settings for value in values or [""]) or is_number(below[0]):
+        return None
+    units = tuple("" if unit == _COUNTED else unit for unit in below[:kept])
+    return tuple(names[:kept]), units, settings
 
 
 def _below_preamble(rows: list[list[str]], width: int) -> Header | None:

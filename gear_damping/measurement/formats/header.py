@@ -32,6 +32,7 @@ class Header:
         first: The index of the first row of values among the rows that were looked at.
         skipped: The rows before the header.
         says: What is to be noted of it.
+        others: Rows of texts beside that of names, a cell for each column: by these a column may be asked for too.
     """
 
     names: tuple[str, ...]
@@ -39,10 +40,15 @@ class Header:
     first: int
     skipped: int = 0
     says: str = ""
+    others: tuple[tuple[str, ...], ...] = ()
 
     def name(self, k: int) -> str:
         """The name of column `k`, or ""."""
         return self.names[k] if k < len(self.names) else ""
+
+    def also(self, k: int) -> tuple[str, ...]:
+        """What else is written above column `k`."""
+        return tuple(row[k] for row in self.others if row[k])
 
     def unit(self, k: int) -> str | None:
         """The unit below the name of column `k`, or in brackets at its end, as in `Acc DE (m/s^2)`."""
@@ -82,7 +88,8 @@ def find_header(rows: Sequence[Sequence[str]], width: int) -> Header:
     if first < len(rows) and _is_units(rows[first]):
         units, first = tuple(cell.strip() for cell in rows[first]), first + 1
     between = max(end - first, 0) if end < len(rows) else 0  # texts that are neither names nor units
-    return Header(names, units, first + between, start + between)
+    others = tuple(tuple(cell.strip() for cell in rows[k][:width]) for k in exact if k != start)
+    return Header(names, units, first + between, start + between, others=others)
 
 
 def _of_two_rows(upper: list[str], lower: list[str], first: int) -> Header | None:

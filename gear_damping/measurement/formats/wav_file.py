@@ -39,5 +39,5 @@ def _fractions(samples: NDArray) -> tuple[NDArray[np.float64], str]:
     scale = float(2 ** (bits - 1))
     if samples.dtype.kind == "u":  # 8-bit WAV counts from 0 to 255 with zero at 128
         values = values - scale
-    said = f"WAV holds integers in {bits} bits: divided by {scale:.0f}, so that full scale is 1"
+    said = f"WAV holds integers, read in {bits} bits: divided by {scale:.0f}, so that full scale is 1"
     return values / scale, said

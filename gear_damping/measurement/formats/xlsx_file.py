@@ -63,7 +63,7 @@ def _columns(rows: list[list[Any]], prefix: str) -> list[Cells]:
             lines = [number for number, _ in cells]
             name = f"{prefix}{name}" if name else ""
             values, own_unit = _values([cell for _, cell in cells])
-            columns.append(Cells(name, own_unit or unit, values, lines.__getitem__))
+            columns.append(Cells(name, own_unit or unit, values, lines.__getitem__, header.also(k)))
     return columns
 
 
