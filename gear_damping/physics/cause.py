@@ -32,6 +32,8 @@ class Rig:
         spring: The parameter of the system that is its constant stiffness; None where it has a mesh.
         standing: Whether its shafts stand in all records.
         on_shafts: Whether a speed or an acceleration of one shaft was measured.
+        one_way: Whether nothing brings it back and it moves in one direction in each record, so that what differs
+            between directions, or yields before it slides, does not show.
     """
 
     system: str
@@ -48,6 +50,7 @@ class Rig:
     spring: str | None = None
     standing: bool = False
     on_shafts: bool = False
+    one_way: bool = False
 
     def has(self, trait: Trait) -> bool:
         """Whether its system has a trait."""

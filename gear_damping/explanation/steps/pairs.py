@@ -42,7 +42,7 @@ def with_pair(state: State) -> State | None:
     if state.is_unpredictable or bench.budget.refuses(PAIRS):
         return None
     bases = _bases([fit for fit in state.rejected if fit.is_seen_in_fit], state)
-    pairs = [Pair(fit, second, False) for fit in bases for second in _seconds(fit, state)]
+    pairs = [pair for fit in bases for pair in _pairs(fit, False, state)]
     pairs += _instead(state) if len(state.accepted) == 1 else []
     pair = _accepted(pairs, state.current, state)
     if pair is None:
@@ -97,7 +97,7 @@ def _instead(state: State) -> list[Pair]:
     shares = {fit.name: _taken(fit, state) for fit in state.first_fits if fit.is_seen_in_fit}
     least = state.bench.settings.pair_share * shares.get(state.accepted[0].name, 1.0)
     rivals = [fit for fit in state.first_fits if fit.is_seen_in_fit and shares[fit.name] >= least]
-    return [Pair(fit, second, True) for fit in _bases(rivals, state) for second in _seconds(fit, state)]
+    return [pair for fit in _bases(rivals, state) for pair in _pairs(fit, True, state)]
 
 
 def _taken(fit: Refit, state: State) -> float:
@@ -131,6 +131,24 @@ def _bases(fits: Sequence[Refit], state: State) -> list[Refit]:
         if fit.name not in state.names:
             best.setdefault(fit.name, fit)
     return list(best.values())[: state.bench.settings.pair_bases]
+
+
+def _pairs(base: Refit, replaces: bool, state: State) -> list[Pair]:
+    """Pairs of a base, and of the same with what bent it to a bound held until the second effect is there too.
+
+    Where two laws act, the power of one of them alone runs away, and from there no second effect leads back.
+    """
+    pairs, bench, whole = [Pair(base, second, replaces) for second in _seconds(base, state)], state.bench, base.score
+    if not base.is_at_bound or not whole.candidate.later:
+        return pairs
+    for score in state.first_scores:
+        if score.candidate.form != whole.candidate.form or score.candidate.name != base.name or score.gain <= 0:
+            continue
+        held = bench.full_fit(replace(score, candidate=replace(score.candidate, later=())), state.nominal)
+        seconds = [] if held is None else _seconds(held, state)
+        joined = (bench.joined(second, score.candidate, state.outcome) for second in seconds)
+        pairs += [Pair(base, second, replaces) for second in joined if second.outcome.is_finite]
+    return pairs
 
 
 def _needed(base: Outcome, state: State) -> float:

@@ -10,14 +10,14 @@ from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.evidence.excess import Excess, excess
 from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.evidence.records import Evidence
-from gear_damping.explanation.model.candidates import candidates_for, restored
+from gear_damping.explanation.model.candidates import Candidate, candidates_for, restored
 from gear_damping.explanation.model.covariance import covariance_of
 from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.statistics.paired import confirmation, paired_gain
 from gear_damping.explanation.trials.assess import Assessment, assessed
-from gear_damping.explanation.trials.refit import Refit, block_samples, chosen, compared, refitted
+from gear_damping.explanation.trials.refit import Refit, block_samples, chosen, compared, refitted, with_later
 from gear_damping.explanation.trials.score import Score, Scoring, contains, scores
 from gear_damping.identification.output_error.least_squares import Rounds
 from gear_damping.identification.output_error.records import FreeParameter
@@ -193,6 +193,12 @@ class Bench:
         if fit.outcome.fitted.converged:
             return fit
         return compared(fit.score, self.until_converged(fit.outcome), against, self.evidence)
+
+    def joined(self, fit: Refit, candidate: Candidate, against: Outcome) -> Refit:
+        """A full fit carried on with what joins later of another candidate in it, and held against a model."""
+        return compared(
+            fit.score, with_later(fit.outcome, candidate, self.evidence, self.solver), against, self.evidence
+        )
 
     def is_as_good(self, outcome: Outcome, best: Outcome) -> bool:
         """Whether a model is not worse than another by the paired test, or by too little for anybody to bet on it.

@@ -30,6 +30,7 @@ FIRST_PART = 0.25  # of the records, by which the better start is chosen
 ONE = 1e-9  # share of the starts that goes on: the best
 CRAWL = 0.003  # of the cost: a fit that is far from the noise and gets nearer by less at a time is in a wrong valley
 ENOUGH = 0.1  # noise variances: a tenth of what a parameter of no use gains from noise
+TO_ENOUGH = Ends(ENOUGH)
 FIRST_ITERATIONS, LAST_ITERATIONS = 10, 30  # over a part of the record, and over all of it
 AT_BOUND = 0.05  # of a bound: a parameter as near to it as that has run into it
 VARIANTS_KEPT = 0.25  # of the sizes of an effect that is tried as a whole, after the first round
@@ -142,10 +143,17 @@ def refitted(
     found = fit_hypothesis(hypothesis, evidence, initial, rounds, ends, solver)
     gone, wanted = (max(outcome.fitted.cost - cost, 0.0) for cost in (found.fitted.cost, reach))
     if candidate.later and gone >= JOINS * wanted:
-        found = fit_hypothesis(_freed(found, candidate), evidence, InitialValues(after=found), ends=ends, solver=solver)
+        found = with_later(found, candidate, evidence, solver, ends)
     if not found.is_finite:
         return None
     return compared(score, found, against or outcome, evidence)
+
+
+def with_later(
+    found: Outcome, candidate: Candidate, evidence: Evidence, solver: Solver | None, ends: Ends = TO_ENOUGH
+) -> Outcome:
+    """A fit carried on with what joins later of a candidate in it free too."""
+    return fit_hypothesis(_freed(found, candidate), evidence, InitialValues(after=found), ends=ends, solver=solver)
 
 
 def _freed(found: Outcome, candidate: Candidate) -> Hypothesis:

@@ -43,12 +43,23 @@ def _is_pushed(records: Sequence[FitRecord], known: Known) -> bool:
 
 
 def _gains_speed(record: FitRecord) -> bool:
+    speeds = np.abs(_speeds(record))
+    return bool(len(speeds)) and bool(speeds.max() - speeds[0] > GAINED * speeds.max())
+
+
+def moves_one_way(record: FitRecord) -> bool:
+    """Whether the mean speeds of all stretches of a record have one sign; not where its speed is not known."""
+    speeds = _speeds(record)
+    return bool(len(speeds)) and bool((speeds > 0).all() or (speeds < 0).all())
+
+
+def _speeds(record: FitRecord) -> np.ndarray:
+    """Mean speed of each stretch of a record; none where its speed is not known."""
     if record.observed.derivatives > 1 or (record.observed.derivatives == 1 and record.observed.offset):
-        return False  # its speed is not known
+        return np.empty(0)
     values = record.response.numpy()
     rate = np.gradient(values) if record.observed.derivatives == 0 else values
-    speeds = np.abs([stretch.mean() for stretch in np.array_split(rate, min(STRETCHES, len(rate)))])
-    return bool(speeds.max() - speeds[0] > GAINED * speeds.max())
+    return np.array([stretch.mean() for stretch in np.array_split(rate, min(STRETCHES, len(rate)))])
 
 
 def linear_model(

@@ -37,7 +37,8 @@ def first_offset(segments: Sequence[FitRecord], channel: Observed, static: float
 def first_motion(record: FitRecord, offset: float, static: float, factor: float = 1.0) -> tuple[Tensor, Tensor]:
     """Displacement and velocity at the start of a record, (2,), and the scale of either.
 
-    From a rate or an acceleration by integration: the mean of a displacement that was not recorded is not known.
+    From a rate or an acceleration by integration: the mean of a displacement that was not recorded is not known. A rate
+    whose zero is known is that of the motion, its mean included: what coasts has one.
 
     Args:
         record: The record.
@@ -47,6 +48,8 @@ def first_motion(record: FitRecord, offset: float, static: float, factor: float 
     """
     place = record.shown_motion / factor + static if record.observed.derivatives else record.response - offset
     rate = place.diff() * record.sampling_rate
+    if record.observed.derivatives == 1 and not record.observed.offset:
+        rate = record.response / factor
     scale = torch.stack([place.std().clamp(min=1e-300), rate.std().clamp(min=1e-300)])
     return torch.stack([place[0], rate[0]]), scale
 

@@ -17,7 +17,9 @@ VISCOUS = {"damping_forward": 0.01, "damping_backward": 0.01}  # where a fit beg
 
 
 def _switched_on(rig: Rig) -> tuple[Recipe, ...]:
-    """Dry friction alone, and with a viscous part that differs too."""
+    """Dry friction alone, and with a viscous part that differs too; of motion in one direction neither is told."""
+    if rig.one_way:
+        return ()
     within = {"asymmetric_friction.width": friction_width(rig)}
     return tuple(
         Recipe(strengths, scanned={"width": 0.05, "rest_share": 0.5}, within=within, sharpest=("width",))

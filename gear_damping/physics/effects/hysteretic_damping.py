@@ -30,7 +30,12 @@ def _as_friction(values: Mapping[str, float], stiffness: float, amplitude: float
 
 
 def _switched_on(rig: Rig) -> tuple[Recipe, ...]:
-    """From several yields, or one where flanks hold a load and hardly tell them apart."""
+    """From several yields, or one where flanks hold a load and hardly tell them apart.
+
+    Motion in one direction has yielded and slides, as dry friction does.
+    """
+    if rig.one_way:
+        return ()
     within = {"hysteretic_damping.exponent": EXPONENTS}
     return tuple(
         Recipe(
