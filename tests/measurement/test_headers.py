@@ -140,3 +140,30 @@ def test_columns_named_start_and_increment_are_columns_where_rows_hold_them(tmp_
     table = table_of(tmp_path, ["X,Start,Increment", *rows(40, 3, ",")])
     assert table.names == ("X", "Start", "Increment")
     assert table.stated_rate is None
+
+
+@pytest.mark.parametrize(
+    ("header", "sign", "names"),
+    [
+        ("Zeit,1,2", ",", ("Zeit", "1", "2")),
+        (",0,1", ",", ("", "0", "1")),  # pandas, of a frame without names
+        ("Zeit;0,5;1,0", ";", ("Zeit", "0,5", "1,0")),
+        ("1,2,3", ",", ("1", "2", "3")),
+        ("0.5,1,2", ",", ("", "", "")),  # values
+        ("OVL,1,2", ",", ("", "", "")),
+    ],
+)
+def test_names_that_are_numbers_are_no_sample(tmp_path, header, sign, names):
+    body = [row.replace(".", ",") if sign == ";" else row for row in rows(40, 3, sign)]
+    table = table_of(tmp_path, [header, *body])
+    assert table.names == names
+    assert len(table.values(1)) == 40 + (names[1] == "")
+
+
+@pytest.mark.parametrize("line", ["Channel 1: Hammer [N]", "Weg am Balken [mm]"])
+def test_words_above_a_table_with_other_signs_between_its_cells_are_no_names(tmp_path, line):
+    table = table_of(tmp_path, [line, *rows(40, 4, "\t")])
+    assert table.names == ("",) * 4
+    assert [table.unit(k) for k in range(4)] == [None] * 4
+    named = table_of(tmp_path, ["time force left right", *rows(40, 4, "\t")])
+    assert named.names == ("time", "force", "left", "right")

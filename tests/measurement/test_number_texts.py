@@ -139,3 +139,15 @@ def test_lines_may_end_in_any_way(tmp_path, end):
     rows = ["t,x", *(f"{k},{2 * k}" for k in range(40)), "# the end"]
     (tmp_path / "a.csv").write_bytes(end.join(rows).encode())
     assert read_table(tmp_path / "a.csv").values(1).tolist() == [2 * k for k in range(40)]
+
+
+def test_in_a_file_of_decimal_commas_a_point_before_three_digits_parts_thousands(tmp_path):
+    cells = [f"{k}.{7 * k:03d}" for k in range(1, 41)]
+    assert not parts_thousands(cells, ".")
+    assert parts_thousands(cells, ".", other_is_decimal=True)
+    assert not parts_thousands(["0.125", *cells], ".", other_is_decimal=True)
+    rows = [f"{0.005 * k:.3f}".replace(".", ",") + f";{cell}" for k, cell in enumerate(cells)]
+    (tmp_path / "run.csv").write_text("\n".join(["t;x", *rows]))
+    table = read_table(tmp_path / "run.csv")
+    assert table.values(1).tolist() == [1000 * k + 7 * k for k in range(1, 41)]
+    assert any("'.' parts thousands, 1.007 is read as 1007" in note for note in table.notes)

@@ -5,7 +5,7 @@ import gzip
 import io
 import re
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 from itertools import islice
@@ -65,7 +65,7 @@ def read(path: Path, max_bytes: int) -> Table:
     lines = _Lines(path, max_bytes, first_line)
     columns = [Cells(header.name(k), header.unit(k), frame[k].to_numpy(), lines, header.also(k)) for k in range(width)]
     columns, below = without_footer(columns)
-    table = CellTable(path, columns, decimal_commas=True)  # between cells only where they stand in quotes
+    table = CellTable(path, columns, decimal_commas=True, all_commas=decimal == ",")  # between cells only where they stand in quotes
     above = [row for line, row in islice(text.rows(), _HEAD) if line < first_line]
     table.stated_rate = stated_rate(above if scope is None else [*above, *scope[2]])
     if header.skipped:
@@ -315,14 +315,21 @@ def _parted(text: _Text, first_line: int) -> set[int]:
     """The columns in which a sign parts thousands, by their first cells."""
     rows = [row for _, row in islice(_values(text, first_line), _SAMPLE)]
     columns = list(zip(*(row for row in rows if len(row) >= text.width), strict=False))
-    return {k for k, cells in enumerate(columns) for sign in ".," if parts_thousands(cells, sign)}
+    parted = {k for k, cells in enumerate(columns) for sign in ".," if parts_thousands(cells, sign)}
+    others = [cells for k, cells in enumerate(columns) if k not in parted]
+    if not _has_decimal_commas(text, others):
+        return parted
+    return parted | {k for k, cells in enumerate(columns) if parts_thousands(cells, ".", other_is_decimal=True)}
 
 
 def _decimal_comma(text: _Text, first_line: int, parted: set[int]) -> bool:
     """Whether numbers among the first values have a comma; columns that have points are read by themselves."""
     rows = (row for _, row in islice(_values(text, first_line), _HEAD))
-    first = (cell for row in rows for k, cell in enumerate(row) if k not in parted)
-    return text.delimiter != "," and any("," in cell and is_written(cell) for cell in first)
+    return _has_decimal_commas(text, [[cell for k, cell in enumerate(row) if k not in parted] for row in rows])
+
+
+def _has_decimal_commas(text: _Text, lists: Sequence[Sequence[str]]) -> bool:
+    return text.delimiter != "," and any("," in cell and is_written(cell) for cells in lists for cell in cells)
 
 
 def _frame(text: _Text, header: Header, first_line: int, decimal: str, parted: set[int]) -> Any:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from gear_damping.errors import InputError
-from gear_damping.measurement.formats.number_texts import is_number, is_written
+from gear_damping.measurement.formats.number_texts import is_absent, is_number, is_written
 from gear_damping.measurement.time_column import NAMED, is_time
 from gear_damping.units import parse_unit
 
@@ -19,6 +19,8 @@ _COMMENTS = ("%", "%%", ";", "//", "!", "'", "*")  # that other programs write b
 _GENERIC = re.compile(
     r"^(analog(ue)?|digital|channel|chan|ch|kanal|ai|ao|di|do|in(put)?|signal|sensor|col(umn)?)[ _.#-]*\d+$", re.I
 )
+_IN_PROSE = re.compile(r"[:,;]$|^[(\[]")  # of a word: a name of a column does not end so, and its unit stands behind it
+_COUNTED_FROM = {"0": -1, "1": 0, "2": 1}  # by the number of the second column, that of the first
 _TABLE = 3  # rows that a table begins with, none of them of texts alone
 
 
@@ -70,6 +72,8 @@ def find_header(rows: Sequence[Sequence[str]], width: int) -> Header:
         row.
     """
     end = _first_values(rows, width)
+    if end < len(rows) and _names_by_numbers(rows[end : end + 1 + _TABLE], width):
+        return Header(tuple(cell.strip() for cell in rows[end][:width]), (), end + 1, end)
     texts = [k for k in range(end) if not _has_number(rows[k])]
     if not texts:
         return Header((), (), 0)
@@ -122,8 +126,9 @@ def _names(row: Sequence[str], width: int) -> Sequence[str]:
 
     Names with blanks between them may stand above values with other signs between them.
     """
-    if filled(row) == 1 < width and len(row[0].split()) == width:
-        return row[0].split()
+    words = row[0].split()
+    if filled(row) == 1 < width == len(words) and not any(_IN_PROSE.search(word) for word in words):
+        return words
     if filled(row) <= width and row[0].strip() not in _COMMENTS:
         return row
     cells = [cell for cell in row if cell.strip()]
@@ -135,6 +140,23 @@ def _names(row: Sequence[str], width: int) -> Sequence[str]:
         else:
             joined.append(cell)
     return joined if len(joined) == width else row
+
+
+def _names_by_numbers(rows: Sequence[Sequence[str]], width: int) -> bool:
+    """Whether the first of some rows names columns by numbers (`Zeit,1,2`, pandas: `,0,1`), and the others are values.
+
+    Beside a word, or where they count the columns: behind an empty cell, or above numbers that all have decimals.
+    """
+    first, *others = [[cell.strip() for cell in row[:width]] for row in rows]
+    if len(others) < _TABLE or not all(filled(row) == width and all(map(is_written, row)) for row in others):
+        return False
+    words = [cell for cell in first if not is_absent(cell) and not is_written(cell)]
+    if words or width == 1 or filled(first) < width:
+        return bool(words) and filled(first) == width
+    begin = _COUNTED_FROM.get(first[1], 0)
+    counted = [str(begin + k) for k in range(width)]
+    has_decimals = all(re.search("[.,]", cell) for row in others for cell in row)
+    return first[1:] == counted[1:] and (not first[0] or (first[0] == counted[0] and has_decimals))
 
 
 def _are_numbered(row: Sequence[str], width: int) -> bool:

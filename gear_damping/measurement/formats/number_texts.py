@@ -42,11 +42,11 @@ def is_written(cell: str) -> bool:
     return is_number(cell) or is_number(plain(cell).replace(",", "."))
 
 
-def parts_thousands(cells: Sequence[str], sign: str) -> bool:
+def parts_thousands(cells: Sequence[str], sign: str, other_is_decimal: bool = False) -> bool:
     """Whether a sign, `.` or `,`, parts the thousands of a column's numbers.
 
     Three digits stand behind it every time, and what has none is less than a thousand. Another sign behind it, or a
-    second one, decides it; else some numbers must be without it.
+    second one, decides it; else some numbers must be without it, or the other sign be the decimal one of the file.
     """
     decimal = re.escape(_OTHER[sign])
     parted = re.compile(rf"[+-]?[1-9]\d{{0,2}}(\{sign}\d{{3}})+({decimal}\d*)?")
@@ -59,7 +59,7 @@ def parts_thousands(cells: Sequence[str], sign: str) -> bool:
     if not all(small.fullmatch(cell) for cell in without):
         return False
     decided = any(_OTHER[sign] in cell or cell.count(sign) > 1 for cell in with_sign)
-    return decided or (len(with_sign) >= FEWEST_PARTED and bool(without))
+    return decided or (len(with_sign) >= FEWEST_PARTED and (bool(without) or other_is_decimal))
 
 
 def are_decimals_alone(lines: Sequence[str]) -> bool:
