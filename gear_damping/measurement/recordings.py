@@ -11,20 +11,23 @@ _RESTART = 10  # usual steps that a clock goes back by where it starts again
 _LEAST = 16  # stamps of a recording: fewer are rows in another order
 _NEAR = 2.0  # usual steps from the end of a register and from its beginning
 _PERIODS = [2.0**bits * unit for bits in (16, 24, 32) for unit in (1.0, 1e-3, 1e-6)]  # of registers of clocks
+_PARTS = (1.0, 60.0, 3600.0, 86400.0)  # s: of a second, a minute, an hour, a day, where each has a column of its own
 _LISTED = 5  # recordings that a message lists
 
 
 def past_overflow(stamps: NDArray[np.float64]) -> NDArray[np.float64]:
     """(n,) stamps that go on where the register of a clock was full: in counts, or in s of its milli- or microseconds.
 
-    The last stamp before such a fall lies at the end of the register, the first one behind it at its beginning.
+    The last stamp before such a fall lies at the end of the register, the first one behind it at its beginning. So does
+    what a clock says of a second, beside a column of whole ones; a recording that begins anew begins with 0 each time.
     """
     steps = np.diff(stamps)
     falls = np.flatnonzero(steps < 0)
     if not falls.size:
         return stamps
     near = _NEAR * float(np.median(steps))
-    for period in _PERIODS:
+    parts = _PARTS if stamps[0] > near else ()
+    for period in (*_PERIODS, *parts):
         is_full = stamps[falls] > period - near
         if np.all(is_full & (stamps[falls + 1] < near)) and stamps.min() >= 0 and stamps.max() < period:
             return stamps + period * np.r_[0, np.cumsum(steps < 0)]

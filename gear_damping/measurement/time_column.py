@@ -17,8 +17,8 @@ NAMED = re.compile(
 )
 _SUFFIX = re.compile(r"[_ .\-/](s|sec|ms|us|µs|ns|min|h)$", re.I)
 _SLOW = 200  # whole numbers a step: as milliseconds less than 5 Hz, and few vibrate as slowly
-# Ranges that a time counted from 1970 lies in, by its unit: from 1973 on, and they do not meet.
-_EPOCHS = ((1e8, 1e10, "s"), (1e11, 1e13, "ms"), (1e14, 1e16, "us"), (1e17, 1e19, "ns"))
+# Ranges that a time counted from 1970 lies in, by its unit: from 2000 on, and they do not meet.
+_EPOCHS = ((9.4e8, 1e10, "s"), (9.4e11, 1e13, "ms"), (9.4e14, 1e16, "us"), (9.4e17, 1e19, "ns"))
 _FEWEST = 8  # stamps, as many as a record needs
 _ADVANCING = 0.9  # share of the steps of a named column that go forward
 _SHORT = re.compile(r"^t[a-z]?\d*(_\w+)?$", re.I)  # t1, tb_n: a time only where its steps are even
@@ -86,7 +86,7 @@ def find_stamps(columns: Sequence[_Column], untimed: bool = False) -> Stamps | N
 
 
 def counts_from_1970(values: NDArray[np.float64]) -> bool:
-    """Whether (n,) values never fall and lie where a finer clock than that of seconds stands since 1973."""
+    """Whether (n,) values never fall and lie where a finer clock than that of seconds stands since 2000."""
     inside = any(low < values[0] < high for low, high, _ in _EPOCHS[1:])
     return bool(inside and np.all(np.diff(values) >= 0) and values[-1] > values[0])
 

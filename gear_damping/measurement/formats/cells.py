@@ -1,5 +1,6 @@
 """Tables of cells, as texts and spreadsheets hold them; a cell that is no number is named with its row."""
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -11,11 +12,13 @@ from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.formats.moments import is_moment, is_told, seconds_of
 from gear_damping.measurement.formats.number_texts import is_absent, is_number, is_written, parts_thousands, plain
 from gear_damping.measurement.formats.table import Table, is_real
+from gear_damping.units import parse_unit
 
 MOMENT = "a date or a clock in a form that is not read"
 MOST_WORDS = 0.5  # of the cells of a column of numbers: with more than half words it is one of words
 SHOWN = 3  # faults of one kind that are listed one by one
 MOST_BELOW = 20  # rows that may lie below a table, and more of its own
+_WITH_UNIT = re.compile(r"\s*[+-]?\d[\d.,]*([eE][+-]?\d+)?\s+(?P<unit>[A-Za-zµμ°%][^\s\d]*)\s*")
 LISTED = 8  # columns that a message lists
 
 
@@ -70,6 +73,19 @@ def _first_word(cells: NDArray) -> int | None:
     return len(words) - count if 0 < count == sum(words) < len(words) else None
 
 
+def _unit_of_cells(cells: NDArray) -> str:
+    """The unit that stands behind the number of each of a column's texts (MATLAB: `0.005 sec`); "" without one."""
+    if is_real(cells.dtype) or not cells.size or (first := _WITH_UNIT.fullmatch(str(cells[0]))) is None:
+        return ""
+    unit = first["unit"]
+    try:
+        parse_unit(unit)
+    except InputError:
+        return ""
+    found = (_WITH_UNIT.fullmatch(str(cell)) for cell in cells)
+    return unit if all(one is not None and one["unit"] == unit for one in found) else ""
+
+
 def _is_word(cell: str) -> bool:
     return not is_absent(cell) and not is_written(cell) and not is_told(cell)
 
@@ -92,6 +108,8 @@ class CellTable(Table):
     def unit(self, index: int) -> str | None:
         """The unit in the header of a column, or None; of dates and clocks s."""
         column = self._columns[index]
+        if column.unit is None and (unit := _unit_of_cells(column.values)):
+            return unit
         is_clock = column.values.size and not is_real(column.values.dtype) and is_moment(str(column.values[0]))
         return "s" if is_clock else column.unit
 
@@ -110,6 +128,8 @@ class CellTable(Table):
         texts = [str(cell) for cell in self._columns[index].values]
         if texts and is_moment(texts[0]) and (seconds := seconds_of(texts)) is not None:
             return seconds
+        if unit := _unit_of_cells(self._columns[index].values):
+            texts = [cell.strip().removesuffix(unit) for cell in texts]
         cells = [plain(cell) for cell in self._decimal_points(texts, index)]
         try:
             return np.array(cells, dtype=np.float64)

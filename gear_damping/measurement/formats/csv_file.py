@@ -65,7 +65,8 @@ def read(path: Path, max_bytes: int) -> Table:
     lines = _Lines(path, max_bytes, first_line)
     columns = [Cells(header.name(k), header.unit(k), frame[k].to_numpy(), lines, header.also(k)) for k in range(width)]
     columns, below = without_footer(columns)
-    table = CellTable(path, columns, decimal_commas=True, all_commas=decimal == ",")  # between cells only where they stand in quotes
+    # Decimal commas may always stand in quotes.
+    table = CellTable(path, columns, decimal_commas=True, all_commas=decimal == ",")
     above = [row for line, row in islice(text.rows(), _HEAD) if line < first_line]
     table.stated_rate = stated_rate(above if scope is None else [*above, *scope[2]])
     if header.skipped:
@@ -74,6 +75,8 @@ def read(path: Path, max_bytes: int) -> Table:
         table.notes += (f"{path.name}: {header.says}",)
     if blocks:
         table.notes += (f"{path.name}: {blocks} more block(s) with a header of their own follow the first",)
+    if text.cut:
+        table.notes += (f"{path.name}: {text.cut}",)
     if below:
         table.notes += (f"{path.name}: {below}",)
     if decimal == ",":
@@ -86,7 +89,7 @@ class _Text:
 
     def __init__(self, path: Path, raw: bytes) -> None:
         self.path = path
-        self.utf8 = _utf8(path, raw)
+        self.utf8, self.cut = _whole_lines(_utf8(path, raw))
         if b"\n" not in self.utf8:
             self.utf8 = self.utf8.replace(b"\r", b"\n")  # as computers of the nineties end lines
         ending = self.utf8[-(2**16) :].decode("utf-8", "replace").splitlines()
@@ -166,7 +169,7 @@ def _bytes(path: Path, max_bytes: int) -> bytes:
 def _utf8(path: Path, raw: bytes) -> bytes:
     """The text in UTF-8; older programs write µ, ° and ² in Latin-1."""
     wide = raw.startswith((b"\xff\xfe", b"\xfe\xff"))
-    if b"\0" in raw[:4096] and not wide:
+    if b"\0" in raw.rstrip(b"\0")[:4096] and not wide:
         packed = path.suffix.lower() == ".gz"
         remedy = "unpack it: of what gzip packs only text is read" if packed else "export it as CSV"
         raise InputError(Problem("file", "not a text file", str(path), remedy))
@@ -174,6 +177,17 @@ def _utf8(path: Path, raw: bytes) -> bytes:
         return raw.decode("utf-16").encode() if wide else raw.removeprefix(b"\xef\xbb\xbf").decode().encode()
     except UnicodeDecodeError:
         return raw.decode("latin-1").encode()
+
+
+def _whole_lines(text: bytes) -> tuple[bytes, str]:
+    """A text without the zeros that a recorder which lost its power left, nor a line that they cut; what is noted."""
+    whole = text.rstrip(b"\0\r\n ")
+    if b"\0" not in text[len(whole) :]:
+        return text, ""
+    is_cut = not text[len(whole) :].startswith((b"\n", b"\r"))
+    kept = whole[: whole.rfind(b"\n") + 1] if is_cut else whole
+    line = " and the line before them" if is_cut else ""
+    return kept, f"{text.count(0)} bytes of zero at its end{line} are left out"
 
 
 def _header(text: _Text) -> tuple[Header, int]:

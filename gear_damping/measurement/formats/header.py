@@ -72,7 +72,8 @@ def find_header(rows: Sequence[Sequence[str]], width: int) -> Header:
         row.
     """
     end = _first_values(rows, width)
-    if end < len(rows) and _names_by_numbers(rows[end : end + 1 + _TABLE], width):
+    is_named = any(filled(row) >= width for row in rows[:end])
+    if not is_named and _names_by_numbers(rows[end : end + 1 + _TABLE], width):
         return Header(tuple(cell.strip() for cell in rows[end][:width]), (), end + 1, end)
     texts = [k for k in range(end) if not _has_number(rows[k])]
     if not texts:

@@ -9,11 +9,18 @@ from numpy.typing import NDArray
 
 DAY = 86400.0  # s in a day of a clock, which knows no leap seconds
 _DIGITS = 9  # of a second: a difference of floats of a day's seconds is true to 1e-11 of one
-_DATE = r"(?P<date>\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/.]\d{1,2}[-/.]\d{2,4})"
-_CLOCK = r"(?P<hours>\d{1,3}):(?P<minutes>\d{2})(:(?P<seconds>\d{2})([.,:](?P<part>\d+))?)?\s*(?P<half>[ap]\.?m\.?)?"
+_DATE = r"(?P<date>\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/.]\d{1,2}[-/.]\d{2,4}|\d{1,2}[-/. ][A-Za-z]{3}[-/. ]\d{4})"
+_CLOCK = (
+    r"(?P<hours>\d{1,3}):(?P<minutes>\d{2})(:(?P<seconds>\d{2})((?P<sign>[.,:])(?P<part>\d+))?)?"
+    r"\s*(?P<half>[ap]\.?m\.?)?"
+)
 _ZONE = r"\s*(Z|UTC|[+-]\d{2}:?\d{2})?"
 _MOMENT = re.compile(rf"({_DATE}[T ,;_]+)?{_CLOCK}{_ZONE}", re.I)
 _MINUTES = re.compile(r"(?P<minutes>\d{1,4}):(?P<seconds>\d{2})[.,](?P<part>\d+)")  # and seconds since a start
+_COMPACT = re.compile(r"(\d{4})(\d{2})(\d{2})T(\d{2})(\d{2})(\d{2})(?=\D|$)")  # of ISO 8601, without signs
+_ENGLISH = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec")
+_MONTHS = {name: k for k, name in enumerate(_ENGLISH, start=1)}
+_FRAME_RATES = (24, 25, 30, 50, 60)  # frames a second of time codes hh:mm:ss:ff (SMPTE ST 12-1)
 _TOLD = re.compile(r"\d{1,2}:\d{2}|\d{4}-\d{2}-\d{2}|\d{1,2}[./]\d{1,2}[./]\d{2,4}")
 
 
@@ -24,7 +31,8 @@ def is_told(cell: str) -> bool:
 
 def is_moment(cell: str) -> bool:
     """Whether a text is a clock that is read, with a date or without one."""
-    return _MINUTES.fullmatch(cell.strip()) is not None or _MOMENT.fullmatch(cell.strip()) is not None
+    text = _with_signs(cell)
+    return _MINUTES.fullmatch(text) is not None or _MOMENT.fullmatch(text) is not None
 
 
 def seconds_of(cells: Sequence[str]) -> NDArray[np.float64] | None:
@@ -32,7 +40,7 @@ def seconds_of(cells: Sequence[str]) -> NDArray[np.float64] | None:
 
     Without dates a clock that falls back by more than half a day has passed midnight.
     """
-    texts = [cell.strip() for cell in cells]
+    texts = [_with_signs(cell) for cell in cells]
     elapsed = [_MINUTES.fullmatch(text) for text in texts]
     if all(elapsed):
         times = [60 * int(one["minutes"]) + int(one["seconds"]) + _part(one["part"]) for one in elapsed]
@@ -41,9 +49,23 @@ def seconds_of(cells: Sequence[str]) -> NDArray[np.float64] | None:
     if not found or not all(found):
         return None
     clock = np.array([_of_day(one) for one in found])
+    if frames := _frames(found):
+        clock = np.floor(clock) + np.array([int(one["part"]) for one in found]) / frames
     days = _days([one["date"] for one in found])
     whole = past_midnight(clock) if days is None else clock + DAY * days
     return np.round(whole - whole[0], _DIGITS)
+
+
+def _with_signs(cell: str) -> str:
+    return _COMPACT.sub(r"\1-\2-\3T\4:\5:\6", cell.strip())
+
+
+def _frames(moments: Sequence[re.Match[str]]) -> int:
+    """Frames in a second where clocks are time codes, by the highest number of one; 0 where they are none."""
+    if not all(one["sign"] == ":" and len(one["part"]) == 2 for one in moments):
+        return 0
+    count = 1 + max(int(one["part"]) for one in moments)
+    return count if count in _FRAME_RATES and len({one["seconds"] for one in moments}) > 1 else 0
 
 
 def past_midnight(clock: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -62,11 +84,16 @@ def _part(digits: str | None) -> float:
     return float(f"0.{digits}") if digits else 0.0
 
 
+def _number(part: str) -> int:
+    """A part of a date; a month by its English name too, 0 for what is none."""
+    return int(part) if part.isdigit() else _MONTHS.get(part.lower(), 0)
+
+
 def _days(texts: Sequence[str | None]) -> NDArray[np.float64] | None:
     """(n,) days since the first date; None without dates, or where a date cannot be."""
     if None in texts:
         return None
-    numbers = {text: [int(part) for part in re.split(r"[-/.]", text)] for text in dict.fromkeys(texts)}
+    numbers = {text: [_number(part) for part in re.split(r"[-/. ]", text)] for text in dict.fromkeys(texts)}
     for order in ((0, 1, 2), (2, 1, 0), (2, 0, 1)):  # year, month, day; day first; month first
         try:
             ordinals = {text: date(*(one[k] for k in order)).toordinal() for text, one in numbers.items()}

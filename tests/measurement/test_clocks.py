@@ -1,0 +1,66 @@
+"""Clocks as other programs write them, and files that a recorder did not finish."""
+
+import numpy as np
+import pytest
+
+from gear_damping.measurement.formats.moments import is_moment, seconds_of
+from gear_damping.measurement.formats.registry import read_table
+from gear_damping.measurement.recordings import past_overflow, recordings
+
+HUNDREDTHS = np.arange(0, 3.2, 0.01)
+
+
+@pytest.mark.parametrize(
+    "form",
+    [
+        "01-Mar-2024 12:00:{:06.3f}",  # MATLAB
+        "20240301T1200{:06.3f}",  # ISO 8601 without signs
+        "2024-03-01T12:00:{:06.3f}+01:00",
+        "1 Mar 2024 12:00:{:06.3f}",
+    ],
+)
+def test_dates_with_clocks_are_seconds_from_the_first(form):
+    texts = [form.format(second) for second in HUNDREDTHS]
+    assert is_moment(texts[0])
+    np.testing.assert_allclose(seconds_of(texts), HUNDREDTHS, atol=1e-9)
+
+
+@pytest.mark.parametrize("frames", [24, 25, 30])
+def test_the_last_number_of_a_time_code_counts_frames(frames):
+    texts = [f"00:00:{k // frames:02d}:{k % frames:02d}" for k in range(5 * frames)]
+    np.testing.assert_allclose(seconds_of(texts), np.arange(5 * frames) / frames, atol=1e-9)
+
+
+def test_hundredths_behind_a_colon_are_no_frames():
+    texts = [f"00:00:{k // 100:02d}:{k % 100:02d}" for k in range(320)]
+    np.testing.assert_allclose(seconds_of(texts), HUNDREDTHS, atol=1e-9)
+
+
+def test_what_a_clock_says_of_a_second_goes_on_behind_it():
+    time = 0.412 + np.arange(1000) / 200
+    np.testing.assert_allclose(past_overflow(time % 1.0), time, atol=1e-9)
+
+
+def test_recordings_of_a_second_each_stay_apart():
+    time = np.tile(np.arange(200) / 200, 3)
+    assert recordings(time) == [(0, 200), (200, 400), (400, 600)]
+
+
+@pytest.mark.parametrize(
+    ("end", "rows", "said"),
+    [("", 40, ""), ("1,2", 40, " and the line before them"), ("1", 40, " and the line before them")],
+)
+def test_zeros_that_a_recorder_left_when_its_power_failed_are_left_out(tmp_path, end, rows, said):
+    body = "".join(f"{k},{0.5 * k}\n" for k in range(rows))
+    (tmp_path / "run.csv").write_bytes(f"t,x\n{body}{end}".encode() + bytes(512))
+    table = read_table(tmp_path / "run.csv")
+    assert table.values(1).tolist() == [0.5 * k for k in range(rows)]
+    assert any("512 bytes of zero at its end" + said in note for note in table.notes)
+
+
+def test_numbers_with_their_unit_behind_them_are_read_in_it(tmp_path):
+    body = "".join(f"{0.005 * k:g} sec,{0.5 * k}\n" for k in range(40))
+    (tmp_path / "run.csv").write_text("Time,x\n" + body)
+    table = read_table(tmp_path / "run.csv")
+    assert table.unit(0) == "sec"
+    np.testing.assert_allclose(table.values(0), 0.005 * np.arange(40), atol=1e-12)
