@@ -277,12 +277,17 @@ def _unit_conflict(raw: RawChannel, conversion: Conversion) -> Finding | None:
         header = of_a_shaft(parse_unit(raw.header_unit), stated)
     except InputError:
         return None  # brackets that hold no unit
-    if header.dimension != stated.dimension and raw.plan.sensor["gain"] != 1:
+    is_other = header.dimension != stated.dimension
+    if is_other and raw.plan.is_scaled:
         return None  # a gain of another kind lies between: volts in the file, what they stand for in the YAML
+    if is_other and header.dimension == parse_unit("kg").dimension and stated.dimension == parse_unit("N").dimension:
+        header, is_other = parse_unit(raw.header_unit.replace("kg", "kgf")), False  # as load cells say it
     if (header.dimension, header.factor) == (stated.dimension, stated.factor):
         return None
     message = (
         f"the header of column '{raw.plan.column}' says '{raw.header_unit}' and the YAML '{raw.unit}', "
         f"which was used to read {raw.plan.name} in {conversion.unit}; correct the one that is wrong"
     )
+    if is_other:
+        message += f", or write gain: what the column holds for one {raw.unit} (1 where its header names something else)"
     return Finding("unit_conflict", message, channel=raw.plan.name)

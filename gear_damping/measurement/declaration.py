@@ -34,7 +34,10 @@ class TimePlan:
 
 @dataclass(frozen=True)
 class ChannelPlan:
-    """A declared channel; `unit` None asks the file, `limits` are range and noise as declared."""
+    """A declared channel; `unit` None asks the file, `limits` are range and noise as declared.
+
+    `is_scaled` says that its gain is stated, be it 1.
+    """
 
     name: str
     key: str
@@ -43,6 +46,7 @@ class ChannelPlan:
     sensor: Mapping[str, object]
     limits: Mapping[str, Quantity]
     timing: TimePlan | None
+    is_scaled: bool = False
 
     @property
     def speed_radius(self) -> float | None:
@@ -237,6 +241,7 @@ def _channel(
     return ChannelPlan(
         name, key, channel.column, channel.unit, sensor,
         {limit: quantity for limit, quantity in limits.items() if quantity}, _timing(channel),
+        "gain" in channel.model_fields_set,
     )  # fmt: skip
 
 

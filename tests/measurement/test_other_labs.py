@@ -90,8 +90,26 @@ def test_a_gain_may_lie_between_volts_in_the_file_and_what_they_stand_for(tmp_pa
     found = loaded(tmp_path, text, {"time": {"column": "t", "unit": "s"}, "displacement": channel})
     np.testing.assert_allclose(decay_of(found), DECAY, atol=1e-8)
     assert not [f for f in found.findings if f.kind == "unit_conflict"]
-    other = loaded(tmp_path, text, {"time": {"column": "t", "unit": "s"}, "displacement": channel | {"gain": 1.0}})
-    assert [f.kind for f in other.findings if f.severity == "data_problem"] == ["unit_conflict"]
+    del channel["gain"]
+    other = loaded(tmp_path, text, {"time": {"column": "t", "unit": "s"}, "displacement": channel})
+    (problem,) = [f for f in other.findings if f.severity == "data_problem"]
+    assert problem.kind == "unit_conflict"
+    assert "write gain: what the column holds for one m (1 where its header names something else)" in problem.message
+
+
+def test_what_a_header_says_in_brackets_may_be_a_side_and_no_unit(tmp_path):
+    text = "t,Weg (A)\n" + "\n".join(f"{t:.4f},{x:.8g}" for t, x in zip(TIME, DECAY, strict=True))
+    channel = {"column": "Weg (A)", "unit": "m", "gain": 1}  # as the remedy for the conflict says
+    found = loaded(tmp_path, text, {"time": {"column": "t", "unit": "s"}, "displacement": channel})
+    assert not [f for f in found.findings if f.severity == "data_problem"]
+
+
+@pytest.mark.parametrize(("unit", "conflicts"), [("kgf", False), ("N", True)])
+def test_a_load_cell_may_say_kilograms_for_a_force(tmp_path, unit, conflicts):
+    text = "t,x,Last [kg]\n" + "\n".join(f"{t:.4f},{x:.8g},{9 * x:.8g}" for t, x in zip(TIME, DECAY, strict=True))
+    channels = {"displacement": {"column": "x", "unit": "m"}, "force": {"column": "Last [kg]", "unit": unit}}
+    found = loaded(tmp_path, text, {"time": {"column": "t", "unit": "s"}, **channels})
+    assert any(f.kind == "unit_conflict" for f in found.findings) is conflicts
 
 
 def test_a_wrong_unit_of_time_is_not_silent(tmp_path):
