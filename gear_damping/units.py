@@ -88,6 +88,7 @@ _ALIKE = 0.6  # share of the letters that a unit must have in common with a word
 _POUND = "write 'lbf' for a force, or give a mass in kg"
 _MEANT = {
     "g": "write 'gram' or 'gn' (9.80665 m/s^2)", "mg": "write 'mgn' (9.80665e-3 m/s^2), or a mass in 'gram'",
+    "degc": "a temperature is not read", "ft-lb": "write 'ft*lbf'", "ft-lbs": "write 'ft*lbf'",
     "d": "write 'day'", "lb": _POUND, "lbs": _POUND, "pound": _POUND, "pounds": _POUND,
 }  # fmt: skip
 
@@ -96,19 +97,23 @@ _SPELLINGS |= {"N.m": "N*m", "N m": "N*m"}
 _ALSO = {
     "sec": "s", "secs": "s", "second": "s", "seconds": "s", "msec": "ms", "usec": "us", "minutes": "min",
     "micron": "um", "microns": "um", "mils": "mil", "thou": "mil", "inch": "in", "inches": "in", "Inch": "in",
-    "RPM": "rpm", "U/min": "rpm", "Volt": "V", "Volts": "V", "volt": "V", "volts": "V", "Newton": "N", "hz": "Hz",
+    "RPM": "rpm", "U/min": "rpm", "Volt": "V", "Volts": "V", "volt": "V", "volts": "V",
+    "Newton": "N", "newton": "N", "newtons": "N",
+    "amp": "A", "amps": "A", "ampere": "A", "Ampere": "A", "hz": "Hz",
     "HZ": "Hz", "Deg": "deg", "DEG": "deg", "Grad": "deg", "degree": "deg", "degrees": "deg",
     "radian": "rad", "radians": "rad",
     "turn": "rev", "turns": "rev", "revs": "rev", "nsec": "ns", "days": "day", "kp": "kgf",
     "dps": "deg/s", "rps": "rev/s", "Meter": "m", "meter": "m", "meters": "m", "metre": "m", "metres": "m",
     "min-1": "1/min", "/min": "1/min", "r/min": "rpm", "tr/min": "rpm",
+    "S/s": "Hz", "kS/s": "kHz", "MS/s": "MHz", "Sa/s": "Hz", "kSa/s": "kHz", "sps": "Hz", "Second": "s", "Seconds": "s",
+    "percent": "%", "m/sec^2": "m/s^2", "m/sec2": "m/s^2",
     "ms^-2": "m/s^2", "ms^-1": "m/s", "ms-2": "m/s^2", "ms-1": "m/s",  # no milliseconds: their powers are no motion
 }  # fmt: skip
 _DIGITS = r"\s*(?P<number>[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?)\s*"
 _NUMBER, _SPOKEN = re.compile(f"^{_DIGITS}$"), re.compile(rf"^{_DIGITS}(?P<unit>([A-Za-zµμ°%]|(?<=\s)1/).*?)\s*$")
 # a power may stand without its sign: m/s2
 _GAP = re.compile(r"(?<=[A-Za-z\d])[ .\-](?=[A-Za-z])")  # what people write between the factors of a product
-_JOINED = re.compile(r"(?<![A-Za-z])(kg|kN|N|lbf)(?=(mm|cm|m|in|ft)([\^\d/]|$))")  # or nothing
+_JOINED = re.compile(r"(?<![A-Za-z])(kg|kN|daN|N|lbf)(?=(mm|cm|m|in|ft)([\^\d/]|$))")  # or nothing
 _FACTOR = re.compile(r"^(?P<atom>[A-Za-z%]+|1)((\^(?P<power>-?\d+(\.\d+)?))|(?P<raised>[23]))?$")
 
 
@@ -197,12 +202,17 @@ def _unknown(piece: str, name: str, text: str, key: str, source: str) -> Problem
 
 def _alike(name: str) -> str:
     """The remedy for a unit that is nearly written like one that is known, else the list of them."""
-    found = get_close_matches(name.replace(" ", ""), list(_ATOMS), n=1, cutoff=_ALIKE)
+    plain = name.replace(" ", "")
+    found = get_close_matches(plain, list(_ATOMS), n=1, cutoff=_ALIKE)
+    if found and len(plain) > len(found[0]) and not plain.lower().startswith(found[0].lower()):
+        found = []  # what is longer and begins otherwise is another unit: no kilometre in `kgm`
     return f"did you mean '{found[0]}'?" if found else f"choose one of {', '.join(sorted(_ATOMS))}"
 
 
 def _as_product(text: str) -> str:
     """The remedy for a product without its sign, `kgm2` or `kg m^2`; "" where it is none."""
+    for spelling, ours in _SPELLINGS.items():
+        text = text.replace(spelling, ours)
     product = _JOINED.sub(r"\1*", _GAP.sub("*", text))
     try:
         return "" if product == text or not parse_unit(product) else f"write '{product}'"

@@ -289,5 +289,7 @@ def _unit_conflict(raw: RawChannel, conversion: Conversion) -> Finding | None:
         f"which was used to read {raw.plan.name} in {conversion.unit}; correct the one that is wrong"
     )
     if is_other:
-        message += f", or write gain: what the column holds for one {raw.unit} (1 where its header names something else)"
+        message += (
+            f", or write gain: what the column holds for one {raw.unit} (1 where its header names something else)"
+        )
     return Finding("unit_conflict", message, channel=raw.plan.name)

@@ -41,9 +41,20 @@ class Timed(Declared):
         return self
 
 
+_GAIN = "write gain, by which values are divided: what the column holds for one unit of the quantity"
+_SCALES = {
+    **dict.fromkeys(("scale", "factor", "sensitivity", "calibration", "scaling", "multiplier"), _GAIN),
+    "offset": "write datum: arbitrary where its zero is not known; a known one is subtracted in the file",
+    "file": "write file beside channels: a record reads one file, into which its channels must be put together",
+    "inverted": "write polarity: -1",
+    "sign": "write polarity: -1 for a reversed sensor",
+}
+
+
 class AnyChannel(Timed):
     """What every channel takes: its column, its unit, its own time base, its sign and its scale."""
 
+    meant: ClassVar[Mapping[str, str]] = Frozen({**PERIODS, **_SCALES})
     si: ClassVar[str | None] = None  # the unit that values are converted to; None: the rig's own
     derivative: ClassVar[int | None] = None  # of an oscillator's displacement; None for an input
     is_input: ClassVar[bool] = False

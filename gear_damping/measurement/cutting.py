@@ -47,7 +47,8 @@ def window_rows(
     near = 1e-6 * step
     first, last = float(np.nanmin(seconds)), float(np.nanmax(seconds))
     if begin < first - step - near or end > last + step + near:
-        rule, remedy = f"the record goes from {first:.6g} to {last:.6g} s", "stay within it"
+        digits = 6 + int(np.log10(max(1.0, abs(first) / (last - first)))) if last > first else 6
+        rule, remedy = f"the record goes from {first:.{digits}g} to {last:.{digits}g} s", "stay within it"
         raise InputError(Problem(key, rule, list(window), remedy, source))
     inside = np.flatnonzero((seconds >= begin - near) & (seconds < end - near))
     if not inside.size:

@@ -162,7 +162,9 @@ class Window(Declared):
         missing="give the first time",
         alias="from",
     )
-    stop: Annotated[Quantity | float, Instant()] = key("Last time.", "rows", missing="give the last time", alias="to")
+    stop: Annotated[Quantity | float, Instant()] = key(
+        "Where it ends: samples before this time.", "rows", missing="give the last time", alias="to"
+    )
     unit: Annotated[str, Text()] = key("Unit of those that are plain numbers, for example s.", "rows")
 
     @model_validator(mode="after")

@@ -3,6 +3,7 @@
 A check raises InputError with keys relative to the value ("" for the value itself, `unit` for its unit).
 """
 
+import re
 from dataclasses import dataclass
 from types import MappingProxyType as Frozen
 from typing import Any
@@ -24,6 +25,20 @@ PERIODS = Frozen(
     )
 )
 Found = list[Problem]
+_DECIMAL_COMMA = re.compile(r"^\s*([+-]?\d+),(\d+([eE][+-]?\d+)?\s*\D.*?)\s*$")
+# The units that people mean by a bare number, by the unit that it is converted to.
+_USUAL = Frozen(
+    {
+        "rad/s": ("rpm", "rad/s"),
+        "Hz": ("Hz", "kHz"),
+        "s": ("ms", "s"),
+        "m": ("mm", "m"),
+        "rad": ("deg", "rad"),
+        "kg": ("kg", "gram"),
+        "kg*m^2": ("kg*m^2", "kg*cm^2"),
+        "N/m": ("N/um", "N/mm", "N/m"),
+    }
+)
 
 
 class Column(Value):
@@ -33,7 +48,9 @@ class Column(Value):
         """The text or the index."""
         if isinstance(value, str | int) and not isinstance(value, bool):
             return value
-        return refuse("must be the header text of a column or its 0-based index", value)
+        quotes = "put the header text in quotes: without them YAML reads off, on, yes and 1e3 as something else"
+        remedy = quotes if isinstance(value, bool | float) else ""
+        return refuse("must be the header text of a column or its 0-based index", value, remedy)
 
     def says(self) -> str:
         """A column."""
@@ -122,9 +139,7 @@ class Measured(Value):
         if is_number and value == 0 and self.unit not in (None, "own"):  # nothing is nothing in every unit
             value = {"value": value, "unit": self.unit}
         if not isinstance(value, dict):
-            shown = value if is_number else 1.0
-            remedy = f"write {name}: {{value: {shown}, unit: {self._example}}}, or {name}: {shown} {self._example}"
-            refuse("needs a value and a unit", value, remedy)
+            refuse("needs a value and a unit", value, self._remedy(value if is_number else None, value, name))
         problems = self._unknown(value)
         number = self._part(value, "value", Number(), None, problems)
         unit = self._unit(value, problems)
@@ -141,6 +156,20 @@ class Measured(Value):
     def made(self, quantity: Quantity, more: Any) -> Any:
         """What the program keeps."""
         return quantity
+
+    def _remedy(self, number: float | None, value: Any, name: str) -> str:
+        """How to write it; no one unit is offered for a bare number, whose unit only the user knows."""
+        if isinstance(value, str) and (comma := _DECIMAL_COMMA.match(value)):
+            return f"write a decimal point, not a comma: {name}: {comma[1]}.{comma[2]}"
+        if number is None:
+            return f"write {name}: {{value: 1.0, unit: {self._example}}}, or {name}: 1.0 {self._example}"
+        if self.unit is None:
+            return f"say it in the unit of the channel or one of its kind, as {name}: {number} mm for one in mm"
+        usual = _USUAL.get(self.unit, (self._example,))
+        first = f"write {name}: {{value: {number}, unit: {usual[0]}}}, or {name}: {number} {usual[0]}"
+        return (
+            first + "".join(f", or {number} {unit}" for unit in usual[1:]) + ", whichever it is in" * (len(usual) > 1)
+        )
 
     @property
     def _example(self) -> str:
@@ -213,6 +242,11 @@ class Rate(Measured):
     """Samples a second, or the time from one to the next."""
 
     unit: str | None = "Hz"
+
+    def _remedy(self, number: float | None, value: Any, name: str) -> str:
+        """A number below one is hardly a rate."""
+        said = super()._remedy(number, value, name)
+        return said if number is None or number >= 1 else said.replace(" kHz", " s from one sample to the next")
 
     def says(self) -> str:
         """Both."""

@@ -138,7 +138,7 @@ def test_a_bad_word_about_a_sensor_is_named(bench, key, value, said):
 @pytest.mark.parametrize(
     ("name", "value", "said"),
     [
-        ("module", 3, "needs a value and a unit; remedy: write module: {value: 3, unit: m}"),
+        ("module", 3, "needs a value and a unit; remedy: write module: {value: 3, unit: mm}, or"),
         ("module", 0, "must be positive"),
         ("module", {"value": 0, "unit": "mm"}, "must be positive"),
         ("n_teeth_pinion", 20.5, "whole number"),

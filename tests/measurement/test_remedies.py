@@ -1,9 +1,12 @@
 """The remedy of a message is the one that cures: the right name, the product with its sign, the decimal point."""
 
+import re
+
 import pytest
 
 from gear_damping.errors import InputError, nearest
 from gear_damping.measurement.load import load_measurement
+from gear_damping.measurement.quantities import Column, Measured, Rate
 from gear_damping.units import parse_unit
 
 
@@ -204,3 +207,42 @@ def test_a_file_that_is_too_short_as_a_whole_has_no_better_column(tmp_path, rows
     with pytest.raises(InputError) as caught:
         load_measurement(tmp_path / "measurement.yaml")
     assert caught.value.problems[0].remedy == remedy
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "said"),
+    [
+        (
+            "pinion_speed",
+            1100,
+            "write pinion_speed: {value: 1100, unit: rpm}, or pinion_speed: 1100 rpm, or 1100 rad/s",
+        ),
+        ("inertia_pinion", "1,2e-3 kg*m^2", "a decimal point, not a comma: inertia_pinion: 1.2e-3 kg*m^2"),
+    ],
+)
+def test_no_one_unit_is_offered_for_a_bare_number(key, value, said):
+    unit = {"pinion_speed": "rad/s", "inertia_pinion": "kg*m^2"}[key]
+    with pytest.raises(InputError, match=re.escape(said)):
+        Measured(unit).read(value, key)
+
+
+def test_a_rate_below_one_may_be_the_time_of_a_sample():
+    with pytest.raises(InputError, match=r"0.001 Hz, or 0.001 s from one sample to the next, whichever it is in"):
+        Rate().read(0.001, "sampling_rate")
+
+
+@pytest.mark.parametrize("unit", ["kpm", "Nms2", "grad"])
+def test_no_unit_is_meant_by_one_that_begins_otherwise(unit):
+    with pytest.raises(InputError, match="choose one of"):
+        parse_unit(unit)
+
+
+def test_what_yaml_takes_for_a_truth_value_is_to_be_put_in_quotes():
+    with pytest.raises(InputError, match="put the header text in quotes"):
+        Column().read(False, "column")
+
+
+@pytest.mark.parametrize(("word", "said"), [("sensitivity", "write gain"), ("offset", "datum: arbitrary")])
+def test_other_words_for_the_scale_of_a_channel_lead_to_its_key(bench, word, said):
+    bench.channels["transmission_error"][word] = 2.0
+    assert said in bench.only_problem()
