@@ -39,6 +39,11 @@ class Accepted:
         """The form in which it was tried."""
         return (self.score or self.refit.score).candidate
 
+    @property
+    def looks_like(self) -> tuple[str, ...]:
+        """Effects that are never tried and that no record of this channel can tell from it."""
+        return self.effect.cause.alike(self.refit.outcome.values_of(self.name))
+
     def runs_into_bound(self, outcome: Outcome) -> bool:
         """Whether a parameter of the effect is at a bound in a model."""
         return runs_into_bound(self.name, outcome, self.candidate.resting)

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 from gear_damping.physics.systems.traits import Trait
 
@@ -150,7 +150,8 @@ class Cause:
         recipes: Its variants, each tried; none for an effect that is never tried by itself. A function of the rig
             where they depend on it.
         separated_by: The experiment that separates it from what it resembles.
-        looks_like: Effects that no record of this channel can tell from it and that are never tried by themselves.
+        looks_like: Effects that no record of this channel can tell from it and that are never tried by themselves; a
+            function of its values by own name where they decide.
         simpler: An effect that it contains, with fewer parameters.
         turns_with: Whether its phases turn with a shaft (`shaft`) and not with the mesh, or even tell single teeth
             apart (`tooth`): where no index says how the shaft stands, every record has phases of its own, and the
@@ -164,11 +165,15 @@ class Cause:
     sentence: str
     recipes: Recipes = ()
     separated_by: Experiment = "torque"
-    looks_like: tuple[str, ...] = ()
+    looks_like: tuple[str, ...] | Callable[[Mapping[str, Any]], tuple[str, ...]] = ()
     simpler: str | None = None
     turns_with: Literal["", "shaft", "tooth"] = ""
     one_class: tuple[str, ...] = ()
     acts_as: Callable[[Mapping[str, float], float, float], tuple[str, float] | None] | None = None
+
+    def alike(self, own: Mapping[str, Any]) -> tuple[str, ...]:
+        """What it looks like with these values by own name."""
+        return self.looks_like(own) if callable(self.looks_like) else self.looks_like
 
     def recipes_for(self, rig: Rig) -> tuple[Recipe, ...]:
         """Its variants on this rig."""

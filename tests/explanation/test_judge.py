@@ -31,9 +31,10 @@ def search(visible=True, accepted=(), left=False, sensor=1.0, rest=1.0, not_rand
 
 
 def cause(name="coulomb_friction", at_bound=False, share=1.0):
-    declared = SimpleNamespace(sentence="a law", one_class=(), looks_like=())
+    declared = SimpleNamespace(sentence="a law", one_class=())
     refit = SimpleNamespace(is_at_bound=at_bound)
-    return SimpleNamespace(name=name, confusable=(), effect=SimpleNamespace(cause=declared), refit=refit, share=share)
+    own = {"confusable": (), "looks_like": (), "refit": refit, "share": share}
+    return SimpleNamespace(name=name, effect=SimpleNamespace(cause=declared), **own)
 
 
 NOTHING, MUCH = excess_of(0.0, 1.0), excess_of(8.0, 40.0)

@@ -69,7 +69,7 @@ def test_options_have_their_default_among_the_choices(name):
 def test_as_a_cause_it_names_its_own_parameters_and_known_effects(name):
     cause = EFFECTS[name].cause
     assert list(cause_faults(EFFECTS[name])) == []
-    assert set(cause.looks_like) <= set(EFFECTS)
+    assert set(cause.alike({})) <= set(EFFECTS)
     assert cause.simpler is None or cause.simpler in EFFECTS
     rigs = [rig for system in systems_of(EFFECTS[name]) for rig in some_rigs(SYSTEMS[system])]
     for recipe in (recipe for rig in rigs for recipe in cause.recipes_for(rig)):

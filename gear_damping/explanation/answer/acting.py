@@ -21,8 +21,7 @@ def acts_as(state: State) -> list[str]:
     for cause in state.accepted:
         if (told := cause.effect.cause.acts_as) is None:
             continue
-        own = {n.partition(".")[2]: v for n, v in outcome.flat_given().items() if n.startswith(f"{cause.name}.")}
-        said = told(own, _stiffness(outcome), _amplitude(outcome))
+        said = told(outcome.values_of(cause.name), _stiffness(outcome), _amplitude(outcome))
         if said:
             found.append(f"{said[0]} of {said[1]:.2g} {rig_unit('N', evidence)}.")
     return found

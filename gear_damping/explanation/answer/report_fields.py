@@ -202,7 +202,7 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
             "name": cause.name,
             "parameters": gain.parameters_of(last, covariances, cause.name, evidence, resting),
             "excess_explained": cause.share,
-            "confusable_with": [*cause.confusable, *cause.effect.cause.looks_like][: LARGEST_SET - 1],
+            "confusable_with": [*cause.confusable, *cause.looks_like][: LARGEST_SET - 1],
             "status": statuses(judged.verdict.word),
             "fixed": _fixed(last, cause.name),
             "options": dict(cause.candidate.tried),

@@ -124,6 +124,11 @@ class Outcome:
         """Every value of the model by flat name, lists as tuples."""
         return placed(self.hypothesis.given, self.values)
 
+    def values_of(self, effect: str) -> Given:
+        """Those of an effect by own name."""
+        own = f"{effect}."
+        return {name.removeprefix(own): value for name, value in self.flat_given().items() if name.startswith(own)}
+
 
 def placed(given: Given, values: dict[str, float]) -> Given:
     """Known values with the fitted ones in their places."""

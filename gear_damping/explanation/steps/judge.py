@@ -330,5 +330,5 @@ def _same_record(accepted: Sequence[Accepted]) -> tuple[str, ...]:
     return tuple(
         f"In this channel {builtin_effects()[other].cause.sentence} (`{other}`) would look the same as `{cause.name}`."
         for cause in accepted
-        for other in cause.effect.cause.looks_like
+        for other in cause.looks_like
     )

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from gear_damping.explanation.evidence.excess import Excess, is_settled
+from gear_damping.explanation.model.candidates import Candidate
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.state import Accepted, State
 from gear_damping.explanation.trials.refit import Refit
@@ -134,21 +135,29 @@ def _bases(fits: Sequence[Refit], state: State) -> list[Refit]:
 
 
 def _pairs(base: Refit, replaces: bool, state: State) -> list[Pair]:
-    """Pairs of a base, and of the same with what bent it to a bound held until the second effect is there too.
+    """Pairs of a base, and of the same with what bent it to a bound held until the second effect is there too."""
+    pairs = [Pair(base, second, replaces) for second in _seconds(base, state)]
+    for held, candidate in _held(base, state):
+        joined = (state.bench.joined(second, candidate, state.outcome) for second in _seconds(held, state))
+        pairs += [Pair(base, second, replaces) for second in joined if second.outcome.is_finite]
+    return pairs
+
+
+def _held(base: Refit, state: State) -> list[tuple[Refit, Candidate]]:
+    """Fits of a law without what joins later, where that has run into a bound, and the candidates with it.
 
     Where two laws act, the power of one of them alone runs away, and from there no second effect leads back.
     """
-    pairs, bench, whole = [Pair(base, second, replaces) for second in _seconds(base, state)], state.bench, base.score
-    if not base.is_at_bound or not whole.candidate.later:
-        return pairs
-    for score in state.first_scores:
-        if score.candidate.form != whole.candidate.form or score.candidate.name != base.name or score.gain <= 0:
-            continue
-        held = bench.full_fit(replace(score, candidate=replace(score.candidate, later=())), state.nominal)
-        seconds = [] if held is None else _seconds(held, state)
-        joined = (bench.joined(second, score.candidate, state.outcome) for second in seconds)
-        pairs += [Pair(base, second, replaces) for second in joined if second.outcome.is_finite]
-    return pairs
+    if not base.is_at_bound or not base.score.candidate.later:
+        return []
+    alike = [score for score in state.first_scores if score.candidate.name == base.name and score.gain > 0]
+    found = []
+    for score in alike:
+        if score.candidate.form == base.score.candidate.form:
+            without = replace(score, candidate=replace(score.candidate, later=()))
+            held = state.bench.full_fit(without, state.nominal)
+            found += [] if held is None else [(held, score.candidate)]
+    return found
 
 
 def _needed(base: Outcome, state: State) -> float:

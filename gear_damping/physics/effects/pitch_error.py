@@ -1,5 +1,6 @@
 """Errors of the single tooth pitches."""
 
+from collections.abc import Mapping, Sequence
 from math import pi
 from typing import ClassVar
 
@@ -18,8 +19,17 @@ from gear_damping.physics.terms import TransmissionErrorSource, Values
 HANDOVERS = (0.05, 1.0)  # of a pitch; two pairs carry for the contact ratio less one
 EDGES = (0.05, 1.0)  # of the handover; 1 is one ramp, and a shorter one would be missed by steps
 STEP = 0.13  # of the handover, assumed: a pair takes its load within a tenth of a pitch
+DISC = 2  # orders of the error of an encoder's disc: it sits eccentric, and tilted
+SMOOTH = 0.9  # of the power of all orders: what an encoder's other errors are beside these two
 # um, assumed: without a pattern, and a few times less than the static deflection of 17 um.
 TYPICAL = (2, -1, 3, -4, 1, 5, -3, 0, 2, -2, 4, -5, 1, 3, -1, -3, 2, 0, -4, 2)
+
+
+def _of_an_encoder(own: Mapping[str, Sequence[float]]) -> tuple[str, ...]:
+    """What it looks like where the teeth lie on a wave of one or two periods a turn, as a disc on a shaft makes it."""
+    teeth = torch.tensor(own.get("values", (0.0,)), dtype=torch.float64)
+    power = torch.fft.rfft(teeth).abs().square()[1:]
+    return ("encoder_error",) if len(power) > DISC and power[:DISC].sum() > SMOOTH * power.sum() else ()
 
 
 def _by_shaft(rig: Rig) -> tuple[Recipe, ...]:
@@ -72,6 +82,7 @@ class PitchError(TransmissionErrorSource):
         "errors of the pitch, tooth by tooth",
         _by_shaft,
         turns_with="tooth",
+        looks_like=_of_an_encoder,
     )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:

@@ -119,6 +119,7 @@ def bases_in_the_place_of_a_cause(settings: SearchSettings):
     state = replace(state, accepted=(SimpleNamespace(name=NAMES[0]),))
     with (
         patch.object(pairs, "_seconds", lambda base, _: [base]),
+        patch.object(pairs, "_held", lambda *_: []),
         patch.object(pairs, "_bases", lambda fits, _: list(fits)),
     ):
         return [pair.first.name for pair in pairs._instead(state)]
@@ -166,8 +167,8 @@ def told_alone(settings: SearchSettings):
 
 def said(settings: SearchSettings, before, after, *, count=1, seen=True, rest=True, **known) -> str:
     """The word for a search that ended with so many causes."""
-    declared = SimpleNamespace(sentence="a law", one_class=(), looks_like=())
-    own = {"confusable": (), "share": 1.0, "effect": SimpleNamespace(cause=declared)}
+    declared = SimpleNamespace(sentence="a law", one_class=())
+    own = {"confusable": (), "looks_like": (), "share": 1.0, "effect": SimpleNamespace(cause=declared)}
     causes = tuple(SimpleNamespace(name=name, **own) for name in NAMES[:count])
     looked = [SimpleNamespace(visible=one, taken=0.5) for one in (seen, rest)]
     found = SimpleNamespace(
