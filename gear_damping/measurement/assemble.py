@@ -18,6 +18,7 @@ from gear_damping.measurement.encoders import (
     transmission_error,
 )
 from gear_damping.measurement.gaps import borne_out
+from gear_damping.measurement.held_together import check_together
 from gear_damping.measurement.raw import RawChannel, RawRecord
 from gear_damping.measurement.record import Channel, Finding, Quantity, Record
 from gear_damping.measurement.record_checks import check_record, mesh_beyond_band, tooth_ratio
@@ -66,7 +67,8 @@ class Assembler:
         )  # fmt: skip
         named = tuple(replace(finding, record=name) for finding in findings)
         record = borne_out(replace(record, findings=named))
-        return replace(record, findings=(*record.findings, *check_record(record), *self._mesh(record)))
+        together = (replace(one, record=name) for one in check_together(record, self.plan.parameters))
+        return replace(record, findings=(*record.findings, *check_record(record), *together, *self._mesh(record)))
 
     def _mesh(self, record: Record) -> list[Finding]:
         teeth = self.plan.parameters.get("n_teeth_pinion")

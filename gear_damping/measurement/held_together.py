@@ -1,0 +1,120 @@
+"""Whether what was measured of one motion holds together: its derivatives, and the torques of shafts that turn evenly.
+
+The unit of one channel, its sign or its scale show where another one measures the same motion: at the line at which the
+displacement is strongest, an acceleration is -(2 pi f)^2 times that.
+"""
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_damping.measurement.record import Channel, Finding, Quantity, Record
+from gear_damping.measurement.vocabulary import OSCILLATOR_CHANNELS
+
+_SEGMENTS = 8  # half overlapping, over which spectra are averaged
+_BESIDE = 2  # lines to either side of the strongest
+_FEWEST = 256  # samples, below which a segment of them parts no lines
+_COHERENT = 0.9  # of the power that two channels share, from which their ratio is told
+_AGREE = 1.5  # times: a sensor's calibration, its mounting and its filters together make less of it
+_LOSS = 0.3  # of the torque: what a pair of gears with its bearings and seals never takes
+_STEADY = 0.1  # of the change that torques would make, beside which a speed is steady; of the speed, what is a change
+
+
+def check_together(record: Record, parameters: Mapping[str, Quantity]) -> Iterator[Finding]:
+    """What contradicts itself in a record.
+
+    Args:
+        record: The record.
+        parameters: What is stated of the rig, in SI.
+    """
+    yield from _motions(record)
+    yield from _torques(record, {name: quantity.value for name, quantity in parameters.items()})
+
+
+def _motions(record: Record) -> Iterator[Finding]:
+    """Each rate or acceleration of an oscillator against the channel that was differentiated least."""
+    listed = [
+        (order, name) for name, order in OSCILLATOR_CHANNELS.items() if name in record.channels and order is not None
+    ]
+    if len(listed) < 2 or not record.uniform or "base_acceleration" in record.channels:
+        return  # relative to a base and against the ground are two motions
+    (first, name), *others = sorted(listed)
+    for order, other in others:
+        ratio = _ratio(record.channels[name], record.channels[other], record.sampling_rate, order - first)
+        if ratio is None or (abs(ratio.imag) < ratio.real and 1 / _AGREE <= abs(ratio) <= _AGREE):
+            continue
+        yield Finding("motions_disagree", f"{other} is {_told(ratio)} what {name} makes of it", channel=other)
+
+
+def _told(ratio: complex) -> str:
+    """A ratio in words, and what to check, before `what … makes of it`."""
+    said = f"{abs(ratio):.3g} times"
+    if abs(ratio.imag) > abs(ratio.real):
+        return f"out of step by {abs(np.angle(ratio, deg=True)):.0f} degrees (check both columns), and {said},"
+    return (
+        f"{said}, with its sign reversed (check polarity and unit)," if ratio.real < 0 else f"{said} (check both units)"
+    )
+
+
+def _ratio(motion: Channel, derived: Channel, rate: float, order: int) -> complex | None:
+    """The second channel over the derivative of the first at its strongest line; None where they share no line."""
+    first, second = (np.asarray(channel.values, dtype=np.float64) for channel in (motion, derived))
+    if len(first) < _FEWEST or np.ptp(first) == 0 or np.ptp(second) == 0:
+        return None
+    spectra = [_spectra(values) for values in (first, second)]
+    frequency = 2 * np.pi * rate * np.arange(spectra[0].shape[1]) / (2 * (spectra[0].shape[1] - 1))
+    line = int(np.argmax(np.mean(np.abs(spectra[0][:, 1:]) ** 2, axis=0))) + 1
+    near = slice(max(line - _BESIDE, 1), line + _BESIDE + 1)  # the window has made several of one line
+    expected, found = spectra[0][:, near] * (1j * frequency[near]) ** order, spectra[1][:, near]
+    power, other = (float(np.sum(np.abs(one) ** 2)) for one in (expected, found))
+    cross = complex(np.sum(np.conj(expected) * found))
+    return cross / power if abs(cross) ** 2 >= _COHERENT * power * other else None
+
+
+def _spectra(values: NDArray[np.float64]) -> NDArray[np.complex128]:
+    """(segments, frequencies): spectra of windowed segments about their means."""
+    length = 2 * (2 * len(values) // (_SEGMENTS + 1) // 2)
+    starts = range(0, len(values) - length + 1, length // 2)
+    segments = np.stack([values[start : start + length] for start in starts])
+    return np.fft.rfft((segments - segments.mean(axis=1, keepdims=True)) * np.hanning(length), axis=1)
+
+
+def _torques(record: Record, known: Mapping[str, float]) -> Iterator[Finding]:
+    """Torques that would have changed a speed that hardly changed."""
+    needed = ("inertia_pinion", "inertia_gear", "n_teeth_pinion", "n_teeth_gear")
+    pinion, gear = (_mean(record, f"{shaft}_torque") for shaft in ("pinion", "gear"))
+    speeds = _speeds(record)
+    if pinion is None or gear is None or speeds is None or not all(known.get(name) for name in needed):
+        return
+    ratio = known["n_teeth_pinion"] / known["n_teeth_gear"]
+    left = pinion - gear * ratio
+    if abs(left) < _LOSS * max(abs(pinion), abs(gear * ratio)):
+        return
+    change = left / (known["inertia_pinion"] + known["inertia_gear"] * ratio**2) * record.duration
+    if np.ptp(speeds) > _STEADY * abs(change) or abs(change) < _STEADY * abs(speeds[0]):
+        return
+    rpm = 30 / np.pi
+    message = (
+        f"pinion_torque {pinion:.4g} N*m and gear_torque {gear:.4g} N*m do not balance over {1 / ratio:.4g}: they "
+        f"would change the pinion's speed by {change * rpm:.3g} rpm, and it hardly leaves {speeds[0] * rpm:.5g} rpm; "
+        "check their signs (a load is positive on the gear), units and shafts"
+    )
+    yield Finding("torques_disagree", message, channel="gear_torque")
+
+
+def _mean(record: Record, name: str) -> float | None:
+    if name in record.channels:
+        return float(record.channels[name].values.mean())
+    return record.conditions[name].value if name in record.conditions else None
+
+
+def _speeds(record: Record) -> NDArray[np.float64] | None:
+    """rad/s of the pinion at the begin and at the end of a record, or as it is stated; None where nothing says it."""
+    if angle := record.channels.get("pinion_angle"):
+        parts = np.array_split(angle.values, _SEGMENTS)
+        return np.array([np.ptp(part) / len(part) for part in (parts[0], parts[-1])]) * record.sampling_rate
+    if speed := record.channels.get("pinion_speed"):
+        return np.array([part.mean() for part in np.array_split(speed.values, _SEGMENTS)])
+    stated = record.conditions.get("pinion_speed")
+    return None if stated is None else np.array([stated.value])
