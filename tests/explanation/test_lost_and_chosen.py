@@ -202,3 +202,16 @@ def test_full_fits_of_few_strengths_come_before_those_of_many(monkeypatch):
     ranked[0].candidate.strengths = tuple(range(20))
     bench(SearchSettings()).full_fits(ranked, before, before)
     assert asked == ["power_law_damping", "coulomb_friction"]
+
+
+@pytest.mark.parametrize(
+    ("non_nested", "gain", "fitted"), [(True, 0.3, True), (True, 0.2, False), (False, 0.3, False), (False, 0.49, True)]
+)
+def test_another_form_of_what_is_tried_at_a_few_sizes_is_fitted_from_half_of_the_promise(non_nested, gain, fitted):
+    """A twisting shaft of the gear promised .24, that of the pinion .16; fitted, the second left a twentieth."""
+    gear, pinion = score("shaft_torsion", 0.5), score("shaft_torsion", gain)
+    for one, shaft in ((gear, "gear"), (pinion, "pinion")):
+        one.candidate.form, one.candidate.non_nested = (("shaft", shaft),), non_nested
+    found = chosen([gear, pinion], SearchSettings())
+    assert (pinion in found) is fitted
+    assert gear in found

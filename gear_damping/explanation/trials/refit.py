@@ -20,7 +20,7 @@ from gear_damping.simulation.solver_settings import Solver
 
 NEARLY_COLLINEAR = 0.7  # cosine: half of what one explains the other would
 OTHER_FORM = 0.95  # of the predicted gain of an effect's best form, for a full fit of another form
-OTHER_SIZED_FORM = 0.5  # the same where forms are tried at a few sizes: between two of them half of a resonance is missed
+OTHER_SIZED_FORM = 0.5  # the same where forms are tried at a few sizes, between which half of a resonance is missed
 LEAST_PREDICTED_GAIN = 0.3  # of the first one's, for a full fit of one that resembles it
 BLOCK_TIMES = 6.0  # characteristic times of a block of the paired test,
 FEWEST_BLOCKS = 8  # but at least so many blocks: the variance of fewer is anybody's guess
