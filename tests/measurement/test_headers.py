@@ -167,3 +167,19 @@ def test_words_above_a_table_with_other_signs_between_its_cells_are_no_names(tmp
     assert [table.unit(k) for k in range(4)] == [None] * 4
     named = table_of(tmp_path, ["time force left right", *rows(40, 4, "\t")])
     assert named.names == ("time", "force", "left", "right")
+
+
+def test_settings_above_a_table_without_names_are_no_names(tmp_path):
+    table = table_of(tmp_path, ["Header Size:\t2", "Channel 1:\tHammer [N]", *rows(40, 4, "\t")])
+    assert table.names == ("",) * 4
+    assert [table.unit(k) for k in range(4)] == [None] * 4
+
+
+def test_a_unit_behind_a_stroke_need_not_be_written(tmp_path):
+    table = table_of(tmp_path, ["t / s;x / mm;y/mm", *rows(40)])
+    assert [table.index(name, "column") for name in ("t", "x / mm", "y/mm")] == [0, 1, 2]
+
+
+def test_columns_with_commas_beside_others_with_points_are_named(tmp_path):
+    table = table_of(tmp_path, ["t;x;y", *[f"{0.1 * k:.2f};{k},5;7" for k in range(40)]])
+    assert table.notes == ("run.csv: read with decimal commas in x, beside decimal points in others",)

@@ -27,9 +27,10 @@ def _not_a_number(cell: str) -> str:
     return MOMENT if is_told(cell) else "not a number"
 
 
-def decimal_commas(path: Path) -> str:
-    """What is noted where decimal commas were read."""
-    return f"{path.name}: read with decimal commas"
+def decimal_commas(path: Path, columns: Sequence[str] = ()) -> str:
+    """What is noted where decimal commas were read: of a file, or of some columns beside others with points."""
+    of_some = f" in {', '.join(columns[:LISTED])}, beside decimal points in others" if columns else ""
+    return f"{path.name}: read with decimal commas{of_some}"
 
 
 @dataclass(frozen=True, eq=False)

@@ -80,7 +80,7 @@ def read(path: Path, max_bytes: int) -> Table:
     if below:
         table.notes += (f"{path.name}: {below}",)
     if decimal == ",":
-        table.notes += (decimal_commas(path),)
+        table.notes += (decimal_commas(path, _with_commas(text, first_line, parted, table)),)
     return table
 
 
@@ -208,7 +208,11 @@ def _header(text: _Text) -> tuple[Header, int]:
     header = _below_preamble(rows, width) or find_header(rows, width)
     header = _of_labview(header, settings) if start else header
     header = _of_cassy(header, settings) if start and not any(header.names) else header
-    is_title = len(header.names) == 1 < text.width or (text.delimiter == " " and len(header.names) > text.width > 0)
+    is_title = (
+        len(header.names) == 1 < text.width
+        or _is_setting(header.names, text.width)
+        or (text.delimiter == " " and len(header.names) > text.width > 0)
+    )
     if is_title:  # names in words would be as many as the columns
         header = Header(("",) * text.width, (), header.first, header.first)
     if header.first == len(rows):
@@ -219,6 +223,11 @@ def _header(text: _Text) -> tuple[Header, int]:
         names = names if len(names) == width else [""] * width
         header = Header(tuple(names), (), header.first, header.skipped)
     return header, lines[header.first]
+
+
+def _is_setting(names: tuple[str, ...], width: int) -> bool:
+    """Whether a row of fewer cells than the table sets something down, `Trigger:` and what it is."""
+    return 0 < len(names) < width and names[0].endswith((":", "="))
 
 
 def _without_other_headers(text: _Text, first_line: int) -> int:
@@ -340,6 +349,17 @@ def _decimal_comma(text: _Text, first_line: int, parted: set[int]) -> bool:
     """Whether numbers among the first values have a comma; columns that have points are read by themselves."""
     rows = (row for _, row in islice(_values(text, first_line), _HEAD))
     return _has_decimal_commas(text, [[cell for k, cell in enumerate(row) if k not in parted] for row in rows])
+
+
+def _with_commas(text: _Text, first_line: int, parted: set[int], table: Table) -> list[str]:
+    """The columns with decimal commas where others have decimal points; none where all have commas."""
+    rows = [row for _, row in islice(_values(text, first_line), _HEAD)]
+    held = {
+        sign: [k for k in range(len(table.names)) if any(sign in row[k] for row in rows if k < len(row))]
+        for sign in ",."
+    }
+    points = [k for k in held["."] if k not in parted]
+    return [table.names[k] or str(k) for k in held[","] if k not in parted] if points else []
 
 
 def _has_decimal_commas(text: _Text, lists: Sequence[Sequence[str]]) -> bool:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from gear_damping.errors import InputError, Problem, nearest
 
 _SHOWN = 20  # arrays that a message lists
-_UNIT_BEHIND = re.compile(r"\s*[(\[](?![\d, ]*[)\]])[^()\[\]]*[)\]]$")
+_UNIT_BEHIND = re.compile(r"\s*([(\[](?![\d, ]*[)\]])[^()\[\]]*[)\]]|\s/\s*\S+)$")
 _OF_ARRAY = re.compile(r"^(.+)\[(\d+)\]\.(\w+)$")  # `runs[0].t`, the member of a structure in an array of them
 _INDEXED = re.compile(r"^(.*)\[[\d, ]+\]$")
 
