@@ -1,0 +1,113 @@
+"""The lines of a text table as cells: its encoding, the sign between cells, and an end that was not written."""
+
+import csv
+import gzip
+import io
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from gear_damping.errors import InputError, Problem, reading
+from gear_damping.measurement.formats.number_texts import are_decimals_alone, is_written
+from gear_damping.measurement.formats.table import refuse_size, unreadable
+
+HEAD = 100  # rows among which the header is looked for
+_DELIMITERS = (";", "\t", "|", ",")  # in the order in which they are taken for it; blanks where none stands
+_ALONE = 80  # last lines that are asked whether they hold a number each
+_NUMBER, IS_COMMENT = re.compile(r"\d"), re.compile(r"\s*(#|%|//)")
+
+
+class Text:
+    """The content of a file as UTF-8, and the sign between its cells.
+
+    `width` is the number of cells of its last row, `cut` what is noted of an end that is left out.
+    """
+
+    def __init__(self, path: Path, raw: bytes) -> None:
+        self.path = path
+        self.utf8, self.cut = _whole_lines(_utf8(path, raw))
+        if b"\n" not in self.utf8:
+            self.utf8 = self.utf8.replace(b"\r", b"\n")  # as computers of the nineties end lines
+        ending = self.utf8[-(2**16) :].decode("utf-8", "replace").splitlines()
+        kept = [line for line in ending if line.strip(" \r" + "".join(_DELIMITERS)) and not IS_COMMENT.match(line)]
+        last = next((line for line in reversed(kept) if _NUMBER.search(line)), kept[-1] if kept else "")
+        if ends := _line_end(last):
+            self.utf8, last = (
+                re.sub(rb"%s[ \t]*(?=\r?\n|$)" % re.escape(ends).encode(), b"", self.utf8),
+                last.rstrip().rstrip(ends),
+            )
+        # Headers hold all kinds of signs, numbers only one.
+        self.delimiter = next((sign for sign in _DELIMITERS if sign in last), " ")
+        if self.delimiter == ",":
+            self.delimiter = _beside_decimal_commas(kept[-HEAD:], last)
+        self.width = max((k + 1 for k, cell in enumerate(next(self._cells([last]), [])) if cell.strip()), default=0)
+
+    def open(self) -> io.TextIOWrapper:
+        """A handle at the begin of the text."""
+        return io.TextIOWrapper(io.BytesIO(self.utf8), "utf-8", newline="")
+
+    def _cells(self, lines: Any) -> Iterator[list[str]]:
+        return csv.reader(lines, delimiter=self.delimiter, skipinitialspace=True)
+
+    def rows(self) -> Iterator[tuple[int, list[str]]]:
+        """Every row that is not blank, comments too, with its line number."""
+        reader = self._cells(self.open())
+        try:
+            for row in reader:
+                if any(cell.strip() for cell in row):
+                    yield reader.line_num, [cell for cell in row if cell] if self.delimiter == " " else row
+        except csv.Error as error:
+            rule = f"line {reader.line_num} is no row of a table ({error})"
+            raise InputError(Problem("file", rule, str(self.path), "export it again")) from None
+
+
+def _beside_decimal_commas(lines: list[str], last: str) -> str:
+    """What parts the cells of a text whose lines hold commas and no other sign: blanks, where each number has one."""
+    numbers = last.split()
+    if len(numbers) > 1 and all("," in one and is_written(one) for one in numbers):
+        return " "
+    return ";" if are_decimals_alone(lines[-_ALONE:]) else ","  # a sign that is in no line: one column
+
+
+def _line_end(line: str) -> str:
+    """The sign that stands behind the last cell of a row and between no two of them; else ""."""
+    body, last = line.rstrip()[:-1], line.rstrip()[-1:]
+    others = [sign for sign in _DELIMITERS if sign in body]
+    is_decimal = others == [","] and body.count(",") == 1 and "." not in body
+    return last if last in _DELIMITERS and others and last not in others and not is_decimal else ""
+
+
+def bytes_of(path: Path, max_bytes: int) -> bytes:
+    """The bytes of a file, of one in gzip unpacked; raises InputError where they cannot be read or are too many."""
+    if path.suffix.lower() != ".gz":
+        with reading(path):
+            return path.read_bytes()
+    with unreadable(path, "not a readable gzip file", "pack it again, or unpack it"), gzip.open(path) as file:
+        raw = file.read(max_bytes + 1)
+        refuse_size(path, len(raw), max_bytes)
+    return raw
+
+
+def _utf8(path: Path, raw: bytes) -> bytes:
+    """The text in UTF-8; older programs write µ, ° and ² in Latin-1."""
+    wide = raw.startswith((b"\xff\xfe", b"\xfe\xff"))
+    if b"\0" in raw.rstrip(b"\0")[:4096] and not wide:
+        packed = path.suffix.lower() == ".gz"
+        remedy = "unpack it: of what gzip packs only text is read" if packed else "export it as CSV"
+        raise InputError(Problem("file", "not a text file", str(path), remedy))
+    try:
+        return raw.decode("utf-16").encode() if wide else raw.removeprefix(b"\xef\xbb\xbf").decode().encode()
+    except UnicodeDecodeError:
+        return raw.decode("latin-1").encode()
+
+
+def _whole_lines(text: bytes) -> tuple[bytes, str]:
+    """A text without the zeros that a recorder which lost its power left, nor a line that they cut; what is noted."""
+    whole = text.rstrip(b"\0\r\n ")
+    if b"\0" not in text[len(whole) :]:
+        return text, ""
+    is_cut = not text[len(whole) :].startswith((b"\n", b"\r"))
+    kept = whole[: whole.rfind(b"\n") + 1] if is_cut else whole
+    line = " and the line before them" if is_cut else ""
+    return kept, f"{text.count(0)} bytes of zero at its end{line} are left out"
