@@ -23,7 +23,7 @@ def test_a_null_names_no_cause(explained, seed, snr_db):
 @pytest.mark.parametrize(
     ("effect", "parameter", "tolerance", "alike"),
     [
-        ("gear_stiffness_modulation", "amplitude", 0.05, set()),
+        pytest.param("gear_stiffness_modulation", "amplitude", 0.05, set(), marks=pytest.mark.slow),
         ("pinion_eccentricity", "amplitude", 0.05, {"encoder_error"}),  # the same signal
         pytest.param("cubic_stiffness", "coefficient", 0.08, set(), marks=pytest.mark.slow),
         pytest.param("windage_drag", "coefficient", 0.05, set(), marks=pytest.mark.slow),
