@@ -137,26 +137,26 @@ def _bases(fits: Sequence[Refit], state: State) -> list[Refit]:
 def _pairs(base: Refit, replaces: bool, state: State) -> list[Pair]:
     """Pairs of a base, and of the same with what bent it to a bound held until the second effect is there too."""
     pairs = [Pair(base, second, replaces) for second in _seconds(base, state)]
-    for held, candidate in _held(base, state):
+    for held, candidate in _held(base, replaces, state):
         joined = (state.bench.joined(second, candidate, state.outcome) for second in _seconds(held, state))
         pairs += [Pair(base, second, replaces) for second in joined if second.outcome.is_finite]
     return pairs
 
 
-def _held(base: Refit, state: State) -> list[tuple[Refit, Candidate]]:
+def _held(base: Refit, replaces: bool, state: State) -> list[tuple[Refit, Candidate]]:
     """Fits of a law without what joins later, where that has run into a bound, and the candidates with it.
 
     Where two laws act, the power of one of them alone runs away, and from there no second effect leads back.
     """
-    if not base.is_at_bound or not base.score.candidate.later:
+    tried = base.score.candidate
+    if not (base.is_at_bound and tried.is_law and tried.later):
         return []
-    alike = [score for score in state.first_scores if score.candidate.name == base.name and score.gain > 0]
+    beside, scores = (state.nominal, state.first_scores) if replaces else (state.outcome, state.ranked)
+    alike = [one for one in scores if (one.candidate.name, one.candidate.form) == (tried.name, tried.form)]
     found = []
-    for score in alike:
-        if score.candidate.form == base.score.candidate.form:
-            without = replace(score, candidate=replace(score.candidate, later=()))
-            held = state.bench.full_fit(without, state.nominal)
-            found += [] if held is None else [(held, score.candidate)]
+    for score in (one for one in alike if one.gain > 0):
+        held = state.bench.full_fit(replace(score, candidate=replace(score.candidate, later=())), beside)
+        found += [] if held is None else [(held, score.candidate)]
     return found
 
 
