@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from gear_damping.errors import InputError
 from gear_damping.measurement.formats.moments import is_moment, seconds_of
 from gear_damping.measurement.formats.registry import read_table
 from gear_damping.measurement.recordings import past_overflow, recordings
@@ -64,3 +65,10 @@ def test_numbers_with_their_unit_behind_them_are_read_in_it(tmp_path):
     table = read_table(tmp_path / "run.csv")
     assert table.unit(0) == "sec"
     np.testing.assert_allclose(table.values(0), 0.005 * np.arange(40), atol=1e-12)
+
+
+def test_a_unit_in_cells_that_contradicts_the_header_is_no_number(tmp_path):
+    body = "".join(f"{0.005 * k:g} ms,{0.5 * k}\n" for k in range(40))
+    (tmp_path / "run.csv").write_text("Time [s],x\n" + body)
+    with pytest.raises(InputError, match="'0 ms': not a number"):
+        read_table(tmp_path / "run.csv").values(0)

@@ -129,7 +129,8 @@ class CellTable(Table):
         texts = [str(cell) for cell in self._columns[index].values]
         if texts and is_moment(texts[0]) and (seconds := seconds_of(texts)) is not None:
             return seconds
-        if unit := _unit_of_cells(self._columns[index].values):
+        unit = _unit_of_cells(self._columns[index].values)
+        if unit and unit == self.unit(index):  # another than the header's is a contradiction
             texts = [cell.strip().removesuffix(unit) for cell in texts]
         cells = [plain(cell) for cell in self._decimal_points(texts, index)]
         try:
