@@ -24,7 +24,7 @@ from gear_damping.measurement.record import Channel, Finding, Quantity, Record
 from gear_damping.measurement.record_checks import check_record, mesh_beyond_band, tooth_ratio
 from gear_damping.measurement.staircase import is_staircase
 from gear_damping.measurement.timebase import TimeBase
-from gear_damping.measurement.vocabulary import HOLDABLE
+from gear_damping.measurement.vocabulary import HOLDABLE, SHAFT_SPEEDS
 from gear_damping.schema.values import Problems
 from gear_damping.units import of_a_shaft, parse_unit
 
@@ -33,6 +33,7 @@ _TEETH = tuple(GEOMETRY.values())
 _GEOMETRY = (*_TEETH, *NEEDED)
 _BESIDE = 4  # steps at either side of a jump of an angle, by which it is seen whether it is a whole turn
 _AS_BESIDE, _NEARLY_WHOLE = 3.0, 0.02  # times their median, and of a turn, as where it turns back or is rounded
+_OTHERWISE = 0.1  # of a condition: no two instruments differ by so much
 _INERTIAS = ("inertia_pinion", "inertia_gear")
 
 
@@ -187,9 +188,7 @@ class Assembler:
         kept = {}
         for name, quantity in raw.plan.conditions.items():
             if name in channels and not _mean_lost(channels[name]):
-                stated = f"{quantity.value:.6g} {quantity.unit}"
-                message = f"the channel {name} is used, not the {stated} under conditions"
-                findings.append(Finding("not_used", message, channel=name, severity="note"))
+                findings.append(_beside_condition(channels[name], quantity))
                 continue
             kept[name] = quantity
             with self.problems.collecting():
@@ -268,6 +267,19 @@ def _begins_again(angle: NDArray[np.float64], turn: float) -> bool:
         return False
     usual = [np.median(steps[max(0, k - _BESIDE) : k + _BESIDE + 1]) for k in jumps]
     return bool(np.all(np.abs(turn - steps[jumps]) <= _AS_BESIDE * np.array(usual) + _NEARLY_WHOLE * turn))
+
+
+def _beside_condition(channel: Channel, stated: Quantity) -> Finding:
+    """What is said of a condition beside the channel of its name: that is used, and must go through its value."""
+    factor, unit = (30 / np.pi, "rpm") if stated.unit == "rad/s" else (1.0, stated.unit)
+    message = f"the channel {channel.name} is used, not the {stated.value * factor:.6g} {unit} under conditions"
+    low, high, apart = channel.values.min(), channel.values.max(), _OTHERWISE * abs(stated.value)
+    if low - apart <= stated.value <= high + apart:
+        return Finding("not_used", message, channel=channel.name, severity="note")
+    reached = f"{low * factor:.6g} to {high * factor:.6g} {unit}"
+    message += f", which it never reaches ({reached}); correct the one that is wrong"
+    severity = "data_problem" if channel.name in SHAFT_SPEEDS else "note"  # a torque meter may be off by as much
+    return Finding("condition_mismatch", message, channel=channel.name, severity=severity)
 
 
 def _unit_conflict(raw: RawChannel, conversion: Conversion) -> Finding | None:

@@ -76,14 +76,14 @@ def test_polarity_turns_the_sign_and_sensor_keys_are_kept_in_si(bench):
 def test_a_channel_beats_the_condition_of_its_name(bench):
     bench.record["conditions"] = {
         "pinion_speed": {"value": 1800, "unit": "rpm"},
-        "pinion_torque": {"value": 99, "unit": "N*m"},
+        "pinion_torque": {"value": 149, "unit": "N*m"},
     }
     record = bench.load().records[0]
     assert set(record.conditions) == {"pinion_speed"}
     assert record.conditions["pinion_speed"].value == pytest.approx(60 * pi, rel=1e-15)
     said = [finding for finding in record.findings if finding.kind == "not_used"]
     assert [(finding.channel, finding.severity) for finding in said] == [("pinion_torque", "note")]
-    assert "not the 99 N*m under conditions" in said[0].message
+    assert "not the 149 N*m under conditions" in said[0].message
 
 
 def test_a_wrapped_angle_is_unwrapped_and_said(bench):

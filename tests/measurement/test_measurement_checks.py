@@ -222,3 +222,21 @@ def test_a_file_that_was_interpolated_is_said(bench, factor):
 def test_coarse_steps_of_a_converter_are_no_interpolation(bench):
     bench.columns["dte"] = 1e-8 * np.round(100 * np.sin(np.arange(400) / 40))
     assert "interpolated" not in {finding.kind for finding in bench.load().findings}
+
+
+@pytest.mark.parametrize(("stated", "kind"), [(150.5, "not_used"), (160.0, "not_used"), (300.0, "condition_mismatch")])
+def test_a_condition_that_the_channel_of_its_name_never_reaches_is_found(bench, stated, kind):
+    bench.record["conditions"] = {"pinion_torque": {"value": stated, "unit": "N*m"}}  # the channel holds 149 to 151
+    (found,) = (one for one in bench.load().records[0].findings if one.channel == "pinion_torque")
+    assert found.kind == kind
+    assert found.severity == "note"
+    assert ("never reaches (1" in found.message) is (kind == "condition_mismatch")
+
+
+@pytest.mark.parametrize(("rpm", "problems"), [(1790.0, []), (1500.0, ["condition_mismatch"])])
+def test_a_stated_speed_that_the_measured_one_never_reaches_is_to_be_cured(bench, rpm, problems):
+    bench.columns["n"] = np.full(400, 1800.0)
+    bench.channels["pinion_speed"] = {"column": "n", "unit": "rpm"}
+    del bench.channels["pinion_angle"]
+    bench.record["conditions"] = {"pinion_speed": {"value": rpm, "unit": "rpm"}}
+    assert bench.kinds() == problems
