@@ -122,7 +122,7 @@ def _identification(
     records = {
         record.name: {
             "role": role,
-            "rmse": float(found.residuals[record.name].square().mean().sqrt()) / factor,
+            "rmse": float(found.first_residual(record).square().mean().sqrt()) / factor,
             "unit": unit,
         }
         for role, listed in roles.items()

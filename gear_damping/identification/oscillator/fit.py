@@ -46,7 +46,7 @@ class OscillatorFit:
         log_decrement: Of successive peaks.
         predictions: By record name, the response channels one after another.
         residuals: The same of what is left.
-        rmse: By role, `fit` and `holdout` (None without such records), in the unit of the first channel.
+        rmse: Of the first channel, in its unit, by role: `fit` and `holdout` (None without such records).
         converged: Whether the search converged.
         given: Every parameter of the fitted model by flat name.
         own: What single records have of their own, such as offsets, by name.
@@ -70,6 +70,10 @@ class OscillatorFit:
     fitted: Fitted = field(repr=False)
     scale: float
     segments: Segments = WHOLE
+
+    def first_residual(self, record: FitRecord) -> Tensor:
+        """What is left of the first channel of a record, (time,), in its unit; others are weighed beside it."""
+        return self.residuals[record.name][: len(record.response)]
 
     def weighed(self, fitted: Fitted) -> "OscillatorFit":
         """The same with the quantities and intervals of another solution of its problem."""
@@ -204,4 +208,5 @@ def _fit_residuals(
 def _rmse(records: Sequence[FitRecord], residuals: Mapping[str, Tensor]) -> float | None:
     if not records:
         return None
-    return rmse([residuals[r.name] for r in records], [torch.zeros_like(residuals[r.name]) for r in records])
+    first = [residuals[record.name][: len(record.response)] for record in records]
+    return rmse(first, [torch.zeros_like(one) for one in first])
