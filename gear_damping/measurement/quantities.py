@@ -165,11 +165,15 @@ class Measured(Value):
             return f"write {name}: {{value: 1.0, unit: {self._example}}}, or {name}: 1.0 {self._example}"
         if self.unit is None:
             return f"say it in the unit of the channel or one of its kind, as {name}: {number} mm for one in mm"
-        usual = _USUAL.get(self.unit, (self._example,))
+        usual = self._usual(number)
         first = f"write {name}: {{value: {number}, unit: {usual[0]}}}, or {name}: {number} {usual[0]}"
         return (
             first + "".join(f", or {number} {unit}" for unit in usual[1:]) + ", whichever it is in" * (len(usual) > 1)
         )
+
+    def _usual(self, number: float) -> tuple[str, ...]:
+        """The units that a bare number may be in."""
+        return _USUAL.get(self.unit, (self._example,))
 
     @property
     def _example(self) -> str:
@@ -243,10 +247,9 @@ class Rate(Measured):
 
     unit: str | None = "Hz"
 
-    def _remedy(self, number: float | None, value: Any, name: str) -> str:
+    def _usual(self, number: float) -> tuple[str, ...]:
         """A number below one is hardly a rate."""
-        said = super()._remedy(number, value, name)
-        return said if number is None or number >= 1 else said.replace(" kHz", " s from one sample to the next")
+        return super()._usual(number) if number >= 1 else ("Hz", "s from one sample to the next")
 
     def says(self) -> str:
         """Both."""

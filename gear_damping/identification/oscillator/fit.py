@@ -73,7 +73,7 @@ class OscillatorFit:
 
     def first_residual(self, record: FitRecord) -> Tensor:
         """What is left of the first channel of a record, (time,), in its unit; others are weighed beside it."""
-        return self.residuals[record.name][: len(record.response)]
+        return _first(record, self.residuals)
 
     def weighed(self, fitted: Fitted) -> "OscillatorFit":
         """The same with the quantities and intervals of another solution of its problem."""
@@ -205,8 +205,12 @@ def _fit_residuals(
     return {record.name: found for record, found in zip(records, whole, strict=True)}
 
 
+def _first(record: FitRecord, residuals: Mapping[str, Tensor]) -> Tensor:
+    return residuals[record.name][: len(record.response)]
+
+
 def _rmse(records: Sequence[FitRecord], residuals: Mapping[str, Tensor]) -> float | None:
     if not records:
         return None
-    first = [residuals[record.name][: len(record.response)] for record in records]
+    first = [_first(record, residuals) for record in records]
     return rmse(first, [torch.zeros_like(one) for one in first])

@@ -126,11 +126,12 @@ class CellTable(Table):
         return self._read[index]
 
     def _numbers(self, index: int) -> NDArray[np.float64]:
-        texts = [str(cell) for cell in self._columns[index].values]
+        column = self._columns[index]
+        texts = [str(cell) for cell in column.values]
         if texts and is_moment(texts[0]) and (seconds := seconds_of(texts)) is not None:
             return seconds
-        unit = _unit_of_cells(self._columns[index].values)
-        if unit and unit == self.unit(index):  # another than the header's is a contradiction
+        unit = _unit_of_cells(column.values)
+        if unit and column.unit in (None, unit):  # another than the header's is a contradiction
             texts = [cell.strip().removesuffix(unit) for cell in texts]
         cells = [plain(cell) for cell in self._decimal_points(texts, index)]
         try:
