@@ -112,6 +112,9 @@ _ALSO = {
 }  # fmt: skip
 _DIGITS = r"\s*(?P<number>[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?)\s*"
 _NUMBER, _SPOKEN = re.compile(f"^{_DIGITS}$"), re.compile(rf"^{_DIGITS}(?P<unit>([A-Za-zµμ°%]|(?<=\s)1/).*?)\s*$")
+_STEP = re.compile(
+    r"^(?P<number>\d+[.,]?\d*(e[+-]?\d+|\^[+-]?\d+)?)(/(?P<over>\d+))?\s*[*x·]?\s*(?P<unit>[A-Za-zµμ°].*)$"
+)
 # a power may stand without its sign: m/s2
 _GAP = re.compile(r"(?<=[A-Za-z\d])[ .\-](?=[A-Za-z])")  # what people write between the factors of a product
 _JOINED = re.compile(r"(?<![A-Za-z])(kg|kN|daN|N|lbf)(?=(mm|cm|m|in|ft)([\^\d/]|$))")  # or nothing
@@ -149,6 +152,19 @@ def parse_unit(text: str, key: str = "unit", source: str = "") -> Unit:
             exponent = sign * power
             unit = Unit(unit.factor * atom.factor**exponent, unit.dimension * atom.dimension**exponent)
     return unit
+
+
+def multiple_of_a_unit(text: str) -> tuple[float, Unit] | None:
+    """The number and the unit of a step that a header counts in: `0.1 mm`, `1/100 mm`, `10^-3 mm`; None of others."""
+    match = _STEP.match(text.strip())
+    if match is None:
+        return None
+    number, over = match["number"].replace(",", "."), float(match["over"] or 1)
+    base, _, power = number.partition("^")
+    try:
+        return (float(base) ** float(power) if power else float(base)) / over, parse_unit(match["unit"])
+    except (InputError, ValueError):
+        return None
 
 
 def spoken(value: object) -> tuple[float, str] | None:

@@ -111,22 +111,21 @@ def table_of(content: dict[str, Any]) -> str:
 def _identification(
     found: OscillatorFit, measurement: Measurement, roles: Mapping[str, Sequence[FitRecord]], channel: Channel
 ) -> dict[str, Any]:
-    unit, factor = channel.declared_unit, channel.declared_factor
+    channels = {record.name: record.channels for record in measurement.records}
+
+    def told(record: FitRecord) -> dict[str, Any]:
+        own = channels[record.name][record.observed.name]
+        left = float(found.first_residual(record).square().mean().sqrt())
+        return {"rmse": left / own.declared_factor, "unit": own.declared_unit}
 
     def residual(value: float | None) -> dict[str, Any] | None:
-        return None if value is None else {"rmse": value / factor, "unit": unit}
+        return None if value is None else {"rmse": value / channel.declared_factor, "unit": channel.declared_unit}
 
     def plain(estimate: Estimate | None) -> dict[str, Any] | None:
         return None if estimate is None else asdict(estimate)
 
     records = {
-        record.name: {
-            "role": role,
-            "rmse": float(found.first_residual(record).square().mean().sqrt()) / factor,
-            "unit": unit,
-        }
-        for role, listed in roles.items()
-        for record in listed
+        record.name: {"role": role, **told(record)} for role, listed in roles.items() for record in listed
     }
     return {
         "system": measurement.system,

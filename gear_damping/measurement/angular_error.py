@@ -30,6 +30,14 @@ def is_angle(unit: str | None) -> bool:
         return False
 
 
+def is_angular_acceleration(unit: str | None) -> bool:
+    """Whether a unit is one of an angular acceleration."""
+    try:
+        return unit is not None and parse_unit(unit).dimension == parse_unit("rad/s^2").dimension
+    except InputError:
+        return False
+
+
 def turn_in(unit: str | None) -> float | None:
     """One turn in a unit of angle; None for any other unit."""
     return 2 * pi / parse_unit(unit).factor if unit and is_angle(unit) else None
@@ -53,7 +61,7 @@ def along_the_line(plan: "ChannelPlan", parameters: Mapping[str, Quantity]) -> "
     angle = parse_unit(plan.unit)
     sensor["gain"] *= parse_unit(_LENGTH).factor / (radius * angle.factor)  # the declared unit in one micrometre
     limits = {name: _length(quantity, radius, angle) for name, quantity in plan.limits.items()}
-    return replace(plan, unit=_LENGTH, sensor=sensor, limits=limits)
+    return replace(plan, unit=_LENGTH, sensor=sensor, limits=limits, stated_unit=plan.unit)
 
 
 def _length(quantity: Quantity, radius: float, angle: Unit) -> Quantity:

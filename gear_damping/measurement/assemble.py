@@ -12,27 +12,25 @@ from gear_damping.measurement.declaration import ChannelPlan, Plan
 from gear_damping.measurement.declared_units import Conversion, UnitSystem
 from gear_damping.measurement.encoders import (
     FROM_ENCODERS,
-    WITHIN_A_TURN,
     ShaftAngle,
     mean_rotation,
     transmission_error,
 )
 from gear_damping.measurement.gaps import borne_out
 from gear_damping.measurement.held_together import check_together
-from gear_damping.measurement.raw import RawChannel, RawRecord
+from gear_damping.measurement.raw import SAME_UNIT, RawChannel, RawRecord
 from gear_damping.measurement.record import Channel, Finding, Quantity, Record
 from gear_damping.measurement.record_checks import check_record, mesh_beyond_band, tooth_ratio
 from gear_damping.measurement.staircase import is_staircase
 from gear_damping.measurement.timebase import TimeBase
 from gear_damping.measurement.vocabulary import HOLDABLE, SHAFT_SPEEDS
+from gear_damping.measurement.wraps import begins_again, run_over, unwrapped
 from gear_damping.schema.values import Problems
-from gear_damping.units import of_a_shaft, parse_unit
+from gear_damping.units import Unit, multiple_of_a_unit, of_a_shaft, parse_unit
 
 LOST = 0.1  # of a channel's variance, from which it is said that resampling took it
 _TEETH = tuple(GEOMETRY.values())
 _GEOMETRY = (*_TEETH, *NEEDED)
-_BESIDE = 4  # steps at either side of a jump of an angle, by which it is seen whether it is a whole turn
-_AS_BESIDE, _NEARLY_WHOLE = 3.0, 0.02  # times their median, and of a turn, as where it turns back or is rounded
 _OTHERWISE = 0.1  # of a condition: no two instruments differ by so much
 _INERTIAS = ("inertia_pinion", "inertia_gear")
 
@@ -86,12 +84,18 @@ class Assembler:
         }
         factor = conversion.factor
         if record.table.full_scale is not None:
+            if "range" in limits and plan.sensor["gain"] != 1:
+                rule = "stands beside range, which says already what ±1 of a WAV file is"
+                remedy = "leave one of the two out"
+                raise InputError(Problem(f"{plan.key}.gain", rule, plan.sensor["gain"], remedy, self.source))
             factor = limits.get("range", factor)
             notes.append(f"{plan.name}: full scale is taken as {factor:.6g} {conversion.unit}")
         values = raw.values * (factor * plan.sensor["polarity"] / plan.sensor["gain"])
         turn = turn_in(conversion.unit)
-        if plan.name == "pinion_angle" or (turn and _begins_again(values, turn)):
-            values = _unwrapped(values, turn, plan.name, notes)
+        if plan.name != "pinion_angle" and (found := run_over(raw.values, plan.name, plan.column)):
+            findings.append(found)
+        if plan.name == "pinion_angle" or (turn and begins_again(values, turn)):
+            values = unwrapped(values, turn, plan.name, notes)
         if raw.own_time is None:
             recorded, values = values, record.base.resample(values)
             findings += _lost(recorded, values, plan.name, record.base) if record.plan.resample else []
@@ -107,7 +111,7 @@ class Assembler:
         return Channel(plan.name, values, conversion.unit, raw.unit, conversion.factor, **limits, **sensor)
 
     def _conversion(self, plan: ChannelPlan, unit: str, key: str) -> Conversion:
-        return self.units.conversion(plan.name, unit, key, self.source, plan.speed_radius)
+        return self.units.conversion(plan.name, unit, key, self.source, plan.shaft_radius)
 
     def _held(self, raw: RawChannel, record: RawRecord, values: NDArray, notes: list[str]) -> bool:
         """Whether an input stays at each value: as stated, or as it looks."""
@@ -248,27 +252,6 @@ def _mean_lost(channel: Channel) -> bool:
     return channel.coupling == "AC" or channel.highpass is not None
 
 
-def _unwrapped(angle: NDArray[np.float64], turn: float, name: str, notes: list[str]) -> NDArray[np.float64]:
-    """An angle that goes on where the encoder began again at zero."""
-    whole = np.unwrap(angle, period=turn)
-    if not np.array_equal(whole, angle):
-        notes.append(f"{name}: unwrapped")
-    return whole
-
-
-def _begins_again(angle: NDArray[np.float64], turn: float) -> bool:
-    """Whether an angle jumps by about a turn from sample to sample and yet stays within one turn.
-
-    Beside a whole turn a jump goes on as its neighbours do; a single wrong sample jumps by anything.
-    """
-    steps = np.abs(np.diff(angle))
-    jumps = np.flatnonzero(steps > turn / 2)
-    if not jumps.size or np.ptp(angle) > WITHIN_A_TURN * turn or np.median(steps) >= turn / 4:
-        return False
-    usual = [np.median(steps[max(0, k - _BESIDE) : k + _BESIDE + 1]) for k in jumps]
-    return bool(np.all(np.abs(turn - steps[jumps]) <= _AS_BESIDE * np.array(usual) + _NEARLY_WHOLE * turn))
-
-
 def _beside_condition(channel: Channel, stated: Quantity) -> Finding:
     """What is said of a condition beside the channel of its name: that is used, and must go through its value."""
     factor, unit = (30 / np.pi, "rpm") if stated.unit == "rad/s" else (1.0, stated.unit)
@@ -282,11 +265,27 @@ def _beside_condition(channel: Channel, stated: Quantity) -> Finding:
     return Finding("condition_mismatch", message, channel=channel.name, severity=severity)
 
 
+def _step_conflict(raw: RawChannel, said: str, number: float, unit: Unit) -> Finding | None:
+    """The header counts in steps of a unit, `[0.1 mm]`, and the YAML in whole ones."""
+    stated = parse_unit(said)
+    gain = stated.factor / (number * unit.factor)
+    if unit.dimension != stated.dimension or abs(gain - 1) < SAME_UNIT:
+        return None
+    message = (
+        f"the header of column '{raw.plan.column}' says '{raw.header_unit}' and the YAML '{said}', which was used; "
+    )
+    message += f"write gain: {gain:.6g}, by which values are divided, or gain: 1 where they are in {said}"
+    return Finding("unit_conflict", message, channel=raw.plan.name)
+
+
 def _unit_conflict(raw: RawChannel, conversion: Conversion) -> Finding | None:
     """The header names a unit and the YAML another one."""
-    if raw.header_unit is None or raw.header_unit == raw.unit:
+    said = raw.plan.stated_unit or raw.unit
+    if raw.header_unit is None or raw.header_unit == said:
         return None
-    stated = parse_unit(raw.unit)
+    stated = parse_unit(said)
+    if step := multiple_of_a_unit(raw.header_unit):
+        return None if raw.plan.is_scaled else _step_conflict(raw, said, *step)
     try:
         header = of_a_shaft(parse_unit(raw.header_unit), stated)
     except InputError:
@@ -299,11 +298,9 @@ def _unit_conflict(raw: RawChannel, conversion: Conversion) -> Finding | None:
     if (header.dimension, header.factor) == (stated.dimension, stated.factor):
         return None
     message = (
-        f"the header of column '{raw.plan.column}' says '{raw.header_unit}' and the YAML '{raw.unit}', "
+        f"the header of column '{raw.plan.column}' says '{raw.header_unit}' and the YAML '{said}', "
         f"which was used to read {raw.plan.name} in {conversion.unit}; correct the one that is wrong"
     )
     if is_other:
-        message += (
-            f", or write gain: what the column holds for one {raw.unit} (1 where its header names something else)"
-        )
+        message += f", or write gain: what the column holds for one {said} (1 where its header names something else)"
     return Finding("unit_conflict", message, channel=raw.plan.name)

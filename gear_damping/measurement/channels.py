@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar
 from pydantic import model_validator
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.angular_error import is_angle
+from gear_damping.measurement.angular_error import is_angle, is_angular_acceleration
 from gear_damping.measurement.quantities import PERIODS, Column, Corner, Cutoff, Measured, Rate
 from gear_damping.measurement.record import Quantity
 from gear_damping.schema.mappings import Declared, key
@@ -304,7 +304,9 @@ class GearAcceleration(Response):
         "response where tangential; findings in angle and order where on a casing", "casing",
     )  # fmt: skip
     shaft: Annotated[str, OneOf(("pinion", "gear"))] = key("The shaft it turns with.", "response")
-    radius: Annotated[Quantity, Measured("m")] = key("Radius of the sensor.", "response")
+    radius: Annotated[Quantity, Measured("m")] = key(
+        "Radius of the sensor; not needed of an angular acceleration (`unit: rad/s^2`).", "response"
+    )
 
     @model_validator(mode="after")
     def _mounted(self) -> "GearAcceleration":
@@ -315,8 +317,9 @@ class GearAcceleration(Response):
         else:
             if not self.given("shaft"):
                 problems.append(Problem("shaft", "is missing", None, "say on which it sits, shaft: pinion (or gear)"))
-            if not self.given("radius"):
+            if not self.given("radius") and not is_angular_acceleration(self.unit):
                 remedy = "give the radius of the sensor, radius: {value: 30, unit: mm}"
+                remedy += ", or state the unit of an angular acceleration, unit: rad/s^2"
                 problems.append(Problem("radius", "is missing", None, remedy))
         if problems:
             raise InputError(problems)

@@ -6,7 +6,11 @@ from typing import TYPE_CHECKING
 
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.measurement import layout
-from gear_damping.measurement.angular_error import along_the_line, is_angle_of_a_shaft
+from gear_damping.measurement.angular_error import (
+    along_the_line,
+    is_angle_of_a_shaft,
+    is_angular_acceleration,
+)
 from gear_damping.measurement.channels import AnyChannel, Response, Timed
 from gear_damping.measurement.consistency import inconsistencies
 from gear_damping.measurement.own_system import NONE, file_of, si_units
@@ -36,7 +40,7 @@ class TimePlan:
 class ChannelPlan:
     """A declared channel; `unit` None asks the file, `limits` are range and noise as declared.
 
-    `is_scaled` says that its gain is stated, be it 1.
+    `is_scaled` says that its gain is stated, be it 1; `stated_unit` is the angle that `unit` is the length of.
     """
 
     name: str
@@ -47,6 +51,12 @@ class ChannelPlan:
     limits: Mapping[str, Quantity]
     timing: TimePlan | None
     is_scaled: bool = False
+    stated_unit: str | None = None
+
+    @property
+    def shaft_radius(self) -> float | None:
+        """m, at which a shaft's speed or acceleration is measured along the circumference; None elsewhere."""
+        return self.sensor.get("radius") if self.name in (*SHAFT_SPEEDS, "acceleration") else None
 
     @property
     def speed_radius(self) -> float | None:
@@ -255,6 +265,8 @@ def _resolved(name: str, channel: AnyChannel, record: layout.AnyRecord, based: b
     for length in ("delay", "radius", "timing_error"):
         if quantity := getattr(channel, length, None):
             sensor[length] = quantity.value
+    if "shaft" in sensor and is_angular_acceleration(channel.unit):
+        sensor.setdefault("radius", 1.0)  # m: there the two are one number
     sensor["datum"] = _datum(name, channel, record)
     if based and hasattr(channel, "frame"):
         sensor["frame"] = channel.frame or channel.usual_frame

@@ -14,7 +14,7 @@ from gear_damping.units import Dimension, Unit, of_a_shaft, other_kind, parse_un
 
 _PER_SECOND = Dimension(time=-1)  # exponent of a derivative in time
 _PER = {0: "", 1: "/s", 2: "/s^2"}
-_VELOCITY = parse_unit("m/s")
+_VELOCITY, _ANGULAR_ACCELERATION = parse_unit("m/s"), parse_unit("rad/s^2")
 _BASE = "base_acceleration"  # an input in the unit of the response's acceleration
 
 
@@ -68,7 +68,7 @@ class UnitSystem:
             text: The unit.
             key: What is at fault in messages.
             source: The file that declares it.
-            radius: m, at which the speed of a shaft is measured as a velocity along the circumference.
+            radius: m, at which the speed of a shaft, or its acceleration, is measured along the circumference.
 
         Raises:
             InputError: the unit is unknown or of another kind than the channel.
@@ -76,6 +76,8 @@ class UnitSystem:
         unit = parse_unit(text, key, source)
         if name in SHAFT_SPEEDS and (radius or unit.dimension == _VELOCITY.dimension):
             return _around(unit, radius, self.si[name], key, text, source)
+        if radius and self.si is not None and unit.dimension == _ANGULAR_ACCELERATION.dimension:
+            return Conversion(unit.factor * radius, self.si[name])
         if self.si is not None:
             kept = _Reference(parse_unit(self.si[name]), self.si[name], 0)
             unit = of_a_shaft(unit, kept.unit)

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator, Mapping
 from difflib import get_close_matches
 from pathlib import Path
+from typing import ClassVar
 
 import yaml
 
@@ -13,6 +14,7 @@ from gear_damping.errors import InputError, Problem, reading
 from gear_damping.measurement.formats.registry import Reader, read_table
 from gear_damping.measurement.formats.table import Table
 
+_NUMBERS = ("tag:yaml.org,2002:float", "tag:yaml.org,2002:int")
 _FLOAT = re.compile(
     r"""^(?:[-+]?(?:[0-9][0-9_]*)\.[0-9_]*(?:[eE][-+]?[0-9]+)?
         |[-+]?(?:[0-9][0-9_]*)(?:[eE][-+]?[0-9]+)
@@ -29,7 +31,16 @@ UNKNOWN = "???"  # in a measurement.yaml that task=inspect began: what nobody ca
 
 
 class _Loader(yaml.SafeLoader):
-    """YAML 1.1 wants 1.0e-6 and takes 1e-6 for text; people write 1e-6."""
+    """YAML 1.1 wants 1.0e-6 and takes 1e-6 for text, 010 for 8 and 1:30 for 90; people write the first, and mean 10."""
+
+    yaml_implicit_resolvers: ClassVar[dict] = {
+        letter: [(tag, pattern) for tag, pattern in kinds if tag not in _NUMBERS]
+        for letter, kinds in yaml.SafeLoader.yaml_implicit_resolvers.items()
+    }
+
+    def construct_decimal(self, node: yaml.ScalarNode) -> int:
+        """A whole number, with or without zeros before it."""
+        return int(node.value.replace("_", ""))
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict:
         """Refuse a key that appears twice, where YAML would silently keep the last."""
@@ -44,7 +55,9 @@ class _Loader(yaml.SafeLoader):
         return super().construct_mapping(node, deep)
 
 
-_Loader.add_implicit_resolver("tag:yaml.org,2002:float", _FLOAT, list("-+0123456789."))
+_Loader.add_implicit_resolver(_NUMBERS[0], _FLOAT, list("-+0123456789."))
+_Loader.add_implicit_resolver(_NUMBERS[1], re.compile(r"^[-+]?[0-9][0-9_]*$"), list("-+0123456789"))
+_Loader.add_constructor(_NUMBERS[1], _Loader.construct_decimal)
 
 
 def read_yaml(path: Path) -> object:

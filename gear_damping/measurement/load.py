@@ -141,12 +141,12 @@ def _loaded(content: object, path: Path, max_bytes: int | None, plugins: Sequenc
 
 
 def _units(plan: Plan) -> Iterable[tuple[str, str | None, str, float | None]]:
-    """Name, unit, key and the radius of a speed, of what is declared with a unit that must fit the others."""
+    """Name, unit, key and the radius on a shaft, of what is declared with a unit that must fit the others."""
     for record in plan.records:
         for channel in record.channels:
-            yield channel.name, channel.unit, f"{channel.key}.unit", channel.speed_radius
+            yield channel.name, channel.unit, f"{channel.key}.unit", channel.shaft_radius
             for limit, quantity in channel.limits.items():
-                yield channel.name, quantity.unit, f"{channel.key}.{limit}", channel.speed_radius
+                yield channel.name, quantity.unit, f"{channel.key}.{limit}", channel.shaft_radius
         for name, quantity in record.conditions.items():
             yield name, quantity.unit, f"{record.key}.conditions.{name}", None
 

@@ -24,14 +24,15 @@ from gear_damping.measurement.timebase import (
     written_significantly,
 )
 from gear_damping.schema.values import Problems
-from gear_damping.units import to_si
+from gear_damping.units import multiple_of_a_unit, parse_unit, to_si
 
 LEAST_SAMPLES = 8  # of a record, for a spectrum at all
 MOST_DOUBLED = 0.01  # of the rows of a record; where more come twice, something else is wrong
 DOUBLED_WITHIN = 100  # rows behind the one that a row is stored again of
 MOST_MISSING = 0.01  # of a record: a sheet whose last cells are blank, and no channel of another rate
+_UNSET = 1.0  # Hz, what LabVIEW writes where no rate was set
 _SAME_RATE = 1e-3  # how far a declared rate may lie from the file's
-_SAME_UNIT = 1e-9  # the same of units
+SAME_UNIT = 1e-9  # the same of units
 
 
 @dataclass(frozen=True, eq=False)
@@ -267,12 +268,12 @@ class RawReader:
                 remedy = "write sampling_rate: {value: 50, unit: kHz}"
                 raise InputError(Problem(f"{self.plan.key}.channels", rule, None, remedy, self.source))
             return None
-        if rate and clock and abs(rate / clock[1] - 1) > _SAME_RATE:
-            rule, remedy = f"the file itself says {clock[1]:g} Hz", "leave sampling_rate out"
-            raise InputError(Problem(f"{self.plan.key}.sampling_rate", rule, rate, remedy, self.source))
         start = clock[0] if clock else self.begins
         base = steady_time(rate or clock[1], self.first, self.stop - self.first, start)
-        return base if clock else replace(base, findings=self._other_rate(rate))
+        if clock is None:
+            return replace(base, findings=self._other_rate(rate))
+        is_other = rate is not None and abs(rate / clock[1] - 1) > _SAME_RATE
+        return replace(base, findings=(_of_file(rate, clock[1]),)) if is_other else base
 
     def _other_rate(self, rate: float) -> tuple[Finding, ...]:
         """A note where columns of stamps that no channel uses run at other rates than the declared one in Hz."""
@@ -358,8 +359,11 @@ class RawReader:
         unit = timing.unit or header
         if unit is None:
             raise InputError(Problem(f"{key}.unit", "is missing", None, "give unit: s", self.source))
+        own = _seconds_of(header)
+        if timing.unit is None and own is not None:
+            return own
         found = to_si(1.0, unit, "s", f"{key}.unit", self.source)
-        if timing.unit and header and is_time(header) and abs(to_si(1.0, header, "s") / found - 1) > _SAME_UNIT:
+        if own is not None and abs(own / found - 1) > SAME_UNIT:
             rule = f"the header of column '{timing.column}' says '{header}'"
             remedy = "correct the one that is wrong, or give sampling_rate instead of the time column"
             raise InputError(Problem(f"{key}.unit", rule, unit, remedy, self.source))
@@ -405,10 +409,20 @@ class RawReader:
         refuse_not_finite(values, self._named(key, column), self.file)
         return values
 
+    def _first_stamp(self) -> float:
+        """When the first row of the file was taken, s: a channel with a rate alone begins there too."""
+        timing = self.plan.timing
+        if timing.column is None:
+            return 0.0
+        key = f"{self.plan.key}.channels.time"
+        stamps = self._all(timing.column, key)
+        known = stamps[np.isfinite(stamps)]
+        return float(known[0]) * self._in_seconds(timing, key) if known.size else 0.0
+
     def _own_time(self, plan: ChannelPlan, n: int) -> TimeBase:
         key = f"{plan.key}.time"
         if plan.timing.sampling_rate is not None:
-            return steady_time(plan.timing.sampling_rate, 0, n)
+            return steady_time(plan.timing.sampling_rate, 0, n, self._first_stamp())
         if plan.timing.column is None:
             raise InputError(Problem(key, "gives no time base", None, "name a column or a rate", self.source))
         base = self._stamped(plan.timing, key, self.unsliced, 0)
@@ -416,6 +430,16 @@ class RawReader:
             rule = f"{base.time.size} time stamps for {n} samples"
             raise InputError(Problem(key, rule, None, "name the stamps of this very channel", self.file))
         return base
+
+
+def _seconds_of(header: str | None) -> float | None:
+    """One count of stamps in s as their header says, `ms` or `10 ms`; None where it says nothing of the kind."""
+    if header is None:
+        return None
+    if is_time(header):
+        return to_si(1.0, header, "s")
+    step = multiple_of_a_unit(header)
+    return step[0] * step[1].factor if step and step[1].dimension == parse_unit("s").dimension else None
 
 
 def _filled(values: NDArray[np.float64]) -> int:
@@ -437,6 +461,14 @@ def filled_in(values: NDArray[np.float64]) -> tuple[int, int, int] | None:
 def _leading(true: NDArray[np.bool_]) -> int:
     """How many of (n,) are true before the first that is not."""
     return int(true.size if true.all() else np.argmin(true))
+
+
+def _of_file(rate: float, own: float) -> Finding:
+    message = (
+        f"the file itself says {own:.6g} Hz and sampling_rate {rate:.6g} Hz, which was used; "
+        "where the file is right, leave sampling_rate out"
+    )
+    return Finding("rate_conflict", message, channel="time", severity="note" if own == _UNSET else "data_problem")
 
 
 def _rate_conflict(rate: float, column: str, own: float) -> Finding:

@@ -154,7 +154,7 @@ class Cause:
             function of its values by own name where they decide.
         simpler: An effect that it contains, with fewer parameters.
         turns_with: Whether its phases turn with a shaft (`shaft`) and not with the mesh, or even tell single teeth
-            apart (`tooth`): where no index says how the shaft stands, every record has phases of its own, and the
+            apart (`tooth`), or go with the time (`clock`), which begins anew in every record: where no index says how the shaft stands, every record has phases of its own, and the
             `phase` of what tells teeth apart is sought tooth by tooth in each of them.
         one_class: What else no record of this channel parts from it, as words for a sentence: then several names are
             one answer.
@@ -167,7 +167,7 @@ class Cause:
     separated_by: Experiment = "torque"
     looks_like: tuple[str, ...] | Callable[[Mapping[str, Any]], tuple[str, ...]] = ()
     simpler: str | None = None
-    turns_with: Literal["", "shaft", "tooth"] = ""
+    turns_with: Literal["", "shaft", "tooth", "clock"] = ""
     one_class: tuple[str, ...] = ()
     acts_as: Callable[[Mapping[str, float], float, float], tuple[str, float] | None] | None = None
 

@@ -16,10 +16,12 @@ from gear_damping.identification.output_error.problem import set_value
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.uncertainty import QUANTILE
 from gear_damping.identification.output_error.unknowns import OFFSET, is_of_model
+from gear_damping.measurement.vocabulary import GEAR_CHANNELS
 from gear_damping.physics.cycle_loss import damping_coefficient
 from gear_damping.physics.effects.mesh_stiffness_shape import MeshStiffnessShape
 from gear_damping.physics.kinematics import Kinematics, Rotation
 from gear_damping.physics.model import Model, Prepared
+from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import DampingForce, DampingLaw, MeshStiffness
 from gear_damping.simulation.runs import reference_velocity
 
@@ -82,11 +84,18 @@ def final_parameters(outcome: Outcome, covariances: Tensor, evidence: Evidence) 
         flat = parameter.declared_name
         kind, _, channel = flat.partition(".")
         if kind == OFFSET:
-            unit = evidence.channel.unit if channel == evidence.channel.name else "own"
+            unit = unit_of_channel(channel.partition("[")[0], evidence)
         else:
             unit = unit_of(flat, outcome.hypothesis.model, evidence) if flat in declared else "1"
         found[parameter.name] = _interval(outcome, covariances, place, evidence, unit).plain()
     return found
+
+
+def unit_of_channel(name: str, evidence: Evidence) -> str:
+    """The unit that a response channel is kept in."""
+    if name == evidence.channel.name:
+        return evidence.channel.unit
+    return GEAR_CHANNELS.get(name, "own") if evidence.has(Trait.TEETH) else "own"
 
 
 def _interval(outcome: Outcome, covariances: Tensor, place: int, evidence: Evidence, unit: str) -> Interval:

@@ -91,12 +91,12 @@ def candidates_for(base: Hypothesis, evidence: Evidence, residuals: Residuals | 
     refused = there | base.system.covered_by_nuisance
     rig = rig_of(base, evidence, residuals)
     rigs = [rig, replace(rig, indexed=False)] if rig.indexed and not evidence.tells_turns else [rig]
-    each_rig = [_Sizes(base, evidence.duration, one) for one in rigs]
+    each_rig = [_Sizes(base, evidence, one) for one in rigs]
     return [
         _candidate(base, kind, recipe, sizes)
         for name, kind in evidence.library.items()
         if kind.cause and base.system.has(*kind.needs) and name not in refused and set(kind.requires) <= there
-        for sizes in (each_rig if kind.cause.turns_with else each_rig[:1])
+        for sizes in (each_rig if kind.cause.turns_with in ("shaft", "tooth") else each_rig[:1])
         for recipe in kind.cause.recipes_for(sizes.rig)
         if sizes.rig is rig or recipe.turns == "gear"  # where only the pinion has a mark, turns of the gear have none
         if all(_value(base, parameter) > 0 for parameter in recipe.replaces)
@@ -125,7 +125,7 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Si
     for parameter in kind.parameters:
         given[f"{kind.name}.{parameter.name}"] = sizes.default(kind, parameter, recipe)
     free, strengths, phases, own_phases = [], [], {}, {}
-    own = not sizes.rig.indexed and kind.cause.turns_with == "shaft"
+    own = _has_own_phases(kind, sizes)
     own_tooth = f"{kind.name}.phase" if not sizes.rig.indexed and kind.cause.turns_with == "tooth" else ""
     first = len(base.common)
     for name, size in recipe.strengths.items():
@@ -180,6 +180,13 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Si
     )
 
 
+def _has_own_phases(kind: type[Effect], sizes: "_Sizes") -> bool:
+    """Whether every record has phases of its own: no index says how the shafts stand, or when what swings began."""
+    if kind.cause.turns_with == "clock":
+        return sizes.records > 1
+    return not sizes.rig.indexed and kind.cause.turns_with == "shaft"
+
+
 def _declared(kind: type[Effect], recipe: Recipe) -> list[Parameter]:
     """The scanned and timed parameters of a recipe."""
     declared = {p.name: p for p in kind.parameters}
@@ -207,8 +214,9 @@ def _label(kind: type[Effect], recipe: Recipe) -> str:
 class _Sizes:
     """Sizes of an effect's parameters for this rig."""
 
-    def __init__(self, base: Hypothesis, duration: float, rig: Rig) -> None:
-        self.base, self.duration, self.rig = base, duration, rig
+    def __init__(self, base: Hypothesis, evidence: Evidence, rig: Rig) -> None:
+        self.base, self.duration, self.rig = base, evidence.duration, rig
+        self.records = len({record.record for record in evidence.fit})
         self.scales = base.model.prepare(base.model.values(1, **base.given)).scales
 
     def natural(self, kind: type[Effect], parameter: Parameter, value: float, exponent: float = 1.0) -> float:

@@ -16,6 +16,7 @@ from gear_damping.units import parse_unit
 
 MOMENT = "a date or a clock in a form that is not read"
 MOST_WORDS = 0.5  # of the cells of a column of numbers: with more than half words it is one of words
+MOST_EMPTY = 0.3  # of the rows: where every other or third one is empty, none of them was a sample
 SHOWN = 3  # faults of one kind that are listed one by one
 MOST_BELOW = 20  # rows that may lie below a table, and more of its own
 _WITH_UNIT = re.compile(r"\s*[+-]?\d[\d.,]*([eE][+-]?\d+)?\s+(?P<unit>[A-Za-zµμ°%][^\s\d]*)\s*")
@@ -31,6 +32,14 @@ def decimal_commas(path: Path, columns: Sequence[str] = ()) -> str:
     """What is noted where decimal commas were read: of a file, or of some columns beside others with points."""
     of_some = f" in {', '.join(columns[:LISTED])}, beside decimal points in others" if columns else ""
     return f"{path.name}: read with decimal commas{of_some}"
+
+
+def said_of_empty_rows(empty: Sequence[int], rows: int) -> str:
+    """What is noted of lines without a value among so many rows; nothing where they are how the file is printed."""
+    if not empty or len(empty) > MOST_EMPTY * rows:
+        return ""
+    said = f"{len(empty)} empty row(s) among its values, the first in line {empty[0]}, are left out"
+    return f"{said}: where each stands for a sample that was lost, cut the record there"
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,16 +69,18 @@ def without_footer(columns: Sequence[Cells]) -> tuple[list[Cells], str]:
     if not 0 < rows - first <= MOST_BELOW < first:
         return list(columns), ""
     below = [[str(one.values[k]) for one in columns if k < len(one.values)] for k in range(first, rows)]
-    if not all(any(_is_word(cell) for cell in row) for row in below):
+    if not all(any(is_word(cell) for cell in row) for row in below):
         return list(columns), ""
-    said = next(cell for cell in below[0] if _is_word(cell))
+    said = next(cell for cell in below[0] if is_word(cell))
     note = f"the last {rows - first} row(s), from '{said}' on (line {columns[0].line(first)}), lie below the table and "
     return [replace(one, values=one.values[:first]) for one in columns], note + "are left out"
 
 
 def _first_word(cells: NDArray) -> int | None:
     """The row of the first of the words that a column of numbers ends in; None where it does in none, or has more."""
-    words = [_is_word(str(cell)) for cell in cells]
+    words = [is_word(str(cell)) for cell in cells]
+    if 2 * sum(is_written(str(cell)) for cell in cells) < len(cells):
+        return None  # a column of remarks, which may stand beside the last rows alone
     count = next((k for k, is_word in enumerate(reversed(words)) if not is_word), len(words))
     return len(words) - count if 0 < count == sum(words) < len(words) else None
 
@@ -87,7 +98,8 @@ def _unit_of_cells(cells: NDArray) -> str:
     return unit if all(one is not None and one["unit"] == unit for one in found) else ""
 
 
-def _is_word(cell: str) -> bool:
+def is_word(cell: str) -> bool:
+    """Whether a cell is neither empty nor a number, a date or a clock."""
     return not is_absent(cell) and not is_written(cell) and not is_told(cell)
 
 

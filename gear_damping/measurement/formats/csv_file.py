@@ -11,7 +11,16 @@ from pathlib import Path
 from typing import Any
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.formats.cells import SHOWN, Cells, CellTable, decimal_commas, without_footer
+from gear_damping.measurement.formats.cells import (
+    MOST_BELOW,
+    SHOWN,
+    Cells,
+    CellTable,
+    decimal_commas,
+    is_word,
+    said_of_empty_rows,
+    without_footer,
+)
 from gear_damping.measurement.formats.header import Header
 from gear_damping.measurement.formats.number_texts import is_written, parts_thousands
 from gear_damping.measurement.formats.stated_rate import stated_rate
@@ -23,7 +32,7 @@ SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".log", ".prn", ".gz
 
 _SAMPLE = 2000  # rows by which it is seen whether a column's numbers have signs between thousands
 _NAN = ("nan", "NaN", "NAN", "Nan", "-nan", "+nan")
-_COMMENT = re.compile(rb"^[ \t]*(#|%|//)", re.MULTILINE)
+_COMMENT = re.compile(rb"^[ \t]*(#|%|//).*$", re.MULTILINE)
 
 
 def read(path: Path, max_bytes: int) -> Table:
@@ -41,6 +50,7 @@ def read(path: Path, max_bytes: int) -> Table:
     decimal = "," if _decimal_comma(text, first_line, parted) else "."
     frame = _frame(text, header, first_line, decimal, parted)
     width = frame.shape[1] - 1
+    _refuse_open_quote(text, frame, first_line)
     if any(not is_real(frame[k].dtype) for k in range(width)) or not (frame[width] == "").all():
         _refuse_ragged(text, header.names or ("",) * width, first_line)
         if all(frame[k].dtype == frame[width].dtype for k in range(width)):
@@ -58,6 +68,8 @@ def read(path: Path, max_bytes: int) -> Table:
         table.notes += (f"{path.name}: {header.says}",)
     if blocks:
         table.notes += (f"{path.name}: {blocks} more block(s) with a header of their own follow the first",)
+    elif empty := _empty_rows(text, first_line):
+        table.notes += (f"{path.name}: {empty}",)
     if text.cut:
         table.notes += (f"{path.name}: {text.cut}",)
     if below:
@@ -119,8 +131,7 @@ def _frame(text: Text, header: Header, first_line: int, decimal: str, parted: se
     import pandas as pd  # here, since it takes long to import and most of the program does not need it
 
     width = len(header.names)
-    has_comments = _COMMENT.search(text.utf8)
-    handle = io.BytesIO(_COMMENT.sub(b"#", text.utf8) if has_comments else text.utf8)
+    handle = io.BytesIO(_COMMENT.sub(b"", text.utf8))
     for _ in range(first_line - 1):
         handle.readline()
     try:
@@ -131,7 +142,6 @@ def _frame(text: Text, header: Header, first_line: int, decimal: str, parted: se
                 names=range(width + 1), index_col=False, skipinitialspace=True, keep_default_na=False,
                 na_values=list(_NAN), low_memory=False, decimal=decimal,
                 dtype=dict.fromkeys(parted, str),
-                comment="#" if has_comments else None,
             )  # fmt: skip
     except (pd.errors.ParserError, pd.errors.EmptyDataError) as error:
         _refuse_ragged(text, header.names, first_line)
@@ -139,8 +149,36 @@ def _frame(text: Text, header: Header, first_line: int, decimal: str, parted: se
         raise InputError(Problem("file", rule, str(text.path), "export it again")) from None
 
 
+def _refuse_open_quote(text: Text, frame: Any, first_line: int) -> None:
+    """Refuse a cell that holds lines: a quotation mark that is not closed has swallowed rows."""
+    for k in frame.columns:
+        cells = [] if is_real(frame[k].dtype) else frame[k].tolist()
+        row = next((row for row, cell in enumerate(cells) if isinstance(cell, str) and "\n" in cell), None)
+        if row is None:
+            continue
+        line = next((line for number, (line, _) in enumerate(_values(text, first_line)) if number == row), None)
+        rule = f"a cell of row {row} goes on over {cells[row].count(chr(10))} lines, up to line {line}"
+        remedy = "close or take out its quotation mark"
+        raise InputError(Problem(text.path.name, rule, None, remedy, str(text.path)))
+
+
+def _empty_rows(text: Text, first_line: int) -> str:
+    """What is noted of rows without a value among the others; of one behind every other, as a printer does, nothing."""
+    lines = text.utf8.rstrip(b'\n\r\t ;,|"').split(b"\n")[first_line:]
+    empty = [k for k, line in enumerate(lines, first_line + 1) if not line.strip(b' \t;,|"')]
+    return said_of_empty_rows(empty, len(lines))
+
+
 def _values(text: Text, first_line: int) -> Iterator[tuple[int, list[str]]]:
     return ((line, row) for line, row in text.rows() if line >= first_line and not IS_COMMENT.match(row[0]))
+
+
+def _above_footer(rows: list[tuple[int, list[str]]], least: int) -> list[tuple[int, list[str]]]:
+    """Rows without the few below a table that have fewer cells than it and begin with words."""
+    below = next((k for k, (_, row) in enumerate(reversed(rows)) if len(row) >= least), 0)
+    footer = rows[len(rows) - below :]
+    is_footer = below <= MOST_BELOW and all(is_word(row[0]) for _, row in footer)
+    return rows[: len(rows) - below] if is_footer else rows
 
 
 def _refuse_ragged(text: Text, names: tuple[str, ...], first_line: int) -> None:
@@ -148,7 +186,7 @@ def _refuse_ragged(text: Text, names: tuple[str, ...], first_line: int) -> None:
     width = len(names)
     least = max((k + 1 for k, name in enumerate(names) if name), default=width)
     problems, found, commas = [], 0, text.delimiter == ","
-    for k, (line, row) in enumerate(_values(text, first_line)):
+    for k, (line, row) in enumerate(_above_footer(list(_values(text, first_line)), least)):
         if least <= len(row) <= width or (len(row) > width and not any(row[width:])):
             continue
         found, commas = found + 1, commas and len(row) == 2 * width

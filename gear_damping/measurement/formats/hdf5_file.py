@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_damping.measurement.formats.stated_rate import stated_rate
+from gear_damping.measurement.formats.stated_rate import beside_their_units, stated_rate
 from gear_damping.measurement.formats.table import (
     ArrayTable,
     Held,
@@ -69,8 +69,8 @@ def _items(file: Any) -> list[Any]:
 
 
 def _settings(groups: Iterable[Any]) -> list[list[str]]:
-    """The numbers that are attributes of groups or datasets, each beside its name."""
-    return [[name, str(value)] for group in groups for name, value in group.attrs.items() if np.size(value) == 1]
+    """The attributes of groups or datasets, each with its name, its value and its unit."""
+    return [row for group in groups for row in beside_their_units(dict(group.attrs))]
 
 
 def _fields(dataset: Any) -> Iterator[tuple[str, str | None, np.dtype, tuple[int, ...]]]:

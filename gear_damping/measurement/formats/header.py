@@ -12,6 +12,7 @@ from gear_damping.units import parse_unit
 _BRACKETS = re.compile(r"[(\[]([^()\[\]]+)[)\]]\s*(?:run\s*#?\s*\d+\s*)?$", re.I)  # `Angle (rad) Run #2`, too
 _WITHIN = re.compile(r"[(\[]([^()\[\]]+)[)\]]")  # `Position (cm) Monitor Run`, where that is a unit
 _SLASH = re.compile(r"^[^/]+/\s*([^\W\d_][^\s]*|[°%µ][^\s]*)$")  # `Weg/mm`, as DIN 461 has it
+_ARGUMENT = re.compile(r"^\W*[^\W\d]\w?\s*\((t|k|n)\)\s*$")  # `x(t)`, `F_(t)`: what it is over, and no unit
 _INDEX = re.compile(r"\w\[\d+\]\s*$")  # `data[3]` is a name, no unit
 _NO_UNIT = ("", "-", "#")
 _COMMENTED = re.compile(r"^(?:%+|//+)\s*(?=[\w\[])")  # names behind the sign of comments of MATLAB and of C
@@ -169,7 +170,7 @@ def _are_numbered(row: Sequence[str], width: int) -> bool:
 
 def bracket_unit(name: str) -> str | None:
     """What stands in brackets at the end of a name, or within it or behind its first stroke where that is a unit."""
-    if _INDEX.search(name):
+    if _INDEX.search(name) or _ARGUMENT.match(name):
         return None
     found = _BRACKETS.search(name)
     if found is not None:

@@ -1,7 +1,7 @@
 """The rate that is stated beside a table, above its rows or as an attribute: `Sample Interval,4e-05,s`, `fs: 2 kHz`."""
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from math import inf
 from typing import Any
 
@@ -17,6 +17,7 @@ _STEP = re.compile(
 _RATE = re.compile(
     r"\b(samp(le|ling)[ _-]?(rate|freq(uency)?)|samples (per|a) second|abtast(rate|frequenz)|fs)\b", re.I
 )
+_IN_NAME = re.compile(r"_(ns|us|ms|s|hz|khz|mhz)[\s:=]*$", re.I)  # `sample_interval_us`
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?", re.I)
 _DECIMAL_COMMA = re.compile(r"(?<=\d),(?=\d)")  # within a cell: one that parts cells is in none
 _LONGEST_NAME = 40  # characters, assumed: what is longer is a sentence
@@ -47,7 +48,8 @@ def _of_row(row: Sequence[str]) -> tuple[str, float] | None:
     value = float(number[0])
     if any(_NUMBER.fullmatch(other) and float(other) != value for other in behind):
         return None  # of each channel its own
-    unit = next((one for one in (*re.findall(r"[(\[]([^)\]]+)[)\]]", name), *behind[:1]) if one), "")
+    said = (*re.findall(r"[(\[]([^)\]]+)[)\]]", name), *behind[:1], *_IN_NAME.findall(name))
+    unit = next((one for one in said if one), "")
     is_step = is_step and not _is_of(unit, "Hz")  # steps at 8 kHz
     size = value * _factor(unit, "s" if is_step else "Hz")
     rate = rate_of(size) if is_step else size
@@ -69,6 +71,18 @@ def _is_of(unit: str, plain: str) -> bool:
         return bool(unit) and to_si(1.0, unit, plain) > 0
     except InputError:
         return False
+
+
+def beside_their_units(attributes: Mapping[str, Any]) -> list[list[str]]:
+    """Attributes of one value, each as its name, its value and the unit that another one gives it (`dt`, `dt_unit`)."""
+
+    def unit_of(name: str) -> str:
+        own = next((attributes[u] for u in (f"{name}_unit", f"{name}_units") if u in attributes), None)
+        if own is None and _STEP.search(name):
+            own = next((attributes[u] for u in ("time_unit", "time_units") if u in attributes), None)
+        return own.decode("utf-8", "replace") if isinstance(own, bytes) else str(own or "")
+
+    return [[name, str(value), unit_of(name)] for name, value in attributes.items() if np.size(value) == 1]
 
 
 def _factor(unit: str, plain: str) -> float:

@@ -3,6 +3,7 @@
 import logging
 from collections.abc import Iterator
 from contextlib import contextmanager
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +25,7 @@ from gear_damping.measurement.formats.table import (
 
 SUFFIXES = (".tdms",)
 
+_HALF = 0.5  # of a sample, by which clocks of one task differ at most
 _UNIT_PROPERTIES = ("unit_string", "NI_UnitDescription", "unit", "Unit")
 
 
@@ -39,11 +41,12 @@ def read(path: Path, max_bytes: int) -> Table:
     with unreadable(path, "not a readable TDMS file", "export it again"), _opened(nptdms, path, said) as file:
         channels = [channel for group in file.groups() for channel in group.channels()]
         refuse_size(path, sum(8 * len(channel) for channel in channels), max_bytes)
+        first = min((one for one in map(_begun, channels) if one is not None), default=None)
         for channel in channels:
             name = f"{channel.group_name}/{channel.name}"
             dtype = np.dtype(channel.dtype)
             if len(channel) and (is_real(dtype) or dtype.kind == "M"):
-                held.append(_held(nptdms, path, name, channel))
+                held.append(_held(nptdms, path, name, channel, first))
             else:
                 left_out.append(f"{name} ({'empty' if not len(channel) else kind_of(dtype)})")
     if not held and said.messages:
@@ -91,7 +94,14 @@ def _opened(nptdms: Any, path: Path, said: _Said) -> Iterator[Any]:
             log.removeHandler(said)
 
 
-def _held(nptdms: Any, path: Path, name: str, channel: Any) -> Held:
+def _begun(channel: Any) -> np.datetime64 | None:
+    """When a waveform begins, where LabVIEW has written it."""
+    found = channel.properties.get("wf_start_time")
+    return np.datetime64(found) if isinstance(found, (np.datetime64, datetime)) else None
+
+
+def _held(nptdms: Any, path: Path, name: str, channel: Any, first: np.datetime64 | None) -> Held:
+    """A channel; `first` is when the first of the file begins."""
     group, own = channel.group_name, channel.name
     stamps = np.dtype(channel.dtype).kind == "M"
 
@@ -100,13 +110,19 @@ def _held(nptdms: Any, path: Path, name: str, channel: Any) -> Held:
             values = file[group][own][:]
         return (values - values[0]) / np.timedelta64(1, "s") if stamps else values
 
+    begun = _begun(channel)
+    late = 0.0 if begun is None else float((begun - first) / np.timedelta64(1, "s"))
     said = (channel.properties.get(name) for name in _UNIT_PROPERTIES)
     unit = "s" if stamps else next((one for one in said if one and isinstance(one, str)), None)
-    return Held(name, (len(channel),), read, unit, _clock(channel.properties))
+    return Held(name, (len(channel),), read, unit, _clock(channel.properties, late))
 
 
-def _clock(properties: dict[str, Any]) -> tuple[float, float] | None:
-    """Start in s and rate in Hz of a waveform; the increment of one over time is in s, over frequency in Hz."""
+def _clock(properties: dict[str, Any], late: float) -> tuple[float, float] | None:
+    """Start in s and rate in Hz of a waveform that begins `late` s behind the first.
+
+    The increment of one over time is in s, over frequency in Hz.
+    """
     rate, start = rate_of(properties.get("wf_increment")), properties.get("wf_start_offset", 0.0)
     in_time = properties.get("wf_xname", "Time") != "Frequency" and properties.get("wf_xunit_string", "s") == "s"
-    return (float(start), rate) if rate and in_time and isinstance(start, (int, float)) else None
+    late = late if rate and late * rate > _HALF else 0.0  # less is the rounding of its clock
+    return (float(start) + late, rate) if rate and in_time and isinstance(start, (int, float)) else None

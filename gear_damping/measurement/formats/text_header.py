@@ -43,6 +43,8 @@ def text_header(text: Text) -> tuple[Header, int]:
     )
     if is_title:  # names in words would be as many as the columns
         header = Header(("",) * text.width, (), header.first, header.first)
+    if len(header.names) == text.width - 1 and _are_rows_numbered(rows[header.first :], text.width):
+        header = replace(header, names=("", *header.names))
     if header.first == len(rows):
         raise InputError(Problem("file", "a header and no rows of numbers", str(text.path), "export it again"))
     if not header.names:
@@ -51,6 +53,12 @@ def text_header(text: Text) -> tuple[Header, int]:
         names = names if len(names) == width else [""] * width
         header = Header(tuple(names), (), header.first, header.skipped)
     return header, lines[header.first]
+
+
+def _are_rows_numbered(rows: list[list[str]], width: int) -> bool:
+    """Whether the first cells of rows as wide as the values count them: a column that R writes and does not name."""
+    counted, wanted = [row[0].strip() for row in rows], [str(k) for k in range(1, 1 + len(rows))]
+    return len(rows) > 1 and all(filled(row) == width for row in rows) and counted == wanted
 
 
 def _is_setting(names: tuple[str, ...], width: int) -> bool:

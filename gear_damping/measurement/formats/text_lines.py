@@ -4,6 +4,7 @@ import csv
 import gzip
 import io
 import re
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,9 @@ HEAD = 100  # rows among which the header is looked for
 _DELIMITERS = (";", "\t", "|", ",")  # in the order in which they are taken for it; blanks where none stands
 _ALONE = 80  # last lines that are asked whether they hold a number each
 _NUMBER, IS_COMMENT = re.compile(r"\d"), re.compile(r"\s*(#|%|//)")
+_BEGINS = re.compile(r"^[\s;,|\"(]*[+-]?[.,]?\d")  # a line of values, which headers and remarks seldom look like
+_RULED = re.compile(rb"^[ \t]*\|[ \t|:+-]+$|^[ \t]*\||[ \t]*\|[ \t]*$", re.MULTILINE)  # of a table as in Markdown
+_LINE_END = re.compile(rb"\r+\n|\r")  # also written twice by a text mode, or alone as computers of the nineties did
 
 
 class Text:
@@ -26,21 +30,21 @@ class Text:
 
     def __init__(self, path: Path, raw: bytes) -> None:
         self.path = path
-        self.utf8, self.cut = _whole_lines(_utf8(path, raw))
-        if b"\n" not in self.utf8:
-            self.utf8 = self.utf8.replace(b"\r", b"\n")  # as computers of the nineties end lines
+        text, self.cut = _whole_lines(_utf8(path, raw))
+        self.utf8 = _LINE_END.sub(b"\n", text)
         ending = self.utf8[-(2**16) :].decode("utf-8", "replace").splitlines()
         kept = [line for line in ending if line.strip(" \r" + "".join(_DELIMITERS)) and not IS_COMMENT.match(line)]
-        last = next((line for line in reversed(kept) if _NUMBER.search(line)), kept[-1] if kept else "")
+        last = _typical([line for line in kept if _NUMBER.search(line)] or kept[-1:])
         if ends := _line_end(last):
             self.utf8, last = (
                 re.sub(rb"%s[ \t]*(?=\r?\n|$)" % re.escape(ends).encode(), b"", self.utf8),
                 last.rstrip().rstrip(ends),
             )
-        # Headers hold all kinds of signs, numbers only one.
-        self.delimiter = next((sign for sign in _DELIMITERS if sign in last), " ")
+        self.delimiter = _sign_of(last)
         if self.delimiter == ",":
             self.delimiter = _beside_decimal_commas(kept[-HEAD:], last)
+        if self.delimiter == "|" and last.lstrip().startswith("|"):
+            self.utf8, last = _RULED.sub(b"", self.utf8), _RULED.sub(b"", last.encode()).decode()
         self.width = max((k + 1 for k, cell in enumerate(next(self._cells([last]), [])) if cell.strip()), default=0)
 
     def open(self) -> io.TextIOWrapper:
@@ -60,6 +64,28 @@ class Text:
         except csv.Error as error:
             rule = f"line {reader.line_num} is no row of a table ({error})"
             raise InputError(Problem("file", rule, str(self.path), "export it again")) from None
+
+
+def _sign_of(line: str) -> str:
+    return next((sign for sign in _DELIMITERS if sign in line), " ")
+
+
+def _is_alone(line: str) -> bool:
+    """Whether a line has one cell."""
+    return _sign_of(line) == " " and " " not in line.strip()
+
+
+def _typical(lines: list[str]) -> str:
+    """The last of the lines that have the sign of most of those that begin with a number.
+
+    Headers hold all kinds of signs, numbers only one; so do remarks behind some of them, and below.
+    """
+    values = [line for line in lines if _BEGINS.match(line)] or lines
+    if values and not _is_alone(values[-1]):  # rows that were cut say nothing of it
+        values = [line for line in values if not _is_alone(line)]
+    signs = [_sign_of(line) for line in reversed(values)]
+    usual = Counter(signs).most_common(1)[0][0] if signs else ""
+    return next((line for line in reversed(values) if _sign_of(line) == usual), "")
 
 
 def _beside_decimal_commas(lines: list[str], last: str) -> str:
@@ -104,6 +130,7 @@ def _utf8(path: Path, raw: bytes) -> bytes:
 
 def _whole_lines(text: bytes) -> tuple[bytes, str]:
     """A text without the zeros that a recorder which lost its power left, nor a line that they cut; what is noted."""
+    text = text.removesuffix(b"\x1a")  # as DOS ends a file
     whole = text.rstrip(b"\0\r\n ")
     if b"\0" not in text[len(whole) :]:
         return text, ""

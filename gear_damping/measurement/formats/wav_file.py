@@ -34,6 +34,8 @@ def _fractions(samples: NDArray) -> tuple[NDArray[np.float64], str]:
     """Integers become fractions of full scale; scipy hands 24 bits over in the upper bytes of 32."""
     values = samples.astype(np.float64)
     if samples.dtype.kind == "f":
+        if np.max(np.abs(samples), initial=0.0) <= 1.0:
+            return values, "WAV holds floating-point samples within ±1: with a `range` they are shares of it"
         return values, "WAV holds floating-point samples: taken as they are"
     bits = 8 * samples.dtype.itemsize
     scale = float(2 ** (bits - 1))

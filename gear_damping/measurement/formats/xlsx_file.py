@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.formats.cells import Cells, CellTable, without_footer
+from gear_damping.measurement.formats.cells import Cells, CellTable, said_of_empty_rows, without_footer
 from gear_damping.measurement.formats.header import find_header
 from gear_damping.measurement.formats.moments import past_midnight
 from gear_damping.measurement.formats.table import Table, extra_library, refuse_size, unreadable
@@ -35,6 +35,7 @@ def read(path: Path, max_bytes: int) -> Table:
     several = sum(bool(rows) for rows in sheets.values()) > 1
     columns, notes = [], []
     for title, rows in sheets.items():
+        notes += [f"{path.name}, {title}: {empty}"] if (empty := _empty_rows(rows)) else []
         own, below = without_footer(_columns(rows, f"{title}/" if several else ""))
         columns += own
         notes += [f"{path.name}, {title}: {below}"] if below else []
@@ -65,6 +66,13 @@ def _columns(rows: list[list[Any]], prefix: str) -> list[Cells]:
             values, own_unit = _values([cell for _, cell in cells])
             columns.append(Cells(name, own_unit or unit, values, lines.__getitem__, header.also(k)))
     return columns
+
+
+def _empty_rows(rows: list[list[Any]]) -> str:
+    """What is noted of empty rows between rows of numbers."""
+    values = [k for k, row in enumerate(rows, start=1) if any(isinstance(cell, int | float) for cell in row)]
+    empty = [k for k, row in enumerate(rows, start=1) if all(cell is None for cell in row)]
+    return said_of_empty_rows([k for k in empty if values and values[0] < k < values[-1]], len(values))
 
 
 def _values(cells: list[Any]) -> tuple[NDArray, str | None]:

@@ -44,7 +44,7 @@ class TorqueVariation(Load, Switch):
                     timed={"sine_frequency": cycles},
                     options={"form": "sine"},
                 )
-                for cycles in (0.7, 1.0, 1.4, 1.8, 2.2, 2.6, 3.0)
+                for cycles in (0.7, 1.0, 1.4, 1.8, 2.2, 2.6, 3.0, 3.5, 4.0, 4.5, 5.0, 5.5, 6.0)
             ),
             *(
                 Recipe(
@@ -57,6 +57,7 @@ class TorqueVariation(Load, Switch):
             ),
         ),
         separated_by="torque_channel",
+        turns_with="clock",
     )
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
