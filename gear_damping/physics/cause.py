@@ -154,8 +154,9 @@ class Cause:
             function of its values by own name where they decide.
         simpler: An effect that it contains, with fewer parameters.
         turns_with: Whether its phases turn with a shaft (`shaft`) and not with the mesh, or even tell single teeth
-            apart (`tooth`), or go with the time (`clock`), which begins anew in every record: where no index says how the shaft stands, every record has phases of its own, and the
-            `phase` of what tells teeth apart is sought tooth by tooth in each of them.
+            apart (`tooth`), or go with the time (`clock`), which begins anew in every record. Where no index says how
+            the shaft stands, every record has phases of its own, and the `phase` of what tells teeth apart is sought
+            tooth by tooth in each of them.
         one_class: What else no record of this channel parts from it, as words for a sentence: then several names are
             one answer.
         acts_as: What it comes to at the motion that was recorded, as words for a sentence with a size in N or in what

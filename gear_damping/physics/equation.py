@@ -49,7 +49,7 @@ class EquationOfMotion:
 
     def kinematics(self, time: Tensor, state: tuple[Tensor, ...], inputs: Values, base: Values) -> Kinematics:
         """The state at one instant, with the angles that belong to it."""
-        turns = self.system.rotations(time, inputs, base)
+        turns = self.system.rotations(time, inputs, base, state[0])
         extra = dict(zip(self.extra_names, state[2:], strict=True))
         return Kinematics(time, state[0], state[1], extra=extra, inputs=inputs, **turns)
 

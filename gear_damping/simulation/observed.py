@@ -111,7 +111,7 @@ def _kinematics(runs: Runs, prepared: Prepared) -> Kinematics:
     given = {n: runs.inputs[n].T / unit for n, unit in input_units(runs.model, runs.inputs, prepared).items()}
     turning = given | ({ANGLE_RATE: 0 * given[ANGLE]} if ANGLE in given else {})
     time = runs.time.unsqueeze(1) / prepared.scales.time
-    turns = runs.model.system.rotations(time, turning, prepared.base)
+    turns = runs.model.system.rotations(time, turning, prepared.base, x)
     names = list(units)[2:]
     return Kinematics(time, x, v, extra=dict(zip(names, extra, strict=True)), inputs=given, **turns)
 

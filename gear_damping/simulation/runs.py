@@ -87,11 +87,13 @@ class Runs:
     @cached_property
     def angles(self) -> dict[str, Tensor]:
         """`pinion_angle`, `gear_angle` and `mesh_angle` in rad, (batch, time); none without a shaft."""
-        base = {name: value.unsqueeze(1) for name, value in self.model.prepare(self.values).base.items()}
-        time = self.time / self.model.prepare(self.values).scales.time.unsqueeze(1)
+        prepared = self.model.prepare(self.values)
+        base = {name: value.unsqueeze(1) for name, value in prepared.base.items()}
+        time = self.time / prepared.scales.time.unsqueeze(1)
+        displacement = self.states["displacement"] / prepared.scales.length.unsqueeze(1)
         given = self.inputs.get(ANGLE)
         turning = {} if given is None else {ANGLE: given, ANGLE_RATE: given * 0}
-        turns = self.model.system.rotations(time, turning, base)
+        turns = self.model.system.rotations(time, turning, base, displacement)
         return {f"{name}_angle": turn.angle.expand(time.shape) for name, turn in turns.items()}
 
     def record(self, generator: torch.Generator, skip: tuple[str, ...] = ()) -> Tensor:

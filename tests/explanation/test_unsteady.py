@@ -57,7 +57,8 @@ def test_angle_and_speed_of_a_shaft_that_speeds_up(later):
     given = {**values, "n_teeth_pinion": 20.0, "n_teeth_gear": 50.0, "mesh_phase": 0.3, "gear_phase": 0.2}
     given = {name: torch.tensor([value], dtype=torch.float64) for name, value in given.items()}
     given |= GearPair().begun_later(given, torch.tensor([later], dtype=torch.float64))
-    turned = GearPair().rotations(torch.tensor([0.7], dtype=torch.float64), {}, given)
+    given |= {"contact_advance": torch.zeros(1), "base_radius_pinion": torch.ones(1)}
+    turned = GearPair().rotations(torch.tensor([0.7], dtype=torch.float64), {}, given, torch.ones(1))
     end = 0.7 + later
     angle = 0.1 + 0.04 - 0.3 * end + quad(lambda t: 3.0 + quad(lambda s: -2.0 + 1.2 * s, 0, t)[0], 0, end)[0]
     speed = 3.0 - 0.3 + quad(lambda t: -2.0 + 1.2 * t, 0, end)[0]

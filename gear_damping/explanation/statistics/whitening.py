@@ -80,13 +80,25 @@ class Autoregression:
 
     def whitened(self, rows: Tensor) -> Tensor:
         """The innovations of rows (..., time); 0 for the first `memory` samples, which have no full past."""
-        found = rows.clone()
+        found, begin, stop = rows.clone(), self.memory, rows.shape[-1]
+        kept = found[..., begin:]
         for lag, a in enumerate(self.coefficients.tolist(), 1):
-            found[..., lag:] -= a * rows[..., :-lag]
+            kept.sub_(rows[..., begin - lag : stop - lag], alpha=a)
+        if len(self.octaves):
+            sums = torch.nn.functional.pad(rows, (1, 0)).cumsum(-1)
+            for lag, weight in self._ends.items():
+                kept.sub_(sums[..., begin - lag : stop - lag], alpha=weight)
+        found[..., :begin] = 0.0
+        return found
+
+    @property
+    def _ends(self) -> dict[int, float]:
+        """By lag, what a sum of all samples before it counts: an octave's mean is the difference of two of them."""
+        found: dict[int, float] = {}
         for number, b in enumerate(self.octaves.tolist()):
-            past = octave(rows, len(self.coefficients) * 2**number)
-            found[..., -past.shape[-1] :] -= b * past
-        found[..., : self.memory] = 0.0
+            width = len(self.coefficients) * 2**number
+            for lag, sign in ((width, 1), (2 * width, -1)):
+                found[lag] = found.get(lag, 0.0) + sign * b / width
         return found
 
 

@@ -20,7 +20,7 @@ from gear_damping.explanation.statistics.family_wise import (
     family_wise,
 )
 from gear_damping.explanation.statistics.projector import Projector
-from gear_damping.explanation.statistics.tall import tall_svd
+from gear_damping.explanation.statistics.tall import directions
 from gear_damping.explanation.trials.innovations import load_errors, random_loads
 from gear_damping.explanation.trials.line import strongest_line
 from gear_damping.explanation.trials.random_part import Random, Whitener, random_part
@@ -206,12 +206,8 @@ def orthonormal(columns: Tensor) -> Tensor:
     if columns.shape[1] == 1:
         size = columns.norm()
         return columns / size if float(size) > 0 else columns[:, :0]
-    norms = columns.norm(dim=0)
-    columns = columns[:, norms > INDEPENDENT * norms.max().clamp(min=1e-300)]
-    if not columns.shape[1]:
-        return columns
-    basis, sizes, _ = tall_svd(columns / columns.norm(dim=0))
-    return basis[:, sizes > INDEPENDENT * sizes[0]]
+    basis, sizes = directions(columns, INDEPENDENT)
+    return basis[:, sizes > INDEPENDENT * sizes[:1]]
 
 
 def _without_what_shows(signal: Tensor, bases: Sequence[Tensor], free: float) -> tuple[Tensor, float]:

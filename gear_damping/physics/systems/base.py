@@ -55,7 +55,7 @@ class System(Declared, ABC):
         """The constant stiffness of a base without a mesh."""
         raise NotImplementedError(f"{self.name} takes its stiffness from a mesh_stiffness effect")
 
-    def rotations(self, time: Tensor, inputs: Values, p: Values) -> dict[str, Rotation]:
+    def rotations(self, time: Tensor, inputs: Values, p: Values, displacement: Tensor) -> dict[str, Rotation]:
         """Pinion, gear and mesh rotation; empty for a base that does not turn."""
         return {}
 

@@ -54,6 +54,7 @@ class GearPair(System):
         Parameter("angle_error", "rad", 0.0, "true pinion angle less the recorded or stated one, at the start"),
         Parameter("angle_error_rate", "rad/s", 0.0, "its rate", -1e4, 1e4),
         Parameter("mesh_phase", "rad", 0.0, "mesh angle at pinion angle zero"),
+        Parameter("contact_advance", "1", 0.0, "share of x by which the teeth in mesh have gone on", -2, 2),
         Parameter("gear_phase", "rad", 0.0, "gear angle at pinion angle zero"),
         Parameter("initial_displacement", "m", 0.0, "transmission error at the start"),
         Parameter("initial_velocity", "m/s", 0.0, "its rate at the start"),
@@ -118,18 +119,23 @@ class GearPair(System):
         gear = at.inputs.get("gear_torque", p["gear_torque"])
         return p["load_per_pinion_torque"] * pinion + p["load_per_gear_torque"] * gear
 
-    def rotations(self, time: Tensor, inputs: Values, p: Values) -> dict[str, Rotation]:
-        """The shafts and the mesh at this time; a measured pinion angle replaces the stated speed."""
+    def rotations(self, time: Tensor, inputs: Values, p: Values, displacement: Tensor) -> dict[str, Rotation]:
+        """The shafts and the mesh at this time; a measured pinion angle replaces the stated speed.
+
+        Which teeth carry goes with the mean rotation, and with a share of x beside it: m_e / (I_1 / r_b1^2) where the
+        pinion's own angle says it, as in models of both rotations, -m_e / (I_2 / r_b2^2) where the gear's does.
+        """
         if "pinion_angle" in inputs:
             angle, speed = inputs["pinion_angle"], inputs["pinion_angle_rate"]
         else:
             angle, speed = _turned(p, time)
         angle, speed = angle + p["angle_error"] + time * p["angle_error_rate"], speed + p["angle_error_rate"]
         ratio = p["n_teeth_pinion"] / p["n_teeth_gear"]
+        ahead = p["contact_advance"] * displacement / p["base_radius_pinion"]
         return {
             "pinion": Rotation(angle, speed),
             "gear": Rotation(ratio * angle + p["gear_phase"], ratio * speed),
-            "mesh": Rotation(p["n_teeth_pinion"] * angle + p["mesh_phase"], p["n_teeth_pinion"] * speed),
+            "mesh": Rotation(p["n_teeth_pinion"] * (angle + ahead) + p["mesh_phase"], p["n_teeth_pinion"] * speed),
         }
 
     def begun_later(self, values: Values, seconds: Tensor) -> dict[str, Tensor]:
