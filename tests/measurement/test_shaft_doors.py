@@ -151,3 +151,26 @@ def test_a_threshold_beyond_a_pulse_train_says_what_the_train_holds(bench):
     (problem,) = bench.problems()
     for words in ("encoders.tacho.threshold", "0 to 0.2; remedy"):
         assert words in problem
+
+
+@pytest.mark.parametrize(("said", "kinds"), [("arcsec", []), ("mrad", ["unit_conflict"])])
+def test_the_angle_of_a_shaft_is_held_against_the_unit_of_its_header(bench, said, kinds):
+    _in_arc_seconds(bench, "gear", 55)
+    bench.columns = {f"dte [{said}]" if name == "dte" else name: values for name, values in bench.columns.items()}
+    bench.channels["transmission_error"]["column"] = f"dte [{said}]"
+    assert [kind for kind in _problems(bench.load().records[0]) if kind == "unit_conflict"] == kinds
+
+
+@pytest.mark.parametrize(("unit", "factor", "radius"), [("rad/s^2", 1.0, None), ("deg/s^2", np.pi / 180, 0.04)])
+def test_an_angular_acceleration_needs_no_radius(bench, unit, factor, radius):
+    values = 300 * np.cos(np.arange(400) / 7)
+    bench.columns["alpha"] = values
+    channel = {"column": "alpha", "unit": unit, "mounting": "tangential", "shaft": "gear"}
+    bench.channels["acceleration"] = channel | ({} if radius is None else {"radius": {"value": radius, "unit": "m"}})
+    del bench.channels["transmission_error"]
+    found = bench.load().records[0].channels["acceleration"]
+    assert found.radius == (radius or 1.0)
+    np.testing.assert_allclose(found.values / found.radius, factor * values, rtol=1e-12)
+    channel["unit"] = "m/s^2"
+    bench.channels["acceleration"] = channel
+    assert "state the unit of an angular acceleration, unit: rad/s^2" in " ".join(bench.problems())

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from gear_damping.errors import InputError, Problem, nearest
 
 _SHOWN = 20  # arrays that a message lists
-_UNIT_BEHIND = re.compile(r"\s*([(\[](?![\d, ]*[)\]])[^()\[\]]*[)\]]|\s/\s*\S+)$")
+_UNIT_BEHIND = re.compile(r"\s*([(\[](?![\d, ]*[)\]])[^()\[\]]*[)\]](\s*run\s*#?\s*\d+)?|\s/\s*\S+)$", re.I)
 _OF_ARRAY = re.compile(r"^(.+)\[(\d+)\]\.(\w+)$")  # `runs[0].t`, the member of a structure in an array of them
 _INDEXED = re.compile(r"^(.*)\[[\d, ]+\]$")
 
@@ -106,7 +106,9 @@ class Table(ABC):
             choice = [name for name in named if name.startswith(f"{base}[")]
             rule = f"'{base}' is {_shape(shapes[base])}, and one column of it is needed"
             return Problem(key, rule, column, f"write one of {choice[0]} to {choice[-1]}", str(self.path))
-        remedy = nearest(column, named).rstrip("?") + f"? {self.path.name} holds {self.listing()}"
+        begun = next((name for name in named if name.startswith(column.strip())), None)
+        meant = f"did you mean '{begun}'" if begun else nearest(column, named).rstrip("?")
+        remedy = meant + f"? {self.path.name} holds {self.listing()}"
         if not remedy.startswith("did you mean"):
             remedy = f"{self.path.name} holds {self.listing()}"
         return Problem(key, "no such column", column, remedy, str(self.path))

@@ -1,0 +1,195 @@
+"""Files as other programs write them, each beside the plain file that holds the same numbers."""
+
+import numpy as np
+import pytest
+import yaml
+
+from gear_damping.errors import InputError
+from gear_damping.measurement.files import read_yaml
+from gear_damping.measurement.formats.registry import read_table
+from gear_damping.measurement.load import load_measurement
+
+RATE = 200.0
+TIME = np.arange(60) / RATE
+WAVE = np.round(5 * np.cos(23 * TIME), 4)
+ROWS = [f"{t:.4f},{x:.4f}" for t, x in zip(TIME, WAVE, strict=True)]
+
+
+def _table(folder, text: str, name: str = "a.csv"):
+    (folder / name).write_bytes(text.encode())
+    return read_table(folder / name)
+
+
+def _wave(table) -> list[float]:
+    return table.values(table.index("x", "")).tolist()
+
+
+def _ruled(rows: list[str]) -> str:
+    return "\n".join("| " + row.replace(",", " | ") + " |" for row in rows)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "t,x\r\r\n" + "\r\r\n".join(ROWS) + "\r\r\n",
+        "Rig 5\rrun 2\nt,x\n" + "\n".join(ROWS),
+        '"t\r[s]","x\r[mm]"\n' + "\n".join(ROWS),
+        "t,x\r" + "\r".join(ROWS) + "\r# end\n",
+        "t,x\n" + "\n".join(ROWS) + "\n\x1a",
+        "t,x,remark\n" + ",\n".join(ROWS[:-1]) + ",\n" + ROWS[-1] + ",ok; done",
+        "t,x,remark\n" + "\n".join(f"{row},{'stopping' if k > 40 else ''}" for k, row in enumerate(ROWS)),
+        "t,x\n" + "\n".join(ROWS) + "\nend of data; 60 rows",
+        "| t | x |\n|---|---|\n" + _ruled(ROWS),
+        '"t" "x"\n' + "\n".join(f'"{k}" {row.replace(",", " ")}' for k, row in enumerate(ROWS, 1)),
+        "# a remark\nt,x,run\n" + "\n".join(f"{row},run #{k}" for k, row in enumerate(ROWS)),
+    ],
+    ids=["crcrlf", "cr in a title", "cr in a header", "cr", "dos", "remark", "remarks", "footer", "bars", "R", "hash"],
+)
+def test_every_row_comes_out(tmp_path, text):
+    table = _table(tmp_path, text)
+    named = [k for k, name in enumerate(table.names) if name.startswith("x")]
+    assert table.values(named[0]).tolist() == WAVE.tolist()
+
+
+@pytest.mark.parametrize("empty", ["", ",", " , "])
+def test_empty_rows_among_values_are_said(tmp_path, empty):
+    table = _table(tmp_path, "t,x\n" + "\n".join([*ROWS[:20], empty, *ROWS[21:]]))
+    assert _wave(table) == [*WAVE[:20], *WAVE[21:]]
+    assert "1 empty row(s) among its values, the first in line 22, are left out" in " ".join(table.notes)
+    doubled = _table(tmp_path, "t,x\n" + "\n\n".join(ROWS) + "\n\n")
+    assert not doubled.notes
+
+
+def test_empty_rows_of_a_sheet_are_said(tmp_path):
+    openpyxl = pytest.importorskip("openpyxl")
+    book = openpyxl.Workbook()
+    for k, row in enumerate([("t", "x"), *zip(TIME.tolist(), WAVE.tolist(), strict=True)]):
+        book.active.append((None, None) if k == 30 else row)
+    book.save(tmp_path / "a.xlsx")
+    assert "1 empty row(s) among its values, the first in line 31" in " ".join(read_table(tmp_path / "a.xlsx").notes)
+
+
+def test_a_quotation_mark_that_is_not_closed_does_not_swallow_rows(tmp_path):
+    rows = [f"{row}," for row in ROWS]
+    rows[20] += '"bump at 5'
+    rows[30] += 'ok"'
+    with pytest.raises(InputError, match=r"a cell of row 20 goes on over 10 lines, up to line 32"):
+        _table(tmp_path, "t,x,remark\n" + "\n".join(rows))
+
+
+def _load(folder, channels: dict, **files: str):
+    for name, text in files.items():
+        (folder / f"{name}.csv").write_text(text)
+    record = {"name": "a", "file": "a.csv", "channels": channels}
+    content = {"system": "oscillator", "records": [record]}
+    (folder / "measurement.yaml").write_text(yaml.safe_dump(content))
+    return load_measurement(folder / "measurement.yaml").records[0]
+
+
+@pytest.mark.parametrize(
+    ("said", "gain"), [("0.1 mm", 10), ("1/100 mm", 100), ("10^-3 mm", 1000), ("10 mm", 0.1), ("1e-3 mm", 1000)]
+)
+def test_a_header_that_counts_in_steps_contradicts_the_unit(tmp_path, said, gain):
+    channels = {"sampling_rate": {"value": RATE, "unit": "Hz"}, "displacement": {"column": 1, "unit": "mm"}}
+    text = f"t,x [{said}]\n" + "\n".join(ROWS)
+    (found,) = [one for one in _load(tmp_path, channels, a=text).findings if one.kind == "unit_conflict"]
+    assert f"write gain: {gain:g}, by which values are divided" in found.message
+    channels["displacement"]["gain"] = gain
+    mended = _load(tmp_path, channels, a=text)
+    assert not [one for one in mended.findings if one.kind == "unit_conflict"]
+    np.testing.assert_allclose(mended.channels["displacement"].values, WAVE / gain, rtol=1e-12)
+
+
+def test_stamps_that_count_steps_are_read_so_and_not_against_the_unit(tmp_path):
+    channels = {"time": {"column": 0}, "displacement": {"column": 1, "unit": "mm"}}
+    text = "t [10 ms],x\n" + "\n".join(f"{k / 2},{x}" for k, x in enumerate(WAVE))
+    assert _load(tmp_path, channels, a=text).sampling_rate == pytest.approx(RATE)
+    channels["time"]["unit"] = "ms"
+    with pytest.raises(InputError, match="says '10 ms'"):
+        _load(tmp_path, channels, a=text)
+
+
+def test_what_a_name_is_over_is_no_unit(tmp_path):
+    text = "t,x(t)\n" + "\n".join(ROWS)
+    channels = {"sampling_rate": {"value": RATE, "unit": "Hz"}, "displacement": {"column": "x(t)", "unit": "mm"}}
+    assert not [one for one in _load(tmp_path, channels, a=text).findings if one.kind == "unit_conflict"]
+    del channels["displacement"]["unit"]
+    with pytest.raises(InputError, match=r"displacement\.unit: is missing"):
+        _load(tmp_path, channels, a=text)
+
+
+def test_counts_without_their_sign_are_a_problem_and_a_switch_is_none(tmp_path):
+    counts = np.round(1000 * WAVE).astype(int)
+    channels = {"sampling_rate": {"value": RATE, "unit": "Hz"}}
+    channels["displacement"] = {"column": "x", "unit": "mm", "gain": 1000}
+
+    def kinds(values):
+        text = "t,x\n" + "\n".join(f"{t},{x}" for t, x in zip(TIME, values, strict=True))
+        return [one.kind for one in _load(tmp_path, channels, a=text).findings if one.severity == "data_problem"]
+
+    assert "run_over" in kinds(counts % 65536)
+    assert "run_over" not in kinds(counts)
+    assert "run_over" not in kinds(np.where(counts > 0, 65535, 0))
+
+
+def test_a_channel_with_a_rate_alone_begins_with_the_first_row(tmp_path):
+    text = "t,x,u\n" + "\n".join(f"{t - 0.1:.4f},{x},{x}" for t, x in zip(TIME, WAVE, strict=True))
+    channels = {"time": {"column": "t", "unit": "s"}, "displacement": {"column": "x", "unit": "mm"}}
+    channels["force"] = {"column": "u", "unit": "N", "sampling_rate": {"value": RATE, "unit": "Hz"}}
+    record = _load(tmp_path, channels, a=text)
+    np.testing.assert_allclose(record.channels["force"].values, WAVE, atol=1e-9)
+
+
+def test_waveforms_that_begin_at_other_times_stand_as_much_apart(tmp_path):
+    nptdms = pytest.importorskip("nptdms")
+    begun = np.datetime64("2026-01-05T08:00:00")
+    late = {"one": begun + np.timedelta64(1500, "ms"), "two": begun}
+    with nptdms.TdmsWriter(str(tmp_path / "a.tdms")) as writer:
+        writer.write_segment([
+            nptdms.ChannelObject("g", name, WAVE, {"wf_increment": 1 / RATE, "wf_start_time": start})
+            for name, start in late.items()
+        ])  # fmt: skip
+    table = read_table(tmp_path / "a.tdms")
+    assert [table.clock(table.index(f"g/{name}", "")) for name in late] == [(1.5, RATE), (0.0, RATE)]
+
+
+@pytest.mark.parametrize(
+    "attributes",
+    [
+        {"sample_interval": 5, "sample_interval_unit": "ms"},
+        {"dt": 5, "time_unit": b"ms"},
+        {"sample_interval_us": 5000},
+        {"fs": 0.2, "fs_unit": "kHz"},
+    ],
+)
+def test_a_rate_is_read_in_the_unit_beside_it(tmp_path, attributes):
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["x"] = WAVE
+        file["x"].attrs.update(attributes)
+    assert read_table(tmp_path / "a.h5").clock(0) == (0.0, pytest.approx(RATE))
+
+
+def test_numbers_of_a_yaml_are_decimal(tmp_path):
+    (tmp_path / "a.yaml").write_text("a: 010\nb: 1:30\nc: 1e-3\nd: -7\ne: 1_000\nf: 08\n")
+    found = {"a": 10, "b": "1:30", "c": 1e-3, "d": -7, "e": 1000, "f": 8}
+    assert read_yaml(tmp_path / "a.yaml") == found
+
+
+def test_range_and_gain_of_a_wav_file_do_not_both_scale_it(tmp_path):
+    from scipy.io import wavfile
+
+    wavfile.write(tmp_path / "a.wav", int(RATE), np.round(3000 * WAVE).astype(np.int16))
+    channel = {"column": 0, "unit": "mm", "range": {"value": 100, "unit": "mm"}, "gain": 0.1}
+    record = {"file": "a.wav", "channels": {"displacement": channel}}
+    (tmp_path / "m.yaml").write_text(yaml.safe_dump({"system": "oscillator", "records": [record]}))
+    with pytest.raises(InputError, match=r"gain = 0\.1: stands beside range.*leave one of the two out"):
+        load_measurement(tmp_path / "m.yaml")
+
+
+def test_a_name_is_found_without_its_unit_and_its_run(tmp_path):
+    header = '"Time (s) Run #14","Angle, Ch P1 (rad) Run #14","Angle, Ch P2 (rad) Run #14"'
+    table = _table(tmp_path, header + "\n" + "\n".join(f"{row},0.5" for row in ROWS))
+    assert table.index("Angle, Ch P1", "") == 1
+    with pytest.raises(InputError, match=r"did you mean 'Angle, Ch P1 \(rad\) Run #14'\?"):
+        table.index("Angle, Ch P1 (r", "")
