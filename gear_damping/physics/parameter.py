@@ -1,10 +1,12 @@
 """Declarations of what an effect or a system can be given: parameters (numbers) and options (choices)."""
 
 from dataclasses import dataclass
-from math import inf
+from math import inf, nan, pi
 
 from gear_damping.errors import Problem, nearest
 from gear_damping.units import Dimension, parse_unit
+
+USUAL = {"m": ("mm", 1e-3), "rad": ("deg", pi / 180)}  # the units of drawings, and their size in SI
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,14 @@ class Parameter:
         rule = "must be a whole number" if inside else f"must lie within {self.lower:g} … {self.upper:g} {self.unit}"
         nearest_valid = min(max(value, self.lower), self.upper) if value == value else self.default
         nearest_valid = round(nearest_valid) if self.whole else nearest_valid
-        return Problem(key, rule, value, f"nearest valid value {nearest_valid:g}", source)
+        return Problem(key, rule, value, self._as_in(value) or f"nearest valid value {nearest_valid:g}", source)
+
+    def _as_in(self, value: float) -> str:
+        """The value in SI that a number was meant to be in the unit that drawings have; empty where it is none."""
+        usual, factor = USUAL.get(self.unit, ("", nan))
+        meant = value * factor
+        is_meant = value > self.upper and self.lower <= meant <= self.upper
+        return f"in {self.unit}: {value:g} {usual} are {meant:.4g}" if is_meant else ""
 
 
 @dataclass(frozen=True)

@@ -53,6 +53,7 @@ def simulate(
     check_sampling(sampling_rate, n_samples)
     driven = inputs if isinstance(inputs, Driven) else Driven(dict(inputs or {}))
     if _is_alone(model, values):
+        _check_inputs(model, driven.series, (1, n_samples))  # of one member, as it was asked for
         twins, moved = (
             {name: value.repeat_interleave(2, -1) for name, value in one.items()}
             for one in (values, driven.initial_perturbations)
@@ -109,6 +110,11 @@ def _check_inputs(model: Model, inputs: Mapping[str, Tensor], shape: tuple[int, 
         Problem(f"inputs.{name}", f"must have the shape (batch, time) = {shape}", tuple(value.shape))
         for name, value in inputs.items()
         if value.ndim != 2 or value.shape[1] != shape[1] or not len(value) or shape[0] % len(value)
+    ]
+    problems += [
+        Problem(f"inputs.{name}", "holds values that are no finite numbers", remedy="fill or cut these samples")
+        for name, value in inputs.items()
+        if not bool(value.isfinite().all())
     ]
     if problems:
         raise InputError(problems)

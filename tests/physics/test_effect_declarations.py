@@ -5,8 +5,10 @@ import re
 import pytest
 from effect_bench import EFFECTS
 
+from gear_damping.errors import InputError
 from gear_damping.physics.cause import Rig
 from gear_damping.physics.effect_files import cause_faults, some_rigs
+from gear_damping.physics.systems.gear_pair import GearPair
 from gear_damping.physics.systems.known import SYSTEMS, systems_of
 from gear_damping.units import parse_unit
 
@@ -91,3 +93,11 @@ def test_a_ripple_that_speeds_both_shafts_up_is_sought_where_a_sensor_on_a_shaft
     rig = Rig("gear_pair", n_teeth_pinion=20, n_teeth_gear=40, on_shafts=on_shafts)
     tried = {recipe.options["gear_torque"] for recipe in EFFECTS["torque_ripple"].cause.recipes_for(rig)}
     assert tried == ({"follows", "stays"} if on_shafts else {"follows"})
+
+
+def test_a_length_in_mm_and_an_angle_in_degrees_are_told_in_si():
+    for values, meant in (({"module": 2.5}, r"2\.5 mm are 0\.0025"), ({"pressure_angle": 20}, r"20 deg are 0\.3491")):
+        with pytest.raises(InputError, match=meant):
+            GearPair(**values)
+    with pytest.raises(InputError, match=r"nearest valid value 0\.1"):
+        GearPair(module=700)

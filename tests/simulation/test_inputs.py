@@ -227,3 +227,12 @@ def test_a_recorded_angle_drives_the_pair_without_its_error(bench_model):
     deviation = truth.response.std()
     assert (corrected.response - truth.response).abs().max() < 2e-3 * deviation
     assert (believed.response - truth.response).abs().max() > 2e-2 * deviation
+
+
+def test_an_input_of_one_member_is_refused_in_its_own_shape_and_where_it_is_not_finite():
+    model = Model(Oscillator(), [effect_class("viscous_damping")()])
+    wrong = {r"\(batch, time\) = \(1, 40\)": torch.ones(1, 30), "finite": torch.full((1, 40), torch.nan)}
+    for said, series in wrong.items():
+        given = {"force": series.double()}
+        with pytest.raises(InputError, match=said):
+            simulate(model, model.values(1), sampling_rate=200.0, n_samples=40, inputs=given)
