@@ -118,9 +118,8 @@ class Assembler:
         stated, moved_to = raw.plan.sensor.get("hold"), record.plan.resample or raw.own_time
         if stated and moved_to:
             rule = "cannot be held where its samples are moved to other instants"
-            remedy = (
-                "leave out hold; where each value of the file lasts one of its sampling intervals T, give a delay of -T/2"
-            )
+            remedy = "leave out hold; where each value of the file lasts one of its sampling intervals T, "
+            remedy += "give a delay of -T/2"
             raise InputError(Problem(f"{raw.plan.key}.hold", rule, True, remedy, self.source))
         if stated is not None or moved_to or not is_staircase(values):
             return bool(stated)

@@ -350,3 +350,12 @@ def test_the_shape_of_a_law_joins_the_full_fit(name, shapes):
     for base, evidence in (oscillator(forced=True), gear_pair((17, 43))):
         for found in of(name, base, evidence):
             assert {p.name.partition(".")[2] for p in found.later} == shapes
+
+
+def test_a_torque_that_swings_begins_anywhere_in_every_record():
+    for speeds, own in (((SPEED, 1.5 * SPEED), True), ((SPEED,), False)):
+        found = of("torque_variation", *gear_pair(RIGS[0], speeds))
+        sines = [one for one in found if one.tried["form"] == "sine"]
+        assert sines
+        assert all(bool(one.own_phases) == own and bool(one.phases) != own for one in sines)
+        assert not any(one.own_phases for one in found if one.tried["form"] == "ramp")
