@@ -91,7 +91,7 @@ def candidates_for(base: Hypothesis, evidence: Evidence, residuals: Residuals | 
     refused = there | base.system.covered_by_nuisance
     rig = rig_of(base, evidence, residuals)
     rigs = [rig, replace(rig, indexed=False)] if rig.indexed and not evidence.tells_turns else [rig]
-    each_rig = [_Sizes(base, evidence, one) for one in rigs]
+    each_rig = [_Sizes(base, evidence.duration, one) for one in rigs]
     return [
         _candidate(base, kind, recipe, sizes)
         for name, kind in evidence.library.items()
@@ -183,7 +183,7 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Si
 def _has_own_phases(kind: type[Effect], sizes: "_Sizes") -> bool:
     """Whether every record has phases of its own: no index says how the shafts stand, or when what swings began."""
     if kind.cause.turns_with == "clock":
-        return sizes.records > 1
+        return True
     return not sizes.rig.indexed and kind.cause.turns_with == "shaft"
 
 
@@ -214,9 +214,8 @@ def _label(kind: type[Effect], recipe: Recipe) -> str:
 class _Sizes:
     """Sizes of an effect's parameters for this rig."""
 
-    def __init__(self, base: Hypothesis, evidence: Evidence, rig: Rig) -> None:
-        self.base, self.duration, self.rig = base, evidence.duration, rig
-        self.records = len({record.record for record in evidence.fit})
+    def __init__(self, base: Hypothesis, duration: float, rig: Rig) -> None:
+        self.base, self.duration, self.rig = base, duration, rig
         self.scales = base.model.prepare(base.model.values(1, **base.given)).scales
 
     def natural(self, kind: type[Effect], parameter: Parameter, value: float, exponent: float = 1.0) -> float:
