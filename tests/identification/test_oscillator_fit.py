@@ -93,8 +93,17 @@ def test_a_forced_record_is_found_and_the_holdout_predicted():
     assert found.natural_frequency_hz.value == pytest.approx(FREQUENCY, rel=1e-3)
     assert found.damping_ratio_percent.value == pytest.approx(100 * RATIO, rel=1e-2)
     assert found.parameters["force_gain"].value == pytest.approx(3.0, rel=1e-2)
+    assert found.parameters["force_gain"].unit == "response unit / force unit / s^2"
     deviation = float(forced_record(2).response.std())
     assert found.rmse["holdout"] < 0.02 * deviation
+
+
+def test_the_gain_of_a_force_on_a_velocity_is_per_second():
+    record = forced_record(1)
+    rate = torch.as_tensor(np.gradient(record.response.numpy()) * record.sampling_rate)
+    found = fit_oscillator([replace(record, response=rate, observed=Observed("velocity"))])
+    assert found.parameters["force_gain"].value == pytest.approx(3.0, rel=5e-2)
+    assert found.parameters["force_gain"].unit == "response unit / force unit / s"
 
 
 def test_intervals_cover_the_truth():

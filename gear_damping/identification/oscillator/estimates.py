@@ -12,6 +12,7 @@ from gear_damping.identification.output_error.uncertainty import covariance, int
 from gear_damping.physics.systems.traits import Trait
 
 CORRELATED_PERIODS = 3.0  # characteristic times over which residuals may be correlated
+PER_SECONDS = (" / s^2", " / s", "")  # from a displacement, a velocity and an acceleration to an acceleration
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,8 @@ def estimates(problem: OutputErrorProblem, fitted: Fitted, scale: float) -> dict
         quantities["damping_ratio_percent"] = (lambda s: 100 * ratio(s), "%")
         quantities["log_decrement"] = (lambda s: 2 * pi * ratio(s) / (1 - ratio(s) ** 2).sqrt(), "1")
     if gain in place:
-        quantities[gain] = (lambda s: value(gain, s), "response unit / force unit / s^2")
+        order = min(channel.derivatives for record in problem.records for channel in record.channels)
+        quantities[gain] = (lambda s: value(gain, s), f"response unit / force unit{PER_SECONDS[order]}")
     found = {
         name: (interval(function, fitted.shared, covariances), unit) for name, (function, unit) in quantities.items()
     }
