@@ -13,11 +13,12 @@ from second_rig.motion import Hidden, Run
 from second_rig.pair import steel_rig
 from second_rig.sensors import Noise
 
-from gear_damping.explanation.evidence.records import evidence_of
+from gear_damping.explanation.evidence.records import Evidence, evidence_of
 from gear_damping.explanation.explain import fitting_solver, with_noise
 from gear_damping.explanation.model import parting_flanks
 from gear_damping.explanation.model.parting_flanks import flanks_part, stay_closed, with_parting_flanks
 from gear_damping.explanation.steps.calibrate import calibrated
+from gear_damping.identification.output_error.segments import Segments
 from gear_damping.measurement.load import load_measurement
 
 HARMONICS = 6
@@ -155,3 +156,10 @@ def shafts(evidence):
     known = evidence.known.values
     per_tooth = known["module"] * math.cos(known["pressure_angle"]) / 2
     return [(per_tooth * known[f"n_teeth_{shaft}"], known[f"inertia_{shaft}"]) for shaft in ("pinion", "gear")]
+
+
+@pytest.mark.parametrize(("stated", "seconds"), [(0.0, 0.3), (0.2, 0.2)])
+def test_records_that_are_cut_already_are_cut_no_other_way(stated, seconds, monkeypatch):
+    monkeypatch.setattr(parting_flanks, "segments_of", lambda *_: Segments(0.3))
+    evidence = Evidence("gear_pair", (), (), {}, None, False, segments=Segments(stated))
+    assert parting_flanks._in_short(None, evidence).segments.seconds == seconds

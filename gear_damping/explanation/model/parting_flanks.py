@@ -182,8 +182,11 @@ def are_missed(found: Outcome, nominal: Outcome, evidence: Evidence, solver: Sol
 
 
 def _in_short(hypothesis: Hypothesis, evidence: Evidence) -> Evidence:
-    """The evidence in segments: over more than these no motion of flanks that part is foretold from afar."""
-    return replace(evidence, segments=segments_of(hypothesis, evidence))
+    """The evidence in segments: over more than these no motion of flanks that part is foretold from afar.
+
+    Where it is cut already it stays as it is: models are held against each other sample by sample.
+    """
+    return evidence if evidence.segments else replace(evidence, segments=segments_of(hypothesis, evidence))
 
 
 def _gap(gap: float) -> FreeParameter:
