@@ -30,7 +30,7 @@ LEAST_SAMPLES = 8  # of a record, for a spectrum at all
 MOST_DOUBLED = 0.01  # of the rows of a record; where more come twice, something else is wrong
 DOUBLED_WITHIN = 100  # rows behind the one that a row is stored again of
 MOST_MISSING = 0.01  # of a record: a sheet whose last cells are blank, and no channel of another rate
-_UNSET = 1.0  # Hz, what LabVIEW writes where no rate was set
+_DOUBTFUL = 1.0  # Hz: LabVIEW writes it where no rate was set, and others a step in ms that says no unit
 _SAME_RATE = 1e-3  # how far a declared rate may lie from the file's
 SAME_UNIT = 1e-9  # the same of units
 
@@ -468,7 +468,7 @@ def _of_file(rate: float, own: float) -> Finding:
         f"the file itself says {own:.6g} Hz and sampling_rate {rate:.6g} Hz, which was used; "
         "where the file is right, leave sampling_rate out"
     )
-    return Finding("rate_conflict", message, channel="time", severity="note" if own == _UNSET else "data_problem")
+    return Finding("rate_conflict", message, channel="time", severity="note" if own <= _DOUBTFUL else "data_problem")
 
 
 def _rate_conflict(rate: float, column: str, own: float) -> Finding:

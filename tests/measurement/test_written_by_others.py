@@ -75,6 +75,9 @@ def test_a_quotation_mark_that_is_not_closed_does_not_swallow_rows(tmp_path):
     rows[30] += 'ok"'
     with pytest.raises(InputError, match=r"a cell of row 20 goes on over 10 lines, up to line 32"):
         _table(tmp_path, "t,x,remark\n" + "\n".join(rows))
+    said = [f"{row}," for row in ROWS]
+    said[20] += '"a bump\nat 5 s, no more"'
+    assert _wave(_table(tmp_path, "t,x,remark\n" + "\n".join(said))) == WAVE.tolist()
 
 
 def _load(folder, channels: dict, **files: str):

@@ -26,7 +26,7 @@ from gear_damping.measurement.formats.number_texts import is_written, parts_thou
 from gear_damping.measurement.formats.stated_rate import stated_rate
 from gear_damping.measurement.formats.table import Table, is_real
 from gear_damping.measurement.formats.text_header import of_oscilloscope, text_header, without_other_headers
-from gear_damping.measurement.formats.text_lines import HEAD, IS_COMMENT, Text, bytes_of
+from gear_damping.measurement.formats.text_lines import BEGINS, HEAD, IS_COMMENT, Text, bytes_of
 
 SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".log", ".prn", ".gz")
 
@@ -150,16 +150,22 @@ def _frame(text: Text, header: Header, first_line: int, decimal: str, parted: se
 
 
 def _refuse_open_quote(text: Text, frame: Any, first_line: int) -> None:
-    """Refuse a cell that holds lines: a quotation mark that is not closed has swallowed rows."""
+    """Refuse a cell that holds lines of values: a quotation mark that is not closed has swallowed rows."""
     for k in frame.columns:
         cells = [] if is_real(frame[k].dtype) else frame[k].tolist()
-        row = next((row for row, cell in enumerate(cells) if isinstance(cell, str) and "\n" in cell), None)
+        row = next((row for row, cell in enumerate(cells) if _holds_rows(cell, text.delimiter)), None)
         if row is None:
             continue
         line = next((line for number, (line, _) in enumerate(_values(text, first_line)) if number == row), None)
         rule = f"a cell of row {row} goes on over {cells[row].count(chr(10))} lines, up to line {line}"
         remedy = "close or take out its quotation mark"
         raise InputError(Problem(text.path.name, rule, None, remedy, str(text.path)))
+
+
+def _holds_rows(cell: Any, delimiter: str) -> bool:
+    """Whether lines of a cell are rows of a table; a remark may have lines too."""
+    lines = cell.split("\n")[1:] if isinstance(cell, str) else []
+    return any(BEGINS.match(line) and delimiter in line for line in lines)
 
 
 def _empty_rows(text: Text, first_line: int) -> str:

@@ -17,7 +17,7 @@ HEAD = 100  # rows among which the header is looked for
 _DELIMITERS = (";", "\t", "|", ",")  # in the order in which they are taken for it; blanks where none stands
 _ALONE = 80  # last lines that are asked whether they hold a number each
 _NUMBER, IS_COMMENT = re.compile(r"\d"), re.compile(r"\s*(#|%|//)")
-_BEGINS = re.compile(r"^[\s;,|\"(]*[+-]?[.,]?\d")  # a line of values, which headers and remarks seldom look like
+BEGINS = re.compile(r"^[\s;,|\"(]*[+-]?[.,]?\d")  # a line of values, which headers and remarks seldom look like
 _RULED = re.compile(rb"^[ \t]*\|[ \t|:+-]+$|^[ \t]*\||[ \t]*\|[ \t]*$", re.MULTILINE)  # of a table as in Markdown
 _LINE_END = re.compile(rb"\r+\n|\r")  # also written twice by a text mode, or alone as computers of the nineties did
 
@@ -80,7 +80,7 @@ def _typical(lines: list[str]) -> str:
 
     Headers hold all kinds of signs, numbers only one; so do remarks behind some of them, and below.
     """
-    values = [line for line in lines if _BEGINS.match(line)] or lines
+    values = [line for line in lines if BEGINS.match(line)] or lines
     if values and not _is_alone(values[-1]):  # rows that were cut say nothing of it
         values = [line for line in values if not _is_alone(line)]
     signs = [_sign_of(line) for line in reversed(values)]
