@@ -12,6 +12,8 @@ _ABSENT = re.compile(
 _MINUS = str.maketrans("\u2212\u2013", "--")  # a minus and a dash that typesetters write for it
 _BLANKS = re.compile("[\u00a0\u2009\u202f' \u2019](?=\\d{3})")  # that part thousands, an apostrophe too
 _FORTRAN = re.compile(r"(?<=[\d.])[dD](?=[+-]?\d)")  # its exponent of double precision
+_WITHOUT_E = re.compile(r"(?<=[.,]\d)(?=[+-]\d{2,3}$)|(?<=\d\d)(?=[+-]\d{2,3}$)")  # `9.93+00`, as Nastran has it
+_NEGATIVE = re.compile(r"^(?:\((\d+[.,]\d+)\)|(\d+[.,]\d+)\s?-|-\s+(\d+[.,]?\d*))$")  # of accounts, of SAP, apart
 # Cells with a sign, of which one in ten ends in a zero where the sign is a decimal one and zeros are not written.
 FEWEST_PARTED = 10
 _OTHER = {".": ",", ",": "."}
@@ -24,7 +26,9 @@ def is_absent(cell: str) -> bool:
 
 def plain(cell: str) -> str:
     """A number's text with the signs of plain numbers: its minus, its exponent, and no blanks between thousands."""
-    text = cell.strip().translate(_MINUS)
+    text = _NEGATIVE.sub(r"-\1\2\3", cell.strip().translate(_MINUS))
+    if "." in text or "," in text:
+        text = _WITHOUT_E.sub("e", text)
     return _FORTRAN.sub("e", _BLANKS.sub("", text)) if text[-1:].isdigit() or text[-1:] == "." else text
 
 
