@@ -6,6 +6,7 @@ import pytest
 from gear_damping.errors import InputError
 from gear_damping.measurement.formats.moments import is_moment, seconds_of
 from gear_damping.measurement.formats.registry import read_table
+from gear_damping.measurement.load import load_measurement
 from gear_damping.measurement.recordings import past_overflow, recordings
 
 HUNDREDTHS = np.arange(0, 3.2, 0.01)
@@ -72,3 +73,19 @@ def test_a_unit_in_cells_that_contradicts_the_header_is_no_number(tmp_path):
     (tmp_path / "run.csv").write_text("Time [s],x\n" + body)
     with pytest.raises(InputError, match="'0 ms': not a number"):
         read_table(tmp_path / "run.csv").values(0)
+
+
+def test_a_clock_that_is_put_back_within_its_zone_goes_on():
+    texts = [f"2024-10-27T02:59:{58 + k / 2:04.1f}+02:00" for k in range(4)]
+    texts += [f"2024-10-27T02:00:{k / 2:04.1f}+01:00" for k in range(4)]
+    np.testing.assert_allclose(seconds_of(texts), np.arange(8) / 2, atol=1e-9)
+
+
+def test_stamps_of_whole_packets_are_not_left_out_row_by_row(tmp_path):
+    rows = [f"{0.05 * (k // 10):.3f},{np.cos(0.1 * k):.5f}" for k in range(400)]
+    (tmp_path / "a.csv").write_text("t,x\n" + "\n".join(rows))
+    channels = "{time: {column: t, unit: s}, displacement: {column: x, unit: mm}}"
+    (tmp_path / "m.yaml").write_text(f"system: oscillator\nrecords: [{{file: a.csv, channels: {channels}}}]\n")
+    with pytest.raises(InputError, match=r"360 repeated time stamp.*10 samples at each.*give sampling_rate") as caught:
+        load_measurement(tmp_path / "m.yaml")
+    assert "leave those rows out" not in str(caught.value)

@@ -14,7 +14,7 @@ _CLOCK = (
     r"(?P<hours>\d{1,3}):(?P<minutes>\d{2})(:(?P<seconds>\d{2})((?P<sign>[.,:])(?P<part>\d+))?)?"
     r"\s*(?P<half>[ap]\.?m\.?)?"
 )
-_ZONE = r"\s*(Z|UTC|[+-]\d{2}:?\d{2})?"
+_ZONE = r"\s*(?P<zone>Z|UTC|[+-]\d{2}:?\d{2})?"
 _MOMENT = re.compile(rf"({_DATE}[T ,;_]+)?{_CLOCK}{_ZONE}", re.I)
 _MINUTES = re.compile(r"(?P<minutes>\d{1,4}):(?P<seconds>\d{2})[.,](?P<part>\d+)")  # and seconds since a start
 _COMPACT = re.compile(r"(\d{4})(\d{2})(\d{2})T(\d{2})(\d{2})(\d{2})(?=\D|$)")  # of ISO 8601, without signs
@@ -48,7 +48,7 @@ def seconds_of(cells: Sequence[str]) -> NDArray[np.float64] | None:
     found = [_MOMENT.fullmatch(text) for text in texts]
     if not found or not all(found):
         return None
-    clock = np.array([_of_day(one) for one in found])
+    clock = np.array([_of_day(one) - _ahead(one["zone"]) for one in found])
     if frames := _frames(found):
         clock = np.floor(clock) + np.array([int(one["part"]) for one in found]) / frames
     days = _days([one["date"] for one in found])
@@ -78,6 +78,14 @@ def _of_day(moment: re.Match[str]) -> float:
     if moment["half"]:
         hours = hours % 12 + 12 * (moment["half"][0] in "pP")
     return 3600 * hours + 60 * int(moment["minutes"]) + int(moment["seconds"] or 0) + _part(moment["part"])
+
+
+def _ahead(zone: str | None) -> float:
+    """By how many s the clock of a zone is ahead of UTC, which it is not all the year."""
+    if zone is None or zone[0] not in "+-":
+        return 0.0
+    digits = zone[1:].replace(":", "")
+    return (1 if zone[0] == "+" else -1) * float(3600 * int(digits[:2]) + 60 * int(digits[2:]))
 
 
 def _part(digits: str | None) -> float:
