@@ -197,8 +197,8 @@ class AnyRecord(Declared):
         "The file, relative to this YAML; `${GEAR_DAMPING_DATA}` is filled in.", "values", missing=_NO_FILE
     )
     role: Annotated[str, OneOf(ROLES)] = key(
-        "Fitted, held out, or a sound casing to compare with; absent, task=explain holds out a part by itself, and so "
-        "does task=identify of a gear pair.",
+        "Fitted, held out, or a sound casing to compare with; where none is held out, task=explain holds out a part by "
+        "itself, and so does task=identify of a gear pair.",
         "fit and score",
     )
     slice: Annotated[tuple[int, int], Rows()] = key("Rows a to b-1, counted from 0.", "rows")
