@@ -170,7 +170,7 @@ def _refuse_repeated_or_backward(steps: NDArray, key: str, source: str, first: i
             is_shuffled = kind == "backward" and where.size > MOST_STRAY * steps.size
             remedy = "sort the rows by time" if is_shuffled else f"leave those rows out, {REMEDY}"
             if kind == "repeated" and 2 * where.size > steps.size:
-                rule += f", {len(steps) // (len(steps) - where.size)} samples at each on average"
+                rule += f", {(steps.size + 1) // (steps.size + 1 - where.size)} samples at each on average"
                 remedy = "give sampling_rate instead of the time column, whose stamps are those of whole packets"
             problems.append(Problem(key, rule, remedy=remedy, source=source))
     if problems:
