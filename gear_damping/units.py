@@ -154,6 +154,14 @@ def parse_unit(text: str, key: str = "unit", source: str = "") -> Unit:
     return unit
 
 
+def is_of_kind(text: str | None, plain: str) -> bool:
+    """Whether a text names a unit of the kind of another one."""
+    try:
+        return bool(text) and parse_unit(text).dimension == parse_unit(plain).dimension
+    except InputError:
+        return False
+
+
 def multiple_of_a_unit(text: str) -> tuple[float, Unit] | None:
     """The number and the unit of a step that a header counts in: `0.1 mm`, `1/100 mm`, `10^-3 mm`; None of others."""
     match = _STEP.match(text.strip())

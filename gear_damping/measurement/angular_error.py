@@ -5,9 +5,8 @@ from dataclasses import replace
 from math import cos, pi
 from typing import TYPE_CHECKING
 
-from gear_damping.errors import InputError
 from gear_damping.measurement.record import Quantity
-from gear_damping.units import Unit, parse_unit
+from gear_damping.units import Unit, is_of_kind, parse_unit
 
 if TYPE_CHECKING:
     from gear_damping.measurement.declaration import ChannelPlan
@@ -24,18 +23,12 @@ def base_radius(n_teeth: float, module: float, pressure_angle: float) -> float:
 
 def is_angle(unit: str | None) -> bool:
     """Whether a unit is one of an angle."""
-    try:
-        return unit is not None and parse_unit(unit).dimension == parse_unit("rad").dimension
-    except InputError:
-        return False
+    return is_of_kind(unit, "rad")
 
 
 def is_angular_acceleration(unit: str | None) -> bool:
     """Whether a unit is one of an angular acceleration."""
-    try:
-        return unit is not None and parse_unit(unit).dimension == parse_unit("rad/s^2").dimension
-    except InputError:
-        return False
+    return is_of_kind(unit, "rad/s^2")
 
 
 def turn_in(unit: str | None) -> float | None:

@@ -106,8 +106,8 @@ class Assembler:
             done = "filtered and taken" if is_faster(own, record.base) else "interpolated"
             notes.append(f"{plan.name}: {done} from {own.sampling_rate:.6g} Hz to the record's time")
         sensor = plan.sensor | ({"hold": self._held(raw, record, values, notes)} if plan.name in HOLDABLE else {})
-        if plan.speed_radius:
-            del sensor["radius"]  # the values are divided by it
+        if plan.name in SHAFT_SPEEDS:
+            sensor.pop("radius", None)  # the values are divided by it
         return Channel(plan.name, values, conversion.unit, raw.unit, conversion.factor, **limits, **sensor)
 
     def _conversion(self, plan: ChannelPlan, unit: str, key: str) -> Conversion:
@@ -272,10 +272,10 @@ def _step_conflict(raw: RawChannel, said: str, number: float, unit: Unit) -> Fin
     gain = stated.factor / (number * unit.factor)
     if unit.dimension != stated.dimension or abs(gain - 1) < SAME_UNIT:
         return None
-    message = (
-        f"the header of column '{raw.plan.column}' says '{raw.header_unit}' and the YAML '{said}', which was used; "
+    message = f"the header of column '{raw.plan.column}' says '{raw.header_unit}' and the YAML '{said}', "
+    message += (
+        f"which was used; write gain: {gain:.6g}, by which values are divided, or gain: 1 where they are in {said}"
     )
-    message += f"write gain: {gain:.6g}, by which values are divided, or gain: 1 where they are in {said}"
     return Finding("unit_conflict", message, channel=raw.plan.name)
 
 

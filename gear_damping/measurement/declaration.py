@@ -6,11 +6,7 @@ from typing import TYPE_CHECKING
 
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.measurement import layout
-from gear_damping.measurement.angular_error import (
-    along_the_line,
-    is_angle_of_a_shaft,
-    is_angular_acceleration,
-)
+from gear_damping.measurement.angular_error import along_the_line, is_angle_of_a_shaft, is_angular_acceleration
 from gear_damping.measurement.channels import AnyChannel, Response, Timed
 from gear_damping.measurement.consistency import inconsistencies
 from gear_damping.measurement.own_system import NONE, file_of, si_units
@@ -57,11 +53,6 @@ class ChannelPlan:
     def shaft_radius(self) -> float | None:
         """m, at which a shaft's speed or acceleration is measured along the circumference; None elsewhere."""
         return self.sensor.get("radius") if self.name in (*SHAFT_SPEEDS, "acceleration") else None
-
-    @property
-    def speed_radius(self) -> float | None:
-        """m, at which the speed of a shaft is measured as a velocity along the circumference; None elsewhere."""
-        return self.sensor.get("radius") if self.name in SHAFT_SPEEDS else None
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_damping.errors import InputError
 from gear_damping.measurement.column_kinds import ANGLE, MOTION, counts_rows
-from gear_damping.units import to_si
+from gear_damping.units import is_of_kind, to_si
 
 NAMED = re.compile(
     r"^(t|ts|tt|x_value)$|time|zeit|temps|tiempo|stamp|second|millis|micros|elapsed|clock|abscissa", re.I
@@ -191,10 +190,7 @@ def _bare(reference: str | int) -> str:
 
 def is_time(unit: str | None) -> bool:
     """Whether a unit is one of time."""
-    try:
-        return unit is not None and to_si(1.0, unit, "s") > 0
-    except InputError:
-        return False
+    return is_of_kind(unit, "s")
 
 
 def _unit(column: _Column) -> tuple[str, str]:

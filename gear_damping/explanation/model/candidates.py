@@ -121,9 +121,7 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Si
     kept = tuple(p for p in base.free if p not in replaced)
     base = replace(base, free=kept, given=base.given | {p.name: 0.0 for p in replaced})
     effect = kind(**recipe.options)
-    given: Given = {}
-    for parameter in kind.parameters:
-        given[f"{kind.name}.{parameter.name}"] = sizes.default(kind, parameter, recipe)
+    given: Given = {f"{kind.name}.{p.name}": sizes.default(kind, p, recipe) for p in kind.parameters}
     free, strengths, phases, own_phases = [], [], {}, {}
     own = _has_own_phases(kind, sizes)
     own_tooth = f"{kind.name}.phase" if not sizes.rig.indexed and kind.cause.turns_with == "tooth" else ""

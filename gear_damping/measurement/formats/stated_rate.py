@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from gear_damping.errors import InputError
-from gear_damping.units import to_si
+from gear_damping.units import is_of_kind, to_si
 
 _STEP = re.compile(
     r"\b(delta[ _]?[tx]|d[tx]|t ?interval|[tx][ _]?incr(ement)?|(samp(le|ling)|time|horizontal|record|abtast)[ _-]?"
@@ -50,7 +49,7 @@ def _of_row(row: Sequence[str]) -> tuple[str, float] | None:
         return None  # of each channel its own
     said = (*re.findall(r"[(\[]([^)\]]+)[)\]]", name), *behind[:1], *_IN_NAME.findall(name))
     unit = next((one for one in said if one), "")
-    is_step = is_step and not _is_of(unit, "Hz")  # steps at 8 kHz
+    is_step = is_step and not is_of_kind(unit, "Hz")  # steps at 8 kHz
     size = value * _factor(unit, "s" if is_step else "Hz")
     rate = rate_of(size) if is_step else size
     return (words[0], rate) if rate is not None and 0 < rate < inf else None
@@ -63,14 +62,6 @@ def rate_of(step: Any) -> float | None:
         return None
     rate = 1 / float(step)
     return rate if rate < inf else None
-
-
-def _is_of(unit: str, plain: str) -> bool:
-    """Whether a text is a unit of the kind of a plain one."""
-    try:
-        return bool(unit) and to_si(1.0, unit, plain) > 0
-    except InputError:
-        return False
 
 
 def beside_their_units(attributes: Mapping[str, Any]) -> list[list[str]]:
@@ -87,4 +78,4 @@ def beside_their_units(attributes: Mapping[str, Any]) -> list[list[str]]:
 
 def _factor(unit: str, plain: str) -> float:
     """The size of a unit, of the plain one where it is none of its kind: something else stands there."""
-    return to_si(1.0, unit, plain) if _is_of(unit, plain) else 1.0
+    return to_si(1.0, unit, plain) if is_of_kind(unit, plain) else 1.0
