@@ -15,7 +15,7 @@ from gear_damping.measurement.declaration import ChannelPlan, EncoderPlan, Recor
 from gear_damping.measurement.encoders import ReadColumn, ShaftAngle, shaft_angle
 from gear_damping.measurement.formats.table import Table
 from gear_damping.measurement.record import Finding
-from gear_damping.measurement.time_column import is_time, possible_units, stamped_rate
+from gear_damping.measurement.time_column import is_time, stamped_rate
 from gear_damping.measurement.timebase import (
     RATE_TOLERANCE,
     TimeBase,
@@ -282,15 +282,14 @@ class RawReader:
         columns = {self.table.index(column, "") for column in used if column is not None}
         found = []
         for index in sorted({*range(len(self.table.names))} - columns):
-            units = possible_units(self.table.names[index], self.table.unit(index))
+            if not is_time(self.table.unit(index)):
+                continue
             with suppress(InputError):  # a column that cannot be read has no rate
-                values = self.table.values(index)[self.first : self.stop] if units else np.zeros(0)
-                rates = [own for unit in units if (own := stamped_rate(unit, values))]
-                if any(abs(rate / own - 1) <= RATE_TOLERANCE for own in rates):
+                own = stamped_rate(self.table.unit(index), self.table.values(index)[self.first : self.stop])
+                if own and abs(rate / own - 1) <= RATE_TOLERANCE:
                     return ()
-                is_count = len(units) > 1 and bool(np.all(np.diff(values) == 1))
-                found += [(index, rates[0], units)] if rates and not is_count else []
-        return tuple(_rate_conflict(rate, self.table.names[index], own, units) for index, own, units in found[:1])
+                found += [(index, own)] if own else []
+        return tuple(_rate_conflict(rate, self.table.names[index], own) for index, own in found[:1])
 
     def _on_its_clock(self) -> list[str | int]:
         """The columns of channels and encoders that share the record's time."""
@@ -472,10 +471,9 @@ def _of_file(rate: float, own: float) -> Finding:
     return Finding("rate_conflict", message, channel="time", severity="note" if own <= _DOUBTFUL else "data_problem")
 
 
-def _rate_conflict(rate: float, column: str, own: float, units: Sequence[str]) -> Finding:
-    taken = f", counted in {units[0]}," if len(units) > 1 else ""
+def _rate_conflict(rate: float, column: str, own: float) -> Finding:
     message = (
-        f"the stamps of column '{column}'{taken} run at {own:.6g} Hz and sampling_rate says {rate:.6g} Hz, "
-        "which was used; correct the one that is wrong, or give the column as time"
+        f"the stamps of column '{column}' run at {own:.6g} Hz and sampling_rate says {rate:.6g} Hz, which was used; "
+        "correct the one that is wrong, or give the column as time"
     )
     return Finding("rate_conflict", message, channel="time", severity="note")

@@ -15,7 +15,6 @@ NAMED = re.compile(
     r"^(t|ts|tt|x_value)$|time|zeit|temps|tiempo|stamp|second|millis|micros|elapsed|clock|abscissa", re.I
 )
 _SUFFIX = re.compile(r"[_ .\-/](s|sec|ms|us|µs|ns|min|h)$", re.I)
-_UNSAID = ("s", "ms", "us", "ns")  # what stamps count in that say no unit
 _SLOW = 200  # whole numbers a step: as milliseconds less than 5 Hz, and few vibrate as slowly
 # Ranges that a time counted from 1970 lies in, by its unit: from 2000 on, and they do not meet.
 _EPOCHS = ((9.4e8, 1e10, "s"), (9.4e11, 1e13, "ms"), (9.4e14, 1e16, "us"), (9.4e17, 1e19, "ns"))
@@ -89,13 +88,6 @@ def counts_from_1970(values: NDArray[np.float64]) -> bool:
     """Whether (n,) values never fall and lie where a finer clock than that of seconds stands since 2000."""
     inside = any(low < values[0] < high for low, high, _ in _EPOCHS[1:])
     return bool(inside and np.all(np.diff(values) >= 0) and values[-1] > values[0])
-
-
-def possible_units(name: str, unit: str | None) -> tuple[str, ...]:
-    """The units of time that a column may count in: that of its header, or several where its name alone says time."""
-    if is_time(unit):
-        return (unit,)
-    return _UNSAID if unit is None and NAMED.search(name) else ()
 
 
 def stamped_rate(unit: str, values: NDArray[np.float64]) -> float | None:

@@ -196,21 +196,3 @@ def test_a_name_is_found_without_its_unit_and_its_run(tmp_path):
     assert table.index("Angle, Ch P1", "") == 1
     with pytest.raises(InputError, match=r"did you mean 'Angle, Ch P1 \(rad\) Run #14'\?"):
         table.index("Angle, Ch P1 (r", "")
-
-
-@pytest.mark.parametrize(
-    ("stamps", "kinds"),
-    [
-        (TIME, []),
-        (1000 * TIME, []),  # in ms
-        (np.arange(60), []),  # numbers of rows
-        (5 * TIME, ["rate_conflict"]),
-        (np.where(np.arange(60) < 30, TIME, TIME + 0.2), ["rate_conflict"]),
-    ],
-)
-def test_a_column_that_is_named_a_time_is_held_against_the_rate(tmp_path, stamps, kinds):
-    text = "t,x\n" + "\n".join(f"{t:.6g},{x}" for t, x in zip(stamps, WAVE, strict=True))
-    channels = {"sampling_rate": {"value": RATE, "unit": "Hz"}, "displacement": {"column": "x", "unit": "mm"}}
-    found = [one for one in _load(tmp_path, channels, a=text).findings if one.kind == "rate_conflict"]
-    assert [one.kind for one in found] == kinds
-    assert all("column 't', counted in s, run" in one.message for one in found)
