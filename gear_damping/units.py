@@ -115,12 +115,16 @@ _NUMBER, _SPOKEN = re.compile(f"^{_DIGITS}$"), re.compile(rf"^{_DIGITS}(?P<unit>
 _STEP = re.compile(
     r"^(?P<number>\d+[.,]?\d*(e[+-]?\d+|\^[+-]?\d+)?)(/(?P<over>\d+))?\s*[*x·]?\s*(?P<unit>[A-Za-zµμ°].*)$"
 )
+_SCALED = re.compile(
+    r"^(?P<unit>[A-Za-zµμ°][^*x×·]*?)\s*[*x×·/]\s*\d+[.,]?\d*(e[+-]?\d+|\^?[+\-−]\d+|\^\d+|[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?$"
+)
 # a power may stand without its sign: m/s2
 _GAP = re.compile(r"(?<=[A-Za-z\d])[ .\-](?=[A-Za-z])")  # what people write between the factors of a product
 _JOINED = re.compile(r"(?<![A-Za-z])(kg|kN|daN|N|lbf)(?=(mm|cm|m|in|ft)([\^\d/]|$))")  # or nothing
 _FACTOR = re.compile(r"^(?P<atom>[A-Za-z%]+|1)((\^(?P<power>-?\d+(\.\d+)?))|(?P<raised>[23]))?$")
 
 
+LEVEL = "dB"  # a logarithm, which is no number of anything
 DIGITS = 12  # of a converted number: 0.12 mm are 120 um, not 120.00000000000001
 # What a key may end in, and the unit that its plain number is in.
 SUFFIXES = {"rpm": "rpm", "deg": "deg", "um": "um", "mm": "mm", "ms": "ms", "khz": "kHz", "hz": "Hz", "percent": "%"}
@@ -173,6 +177,12 @@ def multiple_of_a_unit(text: str) -> tuple[float, Unit] | None:
         return (float(base) ** float(power) if power else float(base)) / over, parse_unit(match["unit"])
     except (InputError, ValueError):
         return None
+
+
+def scaled_unit(text: str) -> str | None:
+    """The unit in a header that has a factor behind it, `mm*10` or `mm/10`, of which nobody knows which way it goes."""
+    match = _SCALED.match(text.strip())
+    return match["unit"] if match and is_of_kind(match["unit"], match["unit"]) else None
 
 
 def spoken(value: object) -> tuple[float, str] | None:
@@ -240,9 +250,13 @@ def _as_product(text: str) -> str:
         text = text.replace(spelling, ours)
     product = _JOINED.sub(r"\1*", _GAP.sub("*", text))
     try:
-        return "" if product == text or not parse_unit(product) else f"write '{product}'"
+        known = product != text and parse_unit(product)
     except InputError:
         return ""
+    if not known:
+        return ""
+    of_force = re.fullmatch(r"kg\*([a-z]+)", product)  # as data sheets of motors say a torque
+    return f"write 'kgf*{of_force[1]}'" if of_force else f"write '{product}'"
 
 
 def to_si(value: float, unit: str, expected: str, key: str = "value", source: str = "") -> float:
@@ -252,6 +266,10 @@ def to_si(value: float, unit: str, expected: str, key: str = "value", source: st
         InputError: the unit is unknown or has another dimension than `expected`.
     """
     wanted = parse_unit(expected)
+    if (unit.strip() == LEVEL) != (expected == LEVEL):
+        rule = f"the unit '{unit}' is not one of the kind of '{expected}'"
+        remedy = "give a level in dB" if expected == LEVEL else "give the ratio itself, 10^(level/20) of amplitudes"
+        raise InputError(Problem(key, rule, value, remedy, source))
     found = of_a_shaft(parse_unit(unit, key, source), wanted)
     if found.dimension != wanted.dimension:
         rule = f"the unit '{unit}' is not one of the kind of '{expected}'"

@@ -6,6 +6,7 @@ from typing import Any
 
 from torch import Tensor
 
+from gear_damping.errors import InputError
 from gear_damping.explanation.answer import report_fields
 from gear_damping.explanation.answer.judged import judged
 from gear_damping.explanation.budget import Budget
@@ -21,16 +22,17 @@ from gear_damping.explanation.model.hypothesis import SEGMENT_TIMES, Outcome, se
 from gear_damping.explanation.search import looked, search
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import State
-from gear_damping.explanation.steps.calibrate import calibrated, recalibrated
+from gear_damping.explanation.steps.calibrate import Calibration, calibrated, recalibrated
 from gear_damping.explanation.steps.confirm import confirmed
 from gear_damping.explanation.steps.estimate import estimated
 from gear_damping.explanation.steps.out_of_step import out_of_step
+from gear_damping.explanation.steps.polarity import polarity_fault
 from gear_damping.explanation.steps.too_short import left_out_ends, too_short
 from gear_damping.explanation.trials.bench import Bench, Log
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import Segments
 from gear_damping.identification.time_scale import characteristic_time
-from gear_damping.measurement.record import Measurement
+from gear_damping.measurement.record import Finding, Measurement
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import Effect
 from gear_damping.simulation.solver_settings import Solver
@@ -121,7 +123,11 @@ def explain(
     evidence = replace(evidence, holdout=(), sealed=True) if sealed else evidence
     evidence, noise = with_noise(evidence, measurement, log)
     step(1, STEPS)
-    state = _searched(evidence, noise, log, fitting_solver(solver), budget, lambda: step(2, STEPS))
+    solver = fitting_solver(solver)
+    found = _calibrated(replace(evidence, segments=first_segments(evidence)), solver)
+    if isinstance(found, Finding):
+        return Explanation(report_fields.of_faults(measurement, [found]))
+    state = _searched(found, noise, log, solver, budget, lambda: step(2, STEPS))
     short = too_short(whole, state.nominal)
     if short:
         log(short)
@@ -157,11 +163,22 @@ def fitting_solver(given: Solver | None) -> Solver:
     return replace(solver, accuracy=max(solver.accuracy, FIT_ACCURACY), most_substeps=MOST_SUBSTEPS)
 
 
+def _calibrated(evidence: Evidence, solver: Solver) -> Calibration | Finding:
+    """The calibration, or the finding that a channel counts the other way round."""
+    try:
+        found = calibrated(evidence, solver)
+    except InputError:
+        if fault := polarity_fault(evidence, None, solver):
+            return fault
+        raise
+    fault = is_lost_by(found.nominal, found.evidence) and polarity_fault(evidence, found.nominal, solver)
+    return fault or found
+
+
 def _searched(
-    evidence: Evidence, noise: NoiseLevel, log: Log, solver: Solver, budget: Budget, is_calibrated: Callable[[], None]
+    found: Calibration, noise: NoiseLevel, log: Log, solver: Solver, budget: Budget, is_calibrated: Callable[[], None]
 ) -> State:
-    """Calibration and search, over whole records as far as these can be predicted from their start."""
-    found = calibrated(replace(evidence, segments=first_segments(evidence)), solver)
+    """The search, over whole records as far as these can be predicted from their start."""
     nominal, evidence = found.nominal, found.evidence
     noise = replace(noise, scatter=_scatter(nominal, evidence, solver))
     bench = Bench(evidence, noise, log, solver, noise, budget=budget, rough=found.rough)

@@ -26,7 +26,7 @@ from gear_damping.measurement.timebase import TimeBase
 from gear_damping.measurement.vocabulary import HOLDABLE, SHAFT_SPEEDS
 from gear_damping.measurement.wraps import begins_again, run_over, unwrapped
 from gear_damping.schema.values import Problems
-from gear_damping.units import Unit, multiple_of_a_unit, of_a_shaft, parse_unit
+from gear_damping.units import Unit, multiple_of_a_unit, of_a_shaft, parse_unit, scaled_unit
 
 LOST = 0.1  # of a channel's variance, from which it is said that resampling took it
 _TEETH = tuple(GEOMETRY.values())
@@ -101,6 +101,7 @@ class Assembler:
             findings += _lost(recorded, values, plan.name, record.base) if record.plan.resample else []
         else:
             recorded, own = values, raw.own_time
+            findings += [found for found in own.findings if found.kind == "rate_conflict"]
             values = moved(record.base, own, values, plan.key, str(record.table.path))
             findings += _lost(own.resample(recorded), values, plan.name, own) if is_faster(own, record.base) else []
             done = "filtered and taken" if is_faster(own, record.base) else "interpolated"
@@ -279,6 +280,16 @@ def _step_conflict(raw: RawChannel, said: str, number: float, unit: Unit) -> Fin
     return Finding("unit_conflict", message, channel=raw.plan.name)
 
 
+def _factor_unsaid(raw: RawChannel, said: str) -> Finding:
+    """The header has a factor behind its unit, `[mm*10]`, and the YAML none."""
+    message = (
+        f"the header of column '{raw.plan.column}' says '{raw.header_unit}' and the YAML '{said}', which was used; "
+        f"write gain: what the column holds for one {said}, which is the factor or one over it, or gain: 1 where there "
+        "is none"
+    )
+    return Finding("unit_conflict", message, channel=raw.plan.name)
+
+
 def _unit_conflict(raw: RawChannel, conversion: Conversion) -> Finding | None:
     """The header names a unit and the YAML another one."""
     said = raw.plan.stated_unit or raw.unit
@@ -287,6 +298,8 @@ def _unit_conflict(raw: RawChannel, conversion: Conversion) -> Finding | None:
     stated = parse_unit(said)
     if step := multiple_of_a_unit(raw.header_unit):
         return None if raw.plan.is_scaled else _step_conflict(raw, said, *step)
+    if scaled_unit(raw.header_unit):
+        return None if raw.plan.is_scaled else _factor_unsaid(raw, said)
     try:
         header = of_a_shaft(parse_unit(raw.header_unit), stated)
     except InputError:

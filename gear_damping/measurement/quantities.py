@@ -25,6 +25,8 @@ PERIODS = Frozen(
     )
 )
 Found = list[Problem]
+_THOUSANDS = re.compile(r"^\s*([+-]?\d{1,3}(?:[, '’]\d{3})+)\s*([A-Za-z%µμ°].*?)?\s*$")  # `1,000 Hz`, `1 000 Hz`
+_BARE = re.compile(r"^\s*[+-]?\d+(\.\d+)?\s*$")
 _DECIMAL_COMMA = re.compile(r"^\s*([+-]?\d+),(\d+([eE][+-]?\d+)?\s*\D.*?)\s*$")
 # The units that people mean by a bare number, by the unit that it is converted to.
 _USUAL = Frozen(
@@ -159,10 +161,15 @@ class Measured(Value):
 
     def _remedy(self, number: float | None, value: Any, name: str) -> str:
         """How to write it; no one unit is offered for a bare number, whose unit only the user knows."""
+        if isinstance(value, str) and (parted := _THOUSANDS.match(value)):
+            number, unit = re.sub(r"\D", "", parted[1]), parted[2] or self._example
+            point = f", or {parted[1].replace(',', '.')} {unit} with a decimal point" if "," in parted[1] else ""
+            return f"write {name}: {number} {unit}, without a sign between thousands{point}"
         if isinstance(value, str) and (comma := _DECIMAL_COMMA.match(value)):
             return f"write a decimal point, not a comma: {name}: {comma[1]}.{comma[2]}"
         if number is None:
-            return f"write {name}: {{value: 1.0, unit: {self._example}}}, or {name}: 1.0 {self._example}"
+            number = value.strip() if isinstance(value, str) and _BARE.match(value) else "…"
+            return f"write {name}: {{value: {number}, unit: {self._example}}}, or {name}: {number} {self._example}"
         if self.unit is None:
             return f"say it in the unit of the channel or one of its kind, as {name}: {number} mm for one in mm"
         usual = self._usual(number)

@@ -13,6 +13,7 @@ from gear_damping.measurement.checks import refuse_not_finite
 from gear_damping.measurement.cutting import rows_beside, slower, window_rows
 from gear_damping.measurement.declaration import ChannelPlan, EncoderPlan, RecordPlan, TimePlan
 from gear_damping.measurement.encoders import ReadColumn, ShaftAngle, shaft_angle
+from gear_damping.measurement.formats.moments import DAY
 from gear_damping.measurement.formats.table import Table
 from gear_damping.measurement.record import Finding
 from gear_damping.measurement.time_column import is_time, stamped_rate
@@ -24,7 +25,7 @@ from gear_damping.measurement.timebase import (
     written_significantly,
 )
 from gear_damping.schema.values import Problems
-from gear_damping.units import multiple_of_a_unit, parse_unit, to_si
+from gear_damping.units import multiple_of_a_unit, parse_unit, scaled_unit, to_si
 
 LEAST_SAMPLES = 8  # of a record, for a spectrum at all
 MOST_DOUBLED = 0.01  # of the rows of a record; where more come twice, something else is wrong
@@ -84,7 +85,7 @@ class RawReader:
         channels = []
         for plan in self.plan.channels:
             with self.problems.collecting():
-                channels.append(self._channel(plan))
+                channels.append(self._channel(plan, base))
         angles = {}
         for plan in self.plan.encoders if base else ():
             with self.problems.collecting():
@@ -234,6 +235,7 @@ class RawReader:
             remedy = "give the channel its own time or sampling_rate"
             remedy = f"end the slice at {last}, or {remedy}" if few and last > self.first else remedy
             raise InputError(Problem(key, rule, remedy=remedy, source=self.file))
+        self._refuse_longer(column, key, _filled(values))
         values = values[self.first : self.stop]
         if self.filled:
             values = values[self.filled]
@@ -241,6 +243,16 @@ class RawReader:
             self._refuse_cells(column, key, self.first, self.stop)
         refuse_not_finite(values, self._named(key, column), self.file, self.first)
         return np.delete(values, np.array(self.doubled, int) - self.first)
+
+    def _refuse_longer(self, column: str | int, key: str, size: int) -> None:
+        """A column that goes on for long where the record ends by itself has another rate than that."""
+        if self.plan.rows or self.plan.window or size - self.stop - self.blank <= MOST_MISSING * self.stop:
+            return
+        rule = f"column '{column}' has {size} samples, the record {self.stop}"
+        remedy = (
+            f"give the channel its own time or sampling_rate, or slice: [0, {self.stop}] where they share their rows"
+        )
+        raise InputError(Problem(key, rule, remedy=remedy, source=self.file))
 
     def _refuse_cells(self, column: str | int, key: str, first: int, stop: int) -> None:
         """Cells that are no numbers are faults in the rows that are used, and nowhere else."""
@@ -261,7 +273,8 @@ class RawReader:
 
     def _steady(self) -> TimeBase | None:
         """The time base of the declared rate, else of the file's; None where the missing rate is said already."""
-        rate, clock = self.plan.timing.sampling_rate, self._clock()
+        rate = self.plan.timing.sampling_rate
+        clock = self._clock(rate)
         if rate is None and clock is None:
             if not any(problem.key.startswith(self.plan.key) for problem in self.problems):
                 rule = "neither time nor sampling_rate is given"
@@ -296,12 +309,20 @@ class RawReader:
         shared = [plan.column for plan in self.plan.channels if plan.timing is None]
         return shared + [plan.column for plan in self.plan.encoders if not plan.timestamps]
 
-    def _clock(self) -> tuple[float, float] | None:
-        """Start in s and rate in Hz that the file gives for the first column that shares the record's time."""
+    def _clock(self, rate: float | None = None) -> tuple[float, float] | None:
+        """Start in s and rate in Hz that the file gives for the first column that shares the record's time.
+
+        Beside a rate that the record has from elsewhere, of the first column whose clock runs at that; where none does,
+        of the first, if the file gives one for all of them.
+        """
+        clocks = []
         for column in self._on_its_clock():
             with suppress(InputError):  # which its channel will say
-                return self.table.clock(self.table.index(column, ""))
-        return None
+                clocks.append(self.table.clock(self.table.index(column, "")))
+        if rate is None:
+            return clocks[0] if clocks else None
+        alike = (clock for clock in clocks if clock and abs(clock[1] / rate - 1) <= RATE_TOLERANCE)
+        return next(alike, clocks[0] if clocks and None not in clocks else None)
 
     def _with_rows_beside(self, base: TimeBase | None) -> tuple[TimeBase | None, tuple[float, float] | None]:
         """The time base with the sound rows beside the record that the filter of `resample` reaches, and its own ends.
@@ -369,13 +390,19 @@ class RawReader:
             raise InputError(Problem(f"{key}.unit", rule, unit, remedy, self.source))
         return found
 
-    def _channel(self, plan: ChannelPlan) -> RawChannel:
+    def _channel(self, plan: ChannelPlan, base: TimeBase | None) -> RawChannel:
         header = self.table.unit(self.table.index(plan.column, f"{plan.key}.column"))
         unit = plan.unit or header
         if unit is None:
             remedy = "give the unit of the column"
             raise InputError(Problem(f"{plan.key}.unit", "is missing", None, remedy, self.source))
-        clock = self._other_clock(plan)
+        if plan.unit is None and (own := scaled_unit(unit)):
+            rule, remedy = (
+                f"the header says '{unit}'",
+                f"write unit: {own}, and gain: what the column holds for one {own}",
+            )
+            raise InputError(Problem(f"{plan.key}.unit", rule, None, remedy, self.source))
+        clock = self._other_clock(plan, base)
         if plan.timing is None and clock is None:
             if self.filled and filled_in(self._all(plan.column, "")[self.first : self.stop]) is None:
                 return self._faster(plan, unit, header)
@@ -390,14 +417,20 @@ class RawReader:
         whole.filled = None
         return RawChannel(plan, whole.sliced(plan.column, f"{plan.key}.column"), unit, header, whole._base())
 
-    def _other_clock(self, plan: ChannelPlan) -> tuple[float, float] | None:
-        """The file's own clock of a channel where the record follows another one of the file."""
-        if plan.timing is not None or self.plan.timing.column is not None:
+    def _other_clock(self, plan: ChannelPlan, base: TimeBase | None) -> tuple[float, float] | None:
+        """The file's own clock of a channel where the record follows another one, on the record's time."""
+        clock = self.table.clock(self.table.index(plan.column, ""))
+        if plan.timing is not None or clock is None or base is None:
             return None
-        clock, record = self.table.clock(self.table.index(plan.column, "")), self._clock()
-        if clock is None or record is None or clock == record:
+        rate, stamped = self.plan.timing.sampling_rate, self.plan.timing.column is not None
+        rate = base.sampling_rate * (self.filled.step if self.filled else 1) if stamped else rate
+        record = self._clock(rate)
+        if clock == record:
             return None
-        return clock
+        if record is not None:
+            return clock[0] + (self._first_stamp() - record[0] if stamped else 0.0), clock[1]
+        is_alike = rate is None or abs(clock[1] / rate - 1) <= RATE_TOLERANCE
+        return None if is_alike else (clock[0] + self._first_stamp(), clock[1])
 
     def unsliced(self, column: str | int, key: str) -> NDArray[np.float64]:
         """All finite values of a column, without the empty rows behind a slower one."""
@@ -421,15 +454,31 @@ class RawReader:
 
     def _own_time(self, plan: ChannelPlan, n: int) -> TimeBase:
         key = f"{plan.key}.time"
-        if plan.timing.sampling_rate is not None:
-            return steady_time(plan.timing.sampling_rate, 0, n, self._first_stamp())
+        rate = plan.timing.sampling_rate
+        if rate is not None:
+            base, own = (
+                steady_time(rate, 0, n, self._first_stamp()),
+                self.table.clock(self.table.index(plan.column, key)),
+            )
+            is_other = own is not None and abs(rate / own[1] - 1) > _SAME_RATE
+            return replace(base, findings=(_of_file(rate, own[1], plan.name),)) if is_other else base
         if plan.timing.column is None:
             raise InputError(Problem(key, "gives no time base", None, "name a column or a rate", self.source))
         base = self._stamped(plan.timing, key, self.unsliced, 0)
         if base.time.size != n:
             rule = f"{base.time.size} time stamps for {n} samples"
             raise InputError(Problem(key, rule, None, "name the stamps of this very channel", self.file))
-        return base
+        return replace(base, time=base.time + self._behind(plan.timing.column, key))
+
+    def _behind(self, column: str | int, key: str) -> float:
+        """By how many s the dates or clocks of a column begin behind those of the record; 0 of plain stamps."""
+        own = self.table.begins(self.table.index(column, key))
+        of_record = self.plan.timing.column
+        begun = None if of_record is None else self.table.begins(self.table.index(of_record, key))
+        if own is None or begun is None:
+            return 0.0
+        of_one_day = (own < DAY) != (begun < DAY)  # a date beside a clock without one
+        return own % DAY - begun % DAY if of_one_day else own - begun
 
 
 def _seconds_of(header: str | None) -> float | None:
@@ -463,12 +512,12 @@ def _leading(true: NDArray[np.bool_]) -> int:
     return int(true.size if true.all() else np.argmin(true))
 
 
-def _of_file(rate: float, own: float) -> Finding:
+def _of_file(rate: float, own: float, channel: str = "time") -> Finding:
     message = (
         f"the file itself says {own:.6g} Hz and sampling_rate {rate:.6g} Hz, which was used; "
         "where the file is right, leave sampling_rate out"
     )
-    return Finding("rate_conflict", message, channel="time", severity="note" if own <= _DOUBTFUL else "data_problem")
+    return Finding("rate_conflict", message, channel=channel, severity="note" if own <= _DOUBTFUL else "data_problem")
 
 
 def _rate_conflict(rate: float, column: str, own: float) -> Finding:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from gear_damping.errors import InputError
-from gear_damping.measurement.formats.moments import is_moment, seconds_of
+from gear_damping.measurement.formats.moments import is_moment, moments_of
 from gear_damping.measurement.formats.registry import read_table
 from gear_damping.measurement.load import load_measurement
 from gear_damping.measurement.recordings import past_overflow, recordings
@@ -24,18 +24,18 @@ HUNDREDTHS = np.arange(0, 3.2, 0.01)
 def test_dates_with_clocks_are_seconds_from_the_first(form):
     texts = [form.format(second) for second in HUNDREDTHS]
     assert is_moment(texts[0])
-    np.testing.assert_allclose(seconds_of(texts), HUNDREDTHS, atol=1e-9)
+    np.testing.assert_allclose(moments_of(texts).seconds, HUNDREDTHS, atol=1e-9)
 
 
 @pytest.mark.parametrize("frames", [24, 25, 30])
 def test_the_last_number_of_a_time_code_counts_frames(frames):
     texts = [f"00:00:{k // frames:02d}:{k % frames:02d}" for k in range(5 * frames)]
-    np.testing.assert_allclose(seconds_of(texts), np.arange(5 * frames) / frames, atol=1e-9)
+    np.testing.assert_allclose(moments_of(texts).seconds, np.arange(5 * frames) / frames, atol=1e-9)
 
 
 def test_hundredths_behind_a_colon_are_no_frames():
     texts = [f"00:00:{k // 100:02d}:{k % 100:02d}" for k in range(320)]
-    np.testing.assert_allclose(seconds_of(texts), HUNDREDTHS, atol=1e-9)
+    np.testing.assert_allclose(moments_of(texts).seconds, HUNDREDTHS, atol=1e-9)
 
 
 def test_what_a_clock_says_of_a_second_goes_on_behind_it():
@@ -78,7 +78,7 @@ def test_a_unit_in_cells_that_contradicts_the_header_is_no_number(tmp_path):
 def test_a_clock_that_is_put_back_within_its_zone_goes_on():
     texts = [f"2024-10-27T02:59:{58 + k / 2:04.1f}+02:00" for k in range(4)]
     texts += [f"2024-10-27T02:00:{k / 2:04.1f}+01:00" for k in range(4)]
-    np.testing.assert_allclose(seconds_of(texts), np.arange(8) / 2, atol=1e-9)
+    np.testing.assert_allclose(moments_of(texts).seconds, np.arange(8) / 2, atol=1e-9)
 
 
 def test_stamps_of_whole_packets_are_not_left_out_row_by_row(tmp_path):

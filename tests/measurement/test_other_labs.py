@@ -9,7 +9,7 @@ from scipy.io import wavfile
 from gear_damping.errors import InputError
 from gear_damping.measurement.checks import check_channel
 from gear_damping.measurement.encoders import angle_from_counts, angle_from_pulses
-from gear_damping.measurement.formats.moments import seconds_of
+from gear_damping.measurement.formats.moments import moments_of
 from gear_damping.measurement.formats.registry import read_table
 from gear_damping.measurement.inspection import inspect_table
 from gear_damping.measurement.load import load_measurement
@@ -290,8 +290,8 @@ def test_dates_and_clocks_are_seconds_from_the_first(tmp_path, before, behind):
 
 
 def test_minutes_and_seconds_since_a_start_are_a_clock():
-    assert seconds_of(["00:59.5", "01:00.0", "01:00.5"]).tolist() == [0, 0.5, 1]
-    assert seconds_of(["00:59.5", "end"]) is None
+    assert moments_of(["00:59.5", "01:00.0", "01:00.5"]).seconds.tolist() == [0, 0.5, 1]
+    assert moments_of(["00:59.5", "end"]) is None
 
 
 def test_a_date_alone_is_no_clock(tmp_path):

@@ -163,6 +163,10 @@ def test_waveforms_that_begin_at_other_times_stand_as_much_apart(tmp_path):
         {"dt": 5, "time_unit": b"ms"},
         {"sample_interval_us": 5000},
         {"fs": 0.2, "fs_unit": "kHz"},
+        {"dt_us": 5000},
+        {"dt_ms": 5.0},
+        {"fs_kHz": 0.2},
+        {"sample_rate_hz": 200},
     ],
 )
 def test_a_rate_is_read_in_the_unit_beside_it(tmp_path, attributes):
@@ -196,3 +200,69 @@ def test_a_name_is_found_without_its_unit_and_its_run(tmp_path):
     assert table.index("Angle, Ch P1", "") == 1
     with pytest.raises(InputError, match=r"did you mean 'Angle, Ch P1 \(rad\) Run #14'\?"):
         table.index("Angle, Ch P1 (r", "")
+
+
+def _sheet(folder, rows, formats=()):
+    openpyxl = pytest.importorskip("openpyxl")
+    book = openpyxl.Workbook()
+    for row in rows:
+        book.active.append(row)
+    for column, shown in formats:
+        for cell in book.active[column][1:]:
+            cell.number_format = shown
+    book.save(folder / "a.xlsx")
+    return read_table(folder / "a.xlsx")
+
+
+@pytest.mark.parametrize("blank", [(0,), (1,), (2,), (0, 2)])
+def test_a_blank_column_of_a_sheet_moves_no_name(tmp_path, blank):
+    rows = [["t", "x", "F"], *([t, x, -x] for t, x in zip(TIME.tolist(), WAVE.tolist(), strict=True))]
+    for row in rows:
+        for k in blank:
+            row.insert(k, None)
+    table = _sheet(tmp_path, rows)
+    assert table.names == ("t", "x", "F")
+    assert _wave(table) == WAVE.tolist()
+    assert table.values(2).tolist() == (-WAVE).tolist()
+
+
+def test_cells_in_per_cent_are_read_as_they_are_shown(tmp_path):
+    table = _sheet(tmp_path, [["t", "x"], *([t, x / 100] for t, x in zip(TIME, WAVE, strict=True))], [("B", "0.00%")])
+    assert _wave(table) == pytest.approx(WAVE.tolist())
+
+
+def test_texts_with_a_decimal_comma_among_numbers_of_a_sheet(tmp_path):
+    cells = [f"{x:.3f}".replace(".", ",") if k % 7 == 3 else x for k, x in enumerate(WAVE.tolist())]
+    table = _sheet(tmp_path, [["t", "x"], *([t, x] for t, x in zip(TIME, cells, strict=True))])
+    assert _wave(table) == pytest.approx(WAVE.tolist(), abs=6e-4)
+    assert "texts with a comma among the numbers of 'x' are read as numbers, the first" in " ".join(table.notes)
+
+
+def test_thousands_within_the_numbers_of_a_sheet_stay_thousands(tmp_path):
+    cells = [1000.0 * k for k in range(60)]
+    table = _sheet(
+        tmp_path,
+        [["t", "x"], *([t, "7,000" if k == 7 else x] for k, (t, x) in enumerate(zip(TIME, cells, strict=True)))],
+    )
+    assert _wave(table) == cells
+
+
+@pytest.mark.parametrize("header", ["x [mm*10]", "x [mm/10]", "x [mm]*1000", "1000*x [mm]", "x (mm·10⁻³)", "x/mm*10"])
+def test_a_factor_behind_a_unit_is_asked_for(tmp_path, header):
+    (tmp_path / "a.csv").write_text(f"t,{header}\n" + "\n".join(ROWS))
+    channels = {"time": {"column": "t", "unit": "s"}, "displacement": {"column": 1, "unit": "mm"}}
+    for gain, said in ((None, ["unit_conflict"]), (10, []), (1, [])):
+        channels["displacement"] |= {} if gain is None else {"gain": gain}
+        record = {"file": "a.csv", "channels": channels}
+        (tmp_path / "m.yaml").write_text(yaml.safe_dump({"system": "oscillator", "records": [record]}))
+        assert [one.kind for one in load_measurement(tmp_path / "m.yaml").records[0].findings] == said
+
+
+def test_comments_below_units_are_no_names(tmp_path):
+    table = _table(tmp_path, "A(X)\tB(Y)\nTime\tx\ns\tmm\nrun 1\tlaser\n" + "\n".join(ROWS).replace(",", "\t"))
+    assert (table.names, table.unit(1), _wave(table)) == (("Time", "x"), "mm", WAVE.tolist())
+
+
+def test_minutes_of_a_clock_go_on_past_the_hour(tmp_path):
+    table = _table(tmp_path, "t,x\n" + "\n".join(f"{(59 + k // 60) % 60:02d}:{k % 60:02d}.0,{k}" for k in range(120)))
+    assert table.values(0).tolist() == [float(k) for k in range(120)]

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.formats.moments import is_moment, is_told, seconds_of
+from gear_damping.measurement.formats.moments import is_moment, is_told, moments_of
 from gear_damping.measurement.formats.number_texts import is_absent, is_number, is_written, parts_thousands, plain
 from gear_damping.measurement.formats.table import Table, is_real
 from gear_damping.units import parse_unit
@@ -52,6 +52,7 @@ class Cells:
         values: The cells.
         line: The line of the file that a row stands in.
         also: Other names of it, in further rows of the header.
+        begins: When the first was, of a column of moments, as `Moments` has it.
     """
 
     name: str
@@ -59,6 +60,7 @@ class Cells:
     values: NDArray
     line: Callable[[int], int]
     also: tuple[str, ...] = ()
+    begins: float | None = None
 
 
 def without_footer(columns: Sequence[Cells]) -> tuple[list[Cells], str]:
@@ -114,6 +116,7 @@ class CellTable(Table):
         self._columns, self._commas, self._all_commas = list(columns), decimal_commas, all_commas
         self._read: dict[int, NDArray[np.float64]] = {}
         self._bad: dict[int, tuple[list[str], list[int]]] = {}
+        self._begins = {k: one.begins for k, one in enumerate(columns) if one.begins is not None}
 
     def _named(self, column: str) -> list[int]:
         return super()._named(column) or [k for k, one in enumerate(self._columns) if column.strip() in one.also]
@@ -123,8 +126,15 @@ class CellTable(Table):
         column = self._columns[index]
         if column.unit is None and (unit := _unit_of_cells(column.values)):
             return unit
-        is_clock = column.values.size and not is_real(column.values.dtype) and is_moment(str(column.values[0]))
-        return "s" if is_clock else column.unit
+        if is_real(column.values.dtype):
+            return column.unit
+        first = next((cell for cell in map(str, column.values) if not is_absent(cell)), "")
+        return "s" if is_moment(first) else column.unit
+
+    def begins(self, index: int) -> float | None:
+        """When the first moment of a column of dates or clocks was."""
+        self.values(index)
+        return self._begins.get(index)
 
     def values(self, index: int) -> NDArray[np.float64]:
         """(n,) float64: a column, nan where a cell is no number; `bad_cells` tells of these.
@@ -140,7 +150,7 @@ class CellTable(Table):
     def _numbers(self, index: int) -> NDArray[np.float64]:
         column = self._columns[index]
         texts = [str(cell) for cell in column.values]
-        if texts and is_moment(texts[0]) and (seconds := seconds_of(texts)) is not None:
+        if (seconds := self._moments(index, texts)) is not None:
             return seconds
         unit = _unit_of_cells(column.values)
         if unit and column.unit in (None, unit):  # another than the header's is a contradiction
@@ -156,6 +166,20 @@ class CellTable(Table):
             self._bad[index] = cells, bad
             missing = set(bad)
             return np.array([np.nan if k in missing else float(cell) for k, cell in enumerate(cells)])
+
+    def _moments(self, index: int, texts: list[str]) -> NDArray[np.float64] | None:
+        """(n,) s from the first of dates or clocks, nan where a cell is empty; None of anything else."""
+        told = [k for k, text in enumerate(texts) if not is_absent(text)]
+        if not told or not is_moment(texts[told[0]]):
+            return None
+        found = moments_of([texts[k] for k in told])
+        if found is None:
+            return None
+        self._begins[index] = found.begins
+        self._bad[index] = texts, [k for k, text in enumerate(texts) if is_absent(text)]
+        seconds = np.full(len(texts), np.nan)
+        seconds[told] = found.seconds
+        return seconds
 
     def bad_cells(self, index: int, first: int, stop: int) -> list[Problem]:
         """The cells of a column that are no numbers in some rows, with their lines."""

@@ -7,12 +7,17 @@ from dataclasses import dataclass
 from gear_damping.errors import InputError
 from gear_damping.measurement.formats.number_texts import is_absent, is_number, is_written
 from gear_damping.measurement.time_column import NAMED, is_time
-from gear_damping.units import parse_unit
+from gear_damping.units import multiple_of_a_unit, parse_unit, scaled_unit
 
 _BRACKETS = re.compile(r"[(\[]([^()\[\]]+)[)\]]\s*(?:run\s*#?\s*\d+\s*)?$", re.I)  # `Angle (rad) Run #2`, too
 _WITHIN = re.compile(r"[(\[]([^()\[\]]+)[)\]]")  # `Position (cm) Monitor Run`, where that is a unit
 _SLASH = re.compile(r"^[^/]+/\s*([^\W\d_][^\s]*|[°%µ][^\s]*)$")  # `Weg/mm`, as DIN 461 has it
 _ARGUMENT = re.compile(r"^\W*[^\W\d]\w?\s*\((t|k|n)\)\s*$")  # `x(t)`, `F_(t)`: what it is over, and no unit
+_FACTOR_BEHIND = re.compile(
+    r"[(\[](?P<unit>[^()\[\]]+)[)\]]\s*(?P<factor>[*x×·/]\s*\d[\d.,eE^+\-]*)\s*$"
+)  # `x [mm]*1000`
+_FACTOR_BEFORE = re.compile(r"^(?P<factor>\d[\d.,eE^+\-]*)\s*[*×·]\s*[^\W\d].*[(\[](?P<unit>[^()\[\]]+)[)\]]\s*$")
+_IN_STEPS = re.compile(r"\s(?:in|/)\s+(\d[\d.,/]*\s*[A-Za-zµμ°][\w/^]*)\s*$")  # `x in 0.1mm`
 _INDEX = re.compile(r"\w\[\d+\]\s*$")  # `data[3]` is a name, no unit
 _NO_UNIT = ("", "-", "#")
 _COMMENTED = re.compile(r"^(?:%+|//+)\s*(?=[\w\[])")  # names behind the sign of comments of MATLAB and of C
@@ -69,8 +74,8 @@ def find_header(rows: Sequence[Sequence[str]], width: int) -> Header:
 
     Returns:
         The row of texts as wide as the values with the most different ones, of those before the first row of values,
-        the last of several; else a wider one, else the last one. Without a row of texts the values begin at the first
-        row.
+        the last of several, one above a row of units before any other; else a wider one, else the last one. Without a
+        row of texts the values begin at the first row.
     """
     end = _first_values(rows, width)
     is_named = any(filled(row) >= width for row in rows[:end])
@@ -87,7 +92,8 @@ def find_header(rows: Sequence[Sequence[str]], width: int) -> Header:
     texts = [k for k in texts if not (_is_units(rows[k]) and k - 1 in texts and filled(rows[k - 1]) == width)]
     exact = [k for k in texts if filled(rows[k]) == width]
     wide = [k for k in texts if filled(rows[k]) > width]
-    start = max(exact or wide or texts[-1:], key=lambda k: (len({*rows[k]}), k))
+    above_units = [k for k in exact if k + 1 < len(rows) and _is_units(rows[k + 1])]
+    start = max(above_units or exact or wide or texts[-1:], key=lambda k: (len({*rows[k]}), k))
     start -= bool(start and _is_units(rows[start]) and _are_numbered(rows[start - 1], width))
     names, first = tuple(cell.strip() for cell in rows[start]), start + 1
     units: tuple[str, ...] = ()
@@ -172,6 +178,11 @@ def bracket_unit(name: str) -> str | None:
     """What stands in brackets at the end of a name, or within it or behind its first stroke where that is a unit."""
     if _INDEX.search(name) or _ARGUMENT.match(name):
         return None
+    for pattern in (_FACTOR_BEHIND, _FACTOR_BEFORE):
+        if (scaled := pattern.search(name)) and _is_unit(scaled["unit"].strip()):
+            return f"{scaled['unit'].strip()}*{scaled['factor'].lstrip('*x×· ')}".replace("*/", "/")
+    if (step := _IN_STEPS.search(name)) and multiple_of_a_unit(step[1]):
+        return step[1]
     found = _BRACKETS.search(name)
     if found is not None:
         return found[1].strip()
@@ -180,7 +191,7 @@ def bracket_unit(name: str) -> str | None:
     if len(units) == 1:
         return units[0]
     behind = _SLASH.search(name.strip())
-    return behind[1] if behind is not None and _is_unit(behind[1]) else None
+    return behind[1] if behind is not None and (_is_unit(behind[1]) or scaled_unit(behind[1])) else None
 
 
 def _has_number(row: Sequence[str]) -> bool:

@@ -9,12 +9,13 @@ import numpy as np
 
 from gear_damping.units import is_of_kind, to_si
 
+_END = r"(?:\b|(?=_(?:ns|us|ms|s|hz|khz|mhz)\b))"  # of a name, before its unit too: `dt_us`
 _STEP = re.compile(
     r"\b(delta[ _]?[tx]|d[tx]|t ?interval|[tx][ _]?incr(ement)?|(samp(le|ling)|time|horizontal|record|abtast)[ _-]?"
-    r"(interval\w*|period\w*|increment\w*|step\w*))\b", re.I,
+    r"(interval\w*|period\w*|increment\w*|step\w*))" + _END, re.I,
 )  # fmt: skip
 _RATE = re.compile(
-    r"\b(samp(le|ling)[ _-]?(rate|freq(uency)?)|samples (per|a) second|abtast(rate|frequenz)|fs)\b", re.I
+    r"\b(samp(le|ling)[ _-]?(rate|freq(uency)?)|samples (per|a) second|abtast(rate|frequenz)|fs)" + _END, re.I
 )
 _IN_NAME = re.compile(r"_(ns|us|ms|s|hz|khz|mhz)[\s:=]*$", re.I)  # `sample_interval_us`
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?", re.I)
@@ -47,7 +48,8 @@ def _of_row(row: Sequence[str]) -> tuple[str, float] | None:
     value = float(number[0])
     if any(_NUMBER.fullmatch(other) and float(other) != value for other in behind):
         return None  # of each channel its own
-    said = (*re.findall(r"[(\[]([^)\]]+)[)\]]", name), *behind[:1], *_IN_NAME.findall(name))
+    in_name = (one.lower().replace("hz", "Hz").replace("mHz", "MHz") for one in _IN_NAME.findall(name))
+    said = (*re.findall(r"[(\[]([^)\]]+)[)\]]", name), *behind[:1], *in_name)
     unit = next((one for one in said if one), "")
     is_step = is_step and not is_of_kind(unit, "Hz")  # steps at 8 kHz
     size = value * _factor(unit, "s" if is_step else "Hz")

@@ -58,6 +58,10 @@ class Table(ABC):
         """The time of a column's first sample in s and its rate in Hz, where the file gives them."""
         return None if self.sampling_rate is None else (0.0, self.sampling_rate)
 
+    def begins(self, index: int) -> float | None:
+        """When the first stamp of a column was, in s on a clock of the file, where its stamps count from that one."""
+        return None
+
     def index(self, column: str | int, key: str) -> int:
         """The 0-based index of `column`, a name or an index.
 
@@ -150,6 +154,7 @@ class Held:
         read: Gives the array itself, of any shape with those elements.
         unit: Its unit, where the file says it.
         clock: The time of its first sample in s and its rate in Hz, where the file says them.
+        begins: When the first was, of stamps that count from it, as `Moments` has it.
     """
 
     name: str
@@ -157,6 +162,7 @@ class Held:
     read: Callable[[], NDArray]
     unit: str | None = None
     clock: tuple[float, float] | None = None
+    begins: Callable[[], float] | None = None
 
 
 class ArrayTable(Table):
@@ -193,6 +199,11 @@ class ArrayTable(Table):
     def clock(self, index: int) -> tuple[float, float] | None:
         """The time of the column's first sample in s and its rate in Hz, where the file gives them."""
         return self._held[self._place[index][0]].clock or super().clock(index)
+
+    def begins(self, index: int) -> float | None:
+        """When the first stamp of the column's array was, where its stamps count from that one."""
+        begins = self._held[self._place[index][0]].begins
+        return begins() if begins else None
 
 
 def squeezed(shape: Sequence[int]) -> tuple[int, ...]:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.formats.moments import moment_since
 from gear_damping.measurement.formats.stated_rate import rate_of
 from gear_damping.measurement.formats.table import (
     ArrayTable,
@@ -110,11 +111,15 @@ def _held(nptdms: Any, path: Path, name: str, channel: Any, first: np.datetime64
             values = file[group][own][:]
         return (values - values[0]) / np.timedelta64(1, "s") if stamps else values
 
+    def begins() -> float:
+        with _opened(nptdms, path, _Said()) as file:
+            return moment_since(file[group][own][0].astype("datetime64[us]").item())
+
     begun = _begun(channel)
     late = 0.0 if begun is None else float((begun - first) / np.timedelta64(1, "s"))
     said = (channel.properties.get(name) for name in _UNIT_PROPERTIES)
     unit = "s" if stamps else next((one for one in said if one and isinstance(one, str)), None)
-    return Held(name, (len(channel),), read, unit, _clock(channel.properties, late))
+    return Held(name, (len(channel),), read, unit, _clock(channel.properties, late), begins if stamps else None)
 
 
 def _clock(properties: dict[str, Any], late: float) -> tuple[float, float] | None:

@@ -8,6 +8,7 @@ import numpy as np
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.formats.stated_rate import rate_of
 from gear_damping.measurement.formats.table import ArrayTable, Held, Table, extra_library, unreadable
+from gear_damping.units import is_of_kind, to_si
 
 SUFFIXES = (".uff", ".unv", ".uff58")
 
@@ -61,18 +62,27 @@ def _held(name: str, values: Any, unit: str | None, clock: tuple[float, float] |
 def _abscissa(one: dict[str, Any]) -> Held:
     """The abscissa of the first set, at its rounded rate where it is even in time."""
     kind, clock = one["abscissa_spec_data_type"], _clock(one)
-    values = np.asarray(one["x"]) if clock is None else clock[0] + np.arange(len(one["data"])) / clock[1]
     unit = _unit(one["abscissa_axis_units_lab"]) or {_TIME: "s", _FREQUENCY: "Hz"}.get(kind)
+    values = np.asarray(one["x"])
+    if clock is not None:
+        values = (clock[0] + np.arange(len(one["data"])) / clock[1]) / to_si(1.0, _seconds(unit), "s")
     return _held("abscissa", values, unit, clock)
 
 
 def _clock(one: dict[str, Any]) -> tuple[float, float] | None:
     """Start in s and rate in Hz of an even abscissa in time."""
     rate = rate_of(one["abscissa_inc"])
-    in_time = one["abscissa_spec_data_type"] == _TIME and _unit(one["abscissa_axis_units_lab"]) in (None, "s", "sec")
+    unit = _seconds(_unit(one["abscissa_axis_units_lab"]))
+    in_time = one["abscissa_spec_data_type"] == _TIME and is_of_kind(unit, "s")
     if not in_time or not one["abscissa_spacing"] or rate is None:
         return None
-    return float(one["abscissa_min"]), rounded_rate(rate)
+    second = to_si(1.0, unit, "s")
+    return float(one["abscissa_min"]) * second, rounded_rate(rate / second)
+
+
+def _seconds(unit: str | None) -> str:
+    """The unit of an abscissa in time, which is s where nothing else is said."""
+    return "s" if unit in (None, "sec") else unit
 
 
 def rounded_rate(rate: float) -> float:

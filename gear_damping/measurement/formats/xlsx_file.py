@@ -1,5 +1,6 @@
 """Excel workbooks: the columns of one sheet by their header, of several as `sheet/header`."""
 
+import re
 from datetime import datetime, time, timedelta
 from pathlib import Path
 from typing import Any
@@ -11,11 +12,14 @@ from numpy.typing import NDArray
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.formats.cells import Cells, CellTable, said_of_empty_rows, without_footer
 from gear_damping.measurement.formats.header import find_header
-from gear_damping.measurement.formats.moments import past_midnight
+from gear_damping.measurement.formats.moments import Moments, moment_since, past_midnight
 from gear_damping.measurement.formats.table import Table, extra_library, refuse_size, unreadable
 
 SUFFIXES = (".xlsx",)
 
+_COMMA = re.compile(r"\s*[+-]?\d+,\d+\s*")
+_GROUP = 3  # digits between signs of thousands
+_CLEARLY = 10.0  # times as far from the numbers beside it: what the other reading of a comma must be to be none
 _HEAD = 100  # rows among which the header is looked for
 
 
@@ -30,14 +34,16 @@ def read(path: Path, max_bytes: int) -> Table:
         with ZipFile(path) as archive:
             refuse_size(path, sum(member.file_size for member in archive.infolist()), max_bytes)
         book = openpyxl.load_workbook(path, read_only=True, data_only=True)
-        sheets = {sheet.title: [list(row) for row in sheet.iter_rows(values_only=True)] for sheet in book.worksheets}
+        sheets = {sheet.title: _cells(sheet) for sheet in book.worksheets}
         book.close()
     several = sum(bool(rows) for rows in sheets.values()) > 1
     columns, notes = [], []
     for title, rows in sheets.items():
         notes += [f"{path.name}, {title}: {empty}"] if (empty := _empty_rows(rows)) else []
-        own, below = without_footer(_columns(rows, f"{title}/" if several else ""))
+        found, said = _columns(rows, f"{title}/" if several else "")
+        own, below = without_footer(found)
         columns += own
+        notes += [f"{path.name}, {title}: {one}" for one in said]
         notes += [f"{path.name}, {title}: {below}"] if below else []
     if not columns:
         raise InputError(Problem("file", "no rows", str(path), "export it again"))
@@ -46,15 +52,35 @@ def read(path: Path, max_bytes: int) -> Table:
     return table
 
 
-def _columns(rows: list[list[Any]], prefix: str) -> list[Cells]:
-    """The columns of a sheet with rows below its header; empty cells at the end of a column are not its own."""
-    filled = [(number, row) for number, row in enumerate(rows, start=1) if any(cell is not None for cell in row)]
+def _cells(sheet: Any) -> list[list[Any]]:
+    """The values of a sheet, those that are shown in per cent as they are shown."""
+    rows = [list(row) for row in sheet.iter_rows(values_only=True)]
+    shown = {
+        k
+        for row in sheet.iter_rows(max_row=_HEAD)
+        for k, cell in enumerate(row)
+        if isinstance(cell.value, int | float) and "%" in (cell.number_format or "")
+    }
+    for k in shown:
+        for row in rows:
+            row[k] = 100 * row[k] if k < len(row) and isinstance(row[k], int | float) else row[k]
+    return rows
+
+
+def _columns(rows: list[list[Any]], prefix: str) -> tuple[list[Cells], list[str]]:
+    """The columns of a sheet with rows below its header, and what is noted of them.
+
+    Empty cells at the end of a column are not its own.
+    """
+    filled = _without_blank_columns(
+        [(number, row) for number, row in enumerate(rows, start=1) if any(cell is not None for cell in row)]
+    )
     texts = [["" if cell is None else str(cell).strip() for cell in row] for _, row in filled[:_HEAD]]
     if not texts:
-        return []
+        return [], []
     header = find_header(texts, max(sum(cell is not None for cell in row) for _, row in filled))
     body = filled[header.first :]
-    columns = []
+    columns, notes = [], []
     for k in range(max(len(row) for _, row in filled)):
         cells = [(number, row[k] if k < len(row) else None) for number, row in body]
         while cells and cells[-1][1] is None:
@@ -63,9 +89,44 @@ def _columns(rows: list[list[Any]], prefix: str) -> list[Cells]:
         if cells:
             lines = [number for number, _ in cells]
             name = f"{prefix}{name}" if name else ""
-            values, own_unit = _values([cell for _, cell in cells])
-            columns.append(Cells(name, own_unit or unit, values, lines.__getitem__, header.also(k)))
-    return columns
+            own = _with_points([cell for _, cell in cells])
+            if commas := sum(a is not b[1] for a, b in zip(own, cells, strict=True)):
+                first = next(k for k, (a, b) in enumerate(zip(own, cells, strict=True)) if a is not b[1])
+                said = f"the first '{cells[first][1]}' as {own[first]:g}"
+                notes.append(f"{commas} texts with a comma among the numbers of '{name}' are read as numbers, {said}")
+            values, begins = _values(own)
+            unit = unit if begins is None else "s"
+            columns.append(Cells(name, unit, values, lines.__getitem__, header.also(k), begins))
+    return columns, notes
+
+
+def _with_points(cells: list[Any]) -> list[Any]:
+    """Cells of a column of numbers with those that are texts with a comma, as `1,5` and `1,500`, as numbers too.
+
+    Before three digits it may part thousands: the numbers beside such texts tell, and where they do not, they stay.
+    """
+    places = [k for k, cell in enumerate(cells) if isinstance(cell, str) and _COMMA.fullmatch(cell)]
+    known = [k for k, cell in enumerate(cells) if isinstance(cell, int | float)]
+    if not known or not places:
+        return cells
+    decimal = {k: float(cells[k].replace(",", ".")) for k in places}
+    read = decimal
+    if all(len(cells[k].strip().partition(",")[2]) == _GROUP for k in places):
+        near = dict(zip(places, np.interp(places, known, [cells[k] for k in known]), strict=True))
+        thousands = {k: float(cells[k].replace(",", "")) for k in places}
+        away = [sum(abs(one[k] - near[k]) for k in places) for one in (decimal, thousands)]
+        if max(away) < _CLEARLY * min(away):
+            return cells
+        read = decimal if away[0] < away[1] else thousands
+    return [read.get(k, cell) for k, cell in enumerate(cells)]
+
+
+def _without_blank_columns(rows: list[tuple[int, list[Any]]]) -> list[tuple[int, list[Any]]]:
+    """Numbered rows without the columns that hold nothing at all, which part the others on a sheet."""
+    width = max((len(row) for _, row in rows), default=0)
+    wide = [[*row, *[None] * (width - len(row))] for _, row in rows]
+    kept = [k for k, column in enumerate(zip(*wide, strict=True)) if any(cell is not None for cell in column)]
+    return [(number, [row[k] for k in kept]) for (number, _), row in zip(rows, wide, strict=True)]
 
 
 def _empty_rows(rows: list[list[Any]]) -> str:
@@ -75,15 +136,19 @@ def _empty_rows(rows: list[list[Any]]) -> str:
     return said_of_empty_rows([k for k in empty if values and values[0] < k < values[-1]], len(values))
 
 
-def _values(cells: list[Any]) -> tuple[NDArray, str | None]:
-    """Numbers as float64, moments as seconds from the first; a column with anything else keeps its texts."""
+def _values(cells: list[Any]) -> tuple[NDArray, float | None]:
+    """Numbers as float64, moments as s from the first and when that was; a column with anything else keeps its texts."""
     if all(isinstance(cell, int | float) for cell in cells):
         return np.array(cells, dtype=np.float64), None
-    if all(isinstance(cell, datetime) for cell in cells):
-        return np.array([(cell - cells[0]).total_seconds() for cell in cells]), "s"
-    if all(isinstance(cell, time | timedelta) for cell in cells):
-        seconds = past_midnight(np.array([_seconds(cell) for cell in cells]))
-        return seconds - seconds[0], "s"
+    told = [k for k, cell in enumerate(cells) if cell is not None]
+    seconds, own = np.full(len(cells), np.nan), [cells[k] for k in told]
+    if all(isinstance(cell, datetime) for cell in own):
+        seconds[told] = [(cell - own[0]).total_seconds() for cell in own]
+        return seconds, moment_since(own[0])
+    if all(isinstance(cell, time | timedelta) for cell in own):
+        found = Moments.of(past_midnight(np.array([_seconds(cell) for cell in own])))
+        seconds[told] = found.seconds
+        return seconds, found.begins
     return np.array(["" if cell is None else str(cell) for cell in cells], dtype=object), None
 
 
