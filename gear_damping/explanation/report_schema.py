@@ -169,6 +169,7 @@ class DampingRatios(Part):
 
     before: DampingRatio = said("by the nominal simulation")
     after: DampingRatio = said("with the causes")
+    by_record: list[PerRecord] = said("of each fitted record, where it differs between them; else empty", "%")
     bias_of_the_nominal: float = said("what the missing causes did to it", "%")
     conditional: bool = said(
         "true where something is left that has no name or is not random, or the last fit did not converge: the "

@@ -32,6 +32,7 @@ class Rig:
         spring: The parameter of the system that is its constant stiffness; None where it has a mesh.
         standing: Whether its shafts stand in all records.
         on_shafts: Whether a speed or an acceleration of one shaft was measured.
+        records: How many were fitted.
         one_way: Whether nothing brings it back and it moves in one direction in each record, so that what differs
             between directions, or yields before it slides, does not show.
     """
@@ -51,6 +52,7 @@ class Rig:
     standing: bool = False
     on_shafts: bool = False
     one_way: bool = False
+    records: int = 1
 
     def has(self, trait: Trait) -> bool:
         """Whether its system has a trait."""
@@ -154,7 +156,8 @@ class Cause:
             function of its values by own name where they decide.
         simpler: An effect that it contains, with fewer parameters.
         turns_with: Whether its phases turn with a shaft (`shaft`) and not with the mesh, or even tell single teeth
-            apart (`tooth`), or go with the time (`clock`), which begins anew in every record. Where no index says how
+            apart (`tooth`), or go with the time (`clock`), which begins anew in every record; or whether what stands
+            in the place of a phase is a level of the record's own (`record`). Where no index says how
             the shaft stands, every record has phases of its own, and the `phase` of what tells teeth apart is sought
             tooth by tooth in each of them.
         one_class: What else no record of this channel parts from it, as words for a sentence: then several names are
@@ -168,7 +171,7 @@ class Cause:
     separated_by: Experiment = "torque"
     looks_like: tuple[str, ...] | Callable[[Mapping[str, Any]], tuple[str, ...]] = ()
     simpler: str | None = None
-    turns_with: Literal["", "shaft", "tooth", "clock"] = ""
+    turns_with: Literal["", "shaft", "tooth", "clock", "record"] = ""
     one_class: tuple[str, ...] = ()
     acts_as: Callable[[Mapping[str, float], float, float], tuple[str, float] | None] | None = None
 

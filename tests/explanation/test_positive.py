@@ -36,7 +36,7 @@ def outcome_of(amplitude, phase, name=PHASE):
 def candidate_of(phase=None):
     common = [FreeParameter(OTHER, 1.0), FreeParameter(AMPLITUDE, 0.0), FreeParameter(PHASE, 0.0)]
     shared, own = ({1: 2}, {}) if phase is None else ({}, {1: phase})
-    return SimpleNamespace(hypothesis=SimpleNamespace(common=common), phases=shared, own_phases=own)
+    return SimpleNamespace(hypothesis=SimpleNamespace(common=common), phases=shared, own_phases=own, own_levels=False)
 
 
 @pytest.mark.parametrize("name", [PHASE, "e.phase@run"])

@@ -155,6 +155,13 @@ def _has_no_spring(outcome: Outcome, covariances: Tensor) -> bool:
     return False
 
 
+def damping_ratios(outcome: Outcome, others: Mapping[str, Tensor]) -> list[float]:
+    """The equivalent damping ratios in % of critical with other values of some parameters, (batch,) each."""
+    batch = len(next(iter(others.values())))
+    fitted = {name: torch.full((batch,), value, dtype=torch.float64) for name, value in outcome.values.items()}
+    return _ratios(outcome, fitted | dict(others), batch)[0].tolist()
+
+
 def _ratios(outcome: Outcome, free: Mapping[str, Tensor], batch: int) -> tuple[Tensor, float]:
     """Damping ratios in % of a batch of points."""
     model = outcome.hypothesis.model

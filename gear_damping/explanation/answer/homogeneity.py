@@ -52,7 +52,13 @@ class Homogeneity:
 
 
 def homogeneity(outcome: Outcome, cause: str, evidence: Evidence) -> Homogeneity:
-    """Estimates of the first strength of a cause by record, every other parameter projected out."""
+    """Estimates of the first strength of a cause by record, every other parameter projected out.
+
+    What says of itself that it differs between records is not one for all.
+    """
+    effect = next(one for one in outcome.hypothesis.effects if one.name == cause)
+    if effect.cause.turns_with == "record":
+        return Homogeneity((), (), (), None, evidence.settings.homogeneity_level)
     place = next(i for i, p in enumerate(outcome.problem.free) if p.name.startswith(cause + "."))
     prediction, problem = outcome.linearisation, outcome.problem
     groups, names = _groups(outcome)

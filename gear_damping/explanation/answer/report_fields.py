@@ -6,6 +6,7 @@ from typing import Any
 
 from gear_damping.explanation.answer import gain
 from gear_damping.explanation.answer.homogeneity import by_record
+from gear_damping.explanation.answer.levels import damping_by_record, levels_by_record, own_level
 from gear_damping.explanation.answer.next_experiment import confusable_beforehand, next_experiment
 from gear_damping.explanation.answer.unexplained import unexplained_residual
 from gear_damping.explanation.evidence.data_faults import sentences
@@ -206,7 +207,7 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
             "status": statuses(judged.verdict.word),
             "fixed": _fixed(last, cause.name),
             "options": dict(cause.candidate.tried),
-            **by_record(last, cause.name, evidence),
+            **_by_record(last, cause.name, evidence),
         }
         for cause in found.accepted
     ]
@@ -220,9 +221,16 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
             listed.append(
                 {"name": refit.name, "parameters": own, "excess_explained": share, "confusable_with": alike}
                 | {"status": "suggested", "options": dict(refit.score.candidate.tried)}
-                | by_record(refit.outcome, refit.name, evidence)
+                | _by_record(refit.outcome, refit.name, evidence)
             )
     return sorted(listed, key=lambda cause: -cause["excess_explained"])
+
+
+def _by_record(outcome: Outcome, cause: str, evidence: Evidence) -> dict[str, Any]:
+    """The strength of a cause record by record; of one that has a level in each, by how much that is off the mean."""
+    found = by_record(outcome, cause, evidence)
+    spread, _ = own_level(outcome)
+    return found | {"per_record": levels_by_record(outcome, evidence)} if spread.startswith(cause + ".") else found
 
 
 def _fixed(outcome: Outcome, cause: str) -> dict[str, float]:
@@ -253,6 +261,7 @@ def _gain(judged: Judged, evidence: Evidence, noise: NoiseLevel) -> dict[str, An
     if whole:
         damping = {key: found | {"velocity_unit": rig_unit("m/s", evidence)} for key, found in damping.items()}
         is_more = bool(judged.found.accepted) and is_visible(judged.found.left)
+        damping["by_record"] = damping_by_record(last, evidence)
         damping["conditional"] = judged.verdict.leaves_unnamed or is_more or not last.fitted.converged
         damping["bias_of_the_nominal"] = damping["before"]["value"] - damping["after"]["value"]
     return {

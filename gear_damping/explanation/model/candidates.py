@@ -37,6 +37,7 @@ class Candidate:
         resting: Names of parameters that may rest at a bound without having run into it, with -1 for the lower one, 1
             for the upper one.
         own_phases: Name of the phase by place of its strength, where every record has one of its own.
+        own_levels: Whether these are no phases but levels, in standard deviations between records.
         own_tooth: Name of the phase that says which tooth is in mesh at the start of a record, where nothing else does.
         teeth: How many there are, where that is so.
         tried: The options that its recipe sets, as whose tooth is cracked.
@@ -54,6 +55,7 @@ class Candidate:
     replaced: tuple[FreeParameter, ...] = ()
     resting: frozenset[tuple[str, int]] = frozenset()
     own_phases: Mapping[int, str] = field(default_factory=dict)
+    own_levels: bool = False
     own_tooth: str = ""
     teeth: int = 0
     tried: Mapping[str, object] = field(default_factory=dict)
@@ -145,7 +147,9 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Si
     if recipe.non_nested:
         free, later = [*free, *later], []
     initial_values = {}
-    templates = [FreeParameter(phase, 0.0, per_record=True) for phase in own_phases.values()]
+    levels = kind.cause.turns_with == "record"
+    expected = 1.0 if levels else inf  # a level counts in standard deviations
+    templates = [FreeParameter(one, 0.0, per_record=True, deviation=expected) for one in own_phases.values()]
     teeth = sizes.rig.teeth(effect.chosen["shaft"]) if own_tooth else 0
     if own_tooth:
         templates = [FreeParameter(own_tooth, 0.0, ANGLE_SCALE, per_record=True, places=teeth)]
@@ -172,6 +176,7 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Si
         replaced,
         frozenset((f"{kind.name}.{name}", end) for name, end in recipe.resting),
         own_phases,
+        levels,
         own_tooth,
         teeth,
         recipe.options,
@@ -180,7 +185,7 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Si
 
 def _has_own_phases(kind: type[Effect], sizes: "_Sizes") -> bool:
     """Whether every record has phases of its own: no index says how the shafts stand, or when what swings began."""
-    if kind.cause.turns_with == "clock":
+    if kind.cause.turns_with in ("clock", "record"):
         return True
     return not sizes.rig.indexed and kind.cause.turns_with == "shaft"
 
@@ -265,7 +270,7 @@ def _elements(kind: type[Effect], name: str, size: float, given: Given, recipe: 
         return [_freed(declared, flat, given, recipe.within)]
     if isinstance(value, tuple):
         return [FreeParameter(f"{flat}[{i}]", v, abs(size)) for i, v in enumerate(value)]
-    lower, upper = (-float("inf"), float("inf")) if name in recipe.phases else (declared.lower, declared.upper)
-    if name in recipe.phases:
+    if name in recipe.phases and kind.cause.turns_with != "record":
         return [FreeParameter(flat, value, abs(size))]
-    return [FreeParameter(flat, value, abs(size), lower=lower, upper=upper)]
+    expected = abs(size) if kind.cause.turns_with == "record" else inf  # only its product with the levels acts
+    return [FreeParameter(flat, value, abs(size), lower=declared.lower, upper=declared.upper, deviation=expected)]

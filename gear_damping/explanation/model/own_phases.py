@@ -1,4 +1,7 @@
-"""Phases that every record has of its own, where no index says how the shafts stand: probed, scored and started."""
+"""Phases that every record has of its own, where no index says how the shafts stand: probed, scored and started.
+
+A level of each record stands in the place of a phase where what differs between records is a size.
+"""
 
 import torch
 from torch import Tensor
@@ -20,7 +23,11 @@ def turn_own_phases(points: Tensor, candidate: Candidate, problem: OutputErrorPr
             points[:, place] = torch.tensor(list(turned), dtype=torch.float64)
     for number, phase in enumerate(candidate.own_phases.values()):
         for place, parameter in enumerate(problem.free):
-            if parameter.name.startswith(phase + SEPARATOR):
+            if not parameter.name.startswith(phase + SEPARATOR):
+                continue
+            if candidate.own_levels:
+                points[number, place] = parameter.coordinate(1.0)
+            else:
                 points[2 * number, place] = parameter.coordinate(0.0)
                 points[2 * number + 1, place] = parameter.coordinate(torch.pi / 2)
 
@@ -34,9 +41,15 @@ def reach_of_records(problem: OutputErrorProblem) -> Tensor:
 def start_by_record(
     candidate: Candidate, coefficients: Tensor, problem: OutputErrorProblem, n_free: int
 ) -> tuple[Tensor, dict[str, float]]:
-    """Coordinates of the linearised optimum, and the phase of every record."""
+    """Coordinates of the linearised optimum, and the phase or the level of every record."""
     names, own = _record_names(problem), {}
     start = torch.zeros(n_free, dtype=torch.float64)
+    if candidate.own_levels:
+        parts = coefficients.unflatten(0, (len(candidate.own_phases), len(names)))
+        for (place, level), sizes in zip(candidate.own_phases.items(), parts, strict=True):
+            start[place] = sizes.square().mean().sqrt()
+            own |= {f"{level}{SEPARATOR}{n}": float(z / start[place]) for n, z in zip(names, sizes, strict=True)}
+        return start, own
     parts = coefficients.unflatten(0, (len(candidate.own_phases), 2, len(names)))
     for (place, phase), (cosine, sine) in zip(candidate.own_phases.items(), parts, strict=True):
         start[place] = torch.hypot(cosine, sine).square().mean().sqrt()

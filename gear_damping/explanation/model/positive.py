@@ -14,7 +14,8 @@ def phase_of_strength(candidate: Candidate) -> dict[str, str]:
     """The name of the phase of every strength that has one, shared by all records or each record's own."""
     common = [parameter.name for parameter in candidate.hypothesis.common]
     shared = {common[place]: common[phase] for place, phase in candidate.phases.items()}
-    return shared | {common[place]: phase for place, phase in candidate.own_phases.items()}
+    own = {} if candidate.own_levels else candidate.own_phases
+    return shared | {common[place]: phase for place, phase in own.items()}
 
 
 def positive(outcome: Outcome, candidates: Iterable[Candidate]) -> Outcome:

@@ -46,7 +46,7 @@ def rig_of(base: Hypothesis, evidence: Evidence, residuals: Residuals | None = N
     values |= {name: float(value[0]) for name, value in prepared.derived.items()}
     inputs = tuple(dict.fromkeys(name for record in evidence.fit for name in record.inputs))
     common = {"system": base.system.name, "traits": base.system.traits, "values": values}
-    common |= {"spring": base.system.spring, "inputs": inputs}
+    common |= {"spring": base.system.spring, "inputs": inputs, "records": len(evidence.fit)}
     if not base.system.has(Trait.SHAFTS):
         radian = radian_of(evidence)
         natural = values["natural_frequency"] / (2 * pi)

@@ -359,7 +359,7 @@ def _probes(candidate: Candidate, n_free: int) -> tuple[Tensor, Tensor]:
         repeats = candidate.teeth if candidate.own_tooth and len(candidate.strengths) == 1 else 1
         rows += [row] * repeats
         steps += [PROBE] * repeats
-        if place in candidate.phases or place in candidate.own_phases:
+        if place in candidate.phases or (place in candidate.own_phases and not candidate.own_levels):
             turned = row.clone()
             if place in candidate.phases:
                 turned[candidate.phases[place]] = torch.pi / 2
