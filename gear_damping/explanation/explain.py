@@ -243,7 +243,8 @@ def best_is_lost(found: State) -> bool:
 
 def _is_lost(residual: Tensor, record: FitRecord, evidence: Evidence) -> bool:
     share = evidence.settings.lost_share
-    if float(residual.square().sum()) > share * ac_energy(record):
+    noise = len(residual) * (evidence.noise / record.weight) ** 2
+    if float(residual.square().sum()) - noise > share * (ac_energy(record) - noise):
         return True
     for left, moved in zip(residual.chunk(STRETCHES), record.stacked.chunk(STRETCHES), strict=True):
         motion = float((moved - moved.mean()).square().sum())

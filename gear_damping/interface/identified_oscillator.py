@@ -7,6 +7,7 @@ from typing import Any
 
 from gear_damping.explanation.evidence.noise import NoiseLevel, noise_of, weighted
 from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.evidence.release import released_at
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome
 from gear_damping.explanation.trials.efficient import weighed
 from gear_damping.identification.free_vibration import LEAST_FALL
@@ -22,6 +23,7 @@ from gear_damping.reporting import figures, tables
 from gear_damping.simulation.solver_settings import Progress, Solver
 
 NEWTONS = ("N*s/m", "N/m")  # units of what is not per unit of mass
+CONTRADICTS = 5.0  # stated standard deviations: of one in two million statements that hold
 MOST_SAMPLES = 200_000  # beyond which the test of what is random takes longer than the fit
 
 
@@ -80,7 +82,30 @@ def content_of(measurement: Measurement, fitted: Fitted) -> dict[str, Any]:
     content = _identification(found, measurement, roles, channel)
     lacking = lack_of_fit(found.predictions, roles["fit"], roles["holdout"], channel, fitted.noise)
     undamped = _undamped(found, roles["fit"])
-    return content | {"undamped": undamped, "lack_of_fit": lacking and lacking | {"source": str(measurement.source)}}
+    said = {"undamped": undamped, "not_yet_free": _not_yet_free(roles["fit"]), "contradicted": _contradicted(found)}
+    return content | said | {"lack_of_fit": lacking and lacking | {"source": str(measurement.source)}}
+
+
+def _contradicted(found: OscillatorFit) -> str | None:
+    """What is stated with an uncertainty that the records contradict; None where nothing is."""
+    away = {}
+    for parameter, coordinate in zip(found.problem.free, found.fitted.shared.tolist(), strict=True):
+        expected, slope = parameter.surprise
+        if parameter.name in found.given and abs(expected + slope * coordinate) > CONTRADICTS:
+            away[parameter.name.split(".")[-1]] = abs(expected + slope * coordinate)
+    if not away:
+        return None
+    said = " and ".join(f"{name} lies {size:.3g} of its stated uncertainties away" for name, size in away.items())
+    return f"{said}: correct its value or its uncertainty, which draws the other figures to it"
+
+
+def _not_yet_free(fit: Sequence[FitRecord]) -> str | None:
+    """What to leave out of records without an input that begin before their motion is free; None of others."""
+    waits = {record.name: released_at(record) / record.sampling_rate for record in fit}
+    said = [f"{record.name} before {record.begins + waits[record.name]:.4g} s" for record in fit if waits[record.name]]
+    if not said:
+        return None
+    return f"the motion is not free from the start: leave out {', '.join(said)} (`window` or `slice` in the file)"
 
 
 def _undamped(found: OscillatorFit, fit: Sequence[FitRecord]) -> str | None:
@@ -104,7 +129,7 @@ def _undamped(found: OscillatorFit, fit: Sequence[FitRecord]) -> str | None:
 def table_of(content: dict[str, Any]) -> str:
     """The parameters with their intervals, and what is missing."""
     text, lacking = _table(content), content["lack_of_fit"]
-    said = [content["undamped"], sentence(lacking) if lacking and lacking["significant"] else None]
+    said = [content["undamped"], content["not_yet_free"], content["contradicted"], sentence(lacking) if lacking and lacking["significant"] else None]
     return "\n\n".join([text.rstrip(), *filter(None, said)]) + "\n"
 
 

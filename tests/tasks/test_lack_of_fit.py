@@ -26,12 +26,13 @@ def hardening():
     return solve_ivp(slope, (0, TIME[-1]), [1e-2, 0], "DOP853", TIME, rtol=1e-10, atol=1e-14).y[0]
 
 
-def identified(folder, response, noise):
+def identified(folder, response, noise, stated=""):
     """What was said and identification.json, for a decay in millimetres."""
     folder.mkdir(exist_ok=True)
     noisy = response + noise * np.random.default_rng(5).standard_normal(len(response))
     np.savetxt(folder / "decay.csv", np.column_stack([TIME, 1e3 * noisy]), "%.12g", ",", header="t,x", comments="")
     text = "system: oscillator\nrecords:\n- file: decay.csv\n  channels:\n    time: {column: t, unit: s}\n"
+    text = text.replace("records:", f"parameters:\n  {stated}\nrecords:") if stated else text
     (folder / "measurement.yaml").write_text(text + "    displacement: {column: x, unit: mm}\n")
     path = folder / "measurement.yaml"
     place = [f"hydra.run.dir={folder / 'run'}", "progress=false"]
@@ -67,6 +68,39 @@ def test_what_goes_on_by_a_drive_that_no_channel_holds_is_no_decay(tmp_path, cap
     assert "declare the force, or a window behind its end" in said
     assert "no damping" in (tmp_path / "run" / "identification.txt").read_text()
     assert identified(tmp_path / "other", LINEAR, 1e-4)["undamped"] is None
+
+
+def test_a_record_that_waits_for_its_release_is_told_to_be_cut(tmp_path, caplog, capsys):
+    at_rest = np.concatenate([np.zeros(len(TIME) // 4), LINEAR[: len(TIME) - len(TIME) // 4]])
+    found = identified(tmp_path, at_rest, 1e-5)
+    begins = TIME[len(TIME) // 4]
+    assert "the motion is not free from the start: leave out " in caplog.text + capsys.readouterr().err
+    told = float(found["not_yet_free"].partition("before ")[2].partition(" s")[0])
+    assert abs(told - begins) < 0.1 * begins
+    assert identified(tmp_path / "other", LINEAR, 1e-5)["not_yet_free"] is None
+
+
+@pytest.mark.parametrize(("stiffness", "is_said"), [(1700, True), (1601, False)])
+def test_a_statement_that_the_records_contradict_is_told(tmp_path, caplog, capsys, stiffness, is_said):
+    stated = f"stiffness: {{value: {stiffness}, unit: 1/s^2, uncertainty: 0.1 %}}"
+    found = identified(tmp_path, LINEAR, 1e-4, stated)
+    said = caplog.text + capsys.readouterr().err
+    assert ("of its stated uncertainties away" in said) == is_said
+    if is_said:
+        assert found["contradicted"].startswith("stiffness lies ")
+        away = float(found["contradicted"].split()[2])
+        assert 0.9 * abs(np.log(1600 / 1700)) / 1e-3 < away <= 1.1 * abs(np.log(1600 / 1700)) / 1e-3
+
+
+@pytest.mark.parametrize("noise", [2e-3, 5e-3])
+def test_a_decay_below_its_noise_is_not_cut_into_segments(tmp_path, noise):
+    """Most of the record's variance is noise, and none of it is left by losing step."""
+    found = identified(tmp_path, LINEAR, noise)
+    ratio, (low, high) = (found["damping_ratio_percent"][key] for key in ("value", "interval95"))
+    assert found["segment_s"] is None
+    assert low < 100 * DAMPING / (2 * OMEGA) < high
+    assert high - low < 0.8 * ratio
+    assert found["natural_frequency_hz"]["value"] == pytest.approx(OMEGA / (2 * np.pi), rel=0.01)
 
 
 def lacking(predictions, fit, holdout, **more):

@@ -1,10 +1,13 @@
 """A first guess of the natural frequency, from the part of a record that holds its motion."""
 
+from math import log
+
 import numpy as np
 
 from gear_damping.identification.output_error.records import FitRecord
 
 MOTION, STROKE = 0.999, 0.5  # share of the energy that is the motion; of a record: less is a stroke
+CHANCE = 1e-3  # that noise alone has a peak that counts as one of the motion
 FEWEST_SAMPLES = 20  # of a round of the fit: several for each of its unknowns
 
 
@@ -18,18 +21,29 @@ def first_frequency(record: FitRecord, driven: bool = True) -> float:
     place, window = _motion(record)
     response = record.response.numpy()[place]
     response = response - float(record.response.mean())
-    spectrum = np.abs(np.fft.rfft(response * window)) ** 2
     frequency = np.fft.rfftfreq(len(response), 1 / record.sampling_rate)
-    width = max(1, len(spectrum) // 400)
-    smooth = np.convolve(spectrum, np.ones(width) / width, mode="same")
+    width = max(1, len(frequency) // 400)
+    smooth = _smoothed(response * window, width)
     drives = [record.inputs[n][place] for n in ("force", "base_acceleration") if driven and n in record.inputs]
     drives = [drive for drive in drives if float(drive.max()) > float(drive.min())]  # a constant one drives nothing
     if drives:
         force = drives[0].numpy()
-        drive = np.convolve(np.abs(np.fft.rfft((force - force.mean()) * window)) ** 2, np.ones(width) / width, "same")
+        drive = _smoothed((force - force.mean()) * window, width)
         smooth = np.where(drive > 1e-3 * drive.max(), smooth / np.maximum(drive, 1e-300), 0)
     first = max(1, width // 2)
+    if not drives and smooth[first:].max() < _of_noise(smooth[first:]):  # what dies away early a window hardly shows
+        smooth = _smoothed(response, width)
     return float(frequency[first + int(np.argmax(smooth[first:]))])
+
+
+def _smoothed(values: np.ndarray, width: int) -> np.ndarray:
+    """The periodogram of (n,) values as a running mean over some bins."""
+    return np.convolve(np.abs(np.fft.rfft(values)) ** 2, np.ones(width) / width, mode="same")
+
+
+def _of_noise(spectrum: np.ndarray) -> float:
+    """A peak that white noise passes in one of a thousand records: powers are exponential, with a median of ln 2."""
+    return float(np.median(spectrum)) / log(2) * log(len(spectrum) / CHANCE)
 
 
 def is_stroke(record: FitRecord) -> bool:

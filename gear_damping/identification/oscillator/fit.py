@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from math import isfinite, pi
+from math import isfinite, log, pi
 from typing import Any
 
 import numpy as np
@@ -140,9 +140,18 @@ def fit_oscillator(
 
 
 def _is_lost(residual: Tensor, record: FitRecord) -> bool:
-    """Whether more than half of a record's motion is left."""
+    """Whether more than half of a record's motion is left, beyond the noise."""
     moved = record.stacked - record.stacked.mean()
-    return float(residual.square().sum()) > LOST * float(moved.square().sum())
+    noise = _noise_energy(residual)
+    return float(residual.square().sum()) - noise > LOST * (float(moved.square().sum()) - noise)
+
+
+def _noise_energy(residual: Tensor) -> float:
+    """The sum of squares of the white noise in what is left, by the median of its periodogram: a motion has few lines.
+
+    Powers of white noise are exponential, with a median of ln 2 of their mean.
+    """
+    return float(torch.fft.rfft(residual).abs().square().median()) / log(2)
 
 
 def _quantities(found: Mapping[str, Estimate]) -> dict[str, Any]:

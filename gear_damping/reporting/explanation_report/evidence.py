@@ -81,13 +81,19 @@ def forest(cause: Mapping[str, Any]) -> Picture | None:
     joint = (cause.get("parameters") or {}).get(name)
     if not rows or not joint:
         return None
-    unit = joint.get("unit") or "1"
-    words = name.replace("_", " ") + (f" / {pretty_unit(unit)}" if unit != "1" else "")
-    figure = figures.forest_figure(rows, joint, quantity=words)
+    unit, named = joint.get("unit") or "1", name.replace("_", " ")
     caption = (
-        f"The {name.replace('_', ' ')} from every record by itself. Where it is one thing that all records show, "
+        f"The {named} from every record by itself. Where it is one thing that all records show, "
         "their intervals hold the same value."
     )
+    said = {}
+    if any("@" in other for other in cause["parameters"]) and name == "spread":  # of levels that records have
+        joint = {"value": 0.0, "interval95": [-joint["value"], joint["value"]]}
+        named = f"{cause['name'].replace('_', ' ')}, off the mean"
+        caption = "By how much the coefficient of every record is off the mean one, with 95 % intervals."
+        said = {"together": "the mean, with one standard deviation between records"}
+    words = named + (f" / {pretty_unit(unit)}" if unit != "1" else "")
+    figure = figures.forest_figure(rows, joint, quantity=words, **said)
     return Picture(figure_uri(figure), caption, alt_texts.forest(rows, joint, words))
 
 

@@ -10,15 +10,19 @@ from gear_damping.reporting.style import BLUE, INK, RED, legend_above, mark_empt
 
 MOST_ROWS = 24  # that can be read on one page
 MARKER, WIDE = 6, 2.0  # points, of a marker and of a line
+TOGETHER = "all records together, with 95 % interval"
 
 
-def forest_figure(rows: Sequence[Mapping[str, Any]], joint: Mapping[str, Any], *, quantity: str) -> Figure:
+def forest_figure(
+    rows: Sequence[Mapping[str, Any]], joint: Mapping[str, Any], *, quantity: str, together: str = TOGETHER
+) -> Figure:
     """Estimates with 95 % intervals, a row a record, and the interval of the joint fit as a band.
 
     Args:
         rows: Each with `record`, `value` and `interval95`.
         joint: `value` and `interval95` of all records together.
         quantity: What is estimated, with its unit.
+        together: What the joint value and its band are.
     """
     shown = [row for row in rows if np.isfinite([row["value"], *row["interval95"]]).all()][:MOST_ROWS]
     with styled():
@@ -32,7 +36,7 @@ def forest_figure(rows: Sequence[Mapping[str, Any]], joint: Mapping[str, Any], *
         low, high = joint["interval95"]
         if np.isfinite([low, high]).all():
             axes.axvspan(low, high, color=BLUE, alpha=0.15, linewidth=0)
-        axes.axvline(joint["value"], color=BLUE, label="all records together, with 95 % interval")
+        axes.axvline(joint["value"], color=BLUE, label=together)
         for place, row in enumerate(shown):
             ends = row["interval95"]
             apart = ends[1] < low or ends[0] > high
