@@ -106,7 +106,7 @@ _ALSO = {
     "dps": "deg/s", "rps": "rev/s", "Meter": "m", "meter": "m", "meters": "m", "metre": "m", "metres": "m",
     "min-1": "1/min", "/min": "1/min", "r/min": "rpm", "tr/min": "rpm",
     "hertz": "Hz", "Hertz": "Hz", "kilohertz": "kHz", "S/s": "Hz", "kS/s": "kHz", "MS/s": "MHz",
-    "Sa/s": "Hz", "kSa/s": "kHz", "sps": "Hz", "Second": "s", "Seconds": "s",
+    "Sa/s": "Hz", "kSa/s": "kHz", "sps": "Hz", "fps": "Hz", "Second": "s", "Seconds": "s",
     "percent": "%", "m/sec^2": "m/s^2", "m/sec2": "m/s^2",
     "ms^-2": "m/s^2", "ms^-1": "m/s", "ms-2": "m/s^2", "ms-1": "m/s",  # no milliseconds: their powers are no motion
 }  # fmt: skip
@@ -271,10 +271,19 @@ def to_si(value: float, unit: str, expected: str, key: str = "value", source: st
         remedy = "give a level in dB" if expected == LEVEL else "give the ratio itself, 10^(level/20) of amplitudes"
         raise InputError(Problem(key, rule, value, remedy, source))
     found = of_a_shaft(parse_unit(unit, key, source), wanted)
+    if found.dimension != wanted.dimension and _is_in_radians(unit, found, wanted):
+        return value * found.factor
     if found.dimension != wanted.dimension:
         rule = f"the unit '{unit}' is not one of the kind of '{expected}'"
         raise InputError(Problem(key, rule, value, other_kind(found, expected), source))
     return value * found.factor
+
+
+def _is_in_radians(unit: str, found: Unit, wanted: Unit) -> bool:
+    """Whether a rate or its square is said in radians, as `rad^2/s^2` for 1/s^2."""
+    angle = found.dimension.angle
+    of_rates = wanted.dimension in (_S**-1, _S**-2)
+    return of_rates and "rad" in unit and found.dimension * _RAD**-angle == wanted.dimension
 
 
 def of_a_shaft(unit: Unit, wanted: Unit) -> Unit:

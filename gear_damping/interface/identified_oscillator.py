@@ -129,7 +129,8 @@ def _undamped(found: OscillatorFit, fit: Sequence[FitRecord]) -> str | None:
 def table_of(content: dict[str, Any]) -> str:
     """The parameters with their intervals, and what is missing."""
     text, lacking = _table(content), content["lack_of_fit"]
-    said = [content["undamped"], content["not_yet_free"], content["contradicted"], sentence(lacking) if lacking and lacking["significant"] else None]
+    said = [content[key] for key in ("undamped", "not_yet_free", "contradicted")]
+    said += [sentence(lacking) if lacking and lacking["significant"] else None]
     return "\n\n".join([text.rstrip(), *filter(None, said)]) + "\n"
 
 
@@ -149,9 +150,7 @@ def _identification(
     def plain(estimate: Estimate | None) -> dict[str, Any] | None:
         return None if estimate is None else asdict(estimate)
 
-    records = {
-        record.name: {"role": role, **told(record)} for role, listed in roles.items() for record in listed
-    }
+    records = {record.name: {"role": role, **told(record)} for role, listed in roles.items() for record in listed}
     return {
         "system": measurement.system,
         "method": "output_error",

@@ -16,7 +16,7 @@ from gear_damping.measurement.encoders import ReadColumn, ShaftAngle, shaft_angl
 from gear_damping.measurement.formats.moments import DAY
 from gear_damping.measurement.formats.table import Table
 from gear_damping.measurement.record import Finding
-from gear_damping.measurement.time_column import is_time, stamped_rate
+from gear_damping.measurement.time_column import COUNTER, is_time, numbers_left_out, stamped_rate
 from gear_damping.measurement.timebase import (
     RATE_TOLERANCE,
     TimeBase,
@@ -249,9 +249,7 @@ class RawReader:
         if self.plan.rows or self.plan.window or size - self.stop - self.blank <= MOST_MISSING * self.stop:
             return
         rule = f"column '{column}' has {size} samples, the record {self.stop}"
-        remedy = (
-            f"give the channel its own time or sampling_rate, or slice: [0, {self.stop}] where they share their rows"
-        )
+        remedy = f"give the channel its own time or sampling_rate, or slice: [0, {self.stop}] where rows are shared"
         raise InputError(Problem(key, rule, remedy=remedy, source=self.file))
 
     def _refuse_cells(self, column: str | int, key: str, first: int, stop: int) -> None:
@@ -283,10 +281,27 @@ class RawReader:
             return None
         start = clock[0] if clock else self.begins
         base = steady_time(rate or clock[1], self.first, self.stop - self.first, start)
+        found = self._lost_numbers()
         if clock is None:
-            return replace(base, findings=self._other_rate(rate))
+            return replace(base, findings=(*self._other_rate(rate), *found))
         is_other = rate is not None and abs(rate / clock[1] - 1) > _SAME_RATE
-        return replace(base, findings=(_of_file(rate, clock[1]),)) if is_other else base
+        return replace(base, findings=(_of_file(rate, clock[1]), *found) if is_other else found)
+
+    def _lost_numbers(self) -> tuple[Finding, ...]:
+        """A finding where a column that counts the samples, and that no channel uses, leaves numbers out."""
+        used = {self.table.index(column, "") for column in self._on_its_clock()}
+        for index, name in enumerate(self.table.names):
+            if index in used or not COUNTER.match(name):
+                continue
+            with suppress(InputError):  # a column that cannot be read counts nothing
+                if lost := numbers_left_out(self.table.values(index)[self.first : self.stop]):
+                    row, count = lost
+                    message = (
+                        f"column '{name}' leaves {count} number(s) out, the first behind row {self.first + row}: "
+                        "samples were lost there, and the rows are taken as even; cut the record there with slice"
+                    )
+                    return (Finding("lost_numbers", message, channel="time", sample=row),)
+        return ()
 
     def _other_rate(self, rate: float) -> tuple[Finding, ...]:
         """A note where columns of stamps that no channel uses run at other rates than the declared one in Hz."""
@@ -397,11 +412,8 @@ class RawReader:
             remedy = "give the unit of the column"
             raise InputError(Problem(f"{plan.key}.unit", "is missing", None, remedy, self.source))
         if plan.unit is None and (own := scaled_unit(unit)):
-            rule, remedy = (
-                f"the header says '{unit}'",
-                f"write unit: {own}, and gain: what the column holds for one {own}",
-            )
-            raise InputError(Problem(f"{plan.key}.unit", rule, None, remedy, self.source))
+            remedy = f"write unit: {own}, and gain: what the column holds for one {own}"
+            raise InputError(Problem(f"{plan.key}.unit", f"the header says '{unit}'", None, remedy, self.source))
         clock = self._other_clock(plan, base)
         if plan.timing is None and clock is None:
             if self.filled and filled_in(self._all(plan.column, "")[self.first : self.stop]) is None:
@@ -456,10 +468,8 @@ class RawReader:
         key = f"{plan.key}.time"
         rate = plan.timing.sampling_rate
         if rate is not None:
-            base, own = (
-                steady_time(rate, 0, n, self._first_stamp()),
-                self.table.clock(self.table.index(plan.column, key)),
-            )
+            base = steady_time(rate, 0, n, self._first_stamp())
+            own = self.table.clock(self.table.index(plan.column, key))
             is_other = own is not None and abs(rate / own[1] - 1) > _SAME_RATE
             return replace(base, findings=(_of_file(rate, own[1], plan.name),)) if is_other else base
         if plan.timing.column is None:

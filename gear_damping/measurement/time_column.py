@@ -26,6 +26,10 @@ _LOOSELY = 0.5  # of the median step; how far the steps of a first column withou
 _NO_TIME = re.compile(r"speed|rpm|omega|drehzahl|freq|volt|curr|weg|^f$", re.I)  # what may rise evenly and is no time
 _NEARLY = 0.1  # of the median step; how far most steps of a column that no name calls time may differ
 _EVEN = 0.05  # of the median step; how far the steps of an unnamed column may differ
+COUNTER = re.compile(
+    r"^\s*#?\s*(samples?|counter|count|index|idx|nr|no|seq(uence)?|packet|frame)\s*(no|nr|number)?\.?\s*$", re.I
+)
+_COUNTS = 0.95  # share of the rows from one to the next number, in a column that counts them
 
 
 @dataclass(frozen=True)
@@ -178,6 +182,20 @@ def _bare(reference: str | int) -> str:
     """A name without the unit in its brackets and without the path before it; `Zeit/s` has its unit behind a slash."""
     name = re.sub(r"[(\[].*$", "", str(reference)).strip()
     return name if _SUFFIX.search(name) and name.count("/") == 1 else name.split("/")[-1].split(".")[-1]
+
+
+def numbers_left_out(values: NDArray[np.float64]) -> tuple[int, int] | None:
+    """The row before the first gap, and how many numbers are left out, where (n,) values count samples; else None.
+
+    A register that is full begins again with 0.
+    """
+    steps = np.diff(values)
+    if not steps.size or not np.all(np.isfinite(values)) or np.any(values != np.round(values)) or values.min() < 0:
+        return None
+    steps = np.where(steps < 0, steps % 2 ** np.ceil(np.log2(values.max() + 1)), steps)
+    if np.mean(steps == 1) < _COUNTS or steps.min() < 1 or steps.max() == 1:
+        return None
+    return int(np.argmax(steps > 1)), int(np.sum(steps - 1))
 
 
 def is_time(unit: str | None) -> bool:

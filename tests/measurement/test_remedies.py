@@ -218,6 +218,10 @@ def test_a_file_that_is_too_short_as_a_whole_has_no_better_column(tmp_path, rows
             "write pinion_speed: {value: 1100, unit: rpm}, or pinion_speed: 1100 rpm, or 1100 rad/s",
         ),
         ("inertia_pinion", "1,2e-3 kg*m^2", "a decimal point, not a comma: inertia_pinion: 1.2e-3 kg*m^2"),
+        ("pinion_speed", "1,100 rpm", "pinion_speed: 1100 rpm, without a sign between thousands, or 1.100 rpm with"),
+        ("pinion_speed", "1 100 rpm", "write pinion_speed: 1100 rpm, without a sign between thousands"),
+        ("pinion_speed", "1/200 s", "write pinion_speed: {value: …, unit: rad/s}"),
+        ("pinion_speed", "1100", "write pinion_speed: {value: 1100, unit: rad/s}"),
     ],
 )
 def test_no_one_unit_is_offered_for_a_bare_number(key, value, said):

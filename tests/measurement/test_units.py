@@ -3,7 +3,7 @@
 import pytest
 
 from gear_damping.errors import InputError
-from gear_damping.units import parse_unit, spoken, to_si, unit_names
+from gear_damping.units import parse_unit, scaled_unit, spoken, to_si, unit_names
 
 STANDARD_GRAVITY = 9.80665
 
@@ -98,3 +98,34 @@ def test_a_number_is_told_from_its_unit(text, found):
 @pytest.mark.parametrize("value", ["5", "1e3", "31/s", "kg", "1,5 m", "12:30", "20-01-01", "", 4.0, None, {"value": 3}])
 def test_anything_else_is_no_number_with_a_unit(value):
     assert spoken(value) is None
+
+
+def test_a_level_is_no_ratio():
+    with pytest.raises(InputError, match=r"the unit 'dB' is not one of the kind of '1'.*10\^\(level/20\)"):
+        to_si(-1.0, "dB", "1")
+    assert to_si(30.0, "dB", "dB") == 30
+
+
+def test_rates_may_be_said_in_radians():
+    assert to_si(380.0, "rad^2/s^2", "1/s^2") == 380
+    assert to_si(2.0, "rad/s", "1/s") == 2
+    with pytest.raises(InputError, match="not one of the kind"):
+        to_si(2.0, "rad", "1")
+
+
+def test_kilograms_by_a_length_are_a_torque_of_their_weight():
+    with pytest.raises(InputError, match=r"write 'kgf\*cm'"):
+        parse_unit("kgcm")
+    with pytest.raises(InputError, match=r"write 'kg\*cm\^2'"):
+        parse_unit("kgcm^2")
+
+
+@pytest.mark.parametrize(
+    ("text", "unit"),
+    [
+        ("mm*10", "mm"), ("mm/10", "mm"), ("µm x 10", "µm"), ("mm·10⁻³", "mm"), ("m/s^2*10", "m/s^2"),
+        ("m/s^2", None), ("N*m", None), ("1/s", None), ("run 3*4", None),
+    ],
+)  # fmt: skip
+def test_a_factor_behind_a_unit_is_seen(text, unit):
+    assert scaled_unit(text) == unit

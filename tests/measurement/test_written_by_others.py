@@ -266,3 +266,42 @@ def test_comments_below_units_are_no_names(tmp_path):
 def test_minutes_of_a_clock_go_on_past_the_hour(tmp_path):
     table = _table(tmp_path, "t,x\n" + "\n".join(f"{(59 + k // 60) % 60:02d}:{k % 60:02d}.0,{k}" for k in range(120)))
     assert table.values(0).tolist() == [float(k) for k in range(120)]
+
+
+def test_several_variables_of_octave_have_their_names(tmp_path):
+    text = "# Created by Octave 8.4.0, Fri Mar 01 12:00:00 2024 UTC <a@b>\n"
+    for name, values in (("t", TIME), ("x", WAVE)):
+        text += f"# name: {name}\n# type: matrix\n# rows: 60\n# columns: 1\n"
+        text += "".join(f" {value:.6f}\n" for value in values) + "\n\n"
+    table = _table(tmp_path, text, "a.txt")
+    assert table.names == ("t", "x")
+    assert _wave(table) == WAVE.tolist()
+
+
+def test_a_table_of_signals_by_turns_is_refused(tmp_path):
+    rows = [f"{t:.4f},{'mm' if k % 2 else 'N'},{x:.4f}" for k, (t, x) in enumerate(zip(TIME, WAVE, strict=True))]
+    with pytest.raises(InputError, match=r"its rows hold N, mm by turns, as column 'Unit' says"):
+        _table(tmp_path, "t,Unit,x\n" + "\n".join(rows))
+    alike = _table(tmp_path, "t,Unit,x\n" + "\n".join(row.replace(",N,", ",mm,") for row in rows))
+    assert _wave(alike) == WAVE.tolist()
+
+
+@pytest.mark.parametrize(
+    ("numbers", "lost"),
+    [
+        (range(60), None),
+        ([*range(20), *range(25, 65)], "leaves 5 number(s) out, the first behind row 19"),
+        ([(k + 230) % 256 for k in range(60)], None),
+        ([(k + 230 + 7 * (k > 40)) % 256 for k in range(60)], "leaves 7 number(s) out, the first behind row 40"),
+        ([3 * k for k in range(60)], None),
+    ],
+    ids=["whole", "lost", "a register", "lost in a register", "another count"],
+)
+def test_numbers_that_a_counter_leaves_out_are_lost_samples(tmp_path, numbers, lost):
+    (tmp_path / "a.csv").write_text("Sample,x\n" + "\n".join(f"{n},{x}" for n, x in zip(numbers, WAVE, strict=True)))
+    channels = {"sampling_rate": f"{RATE} Hz", "displacement": {"column": "x", "unit": "mm"}}
+    record = {"file": "a.csv", "channels": channels}
+    (tmp_path / "m.yaml").write_text(yaml.safe_dump({"system": "oscillator", "records": [record]}))
+    found = [one for one in load_measurement(tmp_path / "m.yaml").records[0].findings if one.kind == "lost_numbers"]
+    assert [one.severity for one in found] == ["data_problem"] * bool(lost)
+    assert all(lost in one.message for one in found)

@@ -23,14 +23,17 @@ from gear_damping.measurement.formats.cells import (
 )
 from gear_damping.measurement.formats.header import Header
 from gear_damping.measurement.formats.number_texts import is_written, parts_thousands
+from gear_damping.measurement.formats.octave_text import octave_table
 from gear_damping.measurement.formats.stated_rate import stated_rate
 from gear_damping.measurement.formats.table import Table, is_real
 from gear_damping.measurement.formats.text_header import of_oscilloscope, text_header, without_other_headers
 from gear_damping.measurement.formats.text_lines import BEGINS, HEAD, IS_COMMENT, Text, bytes_of
+from gear_damping.units import is_of_kind
 
 SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".log", ".prn", ".gz")
 
 _SAMPLE = 2000  # rows by which it is seen whether a column's numbers have signs between thousands
+_UNIT_COLUMN = re.compile(r"^(unit|units|einheit|unité|unidad)$", re.I)
 _NAN = ("nan", "NaN", "NAN", "Nan", "-nan", "+nan")
 _COMMENT = re.compile(rb"^[ \t]*(#|%|//).*$", re.MULTILINE)
 
@@ -41,7 +44,10 @@ def read(path: Path, max_bytes: int) -> Table:
     Raises:
         InputError: not text, too large, no rows of numbers, or rows of different length.
     """
-    text = Text(path, bytes_of(path, max_bytes))
+    content = bytes_of(path, max_bytes)
+    if (variables := octave_table(path, content)) is not None:
+        return variables
+    text = Text(path, content)
     header, first_line = text_header(text)
     scope = of_oscilloscope([row for _, row in islice(text.rows(), 2)])
     header = header if scope is None else replace(header, names=scope[0], units=scope[1], skipped=0)
@@ -58,6 +64,7 @@ def read(path: Path, max_bytes: int) -> Table:
     lines = _Lines(path, max_bytes, first_line)
     columns = [Cells(header.name(k), header.unit(k), frame[k].to_numpy(), lines, header.also(k)) for k in range(width)]
     columns, below = without_footer(columns)
+    _refuse_long_form(path, columns)
     # Decimal commas may always stand in quotes.
     table = CellTable(path, columns, decimal_commas=True, all_commas=decimal == ",")
     above = [row for line, row in islice(text.rows(), HEAD) if line < first_line]
@@ -77,6 +84,18 @@ def read(path: Path, max_bytes: int) -> Table:
     if decimal == ",":
         table.notes += (decimal_commas(path, _with_commas(text, first_line, parted, table)),)
     return table
+
+
+def _refuse_long_form(path: Path, columns: Sequence[Cells]) -> None:
+    """A table whose rows hold one signal after another in one column, as a column of their units tells."""
+    for one in columns:
+        if not _UNIT_COLUMN.match(one.name) or is_real(one.values.dtype):
+            continue
+        units = list(dict.fromkeys(str(cell).strip() for cell in one.values[:HEAD]))
+        if len(units) > 1 and all(is_of_kind(unit, unit) for unit in units):
+            rule = f"its rows hold {', '.join(units)} by turns, as column '{one.name}' says"
+            remedy = "export a column for each signal, or a file for each"
+            raise InputError(Problem("file", rule, str(path), remedy))
 
 
 class _Lines:

@@ -137,7 +137,7 @@ def _empty_rows(rows: list[list[Any]]) -> str:
 
 
 def _values(cells: list[Any]) -> tuple[NDArray, float | None]:
-    """Numbers as float64, moments as s from the first and when that was; a column with anything else keeps its texts."""
+    """Numbers as float64, moments as s from the first and when that was; a column of anything else keeps its texts."""
     if all(isinstance(cell, int | float) for cell in cells):
         return np.array(cells, dtype=np.float64), None
     told = [k for k, cell in enumerate(cells) if cell is not None]
