@@ -165,13 +165,17 @@ def fitting_solver(given: Solver | None) -> Solver:
 
 def _calibrated(evidence: Evidence, solver: Solver) -> Calibration | Finding:
     """The calibration, or the finding that a channel counts the other way round."""
+
+    def fitted(some: Evidence) -> Outcome:
+        return calibrated(some, solver).nominal
+
     try:
         found = calibrated(evidence, solver)
     except InputError:
-        if fault := polarity_fault(evidence, None, solver):
+        if fault := polarity_fault(evidence, None, fitted):
             return fault
         raise
-    fault = is_lost_by(found.nominal, found.evidence) and polarity_fault(evidence, found.nominal, solver)
+    fault = is_lost_by(found.nominal, found.evidence) and polarity_fault(evidence, found.nominal, fitted)
     return fault or found
 
 

@@ -9,7 +9,7 @@ from gear_damping.explanation.state import State
 from gear_damping.explanation.steps.faint import faint_cause
 from gear_damping.explanation.steps.pairs import with_pair, with_pair_instead, with_pair_of_as_many
 from gear_damping.explanation.steps.revise import beside_the_others, exchanged, pruned, simplified
-from gear_damping.explanation.steps.single import single_cause
+from gear_damping.explanation.steps.single import cause_of_records, single_cause
 from gear_damping.explanation.steps.told import told
 from gear_damping.explanation.trials.bench import Bench
 from gear_damping.explanation.trials.refit import Refit
@@ -70,7 +70,7 @@ def _with_more(state: State) -> tuple[State, bool]:
         return (state, False) if further is None else (further, True)
     state, best, rivals = single_cause(state)
     if best is None:
-        further = with_pair(state)
+        further = with_pair(state) or cause_of_records(state)
     else:
         further = _calibrated_anew(state, best) or with_pair_instead(exchanged(state.accepting(best, rivals)))
     return (state, False) if further is None else (further, True)

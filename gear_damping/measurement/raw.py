@@ -13,12 +13,11 @@ from gear_damping.measurement.checks import refuse_not_finite
 from gear_damping.measurement.cutting import rows_beside, slower, window_rows
 from gear_damping.measurement.declaration import ChannelPlan, EncoderPlan, RecordPlan, TimePlan
 from gear_damping.measurement.encoders import ReadColumn, ShaftAngle, shaft_angle
-from gear_damping.measurement.formats.moments import DAY
+from gear_damping.measurement.file_clocks import FileClocks, conflict_with_file
 from gear_damping.measurement.formats.table import Table
 from gear_damping.measurement.record import Finding
-from gear_damping.measurement.time_column import COUNTER, is_time, numbers_left_out, stamped_rate
+from gear_damping.measurement.time_column import is_time
 from gear_damping.measurement.timebase import (
-    RATE_TOLERANCE,
     TimeBase,
     stamped_time,
     steady_time,
@@ -31,7 +30,6 @@ LEAST_SAMPLES = 8  # of a record, for a spectrum at all
 MOST_DOUBLED = 0.01  # of the rows of a record; where more come twice, something else is wrong
 DOUBLED_WITHIN = 100  # rows behind the one that a row is stored again of
 MOST_MISSING = 0.01  # of a record: a sheet whose last cells are blank, and no channel of another rate
-_DOUBTFUL = 1.0  # Hz: LabVIEW writes it where no rate was set, and others a step in ms that says no unit
 _SAME_RATE = 1e-3  # how far a declared rate may lie from the file's
 SAME_UNIT = 1e-9  # the same of units
 
@@ -65,7 +63,7 @@ class RawReader:
 
     def __init__(self, plan: RecordPlan, table: Table, problems: Problems, source: str) -> None:
         self.plan, self.table, self.problems, self.source = plan, table, problems, source
-        self.file = str(table.path)
+        self.file, self.clocks = str(table.path), FileClocks(plan, table)
         self.first, self.stop = plan.rows or (0, 0)
         self.blank = 0  # rows at the end that hold nothing
         self.begins = 0.0  # s, of a record that nothing but pulses of encoders tells
@@ -169,7 +167,7 @@ class RawReader:
         late = np.flatnonzero(np.diff(stamps) <= 0) + 1 + self.first
         if not 0 < late.size <= MOST_DOUBLED * stamps.size or written_significantly(stamps) is not None:
             return []
-        columns = [one for one in self._on_its_clock() if self._size(one) is not None]
+        columns = [one for one in self.clocks.on_its_clock() if self._size(one) is not None]
         if not columns or any(self._size(one) < self.stop for one in columns):
             return []
         rows = np.stack([self._all(one, "")[: self.stop] for one in columns], 1)
@@ -185,7 +183,7 @@ class RawReader:
     def _find_filled(self) -> slice | None:
         """Every k-th row, where slower channels have blank cells in all others; None where none has, or they differ."""
         found = set()
-        for column in self._on_its_clock():
+        for column in self.clocks.on_its_clock():
             with suppress(InputError):  # which its channel will say
                 found.add(filled_in(self._all(column, "")[self.first : self.stop]))
         found -= {None}
@@ -272,7 +270,7 @@ class RawReader:
     def _steady(self) -> TimeBase | None:
         """The time base of the declared rate, else of the file's; None where the missing rate is said already."""
         rate = self.plan.timing.sampling_rate
-        clock = self._clock(rate)
+        clock = self.clocks.shared(rate)
         if rate is None and clock is None:
             if not any(problem.key.startswith(self.plan.key) for problem in self.problems):
                 rule = "neither time nor sampling_rate is given"
@@ -281,63 +279,11 @@ class RawReader:
             return None
         start = clock[0] if clock else self.begins
         base = steady_time(rate or clock[1], self.first, self.stop - self.first, start)
-        found = self._lost_numbers()
+        found = self.clocks.lost_numbers(self.first, self.stop)
         if clock is None:
-            return replace(base, findings=(*self._other_rate(rate), *found))
+            return replace(base, findings=(*self.clocks.other_rate(rate, self.first, self.stop), *found))
         is_other = rate is not None and abs(rate / clock[1] - 1) > _SAME_RATE
-        return replace(base, findings=(_of_file(rate, clock[1]), *found) if is_other else found)
-
-    def _lost_numbers(self) -> tuple[Finding, ...]:
-        """A finding where a column that counts the samples, and that no channel uses, leaves numbers out."""
-        used = {self.table.index(column, "") for column in self._on_its_clock()}
-        for index, name in enumerate(self.table.names):
-            if index in used or not COUNTER.match(name):
-                continue
-            with suppress(InputError):  # a column that cannot be read counts nothing
-                if lost := numbers_left_out(self.table.values(index)[self.first : self.stop]):
-                    row, count = lost
-                    message = (
-                        f"column '{name}' leaves {count} number(s) out, the first behind row {self.first + row}: "
-                        "samples were lost there, and the rows are taken as even; cut the record there with slice"
-                    )
-                    return (Finding("lost_numbers", message, channel="time", sample=row),)
-        return ()
-
-    def _other_rate(self, rate: float) -> tuple[Finding, ...]:
-        """A note where columns of stamps that no channel uses run at other rates than the declared one in Hz."""
-        used = [plan.timing.column for plan in self.plan.channels if plan.timing]
-        used += [plan.column for plan in self.plan.encoders if plan.timestamps]
-        columns = {self.table.index(column, "") for column in used if column is not None}
-        found = []
-        for index in sorted({*range(len(self.table.names))} - columns):
-            if not is_time(self.table.unit(index)):
-                continue
-            with suppress(InputError):  # a column that cannot be read has no rate
-                own = stamped_rate(self.table.unit(index), self.table.values(index)[self.first : self.stop])
-                if own and abs(rate / own - 1) <= RATE_TOLERANCE:
-                    return ()
-                found += [(index, own)] if own else []
-        return tuple(_rate_conflict(rate, self.table.names[index], own) for index, own in found[:1])
-
-    def _on_its_clock(self) -> list[str | int]:
-        """The columns of channels and encoders that share the record's time."""
-        shared = [plan.column for plan in self.plan.channels if plan.timing is None]
-        return shared + [plan.column for plan in self.plan.encoders if not plan.timestamps]
-
-    def _clock(self, rate: float | None = None) -> tuple[float, float] | None:
-        """Start in s and rate in Hz that the file gives for the first column that shares the record's time.
-
-        Beside a rate that the record has from elsewhere, of the first column whose clock runs at that; where none does,
-        of the first, if the file gives one for all of them.
-        """
-        clocks = []
-        for column in self._on_its_clock():
-            with suppress(InputError):  # which its channel will say
-                clocks.append(self.table.clock(self.table.index(column, "")))
-        if rate is None:
-            return clocks[0] if clocks else None
-        alike = (clock for clock in clocks if clock and abs(clock[1] / rate - 1) <= RATE_TOLERANCE)
-        return next(alike, clocks[0] if clocks and None not in clocks else None)
+        return replace(base, findings=(conflict_with_file(rate, clock[1]), *found) if is_other else found)
 
     def _with_rows_beside(self, base: TimeBase | None) -> tuple[TimeBase | None, tuple[float, float] | None]:
         """The time base with the sound rows beside the record that the filter of `resample` reaches, and its own ends.
@@ -367,7 +313,7 @@ class RawReader:
     def _sound_beside(self, most: int) -> tuple[int, int]:
         """How many rows before and behind the record hold numbers in all of its columns, at most so many each."""
         before, behind = most, most
-        for column in self._on_its_clock():
+        for column in self.clocks.on_its_clock():
             with suppress(InputError):  # which its channel will say
                 values = np.isfinite(self._all(column, ""))
                 before = min(before, _leading(values[: self.first][::-1]))
@@ -414,7 +360,7 @@ class RawReader:
         if plan.unit is None and (own := scaled_unit(unit)):
             remedy = f"write unit: {own}, and gain: what the column holds for one {own}"
             raise InputError(Problem(f"{plan.key}.unit", f"the header says '{unit}'", None, remedy, self.source))
-        clock = self._other_clock(plan, base)
+        clock = self._clock_beside(plan, base)
         if plan.timing is None and clock is None:
             if self.filled and filled_in(self._all(plan.column, "")[self.first : self.stop]) is None:
                 return self._faster(plan, unit, header)
@@ -429,20 +375,14 @@ class RawReader:
         whole.filled = None
         return RawChannel(plan, whole.sliced(plan.column, f"{plan.key}.column"), unit, header, whole._base())
 
-    def _other_clock(self, plan: ChannelPlan, base: TimeBase | None) -> tuple[float, float] | None:
-        """The file's own clock of a channel where the record follows another one, on the record's time."""
-        clock = self.table.clock(self.table.index(plan.column, ""))
-        if plan.timing is not None or clock is None or base is None:
+    def _clock_beside(self, plan: ChannelPlan, base: TimeBase | None) -> tuple[float, float] | None:
+        """The file's own clock of a channel where the record follows another one."""
+        if base is None:
             return None
-        rate, stamped = self.plan.timing.sampling_rate, self.plan.timing.column is not None
-        rate = base.sampling_rate * (self.filled.step if self.filled else 1) if stamped else rate
-        record = self._clock(rate)
-        if clock == record:
-            return None
-        if record is not None:
-            return clock[0] + (self._first_stamp() - record[0] if stamped else 0.0), clock[1]
-        is_alike = rate is None or abs(clock[1] / rate - 1) <= RATE_TOLERANCE
-        return None if is_alike else (clock[0] + self._first_stamp(), clock[1])
+        rate = self.plan.timing.sampling_rate
+        if self.plan.timing.column is not None:
+            rate = base.sampling_rate * (self.filled.step if self.filled else 1)
+        return self.clocks.of_channel(plan, rate, self._first_stamp())
 
     def unsliced(self, column: str | int, key: str) -> NDArray[np.float64]:
         """All finite values of a column, without the empty rows behind a slower one."""
@@ -471,24 +411,14 @@ class RawReader:
             base = steady_time(rate, 0, n, self._first_stamp())
             own = self.table.clock(self.table.index(plan.column, key))
             is_other = own is not None and abs(rate / own[1] - 1) > _SAME_RATE
-            return replace(base, findings=(_of_file(rate, own[1], plan.name),)) if is_other else base
+            return replace(base, findings=(conflict_with_file(rate, own[1], plan.name),)) if is_other else base
         if plan.timing.column is None:
             raise InputError(Problem(key, "gives no time base", None, "name a column or a rate", self.source))
         base = self._stamped(plan.timing, key, self.unsliced, 0)
         if base.time.size != n:
             rule = f"{base.time.size} time stamps for {n} samples"
             raise InputError(Problem(key, rule, None, "name the stamps of this very channel", self.file))
-        return replace(base, time=base.time + self._behind(plan.timing.column, key))
-
-    def _behind(self, column: str | int, key: str) -> float:
-        """By how many s the dates or clocks of a column begin behind those of the record; 0 of plain stamps."""
-        own = self.table.begins(self.table.index(column, key))
-        of_record = self.plan.timing.column
-        begun = None if of_record is None else self.table.begins(self.table.index(of_record, key))
-        if own is None or begun is None:
-            return 0.0
-        of_one_day = (own < DAY) != (begun < DAY)  # a date beside a clock without one
-        return own % DAY - begun % DAY if of_one_day else own - begun
+        return replace(base, time=base.time + self.clocks.apart(plan.timing.column, key))
 
 
 def _seconds_of(header: str | None) -> float | None:
@@ -520,19 +450,3 @@ def filled_in(values: NDArray[np.float64]) -> tuple[int, int, int] | None:
 def _leading(true: NDArray[np.bool_]) -> int:
     """How many of (n,) are true before the first that is not."""
     return int(true.size if true.all() else np.argmin(true))
-
-
-def _of_file(rate: float, own: float, channel: str = "time") -> Finding:
-    message = (
-        f"the file itself says {own:.6g} Hz and sampling_rate {rate:.6g} Hz, which was used; "
-        "where the file is right, leave sampling_rate out"
-    )
-    return Finding("rate_conflict", message, channel=channel, severity="note" if own <= _DOUBTFUL else "data_problem")
-
-
-def _rate_conflict(rate: float, column: str, own: float) -> Finding:
-    message = (
-        f"the stamps of column '{column}' run at {own:.6g} Hz and sampling_rate says {rate:.6g} Hz, which was used; "
-        "correct the one that is wrong, or give the column as time"
-    )
-    return Finding("rate_conflict", message, channel="time", severity="note")

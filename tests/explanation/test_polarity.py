@@ -14,7 +14,6 @@ from gear_damping.explanation.evidence.records import evidence_of
 from gear_damping.explanation.explain import explain
 from gear_damping.explanation.steps import polarity
 from gear_damping.measurement.load import load_measurement
-from gear_damping.simulation.solver_settings import Solver
 
 RATE, COUNT, STIFFNESS, DAMPING = 200.0, 600, 900.0, 1.8
 
@@ -50,16 +49,15 @@ def outcome(evidence, share):
     return SimpleNamespace(fit_residuals=[torch.tensor([(share * one) ** 0.5]) for one in energy])
 
 
-def found(evidence, monkeypatch, as_declared, turned):
-    def calibrated(tried, solver):
+def found(evidence, as_declared, turned):
+    def fitted(tried):
         if isinstance(turned, Exception):
             raise turned
         same = torch.equal(tried.fit[0].response, -evidence.fit[0].response)
-        return SimpleNamespace(nominal=outcome(tried, turned if same else 1.0))
+        return outcome(tried, turned if same else 1.0)
 
-    monkeypatch.setattr(polarity, "calibrated", calibrated)
     nominal = None if as_declared is None else outcome(evidence, as_declared)
-    return polarity.polarity_fault(evidence, nominal, Solver())
+    return polarity.polarity_fault(evidence, nominal, fitted)
 
 
 @pytest.mark.parametrize(
@@ -81,10 +79,8 @@ def found(evidence, monkeypatch, as_declared, turned):
         "not simulable",
     ],
 )
-def test_a_channel_is_named_where_its_other_sign_follows_the_records(
-    evidence, monkeypatch, as_declared, turned, is_named
-):
-    fault = found(evidence, monkeypatch, as_declared, turned)
+def test_a_channel_is_named_where_its_other_sign_follows_the_records(evidence, as_declared, turned, is_named):
+    fault = found(evidence, as_declared, turned)
     assert (fault is not None) == is_named
     if is_named:
         assert (fault.kind, fault.channel, fault.severity) == ("reversed", "displacement", "data_problem")
@@ -92,9 +88,9 @@ def test_a_channel_is_named_where_its_other_sign_follows_the_records(
         assert "`polarity: -1`" in fault.message
 
 
-def test_a_free_decay_has_no_sign_to_be_wrong(tmp_path, monkeypatch):
+def test_a_free_decay_has_no_sign_to_be_wrong(tmp_path):
     free = evidence_of(base_excited(tmp_path, inputs=False))
-    assert found(free, monkeypatch, 2.0, 0.01) is None
+    assert found(free, 2.0, 0.01) is None
 
 
 def test_only_the_channel_of_that_place_is_turned(evidence):

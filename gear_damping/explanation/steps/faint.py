@@ -4,6 +4,7 @@ Residuals of left-out records are compared by the whole of their power; what an 
 compared with the residual itself here (Clark & West 2007), which needs a tenth of that power.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from gear_damping.explanation.model.hypothesis import Outcome
@@ -11,7 +12,7 @@ from gear_damping.explanation.state import State
 from gear_damping.explanation.trials.assess import Assessment
 from gear_damping.explanation.trials.bench import Bench
 from gear_damping.explanation.trials.refit import Refit, chosen
-from gear_damping.explanation.trials.score import best_by_effect
+from gear_damping.explanation.trials.score import Score, best_by_effect
 from gear_damping.physics.systems.traits import Trait
 
 
@@ -33,7 +34,9 @@ def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
     if names and bench.evidence.has(Trait.REST):  # laws take their part from each other
         likely = chosen(state.ranked, bench.settings, laws=True, every=True)
         names += [name for name in best_by_effect(likely) if name not in names]
-    names = [name for name in names if best[name].gain > 0 and not bench.budget.refuses(name)]
+    differing = [name for name in names if best[name].candidate.own_levels and not state.accepted]
+    names = [name for name in names if best[name].gain > 0 and not best[name].candidate.own_levels]
+    names = [name for name in names if not bench.budget.refuses(name)]
     found = (bench.full_fit(best[name], state.outcome, reach=state.outcome.fitted.cost) for name in names)
     fits = [fit for fit in found if fit is not None]
     fits = [bench.converged(fit, state.outcome) if fit.gain > 0 else fit for fit in fits]
@@ -49,7 +52,7 @@ def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
         best = min(validated, key=lambda fit: fit.outcome.left_out_cost)
         return state, *bench.simplest(best, fits)
     if not worth:
-        return state, None, ()
+        return _of_records([best[name] for name in differing], state)
     first = max(worth, key=lambda fit: fit.fit_gain)
     rivals = [fit for fit in worth if fit is not first and not bench.encompasses(first, fit)]
     simpler = [fit for fit in rivals if fit.name == _simpler(first, bench)]
@@ -57,6 +60,16 @@ def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
         rivals = [fit for fit in (first, *rivals) if fit is not simpler[0]]
         first = simpler[0]
     return state, first, tuple(fit.name for fit in rivals)
+
+
+def _of_records(scores: Sequence[Score], state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
+    """The same with a cause that differs from record to record, where nothing that is one for all is confirmed."""
+    bench = state.bench
+    for score in scores:
+        fit = None if bench.budget.refuses(score.candidate.name) else bench.full_fit(score, state.outcome)
+        if fit is not None and (_is_validated(fit, state) or _is_worth(fit, state.outcome, state.left, bench)):
+            return replace(state, rejected=(*state.rejected, fit)), fit, ()
+    return state, None, ()
 
 
 def _is_worth(fit: Refit, before: Outcome, seen: Assessment, bench: Bench) -> bool:

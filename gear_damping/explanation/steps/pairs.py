@@ -129,7 +129,7 @@ def _bases(fits: Sequence[Refit], state: State) -> list[Refit]:
     """The fits that take most of the fitted records, one an effect."""
     best: dict[str, Refit] = {}
     for fit in sorted(fits, key=lambda fit: -fit.fit_gain):
-        if fit.name not in state.names:
+        if fit.name not in state.names and not fit.differs:
             best.setdefault(fit.name, fit)
     return list(best.values())[: state.bench.settings.pair_bases]
 
@@ -178,7 +178,7 @@ def _seconds(base: Refit, state: State) -> list[Refit]:
     if bench.budget.refuses(f"a second effect beside {base.name}"):
         return []
     worth = bench.worth(bench.ranked(base.outcome), base.outcome, _needed(base.outcome, state))
-    best = best_by_effect(score for score in worth if score.gain > 0)
+    best = best_by_effect(score for score in worth if score.gain > 0 and not score.candidate.own_levels)
     names = list(best)[: bench.settings.pair_seconds]
     simpler = (bench.evidence.library[name].cause.simpler for name in names)
     names += [name for name in simpler if name in best and name not in names]

@@ -4,36 +4,35 @@ A transmission error may be taken as the lag of the gear or as its lead, an acce
 nominal simulation then leaves most of the records, and with the opposite sign of that channel it follows them.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from gear_damping.errors import InputError
 from gear_damping.explanation.evidence.excess import ac_energy
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.hypothesis import Outcome
-from gear_damping.explanation.steps.calibrate import calibrated
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.measurement.record import Finding
-from gear_damping.simulation.solver_settings import Solver
 
+Fit = Callable[[Evidence], Outcome]
 LEAVES_LESS = 0.1  # of what the declared sign leaves: no parameter of the nominal model was ever worth so much
 
 
-def polarity_fault(evidence: Evidence, nominal: Outcome | None, solver: Solver) -> Finding | None:
+def polarity_fault(evidence: Evidence, nominal: Outcome | None, fitted: Fit) -> Finding | None:
     """The finding where the records are followed with the opposite sign of one channel, and else are not.
 
     Args:
         evidence: The records.
         nominal: The nominal model fitted to them; None where it does not stay finite.
-        solver: Settings of the solver.
+        fitted: Fits it to others.
     """
     left = 1.0 if nominal is None else _share_left(nominal, evidence)
     for turned, name in _turned(evidence):
         try:
-            again = calibrated(turned, solver)
+            again = fitted(turned)
         except InputError:  # neither sign can be simulated
             continue
-        share = _share_left(again.nominal, turned)
+        share = _share_left(again, turned)
         if share < min(LEAVES_LESS * left, evidence.settings.lost_share):
             return _finding(name, left if nominal else None, share)
     return None

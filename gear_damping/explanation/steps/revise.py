@@ -28,6 +28,7 @@ def _exchanged_at(state: State, place: int) -> State:
     without = bench.without(before, cause.name)
     reach = RIVALS_LEAVE * before.fitted.cost
     fits = bench.full_fits(bench.ranked(without), without, before, bench.settings.exchange_share, reach)
+    fits = [fit for fit in fits if not fit.differs]
     if fits and fits[0].t > bench.settings.accepted_t and fits[0].is_seen_in_fit:
         best, rivals = bench.simplest(fits[0], fits)
         if best.name != cause.name:

@@ -17,6 +17,7 @@ from gear_damping.physics.systems.traits import Trait
 
 SHAPE_IN_PHASE = f"{SHAPE}.in_phase["  # one of every harmonic
 LEAST_OF_TEETH = 0.1  # of the largest gain: with less, an effect of single teeth is not the first to be named
+APART = 2.0  # times what a level of each record leaves: a law that leaves less is the nearer one, with fewer figures
 FAR = 10.0  # times the cost of the best fit: a law that leaves so much more has not converged where it could
 
 
@@ -149,10 +150,27 @@ def _converged_rivals(fits: Sequence[Refit], state: State) -> tuple[Refit, ...]:
 
 
 def _best(fits: Sequence[Refit], state: State) -> Refit | None:
-    """The best full fit, where left-out records validate it."""
+    """The best full fit, where left-out records validate it.
+
+    What differs from record to record is the best only where what is one for all leaves far more.
+    """
     best = next((fit for fit in fits if fit.is_seen_in_fit), None)
-    if best is None:
-        return None
+    if best is not None and best.differs:
+        same = next((fit for fit in fits if fit.is_seen_in_fit and not fit.differs), None)
+        is_better = same is not None and same.outcome.left_out_cost > APART * best.outcome.left_out_cost
+        best = best if is_better and _is_validated(same, state) else same
+    return best if best is not None and _is_validated(best, state) else None
+
+
+def _is_validated(fit: Refit, state: State) -> bool:
     current, settings = state.current, state.bench.settings
-    takes = (current.percent - state.bench.excess(best.outcome).percent) / current.percent
-    return best if best.t > settings.accepted_t and takes >= settings.least_share else None
+    takes = (current.percent - state.bench.excess(fit.outcome).percent) / current.percent
+    return fit.t > settings.accepted_t and takes >= settings.least_share
+
+
+def cause_of_records(state: State) -> State | None:
+    """The state with a cause that differs from record to record, where nothing that is one for all is validated."""
+    best = next((fit for fit in state.rejected if fit.is_seen_in_fit and fit.differs), None)
+    if state.is_unpredictable or best is None or not _is_validated(best, state):
+        return None
+    return state.accepting(best, ())

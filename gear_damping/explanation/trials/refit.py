@@ -68,6 +68,11 @@ class Refit:
         """The effect."""
         return self.score.candidate.name
 
+    @property
+    def differs(self) -> bool:
+        """Whether it says of itself that it differs from record to record: every law that does would be one, too."""
+        return self.score.candidate.own_levels
+
 
 def runs_into_bound(name: str, outcome: Outcome, resting: Collection[tuple[str, int]]) -> bool:
     """Whether a parameter of an effect is at a bound of what is tried, but for one where it may rest."""
@@ -101,7 +106,10 @@ def chosen(
             another was fitted to, and what is tried as a whole (a sensor that saturates) has little gain at a wrong
             size. No linear score foresees these.
         every: Whether all that promise much are, whether they resemble the first or not.
+
+    What differs from record to record by its own account is worth one where it promises most.
     """
+    scores = [score for place, score in enumerate(scores) if not place or not score.candidate.own_levels]
     forms: dict[tuple, Score] = {}
     for score in scores:
         forms.setdefault((score.candidate.name, *score.candidate.form), score)

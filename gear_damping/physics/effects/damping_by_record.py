@@ -28,6 +28,7 @@ class DampingByRecord(DampingForce):
         Parameter("spread", "N*s/m", 10.0, "s, standard deviation of the damping coefficient between records", 0, 1e12),
         Parameter("level", "1", 1.0, "z, of the record: by how many of them it is off the mean", -1e3, 1e3),
     )
+    dissipative = True  # with the mean, which it is off
     cause: ClassVar = Cause(
         "a damping that differs from record to record, as with the temperature of the oil",
         _of_several,
