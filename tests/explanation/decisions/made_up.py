@@ -34,7 +34,7 @@ def fit(
     name: str = NAMES[0], cost: float = 0.5, squares: float = 0.5, t: float = 50.0, **more: object
 ) -> SimpleNamespace:
     """A full fit that conditions left out validate, unless said otherwise."""
-    known = {"gain": 1.0, "fit_gain": 1e4, "is_seen_in_fit": True, "is_at_bound": False} | more
+    known = {"gain": 1.0, "fit_gain": 1e4, "is_seen_in_fit": True, "is_at_bound": False, "differs": False} | more
     return SimpleNamespace(name=name, outcome=outcome(cost, squares), t=t, **known)
 
 
@@ -52,7 +52,7 @@ def scored(place: int, gain: float, direction: int | None = None) -> Scored:
     """The score of the effect in this place of `NAMES`, along an axis of its own or along another."""
     axis = torch.eye(len(NAMES), dtype=torch.float64)[place if direction is None else direction]
     hypothesis = SimpleNamespace(effects=[effect_class(NAMES[place])()], common=())
-    known = {"options": (), "form": (), "non_nested": False, "replaced": (), "is_law": False}
+    known = {"options": (), "form": (), "non_nested": False, "replaced": (), "is_law": False, "own_levels": False}
     known |= {"hypothesis": hypothesis}
     return Scored(SimpleNamespace(name=NAMES[place], **known), gain, axis, axis[:, None])
 
