@@ -48,7 +48,7 @@ class FileClocks:
             first_stamp: s, of the first row of the file.
         """
         clock = self.table.clock(self.table.index(plan.column, ""))
-        if plan.timing is not None or clock is None:
+        if plan.timing is not None or clock is None or (rate is not None and clock[1] <= _DOUBTFUL < rate):
             return None
         stamped = self.plan.timing.column is not None
         record = self.shared(rate)

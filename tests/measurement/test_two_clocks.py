@@ -105,6 +105,16 @@ def test_a_rate_that_the_file_gives_one_channel_is_its_own(two_rates, clock):
     assert any("force: filtered and taken from 1000 Hz" in note for note in record.notes)
 
 
+def test_a_rate_of_1_hz_beside_stamps_is_one_that_nobody_set(tmp_path):
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["t"], file["x"], file["F"] = TIME, wave(TIME), wave(TIME)
+        file["F"].attrs["dt"] = 1.0
+    record = loaded(tmp_path, "a.h5", FORCE, time={"column": "t", "unit": "s"})
+    assert len(record.time) == COUNT
+    assert is_on_one_time(record)
+
+
 def test_a_declared_rate_of_a_channel_that_contradicts_the_file_is_said(two_rates):
     force = FORCE | {"sampling_rate": {"value": 500, "unit": "Hz"}}
     record = loaded(two_rates, "a.h5", force, time={"column": "t", "unit": "s"})
