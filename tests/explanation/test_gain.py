@@ -110,6 +110,7 @@ def test_damping_is_conditional_where_more_than_noise_is_left(leaves_unnamed, ca
         patch.object(report_fields, "covariance_of", lambda *_: None),
         patch.object(report_fields, "rig_unit", lambda *_: "m/s"),
         patch.object(report_fields, "_confirmed", lambda *_: None),
+        patch.object(report_fields, "damping_by_record", lambda *_: []),
     ):
         said = report_fields._gain(judged, evidence, None)
     assert said["damping_ratio_percent"]["conditional"] == conditional

@@ -84,7 +84,7 @@ def score(name, gain):
     direction = torch.eye(12, dtype=torch.float64)[len(name) % 12]
     hypothesis = SimpleNamespace(effects=[effect], common=())
     candidate = SimpleNamespace(
-        name=name, options=(), form=(), non_nested=False, replaced=(), hypothesis=hypothesis,
+        name=name, options=(), form=(), non_nested=False, replaced=(), own_levels=False, hypothesis=hypothesis,
         is_law=name.endswith(("stiffness", "damping")), strengths=(0,),
     )  # fmt: skip
     return SimpleNamespace(candidate=candidate, gain=gain, direction=direction, columns=direction[:, None])
