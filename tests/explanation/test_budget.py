@@ -99,7 +99,8 @@ def test_no_second_effect_is_fitted_once_the_time_is_over():
         fitted.append(score.candidate.name)
         clock.now = 290.0
 
-    scores = [SimpleNamespace(gain=1.0, candidate=SimpleNamespace(name=name)) for name in ("a", "b", "c")]
+    candidates = [SimpleNamespace(name=name, own_levels=False) for name in ("a", "b", "c")]
+    scores = [SimpleNamespace(gain=1.0, candidate=candidate) for candidate in candidates]
     cause = SimpleNamespace(cause=SimpleNamespace(simpler=None))
     evidence = SimpleNamespace(library=dict.fromkeys("abc", cause))
     bench = SimpleNamespace(
