@@ -5,6 +5,7 @@ from dataclasses import asdict, dataclass, replace
 from math import pi
 from typing import Any
 
+from gear_damping.explanation.answer.homogeneity import FEWEST, homogeneity
 from gear_damping.explanation.evidence.noise import NoiseLevel, noise_of, weighted
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.evidence.release import released_at
@@ -14,6 +15,7 @@ from gear_damping.identification.free_vibration import LEAST_FALL
 from gear_damping.identification.observation import fit_record, has_spring, known_of, require_alike, require_fitted
 from gear_damping.identification.oscillator.estimates import Estimate
 from gear_damping.identification.oscillator.fit import OscillatorFit, fit_oscillator
+from gear_damping.identification.oscillator.linear_model import DAMPING
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import Segments
 from gear_damping.interface.identified_page import MOST_PANELS, estimate_rows, panel, residual_rows
@@ -62,18 +64,25 @@ def _weighed(
     found: OscillatorFit, measurement: Measurement, fit: Sequence[FitRecord], channel: Channel
 ) -> OscillatorFit:
     """The figures weighed by what is random in the residual, where nothing else is: only then its interval holds."""
-    problem, model = found.problem, found.problem.model
     if found.fitted.prediction.residual.numel() > MOST_SAMPLES:
         return found
+    better = weighed(*_explained(found, measurement, fit, channel))
+    if better.whitened is None:
+        return found
+    return found.weighed(replace(better.fitted, prediction=better.whitened))
+
+
+def _explained(
+    found: OscillatorFit, measurement: Measurement, fit: Sequence[FitRecord], channel: Channel
+) -> tuple[Outcome, Evidence]:
+    """The fit and its records as an explanation has them."""
+    problem, model = found.problem, found.problem.model
     hypothesis = Hypothesis(model.system, tuple(model.effects), found.given, tuple(problem.free))
     values = {name: float(value) for name, value in problem.unknowns.parameters(found.fitted.shared).items()}
     outcome = Outcome(hypothesis, problem, found.fitted, values, [], [])
     system = {"system": measurement.system, "base": measurement.base, "known": known_of(measurement)}
     evidence = Evidence(fit=tuple(fit), holdout=(), channel=channel, one_record=False, noise=problem.noise, **system)
-    better = weighed(outcome, replace(evidence, segments=found.segments))
-    if better.whitened is None:
-        return found
-    return found.weighed(replace(better.fitted, prediction=better.whitened))
+    return outcome, replace(evidence, segments=found.segments)
 
 
 def content_of(measurement: Measurement, fitted: Fitted) -> dict[str, Any]:
@@ -82,8 +91,33 @@ def content_of(measurement: Measurement, fitted: Fitted) -> dict[str, Any]:
     content = _identification(found, measurement, roles, channel)
     lacking = lack_of_fit(found.predictions, roles["fit"], roles["holdout"], channel, fitted.noise)
     undamped = _undamped(found, roles["fit"])
-    said = {"undamped": undamped, "not_yet_free": _not_yet_free(roles["fit"]), "contradicted": _contradicted(found)}
+    differs = _differing(found, measurement, roles["fit"], channel)
+    said = {
+        "differing": differs,
+        "undamped": undamped,
+        "not_yet_free": _not_yet_free(roles["fit"]),
+        "contradicted": _contradicted(found),
+    }
     return content | said | {"lack_of_fit": lacking and lacking | {"source": str(measurement.source)}}
+
+
+def _differing(
+    found: OscillatorFit, measurement: Measurement, fit: Sequence[FitRecord], channel: Channel
+) -> str | None:
+    """The damping ratio of every record, where they are not one; None where they are, or too few tell."""
+    ratio, is_free = found.damping_ratio_percent, any(p.name == DAMPING for p in found.problem.free)
+    is_known = bool(found.fitted.prediction.sensitivity.isfinite().all())
+    if ratio is None or not is_free or not is_known or len(fit) < FEWEST:
+        return None
+    outcome, evidence = _explained(found, measurement, fit, channel)
+    test = homogeneity(outcome, DAMPING.partition(".")[0], evidence)
+    if test.holds:
+        return None
+    said = [f"{ratio.value * one:.2g} % in {name}" for name, one in zip(test.names, test.estimates, strict=True)]
+    return (
+        f"the damping ratio is not one for all records, about {', '.join(said)}: task=explain looks for a law of the "
+        "amplitude, or for a damping of each"
+    )
 
 
 def _contradicted(found: OscillatorFit) -> str | None:
@@ -129,7 +163,7 @@ def _undamped(found: OscillatorFit, fit: Sequence[FitRecord]) -> str | None:
 def table_of(content: dict[str, Any]) -> str:
     """The parameters with their intervals, and what is missing."""
     text, lacking = _table(content), content["lack_of_fit"]
-    said = [content[key] for key in ("undamped", "not_yet_free", "contradicted")]
+    said = [content[key] for key in ("undamped", "not_yet_free", "differing", "contradicted")]
     said += [sentence(lacking) if lacking and lacking["significant"] else None]
     return "\n\n".join([text.rstrip(), *filter(None, said)]) + "\n"
 

@@ -5,6 +5,7 @@ import pytest
 import yaml
 
 from gear_damping.explanation.explain import explain
+from gear_damping.interface.identified_oscillator import content_of, linear_fit
 from gear_damping.measurement.load import load_measurement
 
 RATE, SECONDS, FREQUENCY = 60.0, 14.0, 3.1
@@ -70,7 +71,17 @@ def test_the_extended_model_leaves_what_it_left_before_it_was_brought_to_one_sca
     np.testing.assert_allclose(again.sensitivity[0][..., places], own, rtol=1e-3, atol=1e-3 * float(own.abs().max()))
 
 
+def test_identify_says_that_one_damping_is_none_of_theirs(tmp_path):
+    measurement = measured(tmp_path, RATIOS)
+    said = content_of(measurement, linear_fit(measurement, None, None))["differing"]
+    assert said.startswith("the damping ratio is not one for all records, about ")
+    told = dict(reversed(one.split(" % in ")) for one in said.partition("about ")[2].partition(":")[0].split(", "))
+    assert [float(told[f"r{k}"]) for k in range(4)] == pytest.approx([100 * one for one in RATIOS[:4]], rel=0.12)
+
+
 def test_one_damping_for_all_records_is_none(tmp_path):
-    content = explain(measured(tmp_path, RATIOS[:1] * 5)).content
+    measurement = measured(tmp_path, RATIOS[:1] * 5)
+    assert content_of(measurement, linear_fit(measurement, None, None))["differing"] is None
+    content = explain(measurement).content
     assert (content["verdict"], content["causes"]) == ("consistent", [])
     assert content["gain"]["damping_ratio_percent"]["by_record"] == []

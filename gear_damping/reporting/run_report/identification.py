@@ -41,7 +41,7 @@ def _of_fit(left: Left, content: Mapping[str, Any]) -> RunReport:
     lead, doubts = [_lead(known)], []
     if not content.get("converged", True):
         doubts.append("The search did not converge: take the figures as a first guess.")
-    for said in filter(None, map(content.get, ("undamped", "not_yet_free", "contradicted"))):
+    for said in filter(None, map(content.get, ("undamped", "not_yet_free", "differing", "contradicted"))):
         doubts.append(f"{said[0].upper()}{said[1:]}.")
     lacking = content.get("lack_of_fit")
     if lacking and lacking.get("significant"):
