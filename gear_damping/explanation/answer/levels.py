@@ -12,8 +12,8 @@ from gear_damping.explanation.answer.homogeneity import block_of
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.candidates import Candidate
 from gear_damping.explanation.model.hypothesis import Outcome
+from gear_damping.explanation.model.positive import copied
 from gear_damping.identification.output_error.normal_equations import nuisance_basis, project_out
-from gear_damping.identification.output_error.problem import Prediction
 from gear_damping.identification.output_error.records import SEPARATOR
 from gear_damping.identification.output_error.uncertainty import QUANTILE
 
@@ -41,7 +41,7 @@ def of_unit_spread(outcome: Outcome, candidates: Sequence[Candidate]) -> Outcome
     if not size:
         return outcome
     factors = {spread: size} | dict.fromkeys(levels, 1 / size)
-    predictions = [one and _copied(one) for one in (outcome.fitted.prediction, outcome.whitened)]
+    predictions = [one and copied(one) for one in (outcome.fitted.prediction, outcome.whitened)]
     for place, parameter in enumerate(outcome.problem.free):
         if (factor := factors.get(parameter.name)) is None:
             continue
@@ -123,7 +123,3 @@ def _errors(columns: Tensor, residual: Tensor, block: int) -> Tensor:
 
 def _scaled(columns: Tensor) -> Tensor:
     return columns / columns.norm(dim=0).clamp(min=1e-300)
-
-
-def _copied(prediction: Prediction) -> Prediction:
-    return replace(prediction, sensitivity=prediction.sensitivity.clone())

@@ -147,8 +147,7 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Si
     if recipe.non_nested:
         free, later = [*free, *later], []
     initial_values = {}
-    levels = kind.cause.turns_with == "record"
-    expected = 1.0 if levels else inf  # a level counts in standard deviations
+    expected = 1.0 if _has_levels(kind) else inf  # a level counts in standard deviations
     templates = [FreeParameter(one, 0.0, per_record=True, deviation=expected) for one in own_phases.values()]
     teeth = sizes.rig.teeth(effect.chosen["shaft"]) if own_tooth else 0
     if own_tooth:
@@ -176,7 +175,7 @@ def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Si
         replaced,
         frozenset((f"{kind.name}.{name}", end) for name, end in recipe.resting),
         own_phases,
-        levels,
+        _has_levels(kind),
         own_tooth,
         teeth,
         recipe.options,
@@ -188,6 +187,11 @@ def _has_own_phases(kind: type[Effect], sizes: "_Sizes") -> bool:
     if kind.cause.turns_with in ("clock", "record"):
         return True
     return not sizes.rig.indexed and kind.cause.turns_with == "shaft"
+
+
+def _has_levels(kind: type[Effect]) -> bool:
+    """Whether these are levels: what differs between records is a size."""
+    return kind.cause.turns_with == "record"
 
 
 def _declared(kind: type[Effect], recipe: Recipe) -> list[Parameter]:
@@ -270,7 +274,7 @@ def _elements(kind: type[Effect], name: str, size: float, given: Given, recipe: 
         return [_freed(declared, flat, given, recipe.within)]
     if isinstance(value, tuple):
         return [FreeParameter(f"{flat}[{i}]", v, abs(size)) for i, v in enumerate(value)]
-    if name in recipe.phases and kind.cause.turns_with != "record":
+    if name in recipe.phases and not _has_levels(kind):
         return [FreeParameter(flat, value, abs(size))]
-    expected = abs(size) if kind.cause.turns_with == "record" else inf  # only its product with the levels acts
+    expected = abs(size) if _has_levels(kind) else inf  # only its product with the levels acts
     return [FreeParameter(flat, value, abs(size), lower=declared.lower, upper=declared.upper, deviation=expected)]

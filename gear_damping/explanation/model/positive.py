@@ -33,7 +33,7 @@ def positive(outcome: Outcome, candidates: Iterable[Candidate]) -> Outcome:
 
 def _turned(outcome: Outcome, negative: Iterable[str], phases: set[str]) -> Outcome:
     values, shared = dict(outcome.values), outcome.fitted.shared.clone()
-    predictions = [one and _copied(one) for one in (outcome.fitted.prediction, outcome.whitened)]
+    predictions = [one and copied(one) for one in (outcome.fitted.prediction, outcome.whitened)]
     for place, parameter in enumerate(outcome.problem.free):
         name = parameter.name
         if name in negative:
@@ -50,5 +50,6 @@ def _turned(outcome: Outcome, negative: Iterable[str], phases: set[str]) -> Outc
     return replace(outcome, fitted=fitted, values=values, own=own, whitened=predictions[1])
 
 
-def _copied(prediction: Prediction) -> Prediction:
+def copied(prediction: Prediction) -> Prediction:
+    """The prediction with sensitivities of its own, which may be scaled."""
     return replace(prediction, sensitivity=prediction.sensitivity.clone())
