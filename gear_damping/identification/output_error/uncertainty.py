@@ -79,12 +79,17 @@ def _inverse(information: Tensor) -> Tensor:
 
 
 def long_run(scores: Tensor, lags: int) -> Tensor:
-    """Bartlett-weighted sum of the autocovariances of (time, p), (p, p)."""
-    total = scores.T @ scores
-    for lag in range(1, min(lags, len(scores) - 1) + 1):
-        part = scores[lag:].T @ scores[:-lag]
-        total = total + (1 - lag / (lags + 1)) * (part + part.T)
-    return total
+    """Bartlett-weighted sum of the autocovariances of (time, p), (p, p).
+
+    A triangle is a box convolved with itself: the products of the moving sums over `lags` + 1 samples, with nothing
+    before and behind the record, are the same sum at the price of a single lag.
+    """
+    whole = scores.sum(0)
+    within = min(lags, len(scores))  # more only repeats the sum of all
+    sums = torch.nn.functional.pad(scores.cumsum(0), (0, 0, 0, within))
+    sums[len(scores) :] = whole
+    sums[within + 1 :] = sums[within + 1 :] - sums[: -within - 1]
+    return (sums.T @ sums + (lags - within) * torch.outer(whole, whole)) / (lags + 1)
 
 
 def interval(
