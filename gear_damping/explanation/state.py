@@ -139,6 +139,17 @@ class State:
         """Whether records were predicted over more than they can be: nothing of that counts."""
         return self.error_amplification > self.bench.settings.most_growth and not self.bench.evidence.segments
 
+    def is_validated(self, fit: Refit) -> bool:
+        """Whether left-out records bear a further cause out by their power.
+
+        Where other records hardly show what one does, as one at resonance, that may be so though the model leaves less
+        than chance may.
+        """
+        settings, left = self.bench.settings, self.current.percent
+        takes = left - self.bench.excess(fit.outcome).percent
+        is_enough = left > 0 and takes >= settings.least_share * left
+        return is_enough and fit.is_seen_in_fit and fit.t > settings.accepted_t
+
     def with_cause(self, place: int, cause: Accepted, outcome: Outcome | None = None) -> "State":
         """The same with another cause in one place, and the model that goes with it."""
         accepted = (*self.accepted[:place], cause, *self.accepted[place + 1 :])

@@ -79,7 +79,7 @@ def test_beside_a_cause_what_no_score_foresaw_has_to_take_most_of_what_is_left(m
         takes_most=lambda fit, _: fit.name in most,
     )
     monkeypatch.setattr(faint, "_is_worth", lambda *_: False)
-    monkeypatch.setattr(faint, "_is_validated", lambda *_: False)
+    monkeypatch.setattr(State, "is_validated", lambda *_: False)
     visible = SimpleNamespace(shows=lambda name: name == SHOWING, by_name={SHOWING: 10.0})
     scores = tuple(scored(place, gain) for place, gain in enumerate((0.01, 0.3, 0.1)))
     accepted = (SimpleNamespace(name="other"),)

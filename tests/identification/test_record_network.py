@@ -166,9 +166,9 @@ def test_keys_that_would_do_nothing_are_refused(overrides, key, said):
     assert any(problem.key == key and said in problem.rule for problem in caught.value.problems)
 
 
-def test_a_frequency_beyond_the_rate_is_said():
+def test_a_frequency_beyond_the_rate_is_said(tmp_path):
     with pytest.raises(ValueError, match="highest_hz"):
-        fit_estimator(EstimatorConfig("record_cwt_lstm"), data(60), TRAINING, Place("unused"), seed=1)
+        fit_estimator(EstimatorConfig("record_cwt_lstm"), data(60), TRAINING, Place(tmp_path), seed=1)
 
 
 def test_a_record_is_told_with_its_interval_from_the_command_line(tmp_path):

@@ -13,12 +13,11 @@ from torch import Tensor
 
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.hypothesis import Outcome, time_scale
+from gear_damping.explanation.model.own_phases import own_level
 from gear_damping.explanation.statistics.random_effects import between_deviation, statistic
 from gear_damping.identification.output_error.normal_equations import nuisance_basis, project_out
-from gear_damping.identification.output_error.records import SEPARATOR
 from gear_damping.identification.output_error.uncertainty import QUANTILE
 
-LEVEL = "level"  # of a record's own, of what differs between records
 FEWEST = 3  # records or segments with a share of the information
 SHARE = 0.1  # of what they would have in equal parts
 BLOCK_TIMES = 2.0  # characteristic times of a block, over which residuals may be correlated
@@ -58,7 +57,7 @@ def homogeneity(outcome: Outcome, cause: str, evidence: Evidence) -> Homogeneity
 
     What says of itself that it differs between records is not one for all.
     """
-    if any(p.name.startswith(f"{cause}.{LEVEL}{SEPARATOR}") for p in outcome.problem.free):
+    if own_level(outcome)[0].partition(".")[0] == cause:
         return Homogeneity((), (), (), None, evidence.settings.homogeneity_level)
     place = next(i for i, p in enumerate(outcome.problem.free) if p.name.startswith(cause + "."))
     prediction, problem = outcome.linearisation, outcome.problem

@@ -12,6 +12,7 @@ from gear_damping.explanation.answer.homogeneity import block_of
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.candidates import Candidate
 from gear_damping.explanation.model.hypothesis import Outcome
+from gear_damping.explanation.model.own_phases import own_level
 from gear_damping.explanation.model.positive import copied
 from gear_damping.identification.output_error.normal_equations import nuisance_basis, project_out
 from gear_damping.identification.output_error.records import SEPARATOR
@@ -19,15 +20,6 @@ from gear_damping.identification.output_error.uncertainty import QUANTILE
 
 SAME = 0.01  # share of a column that the levels leave of it: less is their mean, but for the steps of slopes
 Rows = list[dict[str, Any]]
-
-
-def own_level(outcome: Outcome) -> tuple[str, str]:
-    """Flat names of a spread between records and of the level of each, where a model has such an effect; else empty."""
-    for effect in outcome.hypothesis.effects:
-        if effect.cause and effect.cause.turns_with == "record":
-            spread, level = (f"{effect.name}.{parameter.name}" for parameter in effect.parameters)
-            return spread, level
-    return "", ""
 
 
 def of_unit_spread(outcome: Outcome, candidates: Sequence[Candidate]) -> Outcome:

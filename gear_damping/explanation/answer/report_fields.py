@@ -6,7 +6,7 @@ from typing import Any
 
 from gear_damping.explanation.answer import gain
 from gear_damping.explanation.answer.homogeneity import by_record
-from gear_damping.explanation.answer.levels import damping_by_record, levels_by_record, own_level
+from gear_damping.explanation.answer.levels import damping_by_record, levels_by_record
 from gear_damping.explanation.answer.next_experiment import confusable_beforehand, next_experiment
 from gear_damping.explanation.answer.unexplained import unexplained_residual
 from gear_damping.explanation.evidence.data_faults import sentences
@@ -17,6 +17,7 @@ from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.covariance import covariance_of
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.nominal_gear_pair import is_standing
+from gear_damping.explanation.model.own_phases import own_level
 from gear_damping.explanation.report_schema import KEYS, SCHEMA_VERSION
 from gear_damping.explanation.statistics.paired import share_taken
 from gear_damping.explanation.steps.judge import CONSISTENT, DATA_PROBLEM, LARGEST_SET, Judged, is_visible, statuses

@@ -7,6 +7,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.explanation.model.candidates import Candidate
+from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.own_teeth import Teeth, every_tooth, one_tooth
 from gear_damping.identification.output_error.angles import MESH_PHASE
 from gear_damping.identification.output_error.problem import OutputErrorProblem
@@ -30,6 +31,15 @@ def turn_own_phases(points: Tensor, candidate: Candidate, problem: OutputErrorPr
             else:
                 points[2 * number, place] = parameter.coordinate(0.0)
                 points[2 * number + 1, place] = parameter.coordinate(torch.pi / 2)
+
+
+def own_level(outcome: Outcome) -> tuple[str, str]:
+    """Flat names of a spread between records and of the level of each, where a model has such an effect; else empty."""
+    for effect in outcome.hypothesis.effects:
+        if effect.cause and effect.cause.turns_with == "record":
+            spread, level = (f"{effect.name}.{parameter.name}" for parameter in effect.parameters)
+            return spread, level
+    return "", ""
 
 
 def reach_of_records(problem: OutputErrorProblem) -> Tensor:

@@ -43,7 +43,7 @@ def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
     fits = [fit for fit in fits if fit.name in foreseen or bench.takes_most(fit, state.outcome)]
     worth = [fit for fit in fits if _is_worth(fit, state.outcome, seen, bench)]
     state = replace(state, rejected=tuple(fits), first_fits=state.first_fits or tuple(fits))
-    validated = [fit for fit in fits if _is_validated(fit, state)]
+    validated = [fit for fit in fits if state.is_validated(fit)]
     if state.needs_known_size:
         worth, validated = (
             [fit for fit in some if bench.is_determined(fit, state.outcome)] for some in (worth, validated)
@@ -67,7 +67,7 @@ def _of_records(scores: Sequence[Score], state: State) -> tuple[State, Refit | N
     bench = state.bench
     for score in scores:
         fit = None if bench.budget.refuses(score.candidate.name) else bench.full_fit(score, state.outcome)
-        if fit is not None and (_is_validated(fit, state) or _is_worth(fit, state.outcome, state.left, bench)):
+        if fit is not None and (state.is_validated(fit) or _is_worth(fit, state.outcome, state.left, bench)):
             return replace(state, rejected=(*state.rejected, fit)), fit, ()
     return state, None, ()
 
@@ -80,17 +80,6 @@ def _is_worth(fit: Refit, before: Outcome, seen: Assessment, bench: Bench) -> bo
     settings = bench.settings
     is_enough = taken >= settings.least_share * seen.taken
     return is_enough and bench.confirmation(before, fit.outcome) >= settings.confirmed_t
-
-
-def _is_validated(fit: Refit, state: State) -> bool:
-    """Whether left-out records bear a cause out by their power after all, though it is less than chance may leave.
-
-    Where the other records hardly show what one does, as one at resonance, that chance is large.
-    """
-    settings, left = state.bench.settings, state.current.percent
-    takes = left - state.bench.excess(fit.outcome).percent
-    is_enough = left > 0 and takes >= settings.least_share * left
-    return is_enough and fit.is_seen_in_fit and fit.t > settings.accepted_t
 
 
 def _simpler(fit: Refit, bench: Bench) -> str | None:

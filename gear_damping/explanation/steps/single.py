@@ -158,19 +158,13 @@ def _best(fits: Sequence[Refit], state: State) -> Refit | None:
     if best is not None and best.differs:
         same = next((fit for fit in fits if fit.is_seen_in_fit and not fit.differs), None)
         is_better = same is not None and same.outcome.left_out_cost > APART * best.outcome.left_out_cost
-        best = best if is_better and _is_validated(same, state) else same
-    return best if best is not None and _is_validated(best, state) else None
-
-
-def _is_validated(fit: Refit, state: State) -> bool:
-    current, settings = state.current, state.bench.settings
-    takes = (current.percent - state.bench.excess(fit.outcome).percent) / current.percent
-    return fit.t > settings.accepted_t and takes >= settings.least_share
+        best = best if is_better and state.is_validated(same) else same
+    return best if best is not None and state.is_validated(best) else None
 
 
 def cause_of_records(state: State) -> State | None:
     """The state with a cause that differs from record to record, where nothing that is one for all is validated."""
     best = next((fit for fit in state.rejected if fit.is_seen_in_fit and fit.differs), None)
-    if state.is_unpredictable or best is None or not _is_validated(best, state):
+    if state.is_unpredictable or best is None or not state.is_validated(best):
         return None
     return state.accepting(best, ())
