@@ -8,6 +8,7 @@ from gear_damping.measurement.angular_error import GEOMETRY, NEEDED
 from gear_damping.schema.mappings import names
 
 _OSCILLATOR_RESPONSES = ("displacement", "velocity", "acceleration")
+_SHARED_BY_TRIALS = ("time", "force", "base_acceleration", "pinion_torque", "gear_torque", "pinion_angle")
 _OF_A_RESPONSE = ("lowpass", "highpass", "coupling", "noise", "datum")
 Found = Iterator[Problem]
 
@@ -227,8 +228,9 @@ def _held_out_apart(file: layout.AnyFile, records: Numbered) -> Found:
 
 
 def _columns(record: layout.AnyRecord) -> set[object]:
-    """The columns of its channels that are no time."""
-    columns = (getattr(channel, "column", None) for channel in given(record.channels).values())
+    """The columns of its responses: trials side by side may share the time, and what drives them."""
+    channels = given(record.channels).items()
+    columns = (getattr(channel, "column", None) for name, channel in channels if name not in _SHARED_BY_TRIALS)
     return {column for column in columns if column is not None}
 
 

@@ -342,6 +342,23 @@ def test_what_is_held_out_is_not_fitted(tmp_path, fit, held, said):
         load_measurement(tmp_path / "measurement.yaml")
 
 
+@pytest.mark.parametrize(("held", "is_told"), [("y", False), ("x", True)])
+def test_trials_side_by_side_share_their_time_and_their_force(tmp_path, held, is_told):
+    """Three columns beside one time: what is held out is another one."""
+    rows = (f"{k * 0.002:g},{x:.9g},{2 * x:.9g},0.1" for k, x in enumerate(DECAY))
+    (tmp_path / "data.csv").write_text("t,x,y,F\n" + "\n".join(rows))
+    shared = {"time": {"column": "t", "unit": "s"}, "force": {"column": "F", "unit": "N"}}
+    records = [{"file": "data.csv", "name": role, "role": role,
+                "channels": shared | {"displacement": {"column": column, "unit": "m"}}}
+               for role, column in (("fit", "x"), ("holdout", held))]  # fmt: skip
+    (tmp_path / "measurement.yaml").write_text(yaml.safe_dump({"system": "oscillator", "records": records}))
+    if is_told:
+        with pytest.raises(InputError, match="all rows of it are fitted"):
+            load_measurement(tmp_path / "measurement.yaml")
+        return
+    assert [record.role for record in load_measurement(tmp_path / "measurement.yaml").records] == ["fit", "holdout"]
+
+
 def test_segments_and_delays_lie_within_the_records(tmp_path):
     channels = {"time": {"column": "t", "unit": "s"}, "displacement": {"column": "x", "unit": "m"}}
     text = "t,x\n" + ROWS.replace(" ", ",")
