@@ -271,12 +271,29 @@ def to_si(value: float, unit: str, expected: str, key: str = "value", source: st
         remedy = "give a level in dB" if expected == LEVEL else "give the ratio itself, 10^(level/20) of amplitudes"
         raise InputError(Problem(key, rule, value, remedy, source))
     found = of_a_shaft(parse_unit(unit, key, source), wanted)
+    if remedy := _turns_or_radians(value, unit, found, expected):
+        raise InputError(Problem(key, f"the unit '{unit}' is not one of the kind of '{expected}'", value, remedy, source))
     if found.dimension != wanted.dimension and _is_in_radians(unit, found, wanted):
         return value * found.factor
     if found.dimension != wanted.dimension:
         rule = f"the unit '{unit}' is not one of the kind of '{expected}'"
         raise InputError(Problem(key, rule, value, other_kind(found, expected), source))
     return value * found.factor
+
+
+def _turns_or_radians(value: float, unit: str, found: Unit, expected: str) -> str:
+    """What helps where a frequency is said in radians, or a rate of radians or its square in Hz; "" elsewhere.
+
+    Between the two lies 2 pi for every turn, which a dimension does not see.
+    """
+    power = -found.dimension.time
+    if expected.endswith("Hz") and "rad" in unit:
+        ours = value * found.factor / (2 * pi) ** power / parse_unit(expected).factor
+    elif expected in ("1/s", "1/s^2") and "Hz" in unit:
+        ours = value * found.factor * (2 * pi) ** power
+    else:
+        return ""
+    return f"give it in '{expected}'; {value:g} {unit} are {ours:.6g} {expected}, with 2 pi a turn"
 
 
 def _is_in_radians(unit: str, found: Unit, wanted: Unit) -> bool:

@@ -135,6 +135,8 @@ class Measured(Value):
         """The quantity in SI, or as declared."""
         if said := spoken(value):
             value = {"value": said[0], "unit": said[1]}
+        if isinstance(value, dict) and "unit" not in value and (said := spoken(value.get("value"))):
+            value = value | {"value": said[0], "unit": said[1]}  # {value: 5 %, uncertainty: 0.02}
         if self.unit == "1" and not isinstance(value, dict):
             value = {"value": Number().read(value, name)}
         is_number = isinstance(value, int | float) and not isinstance(value, bool)
@@ -287,6 +289,12 @@ class Cutoff(Measured):
     def more(self, value: dict, problems: Found) -> int:
         """The order of the filter."""
         return self._part(value, "order", OneOf(ORDERS), self.usual, problems)
+
+    def _checked(self, found: Quantity) -> Quantity:
+        if found.unit.replace(" ", "") in ("1/s", "s^-1"):
+            rule, remedy = "may count turns or radians", "say which: in Hz what counts turns; of radians the 2 pi-th part"
+            refuse(rule, f"{found.value:g} {found.unit}", remedy)
+        return super()._checked(found)
 
     def made(self, quantity: Quantity, more: int) -> Corner:
         """The corner with its order."""

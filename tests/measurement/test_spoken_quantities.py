@@ -5,8 +5,9 @@ from typing import get_args
 import pytest
 from pydantic import BaseModel
 
+from gear_damping.errors import InputError
 from gear_damping.measurement import layout
-from gear_damping.measurement.quantities import Measured
+from gear_damping.measurement.quantities import Cutoff, Measured
 from gear_damping.schema.mappings import read_declared
 from gear_damping.schema.values import Problems
 
@@ -82,3 +83,21 @@ def test_a_window_that_is_none_is_refused_by_its_key(window, key, rule):
 def test_a_relative_uncertainty_may_be_in_percent():
     given = {"value": 1, "unit": "N/m", "uncertainty": "5 %"}
     assert Measured("N/m", uncertain=True).read(given, "x").uncertainty == 0.05
+
+
+@pytest.mark.parametrize(
+    ("given", "kind", "found"),
+    [
+        ({"value": "5 %", "uncertainty": 0.02}, Measured("1", uncertain=True), 0.05),
+        ({"value": "2.5 mm", "uncertainty": "1 %"}, Measured("m", uncertain=True), 0.0025),
+    ],
+)
+def test_the_unit_may_stand_behind_the_value_of_a_mapping(given, kind, found):
+    assert kind.read(given, "x").value == found
+
+
+@pytest.mark.parametrize("unit", ["1/s", "s^-1"])
+def test_a_corner_by_the_second_may_be_of_turns_or_of_radians(unit):
+    with pytest.raises(InputError, match="may count turns or radians"):
+        Cutoff().read({"value": 25, "unit": unit}, "lowpass")
+    assert Cutoff().read({"value": "10 kHz", "order": 4}, "lowpass").frequency == 1e4

@@ -1,5 +1,7 @@
 """Units: every one that may stand in a product has its factor, and what nobody knows is refused by name."""
 
+import re
+
 import pytest
 
 from gear_damping.errors import InputError
@@ -129,3 +131,18 @@ def test_kilograms_by_a_length_are_a_torque_of_their_weight():
 )  # fmt: skip
 def test_a_factor_behind_a_unit_is_seen(text, unit):
     assert scaled_unit(text) == unit
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "expected", "said"),
+    [
+        (62.83, "rad/s", "Hz", "62.83 rad/s are 9.99971 Hz"),
+        (6283, "rad/s", "kHz", "are 0.999971 kHz"),
+        (9.61, "Hz^2", "1/s^2", "9.61 Hz^2 are 379.388 1/s^2"),
+        (0.001, "kHz", "1/s", "0.001 kHz are 6.28319 1/s"),
+    ],
+)
+def test_turns_are_not_taken_for_radians(value, unit, expected, said):
+    """Between the two lies 2 pi, which no dimension shows: it is asked back."""
+    with pytest.raises(InputError, match=re.escape(said)):
+        to_si(value, unit, expected)

@@ -5,12 +5,13 @@ from dataclasses import dataclass
 from math import pi
 
 import torch
+from scipy.stats import t as student
 from torch import Tensor
 
 from gear_damping.explanation.evidence.declared_units import unit_of
 from gear_damping.explanation.evidence.excess import ac_energy
 from gear_damping.explanation.evidence.records import Evidence
-from gear_damping.explanation.model.covariance import SILENT
+from gear_damping.explanation.model.covariance import FEWEST, SILENT
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.identification.output_error.problem import set_value
 from gear_damping.identification.output_error.records import FitRecord
@@ -26,6 +27,7 @@ from gear_damping.physics.terms import DampingForce, DampingLaw, MeshStiffness
 from gear_damping.simulation.runs import reference_velocity
 
 PHASES = 128  # of the mesh: more than the harmonics of wave and shape together, so that the mean is exact
+CONFIDENCE = 0.95  # of an interval
 STEP = 1e-4  # of a coordinate, for the slope of the damping ratio
 
 
@@ -123,12 +125,19 @@ def _interval(outcome: Outcome, covariances: Tensor, place: int, evidence: Evide
     return Interval(value, (ends[0], ends[1]), unit, told)
 
 
-def damping_ratio(outcome: Outcome, covariances: Tensor) -> dict[str, object] | None:
+def damping_ratio(outcome: Outcome, covariances: Tensor, moves: Tensor | None = None) -> dict[str, object] | None:
     """The equivalent damping ratio of every damping law together, in % of critical, at its reference velocity.
 
     Dry friction, hysteresis and what grows with the deflection count with what a harmonic motion of that velocity
     loses to them. None where there is no linear stiffness, or none that is told from nothing: then nothing is
     critical. Laws of damping take energy: the interval ends at zero.
+
+    Args:
+        outcome: The model.
+        covariances: Of its coordinates, as the noise has it.
+        moves: Of the coordinates without one record each, (records, n), where something else than noise is left. That
+            acts on every record in its own way, and its scatter between them (the jackknife: Efron & Stein 1981) counts
+            where it is the larger one.
     """
     problem, shared = outcome.problem, outcome.fitted.shared
     if _has_no_spring(outcome, covariances):
@@ -140,9 +149,17 @@ def damping_ratio(outcome: Outcome, covariances: Tensor) -> dict[str, object] | 
         return None
     slope = (ratios[1:] - ratios[0]) / STEP
     half = QUANTILE * float((slope @ covariances @ slope).clamp(min=0).sqrt())
+    if moves is not None and len(moves) >= FEWEST:
+        half = max(half, _half_by_records(moves @ slope))
     value = float(ratios[0])
     ends = (max(value - half, min(value, 0.0)), value + half)
     return Interval(value, ends, "%").plain() | {"reference_velocity": velocity}
+
+
+def _half_by_records(moves: Tensor) -> float:
+    """Half of the 95 % interval by the moves of a figure without one record each, (records,)."""
+    variance = float(moves.var(correction=0)) * (len(moves) - 1)
+    return float(student.isf((1 - CONFIDENCE) / 2, len(moves) - 1)) * variance**0.5
 
 
 def _has_no_spring(outcome: Outcome, covariances: Tensor) -> bool:

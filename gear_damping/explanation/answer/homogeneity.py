@@ -12,13 +12,13 @@ from scipy.stats import chi2
 from torch import Tensor
 
 from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.covariance import FEWEST, groups_of
 from gear_damping.explanation.model.hypothesis import Outcome, time_scale
 from gear_damping.explanation.model.own_phases import own_level
 from gear_damping.explanation.statistics.random_effects import between_deviation, statistic
 from gear_damping.identification.output_error.normal_equations import nuisance_basis, project_out
 from gear_damping.identification.output_error.uncertainty import QUANTILE
 
-FEWEST = 3  # records or segments with a share of the information
 SHARE = 0.1  # of what they would have in equal parts
 BLOCK_TIMES = 2.0  # characteristic times of a block, over which residuals may be correlated
 
@@ -61,9 +61,9 @@ def homogeneity(outcome: Outcome, cause: str, evidence: Evidence) -> Homogeneity
         return Homogeneity((), (), (), None, evidence.settings.homogeneity_level)
     place = next(i for i, p in enumerate(outcome.problem.free) if p.name.startswith(cause + "."))
     prediction, problem = outcome.linearisation, outcome.problem
-    groups, names = _groups(outcome)
+    groups, names = groups_of(outcome)
     columns, residual = _orthogonal_columns(
-        prediction.sensitivity[0], prediction.residual[0], place, problem.n_shared, groups
+        prediction.sensitivity[0], prediction.residual[0], place, problem.n_shared, torch.tensor(groups)
     )
     energy = columns.square().sum(0)
     kept = (energy > SHARE * energy.sum() / len(names)).nonzero().flatten().tolist()
@@ -107,15 +107,6 @@ def by_record(outcome: Outcome, cause: str, evidence: Evidence) -> dict[str, Any
             "testable": test.testable,
         },
     }
-
-
-def _groups(outcome: Outcome) -> tuple[Tensor, list[str]]:
-    """Group of every row of the problem, and the groups' names: records, or segments where there are too few."""
-    rows = outcome.problem.records
-    names = list(dict.fromkeys(row.record for row in rows))
-    if len(names) >= FEWEST:
-        return torch.tensor([names.index(row.record) for row in rows]), names
-    return torch.arange(len(rows)), [f"{row.record} at {row.begins:.3g} s" for row in rows]
 
 
 def _orthogonal_columns(

@@ -6,9 +6,10 @@ from torch import Tensor
 
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.hypothesis import Outcome, mean_free_places, time_scale
-from gear_damping.identification.output_error.uncertainty import covariance
+from gear_damping.identification.output_error.uncertainty import covariance, without_one
 
 CORRELATED_PERIODS = 3.0  # characteristic times over which residuals may be correlated
+FEWEST = 3  # records, or segments, that tell whether they agree: the scatter of two is anybody's guess
 SILENT = 0.1  # noise levels that a step of order one moves the records by, in all: less says nothing of a parameter
 
 
@@ -18,3 +19,19 @@ def covariance_of(outcome: Outcome, evidence: Evidence) -> Tensor:
     fitted = replace(outcome.fitted, prediction=outcome.linearisation)
     mean_free = mean_free_places(outcome.hypothesis, outcome.problem.free)
     return covariance(outcome.problem, fitted, CORRELATED_PERIODS * scale, mean_free)
+
+
+def moves_without_one(outcome: Outcome) -> Tensor:
+    """By how much the fitted coordinates move without one record, or one segment where there are few, (n, n_shared)."""
+    fitted = replace(outcome.fitted, prediction=outcome.linearisation)
+    mean_free = mean_free_places(outcome.hypothesis, outcome.problem.free)
+    return without_one(outcome.problem, fitted, groups_of(outcome)[0], mean_free)
+
+
+def groups_of(outcome: Outcome) -> tuple[list[int], list[str]]:
+    """Group of every row of the problem, and the groups' names: records, or segments where there are too few."""
+    rows = outcome.problem.records
+    names = list(dict.fromkeys(row.record for row in rows))
+    if len(names) >= FEWEST:
+        return [names.index(row.record) for row in rows], names
+    return list(range(len(rows))), [f"{row.record} at {row.begins:.3g} s" for row in rows]

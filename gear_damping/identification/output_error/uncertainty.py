@@ -16,6 +16,7 @@ from gear_damping.identification.output_error.problem import OutputErrorProblem
 QUANTILE = 1.959964  # of a normal variable: 95 % lie within as many standard deviations
 ROUNDING = 1e-15  # of an eigenvalue beside the largest, of products in double precision
 LEAST_INFORMATION = 1e-30  # beside 1: products of two of them are still numbers
+SPOKEN_OF = 1e-8  # of the information of all records: a direction with less in the others is not known without one
 WIDEST = 1e6  # times the variance of coloured residuals: more is no matter of colour
 
 
@@ -31,7 +32,8 @@ def covariance(
         mean_free: Places of parameters whose mean acts on nothing and is 0.
     """
     residual = fitted.prediction.residual[0]
-    orthogonal, inverse = _information(problem, fitted, mean_free)
+    orthogonal, information = _information(problem, fitted, mean_free)
+    inverse = _inverse(information)
     scores = orthogonal * residual.unsqueeze(-1)
     lags = [round(correlated_s * record.sampling_rate) for record in problem.records]
     meat = sum(long_run(one, lag) for one, lag in zip(scores, lags, strict=True))
@@ -48,13 +50,36 @@ def covariance(
 
 def noise_covariance(problem: OutputErrorProblem, fitted: Fitted) -> Tensor:
     """The same where nothing but white noise is left, (n_shared, n_shared)."""
-    return _information(problem, fitted)[1] * problem.noise**2
+    return _inverse(_information(problem, fitted)[1]) * problem.noise**2
+
+
+def without_one(
+    problem: OutputErrorProblem, fitted: Fitted, groups: Sequence[int], mean_free: Sequence[Sequence[int]] = ()
+) -> Tensor:
+    """By how much the shared coordinates move when one group of records is left out, linearised, (groups, n_shared).
+
+    Along what no other record speaks of, as a phase of that record alone, they stay where they are.
+
+    Args:
+        problem: What was fitted.
+        fitted: The fit.
+        groups: The group of every record of the problem, from 0 on.
+        mean_free: Places of parameters whose mean acts on nothing and is 0.
+    """
+    orthogonal, information = _information(problem, fitted, mean_free)
+    pull = torch.einsum("rtn,rt->rn", orthogonal, fitted.prediction.residual[0])
+    own = orthogonal.transpose(1, 2) @ orthogonal
+    of_group = torch.nn.functional.one_hot(torch.tensor(groups)).double()
+    size = information.diagonal().sqrt().clamp(min=LEAST_INFORMATION)
+    rest = (information - torch.einsum("rg,rij->gij", of_group, own)) / size / size.unsqueeze(1)
+    inverse = torch.linalg.pinv(rest, rtol=SPOKEN_OF, hermitian=True)
+    return (inverse @ (of_group.T @ pull / size).unsqueeze(2))[..., 0] / size
 
 
 def _information(
     problem: OutputErrorProblem, fitted: Fitted, mean_free: Sequence[Sequence[int]] = ()
 ) -> tuple[Tensor, Tensor]:
-    """Sensitivities, the records' own projected out, (records, time, n_shared), and the inverse of their products."""
+    """Sensitivities, the records' own projected out, (records, time, n_shared), and the sum of their products."""
     sensitivity = fitted.prediction.sensitivity[0]
     orthogonal = project_out(sensitivity[..., : problem.n_shared], nuisance_basis(sensitivity, problem.n_shared))
     known = orthogonal.isfinite().all(1).all(0) & orthogonal.square().sum((0, 1)).isfinite()
@@ -64,7 +89,7 @@ def _information(
     information = jacobian.T @ jacobian + torch.diag(expected)
     for places in map(torch.tensor, mean_free):  # a mean that is known as well as all of the differences together
         information[places.unsqueeze(1), places] += information.diagonal()[places].sum() / len(places)
-    return orthogonal, _inverse(information)
+    return orthogonal, information
 
 
 def _inverse(information: Tensor) -> Tensor:

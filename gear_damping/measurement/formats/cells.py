@@ -215,6 +215,11 @@ class CellTable(Table):
         ]
         return ", ".join(held[:LISTED])
 
+    def _is_header(self, row: int) -> bool:
+        """Whether all cells of a row are words, and several."""
+        cells = [str(one.values[row]) for one in self._columns if row < len(one.values)]
+        return len(cells) > 1 and all(is_word(cell) for cell in cells)
+
     def _problems(self, index: int, cells: list[str], bad: list[int]) -> list[Problem]:
         title = f"column {index}" + (f" '{self.names[index]}'" if self.names[index] else "")
         if cells and len(bad) == len(cells) and not any(cell.strip() for cell in cells):
@@ -226,6 +231,9 @@ class CellTable(Table):
             rule = "an empty cell" if not cells[k].strip() else _not_a_number(cells[k])
             key = f"{self.path.name}, row {k} (line {self._columns[index].line(k)}), {title}"
             remedy = "give sampling_rate" if rule == MOMENT else "correct the cell, or leave its row out"
+            if self._is_header(k):
+                rule = "a row of names among the values: from here on columns may hold something else"
+                remedy = "make what stands below it a file and a record of its own"
             problems.append(Problem(key, rule, cells[k], remedy, str(self.path)))
         if len(bad) > SHOWN:
             rule = f"{len(bad) - SHOWN} more cells are no numbers"

@@ -21,6 +21,7 @@ from gear_damping.measurement.formats.cells import (
     said_of_empty_rows,
     without_footer,
 )
+from gear_damping.measurement.formats.console_text import refuse_what_is_shown
 from gear_damping.measurement.formats.header import Header
 from gear_damping.measurement.formats.number_texts import is_written, parts_thousands
 from gear_damping.measurement.formats.octave_text import octave_table
@@ -32,6 +33,7 @@ from gear_damping.units import is_of_kind
 
 SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm", ".log", ".prn", ".gz")
 
+_SEEN = 2**16  # bytes that hold its first lines
 _SAMPLE = 2000  # rows by which it is seen whether a column's numbers have signs between thousands
 _UNIT_COLUMN = re.compile(r"^(unit|units|einheit|unité|unidad)$", re.I)
 _NAN = ("nan", "NaN", "NAN", "Nan", "-nan", "+nan")
@@ -48,6 +50,7 @@ def read(path: Path, max_bytes: int) -> Table:
     if (variables := octave_table(path, content)) is not None:
         return variables
     text = Text(path, content)
+    refuse_what_is_shown(str(path), text.utf8[:_SEEN].decode("utf-8", "replace").splitlines()[:HEAD])
     header, first_line = text_header(text)
     scope = of_oscilloscope([row for _, row in islice(text.rows(), 2)])
     header = header if scope is None else replace(header, names=scope[0], units=scope[1], skipped=0)

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from scipy.io import loadmat
 from scipy.io.matlab import MatlabFunction, MatlabOpaque, MatReadWarning, matfile_version
 
+from gear_damping.measurement.formats.octave_text import octave_table
 from gear_damping.measurement.formats.table import (
     ArrayTable,
     Table,
@@ -37,6 +38,8 @@ def read(path: Path, max_bytes: int) -> Table:
     Raises:
         InputError: an unreadable or too large file, no real numbers, or pymatreader is missing for version 7.3.
     """
+    if (saved_as_text := octave_table(path, path.read_bytes())) is not None:  # which Octave does, whatever the ending
+        return saved_as_text
     with unreadable(path, "not a readable MAT file", "save it in MATLAB with `save -v7`"):
         content = _read_hdf5(path, max_bytes) if _is_hdf5(path) else _read_older(path, max_bytes)
         found = dict(_flat(content, ""))

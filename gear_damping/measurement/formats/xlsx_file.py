@@ -14,10 +14,14 @@ from gear_damping.measurement.formats.cells import Cells, CellTable, said_of_emp
 from gear_damping.measurement.formats.header import find_header
 from gear_damping.measurement.formats.moments import Moments, moment_since, past_midnight
 from gear_damping.measurement.formats.table import Table, extra_library, refuse_size, unreadable
+from gear_damping.units import is_of_kind
 
 SUFFIXES = (".xlsx",)
 
 _COMMA = re.compile(r"\s*[+-]?\d+,\d+\s*")
+_WRITTEN = re.compile(r'"[^"]*"|\\.|\[[^\]]*\]|_.|\*.')  # of a format: texts, colours, blanks
+_THOUSANDTHS = re.compile(r"(?<=[0#?])(,+)(?=\.|[^0#?.,]*$)")
+_BEHIND = re.compile(r'[0#?%]\s*"([^"]+)"\s*$')
 _GROUP = 3  # digits between signs of thousands
 _CLEARLY = 10.0  # times as far from the numbers beside it: what the other reading of a comma must be to be none
 _HEAD = 100  # rows among which the header is looked for
@@ -36,11 +40,11 @@ def read(path: Path, max_bytes: int) -> Table:
         book = openpyxl.load_workbook(path, read_only=True, data_only=True)
         sheets = {sheet.title: _cells(sheet) for sheet in book.worksheets}
         book.close()
-    several = sum(bool(rows) for rows in sheets.values()) > 1
+    several = sum(bool(rows) for rows, _ in sheets.values()) > 1
     columns, notes = [], []
-    for title, rows in sheets.items():
+    for title, (rows, units) in sheets.items():
         notes += [f"{path.name}, {title}: {empty}"] if (empty := _empty_rows(rows)) else []
-        found, said = _columns(rows, f"{title}/" if several else "")
+        found, said = _columns(rows, units, f"{title}/" if several else "")
         own, below = without_footer(found)
         columns += own
         notes += [f"{path.name}, {title}: {one}" for one in said]
@@ -52,27 +56,40 @@ def read(path: Path, max_bytes: int) -> Table:
     return table
 
 
-def _cells(sheet: Any) -> list[list[Any]]:
-    """The values of a sheet, those that are shown in per cent as they are shown."""
+def _cells(sheet: Any) -> tuple[list[list[Any]], dict[int, str]]:
+    """The values of a sheet as they are shown, in per cent or in thousands, and units that their formats write."""
     rows = [list(row) for row in sheet.iter_rows(values_only=True)]
-    shown = {
-        k
+    formats = {
+        k: cell.number_format or ""
         for row in sheet.iter_rows(max_row=_HEAD)
         for k, cell in enumerate(row)
-        if isinstance(cell.value, int | float) and "%" in (cell.number_format or "")
+        if isinstance(cell.value, int | float) and not isinstance(cell.value, bool)
     }
-    for k in shown:
-        for row in rows:
-            row[k] = 100 * row[k] if k < len(row) and isinstance(row[k], int | float) else row[k]
-    return rows
+    for k, factor in ((k, _shown(one)) for k, one in formats.items()):
+        for row in rows if factor != 1 else ():
+            row[k] = factor * row[k] if k < len(row) and isinstance(row[k], int | float) else row[k]
+    return rows, {k: unit for k, one in formats.items() if (unit := _unit_written(one))}
 
 
-def _columns(rows: list[list[Any]], prefix: str) -> tuple[list[Cells], list[str]]:
+def _shown(number_format: str) -> float:
+    """What is shown for a stored 1: `0.0%` shows 100, and every comma behind the last digit, `0.00,`, a thousandth."""
+    digits = _WRITTEN.sub("", number_format.partition(";")[0])
+    commas = sum(len(found) for found in _THOUSANDTHS.findall(digits))
+    return 100.0 ** digits.count("%") / 1000.0**commas
+
+
+def _unit_written(number_format: str) -> str:
+    """The unit that a format writes behind each number, `0.00" mm"`; "" without one."""
+    written = _BEHIND.search(number_format.partition(";")[0])
+    return written[1].strip() if written and is_of_kind(written[1].strip(), written[1].strip()) else ""
+
+
+def _columns(rows: list[list[Any]], units: dict[int, str], prefix: str) -> tuple[list[Cells], list[str]]:
     """The columns of a sheet with rows below its header, and what is noted of them.
 
     Empty cells at the end of a column are not its own.
     """
-    filled = _without_blank_columns(
+    filled, kept = _without_blank_columns(
         [(number, row) for number, row in enumerate(rows, start=1) if any(cell is not None for cell in row)]
     )
     texts = [["" if cell is None else str(cell).strip() for cell in row] for _, row in filled[:_HEAD]]
@@ -85,7 +102,7 @@ def _columns(rows: list[list[Any]], prefix: str) -> tuple[list[Cells], list[str]
         cells = [(number, row[k] if k < len(row) else None) for number, row in body]
         while cells and cells[-1][1] is None:
             cells.pop()
-        name, unit = header.name(k), header.unit(k)
+        name, unit = header.name(k), header.unit(k) or units.get(kept[k])
         if cells:
             lines = [number for number, _ in cells]
             name = f"{prefix}{name}" if name else ""
@@ -121,12 +138,12 @@ def _with_points(cells: list[Any]) -> list[Any]:
     return [read.get(k, cell) for k, cell in enumerate(cells)]
 
 
-def _without_blank_columns(rows: list[tuple[int, list[Any]]]) -> list[tuple[int, list[Any]]]:
-    """Numbered rows without the columns that hold nothing at all, which part the others on a sheet."""
+def _without_blank_columns(rows: list[tuple[int, list[Any]]]) -> tuple[list[tuple[int, list[Any]]], list[int]]:
+    """Numbered rows without the columns that hold nothing at all, which part the others on a sheet; and which stay."""
     width = max((len(row) for _, row in rows), default=0)
     wide = [[*row, *[None] * (width - len(row))] for _, row in rows]
     kept = [k for k, column in enumerate(zip(*wide, strict=True)) if any(cell is not None for cell in column)]
-    return [(number, [row[k] for k in kept]) for (number, _), row in zip(rows, wide, strict=True)]
+    return [(number, [row[k] for k in kept]) for (number, _), row in zip(rows, wide, strict=True)], kept
 
 
 def _empty_rows(rows: list[list[Any]]) -> str:
