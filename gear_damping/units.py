@@ -272,7 +272,9 @@ def to_si(value: float, unit: str, expected: str, key: str = "value", source: st
         raise InputError(Problem(key, rule, value, remedy, source))
     found = of_a_shaft(parse_unit(unit, key, source), wanted)
     if remedy := _turns_or_radians(value, unit, found, expected):
-        raise InputError(Problem(key, f"the unit '{unit}' is not one of the kind of '{expected}'", value, remedy, source))
+        raise InputError(
+            Problem(key, f"the unit '{unit}' is not one of the kind of '{expected}'", value, remedy, source)
+        )
     if found.dimension != wanted.dimension and _is_in_radians(unit, found, wanted):
         return value * found.factor
     if found.dimension != wanted.dimension:

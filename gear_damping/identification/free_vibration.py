@@ -1,7 +1,8 @@
 """The free vibration in a record: what dies away after a start, a stroke, or beside the lines of a mesh."""
 
 from dataclasses import dataclass
-from math import pi
+from functools import cached_property
+from math import exp, pi
 
 import numpy as np
 import torch
@@ -26,6 +27,7 @@ SHAFT_ORDERS, SIDEBANDS = 6, 3  # harmonics of a shaft, and of the mesh whose si
 OFF = 0.01  # of the largest force: what is left of it after a stroke,
 OFF_NOISE = 6.0  # or so many standard deviations of its noise
 LONGEST_DRIVE = 0.9  # of the record: a force that is on for longer leaves no free vibration
+FALLS, QUICKEST = (0.02, 0.1, 0.3), 3.0  # decay rates over the frequency in rad/s: where a fit begins, and the most
 LEAST_FALL = 0.1  # nepers over a record: what falls less is a line that goes on, or tells no damping
 
 
@@ -56,6 +58,33 @@ class FreeVibration:
     def time(self) -> Array:
         """Seconds from its beginning, (n,)."""
         return np.arange(self.values.size) / self.sampling_rate
+
+    @cached_property
+    def roughly_percent(self) -> float:
+        """The damping ratio in % of the damped sinusoid that is nearest to it: how quickly it falls, by any law."""
+        omega = 2 * pi * self.frequency_hz
+
+        def left(point: Array) -> Array:
+            fade, turn = np.exp(-point[0] * omega * self.time), point[1] * omega * self.time
+            basis = np.stack([fade * np.cos(turn), fade * np.sin(turn), np.ones_like(turn)], axis=1)
+            return self.values - basis @ np.linalg.lstsq(basis, self.values, rcond=None)[0]
+
+        ends = ([0.0, BAND[0]], [QUICKEST, BAND[1]])
+        found = [least_squares(left, [share, 1.0], bounds=ends) for share in FALLS]
+        rate, frequency = min(found, key=lambda one: one.cost).x
+        return 100 * float(rate / (rate**2 + frequency**2) ** 0.5)
+
+    def refuse_beyond(self, most_percent: float) -> None:
+        """Refuse what falls more quickly than an estimator can follow.
+
+        Raises:
+            UnsuitedRecord: it does.
+        """
+        if self.roughly_percent > most_percent:
+            raise UnsuitedRecord(
+                f"it falls as with some {self.roughly_percent:.2g} % of critical damping, and this estimator follows "
+                f"{most_percent:.2g} % at most: output_error has no such limit"
+            )
 
     def continued(self, samples: int) -> Array:
         """The values with so many samples before and after them, as damped sinusoids go on.
@@ -135,6 +164,12 @@ def free_vibration(record: FitRecord, turning: Turning | None = None) -> FreeVib
             f"{FEWEST_SAMPLES_PER_PERIOD:g} times as fast as it swings at least"
         )
     return _stretch(found)
+
+
+def grows(record: FitRecord) -> bool:
+    """Whether a motion without an input grows: its second half swings more, by what a decay must fall by at least."""
+    first, second = (part.std() for part in record.response.tensor_split(2))
+    return not record.inputs and bool(second > first * exp(LEAST_FALL / 2))
 
 
 def _last_drive(record: FitRecord) -> int:

@@ -11,6 +11,7 @@ import numpy as np
 import torch
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.explanation.evidence.release import released_at
 from gear_damping.identification.catalogue import record_estimator
 from gear_damping.identification.damping_estimate import DampingCurve, UnsuitedRecord
 from gear_damping.identification.estimators.base import Recorded, RecordEstimator
@@ -19,6 +20,7 @@ from gear_damping.identification.free_vibration import Turning
 from gear_damping.identification.lightning_module import DampingModule
 from gear_damping.identification.observation import fit_record, fitted_names, has_spring, known_of
 from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.identification.output_error.segments import stretch
 from gear_damping.identification.saved import FORMAT as NETWORK
 from gear_damping.identification.saved import description_of, read_description, write_shared
 from gear_damping.identification.saved import load_estimator as load_module
@@ -168,12 +170,14 @@ def all_recorded(measurement: Measurement, channel: str | None = None) -> dict[s
 
 
 def _recorded(record: Record, measurement: Measurement, channel: str | None) -> Recorded:
-    """Through the channel that is named, else its first response."""
+    """Through the channel that is named, else its first response; from where the motion is free, if nothing drives."""
     system, known = measurement.base, known_of(measurement)
     shown = channel or fitted_names(record, system)[0]
     others = [name for name in system.responses if name != shown]
     alone = replace(record, channels={n: c for n, c in record.channels.items() if n not in others})
     found = fit_record(alone, system, has_spring(known, system))
+    if system.has(Trait.REST) and (waited := released_at(found)):
+        found = stretch(found, slice(waited, None))
     return Recorded(found, system, known, _turning(found, known.values) if system.has(Trait.SHAFTS) else None)
 
 

@@ -11,7 +11,7 @@ from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.evidence.release import released_at
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome
 from gear_damping.explanation.trials.efficient import weighed
-from gear_damping.identification.free_vibration import LEAST_FALL
+from gear_damping.identification.free_vibration import LEAST_FALL, grows
 from gear_damping.identification.observation import fit_record, has_spring, known_of, require_alike, require_fitted
 from gear_damping.identification.oscillator.estimates import Estimate
 from gear_damping.identification.oscillator.fit import OscillatorFit, fit_oscillator
@@ -137,7 +137,7 @@ def _not_yet_free(fit: Sequence[FitRecord]) -> str | None:
     """What to leave out of records without an input that begin before their motion is free; None of others."""
     waits = {record.name: released_at(record) / record.sampling_rate for record in fit}
     said = [f"{record.name} before {record.begins + waits[record.name]:.4g} s" for record in fit if waits[record.name]]
-    if not said:
+    if not said or any(map(grows, fit)):
         return None
     return f"the motion is not free from the start: leave out {', '.join(said)} (`window` or `slice` in the file)"
 
@@ -151,6 +151,11 @@ def _undamped(found: OscillatorFit, fit: Sequence[FitRecord]) -> str | None:
     if any(record.inputs for record in fit):
         late = "an input that is late does that, and its `delay` in the file then tells it"
         return f"{text}, if this model is right: {late}"
+    if all(map(grows, fit)):
+        return (
+            "no damping: the motion grows, so that something feeds it; a negative damping is not fitted, and the "
+            "figures tell nothing of it"
+        )
     nepers = 2 * pi * frequency.value * ratio.value / 100 * max(record.duration for record in fit)
     if nepers > LEAST_FALL:
         return text

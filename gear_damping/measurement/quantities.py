@@ -292,8 +292,8 @@ class Cutoff(Measured):
 
     def _checked(self, found: Quantity) -> Quantity:
         if found.unit.replace(" ", "") in ("1/s", "s^-1"):
-            rule, remedy = "may count turns or radians", "say which: in Hz what counts turns; of radians the 2 pi-th part"
-            refuse(rule, f"{found.value:g} {found.unit}", remedy)
+            remedy = "say which: in Hz what counts turns; of radians the 2 pi-th part"
+            refuse("may count turns or radians", f"{found.value:g} {found.unit}", remedy)
         return super()._checked(found)
 
     def made(self, quantity: Quantity, more: int) -> Corner:

@@ -1,12 +1,13 @@
 """Declarations of what an effect or a system can be given: parameters (numbers) and options (choices)."""
 
 from dataclasses import dataclass
-from math import inf, nan, pi
+from math import inf, pi
 
 from gear_damping.errors import Problem, nearest
 from gear_damping.units import Dimension, parse_unit
 
-USUAL = {"m": ("mm", 1e-3), "rad": ("deg", pi / 180)}  # the units of drawings, and their size in SI
+# The units of drawings, and their size in SI.
+USUAL = {"m": (("mm", 1e-3), ("um", 1e-6)), "rad": (("deg", pi / 180),)}
 
 
 @dataclass(frozen=True)
@@ -52,10 +53,9 @@ class Parameter:
 
     def _as_in(self, value: float) -> str:
         """The value in SI that a number was meant to be in the unit that drawings have; empty where it is none."""
-        usual, factor = USUAL.get(self.unit, ("", nan))
-        meant = value * factor
-        is_meant = value > self.upper and self.lower <= meant <= self.upper
-        return f"in {self.unit}: {value:g} {usual} are {meant:.4g}" if is_meant else ""
+        meant = [(unit, value * factor) for unit, factor in USUAL.get(self.unit, ())]
+        said = [f"{value:g} {unit} are {one:.4g}" for unit, one in meant if self.lower <= one <= self.upper < value]
+        return f"in {self.unit}: {', '.join(said)}" if said else ""
 
 
 @dataclass(frozen=True)

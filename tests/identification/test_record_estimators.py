@@ -185,3 +185,32 @@ def test_settings_are_checked_and_count():
     values = decay(0.02) + noise(4800, 7)
     found = [KINDS["wavelet_ridge"]({"omega0": w}).estimate(recorded(values)).damping_ratio_percent for w in (6, 20)]
     assert found[0] != found[1]
+
+
+@pytest.mark.parametrize("ratio", [0.01, 0.05, 0.15, 0.3])
+def test_how_quickly_a_decay_falls_is_known_without_an_envelope(ratio):
+    values = decay(ratio, seconds=2.0) + noise(1200, 3, 1e-7)
+    assert recorded(values).free_vibration.roughly_percent == pytest.approx(100 * ratio, rel=0.02)
+
+
+@pytest.mark.parametrize(("name", "most"), [("hilbert_envelope", 80 / 15), ("wavelet_ridge", 15.0), ("half_power", 20.0)])
+def test_what_falls_faster_than_an_estimator_can_follow_is_refused(name, most):
+    """Just below it is right within 6 %; beyond, an envelope would fall as its filter does."""
+    for seed in range(4):
+        below, above = (decay(share * most / 100, seconds=3.0) + noise(1800, seed, 2e-6) for share in (0.95, 1.05))
+        found = KINDS[name]({}).estimate(recorded(below))
+        assert found.damping_ratio_percent == pytest.approx(0.95 * most, rel=0.06)
+        with pytest.raises(UnsuitedRecord, match=f"this estimator follows {most:.2g} % at most"):
+            KINDS[name]({}).estimate(recorded(above))
+
+
+def test_a_wider_band_follows_a_quicker_fall():
+    values = decay(0.08, seconds=3.0) + noise(1800, 1, 2e-6)
+    found = KINDS["hilbert_envelope"]({"bandwidth": 1.6}).estimate(recorded(values))
+    assert found.damping_ratio_percent == pytest.approx(8.0, rel=0.1)
+
+
+def test_a_motion_that_grows_has_no_damping():
+    grown = decay(0.005)[::-1].copy() + noise(4800, 2)
+    with pytest.raises(UnsuitedRecord, match="its motion grows"):
+        KINDS["output_error"]({}).estimate(recorded(grown))

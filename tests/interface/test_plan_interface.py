@@ -96,6 +96,7 @@ def test_pictures(plan):
 
 REFUSED = {
     "no_axis_of_gears": (lambda: gd.plan(gears(), made(amplitudes=(1.0,)), [SENSOR]), "amplitudes.*a gear pair has"),
+    "one number": (lambda: gd.plan(gears(), made(durations=0.1), [SENSOR]), "plan.durations.*must be a list.*[0.1]"),
     "twice": (lambda: gd.plan(gears(), made(torques=(1.0, 1.0)), [SENSOR]), "torques.*names one value twice"),
     "no_records": (lambda: gd.plan(gears(), made(durations=()), [SENSOR]), "durations: must be given"),
     "too_short": (lambda: gd.plan(gears(), made(durations=(1e-4,)), [SENSOR]), "must be 0.0008 s or more"),

@@ -19,12 +19,22 @@ HUNDREDTHS = np.arange(0, 3.2, 0.01)
         "20240301T1200{:06.3f}",  # ISO 8601 without signs
         "2024-03-01T12:00:{:06.3f}+01:00",
         "1 Mar 2024 12:00:{:06.3f}",
+        "2024年3月1日 12:00:{:06.3f}",
+        "01/03/2024 02:00:{:06.3f} p. m.",
+        "0 days 00:00:{:06.3f}",  # pandas
+        "2 days, 0:00:{:06.3f}",  # Python
     ],
 )
 def test_dates_with_clocks_are_seconds_from_the_first(form):
     texts = [form.format(second) for second in HUNDREDTHS]
     assert is_moment(texts[0])
     np.testing.assert_allclose(moments_of(texts).seconds, HUNDREDTHS, atol=1e-9)
+
+
+def test_a_time_that_runs_past_a_day_says_the_days_before_its_clock():
+    """As .NET writes a TimeSpan: without a day below one."""
+    texts = [f"23:59:{58 + k / 10:06.3f}" for k in range(20)] + [f"1.00:00:{k / 10:06.3f}" for k in range(20)]
+    np.testing.assert_allclose(moments_of(texts).seconds, np.arange(40) / 10, atol=1e-9)
 
 
 @pytest.mark.parametrize("frames", [24, 25, 30])

@@ -305,3 +305,80 @@ def test_numbers_that_a_counter_leaves_out_are_lost_samples(tmp_path, numbers, l
     found = [one for one in load_measurement(tmp_path / "m.yaml").records[0].findings if one.kind == "lost_numbers"]
     assert [one.severity for one in found] == ["data_problem"] * bool(lost)
     assert all(lost in one.message for one in found)
+
+
+def octave(*variables):
+    """A file of variables, each as (name, type, lines of what is said of it, values)."""
+    text = "# Created by Octave 8.4.0, Fri Mar 01 12:00:00 2024 UTC <a@b>\n"
+    for name, kind, said, values in variables:
+        text += f"# name: {name}\n# type: {kind}\n" + "".join(f"# {one}\n" for one in said)
+        text += "".join(f" {value}\n" for value in values) + "\n\n"
+    return text
+
+
+@pytest.mark.parametrize("ending", ["a.txt", "a.mat"])
+def test_numbers_ranges_and_texts_stand_beside_matrices_of_octave(tmp_path, ending):
+    """A single number is no column, wherever it stands."""
+    table = _table(
+        tmp_path,
+        octave(
+            ("fs", "scalar", (), [200]),
+            ("t", "range", ("base, limit, increment",), ["0 0.295 0.005"]),
+            ("x", "matrix", ("rows: 60", "columns: 1"), [f"{value:.6f}" for value in WAVE]),
+            ("note", "string", ("elements: 1", "length: 5"), ["rig 5"]),
+        ),
+        ending,
+    )
+    assert table.names == ("t", "x", "fs")
+    assert table.values(0) == pytest.approx([0.005 * k for k in range(60)])
+    assert _wave(table) == WAVE.tolist()
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("x =\n\n   1.0e+03 *\n\n" + "\n".join(f"   {value:.4f}" for value in WAVE), r"stand below '1\.0e\+03 \*'"),
+        ("\n".join(f"  [{4 * k + 1}]  0.1  0.2  0.3  0.4" for k in range(20)), "4 values a line"),
+    ],
+    ids=["a factor of MATLAB", "a vector of R"],
+)
+def test_what_would_be_read_as_something_else_is_refused(tmp_path, text, said):
+    with pytest.raises(InputError, match=said):
+        _table(tmp_path, text, "a.txt")
+
+
+def test_a_second_table_in_another_order_is_refused(tmp_path):
+    """To leave its row of names out, as of a cell that is no number, would exchange its columns."""
+    rows = [f"{k},{k},1" for k in range(60)] + ["t,F,x"] + [f"{k},1,{k}" for k in range(60, 120)]
+    (tmp_path / "a.csv").write_text("t,x,F\n" + "\n".join(rows))
+    channels = {name: {"column": name[0], "unit": unit} for name, unit in (("time", "s"), ("x", "mm"))}
+    record = {"file": "a.csv", "channels": {"time": channels["time"], "displacement": channels["x"]}}
+    (tmp_path / "m.yaml").write_text(yaml.safe_dump({"system": "oscillator", "records": [record]}))
+    with pytest.raises(InputError, match=r"row 60 .*a row of names among the values.*a file and a record of its own"):
+        load_measurement(tmp_path / "m.yaml")
+
+
+def test_a_vector_of_one_value_a_line_is_read(tmp_path):
+    table = _table(tmp_path, "\n".join(f"  [{k + 1}]  {value:.6f}" for k, value in enumerate(WAVE)), "a.txt")
+    assert table.values(1).tolist() == WAVE.tolist()
+
+
+@pytest.mark.parametrize(
+    ("number_format", "shown", "unit"),
+    [
+        ("0.00%", 100, None), ("#,##0.00", 1, None), ("#,##0.00,", 1e-3, None), ("0,.0", 1e-3, None),
+        ("#,##0,,", 1e-6, None), ('0.00" mm"', 1, "mm"), ('0.0," kN"', 1e-3, "kN"), ('0.0" a, b"', 1, None),
+    ],
+)  # fmt: skip
+def test_cells_of_a_workbook_count_as_they_are_shown(tmp_path, number_format, shown, unit):
+    openpyxl = pytest.importorskip("openpyxl")
+    book = openpyxl.Workbook()
+    book.active.append(["t", "x"])
+    for time, value in zip(TIME, WAVE, strict=True):
+        book.active.append([float(time), float(value)])
+    for (cell,) in book.active.iter_rows(min_row=2, min_col=2, max_col=2):
+        cell.number_format = number_format
+    book.save(tmp_path / "a.xlsx")
+    table = read_table(tmp_path / "a.xlsx")
+    assert table.values(1) == pytest.approx(shown * WAVE)
+    assert table.unit(1) == unit

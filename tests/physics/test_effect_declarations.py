@@ -99,5 +99,7 @@ def test_a_length_in_mm_and_an_angle_in_degrees_are_told_in_si():
     for values, meant in (({"module": 2.5}, r"2\.5 mm are 0\.0025"), ({"pressure_angle": 20}, r"20 deg are 0\.3491")):
         with pytest.raises(InputError, match=meant):
             GearPair(**values)
-    with pytest.raises(InputError, match=r"nearest valid value 0\.1"):
+    with pytest.raises(InputError, match=r"700 um are 0\.0007"):
         GearPair(module=700)
+    with pytest.raises(InputError, match=r"nearest valid value 0\.1"):
+        GearPair(module=7e5)

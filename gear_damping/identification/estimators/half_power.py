@@ -21,6 +21,7 @@ SPAN = 1.5  # times the width on either side, once the width is known
 WIDEST = 50.0  # of the frequency: the first span, where no resolution is wider
 CLOSER = 3  # times that the spectrum is refined
 RESOLVED = 1.15  # times the width of a record that does not fall at all: less tells no damping
+MOST = 20.0  # % of critical damping: beyond, the line at the negative frequency reaches into the width
 NEPERS = np.linspace(0.0, 50.0, 5001)  # over a record, for which the width is worked out; more is no vibration
 SEED = 0  # of the noise that is drawn for the interval
 FEWEST_TOLD = 0.9  # of the draws, in which the width must tell a damping
@@ -40,6 +41,7 @@ class HalfPower(RecordEstimator):
     def estimate(self, recorded: Recorded) -> DampingEstimate:
         """One figure for the whole decay, which is mostly that of its beginning."""
         free = recorded.free_vibration
+        free.refuse_beyond(MOST)
         found = self._of(free)
         return replace(found, doubt=self._doubt(found, free))
 

@@ -13,6 +13,7 @@ from gear_damping.signals.envelope import analytic_signal
 
 ABOVE_NOISE = 3.0  # standard deviations of the noise in the band that an envelope must have to count
 STEPS_PER_PERIOD = 4.0  # at which the envelope is read; what is closer tells the same
+RINGS = 15.0  # times the damping ratio that the band must be wide: what falls faster falls with the filter
 CONTINUED_PERIODS = 8.0  # beyond either end, where the filter rings
 
 
@@ -26,6 +27,7 @@ class HilbertEnvelope(RecordEstimator):
     def estimate(self, recorded: Recorded) -> DampingEstimate:
         """The mean over all that stands out of the noise."""
         free = recorded.free_vibration
+        free.refuse_beyond(100 * self.values["bandwidth"] / RINGS)
         more = round(CONTINUED_PERIODS * free.period)
         values = free.continued(more)
         spectrum = np.fft.rfft(values)

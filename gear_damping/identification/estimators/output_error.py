@@ -4,6 +4,7 @@ import numpy as np
 
 from gear_damping.identification.damping_estimate import DampingEstimate, UnsuitedRecord
 from gear_damping.identification.estimators.base import Recorded, RecordEstimator
+from gear_damping.identification.free_vibration import grows
 from gear_damping.identification.oscillator.fit import fit_oscillator
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import shortened
@@ -27,6 +28,8 @@ class OutputError(RecordEstimator):
         """By a fit to this record alone."""
         if not recorded.system.has(Trait.REST):
             raise UnsuitedRecord("this fit is for oscillators: task=identify without a model fits gear pairs")
+        if grows(recorded.record):
+            raise UnsuitedRecord("its motion grows: something feeds it, and no damping is fitted to that")
         record = _as_long_as_it_swings(recorded)
         found = fit_oscillator([record], known=recorded.known)
         ratio, frequency = found.damping_ratio_percent, found.natural_frequency_hz

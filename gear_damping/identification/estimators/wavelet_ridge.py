@@ -22,6 +22,7 @@ SCALES_PER_WIDTH = 5.0  # of the wavelet's band: the ridge is interpolated betwe
 STEPS_PER_SCALE = 2.0  # at which the ridge is read; what is closer tells the same
 REACH = 4.0  # scales: a wavelet is nothing beyond
 ABOVE_NOISE = 4.0  # standard deviations that an amplitude must have to count
+MOST = 15.0  # % of critical damping: a record is continued beyond its ends with 16 % at most
 CLOSER = 0.7  # of the fall, over which a slope that is right is the same
 FEWEST = 8  # places on the ridge, for the cubic about one of them
 POINTS = 100  # of a curve, at most
@@ -68,6 +69,7 @@ class WaveletRidge(RecordEstimator):
     def estimate(self, recorded: Recorded) -> DampingEstimate:
         """Mean and curve over all that stands out of the noise."""
         free = recorded.free_vibration
+        free.refuse_beyond(MOST)
         ridge = self._ridge(free)
         if ridge.time.size < FEWEST:
             raise UnsuitedRecord("too little of the ridge stands out of the noise: record a longer ring-down")

@@ -78,6 +78,12 @@ def _of_rig(rig: Rig) -> Iterator[Problem]:
 
 def _of_tests(rig: Rig, tests: PlannedTests) -> Iterator[Problem]:
     gears = rig.model.system.has(Trait.SHAFTS)
+    planned = {name: getattr(tests, name) for name in ("durations", *SPLIT.values())}
+    alone = {name: one for name, one in planned.items() if isinstance(one, int | float)}
+    for name, one in alone.items():
+        yield Problem(f"plan.{name}", "must be a list", one, f"write [{one:g}]")
+    if alone:
+        return
     if not tests.durations:
         yield Problem("plan.durations", "must be given", None, "for example plan.durations=[0.05,0.2]")
     for parameter, name in SPLIT.items():

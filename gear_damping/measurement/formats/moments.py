@@ -14,12 +14,14 @@ _DIGITS = 9  # of a second: a difference of floats of a day's seconds is true to
 _DATE = r"(?P<date>\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/.]\d{1,2}[-/.]\d{2,4}|\d{1,2}[-/. ][A-Za-z]{3}[-/. ]\d{4})"
 _CLOCK = (
     r"(?P<hours>\d{1,3}):(?P<minutes>\d{2})(:(?P<seconds>\d{2})((?P<sign>[.,:])(?P<part>\d+))?)?"
-    r"\s*(?P<half>[ap]\.?m\.?)?"
+    r"\s*(?P<half>[ap]\.?\s?m\.?)?"
 )
 _ZONE = r"\s*(?P<zone>Z|UTC|[+-]\d{2}(:?\d{2})?)?"
-_MOMENT = re.compile(rf"({_DATE}[T ,;_]+)?{_CLOCK}{_ZONE}", re.I)
+_ELAPSED = r"(?P<elapsed>\d{1,5})(\.|\s*days?,?\s+)"  # whole days before a clock, as .NET and Python write them
+_MOMENT = re.compile(rf"({_DATE}[T ,;_]+|{_ELAPSED})?{_CLOCK}{_ZONE}", re.I)
 _MINUTES = re.compile(r"(?P<minutes>\d{1,4}):(?P<seconds>\d{2})[.,](?P<part>\d+)")  # and seconds since a start
 _COMPACT = re.compile(r"(\d{4})(\d{2})(\d{2})T(\d{2})(\d{2})(\d{2})(?=\D|$)")  # of ISO 8601, without signs
+_IDEOGRAPHS = str.maketrans({"年": "-", "月": "-", "日": " "})  # behind the parts of a date
 _ENGLISH = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec")
 _MONTHS = {name: k for k, name in enumerate(_ENGLISH, start=1)}
 MINUTES = 60  # in an hour: a clock that shows fewer may begin again with the next one
@@ -80,7 +82,7 @@ def moments_of(cells: Sequence[str]) -> Moments | None:
 
 
 def _with_signs(cell: str) -> str:
-    return _COMPACT.sub(r"\1-\2-\3T\4:\5:\6", cell.strip())
+    return _COMPACT.sub(r"\1-\2-\3T\4:\5:\6", cell.strip().translate(_IDEOGRAPHS))
 
 
 def _frames(moments: Sequence[re.Match[str]]) -> int:
@@ -110,6 +112,7 @@ def _of_day(moment: re.Match[str]) -> float:
     hours = int(moment["hours"])
     if moment["half"]:
         hours = hours % 12 + 12 * (moment["half"][0] in "pP")
+    hours += 24 * int(moment["elapsed"] or 0)
     return 3600 * hours + 60 * int(moment["minutes"]) + int(moment["seconds"] or 0) + _part(moment["part"])
 
 

@@ -21,7 +21,7 @@ SUFFIXES = (".xlsx",)
 _COMMA = re.compile(r"\s*[+-]?\d+,\d+\s*")
 _WRITTEN = re.compile(r'"[^"]*"|\\.|\[[^\]]*\]|_.|\*.')  # of a format: texts, colours, blanks
 _THOUSANDTHS = re.compile(r"(?<=[0#?])(,+)(?=\.|[^0#?.,]*$)")
-_BEHIND = re.compile(r'[0#?%]\s*"([^"]+)"\s*$')
+_BEHIND = re.compile(r'[0#?%,]\s*"([^"]+)"\s*$')
 _GROUP = 3  # digits between signs of thousands
 _CLEARLY = 10.0  # times as far from the numbers beside it: what the other reading of a comma must be to be none
 _HEAD = 100  # rows among which the header is looked for
