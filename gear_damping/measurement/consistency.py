@@ -227,16 +227,6 @@ def _held_out_apart(file: layout.AnyFile, records: Numbered) -> Found:
                 yield Problem(f"records[{k}]", rule, None, "let the two end and begin at the same place")
 
 
-def _fitted_once(file: layout.AnyFile, records: Numbered) -> Found:
-    """What is fitted twice counts twice, and every interval would be too narrow."""
-    fitted = [(k, one) for k, one in records if one.role in ("fit", None)]
-    for place, (k, second) in enumerate(fitted):
-        for i, first in fitted[:place]:
-            if first.file == second.file and _columns(first) & _columns(second) and (what := _both(first, second)):
-                rule = f"is fitted, and {what} of it are fitted in records[{i}] too"
-                yield Problem(f"records[{k}]", rule, None, "let each have its own slice or window, or leave one out")
-
-
 def _columns(record: layout.AnyRecord) -> set[object]:
     """The columns of its responses: trials side by side may share the time, and what drives them."""
     channels = given(record.channels).items()
@@ -337,8 +327,8 @@ def _reference_beside_responses(file: layout.AnyFile, records: Numbered) -> Foun
 
 _Rule = Callable[[layout.AnyFile, Numbered], Found]
 _GEARS: tuple[_Rule, ...] = (
-    _compared, _held_out_apart, _fitted_once, _one_gear_torque, _one_mesh_index, _reference_beside_responses,
+    _compared, _held_out_apart, _one_gear_torque, _one_mesh_index, _reference_beside_responses,
 )  # fmt: skip
 _OSCILLATORS: tuple[_Rule, ...] = (
-    _compared, _held_out_apart, _fitted_once, _inputs_of_all, _force_that_tells, _gain_of_nothing, _gain_of_the_force,
+    _compared, _held_out_apart, _inputs_of_all, _force_that_tells, _gain_of_nothing, _gain_of_the_force,
 )  # fmt: skip

@@ -16,6 +16,7 @@ from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.declaration import Plan, RecordPlan, declared_plan
 from gear_damping.measurement.declared_units import UnitSystem
 from gear_damping.measurement.files import UNKNOWN, Files, read_yaml, unfilled
+from gear_damping.measurement.fitted_twice import with_what_is_fitted_twice
 from gear_damping.measurement.formats.registry import MAX_BYTES, readers
 from gear_damping.measurement.own_system import own_systems
 from gear_damping.measurement.record import Finding, Measurement, Quantity, Record
@@ -137,7 +138,8 @@ def _loaded(content: object, path: Path, max_bytes: int | None, plugins: Sequenc
     _refuse_unseen_spring(parameters.get("stiffness"), records, source)
     _refuse_longer_than_records(plan, records, source)
     kept, own_system = _compared(_free(records)), systems.get(plan.system)
-    return Measurement(plan.system, parameters, kept, path.resolve(), plan.segment_s, own_system)
+    found = Measurement(plan.system, parameters, kept, path.resolve(), plan.segment_s, own_system)
+    return replace(found, records=with_what_is_fitted_twice(kept, found.base.responses))
 
 
 def _units(plan: Plan) -> Iterable[tuple[str, str | None, str, float | None]]:

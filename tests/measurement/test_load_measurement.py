@@ -293,3 +293,28 @@ def test_single_wrong_samples_are_told_and_a_blow_or_a_coarse_step_is_none(tmp_p
         (tmp_path / "measurement.yaml").write_text(yaml.safe_dump(content))
         (record,) = load_measurement(tmp_path / "measurement.yaml").records
         assert [finding.sample for finding in record.findings if finding.kind == "stray_samples"] == [700] * said
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "is_said"),
+    [
+        ({}, {}, True),
+        ({"slice": [0, 300]}, {"slice": [200, 400]}, True),
+        ({"slice": [0, 200]}, {"slice": [200, 400]}, False),
+        ({}, {"channel": "other"}, False),
+    ],
+)
+def test_samples_that_are_fitted_twice_are_said(tmp_path, first, second, is_said):
+    """An interval by the same samples twice is too narrow by a factor of the root of two."""
+    values = np.random.default_rng(0).normal(size=(400, 2))
+    rows = (f"{k / 100:g},{a:.6f},{b:.6f}" for k, (a, b) in enumerate(values))
+    (tmp_path / "data.csv").write_text("t,x,other\n" + "\n".join(rows))
+    records = []
+    for name, said in (("a", first), ("b", second)):
+        rows_of = {key: value for key, value in said.items() if key == "slice"}
+        column = {"column": said.get("channel", "x"), "unit": "m"}
+        channels = {"time": {"column": "t", "unit": "s"}, "displacement": column}
+        records.append({"name": name, "file": "data.csv", "channels": channels, **rows_of})
+    (tmp_path / "m.yaml").write_text(yaml.safe_dump({"system": "oscillator", "records": records}))
+    found = load_measurement(tmp_path / "m.yaml").records[1].findings
+    assert any(one.kind == "fitted_twice" for one in found) == is_said

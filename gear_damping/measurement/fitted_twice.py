@@ -1,0 +1,47 @@
+"""Records that hold the same samples, which would count twice: every interval would be too narrow."""
+
+from collections.abc import Collection, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_damping.measurement.record import Finding, Record
+
+FEWEST = 16  # samples that are the same: fewer steps of a sensor may agree by chance
+
+
+def with_what_is_fitted_twice(records: Sequence[Record], responses: Collection[str]) -> tuple[Record, ...]:
+    """The records; one whose response an earlier one holds too, where both are fitted, with a note of that."""
+    found = []
+    for record in records:
+        earlier = (one for one in found if _is_fitted(one) and _is_fitted(record) and _repeats(record, one, responses))
+        if (first := next(earlier, None)) is not None:
+            message = (
+                f"holds samples that '{first.name}' holds too, and both are fitted: they count twice, and every "
+                "interval is too narrow; let each have its own slice or window, or leave one out"
+            )
+            record = replace(
+                record, findings=(*record.findings, Finding("fitted_twice", message, record.name, severity="note"))
+            )
+        found.append(record)
+    return tuple(found)
+
+
+def _is_fitted(record: Record) -> bool:
+    return record.role in ("fit", None)
+
+
+def _repeats(record: Record, other: Record, responses: Collection[str]) -> bool:
+    """Whether a response of both has the same values at the same stamps."""
+    begin, end = max(record.time[0], other.time[0]), min(record.time[-1], other.time[-1])
+    for name in responses:
+        if name in record.channels and name in other.channels:
+            own, theirs = (_within(one.channels[name].values, one.time, begin, end) for one in (record, other))
+            if own.size >= FEWEST and np.array_equal(own, theirs) and np.ptp(own) > 0:
+                return True
+    return False
+
+
+def _within(values: NDArray[np.float64], time: NDArray[np.float64], begin: float, end: float) -> NDArray[np.float64]:
+    return values[(time >= begin) & (time <= end)]
