@@ -23,19 +23,44 @@ def search(nominal: Outcome, bench: Bench, carried_on: Sequence[Refit] = ()) -> 
         bench: The records, their noise, and where candidates are tried.
         carried_on: Full fits to other evidence that are carried on.
     """
-    state = _doubted(_extended(looked(State(bench, nominal, nominal, carried_on=tuple(carried_on)))))
+    passed: list[State] = []
+    state = _doubted(_extended(looked(State(bench, nominal, nominal, carried_on=tuple(carried_on))), passed))
     while state.unsized and not bench.budget.refuses("effects in the place of those of no known size"):
-        state = _doubted(_extended(looked(state.without_unsized())))
+        state = _doubted(_extended(looked(state.without_unsized()), passed))
+    state = _or_before(state, passed)
     return beside_the_others(state) if len(state.accepted) > 1 else state
 
 
-def _extended(state: State) -> State:
-    """With causes as long as there are any to add."""
+def _extended(state: State, passed: list[State]) -> State:
+    """With causes as long as there are any to add; the states that were `passed` on the way are kept."""
     goes_on = True
     while goes_on and len(state.accepted) < state.bench.settings.most_causes:
         state, goes_on = _with_more(state)
         state = looked(state) if goes_on else state
+        passed += [state] if goes_on else []
     return state
+
+
+def _or_before(state: State, passed: Sequence[State]) -> State:
+    """The state, or one before it whose causes are no more, leave less and are told from none.
+
+    Second thoughts may lead away: of two causes that take nearly all together one may turn out to be of no known size,
+    and the other is then less than what had been found at first.
+    """
+    bench = state.bench
+    better = [one for one in passed if len(one.accepted) <= len(state.accepted) and _leaves_less(one, state)]
+    for one in sorted(better, key=lambda one: bench.excess(one.outcome).percent):
+        if told(one).names == one.names:
+            bench.log(f"{' and '.join(sorted(one.names))} leave less than what came later")
+            return one
+    return state
+
+
+def _leaves_less(one: State, state: State) -> bool:
+    """Whether an earlier state predicts what is left out better, by the paired test too."""
+    bench = state.bench
+    less = bench.excess(one.outcome).percent < bench.excess(state.outcome).percent
+    return less and not bench.is_as_good(state.outcome, one.outcome)
 
 
 def _doubted(state: State) -> State:

@@ -5,10 +5,10 @@ from dataclasses import asdict, dataclass, replace
 from math import pi
 from typing import Any
 
-from gear_damping.explanation.answer.homogeneity import FEWEST, homogeneity
 from gear_damping.explanation.evidence.noise import NoiseLevel, noise_of, weighted
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.evidence.release import released_at
+from gear_damping.explanation.model.homogeneity import FEWEST, homogeneity
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome
 from gear_damping.explanation.trials.efficient import weighed
 from gear_damping.identification.free_vibration import LEAST_FALL, grows

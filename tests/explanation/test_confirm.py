@@ -17,6 +17,7 @@ from gear_damping.identification.output_error.records import FitRecord
 
 BLOCKS, BLOCK = 16, 50
 LENGTH = BLOCKS * BLOCK
+DIFFERS = ("differs", "differs too")  # causes whose size is another one in every record
 NOISE = torch.randn(LENGTH, dtype=torch.float64, generator=torch.Generator().manual_seed(8))
 
 
@@ -53,6 +54,7 @@ def residuals_as_they_are():
     with (
         patch.object(confirm, "opened", lambda outcome, *_: outcome),
         patch.object(confirm, "block_samples", lambda *_: [BLOCK]),
+        patch.object(confirm, "homogeneity", lambda outcome, name, _: SimpleNamespace(holds=name not in DIFFERS)),
     ):
         yield
 
@@ -83,6 +85,15 @@ def test_a_cause_that_held_out_records_refute_gives_way_to_its_rival():
     found = confirm._told_apart(state_of([("named", ("worse fit", "better", "bounded"))], model(size=1.0), fits))
     assert (found.accepted[0].name, found.accepted[0].confusable) == ("better", ("worse fit", "bounded"))
     assert found.outcome is better
+
+
+@pytest.mark.parametrize(
+    ("cause", "rival", "named"), [("named", "differs", "named"), ("differs too", "differs", "differs")]
+)
+def test_a_rival_with_another_size_in_every_record_takes_the_place_of_none_that_has_one(cause, rival, named):
+    fits = [refit(rival, model())]
+    found = confirm._told_apart(state_of([(cause, (rival,))], model(size=1.0), fits))
+    assert found.accepted[0].name == named
 
 
 def test_a_cause_among_others_that_adds_nothing_is_taken_out():

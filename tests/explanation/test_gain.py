@@ -108,6 +108,7 @@ def test_damping_is_conditional_where_more_than_noise_is_left(leaves_unnamed, ca
     with (
         patch.object(report_fields.gain, "damping_ratio", lambda *_: dict(ratio)),
         patch.object(report_fields, "covariance_of", lambda *_: None),
+        patch.object(report_fields, "moves_without_one", lambda *_: None),
         patch.object(report_fields, "rig_unit", lambda *_: "m/s"),
         patch.object(report_fields, "_confirmed", lambda *_: None),
         patch.object(report_fields, "damping_by_record", lambda *_: []),

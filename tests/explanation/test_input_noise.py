@@ -1,11 +1,17 @@
 """Noise of a measured load: taken out where it stands above the load's content, and nothing else with it."""
 
+from dataclasses import replace
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import torch
 
 from gear_damping.explanation.evidence.input_noise import error_of_load, expected_load, without_input_noise
+from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.steps import calibrate
 from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.physics.systems.traits import Trait
 
 SAMPLES, RATE, NOISE = 2000, 200.0, 0.1
 RANDOM = np.random.default_rng(5)
@@ -71,3 +77,35 @@ def test_what_a_load_is_expected_wrong_by_is_what_it_is_wrong_by():
         expected = expected + error_of_load(measured, NOISE**2)[:lags] / 40
     np.testing.assert_allclose(found / found[0], expected / expected[0], atol=0.12)
     assert expected[0] == pytest.approx(found[0], rel=0.15)
+
+
+def test_all_of_a_steady_torque_may_be_the_noise_of_its_meter():
+    """It has no content of its own; an angle beside it is no load, and stays as it was read."""
+    torque = 12 + NOISE * RANDOM.normal(size=SAMPLES)
+    angle = 40 * np.arange(SAMPLES) / RATE + 1e-4 * RANDOM.normal(size=SAMPLES)
+    inputs = {"pinion_torque": torch.as_tensor(torque), "pinion_angle": torch.as_tensor(angle)}
+    measured = FitRecord("run", torch.as_tensor(RANDOM.normal(size=SAMPLES)), RATE, inputs)
+    assert without_input_noise([measured]) is None
+    (found,) = without_input_noise([measured], is_torque=True)
+    assert float(found.inputs["pinion_torque"].std()) < 0.6 * NOISE
+    assert float(found.inputs["pinion_torque"].mean()) == pytest.approx(12, abs=0.02)
+    assert torch.equal(found.inputs["pinion_angle"], inputs["pinion_angle"])
+
+
+@pytest.mark.parametrize("moves", [True, False])
+def test_a_gear_pair_is_driven_by_torques_without_noise_unless_it_moves_with_it(moves, monkeypatch):
+    """A made-up calibration before, and one after."""
+    record = FitRecord("run", torch.zeros(8), RATE, {"pinion_torque": torch.ones(8)})
+    quiet = replace(record, inputs={"pinion_torque": torch.zeros(8)})
+    evidence = Evidence("gear_pair", (record,), (), {}, None, one_record=False)
+    before, after = SimpleNamespace(hypothesis=None), SimpleNamespace(hypothesis=None)
+    monkeypatch.setattr(calibrate, "_gear_pair", lambda one, solver: calibrate.Calibration(one, before))
+    monkeypatch.setattr(calibrate, "is_standing", lambda one: False)
+    monkeypatch.setattr(calibrate, "without_input_noise", lambda records, is_torque: (quiet,) if is_torque else None)
+    monkeypatch.setattr(calibrate, "InitialValues", lambda **_: None)
+    monkeypatch.setattr(calibrate, "fit_hypothesis", lambda *_, **__: after)
+    monkeypatch.setattr(calibrate, "moves_with_noise", lambda *_: moves)
+    found = calibrate.NOMINAL[Trait.TEETH](evidence, None)
+    assert found.nominal is (before if moves else after)
+    assert found.evidence.fit[0] is (record if moves else quiet)
+    assert found.evidence.input_noise is not moves

@@ -8,10 +8,10 @@ import pytest
 import torch
 from scipy.integrate import solve_ivp
 
-from gear_damping.explanation.answer.homogeneity import homogeneity
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.candidates import candidates_for
 from gear_damping.explanation.model.fitting import fit_hypothesis
+from gear_damping.explanation.model.homogeneity import homogeneity
 from gear_damping.explanation.model.hypothesis import Hypothesis
 from gear_damping.explanation.trials.score import scores
 from gear_damping.identification.observation import Known

@@ -193,7 +193,9 @@ def test_how_quickly_a_decay_falls_is_known_without_an_envelope(ratio):
     assert recorded(values).free_vibration.roughly_percent == pytest.approx(100 * ratio, rel=0.02)
 
 
-@pytest.mark.parametrize(("name", "most"), [("hilbert_envelope", 80 / 15), ("wavelet_ridge", 15.0), ("half_power", 20.0)])
+@pytest.mark.parametrize(
+    ("name", "most"), [("hilbert_envelope", 80 / 15), ("wavelet_ridge", 15.0), ("half_power", 20.0)]
+)
 def test_what_falls_faster_than_an_estimator_can_follow_is_refused(name, most):
     """Just below it is right within 6 %; beyond, an envelope would fall as its filter does."""
     for seed in range(4):

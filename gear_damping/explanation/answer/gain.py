@@ -27,7 +27,7 @@ from gear_damping.physics.terms import DampingForce, DampingLaw, MeshStiffness
 from gear_damping.simulation.runs import reference_velocity
 
 PHASES = 128  # of the mesh: more than the harmonics of wave and shape together, so that the mean is exact
-CONFIDENCE = 0.95  # of an interval
+CONFIDENCE = 0.95  # that an interval holds the figure, as QUANTILE has it of a normal one
 STEP = 1e-4  # of a coordinate, for the slope of the damping ratio
 
 

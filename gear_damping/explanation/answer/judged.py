@@ -5,7 +5,6 @@ from dataclasses import replace
 
 from gear_damping.explanation.answer.acting import acts_as, inputs_and_loads
 from gear_damping.explanation.answer.gain import nrmse
-from gear_damping.explanation.answer.homogeneity import homogeneity
 from gear_damping.explanation.answer.levels import damping_by_record, of_unit_spread, said_of_levels
 from gear_damping.explanation.answer.stand_in import (
     SWINGS_ON,
@@ -16,6 +15,7 @@ from gear_damping.explanation.answer.stand_in import (
     swinging_on,
 )
 from gear_damping.explanation.evidence.excess import excess
+from gear_damping.explanation.model.homogeneity import homogeneity
 from gear_damping.explanation.model.positive import positive
 from gear_damping.explanation.state import State
 from gear_damping.explanation.steps.confirm import Confirmed, without

@@ -8,9 +8,9 @@ import torch
 from torch import Tensor
 
 from gear_damping.explanation.answer.gain import damping_ratios
-from gear_damping.explanation.answer.homogeneity import block_of
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.candidates import Candidate
+from gear_damping.explanation.model.homogeneity import block_of
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.own_phases import own_level
 from gear_damping.explanation.model.positive import copied

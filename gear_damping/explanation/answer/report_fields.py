@@ -5,7 +5,6 @@ from math import log10
 from typing import Any
 
 from gear_damping.explanation.answer import gain
-from gear_damping.explanation.answer.homogeneity import by_record
 from gear_damping.explanation.answer.levels import damping_by_record, levels_by_record
 from gear_damping.explanation.answer.next_experiment import confusable_beforehand, next_experiment
 from gear_damping.explanation.answer.unexplained import unexplained_residual
@@ -14,7 +13,8 @@ from gear_damping.explanation.evidence.declared_units import rig_unit, unit_of
 from gear_damping.explanation.evidence.excess import ac_energy
 from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.evidence.records import Evidence
-from gear_damping.explanation.model.covariance import covariance_of
+from gear_damping.explanation.model.covariance import covariance_of, moves_without_one
+from gear_damping.explanation.model.homogeneity import by_record
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.nominal_gear_pair import is_standing
 from gear_damping.explanation.model.own_phases import own_level
@@ -254,16 +254,20 @@ def _gain(judged: Judged, evidence: Evidence, noise: NoiseLevel) -> dict[str, An
     first, last = judged.found.nominal, judged.found.outcome
     energy = sum(ac_energy(record) for record in evidence.held)
     floor = sum(len(r.stacked) * noise.by_record[r.name] ** 2 for r in evidence.held)
+    is_more = bool(judged.found.accepted) and is_visible(judged.found.left)
+    conditional = judged.verdict.leaves_unnamed or is_more or not last.fitted.converged
+    missed = {"before": judged.verdict.leaves_unnamed or bool(judged.found.accepted), "after": conditional}
     damping = {
-        key: gain.damping_ratio(outcome, covariance_of(outcome, evidence))
+        key: gain.damping_ratio(
+            outcome, covariance_of(outcome, evidence), moves_without_one(outcome) if missed[key] else None
+        )
         for key, outcome in (("before", first), ("after", last))
     }
     whole = all(damping.values())
     if whole:
         damping = {key: found | {"velocity_unit": rig_unit("m/s", evidence)} for key, found in damping.items()}
-        is_more = bool(judged.found.accepted) and is_visible(judged.found.left)
         damping["by_record"] = damping_by_record(last, evidence)
-        damping["conditional"] = judged.verdict.leaves_unnamed or is_more or not last.fitted.converged
+        damping["conditional"] = conditional
         damping["bias_of_the_nominal"] = damping["before"]["value"] - damping["after"]["value"]
     return {
         "nrmse": {

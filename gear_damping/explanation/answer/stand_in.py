@@ -15,9 +15,9 @@ import torch
 from scipy.stats import norm
 from torch import Tensor
 
-from gear_damping.explanation.answer.homogeneity import block_of, error_of
 from gear_damping.explanation.evidence.excess import ac_energy
 from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.homogeneity import block_of, error_of
 from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency_hz
 from gear_damping.explanation.model.rig import strongest_frequencies
 from gear_damping.explanation.settings import SearchSettings

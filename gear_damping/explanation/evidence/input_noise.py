@@ -7,6 +7,7 @@ that is independent of what drives the simulation (regression calibration: Carro
 
 from collections.abc import Sequence
 from dataclasses import replace
+from math import inf
 
 import numpy as np
 import torch
@@ -17,29 +18,36 @@ from gear_damping.explanation.evidence.noise import floor_variance
 from gear_damping.identification.output_error.records import FitRecord
 
 Array = NDArray[np.float64]
-FLOOR_SHARE = 0.1  # of a load's variance: a floor that is more of it may be the load itself
+# Of a load's variance: a floor that is more of it may be the load itself. A steady torque has no content of its own.
+FLOOR_SHARE, OF_A_TORQUE = 0.1, inf
+ANGLE = "pinion_angle"  # an input that is no load
 LINES = 5  # of the spectrum that its power is averaged over
 DEGREE = 5  # of the spline between uneven samples
 LEAST = 1e-6  # of a load's variance: a floor below is rounding
 FEWEST_SAMPLES = 64  # of a record: fewer tell no floor of its spectrum
 
 
-def without_input_noise(records: Sequence[FitRecord]) -> tuple[FitRecord, ...] | None:
+def without_input_noise(records: Sequence[FitRecord], is_torque: bool = False) -> tuple[FitRecord, ...] | None:
     """Records whose measured loads are freed of the noise above their content; None where none has any.
 
     A load that stays at each sample's value was commanded, not measured.
+
+    Args:
+        records: As they were measured.
+        is_torque: Whether the loads are torques on shafts.
     """
-    cleaned = tuple(_cleaned(record) for record in records)
+    floor_share = OF_A_TORQUE if is_torque else FLOOR_SHARE
+    cleaned = tuple(_cleaned(record, floor_share) for record in records)
     return cleaned if any(one is not record for one, record in zip(cleaned, records, strict=True)) else None
 
 
-def _cleaned(record: FitRecord) -> FitRecord:
+def _cleaned(record: FitRecord, floor_share: float) -> FitRecord:
     if len(record.response) < FEWEST_SAMPLES:
         return record
     found, errors = {}, {}
-    for name, series in record.inputs.items():
+    for name, series in ((name, one) for name, one in record.inputs.items() if name != ANGLE):
         variance, floor = float(series.var()), floor_variance(replace(record, response=series))
-        if name not in record.held and LEAST * variance < floor < FLOOR_SHARE * variance:
+        if name not in record.held and LEAST * variance < floor < floor_share * variance:
             stamps = None if record.stamps is None else record.stamps.numpy()
             found[name] = torch.as_tensor(expected_load(series.numpy(), floor, stamps))
             errors[name] = torch.as_tensor(error_of_load(series.numpy(), floor))

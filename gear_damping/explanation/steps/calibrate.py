@@ -106,13 +106,31 @@ def _simulable() -> Iterator[None]:
 def _oscillator_calibrated(evidence: Evidence, solver: Solver | None) -> Calibration:
     """With loads without the noise of their sensor, or as they were measured where the oscillator moves with that."""
     found = Calibration(evidence, _oscillator(evidence, solver))
-    cleaned = without_input_noise(evidence.records)
+    cleaned = _with_quiet_loads(evidence)
     if cleaned is None:
         return found
-    count = len(evidence.fit)
-    evidence = replace(evidence, fit=cleaned[:count], holdout=cleaned[count:], input_noise=True)
-    quiet = Calibration(evidence, _oscillator(evidence, solver))
-    return found if moves_with_noise(found.nominal, quiet.nominal, evidence) else quiet
+    quiet = Calibration(cleaned, _oscillator(cleaned, solver))
+    return found if moves_with_noise(found.nominal, quiet.nominal, cleaned) else quiet
+
+
+def _gear_pair_calibrated(evidence: Evidence, solver: Solver | None) -> Calibration:
+    """The same with torques: all of a floor may be that of the meter, as a steady torque has no content of its own."""
+    found = _gear_pair(evidence, solver)
+    cleaned = _with_quiet_loads(found.evidence)
+    if cleaned is None or found.followed or is_standing(evidence):
+        return found
+    initial, rounds = InitialValues(after=found.nominal, is_near=True), Rounds(SHAPE_ITERATIONS)
+    nominal = fit_hypothesis(found.nominal.hypothesis, cleaned, initial, rounds, solver=solver)
+    quiet = replace(found, evidence=cleaned, nominal=nominal)
+    return found if moves_with_noise(found.nominal, nominal, cleaned) else quiet
+
+
+def _with_quiet_loads(evidence: Evidence) -> Evidence | None:
+    """The evidence with loads without the noise of their meters; None where none has any."""
+    cleaned, count = without_input_noise(evidence.records, evidence.has(Trait.TEETH)), len(evidence.fit)
+    if cleaned is None:
+        return None
+    return replace(evidence, fit=cleaned[:count], holdout=cleaned[count:], input_noise=True)
 
 
 def _oscillator(evidence: Evidence, solver: Solver | None) -> Outcome:
@@ -340,6 +358,6 @@ def _are_in_line(many: Outcome, evidence: Evidence) -> bool:
 
 # how the nominal model of a system is fitted, by the first of these traits that it has
 NOMINAL: dict[Trait, Callable[[Evidence, Solver | None], Calibration]] = {
-    Trait.TEETH: _gear_pair,
+    Trait.TEETH: _gear_pair_calibrated,
     Trait.REST: _oscillator_calibrated,
 }

@@ -7,10 +7,12 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 from gear_damping.explanation.evidence.excess import Excess, excess
+from gear_damping.explanation.evidence.input_noise import without_input_noise
 from gear_damping.explanation.evidence.noise import NoiseLevel, noise_of, weighted
 from gear_damping.explanation.evidence.records import Evidence, with_own_angles
 from gear_damping.explanation.evidence.unsteady import has_unsteady_shafts, with_unsteady_shafts
 from gear_damping.explanation.model.calibration_error import calibration_error
+from gear_damping.explanation.model.homogeneity import homogeneity
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.opened import opened
 from gear_damping.explanation.state import Accepted, State
@@ -19,6 +21,7 @@ from gear_damping.explanation.trials.refit import block_samples
 from gear_damping.identification.observation import MESH_PHASE
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.measurement.record import Measurement
+from gear_damping.physics.systems.traits import Trait
 
 
 @dataclass(frozen=True)
@@ -112,6 +115,8 @@ def _dropped(state: State, name: str, outcome: Outcome) -> State:
 def _with_sealed(state: State, sealed: Sequence[FitRecord], measurement: Measurement) -> tuple[Evidence, NoiseLevel]:
     """The evidence with its held-out records as the others are seen, and the noise of all of them."""
     evidence, known = state.bench.evidence, state.noise
+    if evidence.input_noise:
+        sealed = without_input_noise(sealed, evidence.has(Trait.TEETH)) or sealed
     seen = replace(evidence, holdout=tuple(sealed))
     if any(MESH_PHASE in record.own for record in evidence.fit):
         seen = with_own_angles(seen)
@@ -127,7 +132,8 @@ def _with_sealed(state: State, sealed: Sequence[FitRecord], measurement: Measure
 def _told_apart(state: State) -> State:
     """The state without rivals of its one cause that held-out records refute, the cause itself among them.
 
-    Which effects are rivals was settled before; none can come in here.
+    Which effects are rivals was settled before; none can come in here. One with another size in every record takes the
+    place of none that has one in all: it bends to the condition that is held out, as it did to the others.
     """
     if len(state.accepted) != 1 or not state.accepted[0].confusable:
         return state
@@ -139,7 +145,9 @@ def _told_apart(state: State) -> State:
     best = min(every.values(), key=_held_out_cost)
     blocks = block_samples(best, bench.evidence, bench.evidence.held)
     kept = {n: one for n, one in every.items() if one is best or bench.no_worse(one.holdout, best.holdout, blocks)}
-    inside = [name for name in kept if name != cause.name and not tried[name].is_at_bound]
+    is_one = _is_one(state.outcome, cause.name, bench.evidence)
+    inside = [n for n in kept if n != cause.name and not tried[n].is_at_bound]
+    inside = [n for n in inside if not is_one or _is_one(kept[n], n, bench.evidence)]
     if cause.name in kept or not inside:
         left = tuple(name for name in cause.confusable if name not in rivals or name in kept)
         return state.with_cause(0, replace(cause, confusable=left))
@@ -147,6 +155,10 @@ def _told_apart(state: State) -> State:
     bench.log(f"held-out records tell {first} from {cause.name}")
     others = tuple(name for name in kept if name != first)
     return state.with_cause(0, Accepted(first, tried[first], cause.share, others), kept[first])
+
+
+def _is_one(outcome: Outcome, cause: str, evidence: Evidence) -> bool:
+    return homogeneity(outcome, cause, evidence).holds
 
 
 def _held_out_cost(outcome: Outcome) -> float:

@@ -5,12 +5,12 @@ from unittest.mock import patch
 
 import torch
 
-from gear_damping.explanation.answer import homogeneity
 from gear_damping.explanation.evidence.excess import excess, is_all, is_settled
 from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.evidence.useful_samples import of_useful_length
 from gear_damping.explanation.explain import is_lost_by
+from gear_damping.explanation.model import homogeneity
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import State
 from gear_damping.explanation.statistics.family_wise import Effect, Residual, family_wise
@@ -110,11 +110,11 @@ def of_one_size(shifts: list[float], error: float, settings: SearchSettings) -> 
         noise = torch.tensor([1.0, 1.0, -1.0, -1.0] * (length // 8) + [-1.0, -1.0, 1.0, 1.0] * (length // 8))
         residual[rows] = shift + error * length**0.5 / 2**0.5 * noise.double()
     parameter = SimpleNamespace(name="a.strength", logarithmic=True)
-    model = outcome(problem=SimpleNamespace(free=[parameter], n_shared=1), hypothesis=None)
+    model = outcome(problem=SimpleNamespace(free=[parameter], n_shared=1), hypothesis=SimpleNamespace(effects=()))
     model.linearisation = SimpleNamespace(sensitivity=[None], residual=[None])
     evidence = SimpleNamespace(settings=settings, sampling_rate=1.0)
     with (
-        patch.object(homogeneity, "_groups", lambda _: (None, [str(k) for k in range(count)])),
+        patch.object(homogeneity, "groups_of", lambda _: ([*range(count)], [str(k) for k in range(count)])),
         patch.object(homogeneity, "_orthogonal_columns", lambda *_: (columns, residual)),
         patch.object(homogeneity, "time_scale", lambda *_: 1.0),
     ):
