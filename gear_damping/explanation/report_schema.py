@@ -159,7 +159,7 @@ class DampingRatio(Part):
 
     value: float = said("of critical", "%")
     unit: Literal["%"] = said("its unit")
-    interval95: Interval95 = said("95 % interval", "%")
+    interval95: Interval95 = said("95 % interval, of the noise; by what records differ too where more is missed", "%")
     reference_velocity: float = said("velocity amplitude at which it is taken", "`velocity_unit`")
     velocity_unit: str = said("the unit of that")
 
@@ -173,7 +173,8 @@ class DampingRatios(Part):
     bias_of_the_nominal: float = said("what the missing causes did to it", "%")
     conditional: bool = said(
         "true where something is left that has no name or is not random, or the last fit did not converge: the "
-        "intervals are of the noise alone, and the damping may lie outside"
+        "interval is that of the noise, or of the jackknife over records where that is wider, and the damping may "
+        "lie outside all the same"
     )
 
 

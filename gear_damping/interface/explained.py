@@ -62,7 +62,8 @@ class Answer:
     def damping_ratio(self) -> dict[str, Any] | None:
         """The damping ratio with the causes: `value` in % of critical, `interval95`, `reference_velocity`.
 
-        `conditional` where that interval is of the noise alone. None where nothing was fitted, or without a spring.
+        `conditional` where something is left that has no name, so that it may lie outside all the same. None where
+        nothing was fitted, or without a spring.
         """
         found = (self.content.get("gain") or {}).get("damping_ratio_percent")
         return found and found["after"] | {"conditional": found["conditional"]}
