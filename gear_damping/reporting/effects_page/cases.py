@@ -26,6 +26,7 @@ class Case:
         without: What stands in for the effect in the run without it: flat names and values of the nominal.
         given: Parameters of the system, SI.
         speed_rpm: Speed of the pinion.
+        force: Amplitude (per unit of mass) and frequency (Hz) of a sine that drives an oscillator; none where absent.
         note: A sentence for the page.
     """
 
@@ -34,6 +35,7 @@ class Case:
     without: Mapping[str, Values] = field(default_factory=dict)
     given: Values = field(default_factory=dict)
     speed_rpm: float = SPEED_RPM
+    force: tuple[float, float] | None = None
     note: str = ""
 
 
@@ -67,6 +69,11 @@ CASES: dict[str, Case] = {
     ),
     "mesh_stiffness_shape": Case({"in_phase": (0.02, -0.01), "quadrature": (0.01, 0.0)}),
     "offset_force": Case({"force": 100.0}),
+    "dead_zone": Case(
+        {"width": 60.0},
+        force=(200.0, 2.0),
+        note="At rest at first; a force of 200 a unit of mass drives both runs at 2 Hz, and 60 of it are kept back.",
+    ),
     "quadratic_stiffness": Case({"coefficient": 0.1 * OSCILLATOR_STIFFNESS}),
     "second_mode": Case({"frequency": 2.5 * OSCILLATOR_STIFFNESS**0.5 / (2 * pi)}),
     "sine_restoring": Case(

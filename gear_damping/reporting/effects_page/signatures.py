@@ -90,7 +90,7 @@ def _of_a_gear_pair(kind: type[Effect], known: Kinds, case: Case, seed: int) -> 
     if issubclass(kind, Sensor) and kind.channel == "pinion_angle":
         angle = true.measured("pinion_angle", _generator(seed))
         # The record is that of the true motion; what differs is the simulation that follows the false angle.
-        misled = _run(GearPair(), plain, given, grid, angle)
+        misled = _run(GearPair(), plain, given, grid, {"pinion_angle": angle})
         records = (nominal.record(_generator(seed)), misled.record(_generator(seed)))
     else:
         records = (true.record(_generator(seed)), nominal.record(_generator(seed)))
@@ -106,9 +106,12 @@ def _of_a_gear_pair(kind: type[Effect], known: Kinds, case: Case, seed: int) -> 
 def _of_an_oscillator(kind: type[Effect], known: Kinds, case: Case, seed: int) -> Signature:
     rate, samples = cases.OSCILLATOR_RATE, cases.OSCILLATOR_SAMPLES
     names, given = dict(cases.OSCILLATOR_NOMINAL), dict(cases.OSCILLATOR_GIVEN)
-    grid = _Grid(rate, samples, seed)
-    true = _run(Oscillator(), _effects(known, _with(kind, names, case)), given | dict(case.given), grid)
-    nominal = _run(Oscillator(), _effects(known, _without(kind, names, case)), given, grid)
+    grid, inputs = _Grid(rate, samples, seed), {}
+    if case.force:
+        force = case.force[0] * torch.sin(2 * pi * case.force[1] * torch.arange(samples, dtype=torch.float64) / rate)
+        inputs, given = {"force": force.unsqueeze(0)}, given | {"initial_displacement": 0.0}
+    true = _run(Oscillator(), _effects(known, _with(kind, names, case)), given | dict(case.given), grid, inputs)
+    nominal = _run(Oscillator(), _effects(known, _without(kind, names, case)), given, grid, inputs)
     measured, without = (run.record(_generator(seed))[0].numpy() for run in (true, nominal))
     natural = float(nominal.derived["natural_frequency"][0]) / (2 * pi)
     return _signature(np.arange(samples) / rate, measured, without, "rad", rate, (None, None, natural))
@@ -154,14 +157,16 @@ def _effects(known: Kinds, chosen: Mapping[str, Values]) -> list[Effect]:
     return [known[name](**values) for name, values in chosen.items()]
 
 
-def _run(system: System, effects: list[Effect], given: Values, grid: _Grid, angle: Tensor | None = None) -> Runs:
+def _run(
+    system: System, effects: list[Effect], given: Values, grid: _Grid, inputs: Mapping[str, Tensor] | None = None
+) -> Runs:
     model = Model(system, effects)
     values = model.values(1, **given)
     if system.has(Trait.PRELOAD):
         derived = model.prepare(values).derived
         start = derived["mean_load"] / derived["mean_stiffness"]
         values = values | {"initial_displacement": start}
-    driven = Driven({} if angle is None else {"pinion_angle": angle}, seed=grid.seed)
+    driven = Driven(inputs or {}, seed=grid.seed)
     return simulate(model, values, sampling_rate=grid.rate, n_samples=grid.samples, inputs=driven)
 
 
