@@ -42,13 +42,13 @@ def _extended(state: State, passed: list[State]) -> State:
 
 
 def _or_before(state: State, passed: Sequence[State]) -> State:
-    """The state, or one before it whose causes are no more, leave less and are told from none.
+    """The state, or one before it whose causes are no more, or a single one, leave less and are told from none.
 
     Second thoughts may lead away: of two causes that take nearly all together one may turn out to be of no known size,
     and the other is then less than what had been found at first.
     """
-    bench = state.bench
-    better = [one for one in passed if len(one.accepted) <= len(state.accepted) and _leaves_less(one, state)]
+    bench, most = state.bench, max(len(state.accepted), 1)
+    better = [one for one in passed if len(one.accepted) <= most and _leaves_less(one, state)]
     for one in sorted(better, key=lambda one: bench.excess(one.outcome).percent):
         if told(one).names == one.names:
             bench.log(f"{' and '.join(sorted(one.names))} leave less than what came later")

@@ -98,7 +98,7 @@ def test_a_gear_pair_is_driven_by_torques_without_noise_unless_it_moves_with_it(
     record = FitRecord("run", torch.zeros(8), RATE, {"pinion_torque": torch.ones(8)})
     quiet = replace(record, inputs={"pinion_torque": torch.zeros(8)})
     evidence = Evidence("gear_pair", (record,), (), {}, None, one_record=False)
-    before, after = SimpleNamespace(hypothesis=None), SimpleNamespace(hypothesis=None)
+    before, after = SimpleNamespace(hypothesis=None), SimpleNamespace(hypothesis=None, is_finite=True)
     monkeypatch.setattr(calibrate, "_gear_pair", lambda one, solver: calibrate.Calibration(one, before))
     monkeypatch.setattr(calibrate, "is_standing", lambda one: False)
     monkeypatch.setattr(calibrate, "without_input_noise", lambda records, is_torque: (quiet,) if is_torque else None)

@@ -121,8 +121,9 @@ def _gear_pair_calibrated(evidence: Evidence, solver: Solver | None) -> Calibrat
         return found
     initial, rounds = InitialValues(after=found.nominal, is_near=True), Rounds(SHAPE_ITERATIONS)
     nominal = fit_hypothesis(found.nominal.hypothesis, cleaned, initial, rounds, solver=solver)
-    quiet = replace(found, evidence=cleaned, nominal=nominal)
-    return found if moves_with_noise(found.nominal, nominal, cleaned) else quiet
+    if not nominal.is_finite or moves_with_noise(found.nominal, nominal, cleaned):
+        return found
+    return replace(found, evidence=cleaned, nominal=nominal)
 
 
 def _with_quiet_loads(evidence: Evidence) -> Evidence | None:

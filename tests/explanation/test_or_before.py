@@ -1,0 +1,51 @@
+"""A search does not end with less than it had on the way, on made-up states."""
+
+from types import SimpleNamespace
+from unittest.mock import patch
+
+import pytest
+
+from gear_damping.explanation import search
+from gear_damping.explanation.settings import SearchSettings
+from gear_damping.explanation.state import State
+from tests.explanation.decisions.made_up import bench, left, outcome
+
+UNTOLD = "of no known size"
+
+
+def states(*found):
+    """States with causes by name, and what they leave in %; the last one is where the search ended."""
+    models = [outcome() for _ in found]
+    where = bench(SearchSettings(), [(m, left(leaves)) for m, (_, leaves) in zip(models, found, strict=True)])
+    accepted = [tuple(SimpleNamespace(name=name) for name in names) for names, _ in found]
+    *passed, last = (State(where, models[0], m, a) for m, a in zip(models, accepted, strict=True))
+    return last, passed
+
+
+def chosen(found, is_as_good=False):
+    last, passed = states(*found)
+    kept = lambda state: state if UNTOLD not in state.names else SimpleNamespace(names=frozenset())  # noqa: E731
+    with (
+        patch.object(search, "told", kept),
+        patch.object(type(last.bench), "is_as_good", lambda *_: is_as_good),
+    ):
+        return [cause.name for cause in search._or_before(last, passed).accepted]
+
+
+@pytest.mark.parametrize(
+    ("found", "named"),
+    [
+        ([(["a"], 1.4), (["a", "b"], 0.5), (["b"], 4.0)], ["a"]),  # no more causes, and less is left
+        ([(["a"], 1.4), (["b"], 0.5)], ["b"]),
+        ([(["a", "b"], 0.5), (["c"], 4.0)], ["c"]),  # more causes are no better for that
+        ([(["a"], 1.4), ([], 9.0)], ["a"]),  # one is better than none
+        ([([UNTOLD], 1.0), (["a"], 2.0), (["b"], 4.0)], ["a"]),
+        ([([UNTOLD], 1.0), (["b"], 4.0)], ["b"]),
+    ],
+)
+def test_what_leaves_least_of_no_more_causes_is_taken(found, named):
+    assert chosen(found) == named
+
+
+def test_what_predicts_no_better_by_the_paired_test_is_left():
+    assert chosen([(["a"], 1.4), (["b"], 4.0)], is_as_good=True) == ["b"]
