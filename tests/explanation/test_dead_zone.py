@@ -1,4 +1,4 @@
-"""A drive that keeps small forces back: found in a motion by scipy's integrator, with the sharp edges of the real one."""
+"""A drive that keeps small forces back: found in a motion by scipy, with the sharp edges of the real one."""
 
 import numpy as np
 import pytest
@@ -6,10 +6,12 @@ from scipy.integrate import solve_ivp
 
 from gear_damping.explanation.explain import explain
 from gear_damping.measurement.load import load_measurement
+from gear_damping.physics.catalogue import builtin_effects
 from gear_damping.physics.cause import Rig
 from gear_damping.physics.effects.dead_zone import DeadZone
 
 STIFFNESS, DAMPING, GAIN, RATE, SECONDS = 225.0, 0.9, 600.0, 100.0, 9.0  # 1/s^2, 1/s, rad/s^2 a unit of duty, Hz, s
+RIVALS = ("dead_zone", "coulomb_friction", "cubic_stiffness", "power_law_damping", "sensor_saturation", "sensor_gain")
 DECLARED = """
 system: oscillator
 records:
@@ -28,7 +30,7 @@ def kept_back(asked, width):
 def drives(folder, width):
     """Three sweeps and a slow sum of sines with three amplitudes, one of them held out."""
     noise, declared = np.random.default_rng(4), DECLARED
-    for number, (amplitude, role) in enumerate([(0.16, "fit"), (0.3, "fit"), (0.22, "holdout")]):
+    for number, (amplitude, role) in enumerate([(0.4, "fit"), (0.7, "fit"), (0.55, "holdout")]):
         time = np.arange(0, SECONDS, 1 / RATE)
 
         def duty(t, amplitude=amplitude, number=number):
@@ -46,8 +48,15 @@ def drives(folder, width):
     return load_measurement(folder / "measurement.yaml")
 
 
+def explained(folder, width):
+    """Among the laws that come nearest, which saves the minute that all of them take."""
+    kinds = builtin_effects().items()
+    library = {name: kind for name, kind in kinds if name in RIVALS or kind.cause is None}
+    return explain(drives(folder, width), library=library).content
+
+
 def test_a_dead_zone_of_the_drive_is_named_with_its_size(tmp_path):
-    answer = explain(drives(tmp_path, 0.05)).content
+    answer = explained(tmp_path, 0.05)
     (cause,) = answer["causes"]
     assert (answer["verdict"] in ("explained", "ambiguous"), cause["name"]) == (True, "dead_zone")
     assert cause["parameters"]["width"]["value"] == pytest.approx(0.05 * GAIN, rel=0.05)
@@ -55,7 +64,7 @@ def test_a_dead_zone_of_the_drive_is_named_with_its_size(tmp_path):
 
 
 def test_none_is_named_where_there_is_none(tmp_path):
-    assert explain(drives(tmp_path, 0.0)).content["verdict"] == "consistent"
+    assert explained(tmp_path, 0.0)["verdict"] == "consistent"
 
 
 def test_it_is_tried_where_a_force_was_measured():
