@@ -28,6 +28,7 @@ OFF = 0.01  # of the largest force: what is left of it after a stroke,
 OFF_NOISE = 6.0  # or so many standard deviations of its noise
 LONGEST_DRIVE = 0.9  # of the record: a force that is on for longer leaves no free vibration
 FALLS, QUICKEST = (0.02, 0.1, 0.3), 3.0  # decay rates over the frequency in rad/s: where a fit begins, and the most
+STAGES = 8  # of a record, each of which swings more than the one before where it grows: noise before a release does not
 LEAST_FALL = 0.1  # nepers over a record: what falls less is a line that goes on, or tells no damping
 
 
@@ -167,9 +168,10 @@ def free_vibration(record: FitRecord, turning: Turning | None = None) -> FreeVib
 
 
 def grows(record: FitRecord) -> bool:
-    """Whether a motion without an input grows: its second half swings more, by what a decay must fall by at least."""
-    first, second = (part.std() for part in record.response.tensor_split(2))
-    return not record.inputs and bool(second > first * exp(LEAST_FALL / 2))
+    """Whether a motion without an input grows all the time, by what a decay must fall by at least."""
+    sizes = torch.stack([part.std() for part in record.response.tensor_split(STAGES)])
+    grown = bool(sizes[-1] > sizes[0] * exp(LEAST_FALL))
+    return not record.inputs and grown and bool((sizes.diff() > 0).all())
 
 
 def _last_drive(record: FitRecord) -> int:

@@ -12,7 +12,7 @@ from scipy.signal import firwin, lfilter
 from gear_damping.identification.catalogue import builtin_estimators
 from gear_damping.identification.damping_estimate import UnsuitedRecord
 from gear_damping.identification.estimators.base import Recorded, RecordEstimator
-from gear_damping.identification.free_vibration import Turning
+from gear_damping.identification.free_vibration import Turning, grows
 from gear_damping.identification.observation import Known
 from gear_damping.identification.output_error.records import FitRecord, Observed
 from gear_damping.physics.systems.gear_pair import GearPair
@@ -216,3 +216,10 @@ def test_a_motion_that_grows_has_no_damping():
     grown = decay(0.005)[::-1].copy() + noise(4800, 2)
     with pytest.raises(UnsuitedRecord, match="its motion grows"):
         KINDS["output_error"]({}).estimate(recorded(grown))
+
+
+def test_a_motion_that_is_let_go_late_does_not_grow():
+    """Noise before the release, and a decay behind it that fills less than the second half."""
+    late = np.concatenate([np.zeros(6000), decay(0.01)])
+    assert not grows(recorded(late + noise(late.size, 4)).record)
+    assert grows(recorded(decay(0.005)[::-1].copy() + noise(4800, 2)).record)

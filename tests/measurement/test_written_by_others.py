@@ -334,6 +334,19 @@ def test_numbers_ranges_and_texts_stand_beside_matrices_of_octave(tmp_path, endi
     assert _wave(table) == WAVE.tolist()
 
 
+def test_one_variable_of_octave_is_read_whatever_the_ending(tmp_path):
+    said = ("rows: 60", "columns: 1")
+    table = _table(tmp_path, octave(("x", "matrix", said, [f"{value:.6f}" for value in WAVE])), "a.mat")
+    assert _wave(table) == WAVE.tolist()
+
+
+@pytest.mark.parametrize("ends", ["0 1e12 1e-3", "0 1 0", "0 nan 1", "0 1"])
+def test_a_range_that_is_none_of_a_record_fills_no_memory(tmp_path, ends):
+    text = octave(("t", "range", ("base, limit, increment",), [ends]), ("fs", "scalar", (), [200]))
+    with pytest.raises(InputError):
+        _table(tmp_path, text, "a.mat")
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from scipy.io import loadmat
 from scipy.io.matlab import MatlabFunction, MatlabOpaque, MatReadWarning, matfile_version
 
+from gear_damping.measurement.formats.octave_text import BEGIN as OCTAVE
 from gear_damping.measurement.formats.octave_text import octave_table
 from gear_damping.measurement.formats.table import (
     ArrayTable,
@@ -38,15 +39,24 @@ def read(path: Path, max_bytes: int) -> Table:
     Raises:
         InputError: an unreadable or too large file, no real numbers, or pymatreader is missing for version 7.3.
     """
-    if (saved_as_text := octave_table(path, path.read_bytes())) is not None:  # which Octave does, whatever the ending
-        return saved_as_text
     with unreadable(path, "not a readable MAT file", "save it in MATLAB with `save -v7`"):
+        if (saved_as_text := _octave_text(path, max_bytes)) is not None:
+            return saved_as_text
         content = _read_hdf5(path, max_bytes) if _is_hdf5(path) else _read_older(path, max_bytes)
         found = dict(_flat(content, ""))
     arrays = {name: value for name, value in found.items() if isinstance(value, np.ndarray)}
     held, left_out = held_arrays(arrays)
     left_out += [f"{name} ({value})" for name, value in found.items() if name not in arrays]
     return ArrayTable(path, held, left_out)
+
+
+def _octave_text(path: Path, max_bytes: int) -> Table | None:
+    """What Octave saves as text whatever the ending, even of one variable; None of any other file."""
+    with path.open("rb") as file:
+        if file.read(len(OCTAVE)) != OCTAVE:
+            return None
+    refuse_size(path, path.stat().st_size, max_bytes)
+    return octave_table(path, path.read_bytes(), fewest=1)
 
 
 def _is_hdf5(path: Path) -> bool:

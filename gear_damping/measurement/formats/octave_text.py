@@ -10,15 +10,19 @@ from gear_damping.measurement.formats.table import ArrayTable, held_arrays
 
 _VARIABLE, _SAID = re.compile(r"^# name: (\w+)\n", re.MULTILINE), re.compile(r"^# (\w+): ?(.*)$", re.MULTILINE)
 _ROUNDING = 1e-12  # of the number of steps of a range, whose limit is one of its values all the same
-_BEGIN = b"# Created by Octave"
+_MOST = 1e8  # values of a range: a few letters must not fill the memory
+BEGIN = b"# Created by Octave"
 
 
-def octave_table(path: Path, text: bytes) -> ArrayTable | None:
-    """The numbers of a file of several variables; None of any other file, and of one that is not whole."""
-    if not text.startswith(_BEGIN):
+def octave_table(path: Path, text: bytes, fewest: int = 2) -> ArrayTable | None:
+    """The numbers of a file of variables; None of any other file, of fewer variables, and of one that is not whole.
+
+    The lines of a single one are a table like any other.
+    """
+    if not text.startswith(BEGIN):
         return None
     _, *parts = _VARIABLE.split(text.decode("utf-8", "replace").replace("\r\n", "\n"))
-    if len(parts) <= 2:  # one variable: its lines are a table like any other
+    if len(parts) < 2 * fewest:
         return None
     try:
         found = {name: _array(block) for name, block in zip(parts[::2], parts[1::2], strict=True)}
@@ -41,5 +45,8 @@ def _array(block: str) -> NDArray[np.float64] | None:
         return np.array(cells, dtype=np.float64).reshape(1)
     if kind.endswith("range"):
         base, limit, step = np.array(cells[:3], dtype=np.float64)
-        return base + step * np.arange(np.floor((limit - base) / step * (1 + _ROUNDING)) + 1)
+        count = np.floor((limit - base) / step * (1 + _ROUNDING)) + 1 if step else 0.0
+        if not 0 < count < _MOST:
+            raise ValueError
+        return base + step * np.arange(count)
     return None

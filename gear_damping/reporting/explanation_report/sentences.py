@@ -23,7 +23,7 @@ CASING_HEADLINES = {
 }
 CONDITIONAL = (
     " Something is left that has no name or is not all random, or a fit has not converged: the interval is that of the "
-    "noise, or of how the figure moves without each of the records where that is wider, and the damping may lie outside."
+    "noise, or of how the figure moves without each of the records where that is wider; the damping may lie outside."
 )
 VISCOUS = "viscous_damping.damping_coefficient"
 ONLY_NOISE = 1.5  # noise variances that may be left for saying so
