@@ -169,9 +169,10 @@ def free_vibration(record: FitRecord, turning: Turning | None = None) -> FreeVib
 
 def grows(record: FitRecord) -> bool:
     """Whether a motion without an input grows all the time, by what a decay must fall by at least."""
+    if record.inputs or len(record.response) < 2 * STAGES:
+        return False
     sizes = torch.stack([part.std() for part in record.response.tensor_split(STAGES)])
-    grown = bool(sizes[-1] > sizes[0] * exp(LEAST_FALL))
-    return not record.inputs and grown and bool((sizes.diff() > 0).all())
+    return bool(sizes[-1] > sizes[0] * exp(LEAST_FALL)) and bool((sizes.diff() > 0).all())
 
 
 def _last_drive(record: FitRecord) -> int:
