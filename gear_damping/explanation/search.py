@@ -23,32 +23,30 @@ def search(nominal: Outcome, bench: Bench, carried_on: Sequence[Refit] = ()) -> 
         bench: The records, their noise, and where candidates are tried.
         carried_on: Full fits to other evidence that are carried on.
     """
-    passed: list[State] = []
-    state = _doubted(_extended(looked(State(bench, nominal, nominal, carried_on=tuple(carried_on))), passed))
+    state = _doubted(_extended(looked(State(bench, nominal, nominal, carried_on=tuple(carried_on)))))
     while state.unsized and not bench.budget.refuses("effects in the place of those of no known size"):
-        state = _doubted(_extended(looked(state.without_unsized()), passed))
-    state = _or_before(state, passed)
+        state = _doubted(_extended(looked(state.without_unsized())))
+    state = _or_before(state)
     return beside_the_others(state) if len(state.accepted) > 1 else state
 
 
-def _extended(state: State, passed: list[State]) -> State:
-    """With causes as long as there are any to add; the states that were `passed` on the way are kept."""
+def _extended(state: State) -> State:
+    """With causes as long as there are any to add."""
     goes_on = True
     while goes_on and len(state.accepted) < state.bench.settings.most_causes:
         state, goes_on = _with_more(state)
-        state = looked(state) if goes_on else state
-        passed += [state] if goes_on else []
+        state = looked(state).with_itself_passed() if goes_on else state
     return state
 
 
-def _or_before(state: State, passed: Sequence[State]) -> State:
+def _or_before(state: State) -> State:
     """The state, or one before it whose causes are no more, or a single one, leave less and are told from none.
 
     Second thoughts may lead away: of two causes that take nearly all together one may turn out to be of no known size,
     and the other is then less than what had been found at first.
     """
     bench, most = state.bench, max(len(state.accepted), 1)
-    better = [one for one in passed if len(one.accepted) <= most and _leaves_less(one, state)]
+    better = [one for one in state.passed if len(one.accepted) <= most and _leaves_less(one, state)]
     for one in sorted(better, key=lambda one: bench.excess(one.outcome).percent):
         if told(one).names == one.names:
             bench.log(f"{' and '.join(sorted(one.names))} leave less than what came later")

@@ -1,7 +1,7 @@
 """What is known so far: every step of a search takes a state and gives the next."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from gear_damping.explanation.evidence.excess import Excess
 from gear_damping.explanation.evidence.noise import NoiseLevel
@@ -73,6 +73,7 @@ class State:
         calibrations: How often the nominal model has been calibrated anew.
         unsized: Causes that were dropped because the records do not tell their size from none.
         pruned: Causes that were not needed beside others.
+        passed: States on the way, one for every cause that was added.
     """
 
     bench: Bench
@@ -89,6 +90,7 @@ class State:
     calibrations: int = 0
     unsized: frozenset[str] = frozenset()
     pruned: tuple[Accepted, ...] = ()
+    passed: tuple["State", ...] = field(default=(), repr=False)
 
     @property
     def first(self) -> Excess:
@@ -149,6 +151,10 @@ class State:
         takes = left - self.bench.excess(fit.outcome).percent
         is_enough = left > 0 and takes >= settings.least_share * left
         return is_enough and fit.is_seen_in_fit and fit.t > settings.accepted_t
+
+    def with_itself_passed(self) -> "State":
+        """The same, which a search may come back to."""
+        return replace(self, passed=(*self.passed, self))
 
     def with_cause(self, place: int, cause: Accepted, outcome: Outcome | None = None) -> "State":
         """The same with another cause in one place, and the model that goes with it."""

@@ -42,9 +42,17 @@ def decay_rate(time: Array, log_amplitude: Array, deviation: Array) -> DecayRate
         kept = np.ones(time.size, dtype=bool)
         kept[block] = False
         others.append(-_slope(time[kept], log_amplitude[kept], weights[kept]))
-    count = len(blocks)
-    error = float(np.sqrt((count - 1) / count * np.square(np.array(others) - np.mean(others)).sum()))
-    return DecayRate(whole, error, count - 1)
+    return DecayRate(whole, jackknife_error(np.array(others)), len(blocks) - 1)
+
+
+def jackknife_error(others: Array) -> float:
+    """Standard error of a figure, from what it is without each of n parts of the data, (n,)."""
+    return float(np.sqrt((others.size - 1) * others.var()))
+
+
+def half_width(error: float, freedom: int) -> float:
+    """Half of the interval of a figure whose standard error has so many degrees of freedom."""
+    return float(student.ppf((1 + LEVEL) / 2, freedom)) * error
 
 
 def _slope(time: Array, values: Array, weights: Array) -> float:
@@ -54,7 +62,7 @@ def _slope(time: Array, values: Array, weights: Array) -> float:
 
 def estimate_of(rate: DecayRate, frequency_hz: float, amplitudes: tuple[float, float]) -> DampingEstimate:
     """The damping ratio of a vibration of a damped frequency whose amplitude falls at a rate."""
-    half = float(student.ppf((1 + LEVEL) / 2, rate.freedom)) * rate.error
+    half = half_width(rate.error, rate.freedom)
     values = ratio_percent(np.array([rate.value, rate.value - half, rate.value + half]), frequency_hz)
     return DampingEstimate(float(values[0]), (float(values[1]), float(values[2])), frequency_hz, amplitudes)
 

@@ -28,6 +28,7 @@ OFF = 0.01  # of the largest force: what is left of it after a stroke,
 OFF_NOISE = 6.0  # or so many standard deviations of its noise
 LONGEST_DRIVE = 0.9  # of the record: a force that is on for longer leaves no free vibration
 FALLS, QUICKEST = (0.02, 0.1, 0.3), 3.0  # decay rates over the frequency in rad/s: where a fit begins, and the most
+READ_PER_PERIOD = 20.0  # samples of a period that tell roughly how quickly it falls: more only take time
 STAGES = 8  # of a record, each of which swings more than the one before where it grows: noise before a release does not
 LEAST_FALL = 0.1  # nepers over a record: what falls less is a line that goes on, or tells no damping
 
@@ -63,12 +64,13 @@ class FreeVibration:
     @cached_property
     def roughly_percent(self) -> float:
         """The damping ratio in % of the damped sinusoid that is nearest to it: how quickly it falls, by any law."""
-        omega = 2 * pi * self.frequency_hz
+        some = slice(None, None, max(1, int(self.period / READ_PER_PERIOD)))
+        phase, values = 2 * pi * self.frequency_hz * self.time[some], self.values[some]
 
         def left(point: Array) -> Array:
-            fade, turn = np.exp(-point[0] * omega * self.time), point[1] * omega * self.time
+            fade, turn = np.exp(-point[0] * phase), point[1] * phase
             basis = np.stack([fade * np.cos(turn), fade * np.sin(turn), np.ones_like(turn)], axis=1)
-            return self.values - basis @ np.linalg.lstsq(basis, self.values, rcond=None)[0]
+            return values - basis @ np.linalg.lstsq(basis, values, rcond=None)[0]
 
         ends = ([0.0, BAND[0]], [QUICKEST, BAND[1]])
         found = [least_squares(left, [share, 1.0], bounds=ends) for share in FALLS]

@@ -1,5 +1,6 @@
 """A search does not end with less than it had on the way, on made-up states."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 from unittest.mock import patch
 
@@ -14,22 +15,22 @@ UNTOLD = "of no known size"
 
 
 def states(*found):
-    """States with causes by name, and what they leave in %; the last one is where the search ended."""
+    """Where a search ended by way of others: causes by name, and what they leave in %, the last ones at its end."""
     models = [outcome() for _ in found]
     where = bench(SearchSettings(), [(m, left(leaves)) for m, (_, leaves) in zip(models, found, strict=True)])
     accepted = [tuple(SimpleNamespace(name=name) for name in names) for names, _ in found]
     *passed, last = (State(where, models[0], m, a) for m, a in zip(models, accepted, strict=True))
-    return last, passed
+    return replace(last, passed=tuple(passed))
 
 
 def chosen(found, is_as_good=False):
-    last, passed = states(*found)
+    last = states(*found)
     kept = lambda state: state if UNTOLD not in state.names else SimpleNamespace(names=frozenset())  # noqa: E731
     with (
         patch.object(search, "told", kept),
         patch.object(type(last.bench), "is_as_good", lambda *_: is_as_good),
     ):
-        return [cause.name for cause in search._or_before(last, passed).accepted]
+        return [cause.name for cause in search._or_before(last).accepted]
 
 
 @pytest.mark.parametrize(

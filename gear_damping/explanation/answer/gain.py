@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from math import pi
 
 import torch
-from scipy.stats import t as student
 from torch import Tensor
 
 from gear_damping.explanation.evidence.declared_units import unit_of
@@ -13,6 +12,7 @@ from gear_damping.explanation.evidence.excess import ac_energy
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.covariance import FEWEST, SILENT
 from gear_damping.explanation.model.hypothesis import Outcome
+from gear_damping.identification.decay_rate import half_width, jackknife_error
 from gear_damping.identification.output_error.problem import set_value
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.uncertainty import QUANTILE
@@ -27,7 +27,6 @@ from gear_damping.physics.terms import DampingForce, DampingLaw, MeshStiffness
 from gear_damping.simulation.runs import reference_velocity
 
 PHASES = 128  # of the mesh: more than the harmonics of wave and shape together, so that the mean is exact
-CONFIDENCE = 0.95  # that an interval holds the figure, as QUANTILE has it of a normal one
 STEP = 1e-4  # of a coordinate, for the slope of the damping ratio
 
 
@@ -150,16 +149,10 @@ def damping_ratio(outcome: Outcome, covariances: Tensor, moves: Tensor | None = 
     slope = (ratios[1:] - ratios[0]) / STEP
     half = QUANTILE * float((slope @ covariances @ slope).clamp(min=0).sqrt())
     if moves is not None and len(moves) >= FEWEST:
-        half = max(half, _half_by_records(moves @ slope))
+        half = max(half, half_width(jackknife_error((moves @ slope).numpy()), len(moves) - 1))
     value = float(ratios[0])
     ends = (max(value - half, min(value, 0.0)), value + half)
     return Interval(value, ends, "%").plain() | {"reference_velocity": velocity}
-
-
-def _half_by_records(moves: Tensor) -> float:
-    """Half of the 95 % interval by the moves of a figure without one record each, (records,)."""
-    variance = float(moves.var(correction=0)) * (len(moves) - 1)
-    return float(student.isf((1 - CONFIDENCE) / 2, len(moves) - 1)) * variance**0.5
 
 
 def _has_no_spring(outcome: Outcome, covariances: Tensor) -> bool:

@@ -116,8 +116,8 @@ def _oscillator_calibrated(evidence: Evidence, solver: Solver | None) -> Calibra
 def _gear_pair_calibrated(evidence: Evidence, solver: Solver | None) -> Calibration:
     """The same with torques: all of a floor may be that of the meter, as a steady torque has no content of its own."""
     found = _gear_pair(evidence, solver)
-    cleaned = _with_quiet_loads(found.evidence)
-    if cleaned is None or found.followed or is_standing(evidence):
+    cleaned = None if found.followed or is_standing(evidence) else _with_quiet_loads(found.evidence)
+    if cleaned is None:
         return found
     initial, rounds = InitialValues(after=found.nominal, is_near=True), Rounds(SHAPE_ITERATIONS)
     nominal = fit_hypothesis(found.nominal.hypothesis, cleaned, initial, rounds, solver=solver)

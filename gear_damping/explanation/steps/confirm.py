@@ -145,10 +145,10 @@ def _told_apart(state: State) -> State:
     best = min(every.values(), key=_held_out_cost)
     blocks = block_samples(best, bench.evidence, bench.evidence.held)
     kept = {n: one for n, one in every.items() if one is best or bench.no_worse(one.holdout, best.holdout, blocks)}
-    is_one = _is_one(state.outcome, cause.name, bench.evidence)
-    inside = [n for n in kept if n != cause.name and not tried[n].is_at_bound]
-    inside = [n for n in inside if not is_one or _is_one(kept[n], n, bench.evidence)]
-    if cause.name in kept or not inside:
+    inside = [] if cause.name in kept else [name for name in kept if not tried[name].is_at_bound]
+    if inside and _is_one(state.outcome, cause.name, bench.evidence):
+        inside = [name for name in inside if _is_one(kept[name], name, bench.evidence)]
+    if not inside:
         left = tuple(name for name in cause.confusable if name not in rivals or name in kept)
         return state.with_cause(0, replace(cause, confusable=left))
     first = min(inside, key=lambda name: (len(kept[name].hypothesis.free), kept[name].fitted.cost))

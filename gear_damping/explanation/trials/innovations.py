@@ -76,7 +76,7 @@ def known_error(record: FitRecord, outcome: Outcome) -> KnownError | None:
     mass, damping, stiffness = linear_of(outcome)
     if stiffness <= 0 or damping <= 0:  # nothing holds its motion, which grows
         return None
-    factors: dict[str, float] = {FORCE: values.get(outcome.hypothesis.system.gains.get(FORCE), 1.0), BASE: -mass}
+    factors = {FORCE: values.get(outcome.hypothesis.system.gains.get(FORCE), 1.0), BASE: -mass}
     if not {*record.input_errors} <= {*factors}:
         return None
     errors = [factors[name] ** 2 * error.numpy() for name, error in record.input_errors.items()]

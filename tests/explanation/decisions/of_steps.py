@@ -57,7 +57,7 @@ def causes_of_one_answer(settings: SearchSettings):
         search, "_with_more", lambda s: (replace(s, accepted=(*s.accepted, None)), len(s.accepted) < 60)
     )
     with more, patch.object(search, "looked", lambda state: state):
-        return len(search._extended(State(bench(settings), outcome(), outcome()), []).accepted)
+        return len(search._extended(State(bench(settings), outcome(), outcome())).accepted)
 
 
 @decides("most_calibrations", (True, False))
