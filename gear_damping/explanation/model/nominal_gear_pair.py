@@ -33,6 +33,7 @@ RENAMED = {
     "damping_ratio": DAMPING,
 }
 PHASED = ("mesh_phase", f"{MESH}.minimum", f"{MESH}.contact_ratio")  # what of a mesh shows while teeth change alone
+TORQUES = ("pinion_torque", "gear_torque")
 SHAPE_BAND = 1.6  # harmonics of the stiffness count up to this many natural frequencies, at the slowest record, at
 FEWEST_HARMONICS, MOST_OF_BAND = 6, 20  # of the mesh; how many the resonance lets through is kept within these
 MOST_HARMONICS = 40  # where sensors show them: an accelerometer weighs the highest as the lowest
@@ -81,7 +82,7 @@ def first_gear_pair(evidence: Evidence) -> Hypothesis:
     untold = PHASED if is_standing(evidence) else ()
     contact_ratio = 2.0 if untold else contact_ratio
     system = evidence.base(gear_torque_mode=evidence.gear_torque_mode)
-    start = stated | {f"{MESH}.maximum": high, f"{MESH}.minimum": low, f"{MESH}.contact_ratio": contact_ratio}
+    start = typical_torques(evidence) | stated | {f"{MESH}.maximum": high, f"{MESH}.minimum": low, f"{MESH}.contact_ratio": contact_ratio}
     derived = Model(system, effects).prepare(Model(system, effects).values(1, **start)).derived
     damping = 2 * ratio * float((derived["mean_stiffness"] * derived["equivalent_mass"])[0]) ** 0.5
     free = [
@@ -101,6 +102,20 @@ def first_gear_pair(evidence: Evidence) -> Hypothesis:
     ]
     told = tuple(parameter for parameter in free if parameter.name not in untold)
     return Hypothesis(system, tuple(effects), start | {DAMPING: damping}, told)
+
+
+def typical_torques(evidence: Evidence) -> dict[str, float]:
+    """Torques that the deflection of a record has its size from, root mean square over records, in N*m.
+
+    Every record is simulated with its own; sizes of effects, and the velocity that damping ratios belong to, are those
+    of this one.
+    """
+    found = {}
+    for name in TORQUES:
+        stated = torch.tensor([record.conditions.get(name, 0.0) for record in evidence.fit], dtype=torch.float64)
+        if bool(stated.any()):
+            found[name] = float(stated.square().mean().sqrt() * stated.sum().sign())
+    return {name: value for name, value in found.items() if value}
 
 
 def standing(evidence: Evidence, solver: Solver | None = None) -> Outcome:

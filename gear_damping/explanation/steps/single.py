@@ -43,8 +43,8 @@ def single_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
 def _first_fits(state: State) -> tuple[Refit, ...]:
     """Full fits of the first round: from the nominal model, and from before its free shape was fitted.
 
-    Where much is missing that shape has bent to what it is not made for, so the other place comes first;
-    the second one is tried only where nothing is validated from the first.
+    Where much is missing that shape has bent to what it is not made for, so the other place comes first, unless an
+    effect promises nearly all of it as it is; the second one is tried only where nothing is validated from the first.
     """
     bench = state.bench
     fits = [again(refit, state.nominal, bench.evidence, bench.solver) for refit in state.carried_on]
@@ -53,7 +53,7 @@ def _first_fits(state: State) -> tuple[Refit, ...]:
         fits = _from_what_is_stated(fits, state)
         if _best(fits, state):
             return tuple(fits)
-    is_bent = state.current.misfit >= bench.settings.bent_misfit
+    is_bent = state.current.misfit >= bench.settings.bent_misfit and not _promises_all(state)
     for place in (_unshaped, _shaped) if is_bent else (_shaped, _unshaped):
         carried_on = place(state)
         if carried_on is None:
@@ -64,7 +64,27 @@ def _first_fits(state: State) -> tuple[Refit, ...]:
         if _best(fits, state):
             break
     fits += [] if is_parted else _from_what_is_stated(fits, state)
+    fits += _rivals_from_the_shape(fits, state) if is_bent else []
     return tuple(sorted(fits, key=lambda fit: fit.outcome.left_out_cost))
+
+
+def _promises_all(state: State) -> bool:
+    """Whether an effect promises beside the nominal model to take nearly all that is left beyond the noise."""
+    bench, nominal = state.bench, state.nominal
+    most = max((score.gain for score in state.first_scores), default=0.0)
+    return most * nominal.fitted.cost >= bench.settings.taken_by_all * bench.beyond_noise(nominal)
+
+
+def _rivals_from_the_shape(fits: Sequence[Refit], state: State) -> list[Refit]:
+    """Effects that promise as much as any beside the nominal model, fitted from there where no fit came to an end.
+
+    Before the shape was fitted a law of the stiffness, which changes what every harmonic does, may lead too far.
+    """
+    bench, scores = state.bench, best_by_effect(state.first_scores)
+    ended = {fit.name for fit in fits if fit.outcome.fitted.converged}
+    least = bench.settings.rival_share * max((score.gain for score in scores.values()), default=0.0)
+    waiting = [score for name, score in scores.items() if name not in ended and score.gain >= least]
+    return list(bench.full_fits(waiting, state.nominal, state.nominal)) if _best(fits, state) else []
 
 
 def _from_what_is_stated(fits: Sequence[Refit], state: State) -> list[Refit]:
