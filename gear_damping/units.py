@@ -238,6 +238,8 @@ def _unknown(piece: str, name: str, text: str, key: str, source: str) -> Problem
 def _alike(name: str) -> str:
     """The remedy for a unit that is nearly written like one that is known, else the list of them."""
     plain = name.replace(" ", "")
+    if (other := _ALSO.get(plain.lower())) or plain.lower() in _ATOMS:
+        return f"did you mean '{other or plain.lower()}'?"
     found = get_close_matches(plain, list(_ATOMS), n=1, cutoff=_ALIKE)
     if found and len(plain) > len(found[0]) and not plain.lower().startswith(found[0].lower()):
         found = []  # what is longer and begins otherwise is another unit: no kilometre in `kgm`

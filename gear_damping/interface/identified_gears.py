@@ -19,13 +19,14 @@ from gear_damping.explanation.explain import Listener, explain, fitting_solver, 
 from gear_damping.explanation.model.covariance import covariance_of
 from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Given, Hypothesis, Outcome, natural_frequency_hz
-from gear_damping.explanation.model.nominal_gear_pair import angles_of, first_gear_pair
+from gear_damping.explanation.model.nominal_gear_pair import MESH, angles_of, first_gear_pair
 from gear_damping.explanation.steps.too_short import too_short
 from gear_damping.explanation.trials.bench import Log
 from gear_damping.explanation.trials.efficient import weighed
 from gear_damping.identification.oscillator.linear_model import DAMPING, linear_model
 from gear_damping.identification.output_error.least_squares import Rounds
 from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.interface.far_from_stated import far_from_stated
 from gear_damping.interface.free_parameters import FLAT, free_parameters
 from gear_damping.interface.identified_page import MOST_PANELS, estimate_rows, panel, residual_rows
 from gear_damping.measurement.record import Measurement
@@ -150,6 +151,7 @@ def content_of(measurement: Measurement, found: Fitted) -> dict[str, Any]:
             "threshold_percent": left.threshold,
             "source": str(measurement.source),
         },
+        "contradicted": _far_off(outcome, evidence),
         "too_short": too_short(evidence, outcome) or None,
         "segment_s": evidence.segments.seconds or None,
         "records": {
@@ -175,7 +177,18 @@ def table_of(content: dict[str, Any]) -> str:
             f"held-out signal's variance beyond the noise, and the intervals do not cover what is missing; "
             f"task=explain measurement.path={lacking['source']} looks for its name\n"
         )
-    return f"{text.rstrip()}\n\n{content['too_short']}\n" if content["too_short"] else text
+    said = filter(None, (text.rstrip(), content["contradicted"], content["too_short"]))
+    return "\n\n".join(said) + "\n"
+
+
+def _far_off(outcome: Outcome, evidence: Evidence) -> str | None:
+    """A stated mesh stiffness that the records put far away, as a torque in a wrong unit does."""
+    pairs = {
+        stated: (outcome.values[fitted], evidence.parameters[stated])
+        for stated, fitted in (("mesh_stiffness_max", f"{MESH}.maximum"),)
+        if stated in evidence.parameters and fitted in outcome.values
+    }
+    return far_from_stated(pairs, "unit and gain of the torque and of the response, and the value itself")
 
 
 def figure_of(found: Fitted, content: dict[str, Any]) -> figures.Figure:

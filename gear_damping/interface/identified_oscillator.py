@@ -18,6 +18,7 @@ from gear_damping.identification.oscillator.fit import OscillatorFit, fit_oscill
 from gear_damping.identification.oscillator.linear_model import DAMPING
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import Segments
+from gear_damping.interface.far_from_stated import far_from_stated
 from gear_damping.interface.identified_page import MOST_PANELS, estimate_rows, panel, residual_rows
 from gear_damping.interface.lack_of_fit import lack_of_fit, sentence
 from gear_damping.measurement.record import Channel, Measurement
@@ -25,7 +26,9 @@ from gear_damping.reporting import figures, tables
 from gear_damping.simulation.solver_settings import Progress, Solver
 
 NEWTONS = ("N*s/m", "N/m")  # units of what is not per unit of mass
+STATED = ("force_gain", "stiffness")  # by the file, and fitted all the same
 CONTRADICTS = 5.0  # stated standard deviations: of one in two million statements that hold
+FOLLOWED = 50.0  # % of a signal, root mean square, that is left: an input late by a twelfth of a turn leaves as much
 MOST_SAMPLES = 200_000  # beyond which the test of what is random takes longer than the fit
 
 
@@ -90,13 +93,13 @@ def content_of(measurement: Measurement, fitted: Fitted) -> dict[str, Any]:
     found, roles, channel = fitted.found, fitted.roles, fitted.channel
     content = _identification(found, measurement, roles, channel)
     lacking = lack_of_fit(found.predictions, roles["fit"], roles["holdout"], channel, fitted.noise)
-    undamped = _undamped(found, roles["fit"])
+    undamped = _undamped(found, roles["fit"], lacking)
     differs = _differing(found, measurement, roles["fit"], channel)
     said = {
         "differing": differs,
         "undamped": undamped,
         "not_yet_free": _not_yet_free(roles["fit"]),
-        "contradicted": _contradicted(found),
+        "contradicted": _contradicted(found) or _far_off(found, measurement),
     }
     return content | said | {"lack_of_fit": lacking and lacking | {"source": str(measurement.source)}}
 
@@ -133,6 +136,14 @@ def _contradicted(found: OscillatorFit) -> str | None:
     return f"{said}: correct its value or its uncertainty, which draws the other figures to it"
 
 
+def _far_off(found: OscillatorFit, measurement: Measurement) -> str | None:
+    """A stated stiffness or gain of the force that the records put far away, whatever its uncertainty."""
+    fitted = {name.split(".")[-1]: one.value for name, one in found.parameters.items()}
+    stated = {name: measurement.parameters[name].value for name in STATED if name in measurement.parameters}
+    pairs = {name: (fitted[name], value) for name, value in stated.items() if name in fitted}
+    return far_from_stated(pairs, "sign, unit and gain of the force and of the motion, and the value itself")
+
+
 def _not_yet_free(fit: Sequence[FitRecord]) -> str | None:
     """What to leave out of records without an input that begin before their motion is free; None of others."""
     waits = {record.name: released_at(record) / record.sampling_rate for record in fit}
@@ -142,12 +153,14 @@ def _not_yet_free(fit: Sequence[FitRecord]) -> str | None:
     return f"the motion is not free from the start: leave out {', '.join(said)} (`window` or `slice` in the file)"
 
 
-def _undamped(found: OscillatorFit, fit: Sequence[FitRecord]) -> str | None:
+def _undamped(found: OscillatorFit, fit: Sequence[FitRecord], lacking: Mapping[str, Any] | None) -> str | None:
     """What it means where the records do not tell the damping from none; None where they do."""
     ratio, frequency = found.damping_ratio_percent, found.natural_frequency_hz
     if ratio is None or ratio.interval95[0] > 0:
         return None
     text = f"no damping: these records do not tell it from none; it is at most {ratio.interval95[1]:.3g} %"
+    if lacking and lacking["percent_of_signal"] > FOLLOWED:
+        return f"{text}, and it follows little of them: check that every column and unit is what it is declared as"
     if any(record.inputs for record in fit):
         late = "an input that is late does that, and its `delay` in the file then tells it"
         return f"{text}, if this model is right: {late}"

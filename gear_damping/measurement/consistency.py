@@ -186,6 +186,21 @@ def _oscillator_response(seen: _Seen) -> Found:
         yield seen.problem("channels", f"the record lacks {needed}", f"declare {needed}")
 
 
+def _force_twice(seen: _Seen) -> Found:
+    if "force" in seen.channels and "force" in seen.conditions:
+        rule = "the force is given under channels too, and that is used"
+        yield seen.problem("conditions.force", rule, "leave it out, or leave the channel out")
+
+
+def _driven_by_itself(seen: _Seen) -> Found:
+    """One column cannot be the force on a rig and how that moves."""
+    columns = {name: getattr(channel, "column", None) for name, channel in seen.channels.items()}
+    for name in _OSCILLATOR_RESPONSES if "force" in columns else ():
+        if columns.get(name) == columns["force"]:
+            rule = "is the column of channels.force too, which drives it"
+            yield seen.problem(f"channels.{name}.column", rule, "name the column that each was recorded in")
+
+
 def _frame_without_base(seen: _Seen) -> Found:
     for name in _OSCILLATOR_RESPONSES if "base_acceleration" not in seen.channels else ():
         if name in seen.channels and seen.channels[name].given("frame"):
@@ -199,7 +214,7 @@ _GEAR: tuple[Callable[[_Seen], Found], ...] = (
     _speed_of_known_gain, _reference,
 )  # fmt: skip
 _OSCILLATOR: tuple[Callable[[_Seen], Found], ...] = (
-    _something_measured, _oscillator_response, _frame_without_base, _reference,
+    _something_measured, _oscillator_response, _force_twice, _driven_by_itself, _frame_without_base, _reference,
 )  # fmt: skip
 
 

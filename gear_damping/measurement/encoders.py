@@ -17,6 +17,7 @@ FEWEST_PULSES = 2  # in a record: one alone tells no speed
 WITHIN_A_TURN = 1.01  # that an angle which begins again may span: a scale is a little off, and an end is rounded
 COUNTERS = (16, 24, 32)  # bits of the registers that run over in counter cards
 FROM_ENCODERS = "transmission_error: r_b1 theta_1 - r_b2 theta_2 from the encoders, without its mean"  # a note
+MOST_CHANGES = 4  # of a count that has two values: a shaft that stands about the edge of one goes to and fro, seldom
 SQUARE = 0.1  # of a pulse's height: from one level to the other within a sample, so that the edge is known to that
 _CURVED, _ENDS = 4, 6  # pulses that a changing speed is told by, and those at an end by which it goes on
 _STEADIEST = 6  # degrees of polynomials that are tried through the edges of square pulses
@@ -215,7 +216,9 @@ def shaft_angle(plan: EncoderPlan, base: TimeBase, rows: ReadColumn, whole: Read
     """
     time = base.time if base.stamps is None else base.stamps
     if plan.name != "tacho" and not plan.timestamps:
-        angle = angle_from_counts(rows(plan.column, f"{plan.key}.column"), plan.per_revolution, plan.direction)
+        counts = rows(plan.column, f"{plan.key}.column")
+        _refuse_levels(counts, plan, file)
+        angle = angle_from_counts(counts, plan.per_revolution, plan.direction)
         zero, late = (0.0, 0.0) if plan.index is None else _at_index_pulse(plan, angle, time, rows, file)
         return ShaftAngle(angle - zero, late)
     key = f"{plan.key}.{'timestamps' if plan.timestamps else 'column'}"
@@ -228,6 +231,15 @@ def shaft_angle(plan: EncoderPlan, base: TimeBase, rows: ReadColumn, whole: Read
     zero = 0.0 if plan.index is None else _at_index_stamp(plan, angle, time, whole, file)
     gaps = np.diff(pulse_numbers(pulses)) - 1
     return ShaftAngle(angle - zero, late, int(gaps.sum()), float(pulses[int((gaps > 0).argmax())]))
+
+
+def _refuse_levels(counts: NDArray, plan: EncoderPlan, file: str) -> None:
+    """Refuse the two levels of a pulse train where counts are declared."""
+    held = np.unique(counts)
+    if held.size == 2 and np.count_nonzero(np.diff(counts)) > MOST_CHANGES:
+        rule = f"goes to and fro between {held[0]:g} and {held[1]:g}: the levels of pulses, and no counts"
+        remedy = "write the times of its rising edges into a column, and give that as timestamps, or count the edges"
+        raise InputError(Problem(f"{plan.key}.column", rule, plan.column, remedy, file))
 
 
 def _threshold(plan: EncoderPlan, signal: NDArray, file: str) -> float:

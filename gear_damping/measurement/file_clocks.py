@@ -83,7 +83,11 @@ class FileClocks:
                 if own and abs(rate / own - 1) <= RATE_TOLERANCE:
                     return ()
                 found += [(index, own)] if own else []
-        return tuple(_rate_conflict(rate, self.table.names[index], own) for index, own in found[:1])
+        stated = self.table.stated_rate
+        if not found and stated and abs(rate / stated[1] - 1) > RATE_TOLERANCE:
+            return (_rate_conflict(rate, f"'{stated[0]}' beside the table says", stated[1]),)
+        where = (f"the stamps of column '{self.table.names[index]}' run at" for index, _ in found)
+        return tuple(_rate_conflict(rate, said, own) for said, (_, own) in zip(where, found[:1], strict=False))
 
     def lost_numbers(self, first: int, stop: int) -> tuple[Finding, ...]:
         """A finding where a column that counts the samples, and that no channel uses, leaves numbers out."""
@@ -114,9 +118,9 @@ def conflict_with_file(rate: float, own: float, channel: str = "time") -> Findin
     return Finding("rate_conflict", message, channel=channel, severity="note" if own <= _DOUBTFUL else "data_problem")
 
 
-def _rate_conflict(rate: float, column: str, own: float) -> Finding:
+def _rate_conflict(rate: float, said: str, own: float) -> Finding:
     message = (
-        f"the stamps of column '{column}' run at {own:.6g} Hz and sampling_rate says {rate:.6g} Hz, which was used; "
+        f"{said} {own:.6g} Hz and sampling_rate says {rate:.6g} Hz, which was used; "
         "correct the one that is wrong, or give the column as time"
     )
     return Finding("rate_conflict", message, channel="time", severity="note")

@@ -13,6 +13,7 @@ import yaml
 from gear_damping.errors import InputError, Problem, reading
 from gear_damping.measurement.formats.registry import Reader, read_table
 from gear_damping.measurement.formats.table import Table
+from gear_damping.measurement.quantities import EACH_ITS_OWN
 
 _NUMBERS = ("tag:yaml.org,2002:float", "tag:yaml.org,2002:int")
 _FLOAT = re.compile(
@@ -68,8 +69,10 @@ def read_yaml(path: Path) -> object:
     """
     data = f"of a file of data, task=inspect measurement.path={path} writes one to start from"
     if not path.is_file():
-        remedy = "give the path of a measurement.yaml"
-        raise InputError(Problem("measurement.path", "no such file", str(path), remedy))
+        rule = "is a folder, no file" if path.is_dir() else "no such file"
+        held = sorted(one.name for one in path.glob("*.y*ml"))[:1] if path.is_dir() else []
+        remedy = f"give the path of a measurement.yaml{''.join(f', as {path / one}' for one in held)}"
+        raise InputError(Problem("measurement.path", rule, str(path), remedy))
     try:
         with reading(path, "measurement.path"):
             content = yaml.load(path.read_text(encoding="utf-8-sig"), Loader=_Loader)
@@ -131,10 +134,20 @@ def resolve_file(text: str, folder: Path, key: str, source: str) -> Path:
         what = "is a folder, not a file" if path.is_dir() else "no such file"
     except OSError as error:  # a name that no file can bear
         what = error.strerror
+    if held := _matching(path):
+        remedy = f"{EACH_ITS_OWN}: {', '.join(held)}"
+        raise InputError(Problem(key, f"a record has one file, and this is a pattern: {path}", text, remedy, source))
     remedy = f"{_neighbour(path)}'file' is relative to {folder.resolve()}"
     if filled != text:
         remedy = f"set the environment variable {DATA_VARIABLE} to the folder that holds the records"
     raise InputError(Problem(key, f"{what}: {path}", text, remedy, source))
+
+
+def _matching(path: Path) -> list[str]:
+    """The files beside it that a pattern means; none where it is no pattern."""
+    if not any(sign in path.name for sign in "*?"):
+        return []
+    return sorted(one.name for one in path.parent.glob(path.name))
 
 
 def _neighbour(path: Path) -> str:

@@ -8,7 +8,7 @@ from pydantic import model_validator
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement import channels as c
-from gear_damping.measurement.quantities import PERIODS, Column, Instant, Measured, Rate, Rows
+from gear_damping.measurement.quantities import PERIODS, Column, FileName, Instant, Measured, Rate, Rows
 from gear_damping.measurement.record import ROLES, Quantity
 from gear_damping.measurement.rig import (
     GEAR_TORQUE_MODES,
@@ -193,7 +193,7 @@ class AnyRecord(Declared):
 
     meant: ClassVar[Mapping[str, str]] = PERIODS
     name: Annotated[str, Text()] = key("Name of the record; that of its file where absent.", "report")
-    file: Annotated[str, Text()] = key(
+    file: Annotated[str, FileName()] = key(
         "The file, relative to this YAML; `${GEAR_DAMPING_DATA}` is filled in.", "values", missing=_NO_FILE
     )
     role: Annotated[str, OneOf(ROLES)] = key(

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from math import pi
+from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -73,6 +74,10 @@ def _filled(path: str | Path) -> object:
     Raises:
         InputError: it cannot be read, or something in it waits to be filled in.
     """
+    if not isinstance(path, str | PathLike):
+        rule = f"must be a path, and is a {type(path).__name__}"
+        remedy = "give the path of a measurement.yaml, or what was read from it to identify and explain"
+        raise InputError(Problem("path", rule, remedy=remedy))
     content = read_yaml(Path(path))
     rule, remedy = f"{UNKNOWN} stands for what is not filled in yet", "write what the rig or its recorder says"
     if missing := list(unfilled(content)):
@@ -211,6 +216,10 @@ def _refuse_longer_than_records(plan: Plan, records: list[Record], source: str) 
     if plan.segment_s is not None and plan.segment_s > longest:
         rule = f"is longer than every record, the longest of {longest:.4g} s"
         problems.append(Problem("segments", rule, f"{plan.segment_s:g} s", "shorten it, or leave it out", source))
+    fastest = max(record.sampling_rate for record in records)
+    if plan.segment_s is not None and plan.segment_s * fastest < 1:
+        rule = f"is shorter than the time to the next sample at {fastest:.6g} Hz"
+        problems.append(Problem("segments", rule, f"{plan.segment_s:g} s", "check its unit, or leave it out", source))
     for declared, record in zip(plan.records, records, strict=True):
         for name, channel in record.channels.items():
             if abs(channel.delay) >= record.duration:

@@ -24,6 +24,7 @@ PERIODS = Frozen(
         "write sampling_rate, which may be the time from one sample to the next: {value: 3, unit: ms}",
     )
 )
+EACH_ITS_OWN = "make each file a record of its own, with the same channels"
 Found = list[Problem]
 _THOUSANDS = re.compile(r"^\s*([+-]?\d{1,3}(?:[, '’]\d{3})+)\s*([A-Za-z%µμ°].*?)?\s*$")  # `1,000 Hz`, `1 000 Hz`
 _BARE = re.compile(r"^\s*[+-]?\d+(\.\d+)?\s*$")
@@ -57,6 +58,16 @@ class Column(Value):
     def says(self) -> str:
         """A column."""
         return "header text, or 0-based index"
+
+
+class FileName(Text):
+    """The name of one file."""
+
+    def read(self, value: Any, name: str) -> str:
+        """The name; several files are several records."""
+        if isinstance(value, list):
+            return refuse("a record has one file", value, EACH_ITS_OWN)
+        return super().read(value, name)
 
 
 @dataclass(frozen=True)
@@ -174,6 +185,11 @@ class Measured(Value):
             return f"write {name}: {{value: {number}, unit: {self._example}}}, or {name}: {number} {self._example}"
         if self.unit is None:
             return f"say it in the unit of the channel or one of its kind, as {name}: {number} mm for one in mm"
+        if self.unit == "own":
+            return (
+                f"give it in the response's unit per s^2 and per the force's, as {name}: {number} mm/s^2/N for mm and "
+                "N, or m/s^2/V for m and V"
+            )
         usual = self._usual(number)
         first = f"write {name}: {{value: {number}, unit: {usual[0]}}}, or {name}: {number} {usual[0]}"
         return (

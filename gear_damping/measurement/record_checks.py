@@ -19,10 +19,13 @@ from numpy.typing import NDArray
 
 from gear_damping.measurement.checks import APPLIED, STRUCK, check_channel
 from gear_damping.measurement.encoders import FROM_ENCODERS
-from gear_damping.measurement.record import Finding, Record
+from gear_damping.measurement.record import Channel, Finding, Record
 from gear_damping.measurement.timebase import written_on_change
 
 WHOLE_SPEEDS = ("pinion_speed", "gear_speed")  # hold the rotation, beside which what is fitted is little
+NEVER_STRAIGHT = ("displacement", "transmission_error", "acceleration")  # a speed may rise evenly
+STRAIGHT, FEWEST_OF_A_LINE = 1e-6, 16  # of its range; samples: fewer steps of a converter may lie on a line
+MOST_NOISE = 2.0  # times what a channel holds: noise alone is once that, and is estimated to a few per cent
 LARGEST_TRANSMISSION_ERROR = 1e-3  # m; a gear pair deflects by micrometres
 SPEED_TOLERANCE = 0.02  # of a stated speed: about the slip of an induction motor
 _COARSE = 50  # parts of a record in which a shaft is seen to advance
@@ -221,9 +224,35 @@ def check_record(record: Record) -> tuple[Finding, ...]:
         found += check_channel(channel, strokes)
     if not any(finding.severity == "data_problem" and finding.channel == "time" for finding in record.findings):
         found.append(stamps_against_values(record))
+    found += [check(channel) for channel in record.channels.values() for check in (_drowned, _straight)]
     found += [_magnitude(record), *check_shafts(record), *not_compared(record), _oversampled(record)]
     found += _beyond_the_band(record)
     return tuple(replace(finding, record=record.name) for finding in found if finding)
+
+
+def _drowned(channel: Channel) -> Finding | None:
+    """A stated noise that is more than all that its channel holds."""
+    held = float(np.std(channel.values))
+    if channel.noise is None or channel.noise <= MOST_NOISE * held:
+        return None
+    one = channel.declared_factor
+    message = (
+        f"its stated noise, {channel.noise / one:.4g} {channel.declared_unit}, is more than all that it shows, "
+        f"{held / one:.4g} {channel.declared_unit} (root mean square about its mean); check its unit"
+    )
+    return Finding("noise_above_signal", message, channel=channel.name)
+
+
+def _straight(channel: Channel) -> Finding | None:
+    """A response that is a straight line to the last digit, as a column of times or a counter is."""
+    if channel.name not in NEVER_STRAIGHT or len(channel.values) < FEWEST_OF_A_LINE or not np.ptp(channel.values):
+        return None
+    place = np.linspace(-1, 1, len(channel.values))
+    left = channel.values - np.polyval(np.polyfit(place, channel.values, 1), place)
+    if np.max(np.abs(left)) > STRAIGHT * np.ptp(channel.values):
+        return None
+    message = f"the {channel.name.replace('_', ' ')} is a straight line, as a clock or a counter: name another column"
+    return Finding("straight_line", message, channel=channel.name)
 
 
 def _magnitude(record: Record) -> Finding | None:

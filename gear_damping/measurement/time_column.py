@@ -18,6 +18,7 @@ _SUFFIX = re.compile(r"[_ .\-/](s|sec|ms|us|µs|ns|min|h)$", re.I)
 _SLOW = 200  # whole numbers a step: as milliseconds less than 5 Hz, and few vibrate as slowly
 # Ranges that a time counted from 1970 lies in, by its unit: from 2000 on, and they do not meet.
 _EPOCHS = ((9.4e8, 1e10, "s"), (9.4e11, 1e13, "ms"), (9.4e14, 1e16, "us"), (9.4e17, 1e19, "ns"))
+_SECONDS, _PARTS = re.compile(r"seconds?(\b|_)", re.I), re.compile(r"milli|micro|nano|msec|usec|nsec", re.I)
 _FEWEST = 8  # stamps, as many as a record needs
 _ADVANCING = 0.9  # share of the steps of a named column that go forward
 _SHORT = re.compile(r"^t[a-z]?\d*(_\w+)?$", re.I)  # t1, tb_n: a time only where its steps are even
@@ -92,6 +93,23 @@ def counts_from_1970(values: NDArray[np.float64]) -> bool:
     """Whether (n,) values never fall and lie where a finer clock than that of seconds stands since 2000."""
     inside = any(low < values[0] < high for low, high, _ in _EPOCHS[1:])
     return bool(inside and np.all(np.diff(values) >= 0) and values[-1] > values[0])
+
+
+def finer_than_said(first: float, unit: str) -> str | None:
+    """The unit of stamps that count from 1970, where with the one that is said they would begin beyond the year 2286.
+
+    Args:
+        first: The first stamp, in the unit that is said.
+        unit: A unit of time.
+    """
+    if first * to_si(1.0, unit, "s") < _EPOCHS[0][1]:
+        return None
+    return next((other for low, high, other in _EPOCHS if low < first < high), None)
+
+
+def seconds_by_name(name: str) -> bool:
+    """Whether the name of a column says that its stamps are in seconds, and no smaller part of them."""
+    return bool(_SECONDS.search(name)) and not _PARTS.search(name)
 
 
 def stamped_rate(unit: str, values: NDArray[np.float64]) -> float | None:

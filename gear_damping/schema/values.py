@@ -149,7 +149,7 @@ class Number(Value):
         if not (self.least < value < self.most if self.exclusive else self.least <= value <= self.most):
             refuse(*self._range(value))
         if self.nonzero and value == 0:
-            refuse("must not be 0", value)
+            refuse("must not be 0", value, "leave it out where there is none")
         return value if self.whole else float(value)
 
     def says(self) -> str:

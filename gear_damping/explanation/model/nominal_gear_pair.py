@@ -82,7 +82,8 @@ def first_gear_pair(evidence: Evidence) -> Hypothesis:
     untold = PHASED if is_standing(evidence) else ()
     contact_ratio = 2.0 if untold else contact_ratio
     system = evidence.base(gear_torque_mode=evidence.gear_torque_mode)
-    start = typical_torques(evidence) | stated | {f"{MESH}.maximum": high, f"{MESH}.minimum": low, f"{MESH}.contact_ratio": contact_ratio}
+    wave = {f"{MESH}.maximum": high, f"{MESH}.minimum": low, f"{MESH}.contact_ratio": contact_ratio}
+    start = typical_torques(evidence) | stated | wave
     derived = Model(system, effects).prepare(Model(system, effects).values(1, **start)).derived
     damping = 2 * ratio * float((derived["mean_stiffness"] * derived["equivalent_mass"])[0]) ** 0.5
     free = [

@@ -17,6 +17,7 @@ from gear_damping.units import parse_unit
 MOMENT = "a date or a clock in a form that is not read"
 MOST_WORDS = 0.5  # of the cells of a column of numbers: with more than half words it is one of words
 MOST_EMPTY = 0.3  # of the rows: where every other or third one is empty, none of them was a sample
+FEWEST_BEHIND = 8  # empty cells at the end of a column, as many as a record needs: fewer are cells that were lost
 SHOWN = 3  # faults of one kind that are listed one by one
 MOST_BELOW = 20  # rows that may lie below a table, and more of its own
 _WITH_UNIT = re.compile(r"\s*[+-]?\d[\d.,]*([eE][+-]?\d+)?\s+(?P<unit>[A-Za-zµμ°%][^\s\d]*)\s*")
@@ -220,12 +221,30 @@ class CellTable(Table):
         cells = [str(one.values[row]) for one in self._columns if row < len(one.values)]
         return len(cells) > 1 and all(is_word(cell) for cell in cells)
 
+    def _ends_early(self, cells: list[str], bad: list[int]) -> tuple[str, None, str] | None:
+        """What is said of a column whose cells are empty from some row on; None of any other."""
+        first = bad[0] if bad else 0
+        if len(bad) < FEWEST_BEHIND or first + len(bad) != len(cells) or any(cells[k].strip() for k in bad):
+            return None
+        rule = f"its cells end behind row {first - 1} of {len(cells)}"
+        remedy = (
+            "where it was sampled at another rate, give the channel its own time or sampling_rate; where the others "
+            f"went on without it, slice: [0, {first}]"
+        )
+        return rule, None, remedy
+
     def _problems(self, index: int, cells: list[str], bad: list[int]) -> list[Problem]:
         title = f"column {index}" + (f" '{self.names[index]}'" if self.names[index] else "")
         if cells and len(bad) == len(cells) and not any(cell.strip() for cell in cells):
             rule, held = "all of its cells are empty", self._with_numbers()
             remedy = f"name another column: {held}" if held else "name another column"
             return [Problem(f"{self.path.name}, {title}", rule, None, remedy, str(self.path))]
+        if len(cells) > 1 and len(bad) == len(cells) and not is_told(cells[0]):
+            rule, held = f"not a number, and no other of its {len(cells)} cells is one", self._with_numbers()
+            remedy = f"name another column: {held}" if held else "name another column"
+            return [Problem(f"{self.path.name}, {title}", rule, cells[0], remedy, str(self.path))]
+        if ends := self._ends_early(cells, bad):
+            return [Problem(f"{self.path.name}, {title}", *ends, str(self.path))]
         problems = []
         for k in bad[:SHOWN]:
             rule = "an empty cell" if not cells[k].strip() else _not_a_number(cells[k])

@@ -214,14 +214,21 @@ def _refuse_ragged(text: Text, names: tuple[str, ...], first_line: int) -> None:
     width = len(names)
     least = max((k + 1 for k, name in enumerate(names) if name), default=width)
     problems, found, commas = [], 0, text.delimiter == ","
-    for k, (line, row) in enumerate(_above_footer(list(_values(text, first_line)), least)):
+    rows, sizes = _above_footer(list(_values(text, first_line)), least), set()
+    count = len(rows)
+    for k, (line, row) in enumerate(rows):
         if least <= len(row) <= width or (len(row) > width and not any(row[width:])):
             continue
         found, commas = found + 1, commas and len(row) == 2 * width
+        sizes.add(len(row))
         if found <= SHOWN:
             key = f"{text.path.name}, row {k} (line {line})"
             rule = f"{len(row)} cells where the first line has {width}"
             problems.append(Problem(key, rule, None, "complete the row, or leave it out", str(text.path)))
+    if found == count and len(sizes) > 1:
+        rule = f"no row has as many cells as the first line, {width}, and rows differ ({min(sizes)} to {max(sizes)})"
+        remedy = "export it as a table, one column a signal; a log of messages by turns, as of a CAN bus, is none"
+        raise InputError(Problem(text.path.name, rule, None, remedy, str(text.path)))
     if found > SHOWN:
         rule = f"{found - SHOWN} more rows have another number of cells"
         remedy = "export the file again" + (", with decimal points: a comma also parts its columns" if commas else "")

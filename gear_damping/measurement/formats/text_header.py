@@ -14,6 +14,7 @@ _PLACE = "X_Value"  # LabVIEW's name of what the values are over,
 _PLAIN = {"pounds": "lbf", "newtons": "N", "amps": "A", "meters": "m"}  # ... and its words for units
 _SETTING, _DEFINED = re.compile(r"[A-Za-z]\w*="), "DEF="
 _SCOPE, _COUNTED = ("Start", "Increment"), "Sequence"  # behind the names of an oscilloscope; no unit
+_LABELLED = re.compile(r"[A-Za-z_]\w*\s*[:=]\s*[-+]?\.?\d")  # a value behind its name
 _END_OF_HEADER = re.compile(r"^\*+ ?end[_ ]of[_ ]header", re.IGNORECASE)
 _VALUES = re.compile(rb"^[\s;,|\"]*[+-]?\.?\d")  # a line that begins with a number
 
@@ -46,13 +47,24 @@ def text_header(text: Text) -> tuple[Header, int]:
     if len(header.names) == text.width - 1 and _are_rows_numbered(rows[header.first :], text.width):
         header = replace(header, names=("", *header.names))
     if header.first == len(rows):
-        raise InputError(Problem("file", "a header and no rows of numbers", str(text.path), "export it again"))
+        rule, remedy = "a header and no rows of numbers", "export it again"
+        if labelled := next(filter(None, map(_labelled, reversed(rows))), None):
+            rule, remedy = (
+                f"a name stands before every value, as in '{labelled}'",
+                "leave the names out of the rows, and write them once into a line above",
+            )
+        raise InputError(Problem("file", rule, str(text.path), remedy))
     if not header.names:
         names = [name.strip() for name in text.delimiter.join(comment).lstrip("# ").split(text.delimiter)]
         width = len(rows[header.first])
         names = names if len(names) == width else [""] * width
         header = Header(tuple(names), (), header.first, header.skipped)
     return header, lines[header.first]
+
+
+def _labelled(row: list[str]) -> str | None:
+    """The first cell of a row that holds a name and its value, `pot:612`, as a serial plotter is sent them."""
+    return next((cell.strip() for cell in row if _LABELLED.search(cell)), None)
 
 
 def _are_rows_numbered(rows: list[list[str]], width: int) -> bool:

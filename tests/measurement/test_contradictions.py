@@ -1,0 +1,178 @@
+"""A declaration that its file contradicts ends in one message that names the key, the rule and the remedy."""
+
+import numpy as np
+import pytest
+import yaml
+
+import gear_damping as gd
+
+TIME = np.arange(400) / 200.0
+MOTION = 2.0 * np.exp(-0.5 * TIME) * np.cos(2 * np.pi * 4 * TIME)
+FORCE = np.sin(2 * np.pi * 3 * TIME)
+X, F = {"column": "x", "unit": "mm"}, {"column": "F", "unit": "N"}
+
+
+def read(folder, channels, table=None, above="", **more):
+    """A record of some columns, loaded."""
+    table = table or {"t": TIME, "x": MOTION, "F": FORCE}
+    rows = "\n".join(",".join(f"{value:.17g}" for value in row) for row in zip(*table.values(), strict=True))
+    (folder / "run.csv").write_text(above + ",".join(table) + "\n" + rows + "\n")
+    content = {"records": [{"file": "run.csv", "channels": channels, **more.pop("record", {})}]}
+    (folder / "measurement.yaml").write_text(yaml.safe_dump({"system": "oscillator", **content, **more}))
+    return gd.load(folder / "measurement.yaml")
+
+
+def refused(folder, *arguments, **more):
+    try:
+        gd.identify(read(folder, *arguments, **more))
+    except gd.InputError as error:
+        return str(error)
+    pytest.fail("nothing was refused")
+
+
+def timed(unit, column="t"):
+    return {"time": {"column": column, "unit": unit}, "displacement": X}
+
+
+@pytest.mark.parametrize("said", ["us", "ms", "s"])
+def test_stamps_since_1970_tell_their_unit(said, tmp_path):
+    stamps = 1_772_366_400_000_000_000 + 1e9 * TIME
+    message = refused(tmp_path, timed(said), {"t": stamps, "x": MOTION})
+    assert f"channels.time.unit = '{said}'" in message
+    assert "beyond the year 2286; remedy: write unit: ns" in message
+
+
+def test_the_right_unit_of_such_stamps_is_read(tmp_path):
+    table = {"t": 1_772_366_400_000_000_000 + 1e9 * TIME, "x": MOTION}
+    (record,) = read(tmp_path, timed("ns"), table).records
+    assert record.sampling_rate == pytest.approx(200.0, rel=1e-3)
+
+
+@pytest.mark.parametrize(("name", "is_refused"), [("seconds_elapsed", True), ("milliseconds", False)])
+def test_a_name_that_says_seconds_is_heeded(name, is_refused, tmp_path):
+    table = {name: TIME, "x": MOTION}
+    if is_refused:
+        assert "the column is named 'seconds_elapsed'; remedy: write unit: s" in refused(
+            tmp_path, timed("ms", name), table
+        )
+    else:
+        assert read(tmp_path, timed("ms", name), table).records[0].sampling_rate == pytest.approx(2e5)
+
+
+def test_a_step_above_the_table_beside_another_rate_is_said(tmp_path):
+    channels, table = {"sampling_rate": "400 Hz", "displacement": X}, {"x": MOTION, "F": FORCE}
+    (record,) = read(tmp_path, channels, table, "Delta_X,0.005\n").records
+    said = [finding.message for finding in record.findings if finding.kind == "rate_conflict"]
+    assert said == ["'Delta_X' beside the table says 200 Hz and sampling_rate says 400 Hz, which was used; correct the "
+                    "one that is wrong, or give the column as time"]  # fmt: skip
+    (record,) = read(tmp_path, channels | {"sampling_rate": "200 Hz"}, table, "Delta_X,0.005\n").records
+    assert "rate_conflict" not in {finding.kind for finding in record.findings}
+
+
+def test_a_segment_below_a_sample_is_refused(tmp_path):
+    message = refused(tmp_path, timed("s"), segments="1 ms")
+    assert "segments = '0.001 s': is shorter than the time to the next sample at 200 Hz" in message
+
+
+def test_a_force_is_given_once(tmp_path):
+    message = refused(tmp_path, timed("s") | {"force": F}, record={"conditions": {"force": "3 N"}})
+    assert "conditions.force: the force is given under channels too" in message
+
+
+def test_a_force_is_no_motion(tmp_path):
+    message = refused(tmp_path, timed("s") | {"force": {"column": "x", "unit": "N"}})
+    assert "channels.displacement.column: is the column of channels.force too" in message
+
+
+@pytest.mark.parametrize(("noise", "is_refused"), [("5 m", True), ("1.5 mm", False)])
+def test_a_stated_noise_lies_below_what_it_is_the_noise_of(noise, is_refused, tmp_path):
+    channels = timed("s") | {"displacement": X | {"noise": noise}}
+    if is_refused:
+        assert "its stated noise, 5000 mm, is more than all that it shows, 0.9" in refused(tmp_path, channels)
+    else:
+        assert gd.identify(read(tmp_path, channels)).content["converged"]
+
+
+def test_a_clock_is_no_motion(tmp_path):
+    message = refused(tmp_path, timed("s") | {"displacement": {"column": "t", "unit": "mm"}})
+    assert "the displacement is a straight line, as a clock or a counter: name another column" in message
+
+
+@pytest.mark.parametrize(
+    ("stated", "said"),
+    [("-2 mm/s^2/N", "comes out at 2"), ("2 m/s^2/N", "and the file states 2000"), ("3 mm/s^2/N", None)],
+)
+def test_a_gain_far_from_the_stated_one_is_said(stated, said, tmp_path):
+    """x'' + 1.2 x' + 630 x = 2 F, integrated by its transfer function."""
+    from scipy.signal import lsim
+
+    force = np.random.default_rng(3).normal(size=len(TIME)).cumsum()
+    motion = lsim(([2.0], [1.0, 1.2, 630.0]), force, TIME)[1]
+    channels, table = timed("s") | {"force": F}, {"t": TIME, "x": motion, "F": force}
+    found = gd.identify(read(tmp_path, channels, table, parameters={"force_gain": stated}))
+    assert found.content["parameters"]["force_gain"]["value"] == pytest.approx(2.0, rel=0.02)
+    assert (said is None) == (found.content["contradicted"] is None)
+    assert said is None or (said in found.content["contradicted"] and found.content["contradicted"] in found.table())
+
+
+@pytest.mark.parametrize("given", ["list", "pattern"])
+def test_several_files_are_several_records(given, tmp_path):
+    for k in (1, 2):
+        (tmp_path / f"part_{k}.csv").write_text("t,x\n0,1\n")
+    file = {"list": ["part_1.csv", "part_2.csv"], "pattern": "part_*.csv"}[given]
+    message = refused(tmp_path, timed("s"), record={"file": file})
+    assert "a record has one file" in message
+    assert "make each file a record of its own" in message
+    assert given == "list" or "part_1.csv, part_2.csv" in message
+
+
+def test_a_folder_and_a_measurement_are_no_paths_of_a_yaml(tmp_path):
+    measurement = read(tmp_path, timed("s"))
+    with pytest.raises(gd.InputError, match=r"is a folder, no file; remedy: give the path of a measurement.yaml, as "):
+        gd.load(tmp_path)
+    with pytest.raises(gd.InputError, match="must be a path, and is a Measurement"):
+        gd.load(measurement)
+
+
+@pytest.mark.parametrize(
+    ("text", "column", "said"),
+    [
+        ("pot:606\npot:607\n" * 40, 0, "a name stands before every value, as in 'pot:607'"),
+        ("0.1 -> 606\n0.2 -> 607\n" * 40, 1, "not a number, and no other of its 80 cells is one; remedy: name another"),
+        ("t id\n" + "0.1 1 Rx 07 D0\n0.2 7 Rx 01\n" * 40, 0, "a log of messages by turns, as of a CAN bus, is none"),
+    ],
+)
+def test_logs_that_are_no_tables_say_what_they_are(text, column, said, tmp_path):
+    (tmp_path / "log.txt").write_text(text)
+    channels = {"sampling_rate": "10 Hz", "displacement": {"column": column, "unit": "mm"}}
+    assert said in refused(tmp_path, channels, record={"file": "log.txt"})
+
+
+def test_a_column_that_ends_before_the_others_has_another_time(tmp_path):
+    rows = "\n".join(f"{t:g},{x:g},{x if k < 100 else ''}" for k, (t, x) in enumerate(zip(TIME, MOTION, strict=True)))
+    (tmp_path / "two.csv").write_text("t,x,slow\n" + rows + "\n")
+    channels = timed("s") | {"displacement": {"column": "slow", "unit": "mm"}}
+    message = refused(tmp_path, channels, record={"file": "two.csv"})
+    assert "its cells end behind row 99 of 400; remedy: where it was sampled at another rate, give the" in message
+
+
+def test_two_levels_are_no_counts(tmp_path):
+    rows = "\n".join(f"{k / 1000:g},{k % 2},{k // 2 % 2}" for k in range(400))
+    (tmp_path / "edges.csv").write_text("t,A,B\n" + rows + "\n")
+    parameters = {"n_teeth_pinion": 20, "n_teeth_gear": 40, "module": "3 mm", "pressure_angle": "20 deg"}
+    record = {
+        "file": "edges.csv", "channels": {"time": {"column": "t", "unit": "s"}},
+        "encoders": {name: {"column": c, "counts_per_revolution": 200} for name, c in (("pinion", "A"), ("gear", "B"))},
+        "conditions": {"pinion_torque": "60 N*m", "gear_torque": "balanced"},
+    }  # fmt: skip
+    content = {"system": "gear_pair", "parameters": parameters, "records": [record]}
+    (tmp_path / "measurement.yaml").write_text(yaml.safe_dump(content))
+    with pytest.raises(gd.InputError, match="goes to and fro between 0 and 1: the levels of pulses, and no counts"):
+        gd.load(tmp_path / "measurement.yaml")
+
+
+def test_a_unit_in_another_case_is_known_by_its_letters():
+    from gear_damping.units import parse_unit
+
+    with pytest.raises(gd.InputError, match="unknown unit 'Sec'; remedy: did you mean 's'"):
+        parse_unit("Sec")
