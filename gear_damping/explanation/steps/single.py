@@ -69,9 +69,13 @@ def _first_fits(state: State) -> tuple[Refit, ...]:
 
 
 def _promises_all(state: State) -> bool:
-    """Whether an effect promises beside the nominal model to take nearly all that is left beyond the noise."""
+    """Whether an effect promises beside the nominal model to take nearly all that is left beyond the noise.
+
+    What tells teeth apart promises as much of anything that has orders of their shaft.
+    """
     bench, nominal = state.bench, state.nominal
-    most = max((score.gain for score in state.first_scores), default=0.0)
+    laws = [score.gain for score in state.first_scores if not score.candidate.tells_teeth_apart]
+    most = max(laws, default=0.0)
     return most * nominal.fitted.cost >= bench.settings.taken_by_all * bench.beyond_noise(nominal)
 
 
@@ -81,10 +85,12 @@ def _rivals_from_the_shape(fits: Sequence[Refit], state: State) -> list[Refit]:
     Before the shape was fitted a law of the stiffness, which changes what every harmonic does, may lead too far.
     """
     bench, scores = state.bench, best_by_effect(state.first_scores)
-    ended = {fit.name for fit in fits if fit.outcome.fitted.converged}
+    unended = {fit.name for fit in fits} - {fit.name for fit in fits if fit.outcome.fitted.converged}
     least = bench.settings.rival_share * max((score.gain for score in scores.values()), default=0.0)
-    waiting = [score for name, score in scores.items() if name not in ended and score.gain >= least]
-    return list(bench.full_fits(waiting, state.nominal, state.nominal)) if _best(fits, state) else []
+    waiting = [score for name, score in scores.items() if name in unended and score.gain >= least]
+    if not waiting or _best(fits, state) is None:
+        return []
+    return list(bench.full_fits(waiting, state.nominal, state.nominal))
 
 
 def _from_what_is_stated(fits: Sequence[Refit], state: State) -> list[Refit]:
