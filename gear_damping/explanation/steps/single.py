@@ -54,17 +54,19 @@ def _first_fits(state: State) -> tuple[Refit, ...]:
         if _best(fits, state):
             return tuple(fits)
     is_bent = state.current.misfit >= bench.settings.bent_misfit and not _promises_all(state)
+    is_shaped = False
     for place in (_unshaped, _shaped) if is_bent else (_shaped, _unshaped):
         carried_on = place(state)
         if carried_on is None:
             continue
+        is_shaped = is_shaped or carried_on[0] is state.nominal
         fits += bench.full_fits(carried_on[1], carried_on[0], state.nominal)
         fits = _from_the_best(fits, state)
         fits.sort(key=lambda fit: fit.outcome.left_out_cost)
         if _best(fits, state):
             break
     fits += [] if is_parted else _from_what_is_stated(fits, state)
-    fits += _rivals_from_the_shape(fits, state) if is_bent else []
+    fits += _rivals_from_the_shape(fits, state) if is_bent and not is_shaped else []
     return tuple(sorted(fits, key=lambda fit: fit.outcome.left_out_cost))
 
 
