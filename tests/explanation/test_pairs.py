@@ -9,6 +9,7 @@ import torch
 
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import State
+from gear_damping.explanation.steps import pairs as steps
 from gear_damping.explanation.steps.pairs import Pair, _accepted
 from gear_damping.explanation.trials.bench import Bench
 from gear_damping.explanation.trials.refit import Refit
@@ -69,5 +70,29 @@ def test_a_pair_at_a_bound_is_the_last_choice(best_is_inside, t, taken):
     pairs = [pair(0.10) if best_is_inside else pair(0.10, b_share=1.0), pair(0.15, t=t)]
     leaves = [(each.second.outcome, left(100 * each.second.outcome.left_out_cost)) for each in pairs]
     state = State(bench(SearchSettings(), leaves), outcome(), outcome())
-    with patch.object(Bench, "is_as_good", lambda *_: False):
+    with patch.object(Bench, "is_as_good", lambda *_: False), patch.object(steps, "_is_told", lambda *_: True):
         assert _accepted(pairs, left(100.0), state) is pairs[taken]
+
+
+@pytest.mark.parametrize(("told", "taken"), [((True, True), 0), ((False, True), 1), ((False, False), 0)])
+def test_a_pair_with_a_law_of_no_known_size_takes_the_place_of_none_that_is_told(told, taken):
+    """Such a law would be dropped, and the other one of the pair stay alone; where none is told the best stands."""
+    pairs = [pair(0.10), pair(0.15)]
+    leaves = [(each.second.outcome, left(100 * each.second.outcome.left_out_cost)) for each in pairs]
+    state = State(bench(SearchSettings(), leaves), outcome(), outcome())
+    of = {id(each): one for each, one in zip(pairs, told, strict=True)}
+    with (
+        patch.object(Bench, "is_as_good", lambda *_: False),
+        patch.object(steps, "_is_told", lambda each, _: of[id(each)]),
+    ):
+        assert _accepted(pairs, left(100.0), state) is pairs[taken]
+
+
+@pytest.mark.parametrize(("first", "second", "finite"), [(True, True, True), (False, True, True), (True, True, False)])
+def test_a_pair_is_told_where_both_of_its_effects_are(first, second, finite):
+    made = pair(0.1)
+    made.second.outcome.is_finite = finite
+    sizes = {"a": first, "b": second}
+    with patch.object(steps, "is_told", lambda outcome, fit, evidence: sizes[fit.name]):
+        state = State(bench(SearchSettings()), outcome(), outcome())
+        assert steps._is_told(made, state) is (first and second and finite)

@@ -69,7 +69,7 @@ def test_what_is_tried_as_a_whole_needs_a_size_where_the_size_does_something(mov
         fitted=SimpleNamespace(shared=torch.zeros(1), prediction=SimpleNamespace(sensitivity=sensitivity)),
     )
     covariances = torch.full((1, 1), (half / 1.96) ** 2, dtype=torch.float64)
-    monkeypatch.setattr("gear_damping.explanation.steps.told.covariance_of", lambda *_: covariances)
+    monkeypatch.setattr("gear_damping.explanation.trials.told_size.covariance_of", lambda *_: covariances)
     common = SimpleNamespace(common=[parameter])
     candidate = SimpleNamespace(non_nested=True, strengths=[0], hypothesis=common, replaced=())
     refit = SimpleNamespace(score=SimpleNamespace(candidate=candidate), name="second_mode")
@@ -87,7 +87,7 @@ def test_what_took_the_place_of_a_spring_needs_a_shape_of_its_own(moved, half, e
         fitted=SimpleNamespace(shared=torch.zeros(2), prediction=SimpleNamespace(sensitivity=sensitivity)),
     )
     covariances = torch.diag(torch.tensor([1e-4, (half / 1.96) ** 2], dtype=torch.float64))
-    monkeypatch.setattr("gear_damping.explanation.steps.told.covariance_of", lambda *_: covariances)
+    monkeypatch.setattr("gear_damping.explanation.trials.told_size.covariance_of", lambda *_: covariances)
     candidate = SimpleNamespace(
         non_nested=True, strengths=[0], hypothesis=SimpleNamespace(common=free), replaced=("stiffness",)
     )

@@ -9,6 +9,7 @@ from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.state import Accepted, State
 from gear_damping.explanation.trials.refit import Refit
 from gear_damping.explanation.trials.score import best_by_effect
+from gear_damping.explanation.trials.told_size import is_told
 
 PAIRS, PAIR = "pairs of effects", 2  # what a budget refuses; effects in a pair
 
@@ -109,7 +110,8 @@ def _accepted(pairs: Sequence[Pair], current: Excess, state: State) -> Pair | No
     """The best pair that is validated, or of those that do as well the smallest; None without one.
 
     A law of which a part has run into a bound bends to what it is not: a pair with such a one is the last choice, and
-    takes no other's place.
+    takes no other's place. Nor is one the choice of which the records do not tell the size, where others are told: it
+    would be dropped, and the other effect of the pair stay alone.
     """
     bench, settings = state.bench, state.bench.settings
 
@@ -118,11 +120,19 @@ def _accepted(pairs: Sequence[Pair], current: Excess, state: State) -> Pair | No
 
     worth = [pair for pair in pairs if pair.second.t > settings.accepted_t and takes(pair) >= settings.least_share]
     worth = [pair for pair in worth if pair.is_inside] or [pair for pair in worth if not pair.replaces]
-    best = min(worth, key=lambda pair: pair.second.outcome.left_out_cost, default=None)
-    if best is None:
+    worth = sorted(worth, key=lambda pair: pair.second.outcome.left_out_cost)
+    worth = [pair for pair in worth if _is_told(pair, state)] or worth
+    if not worth:
         return None
+    best = worth[0]
     alike = [pair for pair in worth if bench.is_as_good(pair.second.outcome, best.second.outcome)]
     return min([best, *alike], key=lambda pair: len(pair.second.outcome.hypothesis.free))
+
+
+def _is_told(pair: Pair, state: State) -> bool:
+    """Whether the records tell the sizes of both effects from none."""
+    outcome = pair.second.outcome
+    return outcome.is_finite and all(is_told(outcome, fit, state.bench.evidence) for fit in (pair.first, pair.second))
 
 
 def _bases(fits: Sequence[Refit], state: State) -> list[Refit]:

@@ -1,25 +1,11 @@
-"""Whether the records tell the size of a cause from none.
-
-A law that bends to what another leaves may lower the cost while its own size is anybody's guess.
-"""
+"""Causes whose size the records do not tell from none are dropped."""
 
 from dataclasses import replace
 
-import torch
-from scipy.stats import chi2
-from torch import Tensor
-
 from gear_damping.explanation.evidence.excess import is_all
-from gear_damping.explanation.evidence.records import Evidence
-from gear_damping.explanation.model.covariance import CORRELATED_PERIODS, SILENT, covariance_of
-from gear_damping.explanation.model.hypothesis import Outcome, time_scale
+from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.state import Accepted, State
-from gear_damping.explanation.trials.refit import Refit
-from gear_damping.identification.output_error.normal_equations import nuisance_basis, project_out
-from gear_damping.identification.output_error.uncertainty import QUANTILE, long_run
-
-WITHIN = 1.0  # of a logarithm: the half of its 95 % interval, beyond which no size is known
-INDEPENDENT = 1e-3  # of the largest singular value: less is a direction in which strengths do nothing but rounding
+from gear_damping.explanation.trials.told_size import is_told
 
 
 def told(state: State) -> State:
@@ -58,84 +44,3 @@ def _untold(state: State) -> tuple[Accepted, Outcome] | None:
 def _explain_all(state: State) -> bool:
     """Whether causes leave nothing that is worth another."""
     return is_all(state.current, state.first, state.bench.settings)
-
-
-def is_told(outcome: Outcome, refit: Refit, evidence: Evidence) -> bool:
-    """Whether the strengths of a cause are told from none, together and, where each does something, one at least alone.
-
-    A Wald test along the strengths that were found: what they change of the prediction, everything else that is free
-    projected out, against what coloured residuals would do in its direction. The shape of the cause (an exponent, a
-    width) is taken as it was found: beside it a strength may be any and the law still be certain.
-
-    Args:
-        outcome: The model with the cause.
-        refit: The fit with which the cause was accepted.
-        evidence: The records.
-    """
-    candidate = refit.score.candidate
-    neutral = {candidate.hypothesis.common[i].name: candidate.hypothesis.common[i].start for i in candidate.strengths}
-    problem, shared = outcome.problem, outcome.fitted.shared
-    places = [i for i, parameter in enumerate(problem.free) if parameter.name in neutral]
-    if not places:
-        return True
-    if candidate.non_nested:
-        shape = [i for i, p in enumerate(problem.free) if p.name.startswith(f"{refit.name}.") and i not in places]
-        return _are_sized(outcome, places, shape if candidate.replaced else [], evidence)
-    away = [float(problem.free[i].value(shared[i])) - neutral[problem.free[i].name] for i in places]
-    free = [problem.free[i] for i in places]
-    size = torch.tensor([1.0 if p.logarithmic else a / p.scale for p, a in zip(free, away, strict=True)])
-    size = size.to(torch.float64)
-    columns = _orthogonal_columns(outcome, places, refit.name)
-    singular_values = torch.linalg.svdvals(columns / columns.norm(dim=0).clamp(min=1e-300))
-    rank = int((singular_values > INDEPENDENT * singular_values[0]).sum())
-    seconds = CORRELATED_PERIODS * time_scale(outcome.hypothesis, evidence)
-    lags = [round(seconds * record.sampling_rate) for record in problem.records]
-    if _statistic(outcome, columns @ size, lags) < float(chi2.ppf(1 - evidence.settings.told_level, max(rank, 1))):
-        return False
-    if rank < len(places):
-        return True
-    each = range(len(places))
-    alone = [_without(columns[:, [k]], columns[:, [o for o in each if o != k]])[:, 0] * size[k] for k in each]
-    limit = float(chi2.ppf(1 - evidence.settings.told_alone_level, 1))
-    return max(_statistic(outcome, column, lags) for column in alone) > limit
-
-
-def _are_sized(outcome: Outcome, places: list[int], shape: list[int], evidence: Evidence) -> bool:
-    """Whether the sizes of what is tried as a whole are known at all, each within a factor.
-
-    There is no none of it to compare with: an absorber without mass, a stop out of reach, a stiff bearing are at the
-    end of a logarithm. What a size does not move any more (a gap whose far flank is never touched) is no size. What
-    took the place of a linear spring is that spring again where nothing of its `shape` (a length) does anything.
-    """
-    singular_values, free = covariance_of(outcome, evidence), outcome.problem.free
-    half = QUANTILE * singular_values.diagonal().clamp(min=0).sqrt()
-    columns = outcome.fitted.prediction.sensitivity.unbind(-1)
-    moves = [float(column.norm()) >= SILENT * evidence.noise for column in columns]
-    if shape and not any(moves[i] and half[i] <= WITHIN for i in shape):
-        return False
-    return not any(free[i].logarithmic and moves[i] and half[i] > WITHIN for i in places)
-
-
-def _orthogonal_columns(outcome: Outcome, places: list[int], cause: str) -> Tensor:
-    """What the strengths change, (samples, strengths), all that is free but the cause's own shape projected out."""
-    problem, sensitivity = outcome.problem, outcome.fitted.prediction.sensitivity[0]
-    orthogonal = project_out(
-        sensitivity[..., : problem.n_shared], nuisance_basis(sensitivity, problem.n_shared)
-    ).flatten(0, 1)
-    others = [i for i, p in enumerate(problem.free) if i not in places and not p.name.startswith(cause + ".")]
-    return _without(orthogonal[:, places], orthogonal[:, others])
-
-
-def _without(columns: Tensor, others: Tensor) -> Tensor:
-    """Columns (samples, n) without what other ones (samples, m) could do."""
-    return project_out(columns, torch.linalg.qr(others / others.norm(dim=0).clamp(min=1e-300)).Q)
-
-
-def _statistic(outcome: Outcome, change: Tensor, lags: list[int]) -> float:
-    """Square of the energy of a change over the variance of its product with the residuals; coloured or white."""
-    residual = outcome.fitted.prediction.residual[0]
-    products = (change.reshape(residual.shape) * residual).unsqueeze(-1)
-    coloured = sum(float(long_run(one, lag)) for one, lag in zip(products, lags, strict=True))
-    energy = float(change.square().sum())
-    white = energy * float(residual.square().sum()) / max(float((outcome.problem.response.weights > 0).sum()), 1.0)
-    return energy**2 / max(coloured, white, 1e-300)

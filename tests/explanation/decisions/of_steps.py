@@ -9,9 +9,10 @@ import torch
 from gear_damping.explanation import search
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import State
-from gear_damping.explanation.steps import faint, pairs, single, told
+from gear_damping.explanation.steps import faint, pairs, single
 from gear_damping.explanation.steps.judge import CONSISTENT, EXPLAINED, PARTLY, UNEXPLAINED, Known, verdict
 from gear_damping.explanation.trials import bench as benches
+from gear_damping.explanation.trials import told_size
 from tests.explanation.decisions.declared import decides
 from tests.explanation.decisions.made_up import NAMES, bench, fit, left, outcome, scored
 
@@ -143,10 +144,10 @@ def size_is_told(sizes: list[float], apart: float, settings: SearchSettings) -> 
     candidate = SimpleNamespace(non_nested=False, strengths=range(count), hypothesis=SimpleNamespace(common=free))
     refit = SimpleNamespace(name="a", score=SimpleNamespace(candidate=candidate))
     with (
-        patch.object(told, "_orthogonal_columns", lambda *_: columns),
-        patch.object(told, "time_scale", lambda *_: 0.0),
+        patch.object(told_size, "_orthogonal_columns", lambda *_: columns),
+        patch.object(told_size, "time_scale", lambda *_: 0.0),
     ):
-        return told.is_told(model, refit, SimpleNamespace(settings=settings, noise=1.0))
+        return told_size.is_told(model, refit, SimpleNamespace(settings=settings, noise=1.0))
 
 
 def _turned(axes: torch.Tensor, cosine: float) -> torch.Tensor:
