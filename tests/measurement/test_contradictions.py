@@ -138,6 +138,7 @@ def test_a_folder_and_a_measurement_are_no_paths_of_a_yaml(tmp_path):
     ("text", "column", "said"),
     [
         ("pot:606\npot:607\n" * 40, 0, "a name stands before every value, as in 'pot:607'"),
+        ("t,x\n" + "2026-03-01T12:00:01,on\n2026-03-01T12:00:02,off\n" * 40, 1, "a header and no rows of numbers"),
         ("0.1 -> 606\n0.2 -> 607\n" * 40, 1, "not a number, and no other of its 80 cells is one; remedy: name another"),
         ("t id\n" + "0.1 1 Rx 07 D0\n0.2 7 Rx 01\n" * 40, 0, "a log of messages by turns, as of a CAN bus, is none"),
     ],

@@ -6,6 +6,7 @@ from itertools import islice
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.formats.header import Header, filled, find_header
+from gear_damping.measurement.formats.moments import is_told
 from gear_damping.measurement.formats.number_texts import is_absent, is_number, is_written
 from gear_damping.measurement.formats.text_lines import HEAD, Text
 
@@ -64,7 +65,7 @@ def text_header(text: Text) -> tuple[Header, int]:
 
 def _labelled(row: list[str]) -> str | None:
     """The first cell of a row that holds a name and its value, `pot:612`, as a serial plotter is sent them."""
-    return next((cell.strip() for cell in row if _LABELLED.search(cell)), None)
+    return next((cell.strip() for cell in row if _LABELLED.search(cell) and not is_told(cell)), None)
 
 
 def _are_rows_numbered(rows: list[list[str]], width: int) -> bool:
