@@ -25,7 +25,7 @@ from gear_damping.measurement.timebase import written_on_change
 WHOLE_SPEEDS = ("pinion_speed", "gear_speed")  # hold the rotation, beside which what is fitted is little
 NEVER_STRAIGHT = ("displacement", "transmission_error", "acceleration")  # a speed may rise evenly
 STRAIGHT, FEWEST_OF_A_LINE = 1e-6, 16  # of its range; samples: fewer steps of a converter may lie on a line
-MOST_NOISE = 2.0  # times what a channel holds: noise alone is once that, and is estimated to a few per cent
+MOST_NOISE = 30.0  # times what a channel holds: no guess of a noise is so far off, and a wrong unit is 1000 times
 LARGEST_TRANSMISSION_ERROR = 1e-3  # m; a gear pair deflects by micrometres
 SPEED_TOLERANCE = 0.02  # of a stated speed: about the slip of an induction motor
 _COARSE = 50  # parts of a record in which a shaft is seen to advance

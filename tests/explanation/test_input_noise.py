@@ -124,3 +124,17 @@ def test_a_gear_pair_is_driven_by_torques_without_noise_unless_it_moves_with_it(
     assert found.nominal is (before if moves else after)
     assert found.evidence.fit[0] is (record if moves else quiet)
     assert found.evidence.input_noise is not moves
+
+
+@pytest.mark.parametrize(
+    ("loud", "quiet", "is_quiet"), [(True, False, False), (False, True, True), (False, False, False)]
+)
+def test_a_model_that_runs_away_is_compared_with_none(loud, quiet, is_quiet, monkeypatch):
+    """What residuals without an end would give is no comparison, and a warning of numpy."""
+    measured, cleaned = SimpleNamespace(), SimpleNamespace()
+    fitted = {id(measured): SimpleNamespace(is_finite=loud), id(cleaned): SimpleNamespace(is_finite=quiet)}
+    monkeypatch.setattr(calibrate, "_oscillator", lambda one, _: fitted[id(one)])
+    monkeypatch.setattr(calibrate, "_with_quiet_loads", lambda _: cleaned)
+    monkeypatch.setattr(calibrate, "moves_with_noise", lambda *_: pytest.fail("compared"))
+    found = calibrate.NOMINAL[Trait.REST](measured, None)
+    assert (found.evidence is cleaned) == is_quiet

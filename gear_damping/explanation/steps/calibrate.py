@@ -110,6 +110,8 @@ def _oscillator_calibrated(evidence: Evidence, solver: Solver | None) -> Calibra
     if cleaned is None:
         return found
     quiet = Calibration(cleaned, _oscillator(cleaned, solver))
+    if not (found.nominal.is_finite and quiet.nominal.is_finite):  # one that runs away is compared with nothing
+        return quiet if quiet.nominal.is_finite else found
     return found if moves_with_noise(found.nominal, quiet.nominal, cleaned) else quiet
 
 
