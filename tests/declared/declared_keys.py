@@ -10,7 +10,8 @@ from gear_damping.schema.values import Flag, Number, OneOf, Text, Value
 Key = tuple[tuple[str, ...], Value, str]
 OTHER_UNIT = {"m": "mm", "N*m": "mN*m", "rad": "mrad", "rad/s": "mrad/s", "m/s^2": "mm/s^2", "s": "min", "Hz": "1/min",
               "V": "mV", "kg*m^2": "kg*mm^2", "kg": "gram", "1": "%", "1/s^2": "1/ms^2", "1/s": "1/ms",
-              "m/s": "mm/s", "mm/s": "m/s", "N": "mN", "m/s^2/N": "mm/s^2/N", "mm": "m", "mN*m": "N*m", "N/m": "N/mm"}  # fmt: skip
+              "m/s": "mm/s", "mm/s": "m/s", "N": "mN", "m/s^2/N": "mm/s^2/N", "mm": "m", "mN*m": "N*m",
+              "N/m": "N/mm"}  # fmt: skip
 OTHER_COLUMN = {"wave": "tide", "ts": "t", "t": "ts", "pulses": "marks", "back_pulses": "marks"}
 
 
