@@ -83,11 +83,13 @@ class FileClocks:
                 if own and abs(rate / own - 1) <= RATE_TOLERANCE:
                     return ()
                 found += [(index, own)] if own else []
-        stated = self.table.stated_rate
-        if not found and stated and abs(rate / stated[1] - 1) > RATE_TOLERANCE:
-            return (_rate_conflict(rate, f"'{stated[0]}' beside the table says", stated[1]),)
-        where = (f"the stamps of column '{self.table.names[index]}' run at" for index, _ in found)
-        return tuple(_rate_conflict(rate, said, own) for said, (_, own) in zip(where, found[:1], strict=False))
+        if found:
+            index, own = found[0]
+            return (_rate_conflict(rate, f"the stamps of column '{self.table.names[index]}' run at", own),)
+        name, stated = self.table.stated_rate or ("", rate)
+        if abs(rate / stated - 1) <= RATE_TOLERANCE:
+            return ()
+        return (_rate_conflict(rate, f"'{name}' beside the table says", stated),)
 
     def lost_numbers(self, first: int, stop: int) -> tuple[Finding, ...]:
         """A finding where a column that counts the samples, and that no channel uses, leaves numbers out."""

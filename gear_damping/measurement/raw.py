@@ -332,18 +332,18 @@ class RawReader:
         return base
 
     def _stamped(self, timing: TimePlan, key: str, read: ReadColumn, first: int) -> TimeBase:
-        stamps = read(timing.column, key)
-        self._refuse_other_unit(timing, key, float(stamps[0]) if stamps.size else 0.0)
-        return stamped_time(stamps * self._in_seconds(timing, key), self._named(key, timing.column), self.file, first)
+        stamps, one = read(timing.column, key), self._in_seconds(timing, key)
+        self._refuse_other_unit(timing, key, float(stamps[0]) if stamps.size else 0.0, one)
+        return stamped_time(stamps * one, self._named(key, timing.column), self.file, first)
 
-    def _refuse_other_unit(self, timing: TimePlan, key: str, first: float) -> None:
-        """Refuse a unit of stamps that their first one, or the name of their column, contradicts."""
+    def _refuse_other_unit(self, timing: TimePlan, key: str, first: float, one: float) -> None:
+        """Refuse a unit of stamps, of `one` s, that their first one or the name of their column contradicts."""
         if timing.unit is None:
             return
         name, said = self.table.names[self.table.index(timing.column, key)], timing.unit
-        finer = finer_than_said(first, said)
+        finer = finer_than_said(first, one)
         rule = f"in {said} from 1970 on, stamps of {first:.6g} lie beyond the year 2286"
-        if finer is None and seconds_by_name(name) and to_si(1.0, said, "s") < 1:
+        if finer is None and seconds_by_name(name) and one < 1:
             finer, rule = "s", f"the column is named '{name}'"
         if finer is not None:
             remedy = f"write unit: {finer}, or give sampling_rate instead of the time column"

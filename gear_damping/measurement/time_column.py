@@ -95,14 +95,14 @@ def counts_from_1970(values: NDArray[np.float64]) -> bool:
     return bool(inside and np.all(np.diff(values) >= 0) and values[-1] > values[0])
 
 
-def finer_than_said(first: float, unit: str) -> str | None:
+def finer_than_said(first: float, one: float) -> str | None:
     """The unit of stamps that count from 1970, where with the one that is said they would begin beyond the year 2286.
 
     Args:
         first: The first stamp, in the unit that is said.
-        unit: A unit of time.
+        one: That unit in s.
     """
-    if first * to_si(1.0, unit, "s") < _EPOCHS[0][1]:
+    if first * one < _EPOCHS[0][1]:
         return None
     return next((other for low, high, other in _EPOCHS if low < first < high), None)
 
