@@ -10,6 +10,10 @@ class UnsuitedRecord(ValueError):
     """An estimator cannot say anything of this record; the message gives the reason, and what would suit."""
 
 
+class UndyingMotion(UnsuitedRecord):
+    """What swings most in this record does not die away: no ring-down."""
+
+
 @dataclass(frozen=True, eq=False)
 class DampingCurve:
     """The damping ratio against the amplitude of vibration, from the largest amplitude to the smallest.

@@ -8,9 +8,9 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
-from scipy.optimize import least_squares
+from scipy.optimize import isotonic_regression, least_squares
 
-from gear_damping.identification.damping_estimate import UnsuitedRecord
+from gear_damping.identification.damping_estimate import UndyingMotion, UnsuitedRecord
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.measurement.spectral_floor import spectrum_of
 from gear_damping.signals.wavelets.morlet import MorletCWT
@@ -30,6 +30,7 @@ LONGEST_DRIVE = 0.9  # of the record: a force that is on for longer leaves no fr
 FALLS, QUICKEST = (0.02, 0.1, 0.3), 3.0  # decay rates over the frequency in rad/s: where a fit begins, and the most
 READ_PER_PERIOD = 20.0  # samples of a period that tell roughly how quickly it falls: more only take time
 STAGES = 8  # of a record, each of which swings more than the one before where it grows: noise before a release does not
+FALLING = 0.5  # of what ln(amplitude) varies by, that falls: a decay does not rise and fall as much again
 LEAST_FALL = 0.1  # nepers over a record: what falls less is a line that goes on, or tells no damping
 
 
@@ -251,13 +252,26 @@ def _stretch(found: FreeVibration) -> FreeVibration:
             f"nothing swings freely for {FEWEST_PERIODS:g} periods of {found.frequency_hz:.4g} Hz above the noise: "
             "record a ring-down from a larger amplitude"
         )
-    fall = -np.polynomial.Polynomial.fit(np.arange(end - begin), np.log(amplitude[begin:end]), 1).convert().coef[1]
+    log_size = np.log(amplitude[begin:end])
+    if _falling_share(log_size) < FALLING:
+        raise UndyingMotion(
+            f"what swings most in it, at {found.frequency_hz:.4g} Hz, grows again and again: something that was not "
+            "measured drives it. Give its ring-down (by `slice`), or the force; without either, task=explain on long "
+            "records tells a random load"
+        )
+    fall = -np.polynomial.Polynomial.fit(np.arange(end - begin), log_size, 1).convert().coef[1]
     if fall * (end - begin) < LEAST_FALL:
-        raise UnsuitedRecord(
+        raise UndyingMotion(
             f"what swings most in it, at {found.frequency_hz:.4g} Hz, does not die away: a line, or too short a record"
         )
     last = found.ends - found.values.size + end
     return FreeVibration(found.values[begin:end], found.sampling_rate, found.frequency_hz, found.noise, last)
+
+
+def _falling_share(log_size: Array) -> float:
+    """How much of the variance of ln(amplitude) the nearest curve that never rises takes."""
+    left = log_size - isotonic_regression(log_size, increasing=False).x
+    return 1 - float(left.var() / max(log_size.var(), np.finfo(float).tiny))
 
 
 def amplitude_of(found: FreeVibration, omega0: float) -> tuple[Array, float]:

@@ -99,7 +99,8 @@ def fit_record(record: Record, system: type[System], spring: bool = True) -> Fit
         inputs["pinion_angle"] = torch.as_tensor(between_steps(inputs["pinion_angle"].numpy()))
     uncertain = _uncertain(record)
     known = {name: quantity.value for name, quantity in record.conditions.items()}
-    if "pinion_speed" in record.channels and "pinion_angle" not in inputs:
+    is_standing = known.get("pinion_speed") == 0  # a measured speed is the vibration then
+    if "pinion_speed" in record.channels and "pinion_angle" not in inputs and not is_standing:
         speed = _input(record, record.channels["pinion_speed"])
         steady = steady_speed(speed)
         if steady is None:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.identification.cramer_rao import cramer_rao
-from gear_damping.interface.simulated import Simulation
+from gear_damping.interface.simulated import Simulation, refuse_rest
 from gear_damping.physics.damping_ratio import DAMPING_RATIO
 
 
@@ -37,10 +37,11 @@ def bound(
         samples: How many samples of the record are used; all where absent.
 
     Raises:
-        InputError: a name is unknown, or neither or both of noise and snr_db are given.
+        InputError: a name is unknown, nothing moves, or neither or both of noise and snr_db are given.
     """
     if (noise is None) == (snr_db is None):
         raise InputError(Problem("noise", "one of noise and snr_db is needed", noise, "for example snr_db=30"))
+    refuse_rest(runs.runs)
     response = runs.runs.response
     level = torch.tensor(noise, dtype=torch.float64) if snr_db is None else response.std(-1) * 10 ** (-snr_db / 20)
     found = cramer_rao(runs.runs, free, level, expected=expected, samples=samples)

@@ -22,7 +22,7 @@ from gear_damping.identification.observation import Known
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.seeding import seeded_generator
 from gear_damping.interface.estimator import ClassicalEstimator, Estimator, NetworkEstimator
-from gear_damping.interface.simulated import Simulation
+from gear_damping.interface.simulated import Simulation, refuse_rest
 from gear_damping.physics.damping_ratio import DAMPING_RATIO
 from gear_damping.reporting.evaluation import evaluation_figure, evaluation_table
 from gear_damping.simulation.runs import Runs
@@ -78,13 +78,14 @@ def evaluate(
         seed: Of the noise.
 
     Raises:
-        InputError: no estimator is named, or a network was trained on another kind of record.
+        InputError: no estimator is named, nothing moves, or a network was trained on another kind of record.
     """
     if not estimators:
         raise InputError(Problem("estimators", "none is named", {}, "for example {'mine': gd.load_estimator(PATH)}"))
     _require_alike(estimators, runs)
     signals = runs.runs.response
     levels = {}
+    refuse_rest(runs.runs)
     for snr in snr_db:
         noise = signals.std(-1, correction=0) * 10 ** (-snr / 20)
         drawn = torch.randn(signals.shape, generator=seeded_generator(seed, "noise", str(snr)), dtype=signals.dtype)

@@ -11,7 +11,7 @@ from gear_damping.explanation.answer.gain import damping_ratio, final_parameters
 from gear_damping.explanation.answer.unexplained import first_channel
 from gear_damping.explanation.casing.heard import is_casing
 from gear_damping.explanation.evidence.declared_units import radian_of
-from gear_damping.explanation.evidence.excess import excess
+from gear_damping.explanation.evidence.excess import WHOLE, Excess, excess
 from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.evidence.records import Evidence, evidence_of, with_own_angles
 from gear_damping.explanation.evidence.useful_samples import at_useful_rate
@@ -26,7 +26,7 @@ from gear_damping.explanation.trials.efficient import weighed
 from gear_damping.identification.oscillator.linear_model import DAMPING, linear_model
 from gear_damping.identification.output_error.least_squares import Rounds
 from gear_damping.identification.output_error.records import FitRecord
-from gear_damping.interface.far_from_stated import far_from_stated
+from gear_damping.interface.far_from_stated import contradicted, far_from_stated
 from gear_damping.interface.free_parameters import FLAT, free_parameters
 from gear_damping.interface.identified_page import MOST_PANELS, estimate_rows, panel, residual_rows
 from gear_damping.measurement.record import Measurement
@@ -39,6 +39,9 @@ from gear_damping.simulation.solver_settings import Solver
 SHOWN = ("mesh_stiffness_shape",)  # what is fitted in many numbers stands in the JSON alone
 MOTION = ("amplitude", "characteristic_time")  # of an oscillator: what damping ratios belong to, as the records move
 ITERATIONS = 40  # at most, of a fit of one's own model
+STEEL = 1.4e10  # N/m^2: mesh stiffness of steel teeth by their width (ISO 6336-1: 14 N/(mm um) of one pair)
+WIDTH = 10.0  # modules, of usual teeth
+SOFTEST, STIFFEST = 1e-3, 30.0  # times that: polymers are 100 times softer and often narrower; few teeth are wider
 
 
 @dataclass(frozen=True)
@@ -135,7 +138,7 @@ def content_of(measurement: Measurement, found: Fitted) -> dict[str, Any]:
     evidence, outcome = found.evidence, found.outcome
     unit, factor = evidence.channel.declared_unit, evidence.channel.declared_factor
     covariances = covariance_of(outcome, evidence)
-    left = excess(outcome.holdout, evidence.held, found.noise)
+    left = _missed(found)
     roles = {"fit": (evidence.fitted, outcome.fit_residuals), "holdout": (evidence.held, outcome.holdout)}
     return {
         "system": measurement.system,
@@ -163,6 +166,15 @@ def content_of(measurement: Measurement, found: Fitted) -> dict[str, Any]:
     }
 
 
+def _missed(found: Fitted) -> Excess:
+    """What is missed of the held-out records, or of the fitted ones where those hold nothing but noise."""
+    evidence, outcome = found.evidence, found.outcome
+    held = excess(outcome.holdout, evidence.held, found.noise)
+    if held.threshold < WHOLE:
+        return held
+    return excess(outcome.fit_residuals, evidence.fitted, found.noise)
+
+
 def table_of(content: dict[str, Any]) -> str:
     """The parameters with their intervals, and what is missing."""
     shown = {k: v for k, v in content["parameters"].items() if not k.startswith(SHOWN)}
@@ -174,7 +186,7 @@ def table_of(content: dict[str, Any]) -> str:
     if lacking["significant"]:
         text = (
             f"{text.rstrip()}\n\nlack of fit: the nominal simulation misses {lacking['excess_percent']:.3g} % of the "
-            f"held-out signal's variance beyond the noise, and the intervals do not cover what is missing; "
+            f"signal's variance beyond the noise, and the intervals do not cover what is missing; "
             f"task=explain measurement.path={lacking['source']} looks for its name\n"
         )
     said = filter(None, (text.rstrip(), content["contradicted"], content["too_short"]))
@@ -182,13 +194,32 @@ def table_of(content: dict[str, Any]) -> str:
 
 
 def _far_off(outcome: Outcome, evidence: Evidence) -> str | None:
-    """A stated mesh stiffness that the records put far away, as a torque in a wrong unit does."""
+    """What is stated and the records put far away, as they do with a mesh stiffness beside a torque in a wrong unit."""
+    stated = {FLAT.get(name, name): name for name in evidence.known.uncertainty}
+    if said := contradicted(outcome.problem.free, outcome.fitted.shared.tolist(), stated):
+        return said
+    if said := _unlike_steel(outcome, evidence):
+        return said
     pairs = {
         stated: (outcome.values[fitted], evidence.parameters[stated])
         for stated, fitted in (("mesh_stiffness_max", f"{MESH}.maximum"),)
         if stated in evidence.parameters and fitted in outcome.values
     }
     return far_from_stated(pairs, "unit and gain of the torque and of the response, and the value itself")
+
+
+def _unlike_steel(outcome: Outcome, evidence: Evidence) -> str | None:
+    """A mesh stiffness that no teeth of the stated module have, as with a module or an inertia in a wrong unit."""
+    module, found = evidence.parameters.get("module"), outcome.values.get(f"{MESH}.maximum")
+    if not module or found is None:
+        return None
+    usual = STEEL * WIDTH * module
+    if SOFTEST < found / usual < STIFFEST:
+        return None
+    return (
+        f"mesh_stiffness_max comes out at {found:.3g} N/m, and steel teeth of this module have some {usual:.2g} N/m: "
+        "check the units of module and inertias, and of the response"
+    )
 
 
 def figure_of(found: Fitted, content: dict[str, Any]) -> figures.Figure:

@@ -18,7 +18,7 @@ from gear_damping.identification.oscillator.fit import OscillatorFit, fit_oscill
 from gear_damping.identification.oscillator.linear_model import DAMPING
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import Segments
-from gear_damping.interface.far_from_stated import far_from_stated
+from gear_damping.interface.far_from_stated import contradicted, far_from_stated
 from gear_damping.interface.identified_page import MOST_PANELS, estimate_rows, panel, residual_rows
 from gear_damping.interface.lack_of_fit import lack_of_fit, sentence
 from gear_damping.measurement.record import Channel, Measurement
@@ -27,7 +27,6 @@ from gear_damping.simulation.solver_settings import Progress, Solver
 
 NEWTONS = ("N*s/m", "N/m")  # units of what is not per unit of mass
 STATED = ("force_gain", "stiffness")  # by the file, and fitted all the same
-CONTRADICTS = 5.0  # stated standard deviations: of one in two million statements that hold
 FOLLOWED = 50.0  # % of a signal, root mean square, that is left: an input late by a twelfth of a turn leaves as much
 MOST_SAMPLES = 200_000  # beyond which the test of what is random takes longer than the fit
 
@@ -99,7 +98,10 @@ def content_of(measurement: Measurement, fitted: Fitted) -> dict[str, Any]:
         "differing": differs,
         "undamped": undamped,
         "not_yet_free": _not_yet_free(roles["fit"]),
-        "contradicted": _contradicted(found) or _far_off(found, measurement),
+        "contradicted": contradicted(
+            found.problem.free, found.fitted.shared.tolist(), {name: name.split(".")[-1] for name in found.given}
+        )
+        or _far_off(found, measurement),
     }
     return content | said | {"lack_of_fit": lacking and lacking | {"source": str(measurement.source)}}
 
@@ -121,19 +123,6 @@ def _differing(
         f"the damping ratio is not one for all records, about {', '.join(said)}: task=explain looks for a law of the "
         "amplitude, or for a damping of each"
     )
-
-
-def _contradicted(found: OscillatorFit) -> str | None:
-    """What is stated with an uncertainty that the records contradict; None where nothing is."""
-    away = {}
-    for parameter, coordinate in zip(found.problem.free, found.fitted.shared.tolist(), strict=True):
-        expected, slope = parameter.surprise
-        if parameter.name in found.given and abs(expected + slope * coordinate) > CONTRADICTS:
-            away[parameter.name.split(".")[-1]] = abs(expected + slope * coordinate)
-    if not away:
-        return None
-    said = " and ".join(f"{name} lies {size:.3g} of its stated uncertainties away" for name, size in away.items())
-    return f"{said}: correct its value or its uncertainty, which draws the other figures to it"
 
 
 def _far_off(found: OscillatorFit, measurement: Measurement) -> str | None:

@@ -1,5 +1,6 @@
 """Simulated runs with what one does with them: channels, wavelet transforms, pictures."""
 
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import pi
@@ -10,7 +11,7 @@ import torch
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
-from gear_damping.errors import InputError
+from gear_damping.errors import InputError, Problem
 from gear_damping.physics.model import Model
 from gear_damping.reporting import figures
 from gear_damping.schema.values import Number, Problems
@@ -22,6 +23,8 @@ from gear_damping.simulation.sampling import whole_number_problems
 from gear_damping.simulation.simulate import simulate as integrate
 from gear_damping.simulation.solver_settings import Solver
 
+AT_REST = "nothing moves: the response is 0 throughout"
+MOVED_BY = "give initial_displacement, initial_velocity or a force (amplitude is the solver's unit of length)"
 LOWEST, HIGHEST, SCALES = 4.0, 0.4, 32  # periods of the record; share of the sampling rate; frequencies between
 BATCH = Number(1, 10_000_000, whole=True)  # runs of one call
 Array = NDArray[np.float64]
@@ -166,7 +169,23 @@ def simulate(
         inputs=driven,
         solver=solver,
     )
+    if _rests(runs):
+        warnings.warn(f"{AT_REST}; {MOVED_BY}", stacklevel=2)
     return Simulation(runs)
+
+
+def refuse_rest(runs: Runs) -> None:
+    """Refuse runs of which a level of noise says nothing.
+
+    Raises:
+        InputError: none of them moves.
+    """
+    if _rests(runs):
+        raise InputError(Problem("runs", AT_REST, remedy=MOVED_BY))
+
+
+def _rests(runs: Runs) -> bool:
+    return not bool(runs.response.any())
 
 
 def _within_bounds(model: Model, values: Mapping[str, ArrayLike]) -> dict[str, torch.Tensor]:

@@ -31,6 +31,7 @@ from gear_damping.units import Unit, multiple_of_a_unit, of_a_shaft, parse_unit,
 LOST = 0.1  # of a channel's variance, from which it is said that resampling took it
 _TEETH = tuple(GEOMETRY.values())
 _GEOMETRY = (*_TEETH, *NEEDED)
+_STANDS = 0.1  # of the largest speed: what a vibration's mean is below and that of a shaft that turns is not
 _OTHERWISE = 0.1  # of a condition: no two instruments differ by so much
 _INERTIAS = ("inertia_pinion", "inertia_gear")
 
@@ -193,7 +194,7 @@ class Assembler:
         """A channel beats a condition of the same name, which is said."""
         kept = {}
         for name, quantity in raw.plan.conditions.items():
-            if name in channels and not _mean_lost(channels[name]):
+            if name in channels and not _mean_lost(channels[name]) and not _stands(channels[name], quantity):
                 findings.append(_beside_condition(channels[name], quantity))
                 continue
             kept[name] = quantity
@@ -252,6 +253,12 @@ def _lost(recorded: NDArray[np.float64], kept: NDArray[np.float64], name: str, b
 
 def _mean_lost(channel: Channel) -> bool:
     return channel.coupling == "AC" or channel.highpass is not None
+
+
+def _stands(channel: Channel, stated: Quantity) -> bool:
+    """Whether a shaft that is said to stand does: what its speed shows is the vibration alone."""
+    largest = float(np.abs(channel.values).max())
+    return channel.name == "pinion_speed" and stated.value == 0 and abs(channel.values.mean()) < _STANDS * largest
 
 
 def _beside_condition(channel: Channel, stated: Quantity) -> Finding:

@@ -149,7 +149,7 @@ class Held(AnyChannel):
 
     hold: Annotated[bool, Flag()] = key(
         "Whether each value stays until the next sample, as a controller puts it out, however uneven the stamps are; "
-        "absent, it does where the series switches between two levels, or stands still and jumps. Otherwise the series "
+        "absent, it does where the series switches between few levels, or stands still and jumps. Otherwise the series "
         "is smooth between samples.", "input between samples",
     )  # fmt: skip
 

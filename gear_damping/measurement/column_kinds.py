@@ -17,6 +17,7 @@ _LEVELS, _AT_LEVEL, _FEWEST_PULSES = 0.15, 0.95, 4  # of the range; of the sampl
 _OFTEN, _HALF_WAY = 0.2, 0.5  # of the samples, at the rarer level; of those between the levels, that turn back
 _ALIKE = 0.25  # of an interval between pulses, how far the next may differ; at random a quarter of the pairs keep it
 _FEWEST_JUMPS, _ONE_WAY, _COARSE = 2, 0.9, 50  # wraps; of the steps; steps that a direction is seen by
+_BEYOND = 1.5  # times the way gone that an angle's range may be: a swing goes to and fro within it
 _TURNS = {"rad": 2 * np.pi, "deg": 360.0, "rev": 1.0}  # one turn in each unit that an angle is written in
 _FEWEST_PLACES = 8  # of a turn, assumed: what has fewer values is switched, and no angle
 _NEAR_TURN = 0.03  # of a turn: a ramp that ends so near to it wraps there
@@ -141,6 +142,8 @@ def _advancing(values: NDArray, name: str, unit: str | None) -> tuple[str, str] 
     if max(np.mean(coarse > 0), np.mean(coarse < 0)) < _ONE_WAY or coarse.size < _FEWEST_PULSES:
         return None
     gone = float(abs(values[-1] - values[0]))
+    if np.ptp(values) > _BEYOND * gone:
+        return None  # a swing whose period the coarse steps have
     turn = turn_in(unit)
     if turn is None and np.all(values == np.round(values)) and gone >= _COARSE:
         return COUNTER, f"whole numbers that advance by {gone:.0f}"

@@ -18,6 +18,9 @@ _FEWEST = 256  # samples, below which a segment of them parts no lines
 _COHERENT = 0.9  # of the power that two channels share, from which their ratio is told
 _AGREE = 1.5  # times: a sensor's calibration, its mounting and its filters together make less of it
 _LOSS = 0.3  # of the torque: what a pair of gears with its bearings and seals never takes
+_RATIO = 0.03  # of a shaft's speed by the other one's: a tooth of thirty, and more than a sensor's calibration
+_MEANLESS = 0.1  # of the speed that the teeth say: what is left of it where a sensor lost its mean
+_PRESSURE_ANGLE = np.deg2rad(20.0)  # rad: the usual one, where none is stated
 _STEADY = 0.1  # of the change that torques would make, beside which a speed is steady; of the speed, what is a change
 
 
@@ -28,8 +31,11 @@ def check_together(record: Record, parameters: Mapping[str, Quantity]) -> Iterat
         record: The record.
         parameters: What is stated of the rig, in SI.
     """
+    known = {name: quantity.value for name, quantity in parameters.items()}
     yield from _motions(record)
-    yield from _torques(record, {name: quantity.value for name, quantity in parameters.items()})
+    yield from _torques(record, known)
+    yield from _shafts(record, known)
+    yield from _on_a_shaft(record, known)
 
 
 def _motions(record: Record) -> Iterator[Finding]:
@@ -57,14 +63,17 @@ def _told(ratio: complex) -> str:
     )
 
 
-def _ratio(motion: Channel, derived: Channel, rate: float, order: int) -> complex | None:
-    """The second channel over the derivative of the first at its strongest line; None where they share no line."""
+def _ratio(motion: Channel, derived: Channel, rate: float, order: int, by_derived: bool = False) -> complex | None:
+    """The second channel over the derivative of the first at its strongest line; None where they share no line.
+
+    The line is the strongest of the first, or `by_derived` of the second.
+    """
     first, second = (np.asarray(channel.values, dtype=np.float64) for channel in (motion, derived))
     if len(first) < _FEWEST or np.ptp(first) == 0 or np.ptp(second) == 0:
         return None
     spectra = [_spectra(values) for values in (first, second)]
     frequency = 2 * np.pi * rate * np.arange(spectra[0].shape[1]) / (2 * (spectra[0].shape[1] - 1))
-    line = int(np.argmax(np.mean(np.abs(spectra[0][:, 1:]) ** 2, axis=0))) + 1
+    line = int(np.argmax(np.mean(np.abs(spectra[int(by_derived)][:, 1:]) ** 2, axis=0))) + 1
     near = slice(max(line - _BESIDE, 1), line + _BESIDE + 1)  # the window has made several of one line
     expected, found = spectra[0][:, near] * (1j * frequency[near]) ** order, spectra[1][:, near]
     power, other = (float(np.sum(np.abs(one) ** 2)) for one in (expected, found))
@@ -101,6 +110,51 @@ def _torques(record: Record, known: Mapping[str, float]) -> Iterator[Finding]:
         "check their signs (a load is positive on the gear), units and shafts"
     )
     yield Finding("torques_disagree", message, channel="gear_torque")
+
+
+def _shafts(record: Record, known: Mapping[str, float]) -> Iterator[Finding]:
+    """A gear's speed that is not the pinion's by the teeth, as by a wrong radius of a vibrometer."""
+    channel, speeds = record.channels.get("gear_speed"), _speeds(record)
+    teeth = [known.get(f"n_teeth_{shaft}") for shaft in ("pinion", "gear")]
+    if channel is None or channel.highpass or channel.coupling == "AC" or speeds is None or not all(teeth):
+        return
+    expected = abs(float(speeds.mean())) * teeth[0] / teeth[1]
+    found = abs(float(channel.values.mean()))
+    allowed = max(_RATIO, 3 * channel.uncertainty, float(np.ptp(np.abs(speeds))) / abs(float(speeds.mean()) or 1.0))
+    if found < _MEANLESS * expected or abs(found / expected - 1) <= allowed:
+        return
+    rpm = 30 / np.pi
+    message = (
+        f"the gear turns at {found * rpm:.5g} rpm, and {teeth[0]:g}/{teeth[1]:g} teeth make {expected * rpm:.5g} rpm of "
+        f"the pinion's speed ({found / expected:.4g} times that); check the unit and the radius of gear_speed, and the teeth"
+    )
+    yield Finding("speeds_disagree", message, channel="gear_speed")
+
+
+def _on_a_shaft(record: Record, known: Mapping[str, float]) -> Iterator[Finding]:
+    """A tangential acceleration beside a transmission error: by the inertias one is a multiple of the other's.
+
+    The mesh pushes both shafts by one force, so that the share of each in what they turn against one another is known,
+    as far as nothing bends but the teeth.
+    """
+    error, channel = record.channels.get("transmission_error"), record.channels.get("acceleration")
+    if error is None or channel is None or channel.mounting != "tangential" or not record.uniform:
+        return
+    names = ("n_teeth_pinion", "n_teeth_gear", "module", "inertia_pinion", "inertia_gear")
+    if not all(known.get(name) for name in names) or not channel.radius:
+        return
+    cosine = np.cos(known.get("pressure_angle", _PRESSURE_ANGLE))
+    radii = [known["module"] * known[f"n_teeth_{shaft}"] * cosine / 2 for shaft in ("pinion", "gear")]
+    eases = [radius / known[f"inertia_{shaft}"] for radius, shaft in zip(radii, ("pinion", "gear"), strict=True)]
+    share = eases[channel.shaft == "gear"] / (radii[0] * eases[0] + radii[1] * eases[1]) * channel.radius
+    ratio = _ratio(error, channel, record.sampling_rate, 2, by_derived=True)
+    if ratio is None or 1 / _AGREE <= abs(ratio) / share <= _AGREE:
+        return
+    message = (
+        f"acceleration is {abs(ratio) / share:.3g} times what transmission_error makes of it by the inertias: check its "
+        "unit, radius and shaft, and the inertias, or a shaft bends between"
+    )
+    yield Finding("motions_disagree", message, channel="acceleration", severity="note")
 
 
 def _mean(record: Record, name: str) -> float | None:

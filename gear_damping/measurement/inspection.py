@@ -30,6 +30,8 @@ from gear_damping.measurement.time_column import Stamps, counts_from_1970, find_
 from gear_damping.measurement.timebase import TimeBase, stamped_time, steady_time
 
 _SPARSE = 0.5  # of the longest stretch of values of any column: one with a shorter one is filled here and there
+_FREQUENCIES = ("Hz", "kHz", "1/s", "rad/s")  # units of the axis of a spectrum
+_AXIS = 0.1  # of a step, within which the lines of a spectrum stand apart, as they were rounded
 _EVEN = 1e-6  # of an advance from sample to sample: differences below it are rounding
 _ANY_SIGNAL = re.compile(r"^(values?|data|signal|[xyzt]|time\w*)$", re.I)  # a name that tells no record from a channel
 MOST_BETWEEN = 20  # blank cells between two values of a slower channel; what has more is no motion beside the others
@@ -120,7 +122,7 @@ def inspect_table(table: Table) -> Inspection:
     """Look at every column of a file.
 
     Raises:
-        InputError: none of them holds numbers.
+        InputError: none of them holds numbers, or they are a spectrum.
     """
     columns = [_column(table, index) for index in range(len(table.names))]
     columns = _of_one_group(columns) if isinstance(table, ArrayTable) else columns
@@ -130,6 +132,8 @@ def inspect_table(table: Table) -> Inspection:
     may_be_rate = _may_be_rate(columns)
     untimed = may_be_rate is None and not any(table.clock(k) for k in range(len(columns)))
     stamps = find_stamps(columns, untimed)
+    if stamps is None:
+        _refuse_spectrum(table, columns)
     columns, some = _where_filled(columns) if stamps else (columns, "")
     length = _length(columns, stamps)
     rows, taken = _of_one_recording(columns, stamps, length, _rows([c for c in columns if c.values.size == length]))
@@ -138,6 +142,27 @@ def inspect_table(table: Table) -> Inspection:
     base = steady_time(rate, rows[0], rows[1] - rows[0]) if rate else base
     found = [_seen(c, stamps, columns, base, length, table.clock(k)) for k, c in enumerate(columns)]
     return Inspection(table, tuple(found), length, stamps, base, rows, faults, named, taken or some)
+
+
+def _refuse_spectrum(table: Table, columns: Sequence[Column]) -> None:
+    """Refuse what goes over frequency: a column in Hz that rises in even steps, where nothing is time.
+
+    Raises:
+        InputError: there is one.
+    """
+    for column in columns:
+        steps = np.diff(column.inside)
+        if (
+            column.unit in _FREQUENCIES
+            and steps.size >= LEAST_SAMPLES
+            and steps.min() > 0
+            and np.ptp(steps) < _AXIS * steps[0]
+        ):
+            rule = (
+                f"goes over frequency (column '{column.reference}'), and damping is identified from records over time"
+            )
+            remedy = "export the time records that this spectrum was made from"
+            raise InputError(Problem("file", rule, str(table.path), remedy))
 
 
 def _where_filled(columns: list[Column]) -> tuple[list[Column], str]:

@@ -5,11 +5,13 @@ from numpy.typing import NDArray
 
 LEVELS = 2  # a series that knows no more of them switches
 LEAST_RUN = 2  # samples for which it stands still, in the median
+FEW_LEVELS, LONG_RUN = 8, 10  # three bits: with fewer a converter reads nothing; samples for which such a command stands still
+SKIP, SHORT_RUN = 2, 5  # levels in the median change, and samples before it: what is read does not go ten times as fast
 JUMP = 3.0  # least steps of the values in the median change: a coarse converter follows what it reads by single ones
 
 
 def is_staircase(values: NDArray[np.float64]) -> bool:
-    """Whether a series (time,) switches between two levels, or stands still and then jumps.
+    """Whether a series (time,) switches between few levels, or stands still and then jumps.
 
     A constant one is none: nothing of it lies between samples.
     """
@@ -20,4 +22,9 @@ def is_staircase(values: NDArray[np.float64]) -> bool:
     moved = changes[changes > 0]
     runs = np.diff(np.flatnonzero(np.concatenate([[True], changes > 0, [True]])))
     usual = np.median(runs)  # a force that rests for long between strokes is no staircase: most of its steps are short
+    if len(levels) <= FEW_LEVELS and usual >= LONG_RUN:
+        return True
+    places = np.abs(np.diff(np.searchsorted(levels, values)))
+    if usual >= SHORT_RUN and np.median(places[places > 0]) >= SKIP:
+        return True
     return bool(usual >= LEAST_RUN and np.median(moved) >= JUMP * np.diff(levels).min())

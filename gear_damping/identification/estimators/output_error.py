@@ -2,16 +2,20 @@
 
 import numpy as np
 
-from gear_damping.identification.damping_estimate import DampingEstimate, UnsuitedRecord
+from gear_damping.identification.damping_estimate import DampingEstimate, UndyingMotion, UnsuitedRecord
 from gear_damping.identification.estimators.base import Recorded, RecordEstimator
 from gear_damping.identification.free_vibration import grows
 from gear_damping.identification.oscillator.fit import fit_oscillator
 from gear_damping.identification.output_error.records import FitRecord
-from gear_damping.identification.output_error.segments import shortened
+from gear_damping.identification.output_error.segments import WHOLE, stretch
 from gear_damping.physics.systems.traits import Trait
 
 OVERDAMPED = 99.9  # % of critical, from which on nothing swings
 ABOVE_NOISE = 3.0  # standard deviations of the residual that an amplitude must have to count
+NOT_FOLLOWED = (
+    "the nearest linear oscillator loses step with the record, and was begun anew in every segment: something that was "
+    "not measured drives it, or its damping or stiffness changes much. Give its ring-down (by `slice`), or the force"
+)
 
 
 class OutputError(RecordEstimator):
@@ -30,7 +34,7 @@ class OutputError(RecordEstimator):
             raise UnsuitedRecord("this fit is for oscillators: task=identify without a model fits gear pairs")
         if grows(recorded.record):
             raise UnsuitedRecord("its motion grows: something feeds it, and no damping is fitted to that")
-        record = _as_long_as_it_swings(recorded)
+        record, doubt = _as_long_as_it_swings(recorded)
         found = fit_oscillator([record], known=recorded.known)
         ratio, frequency = found.damping_ratio_percent, found.natural_frequency_hz
         if ratio is None or frequency is None:
@@ -43,13 +47,20 @@ class OutputError(RecordEstimator):
         period = min(seen.size, max(1, round(record.sampling_rate / damped)))
         about = np.abs(seen - np.median(seen))
         smallest = max(float(about[-period:].max()), ABOVE_NOISE * float(left.std()))
-        return DampingEstimate(ratio.value, ratio.interval95, damped, (float(about.max()), smallest))
+        doubt = NOT_FOLLOWED if found.segments != WHOLE else doubt
+        return DampingEstimate(ratio.value, ratio.interval95, damped, (float(about.max()), smallest), doubt=doubt)
 
 
-def _as_long_as_it_swings(recorded: Recorded) -> FitRecord:
-    """The record without what follows a ring-down, where there is only noise in which a fit loses itself."""
+def _as_long_as_it_swings(recorded: Recorded) -> tuple[FitRecord, str]:
+    """The record without what follows a ring-down, where a fit loses itself in noise, and why it may not be one.
+
+    Without an input it begins where the ring-down does: what moved it before then was not measured.
+    """
+    record = recorded.record
     try:
-        ends = recorded.free_vibration.ends
+        free = recorded.free_vibration
+    except UndyingMotion as found:
+        return record, "" if record.inputs else str(found)
     except UnsuitedRecord:
-        return recorded.record
-    return shortened(recorded.record, ends)
+        return record, ""
+    return stretch(record, slice(0 if record.inputs else free.ends - free.values.size, free.ends)), ""

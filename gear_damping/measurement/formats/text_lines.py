@@ -19,6 +19,12 @@ _ALONE = 80  # last lines that are asked whether they hold a number each
 _NUMBER, IS_COMMENT = re.compile(r"\d"), re.compile(r"\s*(#|%|//)")
 BEGINS = re.compile(r"^[\s;,|\"(]*[+-]?[.,]?\d")  # a line of values, which headers and remarks seldom look like
 _RULED = re.compile(rb"^[ \t]*\|[ \t|:+-]+$|^[ \t]*\||[ \t]*\|[ \t]*$", re.MULTILINE)  # of a table as in Markdown
+_POWER = re.compile(rb"(?<=[\d.])\*\^(?=[+-]?\d)")  # the exponent of Mathematica
+# rows in brackets, as Python and Mathematica have them, perhaps behind `array(` or `data =`; what is between rows, and
+# what stands before the first and behind the last
+_LISTS = re.compile(rb"\s*(?:[\w.]+\s*[=(]\s*){0,2}(?:\[\s*\[|\{\s*\{)(?=[^\]}:\"]*[\]}])")
+_BETWEEN_ROWS = re.compile(rb"[\]}]\s*[,;]?\s*[\[{]")
+_AROUND = re.compile(rb"^[^\[{]*[\[{]\s*[\[{]|[\]}]\s*[\]}].*\Z", re.DOTALL)
 _LINE_END = re.compile(rb"\r+\n|\r")  # also written twice by a text mode, or alone as computers of the nineties did
 
 
@@ -31,7 +37,7 @@ class Text:
     def __init__(self, path: Path, raw: bytes) -> None:
         self.path = path
         text, self.cut = _whole_lines(_utf8(path, raw))
-        self.utf8 = _LINE_END.sub(b"\n", text)
+        self.utf8 = _POWER.sub(b"e", _without_brackets(_LINE_END.sub(b"\n", text)))
         ending = self.utf8[-(2**16) :].decode("utf-8", "replace").splitlines()
         kept = [line for line in ending if line.strip(" \r" + "".join(_DELIMITERS)) and not IS_COMMENT.match(line)]
         last = _typical([line for line in kept if _NUMBER.search(line)] or kept[-1:])
@@ -126,6 +132,14 @@ def _utf8(path: Path, raw: bytes) -> bytes:
         return raw.decode("utf-16").encode() if wide else raw.removeprefix(b"\xef\xbb\xbf").decode().encode()
     except UnicodeDecodeError:
         return raw.decode("latin-1").encode()
+
+
+def _without_brackets(text: bytes) -> bytes:
+    """Rows in brackets, `{{0, 1}, {2, 3}}` or `[[0 1] [2 3]]`, as lines of their own; any other text as it is."""
+    if not _LISTS.match(text):
+        return text
+    rows = _BETWEEN_ROWS.split(_AROUND.sub(b"", text))
+    return b"\n".join(b" ".join(row.split()) for row in rows) + b"\n"
 
 
 def _whole_lines(text: bytes) -> tuple[bytes, str]:

@@ -14,6 +14,7 @@ SUFFIXES = (".uff", ".unv", ".uff58")
 
 _TIME = 17  # the specific data type of an abscissa in seconds
 _FREQUENCY = 18  # code of an abscissa in Hz (UFF 58, record 8)
+_SHOWN = 3  # names in a message
 _TAIL = 1024  # bytes in which the mark of the last set's end stands
 _WRITTEN = 5e-6  # the increment stands in the file with six digits
 
@@ -37,6 +38,10 @@ def read(path: Path, max_bytes: int) -> Table:
         if np.size(one["data"]) != one["num_pts"]:
             rule = f"set {k} holds {np.size(one['data'])} of the {one['num_pts']} values that it announces"
             raise InputError(Problem("file", rule, str(path), remedy))
+    spectra = [_name(one) for one in sets if one.get("abscissa_spec_data_type") == _FREQUENCY]
+    if len(spectra) == len(sets):
+        rule = f"holds functions of frequency alone ({', '.join(spectra[:_SHOWN])}), and damping is identified in time"
+        raise InputError(Problem("file", rule, str(path), "export the time records that they were made from"))
     real = [one for one in sets if np.isrealobj(one["data"]) and np.size(one["data"])]
     left_out = [f"{_name(one)} (complex or empty)" for one in sets if not any(one is kept for kept in real)]
     if not real:
