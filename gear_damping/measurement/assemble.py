@@ -21,6 +21,7 @@ from gear_damping.measurement.held_together import check_together
 from gear_damping.measurement.raw import SAME_UNIT, RawChannel, RawRecord
 from gear_damping.measurement.record import Channel, Finding, Quantity, Record
 from gear_damping.measurement.record_checks import check_record, mesh_beyond_band, tooth_ratio
+from gear_damping.measurement.resolution import rounding_of
 from gear_damping.measurement.staircase import is_staircase
 from gear_damping.measurement.timebase import TimeBase
 from gear_damping.measurement.vocabulary import HOLDABLE, SHAFT_SPEEDS
@@ -97,6 +98,7 @@ class Assembler:
             findings.append(found)
         if plan.name == "pinion_angle" or (turn and begins_again(values, turn)):
             values = unwrapped(values, turn, plan.name, notes)
+        limits["rounding"] = rounding_of(values) if record.plan.resample else 0.0
         if raw.own_time is None:
             recorded, values = values, record.base.resample(values)
             findings += _lost(recorded, values, plan.name, record.base) if record.plan.resample else []

@@ -80,6 +80,8 @@ class Channel:
         frame: Of an oscillator on a base whose acceleration is measured: `absolute`, or `relative` to the base.
         hold: Of an input, whether it stays at each sample's value until the next one.
         timing_error: Standard deviation in s by which a pinion's angle may be late, whose edges are known to a sample.
+        rounding: Standard deviation of what the steps of a converter left of values that were taken to a lower rate
+            afterwards, in `unit`; 0 where the steps are still to be seen, or noise had spread the values over them.
     """
 
     name: str
@@ -106,6 +108,7 @@ class Channel:
     frame: str | None = None
     hold: bool = False
     timing_error: float = 0.0
+    rounding: float = 0.0
 
     def __post_init__(self) -> None:
         if np.ndim(self.values) != 1:

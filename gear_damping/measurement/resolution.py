@@ -10,6 +10,7 @@ _DIVISORS = (1, 2, 3, 4)  # of a difference that may be more than one step
 _QUANTILES = (0.5, 0.05, 0.0)  # of the differences that are tried as a step
 _OFF = 0.1  # of a step; how far a value may be from its level (few digits round the levels themselves)
 _SHARE = 0.9  # of the samples that stand at a level (some loggers write more digits near zero)
+_REPEATS = 0.5  # of the samples: with noise as large as half a step fewer of them repeat the one before
 _WIDENING = 4.0  # factor by which the differences grow that refine a step
 
 
@@ -31,6 +32,17 @@ def step_of(values: NDArray[np.float64]) -> float:
     tried = {float(np.quantile(gaps, q, method="lower")) / k for q in _QUANTILES for k in _DIVISORS}
     found = (_refined(guess, gaps) for guess in sorted(tried, reverse=True))
     return next((step for step in found if step > 0 and _stand_at_levels(values, step)), 0.0)
+
+
+def rounding_of(values: NDArray[np.float64]) -> float:
+    """Standard deviation of what rounding leaves of values at a lower rate: (n,) values stand still between steps.
+
+    A mean over samples that repeat one another is as rounded as each. Where noise spreads them over several steps, the
+    rounding is noise as well, and a mean has less of it: 0.0.
+    """
+    if values.size < 2 or np.mean(np.diff(values) == 0) < _REPEATS:
+        return 0.0
+    return step_of(values) / 12**0.5
 
 
 def _gaps(values: NDArray[np.float64]) -> NDArray[np.float64]:

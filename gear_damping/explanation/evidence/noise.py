@@ -76,23 +76,25 @@ def noise_level(records: Sequence[FitRecord], channels: Mapping[str, Channel]) -
     declared = {r.name: channels[r.name].noise for r in records if channels[r.name].noise is not None}
     if len(declared) == len(records):
         return NoiseLevel(declared, "declared", 1e9, True, correlation)
-    floors = _floors([record for record in records if record.name not in declared], usable)
+    rounding = {record.name: _rounding(record, channels[record.name]) for record in records}
+    floors = _floors([record for record in records if record.name not in declared], usable, rounding)
     method = f"{floors.method}; declared of {', '.join(declared)}" if declared else floors.method
     levels = {record.name: (declared | floors.by_record)[record.name] for record in records}
     return replace(floors, by_record=levels, method=method, correlation=correlation)
 
 
-def _floors(records: Sequence[FitRecord], usable: Mapping[str, float]) -> NoiseLevel:
-    """The floors of spectra, up to a frequency that is usable of each record."""
+def _floors(
+    records: Sequence[FitRecord], usable: Mapping[str, float], rounding: Mapping[str, float]
+) -> NoiseLevel:
+    """The floors of spectra, up to a frequency that is usable of each record, or the variance that rounding leaves."""
     found = {r.name: [_floor(r, low * usable[r.name], high * usable[r.name]) for low, high in BANDS] for r in records}
-    rounding = {record.name: _rounding(record) for record in records}
     levels, agree = {}, True
     for name, bands in found.items():
         variances, lines = np.array(bands).T
         apart = variances.max() > AGREEMENT**2 * max(variances.min(), 1e-300)
         agree &= not apart
         level = variances.min() if apart else float((variances * lines).sum() / max(lines.sum(), 1))
-        levels[name] = max(float(level), rounding.get(name, 0.0))
+        levels[name] = max(float(level), rounding[name])
     degrees = {name: DEGREES * sum(lines for _, lines in bands) for name, bands in found.items()}
     said = "spectral floor above the signal"
     pooled = _pooled(levels, degrees)
@@ -109,9 +111,9 @@ def floor_variance(record: FitRecord) -> float:
     return min(_floor(record, low * half, high * half)[0] for low, high in BANDS)
 
 
-def _rounding(record: FitRecord) -> float:
+def _rounding(record: FitRecord, channel: Channel) -> float:
     """Variance that the steps of the converter leave."""
-    return step_of(record.response.numpy()) ** 2 / 12
+    return max(step_of(record.response.numpy()) ** 2 / 12, channel.rounding**2)
 
 
 def _pooled(levels: dict[str, float], degrees: dict[str, float]) -> float | None:
