@@ -31,6 +31,7 @@ FALLS, QUICKEST = (0.02, 0.1, 0.3), 3.0  # decay rates over the frequency in rad
 READ_PER_PERIOD = 20.0  # samples of a period that tell roughly how quickly it falls: more only take time
 STAGES = 8  # of a record, each of which swings more than the one before where it grows: noise before a release does not
 FALLING = 0.5  # of what ln(amplitude) varies by, that falls: a decay does not rise and fall as much again
+GREW = 0.8  # of the largest amplitude, two wavelets before it: what is struck or let go has less there
 LEAST_FALL = 0.1  # nepers over a record: what falls less is a line that goes on, or tells no damping
 
 
@@ -253,16 +254,17 @@ def _stretch(found: FreeVibration) -> FreeVibration:
             "record a ring-down from a larger amplitude"
         )
     log_size = np.log(amplitude[begin:end])
-    if _falling_share(log_size) < FALLING:
-        raise UndyingMotion(
-            f"what swings most in it, at {found.frequency_hz:.4g} Hz, grows again and again: something that was not "
-            "measured drives it. Give its ring-down (by `slice`), or the force; without either, task=explain on long "
-            "records tells a random load"
-        )
     fall = -np.polynomial.Polynomial.fit(np.arange(end - begin), log_size, 1).convert().coef[1]
     if fall * (end - begin) < LEAST_FALL:
         raise UndyingMotion(
             f"what swings most in it, at {found.frequency_hz:.4g} Hz, does not die away: a line, or too short a record"
+        )
+    before = begin - round(2 * WAVELET_REACH * found.period)
+    grew = begin > 0 and amplitude[max(before, 0)] > GREW * amplitude[begin]
+    if grew or _falling_share(log_size) < FALLING:
+        raise UndyingMotion(
+            f"what swings most in it, at {found.frequency_hz:.4g} Hz, grows by itself: something that was not measured "
+            "drives it. Give its ring-down alone (by `slice` or `window`), or the force"
         )
     last = found.ends - found.values.size + end
     return FreeVibration(found.values[begin:end], found.sampling_rate, found.frequency_hz, found.noise, last)

@@ -5,6 +5,8 @@ import pytest
 import yaml
 
 import gear_damping as gd
+from gear_damping.identification.output_error.records import FreeParameter
+from gear_damping.interface.far_from_stated import contradicted
 
 TIME = np.arange(400) / 200.0
 MOTION = 2.0 * np.exp(-0.5 * TIME) * np.cos(2 * np.pi * 4 * TIME)
@@ -177,3 +179,16 @@ def test_a_unit_in_another_case_is_known_by_its_letters():
 
     with pytest.raises(gd.InputError, match="unknown unit 'Sec'; remedy: did you mean 's'"):
         parse_unit("Sec")
+
+
+def test_a_prior_of_a_gear_pair_that_its_records_contradict_is_named():
+    coordinate = 0.2  # of a logarithm: 22 % above what is stated
+    free = [
+        FreeParameter("viscous_damping.damping_coefficient", 100.0, logarithmic=True, deviation=0.02, expected=100.0),
+        FreeParameter("mesh_phase", 0.0, deviation=0.01, expected=0.0),
+    ]
+    stated = {"viscous_damping.damping_coefficient": "damping_ratio"}
+    said = contradicted(free, [coordinate, 1.0], stated)
+    assert said.startswith("damping_ratio lies 10 of its stated uncertainties away: correct its value")
+    assert contradicted(free, [0.05, 1.0], stated) is None  # 2.5 of them
+    assert contradicted(free, [coordinate, 1.0], {}) is None  # nobody stated it

@@ -60,3 +60,34 @@ def test_torques_of_shafts_that_turn_evenly_balance(bench, pinion, gear, disagre
     torques = {"pinion_torque": pinion, "gear_torque": gear}
     bench.record["conditions"] = {name: {"value": value, "unit": "N*m"} for name, value in torques.items()}
     assert ("torques_disagree" in bench.kinds()) is disagrees
+
+
+@pytest.mark.parametrize(("share", "disagrees"), [(1.0, False), (0.98, False), (0.5, True), (0.02, False)])
+def test_the_speed_of_the_gear_is_that_of_the_pinion_by_the_teeth(bench, share, disagrees):
+    """A vibrometer at twice the radius shows half of it; one that lost its mean, next to nothing."""
+    bench.content["parameters"] |= {"n_teeth_pinion": {"value": 20}, "n_teeth_gear": {"value": 40}}
+    (angle,) = (bench.columns[name] for name in ("theta1",))
+    speed = np.gradient(angle, bench.columns["t"]) / 2
+    bench.columns["w2"] = share * speed + 0.01 * speed * np.sin(900 * bench.columns["t"])
+    bench.channels["gear_speed"] = {"column": "w2", "unit": "rad/s"}
+    assert ("speeds_disagree" in bench.kinds()) is disagrees
+
+
+@pytest.mark.parametrize(("off", "disagrees"), [(1.0, False), (1.3, False), (0.5, True), (2.0, True)])
+def test_an_acceleration_on_a_shaft_is_its_share_of_the_transmission_error(bench, off, disagrees):
+    """By Newton: the force on the teeth turns each shaft by its base radius over its inertia."""
+    inertias, teeth, radius = (0.004, 0.02), (20, 40), 0.05
+    known = {"n_teeth_pinion": {"value": teeth[0]}, "n_teeth_gear": {"value": teeth[1]}}
+    known |= {f"inertia_{s}": {"value": j, "unit": "kg*m^2"} for s, j in zip(("pinion", "gear"), inertias, strict=True)}
+    bench.content["parameters"] |= known
+    base = [3e-3 * z * np.cos(np.deg2rad(20)) / 2 for z in teeth]
+    time, pitch = bench.columns["t"], 2 * np.pi * 1500
+    bench.columns["dte"] = 8.0 + 2.0 * np.sin(pitch * time)
+    force = 2e-6 * pitch**2 * np.sin(pitch * time) / (base[0] ** 2 / inertias[0] + base[1] ** 2 / inertias[1])
+    bench.columns["a"] = off * radius * force * base[1] / inertias[1]
+    bench.channels["acceleration"] = {
+        "column": "a", "unit": "m/s^2", "mounting": "tangential", "shaft": "gear", "radius": {"value": 50, "unit": "mm"},
+    }  # fmt: skip
+    said = [one for one in bench.load().findings if one.kind == "motions_disagree"]
+    assert bool(said) is disagrees
+    assert all(one.severity == "note" for one in said)  # a shaft that bends does the same

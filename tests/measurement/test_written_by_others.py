@@ -5,8 +5,11 @@ import pytest
 import yaml
 
 from gear_damping.errors import InputError
+from gear_damping.measurement.column_kinds import SIGNAL
+from gear_damping.measurement.column_kinds import TIME as TIME_STAMPS
 from gear_damping.measurement.files import read_yaml
 from gear_damping.measurement.formats.registry import read_table
+from gear_damping.measurement.inspection import inspect_table
 from gear_damping.measurement.load import load_measurement
 
 RATE = 200.0
@@ -395,3 +398,46 @@ def test_cells_of_a_workbook_count_as_they_are_shown(tmp_path, number_format, sh
     table = read_table(tmp_path / "a.xlsx")
     assert table.values(1) == pytest.approx(shown * WAVE)
     assert table.unit(1) == unit
+
+
+BRACKETED = {
+    "Mathematica": "{"
+    + ",\n ".join(f"{{{t:.4f}*^0, {10 * x:.4f}*^-1}}" for t, x in zip(TIME, WAVE, strict=True))
+    + "}\n",
+    "in one line": "{" + ", ".join(f"{{{t:.4f}, {x:.4f}}}" for t, x in zip(TIME, WAVE, strict=True)) + "}",
+    "NumPy": "[" + "\n ".join(f"[{t:.4f} {x:.4f}]" for t, x in zip(TIME, WAVE, strict=True)) + "]",
+    "its array": "array([" + ",\n       ".join(f"[{t:.4f}, {x:.4f}]" for t, x in zip(TIME, WAVE, strict=True)) + "])",
+    "a tensor": "tensor(["
+    + ",\n".join(f"[{t:.4f}, {x:.4f}]" for t, x in zip(TIME, WAVE, strict=True))
+    + "], dtype=float)",
+    "a list": "data = [" + ", ".join(f"[{t:.4f}, {x:.4f}]" for t, x in zip(TIME, WAVE, strict=True)) + "]\n",
+    "powers alone": "\n".join(f"{t:.4f}*^0\t{10 * x:.4f}*^-1" for t, x in zip(TIME, WAVE, strict=True)),
+}
+
+
+@pytest.mark.parametrize("name", BRACKETED)
+def test_rows_in_brackets_are_read(tmp_path, name):
+    table = _table(tmp_path, BRACKETED[name], "a.txt")
+    assert table.values(0) == pytest.approx(TIME, abs=1e-12)
+    assert table.values(1) == pytest.approx(WAVE, abs=1e-9)
+
+
+def test_a_table_over_frequency_is_no_record(tmp_path):
+    rows = "\n".join(f"{k / 4:.3f},{k % 7},{k % 5}" for k in range(200))
+    with pytest.raises(
+        InputError, match="goes over frequency .column 'Frequency .Hz.'.*remedy: export the time records"
+    ):
+        inspect_table(_table(tmp_path, "Frequency (Hz),Real (g/N),Imag (g/N)\n" + rows))
+    timed = "\n".join(f"{k / 200:.3f},{k / 4:.3f},{k % 7}" for k in range(200))
+    assert inspect_table(_table(tmp_path, "Time (s),Frequency (Hz),x (mm)\n" + timed, "b.csv")).rate == pytest.approx(
+        200
+    )
+
+
+def test_a_swing_at_the_pace_at_which_an_angle_is_looked_at_does_not_turn(tmp_path):
+    """Every 48th sample of 2400 falls on the same phase, and the decay alone is seen there."""
+    time = np.arange(2400) / 40
+    swing = 12 * np.exp(-0.03 * time) * np.cos(2 * np.pi * time / 1.2)
+    rows = "\n".join(f"{t:.3f},{x:.4f}" for t, x in zip(time, swing, strict=True))
+    found = inspect_table(_table(tmp_path, "t,angle_deg\n" + rows))
+    assert [column.kind for column in found.columns] == [TIME_STAMPS, SIGNAL]

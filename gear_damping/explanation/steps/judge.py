@@ -16,6 +16,7 @@ TOO_STILL = "but something is left beside it, and the held-out records tell noth
 UNTOLD = "but there was no time to see whether it stands in for something else."
 WORSE = "but with it the held-out records are predicted worse than by their means."
 NOT_LESS = "but what is visible and not random stays."
+WITHIN_NOISE = "What is left is no more than the noise of the held-out records, and is not all random."
 AT_BOUND = "but it has run into the end of what it can be, and leaves most: it stands in for something else."
 OTHER_SIZES = (
     "but with another size in other records: its form is another one, or it stands in for something that has no name."
@@ -128,10 +129,10 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
         return _not_established(found, before, known, UNTOLD)
     if not explains_all:
         if _is_part_named(found, taken.share, after, known):
-            text = (
-                f"{missing}. Part of it has a name: {said}. An unexplained residual of {after.percent:.3g} % has none."
-            )
-            return Verdict(PARTLY, (text, *further))
+            left = WITHIN_NOISE
+            if after.percent > 0:
+                left = f"An unexplained residual of {after.percent:.3g} % has none."
+            return Verdict(PARTLY, (f"{missing}. Part of it has a name: {said}. {left}", *further))
         why = OTHER_SIZES if known.is_one is False else "but too much is left for it to be the cause."
         return _not_established(found, before, known, why)
     is_part = known.whole < settings.taken_by_one

@@ -19,7 +19,7 @@ from gear_damping.explanation.statistics.paired import confirmation, paired_gain
 from gear_damping.explanation.trials.assess import Assessment, assessed
 from gear_damping.explanation.trials.refit import Refit, block_samples, chosen, compared, refitted, with_later
 from gear_damping.explanation.trials.score import Score, Scoring, contains, scores
-from gear_damping.identification.output_error.least_squares import Rounds
+from gear_damping.identification.output_error.least_squares import Fitted, Rounds
 from gear_damping.identification.output_error.records import FreeParameter
 from gear_damping.identification.output_error.uncertainty import QUANTILE
 from gear_damping.physics.systems.traits import Trait
@@ -45,6 +45,8 @@ class Bench:
         failed: Why an effect could not be fitted in full, by its name.
         budget: The time that is left.
         rough: A gear pair's nominal model before the shape of its stiffness was freed; None where there are no teeth.
+        fewer: Models without one of their causes, beside the fit that each was taken from, by that and the cause: several
+            steps ask for the same one.
     """
 
     evidence: Evidence
@@ -55,6 +57,7 @@ class Bench:
     failed: dict[str, str] = field(default_factory=dict)
     budget: Budget = field(default_factory=Budget)
     rough: Outcome | None = None
+    fewer: dict[tuple[int, str], tuple[Fitted, Outcome]] = field(default_factory=dict, repr=False)
 
     @property
     def settings(self) -> SearchSettings:
@@ -177,8 +180,14 @@ class Bench:
 
     def without(self, outcome: Outcome, name: str) -> Outcome:
         """A model without one of its causes, fitted from where it was."""
+        key = (id(outcome.fitted), name)
+        if key in self.fewer:
+            return self.fewer[key][1]
         hypothesis, initial = _without(outcome.hypothesis, name), InitialValues(after=outcome, is_near=True)
-        return fit_hypothesis(hypothesis, self.evidence, initial, solver=self.solver)
+        found = fit_hypothesis(hypothesis, self.evidence, initial, solver=self.solver)
+        if not self.evidence.is_over():  # which may have cut it short
+            self.fewer[key] = outcome.fitted, found
+        return found
 
     def until_converged(self, outcome: Outcome) -> Outcome:
         """A model whose fit is carried on where it had not converged."""
