@@ -26,6 +26,7 @@ _NEAR, _LEAST_NEAR = 4, 32  # part of them next to a plateau, and samples of it 
 _TRAVEL = 16.0  # steps of its values that the signal must have moved through over these samples
 _HOLDS = 0.1  # share of them that repeat the one before, from which the values are coarse
 _JUMP = 5.0  # steps of the signal; an extreme reached by a larger one was jumped to
+_NEAR_RANGE = 0.9  # of it, from which a value that stands at its extreme was cut there: ranges are nominal
 _AT_RANGE = 0.999  # of a sensor's range, from which a value is at its end
 _BEYOND_RANGE = 1.1  # of it: converters go on for some per cent beyond what they are called by
 _BEYOND = 0.5  # share of the samples at the extreme that must stand in plateaus that were cut
@@ -265,7 +266,7 @@ def _clipped(channel: Channel) -> Finding | None:
     if channel.name in _SPEEDS and cut and values[cut[1]][0] == 0:
         cut = None  # a shaft or a drive that stands still
     seen = np.abs(values - channel.mean_added)  # by the sensor
-    if channel.range is not None and seen.max() < _AT_RANGE * channel.range:
+    if channel.range is not None and seen.max() < _NEAR_RANGE * channel.range:
         cut = None  # the sensor could have gone on
     if cut:
         return _clipping(channel, cut[1], f"exactly at the {cut[0]}")
@@ -292,8 +293,9 @@ def _beyond_range(channel: Channel, seen: NDArray) -> Finding:
 
 
 def _clipping(channel: Channel, at: NDArray, where: str) -> Finding:
+    rest = "" if channel.range else "; where it came to rest there, declare the range of the sensor"
     message = (
         f"{100 * at.mean():.2g} % of {channel.name} stands {where}: clipped; "
-        "use a larger range, or slices that leave it out; where it came to rest there, declare the range of the sensor"
+        f"use a larger range, or slices that leave it out{rest}"
     )
     return Finding("clipped", message, channel=channel.name, sample=int(np.argmax(at)))

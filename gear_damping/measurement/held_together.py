@@ -125,8 +125,9 @@ def _shafts(record: Record, known: Mapping[str, float]) -> Iterator[Finding]:
         return
     rpm = 30 / np.pi
     message = (
-        f"the gear turns at {found * rpm:.5g} rpm, and {teeth[0]:g}/{teeth[1]:g} teeth make {expected * rpm:.5g} rpm of "
-        f"the pinion's speed ({found / expected:.4g} times that); check the unit and the radius of gear_speed, and the teeth"
+        f"the gear turns at {found * rpm:.5g} rpm, and {teeth[0]:g}/{teeth[1]:g} teeth make {expected * rpm:.5g} rpm "
+        f"of the pinion's speed ({found / expected:.4g} times that); check the unit and the radius of gear_speed, and "
+        "the teeth"
     )
     yield Finding("speeds_disagree", message, channel="gear_speed")
 
@@ -151,8 +152,8 @@ def _on_a_shaft(record: Record, known: Mapping[str, float]) -> Iterator[Finding]
     if ratio is None or 1 / _AGREE <= abs(ratio) / share <= _AGREE:
         return
     message = (
-        f"acceleration is {abs(ratio) / share:.3g} times what transmission_error makes of it by the inertias: check its "
-        "unit, radius and shaft, and the inertias, or a shaft bends between"
+        f"acceleration is {abs(ratio) / share:.3g} times what transmission_error makes of it by the inertias: check "
+        "its unit, radius and shaft, and the inertias, or a shaft bends between"
     )
     yield Finding("motions_disagree", message, channel="acceleration", severity="note")
 

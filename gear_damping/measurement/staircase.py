@@ -5,8 +5,8 @@ from numpy.typing import NDArray
 
 LEVELS = 2  # a series that knows no more of them switches
 LEAST_RUN = 2  # samples for which it stands still, in the median
-FEW_LEVELS, LONG_RUN = 8, 10  # three bits: with fewer a converter reads nothing; samples for which such a command stands still
-SKIP, SHORT_RUN = 2, 5  # levels in the median change, and samples before it: what is read does not go ten times as fast
+FEW_LEVELS, LONG_RUN = 8, 10  # three bits, which no converter has so few of; samples for which such a command stands
+SKIP, SHORT_RUN = 2, 5  # levels in the median change, and samples before it: what is read goes no ten times as fast
 JUMP = 3.0  # least steps of the values in the median change: a coarse converter follows what it reads by single ones
 
 

@@ -8,7 +8,15 @@ from gear_damping.explanation.answer.report_fields import _candidates
 from gear_damping.explanation.evidence.excess import Excess
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import State
-from gear_damping.explanation.steps.judge import AMBIGUOUS, CONSISTENT, EXPLAINED, PARTLY, UNEXPLAINED, Known
+from gear_damping.explanation.steps.judge import (
+    AMBIGUOUS,
+    CONSISTENT,
+    EXPLAINED,
+    PARTLY,
+    UNEXPLAINED,
+    WITHIN_NOISE,
+    Known,
+)
 from gear_damping.explanation.steps.judge import verdict as verdict_of
 
 
@@ -311,3 +319,12 @@ def test_beside_what_is_random_a_part_that_is_less_than_what_counts_is_none(left
     found = search(accepted=(cause(share=0.1),), sensor=2.4, rest=2.3)
     before, after = excess_of(0.079, 2.44, threshold=0.03), excess_of(left, 2.3, threshold=0.03)
     assert verdict(found, before, after, whole=0.2, is_one=True, not_random=0.05).word == word
+
+
+@pytest.mark.parametrize(("left", "said"), [(3.0, "An unexplained residual of 3 % has none."), (-0.2, WITHIN_NOISE)])
+def test_what_is_left_is_no_less_than_nothing(left, said):
+    """Held-out records may leave less than their noise is taken for, and hold something that is not random."""
+    found = search(accepted=(cause(share=0.95),), left=True, sensor=40.0, rest=20.0)
+    told = verdict(found, MUCH, excess_of(left, 10.0), is_one=True)
+    assert told.word == PARTLY
+    assert told.sentences[0].endswith(f"Part of it has a name: a law (`coulomb_friction`). {said}")

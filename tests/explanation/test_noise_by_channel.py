@@ -34,3 +34,15 @@ def test_every_channel_has_its_own_noise_and_counts_by_it():
     assert noise.value == pytest.approx(LEVELS["displacement"], rel=0.1)
     sizes = [float((one.response * one.weight).std()) for one in weighted(fit, noise)]
     assert sizes == pytest.approx([noise.value] * 4, rel=0.1)
+
+
+def test_the_noise_is_no_less_than_what_rounding_left_before_the_rate_was_lowered():
+    channels = {"velocity": Channel("velocity", np.zeros(1), "1")}
+    recorded = type("Recorded", (), {"name": "a", "channels": channels})()
+    measurement = type("Measured", (), {"records": (recorded,)})
+
+    values = torch.as_tensor(0.01 * np.random.default_rng(2).standard_normal(4000))
+    one = [FitRecord("a", values, 1000.0, observed=Observed("velocity"))]
+    assert noise_of(one, [], measurement)[2].value == pytest.approx(0.01, rel=0.1)
+    channels["velocity"] = Channel("velocity", np.zeros(1), "1", rounding=0.05)
+    assert noise_of(one, [], measurement)[2].value == pytest.approx(0.05, rel=1e-6)

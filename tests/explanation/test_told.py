@@ -155,3 +155,30 @@ def test_of_causes_that_trade_against_each_other_the_least_needed_goes_first(ord
     found = told_of(state)
     assert [cause.name for cause in found.accepted] == ["b"]
     assert found.unsized == {"a", "c"}
+
+
+@pytest.mark.parametrize(
+    ("share", "others", "as_good", "whole", "kept"),
+    [
+        (0.8, 0, False, False, True),
+        (0.45, 0, False, False, False),  # as much is another's
+        (0.8, 1, False, False, True),  # of two that bend to each other, one
+        (0.8, 0, True, False, False),  # not missed
+        (0.8, 0, False, True, False),  # an absorber of any mass
+    ],
+)
+def test_what_is_alone_and_takes_most_is_there_whatever_it_leaves(share, others, as_good, whole, kept, monkeypatch):
+    """A relief of the tips of another form: a rest of a fifth that hangs together is no reason against it."""
+    monkeypatch.setattr("gear_damping.explanation.steps.told.is_told", lambda *_: False)
+    nominal, outcome, without = (SimpleNamespace(is_finite=True, left_out_cost=1.0) for _ in range(3))
+    bench = SimpleNamespace(
+        evidence=None,
+        settings=SearchSettings(),
+        log=lambda text: None,
+        without=lambda *_: without,
+        is_as_good=lambda *_: as_good,
+        excess=lambda one: excess_of(1.0 if one is nominal else 0.3),
+    )
+    refit = SimpleNamespace(score=SimpleNamespace(candidate=SimpleNamespace(non_nested=whole)))
+    accepted = tuple(Accepted(name, refit, share, ()) for name in ["a", "b"][: 1 + others])
+    assert len(told_of(State(bench, nominal, outcome, accepted)).accepted) == (1 if kept else 0)

@@ -52,3 +52,32 @@ def test_a_ring_down_of_standing_gears_tells_damping_and_one_stiffness(tmp_path,
     assert fit.parameters["fourier_mesh_stiffness.maximum"]["value"] == pytest.approx(stiffness, rel=2e-3)
     assert not any("shape" in name or "phase" in name for name in fit.parameters)
     assert "lack of fit" not in fit.table()
+
+
+def test_the_speed_of_a_shaft_that_stands_is_its_vibration(tmp_path):
+    """A gyro on the pinion, whose share of the motion is by hand what its inertia makes of the force on the teeth."""
+    recorded(tmp_path, 1.5e8, 0.0, 1600)
+    time, _ = np.loadtxt(tmp_path / "ring.csv", delimiter=",", skiprows=1).T
+    radii = [teeth * MODULE / 2 * math.cos(math.radians(20)) for teeth in TEETH]
+    eases = [radius / inertia for radius, inertia in zip(radii, INERTIAS, strict=True)]
+    mass = 1 / (radii[0] * eases[0] + radii[1] * eases[1])
+    clean = free_decay(time, mass, 2 * RATIO * math.sqrt(1.5e8 * mass), 1.5e8, 12e-6, 0.0)[1]
+    speed = clean * eases[0] * mass + 1e-5 * np.random.default_rng(5).standard_normal(time.size)
+    np.savetxt(tmp_path / "ring.csv", np.column_stack([time, speed]), "%.12g", ",", header="t,w", comments="")
+    text = (tmp_path / "measurement.yaml").read_text()
+    text = text.replace("transmission_error: {column: te, unit: m}", "pinion_speed: {column: w, unit: rad/s}")
+    (tmp_path / "measurement.yaml").write_text(text)
+    fit = gd.identify(gd.load(tmp_path / "measurement.yaml"))
+    assert fit.damping_ratio_percent["value"] == pytest.approx(100 * RATIO, rel=0.01)
+    assert fit.parameters["fourier_mesh_stiffness.maximum"]["value"] == pytest.approx(1.5e8, rel=2e-3)
+    assert not any(name.startswith("pinion_") for name in fit.parameters)  # it does not turn
+
+
+@pytest.mark.parametrize(("unit", "asked"), [("mm", False), ("in", True)])
+def test_a_stiffness_that_no_teeth_have_is_asked_back(tmp_path, unit, asked):
+    recorded(tmp_path, 1.5e8, 0.0, 1600)
+    path = tmp_path / "measurement.yaml"
+    path.write_text(path.read_text().replace("module: 3.5 mm", f"module: 3.5 {unit}"))
+    said = gd.identify(gd.load(path)).content["contradicted"]
+    assert bool(said) is asked
+    assert not asked or said.endswith("check the units of module and inertias, and of the response")

@@ -56,3 +56,14 @@ def test_a_long_value_is_cut_in_a_message(record):
     with pytest.raises(gd.InputError) as caught:
         gd.load(record.source)
     assert len(str(caught.value)) < 2000
+
+
+def test_what_nothing_moves_is_said():
+    """`amplitude` is the unit of length of the solver, and lets nothing go."""
+    model = gd.Model(gd.Oscillator(stiffness=1e4, amplitude=0.01), [gd.ViscousDamping(damping_coefficient=1.0)])
+    with pytest.warns(UserWarning, match=r"nothing moves: .* give initial_displacement, initial_velocity or a force"):
+        runs = gd.simulate(model, sampling_rate=1e3, n_samples=200)
+    with pytest.raises(gd.InputError, match=r"nothing moves: .* remedy: give initial_displacement"):
+        gd.bound(runs, snr_db=30)
+    with pytest.raises(gd.InputError, match=r"nothing moves: .* remedy: give initial_displacement"):
+        gd.evaluate({"decrement": gd.estimator("log_decrement")}, runs, snr_db=[30])

@@ -85,9 +85,8 @@ def test_an_acceleration_on_a_shaft_is_its_share_of_the_transmission_error(bench
     bench.columns["dte"] = 8.0 + 2.0 * np.sin(pitch * time)
     force = 2e-6 * pitch**2 * np.sin(pitch * time) / (base[0] ** 2 / inertias[0] + base[1] ** 2 / inertias[1])
     bench.columns["a"] = off * radius * force * base[1] / inertias[1]
-    bench.channels["acceleration"] = {
-        "column": "a", "unit": "m/s^2", "mounting": "tangential", "shaft": "gear", "radius": {"value": 50, "unit": "mm"},
-    }  # fmt: skip
+    where = {"mounting": "tangential", "shaft": "gear", "radius": {"value": 50, "unit": "mm"}}
+    bench.channels["acceleration"] = {"column": "a", "unit": "m/s^2", **where}
     said = [one for one in bench.load().findings if one.kind == "motions_disagree"]
     assert bool(said) is disagrees
     assert all(one.severity == "note" for one in said)  # a shaft that bends does the same

@@ -126,6 +126,14 @@ def test_the_declared_range_shows_clipping_that_noise_hides(bench):
     assert bench.kinds() == []
 
 
+@pytest.mark.parametrize(("nominal", "kinds"), [(1.01, ["clipped"]), (1.5, [])])
+def test_a_sensor_that_is_cut_off_just_below_its_nominal_range_is_clipped(bench, nominal, kinds):
+    signal = _errors(bench)
+    signal[:] = np.minimum(signal, np.quantile(signal, 0.95))
+    bench.channels["transmission_error"]["range"] = {"value": nominal * float(np.abs(signal).max()), "unit": "um"}
+    assert bench.kinds() == kinds
+
+
 def test_the_range_of_a_speed_without_its_mean_is_that_of_its_fluctuation(bench):
     speed = {"column": "dte", "unit": "rpm", "coupling": "AC", "range": {"value": 20, "unit": "rpm"}}
     bench.columns["dte"], bench.channels["pinion_speed"] = 10 * np.sin(np.arange(400) / 7), speed

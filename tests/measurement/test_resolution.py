@@ -5,7 +5,7 @@ import pytest
 
 from gear_damping.measurement.files import data_root
 from gear_damping.measurement.load import load_measurement
-from gear_damping.measurement.resolution import step_of
+from gear_damping.measurement.resolution import rounding_of, step_of
 
 STEPS = (1e-3, 2.9142214e-3, 1 / 30)
 
@@ -88,3 +88,11 @@ def test_the_digits_of_single_precision_are_no_step():
     noise = np.random.default_rng(5).standard_normal(20000)
     assert step_of((100 + 1e-5 * noise).astype(np.float32).astype(float)) == 0.0
     assert step_of((100 + np.round(noise, 2)).astype(np.float32).astype(float)) == pytest.approx(0.01, rel=1e-3)
+
+
+def test_rounding_stays_in_a_mean_of_samples_that_repeat_one_another():
+    """A slow wave in steps, 40 samples at each of them; with noise of a step, every sample is rounded on its own."""
+    wave, noise = np.sin(np.arange(4000) / 400), 0.05 * np.random.default_rng(8).standard_normal(4000)
+    assert rounding_of(np.round(wave / 0.05) * 0.05) == pytest.approx(0.05 / 12**0.5, rel=1e-6)
+    assert rounding_of(np.round((wave + noise) / 0.05) * 0.05) == 0.0
+    assert rounding_of(wave) == 0.0

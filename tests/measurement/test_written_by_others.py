@@ -425,7 +425,7 @@ def test_rows_in_brackets_are_read(tmp_path, name):
 def test_a_table_over_frequency_is_no_record(tmp_path):
     rows = "\n".join(f"{k / 4:.3f},{k % 7},{k % 5}" for k in range(200))
     with pytest.raises(
-        InputError, match="goes over frequency .column 'Frequency .Hz.'.*remedy: export the time records"
+        InputError, match=r"goes over frequency .column 'Frequency .Hz.'.*remedy: export the time records"
     ):
         inspect_table(_table(tmp_path, "Frequency (Hz),Real (g/N),Imag (g/N)\n" + rows))
     timed = "\n".join(f"{k / 200:.3f},{k / 4:.3f},{k % 7}" for k in range(200))

@@ -12,9 +12,10 @@ def told(state: State) -> State:
     """Without causes whose size the records do not tell from none.
 
     A strength may trade against another parameter however far (the growth of a contact ratio against the height of
-    its edges): what explains all, or takes most of what is missing and is alone, and is missed when it is taken out, is
-    there whatever its size: a large rest of its form, by which a size is judged, is no reason against it. That is no rescue for
-    what is tried as a whole: of any stiffness and any inertia, the torsion of a shaft bends to what another one does.
+    its edges): what explains all, or is alone and takes most of what is missing, and is missed when it is taken out, is
+    there whatever its size. A large rest of its form, by which a size is judged, is no reason against it. That is no
+    rescue for what is tried as a whole: of any stiffness and any inertia, the torsion of a shaft bends to what another
+    one does.
     """
     while (untold := _untold(state)) is not None:
         cause, outcome = untold
@@ -36,8 +37,8 @@ def _untold(state: State) -> tuple[Accepted, Outcome] | None:
         if not runs_away and is_told(state.outcome, cause.refit, bench.evidence):
             continue
         outcome = bench.without(state.outcome, cause.name)
-        may_be_kept = _explain_all(state) or _takes_most(state)
-        is_missed = not runs_away and not cause.candidate.non_nested and may_be_kept
+        is_one = not runs_away and not cause.candidate.non_nested
+        is_missed = is_one and (_explain_all(state) or _takes_most(state))
         if not is_missed or bench.is_as_good(outcome, state.outcome):
             found.append((cause, outcome))
     return min(found, key=lambda one: one[1].left_out_cost, default=None)
@@ -50,4 +51,4 @@ def _explain_all(state: State) -> bool:
 
 def _takes_most(state: State) -> bool:
     """Whether a cause is alone, and takes most of what is missing on left-out records."""
-    return len(state.accepted) == 1 and state.accepted[0].share >= state.bench.settings.taken_by_one
+    return len(state.accepted) == 1 and state.accepted[0].share > state.bench.settings.taken_by_one

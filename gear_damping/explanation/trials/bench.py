@@ -45,8 +45,8 @@ class Bench:
         failed: Why an effect could not be fitted in full, by its name.
         budget: The time that is left.
         rough: A gear pair's nominal model before the shape of its stiffness was freed; None where there are no teeth.
-        fewer: Models without one of their causes, beside the fit that each was taken from, by that and the cause: several
-            steps ask for the same one.
+        fewer: Models without one of their causes, beside the fit that each was taken from, by that and the cause:
+            several steps ask for the same one.
     """
 
     evidence: Evidence
