@@ -146,7 +146,10 @@ def content_of(measurement: Measurement, found: Fitted) -> dict[str, Any]:
         "channels": [channel.name for channel in evidence.fit[0].channels],
         "parameters": final_parameters(outcome, covariances, evidence),
         "damping_ratio_percent": damping_ratio(outcome, covariances),
-        "natural_frequency_hz": {"value": natural_frequency_hz(outcome.hypothesis.model, outcome.flat_given())},
+        "natural_frequency_hz": {
+            "value": natural_frequency_hz(outcome.hypothesis.model, outcome.flat_given()),
+            "unit": "Hz",
+        },
         "residual": {role: {"rmse": rmse(residuals) / factor, "unit": unit} for role, (_, residuals) in roles.items()},
         "lack_of_fit": {
             "significant": left.significant,

@@ -441,3 +441,10 @@ def test_a_swing_at_the_pace_at_which_an_angle_is_looked_at_does_not_turn(tmp_pa
     rows = "\n".join(f"{t:.3f},{x:.4f}" for t, x in zip(time, swing, strict=True))
     found = inspect_table(_table(tmp_path, "t,angle_deg\n" + rows))
     assert [column.kind for column in found.columns] == [TIME_STAMPS, SIGNAL]
+
+
+@pytest.mark.parametrize("header", ["t/s,x/mm", "t/s,x/(mm)", "t/s,x/(m/s²)"])
+def test_a_name_is_found_without_the_unit_behind_its_stroke(tmp_path, header):
+    table = _table(tmp_path, header + "\n" + "\n".join(ROWS))
+    assert table.index("x", "") == 1
+    assert table.index("t", "") == 0

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from gear_damping.errors import InputError, Problem, nearest
 
 _SHOWN = 20  # arrays that a message lists
+_UNIT_AT_ONCE = re.compile(r"/\(?[^/()\s]+(/\w+[²³^\d]*)?\)?$")  # `x/mm`, `a/(m/s²)`
 _UNIT_BEHIND = re.compile(r"\s*([(\[](?![\d, ]*[)\]])[^()\[\]]*[)\]](\s*run\s*#?\s*\d+)?|\s/\s*\S+)$", re.I)
 _OF_ARRAY = re.compile(r"^(.+)\[(\d+)\]\.(\w+)$")  # `runs[0].t`, the member of a structure in an array of them
 _INDEXED = re.compile(r"^(.*)\[[\d, ]+\]$")
@@ -89,12 +90,13 @@ class Table(ABC):
 
     def _named(self, column: str) -> list[int]:
         """Those of the very name, else of its letters in other codes (µ and μ), of the last part of its path, or of
-        all of it before a unit in brackets.
+        all of it before a unit in brackets or behind a stroke.
         """
         own = [normalize("NFKC", name) for name in self.names]
         last = [name.rpartition("/")[2] for name in own]
         alike, bare = normalize("NFKC", column), [_UNIT_BEHIND.sub("", name) for name in own]
-        for names, sought in ((self.names, column), (own, alike), (last, alike), (bare, alike)):
+        before = [_UNIT_AT_ONCE.sub("", name) for name in own]
+        for names, sought in ((self.names, column), (own, alike), (last, alike), (bare, alike), (before, alike)):
             if found := [index for index, name in enumerate(names) if name and name == sought]:
                 return found
         return []

@@ -1,5 +1,6 @@
 """The report of task=identify: damping from measured records, by a fit, by estimators of records or by a network."""
 
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -9,6 +10,7 @@ from gear_damping.reporting.page.render import words
 from gear_damping.reporting.page.table import Table
 from gear_damping.reporting.run_report.report_schema import DOUBTFUL, FINE, Left, RunReport, Section
 
+PART = re.compile(r" \((first|last) part\)$")  # of a record that was cut to be fitted and held out
 ROLES = {"fit": "fitted", "holdout": "held out"}
 SCALARS = ("damping_ratio_percent", "natural_frequency_hz", "log_decrement")
 
@@ -23,7 +25,7 @@ def report_of(left: Left) -> RunReport:
 
 
 def _title(content: Mapping[str, Any]) -> str:
-    names = list(content["records"])
+    names = list(dict.fromkeys(PART.sub("", name) for name in content["records"]))
     return f"Damping of {len(names)} records" if len(names) != 1 else f"Damping of record {names[0]}"
 
 
@@ -41,8 +43,8 @@ def _of_fit(left: Left, content: Mapping[str, Any]) -> RunReport:
     lead, doubts = [_lead(known)], []
     if not content.get("converged", True):
         doubts.append("The search did not converge: take the figures as a first guess.")
-    for said in filter(None, map(content.get, ("undamped", "not_yet_free", "differing", "contradicted"))):
-        doubts.append(f"{said[0].upper()}{said[1:]}.")
+    for said in filter(None, map(content.get, ("undamped", "not_yet_free", "differing", "contradicted", "too_short"))):
+        doubts.append(f"{said[0].upper()}{said[1:].rstrip('.')}.")
     lacking = content.get("lack_of_fit")
     if lacking and lacking.get("significant"):
         doubts.append(
