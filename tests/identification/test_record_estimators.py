@@ -262,3 +262,13 @@ def test_what_was_tapped_before_is_told_by_its_last_ring_down(name):
     values = np.concatenate(taps)
     found = KINDS[name]({}).estimate(recorded(values + noise(values.size, 4)))
     assert found.damping_ratio_percent == pytest.approx(2.0, rel=0.02)
+
+
+@pytest.mark.parametrize("name", sorted(set(KINDS) - {"output_error"}))
+def test_what_swings_evenly_before_it_dies_away_is_no_ring_down_alone(name):
+    """A shaker at the resonance, which is switched off after four seconds, and whose force nobody measured."""
+    time = np.arange(round(4 * RATE)) / RATE  # 48 periods
+    steady = 0.02 * (0.98 + 0.005 * time) * np.cos(OMEGA * time)
+    values = np.concatenate([steady, decay(0.01, 4.0)])
+    with pytest.raises(UnsuitedRecord, match="grows by itself: something that was not measured drives it"):
+        KINDS[name]({}).estimate(recorded(values + noise(values.size, 6)))

@@ -82,7 +82,8 @@ def test_an_acceleration_on_a_shaft_is_its_share_of_the_transmission_error(bench
     bench.content["parameters"] |= known
     base = [3e-3 * z * np.cos(np.deg2rad(20)) / 2 for z in teeth]
     time, pitch = bench.columns["t"], 2 * np.pi * 1500
-    bench.columns["dte"] = 8.0 + 2.0 * np.sin(pitch * time)
+    runout = 20.0 * np.sin(2 * np.pi * 50 * time)  # of an encoder, which no shaft follows
+    bench.columns["dte"] = 8.0 + 2.0 * np.sin(pitch * time) + runout
     force = 2e-6 * pitch**2 * np.sin(pitch * time) / (base[0] ** 2 / inertias[0] + base[1] ** 2 / inertias[1])
     bench.columns["a"] = off * radius * force * base[1] / inertias[1]
     where = {"mounting": "tangential", "shaft": "gear", "radius": {"value": 50, "unit": "mm"}}

@@ -15,6 +15,7 @@ INPUTS = {
     "a command that goes up and down by one": (np.repeat([0.0, 1, 2, 3, 2, 1, 0], 300), True),
     "a command to either side": (np.repeat([0.0, 2.5, -2.5, 0], 500), True),
     "few levels by chance, each for eight samples": (np.repeat(RNG.integers(-6, 7, 250), 8) * 0.5, True),
+    "a command that wanders by two levels": (np.repeat(np.cumsum(RNG.choice([-2, -1, 2], 250)), 8) * 0.5, True),
     "a sine": (SINE, False),
     "a slow sine behind a coarse converter": (np.round(20 * np.sin(2 * np.pi * TIME)) / 20, False),
     "a sine behind a coarse converter": (np.round(20 * SINE) / 20, False),
