@@ -30,7 +30,7 @@ from gear_damping.measurement.time_column import Stamps, counts_from_1970, find_
 from gear_damping.measurement.timebase import TimeBase, stamped_time, steady_time
 
 _SPARSE = 0.5  # of the longest stretch of values of any column: one with a shorter one is filled here and there
-_FREQUENCIES = ("Hz", "kHz", "1/s", "rad/s")  # units of the axis of a spectrum
+_FREQUENCIES = ("Hz", "kHz")  # units of the axis of a spectrum; rad/s are as well those of a shaft that runs up
 _AXIS = 0.1  # of a step, within which the lines of a spectrum stand apart, as they were rounded
 _EVEN = 1e-6  # of an advance from sample to sample: differences below it are rounding
 _ANY_SIGNAL = re.compile(r"^(values?|data|signal|[xyzt]|time\w*)$", re.I)  # a name that tells no record from a channel
