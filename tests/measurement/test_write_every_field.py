@@ -14,6 +14,7 @@ from gear_damping.measurement.write import write_measurement
 from gear_damping.physics.systems.gear_pair import GearPair
 
 UNLIKE = {"name", "values", "unit", "hold", "timing_error", "mean_added"}  # none that an acceleration has
+WORKED_OUT = {"rounding"}  # of the samples at the rate of their own file, which the written one does not have
 DIFFERENT = {
     "lowpass": 3e3, "lowpass_order": 4, "highpass": 2.0, "highpass_order": 2, "coupling": "AC", "delay": 1e-4,
     "range": 4.0, "noise": 0.25, "uncertainty": 0.03, "polarity": -1, "gain": -4.0, "datum": "arbitrary",
@@ -30,7 +31,7 @@ def _of(system: str, response: Channel, **others: Channel) -> Record:
                   "balanced" if system == "gear_pair" else None)  # fmt: skip
 
 
-@pytest.mark.parametrize("name", sorted({f.name for f in fields(Channel)} - UNLIKE))
+@pytest.mark.parametrize("name", sorted({f.name for f in fields(Channel)} - UNLIKE - WORKED_OUT))
 def test_every_field_of_a_channel_is_written_and_read(name, tmp_path):
     values = np.random.default_rng(1).standard_normal(40)
     system = "oscillator" if name == "frame" else "gear_pair"

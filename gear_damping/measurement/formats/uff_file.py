@@ -14,7 +14,7 @@ SUFFIXES = (".uff", ".unv", ".uff58")
 
 _TIME = 17  # the specific data type of an abscissa in seconds
 _FREQUENCY = 18  # code of an abscissa in Hz (UFF 58, record 8)
-_SHOWN = 3  # names in a message
+_SHOWN = 3  # names of functions that a message lists
 _TAIL = 1024  # bytes in which the mark of the last set's end stands
 _WRITTEN = 5e-6  # the increment stands in the file with six digits
 
