@@ -17,7 +17,7 @@ from gear_damping.identification.oscillator.estimates import Estimate
 from gear_damping.identification.oscillator.fit import OscillatorFit, fit_oscillator
 from gear_damping.identification.oscillator.linear_model import DAMPING
 from gear_damping.identification.output_error.records import FitRecord
-from gear_damping.identification.output_error.segments import Segments
+from gear_damping.identification.output_error.segments import WHOLE, Segments
 from gear_damping.interface.far_from_stated import contradicted, far_from_stated
 from gear_damping.interface.identified_page import MOST_PANELS, estimate_rows, panel, residual_rows
 from gear_damping.interface.lack_of_fit import lack_of_fit, sentence
@@ -29,6 +29,11 @@ NEWTONS = ("N*s/m", "N/m")  # units of what is not per unit of mass
 STATED = ("force_gain", "stiffness")  # by the file, and fitted all the same
 FOLLOWED = 50.0  # % of a signal, root mean square, that is left: an input late by a twelfth of a turn leaves as much
 MOST_SAMPLES = 200_000  # beyond which the test of what is random takes longer than the fit
+BEGUN_ANEW = (
+    "no damping is told: the motion runs out of step with any ring-down and was begun anew in every segment. "
+    "Something drives it that no channel holds (declare the force, or a `window` in which it dies away), or its "
+    "frequency changes with the amplitude"
+)
 
 
 @dataclass(frozen=True)
@@ -147,10 +152,13 @@ def _undamped(found: OscillatorFit, fit: Sequence[FitRecord], lacking: Mapping[s
     ratio, frequency = found.damping_ratio_percent, found.natural_frequency_hz
     if ratio is None or ratio.interval95[0] > 0:
         return None
+    is_free, was_lost = not any(record.inputs for record in fit), found.segments != WHOLE and not found.segments.exact
+    if is_free and was_lost:
+        return BEGUN_ANEW
     text = f"no damping: these records do not tell it from none; it is at most {ratio.interval95[1]:.3g} %"
     if lacking and lacking["percent_of_signal"] > FOLLOWED:
         return f"{text}, and it follows little of them: check that every column and unit is what it is declared as"
-    if any(record.inputs for record in fit):
+    if not is_free:
         late = "an input that is late does that, and its `delay` in the file then tells it"
         return f"{text}, if this model is right: {late}"
     if all(map(grows, fit)):

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import torch
 from scipy.integrate import solve_ivp
+from scipy.signal import lfilter
 
 from gear_damping.explanation.evidence.noise import noise_level
 from gear_damping.identification.output_error.records import FitRecord
@@ -68,6 +69,16 @@ def test_what_goes_on_by_a_drive_that_no_channel_holds_is_no_decay(tmp_path, cap
     assert "declare the force, or a window behind its end" in said
     assert "no damping" in (tmp_path / "run" / "identification.txt").read_text()
     assert identified(tmp_path / "other", LINEAR, 1e-4)["undamped"] is None
+
+
+def test_a_random_load_that_no_channel_holds_leaves_no_figure(tmp_path):
+    """Ninety periods of 2.5 %: in segments, each of which begins as it likes, the damping comes out near zero."""
+    ratio, load = DAMPING / 2 / OMEGA, np.random.default_rng(7).standard_normal(len(TIME))
+    pole = np.exp((-ratio * OMEGA + 1j * OMEGA * np.sqrt(1 - ratio**2)) / 100.0)  # from sample to sample
+    ambient = lfilter([0, 1.0], [1, -2 * pole.real, abs(pole) ** 2], load)
+    found = identified(tmp_path, 1e-2 * ambient / ambient.std(), 1e-5)
+    assert found["segment_s"]
+    assert found["undamped"].startswith("no damping is told: the motion runs out of step with any ring-down")
 
 
 def test_a_record_that_waits_for_its_release_is_told_to_be_cut(tmp_path, caplog, capsys):
