@@ -153,7 +153,7 @@ def free_vibration(record: FitRecord, turning: Turning | None = None) -> FreeVib
     Raises:
         UnsuitedRecord: it is driven all the time, too short, too coarse, or nothing in it swings freely.
     """
-    values, rate = _at_even_instants(record), record.sampling_rate
+    values, rate = at_even_instants(record), record.sampling_rate
     begin = _last_drive(record)
     values = values[begin:] - values[begin:].mean()
     if turning is not None:
@@ -161,7 +161,7 @@ def free_vibration(record: FitRecord, turning: Turning | None = None) -> FreeVib
     spectrum = spectrum_of(values, rate)
     if spectrum is None:
         raise UnsuitedRecord(f"{values.size} samples are too few for a free vibration: record longer")
-    frequency = _strongest(values, rate)
+    frequency = strongest(values, rate)
     found = FreeVibration(values, rate, frequency, spectrum.noise, begin + values.size)
     if found.period < FEWEST_SAMPLES_PER_PERIOD:
         raise UnsuitedRecord(
@@ -200,7 +200,7 @@ def _last_drive(record: FitRecord) -> int:
     return begin
 
 
-def _strongest(values: Array, rate: float) -> float:
+def strongest(values: Array, rate: float) -> float:
     """The frequency of the strongest line, in Hz; a drift, which a parabola follows, is none.
 
     Raises:
@@ -217,7 +217,7 @@ def _strongest(values: Array, rate: float) -> float:
     return strongest * rate / (4 * values.size)
 
 
-def _at_even_instants(record: FitRecord) -> Array:
+def at_even_instants(record: FitRecord) -> Array:
     values = record.response.numpy()
     if record.stamps is None:
         return values

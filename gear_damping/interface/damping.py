@@ -158,7 +158,7 @@ def damping(
 
     Args:
         measurement: As `load` gives it.
-        estimators: Their names, or their settings by name; all that come with the package where absent.
+        estimators: Their names, or their settings by name; all for ring-downs that come with the package where absent.
         channel: Which channel of the records; the first response of the system where absent.
         plugins: Files of one's own that declare estimators.
         laws: Fitted simulations of an oscillator, by what they are called, whose damping is worked out over the
@@ -169,7 +169,8 @@ def damping(
     """
     refuse_faults(measurement)
     kinds = builtin_estimators()
-    chosen = estimators or [name for name, kind in kinds.items() if issubclass(kind, RecordEstimator)]
+    for_decays = [n for n, kind in kinds.items() if issubclass(kind, RecordEstimator) and kind.of_ring_downs]
+    chosen = estimators or for_decays
     chosen = [chosen] if isinstance(chosen, str) else chosen
     settings = chosen if isinstance(chosen, Mapping) else {name: {} for name in chosen}
     made = {name: ClassicalEstimator(record_estimator(name, given, plugins)) for name, given in settings.items()}

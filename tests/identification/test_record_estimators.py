@@ -20,7 +20,8 @@ from gear_damping.physics.systems.oscillator import Oscillator
 
 FREQUENCY, RATE = 12.0, 600.0  # Hz: fifty samples a period
 OMEGA = 2 * math.pi * FREQUENCY
-KINDS = {name: kind for name, kind in builtin_estimators().items() if issubclass(kind, RecordEstimator)}
+OF_RECORDS = {name: kind for name, kind in builtin_estimators().items() if issubclass(kind, RecordEstimator)}
+KINDS = {name: kind for name, kind in OF_RECORDS.items() if kind.of_ring_downs}
 NOISE = 1e-4
 QUADRATIC = 2.5  # 1/m
 

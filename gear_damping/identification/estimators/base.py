@@ -70,7 +70,12 @@ class Recorded:
 
 
 class RecordEstimator(Estimator):
-    """An estimator that learns nothing beforehand: a record is all it needs, its settings are all it holds."""
+    """An estimator that learns nothing beforehand: a record is all it needs, its settings are all it holds.
+
+    Class attribute: `of_ring_downs`, whether it is for a motion that dies away, and asked where none is named.
+    """
+
+    of_ring_downs: ClassVar[bool] = True
 
     @abstractmethod
     def estimate(self, recorded: Recorded) -> DampingEstimate:
