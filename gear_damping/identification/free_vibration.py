@@ -218,6 +218,7 @@ def strongest(values: Array, rate: float) -> float:
 
 
 def at_even_instants(record: FitRecord) -> Array:
+    """The first response of a record, (n,), at even instants where its stamps are not."""
     values = record.response.numpy()
     if record.stamps is None:
         return values
@@ -264,7 +265,8 @@ def _stretch(found: FreeVibration) -> FreeVibration:
     if grew or _falling_share(log_size) < FALLING:
         raise UndyingMotion(
             f"what swings most in it, at {found.frequency_hz:.4g} Hz, grows by itself: something that was not measured "
-            "drives it. Give its ring-down alone (by `slice` or `window`), or the force"
+            "drives it. Give its ring-down alone (by `slice` or `window`), or the force; of a long motion under a "
+            "random load ambient_spectrum tells the damping"
         )
     last = found.ends - found.values.size + end
     return FreeVibration(found.values[begin:end], found.sampling_rate, found.frequency_hz, found.noise, last)

@@ -31,8 +31,8 @@ FOLLOWED = 50.0  # % of a signal, root mean square, that is left: an input late 
 MOST_SAMPLES = 200_000  # beyond which the test of what is random takes longer than the fit
 BEGUN_ANEW = (
     "no damping is told: the motion runs out of step with any ring-down and was begun anew in every segment. "
-    "Something drives it that no channel holds (declare the force, or a `window` in which it dies away), or its "
-    "frequency changes with the amplitude"
+    "Something drives it that no channel holds (declare the force, or a `window` in which it dies away; where that is "
+    "a random load, model=ambient_spectrum tells the damping), or its frequency changes with the amplitude"
 )
 
 

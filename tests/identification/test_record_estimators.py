@@ -7,6 +7,7 @@ import pytest
 import torch
 from closed_forms import free_decay
 from scipy.integrate import solve_ivp
+from scipy.linalg import expm, solve_discrete_lyapunov
 from scipy.signal import firwin, lfilter
 
 from gear_damping.identification.catalogue import builtin_estimators
@@ -273,3 +274,54 @@ def test_what_swings_evenly_before_it_dies_away_is_no_ring_down_alone(name):
     values = np.concatenate([steady, decay(0.01, 4.0)])
     with pytest.raises(UnsuitedRecord, match="grows by itself: something that was not measured drives it"):
         KINDS[name]({}).estimate(recorded(values + noise(values.size, 6)))
+
+
+def shaken(ratio, seconds, seed, order):
+    """Displacement, velocity or acceleration under white force that holds between samples, in its steady state."""
+    dynamics = np.array([[0.0, 1.0], [-(OMEGA**2), -2 * ratio * OMEGA]])
+    step = expm(dynamics / RATE)
+    push = np.linalg.solve(dynamics, (step - np.eye(2)) @ [0.0, 1.0])
+    steady = solve_discrete_lyapunov(step, np.outer(push, push))
+    random = np.random.default_rng(seed)
+    state = np.linalg.cholesky(steady) @ random.normal(size=2)
+    force, found = random.normal(size=round(seconds * RATE)), []
+    for drive in force:
+        acceleration = drive - 2 * ratio * OMEGA * state[1] - OMEGA**2 * state[0]
+        found.append((*state, acceleration)[order])
+        state = step @ state + push * drive
+    return np.array(found) / np.std(found)
+
+
+def of_channel(values, order, inputs=None):
+    series = torch.as_tensor(values)
+    observed = Observed(("displacement", "velocity", "acceleration")[order])
+    return Recorded(FitRecord("run", series, RATE, inputs or {}, observed=observed), Oscillator, Known({}, {}))
+
+
+@pytest.mark.parametrize(("order", "ratio"), [(0, 0.02), (1, 0.01), (2, 0.05)])
+def test_the_spectrum_under_a_random_load_tells_the_damping(order, ratio):
+    away, estimator = [], OF_RECORDS["ambient_spectrum"]({})
+    for seed in range(8):
+        values = shaken(ratio, 20.0, seed, order) + noise(round(20.0 * RATE), seed + 100, 0.05)
+        found = estimator.estimate(of_channel(values, order))
+        low, high = np.log(np.array(found.interval95) / 100 / ratio)
+        away.append((low + high) / (high - low) * 1.96)  # standard errors, of the logarithm
+        assert found.frequency_hz == pytest.approx(FREQUENCY, rel=0.02)
+    away = np.array(away)
+    assert np.sum(np.abs(away) < 1.96) >= 6  # of eight: fewer come by chance once in 170 times
+    assert abs(away.mean()) < 3 / 8**0.5  # three standard errors
+    assert 0.4 < np.sqrt(np.mean(away**2)) < 1.8
+
+
+@pytest.mark.parametrize(
+    ("values", "inputs", "said"),
+    [
+        (decay(0.01, 20.0) + noise(12000, 1), {}, "as smooth as that of a ring-down, which the other estimators"),
+        (shaken(0.02, 20.0, 1, 0) + 3 * np.sin(1.003 * OMEGA * np.arange(12000) / RATE), {}, "a line at 12"),
+        (shaken(0.002, 10.0, 1, 0), {}, "of the times in which its motion forgets itself, and 5 are needed"),
+        (shaken(0.02, 20.0, 1, 0), {"force": torch.arange(12000.0)}, "driven by a measured input, which output_error"),
+    ],
+)
+def test_what_no_random_load_has_made_has_no_such_spectrum(values, inputs, said):
+    with pytest.raises(UnsuitedRecord, match=said):
+        OF_RECORDS["ambient_spectrum"]({}).estimate(of_channel(values, 0, inputs))

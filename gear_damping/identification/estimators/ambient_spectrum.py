@@ -1,6 +1,6 @@
 """The spectrum of a motion under a random load that nobody measured."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 from typing import ClassVar
 
@@ -23,6 +23,7 @@ MOST, LEAST = 0.5, 1e-6  # damping ratios: beyond, no resonance is seen; below, 
 FEWEST_MEMORIES = 5.0  # times in which the motion forgets itself, that a record must hold
 SCATTERED = 0.5  # variance of the periodogram over its mean: 1 of a random motion, next to 0 of a ring-down
 RARE = 1e-4  # probability that the largest of all lines is as large by chance: more is the line of something that turns
+LEAKED = 2  # lines to either side of a strong one, that it is seen in
 FAR, NEAR = 25.0, 0.3  # of a logarithm, that a level may be from its start, and a frequency
 STEP = 1e-4  # of the logarithm of a parameter, for the slope of the spectrum
 
@@ -37,7 +38,7 @@ class AmbientSpectrum(RecordEstimator):
     name = "ambient_spectrum"
     reference = "Sykulski et al. (2019), Biometrika 106(2); covariances of the oscillator: closed form"
     of_ring_downs = False
-    settings: ClassVar = (Setting("band", 1.6, "of frequency over the resonance, and below it, that is fitted", 1.1, 4),)
+    settings: ClassVar = (Setting("band", 1.6, "ends of the fitted lines over the frequency, and below it", 1.1, 4),)
 
     def estimate(self, recorded: Recorded) -> DampingEstimate:
         """One figure for the whole record."""
@@ -55,7 +56,8 @@ class AmbientSpectrum(RecordEstimator):
         lines = np.fft.rfftfreq(values.size, 1 / rate)
         inside = (lines > frequency / self.values["band"]) & (lines < frequency * self.values["band"])
         spectrum = _Spectrum(power[inside], inside, values.size, rate, record.observed.derivatives)
-        point = min((spectrum.fitted(ratio, frequency) for ratio in STARTS), key=spectrum.cost)
+        _refuse_line(spectrum, frequency)
+        point = spectrum.best(frequency)
         found, natural = float(np.exp(point[1])), float(np.exp(point[2]))
         self._refuse(spectrum, point, values.size / rate)
         half = float(norm.ppf((1 + LEVEL) / 2)) * spectrum.deviation(point)
@@ -67,21 +69,32 @@ class AmbientSpectrum(RecordEstimator):
         """Refuse what no steady random load has made.
 
         Raises:
-            UnsuitedRecord: it is a ring-down, holds a line, or is too short.
+            UnsuitedRecord: it is a ring-down, or too short.
         """
         ratio = spectrum.power / spectrum.expected(point)[spectrum.inside]
         found, natural = np.exp(point[1:3])
         if ratio.var() < SCATTERED:
             raise UnsuitedRecord("its spectrum is as smooth as that of a ring-down, which the other estimators are for")
-        if ratio.max() > np.log(ratio.size / RARE):
-            line = np.fft.rfftfreq(spectrum.samples, 1 / spectrum.rate)[spectrum.inside][int(np.argmax(ratio))]
-            raise UnsuitedRecord(f"a line at {line:.4g} Hz stands in its resonance, which no random load makes")
         memories = seconds * 2 * pi * natural * found
         if memories < FEWEST_MEMORIES or found > MOST / 2:
             raise UnsuitedRecord(
                 f"it holds {memories:.2g} of the times in which its motion forgets itself, and {FEWEST_MEMORIES:g} are "
                 "needed: record longer"
             )
+
+
+def _refuse_line(spectrum: "_Spectrum", frequency: float) -> None:
+    """Refuse the line of something that turns: the strongest one, held against what the others say of it.
+
+    Raises:
+        UnsuitedRecord: there is one.
+    """
+    top = int(np.argmax(spectrum.power))
+    others = spectrum.without(top)
+    expected = others.expected(others.best(frequency))[spectrum.inside]
+    if spectrum.power[top] > expected[top] * np.log(expected.size / RARE):
+        line = np.flatnonzero(spectrum.inside)[top] * spectrum.rate / spectrum.samples
+        raise UnsuitedRecord(f"a line at {line:.4g} Hz stands in its resonance, which no random load makes")
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,6 +114,17 @@ class _Spectrum:
     samples: int
     rate: float
     derivatives: int
+
+    def without(self, place: int) -> "_Spectrum":
+        """The same without one of its lines and those beside it, to which it leaks."""
+        kept = np.abs(np.arange(self.power.size) - place) > LEAKED
+        inside = self.inside.copy()
+        inside[np.flatnonzero(self.inside)[~kept]] = False
+        return replace(self, power=self.power[kept], inside=inside)
+
+    def best(self, frequency: float) -> Array:
+        """The point of largest likelihood."""
+        return min((self.fitted(ratio, frequency) for ratio in STARTS), key=self.cost)
 
     def fitted(self, ratio: float, frequency: float) -> Array:
         """The point of largest likelihood that is reached from a ratio."""

@@ -14,7 +14,8 @@ OVERDAMPED = 99.9  # % of critical, from which on nothing swings
 ABOVE_NOISE = 3.0  # standard deviations of the residual that an amplitude must have to count
 NOT_FOLLOWED = (
     "the nearest linear oscillator loses step with the record, and was begun anew in every segment: something that was "
-    "not measured drives it, or its damping or stiffness changes much. Give its ring-down (by `slice`), or the force"
+    "not measured drives it, or its damping or stiffness changes much. Give its ring-down (by `slice`), or the "
+    "force; of a long motion under a random load ambient_spectrum tells the damping"
 )
 
 
