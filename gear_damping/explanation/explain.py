@@ -25,6 +25,7 @@ from gear_damping.explanation.state import State
 from gear_damping.explanation.steps.calibrate import Calibration, calibrated, recalibrated
 from gear_damping.explanation.steps.confirm import confirmed
 from gear_damping.explanation.steps.estimate import estimated
+from gear_damping.explanation.steps.never_dies import never_dies
 from gear_damping.explanation.steps.out_of_step import out_of_step
 from gear_damping.explanation.steps.polarity import polarity_fault
 from gear_damping.explanation.steps.too_short import left_out_ends, too_short
@@ -136,7 +137,8 @@ def explain(
     if found.state.names != state.names:
         found = replace(found, state=replace(found.state, left=looked(found.state).left))
     found = replace(found, state=estimated(found.state))
-    notes = [silent, short, out_of_step(found.state), INPUT_NOISE if found.state.bench.evidence.input_noise else ""]
+    doubts = (out_of_step(found.state), never_dies(found.state))
+    notes = [silent, short, *doubts, INPUT_NOISE if found.state.bench.evidence.input_noise else ""]
     said = judged(found, [*notes, stretches.said])
     step(4, STEPS)
     evidence, noise = found.state.bench.evidence, found.noise

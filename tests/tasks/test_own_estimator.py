@@ -71,7 +71,10 @@ def test_it_is_asked_again_from_the_command_line(trained, measured, tmp_path):
 @pytest.mark.parametrize(
     ("more", "said"),
     [
-        (["model.names=[raw_convolution]"], "model.names = ['raw_convolution']: must be one of ambient_spectrum, cwt_lstm, half_power"),
+        (
+            ["model.names=[raw_convolution]"],
+            "model.names = ['raw_convolution']: must be one of ambient_spectrum, cwt_lstm, half_power",
+        ),
         ([*OWN, "model.layers=99"], "model.layers = 99: must lie within 1 and 10"),
         ([*OWN, "model.hidden_size=9"], "model.hidden_size: no such key"),
         ([*OWN, "model.chanels=3"], "did you mean 'channels'?"),
