@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 import gear_damping as gd
 from gear_damping.tasks.command import main
@@ -52,6 +53,22 @@ def test_the_settings_of_one_count(measured, tmp_path):
     assert found[0] != found[1]
 
 
+def test_a_motion_under_a_random_load_is_asked_by_name(tmp_path):
+    load = np.random.default_rng(5).normal(size=20000)
+    pole = np.exp((-RATIO * OMEGA + 1j * OMEGA * (1 - RATIO**2) ** 0.5) / RATE)
+    values = lfilter([0, 1.0], [1, -2 * pole.real, abs(pole) ** 2], load)
+    np.savetxt(tmp_path / "a.csv", values, "%.9g", header="x", comments="")
+    record = "{file: a.csv, name: wind, sampling_rate: 500 Hz, channels: {displacement: {column: x, unit: m}}}"
+    (tmp_path / "measurement.yaml").write_text(f"system: oscillator\nrecords:\n- {record}\n")
+    found = []
+    for band in ("1.6", "1.2"):
+        where = tmp_path / band
+        assert run(tmp_path / "measurement.yaml", where, "model=ambient_spectrum", f"model.band={band}") == 0
+        found.append(json.loads((where / "damping.json").read_text())["records"]["wind"]["ambient_spectrum"])
+        assert found[-1]["interval95"][0] < 100 * RATIO < found[-1]["interval95"][1]
+    assert found[0]["damping_ratio_percent"] != found[1]["damping_ratio_percent"]
+
+
 def test_one_from_outside_stands_beside_them(measured, tmp_path):
     own = [f"model.plugins=[{EXAMPLE}]", "model.names=[energy_fall,log_decrement]", "model.periods=4"]
     assert run(measured, tmp_path / "run", *own) == 0
@@ -77,6 +94,7 @@ def test_what_save_left_is_asked_as_its_settings_are(measured, tmp_path):
         (["model=wavelet_ridge", "model.omega0=1"], "model.omega0 = 1: must lie within 5 and 100"),
         (["model=wavelet_ridge", "model.smoothing=0.2"], "model.smoothing: no such key"),
         (["model=wavelet_ridge", "wavelet=morlet"], "the estimator wavelet_ridge has model.omega0"),
+        (["model=ambient_spectrum", "model.band=9"], "model.band = 9: must lie within 1.1 and 4"),
         (["model=half_power", "model.draws=20.5"], "model.draws = 20.5: must be a whole number"),
         (["model=cwt_lstm"], "names a network, which tells nothing before it is trained"),
         (["model.names=[wavelet_ridge,raw_lstm]"], "names a network, which tells nothing before it is trained"),
