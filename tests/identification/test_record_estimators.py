@@ -319,6 +319,8 @@ def test_the_spectrum_under_a_random_load_tells_the_damping(order, ratio):
         (decay(0.01, 20.0) + noise(12000, 1), {}, "as smooth as that of a ring-down, which the other estimators"),
         (shaken(0.02, 20.0, 1, 0) + 3 * np.sin(1.003 * OMEGA * np.arange(12000) / RATE), {}, "a line at 12"),
         (shaken(0.002, 10.0, 1, 0), {}, "of the times in which its motion forgets itself, and 5 are needed"),
+        (shaken(0.02, 1.2, 1, 0), {}, "14 lines of its spectrum show the resonance: record longer"),
+        (shaken(0.4, 20.0, 1, 0), {}, "too broad to be told from the load that makes it"),
         (shaken(0.02, 20.0, 1, 0), {"force": torch.arange(12000.0)}, "driven by a measured input, which output_error"),
     ],
 )

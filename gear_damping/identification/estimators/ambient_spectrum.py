@@ -20,6 +20,8 @@ Array = NDArray[np.float64]
 
 STARTS = (0.003, 0.02, 0.1)  # damping ratios that a fit begins with
 MOST, LEAST = 0.5, 1e-6  # damping ratios: beyond, no resonance is seen; below, the line of a shaft is as narrow
+BROADEST = 0.25  # damping ratio above which a resonance is as broad as the band
+FEWEST_LINES = 20  # of a spectrum, to tell four figures from
 FEWEST_MEMORIES = 5.0  # times in which the motion forgets itself, that a record must hold
 SCATTERED = 0.5  # variance of the periodogram over its mean: 1 of a random motion, next to 0 of a ring-down
 RARE = 1e-4  # probability that the largest of all lines is as large by chance: more is the line of something that turns
@@ -56,6 +58,8 @@ class AmbientSpectrum(RecordEstimator):
         lines = np.fft.rfftfreq(values.size, 1 / rate)
         inside = (lines > frequency / self.values["band"]) & (lines < frequency * self.values["band"])
         spectrum = _Spectrum(power[inside], inside, values.size, rate, record.observed.derivatives)
+        if spectrum.power.size < FEWEST_LINES:
+            raise UnsuitedRecord(f"{spectrum.power.size} lines of its spectrum show the resonance: record longer")
         _refuse_line(spectrum, frequency)
         point = spectrum.best(frequency)
         found, natural = float(np.exp(point[1])), float(np.exp(point[2]))
@@ -69,14 +73,16 @@ class AmbientSpectrum(RecordEstimator):
         """Refuse what no steady random load has made.
 
         Raises:
-            UnsuitedRecord: it is a ring-down, or too short.
+            UnsuitedRecord: it is a ring-down, too broad, or too short.
         """
         ratio = spectrum.power / spectrum.expected(point)[spectrum.inside]
         found, natural = np.exp(point[1:3])
         if ratio.var() < SCATTERED:
             raise UnsuitedRecord("its spectrum is as smooth as that of a ring-down, which the other estimators are for")
+        if found > BROADEST:
+            raise UnsuitedRecord("what swings most in it is too broad to be told from the load that makes it")
         memories = seconds * 2 * pi * natural * found
-        if memories < FEWEST_MEMORIES or found > MOST / 2:
+        if memories < FEWEST_MEMORIES:
             raise UnsuitedRecord(
                 f"it holds {memories:.2g} of the times in which its motion forgets itself, and {FEWEST_MEMORIES:g} are "
                 "needed: record longer"
