@@ -4,7 +4,7 @@ import numpy as np
 
 from gear_damping.identification.damping_estimate import DampingEstimate, UndyingMotion, UnsuitedRecord
 from gear_damping.identification.estimators.base import Recorded, RecordEstimator
-from gear_damping.identification.free_vibration import grows
+from gear_damping.identification.free_vibration import WAVELET_REACH, grows
 from gear_damping.identification.oscillator.fit import fit_oscillator
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import WHOLE, stretch
@@ -55,7 +55,8 @@ class OutputError(RecordEstimator):
 def _as_long_as_it_swings(recorded: Recorded) -> tuple[FitRecord, str]:
     """The record without what follows a ring-down, where a fit loses itself in noise, and why it may not be one.
 
-    Without an input it begins where the ring-down does: what moved it before then was not measured.
+    Without an input it begins where the ring-down does: what moved it before then was not measured. A ring-down that
+    a wavelet sees begin in its own reach began with the record.
     """
     record = recorded.record
     try:
@@ -64,4 +65,6 @@ def _as_long_as_it_swings(recorded: Recorded) -> tuple[FitRecord, str]:
         return record, "" if record.inputs else str(found)
     except UnsuitedRecord:
         return record, ""
-    return stretch(record, slice(0 if record.inputs else free.ends - free.values.size, free.ends)), ""
+    begins = free.ends - free.values.size
+    is_late = not record.inputs and begins > 2 * WAVELET_REACH * free.period
+    return stretch(record, slice(begins if is_late else 0, free.ends)), ""
