@@ -112,6 +112,20 @@ def excess_of(percent):
     return Excess(percent, threshold=0.01, chance=0.002, misfit=1 + percent, per_record={})
 
 
+def bench_leaving(left, as_good):
+    """A made-up bench with the nominal model, one that leaves this much of an excess of 1 %, and one without a cause."""
+    nominal, outcome, without = (SimpleNamespace(is_finite=True, left_out_cost=1.0) for _ in range(3))
+    bench = SimpleNamespace(
+        evidence=None,
+        settings=SearchSettings(),
+        log=lambda text: None,
+        without=lambda *_: without,
+        is_as_good=lambda *_: as_good,
+        excess=lambda one: excess_of(1.0 if one is nominal else left),
+    )
+    return bench, nominal, outcome, without
+
+
 @pytest.mark.parametrize(
     ("left", "as_good", "whole", "kept"),
     [(0.001, False, False, True), (0.5, False, False, False), (0.001, True, False, False), (0.001, False, True, False)],
@@ -122,15 +136,7 @@ def test_what_explains_all_and_is_missed_is_there_whatever_its_size(left, as_goo
     Of what is tried as a whole, one that is not known is no cause.
     """
     monkeypatch.setattr("gear_damping.explanation.steps.told.is_told", lambda *_: False)
-    nominal, outcome, without = (SimpleNamespace(is_finite=True, left_out_cost=1.0) for _ in range(3))
-    bench = SimpleNamespace(
-        evidence=None,
-        settings=SearchSettings(),
-        log=lambda text: None,
-        without=lambda *_: without,
-        is_as_good=lambda *_: as_good,
-        excess=lambda one: excess_of(1.0 if one is nominal else left),
-    )
+    bench, nominal, outcome, without = bench_leaving(left, as_good)
     refit = SimpleNamespace(score=SimpleNamespace(candidate=SimpleNamespace(non_nested=whole)))
     state = State(bench, nominal, outcome, (Accepted("a", refit, 0.5, ()),))
     found = told_of(state)
@@ -170,15 +176,7 @@ def test_of_causes_that_trade_against_each_other_the_least_needed_goes_first(ord
 def test_what_is_alone_and_takes_most_is_there_whatever_it_leaves(share, others, as_good, whole, kept, monkeypatch):
     """A relief of the tips of another form: a rest of a fifth that hangs together is no reason against it."""
     monkeypatch.setattr("gear_damping.explanation.steps.told.is_told", lambda *_: False)
-    nominal, outcome, without = (SimpleNamespace(is_finite=True, left_out_cost=1.0) for _ in range(3))
-    bench = SimpleNamespace(
-        evidence=None,
-        settings=SearchSettings(),
-        log=lambda text: None,
-        without=lambda *_: without,
-        is_as_good=lambda *_: as_good,
-        excess=lambda one: excess_of(1.0 if one is nominal else 0.3),
-    )
+    bench, nominal, outcome, _ = bench_leaving(0.3, as_good)
     refit = SimpleNamespace(score=SimpleNamespace(candidate=SimpleNamespace(non_nested=whole)))
     accepted = tuple(Accepted(name, refit, share, ()) for name in ["a", "b"][: 1 + others])
     assert len(told_of(State(bench, nominal, outcome, accepted)).accepted) == (1 if kept else 0)
