@@ -113,7 +113,7 @@ def excess_of(percent):
 
 
 def bench_leaving(left, as_good):
-    """A made-up bench with the nominal model, one that leaves this much of an excess of 1 %, and one without a cause."""
+    """A made-up bench, the nominal model, one that leaves this much of an excess of 1 %, and one without a cause."""
     nominal, outcome, without = (SimpleNamespace(is_finite=True, left_out_cost=1.0) for _ in range(3))
     bench = SimpleNamespace(
         evidence=None,
