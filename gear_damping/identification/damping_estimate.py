@@ -10,6 +10,9 @@ class UnsuitedRecord(ValueError):
     """An estimator cannot say anything of this record; the message gives the reason, and what would suit."""
 
 
+AMBIENT = "of a long motion under a random load ambient_spectrum tells the damping"  # what suits, beside the force
+
+
 class UndyingMotion(UnsuitedRecord):
     """What swings most in this record does not die away: no ring-down."""
 

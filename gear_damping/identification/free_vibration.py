@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.optimize import isotonic_regression, least_squares
 
-from gear_damping.identification.damping_estimate import UndyingMotion, UnsuitedRecord
+from gear_damping.identification.damping_estimate import AMBIENT, UndyingMotion, UnsuitedRecord
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.measurement.spectral_floor import spectrum_of
 from gear_damping.signals.wavelets.morlet import MorletCWT
@@ -52,6 +52,11 @@ class FreeVibration:
     frequency_hz: float
     noise: float
     ends: int = 0
+
+    @property
+    def begins(self) -> int:
+        """Sample of the record that is its first."""
+        return self.ends - self.values.size
 
     @property
     def period(self) -> float:
@@ -163,12 +168,22 @@ def free_vibration(record: FitRecord, turning: Turning | None = None) -> FreeVib
         raise UnsuitedRecord(f"{values.size} samples are too few for a free vibration: record longer")
     frequency = strongest(values, rate)
     found = FreeVibration(values, rate, frequency, spectrum.noise, begin + values.size)
-    if found.period < FEWEST_SAMPLES_PER_PERIOD:
+    refuse_coarse(frequency, rate)
+    return _stretch(found)
+
+
+def refuse_coarse(frequency_hz: float, sampling_rate: float) -> None:
+    """Refuse what swings too fast for its samples.
+
+    Raises:
+        UnsuitedRecord: it does.
+    """
+    period = sampling_rate / frequency_hz
+    if period < FEWEST_SAMPLES_PER_PERIOD:
         raise UnsuitedRecord(
-            f"the vibration of {frequency:.4g} Hz has {found.period:.2g} samples a period: sample "
+            f"the vibration of {frequency_hz:.4g} Hz has {period:.2g} samples a period: sample "
             f"{FEWEST_SAMPLES_PER_PERIOD:g} times as fast as it swings at least"
         )
-    return _stretch(found)
 
 
 def grows(record: FitRecord) -> bool:
@@ -265,10 +280,9 @@ def _stretch(found: FreeVibration) -> FreeVibration:
     if grew or _falling_share(log_size) < FALLING:
         raise UndyingMotion(
             f"what swings most in it, at {found.frequency_hz:.4g} Hz, grows by itself: something that was not measured "
-            "drives it. Give its ring-down alone (by `slice` or `window`), or the force; of a long motion under a "
-            "random load ambient_spectrum tells the damping"
+            f"drives it. Give its ring-down alone (by `slice` or `window`), or the force; {AMBIENT}"
         )
-    last = found.ends - found.values.size + end
+    last = found.begins + end
     return FreeVibration(found.values[begin:end], found.sampling_rate, found.frequency_hz, found.noise, last)
 
 

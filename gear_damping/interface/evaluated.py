@@ -83,9 +83,9 @@ def evaluate(
     if not estimators:
         raise InputError(Problem("estimators", "none is named", {}, "for example {'mine': gd.load_estimator(PATH)}"))
     _require_alike(estimators, runs)
+    refuse_rest(runs.runs)
     signals = runs.runs.response
     levels = {}
-    refuse_rest(runs.runs)
     for snr in snr_db:
         noise = signals.std(-1, correction=0) * 10 ** (-snr / 20)
         drawn = torch.randn(signals.shape, generator=seeded_generator(seed, "noise", str(snr)), dtype=signals.dtype)

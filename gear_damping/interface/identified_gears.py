@@ -199,16 +199,16 @@ def table_of(content: dict[str, Any]) -> str:
 def _far_off(outcome: Outcome, evidence: Evidence) -> str | None:
     """What is stated and the records put far away, as they do with a mesh stiffness beside a torque in a wrong unit."""
     stated = {FLAT.get(name, name): name for name in evidence.known.uncertainty}
-    if said := contradicted(outcome.problem.free, outcome.fitted.shared.tolist(), stated):
-        return said
-    if said := _unlike_steel(outcome, evidence):
-        return said
     pairs = {
         stated: (outcome.values[fitted], evidence.parameters[stated])
         for stated, fitted in (("mesh_stiffness_max", f"{MESH}.maximum"),)
         if stated in evidence.parameters and fitted in outcome.values
     }
-    return far_from_stated(pairs, "unit and gain of the torque and of the response, and the value itself")
+    return (
+        contradicted(outcome.problem.free, outcome.fitted.shared.tolist(), stated)
+        or _unlike_steel(outcome, evidence)
+        or far_from_stated(pairs, "unit and gain of the torque and of the response, and the value itself")
+    )
 
 
 def _unlike_steel(outcome: Outcome, evidence: Evidence) -> str | None:

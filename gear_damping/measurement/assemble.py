@@ -98,7 +98,7 @@ class Assembler:
             findings.append(found)
         if plan.name == "pinion_angle" or (turn and begins_again(values, turn)):
             values = unwrapped(values, turn, plan.name, notes)
-        limits["rounding"] = rounding_of(values) if record.plan.resample else 0.0
+        rounding = rounding_of(values) if record.plan.resample else 0.0
         if raw.own_time is None:
             recorded, values = values, record.base.resample(values)
             findings += _lost(recorded, values, plan.name, record.base) if record.plan.resample else []
@@ -112,7 +112,9 @@ class Assembler:
         sensor = plan.sensor | ({"hold": self._held(raw, record, values, notes)} if plan.name in HOLDABLE else {})
         if plan.name in SHAFT_SPEEDS:
             sensor.pop("radius", None)  # the values are divided by it
-        return Channel(plan.name, values, conversion.unit, raw.unit, conversion.factor, **limits, **sensor)
+        return Channel(
+            plan.name, values, conversion.unit, raw.unit, conversion.factor, rounding=rounding, **limits, **sensor
+        )
 
     def _conversion(self, plan: ChannelPlan, unit: str, key: str) -> Conversion:
         return self.units.conversion(plan.name, unit, key, self.source, plan.shaft_radius)

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from gear_damping.measurement.angular_error import GEOMETRY, base_radius
 from gear_damping.measurement.record import Channel, Finding, Quantity, Record
 from gear_damping.measurement.vocabulary import OSCILLATOR_CHANNELS
 
@@ -114,9 +115,11 @@ def _torques(record: Record, known: Mapping[str, float]) -> Iterator[Finding]:
 
 def _shafts(record: Record, known: Mapping[str, float]) -> Iterator[Finding]:
     """A gear's speed that is not the pinion's by the teeth, as by a wrong radius of a vibrometer."""
-    channel, speeds = record.channels.get("gear_speed"), _speeds(record)
-    teeth = [known.get(f"n_teeth_{shaft}") for shaft in ("pinion", "gear")]
-    if channel is None or channel.highpass or channel.coupling == "AC" or speeds is None or not all(teeth):
+    channel, teeth = record.channels.get("gear_speed"), [known.get(name) for name in GEOMETRY.values()]
+    if channel is None or channel.highpass or channel.coupling == "AC" or not all(teeth):
+        return
+    speeds = _speeds(record)
+    if speeds is None:
         return
     expected = abs(float(speeds.mean())) * teeth[0] / teeth[1]
     found = abs(float(channel.values.mean()))
@@ -144,8 +147,8 @@ def _on_a_shaft(record: Record, known: Mapping[str, float]) -> Iterator[Finding]
     names = ("n_teeth_pinion", "n_teeth_gear", "module", "inertia_pinion", "inertia_gear")
     if not all(known.get(name) for name in names) or not channel.radius:
         return
-    cosine = np.cos(known.get("pressure_angle", _PRESSURE_ANGLE))
-    radii = [known["module"] * known[f"n_teeth_{shaft}"] * cosine / 2 for shaft in ("pinion", "gear")]
+    pressure_angle = known.get("pressure_angle", _PRESSURE_ANGLE)
+    radii = [base_radius(known[teeth], known["module"], pressure_angle) for teeth in GEOMETRY.values()]
     eases = [radius / known[f"inertia_{shaft}"] for radius, shaft in zip(radii, ("pinion", "gear"), strict=True)]
     share = eases[channel.shaft == "gear"] / (radii[0] * eases[0] + radii[1] * eases[1]) * channel.radius
     ratio = _ratio(error, channel, record.sampling_rate, 2, by_derived=True)

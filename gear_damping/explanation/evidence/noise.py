@@ -76,18 +76,18 @@ def noise_level(records: Sequence[FitRecord], channels: Mapping[str, Channel]) -
     declared = {r.name: channels[r.name].noise for r in records if channels[r.name].noise is not None}
     if len(declared) == len(records):
         return NoiseLevel(declared, "declared", 1e9, True, correlation)
-    rounding = {record.name: _rounding(record, channels[record.name]) for record in records}
-    floors = _floors([record for record in records if record.name not in declared], usable, rounding)
+    floors = _floors([record for record in records if record.name not in declared], usable, channels)
     method = f"{floors.method}; declared of {', '.join(declared)}" if declared else floors.method
     levels = {record.name: (declared | floors.by_record)[record.name] for record in records}
     return replace(floors, by_record=levels, method=method, correlation=correlation)
 
 
 def _floors(
-    records: Sequence[FitRecord], usable: Mapping[str, float], rounding: Mapping[str, float]
+    records: Sequence[FitRecord], usable: Mapping[str, float], channels: Mapping[str, Channel]
 ) -> NoiseLevel:
     """The floors of spectra, up to a frequency that is usable of each record, or the variance that rounding leaves."""
     found = {r.name: [_floor(r, low * usable[r.name], high * usable[r.name]) for low, high in BANDS] for r in records}
+    rounding = {record.name: _rounding(record, channels[record.name]) for record in records}
     levels, agree = {}, True
     for name, bands in found.items():
         variances, lines = np.array(bands).T

@@ -12,7 +12,7 @@ from scipy.stats import norm
 from gear_damping.identification.damping_estimate import DampingEstimate, UnsuitedRecord
 from gear_damping.identification.decay_rate import LEVEL
 from gear_damping.identification.estimators.base import Recorded, RecordEstimator
-from gear_damping.identification.free_vibration import FEWEST_SAMPLES_PER_PERIOD, at_even_instants, strongest
+from gear_damping.identification.free_vibration import at_even_instants, refuse_coarse, strongest
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.setting import Setting
 
@@ -52,8 +52,7 @@ class AmbientSpectrum(RecordEstimator):
         values, rate = at_even_instants(record), record.sampling_rate
         values = values - values.mean()
         frequency = strongest(values, rate)
-        if rate < FEWEST_SAMPLES_PER_PERIOD * frequency:
-            raise UnsuitedRecord(f"its {frequency:.4g} Hz have {rate / frequency:.2g} samples a period: sample faster")
+        refuse_coarse(frequency, rate)
         power = np.abs(np.fft.rfft(values)) ** 2 / values.size
         lines = np.fft.rfftfreq(values.size, 1 / rate)
         inside = (lines > frequency / self.values["band"]) & (lines < frequency * self.values["band"])

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from gear_damping.identification.damping_estimate import DampingEstimate, UndyingMotion, UnsuitedRecord
+from gear_damping.identification.damping_estimate import AMBIENT, DampingEstimate, UndyingMotion, UnsuitedRecord
 from gear_damping.identification.estimators.base import Recorded, RecordEstimator
 from gear_damping.identification.free_vibration import WAVELET_REACH, grows
 from gear_damping.identification.oscillator.fit import fit_oscillator
@@ -15,7 +15,7 @@ ABOVE_NOISE = 3.0  # standard deviations of the residual that an amplitude must 
 NOT_FOLLOWED = (
     "the nearest linear oscillator loses step with the record, and was begun anew in every segment: something that was "
     "not measured drives it, or its damping or stiffness changes much. Give its ring-down (by `slice`), or the "
-    "force; of a long motion under a random load ambient_spectrum tells the damping"
+    f"force; {AMBIENT}"
 )
 
 
@@ -65,6 +65,5 @@ def _as_long_as_it_swings(recorded: Recorded) -> tuple[FitRecord, str]:
         return record, "" if record.inputs else str(found)
     except UnsuitedRecord:
         return record, ""
-    begins = free.ends - free.values.size
-    is_late = not record.inputs and begins > 2 * WAVELET_REACH * free.period
-    return stretch(record, slice(begins if is_late else 0, free.ends)), ""
+    is_late = not record.inputs and free.begins > 2 * WAVELET_REACH * free.period
+    return stretch(record, slice(free.begins if is_late else 0, free.ends)), ""
