@@ -14,9 +14,7 @@ REMEDY = "give the path of an extended_simulator.yaml"
 _FILE_RANK = ORDER.index(EXTENDED)
 
 
-def with_extended(
-    node: Mapping[str, Any], origin: Origin, settings: tuple[str, ...]
-) -> tuple[dict[str, Any], Origin]:
+def with_extended(node: Mapping[str, Any], origin: Origin, settings: tuple[str, ...]) -> tuple[dict[str, Any], Origin]:
     """The `simulator` node with the extended simulator in it, and where its values come from.
 
     What a family, an experiment or the command line gives comes on top of the file, so that every

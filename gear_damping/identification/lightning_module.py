@@ -170,8 +170,9 @@ class DampingModule(L.LightningModule):
         if self._said:
             self.network.calibrate(*(torch.cat(column) for column in zip(*self._said, strict=True)))
             self._said.clear()
-        self.log_dict({name: epoch[name] for name in ("train_loss", "val_loss", "learning_rate")}, batch_size=1,
-                      sync_dist=many)
+        self.log_dict(
+            {name: epoch[name] for name in ("train_loss", "val_loss", "learning_rate")}, batch_size=1, sync_dist=many
+        )
         self.log("val_rmse_percent", errors["val"], batch_size=1, prog_bar=True, sync_dist=many)
         self.history.append(epoch)
 

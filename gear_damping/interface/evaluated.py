@@ -122,9 +122,7 @@ def _limit(runs: Runs, noise: Tensor) -> Tensor:
     return cramer_rao(runs, [DAMPING_RATIO], noise).deviation(DAMPING_RATIO)
 
 
-def _level(
-    estimators: Mapping[str, Estimator], runs: Runs, records: Tensor, limit: Tensor | None
-) -> dict[str, Any]:
+def _level(estimators: Mapping[str, Estimator], runs: Runs, records: Tensor, limit: Tensor | None) -> dict[str, Any]:
     """Every estimator, and the mean of what is true, on records (runs, time)."""
     true = runs.damping_ratio_percent.double()
     mean = float(true.mean())
@@ -191,5 +189,3 @@ def _of_record(one: ClassicalEstimator, recorded: Recorded) -> tuple[float, floa
     ratio = said.damping_ratio_percent
     low, high = (ratio + NARROWER * (end - ratio) for end in said.interval95)
     return ratio, low, high
-
-

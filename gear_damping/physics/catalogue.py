@@ -78,4 +78,3 @@ def effect_class(name: str, plugins: Sequence[str | Path] = ()) -> type[Effect]:
     if name not in known:
         raise InputError(Problem(f"simulator.{name}", "no such effect", remedy=nearest(name, list(known))))
     return known[name]
-

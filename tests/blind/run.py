@@ -109,8 +109,13 @@ def _shortened(answer: dict[str, Any]) -> dict[str, Any]:
 
 
 def ask(
-    questions: Sequence[Question], folder: Path, processes: int, log: Log, minutes: float | None = None,
-    solve: Callable[[Question], dict[str, Any]] = answer, redo: bool = False,
+    questions: Sequence[Question],
+    folder: Path,
+    processes: int,
+    log: Log,
+    minutes: float | None = None,
+    solve: Callable[[Question], dict[str, Any]] = answer,
+    redo: bool = False,
 ) -> list[Case]:
     """Answer the questions that have no answer yet; returns all cases of the folder, old and new.
 
@@ -147,8 +152,13 @@ def named(said: dict[str, Any]) -> str:
 
 
 def answer_all(
-    waiting: Sequence[Any], processes: int, note: Callable[[Case, int, float], None], log: Log,
-    minutes: float | None, solve: Callable[[Any], Case], name: Callable[[Any], str] = str,
+    waiting: Sequence[Any],
+    processes: int,
+    note: Callable[[Case, int, float], None],
+    log: Log,
+    minutes: float | None,
+    solve: Callable[[Any], Case],
+    name: Callable[[Any], str] = str,
 ) -> None:
     """Keep the workers busy; on Ctrl-C they are stopped and what is noted stays.
 

@@ -1,6 +1,6 @@
 """A sweep whose launcher is killed at random, beside one that is left alone: complete, the same table, nothing touched.
 
-    python -m tests.cluster.disturbed --launcher joblib --jobs 60 --kills 3
+python -m tests.cluster.disturbed --launcher joblib --jobs 60 --kills 3
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """`make test-slurm`: sweeps through the job arrays of a real SLURM, one job killed and requeued, the launcher killed.
 
-    python -m tests.cluster.slurm
+python -m tests.cluster.slurm
 """
 
 from __future__ import annotations

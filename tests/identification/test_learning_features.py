@@ -133,10 +133,7 @@ def test_columns_of_whole_runs_see_beyond_the_window_and_beyond_the_cut():
     """What the paper's protocol does, and why its figures are not those of `by_run`."""
     estimator, _ = fitted(CWT, noise(20, 300), PAPER_MANY_RUNS)
     record, start = noise(1, 300, seed=4), 240 - 30  # the last training window
-    one, two = (
-        estimator.front_end.columns(x)[:, start : start + 30]
-        for x in (record, outside_changed(record, start))
-    )
+    one, two = (estimator.front_end.columns(x)[:, start : start + 30] for x in (record, outside_changed(record, start)))
     assert (one - two).abs().max() > 10
 
 

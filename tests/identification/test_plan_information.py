@@ -59,7 +59,7 @@ def plan():
 
 def test_each_test_is_that_of_a_damped_cosine(plan):
     for one in plan.tests:
-        (setting, length), = one.tests
+        ((setting, length),) = one.tests
         expected = expected_percent([(STARTS[setting], LENGTHS[length])])
         assert one.alone.percent == pytest.approx(expected, rel=1e-3)
         assert one.alone.damping_ratio == pytest.approx(expected * RATIO / 100, rel=1e-3)

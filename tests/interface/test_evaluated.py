@@ -74,8 +74,7 @@ def test_more_noise_more_error_and_the_same_seed_the_same_table(found, runs):
     low, high = (found.content["snr_db"][snr]["estimators"]["fit"]["rmse_percent"] for snr in ("30", "20"))
     assert high > 2 * low
     again, other = (
-        gd.evaluate({"fit": gd.estimator("output_error")}, runs, snr_db=[30], bound=False, seed=seed)
-        for seed in (0, 1)
+        gd.evaluate({"fit": gd.estimator("output_error")}, runs, snr_db=[30], bound=False, seed=seed) for seed in (0, 1)
     )
     same, else_ = (one.content["snr_db"]["30"]["estimators"]["fit"]["rmse_percent"] for one in (again, other))
     assert same == low != else_

@@ -43,8 +43,13 @@ def free_decay(
 
 
 def steady_state(
-    t: np.ndarray, mass: float, damping: float, stiffness: float,
-    force: float, omega: float, phase: float = 0.0,
+    t: np.ndarray,
+    mass: float,
+    damping: float,
+    stiffness: float,
+    force: float,
+    omega: float,
+    phase: float = 0.0,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Steady x / m and v / (m/s) under force * cos(omega t + phase); omega 0 is the static answer."""
     receptance = 1.0 / (stiffness - mass * omega**2 + 1j * damping * omega)
@@ -53,7 +58,12 @@ def steady_state(
 
 
 def forced_response(
-    t: np.ndarray, mass: float, damping: float, stiffness: float, x0: float, v0: float,
+    t: np.ndarray,
+    mass: float,
+    damping: float,
+    stiffness: float,
+    x0: float,
+    v0: float,
     forces: tuple[tuple[float, float, float], ...],
 ) -> tuple[np.ndarray, np.ndarray]:
     """Steady state and transient from x0, v0 at t = 0 under forces (amplitude / N, rad/s, phase)."""
@@ -95,9 +105,7 @@ def equivalent_damping_ratio(alpha: float, n: float, speed: float, mass: float, 
     return 0.5 * loss_factor
 
 
-def power_law_coefficient(
-    damping_ratio: float, n: float, speed: float, mass: float, stiffness: float
-) -> float:
+def power_law_coefficient(damping_ratio: float, n: float, speed: float, mass: float, stiffness: float) -> float:
     """The alpha / (N (s/m)^n) with this equivalent damping ratio at velocity amplitude `speed`."""
     return damping_ratio / equivalent_damping_ratio(1.0, n, speed, mass, stiffness)
 

@@ -13,7 +13,10 @@ from scipy.linalg import expm
 
 
 def monodromy(
-    mass: float, damping: float, stiffness: Callable[[float], float], period: float,
+    mass: float,
+    damping: float,
+    stiffness: Callable[[float], float],
+    period: float,
     breaks: Sequence[float] = (),
 ) -> np.ndarray:
     """Map (2, 2) of (x / m, v / (m/s)) over one period by DOP853, restarted at the `breaks` / s."""
@@ -36,7 +39,10 @@ def monodromy(
 
 
 def floquet_multipliers(
-    mass: float, damping: float, stiffness: Callable[[float], float], period: float,
+    mass: float,
+    damping: float,
+    stiffness: Callable[[float], float],
+    period: float,
     breaks: Sequence[float] = (),
 ) -> np.ndarray:
     """The two multipliers, complex, the larger in magnitude first."""
@@ -64,6 +70,4 @@ def mesh_multipliers(case: GearCase, damping_ratio: float) -> np.ndarray:
     breaks = break_times(case, case.mesh_period) if case.stiffness_form == "rectangular" else []
     if case.stiffness_form == "fourier":
         return floquet_multipliers(case.mass, damping, Piece(case, 0.0).stiffness, case.mesh_period)
-    return floquet_multipliers(
-        case.mass, damping, lambda t: Piece(case, t).stiffness(t), case.mesh_period, breaks
-    )
+    return floquet_multipliers(case.mass, damping, lambda t: Piece(case, t).stiffness(t), case.mesh_period, breaks)

@@ -76,8 +76,15 @@ def _smooth_piece(regime: Regime, t: float, y: np.ndarray, stop: float, method: 
     step = STEP_SHARE / omega
     for _ in range(8):
         solution = solve_ivp(
-            regime.derivative, (t, stop), y, method=method, rtol=rtol, max_step=step, dense_output=True,
-            atol=ATOL_SHARE * length * np.array([1.0, omega]), events=events or None,
+            regime.derivative,
+            (t, stop),
+            y,
+            method=method,
+            rtol=rtol,
+            max_step=step,
+            dense_output=True,
+            atol=ATOL_SHARE * length * np.array([1.0, omega]),
+            events=events or None,
         )
         if solution.status < 0:
             raise RuntimeError(f"the reference failed at {solution.t[-1]:.9g} s: {solution.message}")

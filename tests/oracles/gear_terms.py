@@ -100,8 +100,7 @@ class Piece:
         case = self.case
         waves = [
             (*case.pinion_eccentricity, self._pinion_angle(0.0), case.pinion_speed),
-            (*case.gear_eccentricity, self._gear_angle(0.0),
-             case.pinion_speed * case.teeth_pinion / case.teeth_gear),
+            (*case.gear_eccentricity, self._gear_angle(0.0), case.pinion_speed * case.teeth_pinion / case.teeth_gear),
         ]
         for h, amplitude, phase in case.profile_error:
             rate = h * case.teeth_pinion * case.pinion_speed

@@ -42,9 +42,14 @@ def test_reversal_ends_on_the_coast_flank():
 
 @pytest.mark.parametrize(
     ("name", "method", "end"),
-    [("bench_rest", "Radau", 3.5e-4), ("many_effects", "Radau", 3e-4), ("bench", "LSODA", 2e-3),
-     ("rectangular_loose_start", "LSODA", 2e-3), ("light_load", "LSODA", 2e-3),
-     ("reversal_both_flanks", "LSODA", 3e-3)],
+    [
+        ("bench_rest", "Radau", 3.5e-4),
+        ("many_effects", "Radau", 3e-4),
+        ("bench", "LSODA", 2e-3),
+        ("rectangular_loose_start", "LSODA", 2e-3),
+        ("light_load", "LSODA", 2e-3),
+        ("reversal_both_flanks", "LSODA", 3e-3),
+    ],
 )
 def test_a_second_integrator_agrees(name, method, end):
     case, times = REFERENCE_CASES[name], TIMES[end >= TIMES]

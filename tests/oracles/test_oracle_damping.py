@@ -53,9 +53,7 @@ def test_averaged_amplitude_laws_hold_to_the_order_of_the_damping_ratio(n):
     assert amplitude[-1] < 0.8 * x0
 
 
-@pytest.mark.parametrize(
-    ("n", "factor"), [(0.0, 4 / math.pi), (1.0, 1.0), (2.0, 8 / (3 * math.pi)), (3.0, 0.75)]
-)
+@pytest.mark.parametrize(("n", "factor"), [(0.0, 4 / math.pi), (1.0, 1.0), (2.0, 8 / (3 * math.pi)), (3.0, 0.75)])
 def test_equivalent_damping_ratio_at_the_known_exponents(n, factor):
     ratio = exact.equivalent_damping_ratio(130.0, n, 0.577, M, K)
     assert ratio == pytest.approx(130.0 * 0.577 ** (n - 1) * factor / (2 * math.sqrt(K * M)), rel=1e-12)
@@ -79,8 +77,15 @@ def gauss_nodes(edges, count=12):
     return (np.asarray(edges)[:-1, None] + half * (1 + node)).ravel(), (half * weight).ravel()
 
 
-@pytest.mark.parametrize("effects", [{}, {"viscous": 300.0}, {"power_alpha": 3000.0, "power_n": 2.0},
-                                     {"power_alpha": 500.0, "power_n": 1.0, "coulomb_force": 40.0}])
+@pytest.mark.parametrize(
+    "effects",
+    [
+        {},
+        {"viscous": 300.0},
+        {"power_alpha": 3000.0, "power_n": 2.0},
+        {"power_alpha": 500.0, "power_n": 1.0, "coulomb_force": 40.0},
+    ],
+)
 def test_energy_balance_through_losses_of_contact(effects):
     case = replace(PAIR, gap=60e-6, x0=3.0 * PAIR.static_deflection, **effects)
     end = 1e-3

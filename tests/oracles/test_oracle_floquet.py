@@ -45,9 +45,15 @@ def test_product_of_the_multipliers_is_liouvilles():
 @pytest.mark.parametrize(
     ("rpm", "weighting", "ratio", "grows"),
     [
-        (4600, "plain", 0.0035, False), (4650, "plain", 0.0035, True), (4090, "plain", 0.006, True),
-        (6550, "plain", 0.006, True), (6350, "plain", 0.001, False), (6550, "lanczos", 0.006, True),
-        (4680, "lanczos", 0.0035, False), (4090, "lanczos", 0.0035, False), (5450, "plain", 0.001, True),
+        (4600, "plain", 0.0035, False),
+        (4650, "plain", 0.0035, True),
+        (4090, "plain", 0.006, True),
+        (6550, "plain", 0.006, True),
+        (6350, "plain", 0.001, False),
+        (6550, "lanczos", 0.006, True),
+        (4680, "lanczos", 0.0035, False),
+        (4090, "lanczos", 0.0035, False),
+        (5450, "plain", 0.001, True),
         (5450, "plain", 0.006, False),
     ],
 )

@@ -76,13 +76,21 @@ def test_free_decay(ratio):
 
 def test_transient_and_steady_state_under_load_sine_and_ripple():
     case = replace(
-        PLAIN, viscous=300.0, torque_sine=(20.0, 5000.0, 0.4), x0=1e-5, v0=0.1,
-        ripple=(Ripple(50.0, 4.0, 0.2), Ripple(70.0, 3.0, 0.5, "gear")), gear_angle_0=0.3, pinion_angle_0=0.1,
+        PLAIN,
+        viscous=300.0,
+        torque_sine=(20.0, 5000.0, 0.4),
+        x0=1e-5,
+        v0=0.1,
+        ripple=(Ripple(50.0, 4.0, 0.2), Ripple(70.0, 3.0, 0.5, "gear")),
+        gear_angle_0=0.3,
+        pinion_angle_0=0.1,
     )
     r1 = case.base_radii[0]
     forces = (
-        (case.mean_load, 0.0, 0.0), (20.0 / r1, 2 * math.pi * 5000.0, 0.4 - math.pi / 2),
-        (50.0, 4 * case.pinion_speed, 0.4 + 0.2), (70.0, 1.5 * case.pinion_speed, 3 * (0.05 + 0.3) + 0.5),
+        (case.mean_load, 0.0, 0.0),
+        (20.0 / r1, 2 * math.pi * 5000.0, 0.4 - math.pi / 2),
+        (50.0, 4 * case.pinion_speed, 0.4 + 0.2),
+        (70.0, 1.5 * case.pinion_speed, 3 * (0.05 + 0.3) + 0.5),
     )
     expected = exact.forced_response(TIMES, M, 300.0, K, 1e-5, 0.1, forces)
     for actual, wanted in zip(simulate(case, TIMES), expected, strict=True):
@@ -91,8 +99,15 @@ def test_transient_and_steady_state_under_load_sine_and_ripple():
 
 def test_displacement_errors_excite_through_spring_and_damper():
     case = replace(
-        PLAIN, viscous=400.0, mesh_phase=0.6, pinion_angle_0=0.2, gear_angle_0=0.9, x0=STATIC,
-        pinion_eccentricity=(2e-5, 0.4), gear_eccentricity=(1e-5, 1.0), profile_error=((2, 3e-6, 0.3),),
+        PLAIN,
+        viscous=400.0,
+        mesh_phase=0.6,
+        pinion_angle_0=0.2,
+        gear_angle_0=0.9,
+        x0=STATIC,
+        pinion_eccentricity=(2e-5, 0.4),
+        gear_eccentricity=(1e-5, 1.0),
+        profile_error=((2, 3e-6, 0.3),),
     )
     speed, waves = case.pinion_speed, []
     errors = ((2e-5, 1, 0.2 + 0.4), (1e-5, 0.5, 0.1 + 0.9 + 1.0), (3e-6, 40, 2 * (4 + 0.6) + 0.3))
@@ -148,8 +163,13 @@ def test_ramp_equals_the_same_ramp_given_as_a_measured_torque():
 
 
 def test_stiffness_modulation_multiplies():
-    case = replace(PAIR, pinion_stiffness_modulation=(0.02, 0.5), gear_stiffness_modulation=(0.03, 0.7),
-                   pinion_angle_0=0.3, gear_angle_0=0.4)
+    case = replace(
+        PAIR,
+        pinion_stiffness_modulation=(0.02, 0.5),
+        gear_stiffness_modulation=(0.03, 0.7),
+        pinion_angle_0=0.3,
+        gear_angle_0=0.4,
+    )
     bare = replace(case, pinion_stiffness_modulation=(0, 0), gear_stiffness_modulation=(0, 0))
     share = sampled(case, "stiffness", TIMES) / sampled(bare, "stiffness", TIMES)
     turn = 0.3 + case.pinion_speed * TIMES

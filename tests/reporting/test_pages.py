@@ -377,7 +377,7 @@ def test_the_table_is_that_of_the_terminal(tmp_path):
     found = errors_table(results(0.05))
     assert found.headings == list(tables.COLUMNS)
     assert [row[0] for row in found.rows] == ["raw_lstm", "mean (control)", "white_noise (control)"]
-    assert "<th scope=\"row\">raw_lstm</th>" in run_report("train", tmp_path)
+    assert '<th scope="row">raw_lstm</th>' in run_report("train", tmp_path)
 
 
 BROKEN = {

@@ -41,8 +41,7 @@ def direct_sum(signal, scales, psi):
     n_samples = len(signal)
     k = np.arange(n_samples)
     rows = [
-        [np.sum(signal * np.conj(psi((k - n) / scale))) / np.sqrt(scale) for n in range(n_samples)]
-        for scale in scales
+        [np.sum(signal * np.conj(psi((k - n) / scale))) / np.sqrt(scale) for n in range(n_samples)] for scale in scales
     ]
     return np.array(rows)
 
@@ -61,9 +60,7 @@ def test_both_routes_give_the_defining_sum(wavelet, options, n_samples, dense_li
     signal = noise(2, n_samples)
     psi, _ = formulas(wavelet, options)
     expected = np.stack([direct_sum(x, transform.scales, psi) for x in signal.numpy()])
-    np.testing.assert_allclose(
-        transform(signal).numpy(), expected, rtol=0, atol=2e-13 * np.abs(expected).max()
-    )
+    np.testing.assert_allclose(transform(signal).numpy(), expected, rtol=0, atol=2e-13 * np.abs(expected).max())
 
 
 @pytest.mark.parametrize("wavelet", [RickerCWT, MorletCWT])

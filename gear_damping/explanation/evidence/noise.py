@@ -82,9 +82,7 @@ def noise_level(records: Sequence[FitRecord], channels: Mapping[str, Channel]) -
     return replace(floors, by_record=levels, method=method, correlation=correlation)
 
 
-def _floors(
-    records: Sequence[FitRecord], usable: Mapping[str, float], channels: Mapping[str, Channel]
-) -> NoiseLevel:
+def _floors(records: Sequence[FitRecord], usable: Mapping[str, float], channels: Mapping[str, Channel]) -> NoiseLevel:
     """The floors of spectra, up to a frequency that is usable of each record, or the variance that rounding leaves."""
     found = {r.name: [_floor(r, low * usable[r.name], high * usable[r.name]) for low, high in BANDS] for r in records}
     rounding = {record.name: _rounding(record, channels[record.name]) for record in records}

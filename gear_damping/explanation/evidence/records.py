@@ -211,9 +211,7 @@ def with_own(evidence: Evidence, own_of: Callable[[FitRecord], tuple[FreeParamet
     return replace(evidence, fit=fit, holdout=holdout)
 
 
-def _roles(
-    records: Sequence[tuple[FitRecord, str | None]], dies_away: bool
-) -> tuple[list[FitRecord], list[FitRecord]]:
+def _roles(records: Sequence[tuple[FitRecord, str | None]], dies_away: bool) -> tuple[list[FitRecord], list[FitRecord]]:
     """Roles as the file says; where it says none, whole operating conditions are held out.
 
     Of several decays of one condition whole ones are, of middling size: their ends show no law that grows with it.

@@ -52,9 +52,7 @@ class KnownRuns:
         usual = torch.stack([self.records.std(-1), self.runs.reference_velocity], -1)
         return torch.where(self.deviation > 0, self.deviation, usual)
 
-    def values(
-        self, ratio: Tensor, start: Tensor, repeat: int = 1, units: Tensor | None = None
-    ) -> dict[str, Tensor]:
+    def values(self, ratio: Tensor, start: Tensor, repeat: int = 1, units: Tensor | None = None) -> dict[str, Tensor]:
         """Parameters of the runs, one block of all runs after another.
 
         Args:
@@ -129,5 +127,3 @@ def range_of(prior: Prior) -> tuple[float, float]:
 
 def _repeated(value: Tensor, count: int) -> Tensor:
     return value.repeat(count) if value.ndim == 1 else value.repeat(1, count)
-
-

@@ -111,9 +111,9 @@ def _corrected(known: KnownRuns, sample: int, mean: Tensor, covariance: Tensor) 
     gain = covariance[:, :, 0] / (covariance[:, 0, 0] + (known.noise / scale) ** 2)[:, None]
     left = torch.eye(SIZE, dtype=torch.float64).repeat(len(mean), 1, 1)
     left[:, :, 0] -= gain
-    posterior = left @ covariance @ left.mT + (gain[:, :, None] * gain[:, None, :]) * (known.noise / scale)[
-        :, None, None
-    ] ** 2
+    posterior = (
+        left @ covariance @ left.mT + (gain[:, :, None] * gain[:, None, :]) * (known.noise / scale)[:, None, None] ** 2
+    )
     return mean + gain * off[:, None], (posterior + posterior.mT) / 2
 
 

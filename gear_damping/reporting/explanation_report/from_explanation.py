@@ -77,9 +77,7 @@ def _title(content: Mapping[str, Any]) -> str:
 def _overlay(found: State, evidence: Evidence, place: int, noise: Mapping[str, float]) -> Overlay:
     record, factor = evidence.held[place], evidence.channel.declared_factor
     measured = record.response.numpy()
-    nominal, extended = (
-        measured - o.holdout[place][: len(measured)].numpy() for o in (found.nominal, found.outcome)
-    )
+    nominal, extended = (measured - o.holdout[place][: len(measured)].numpy() for o in (found.nominal, found.outcome))
     return Overlay(
         f"{record.name}, held out",
         np.arange(len(measured)) / record.sampling_rate,

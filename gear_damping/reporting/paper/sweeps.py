@@ -57,8 +57,10 @@ def _of_one_run(study: Study, ratio: float, name: str) -> MeanAndStd | None:
     parts = study.of(one_run_of(ratio), "paper")
     if not parts:
         return None
-    return _all_windows([part["predictions"][name]["predicted"][0] for part in parts],
-                        [part["predictions"][name]["spread"][0] for part in parts])
+    return _all_windows(
+        [part["predictions"][name]["predicted"][0] for part in parts],
+        [part["predictions"][name]["spread"][0] for part in parts],
+    )
 
 
 def _of_unseen(study: Study, ratio: float, name: str) -> MeanAndStd | None:

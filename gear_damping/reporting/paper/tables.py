@@ -128,9 +128,7 @@ def ridge_table(found: Found, names: tuple[str, ...]) -> str:
     rows = []
     for name in names:
         ridges = found["physics"]["ridges"][name]
-        places = "; ".join(
-            f"{one['frequency_hz']:.0f} ({one['low_hz']:.0f} … {one['high_hz']:.0f})" for one in ridges
-        )
+        places = "; ".join(f"{one['frequency_hz']:.0f} ({one['low_hz']:.0f} … {one['high_hz']:.0f})" for one in ridges)
         rows.append((RESPONSES[name], str(len(ridges)), places))
     count = f"ridges (printed: {DOMINANT_FREQUENCIES})"
     return markdown(("response", count, "frequency (half-power width) / Hz"), rows)

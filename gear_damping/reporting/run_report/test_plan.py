@@ -73,8 +73,7 @@ def _chosen(content: Mapping[str, Any], chosen: Mapping[str, Any]) -> Table:
 
 def _sets(content: Mapping[str, Any]) -> Table:
     rows = [
-        (number(one["cost"]), str(len(one["tests"])), *_told(one), _mounted(content, one))
-        for one in content["front"]
+        (number(one["cost"]), str(len(one["tests"])), *_told(one), _mounted(content, one)) for one in content["front"]
     ]
     precision = _precision(content)
     caption = "Sets none of which is both dearer and worse than another; ± is half of the 95 % interval in %."

@@ -55,9 +55,17 @@ class HiddenCase:
 
 
 def draw_case(
-    stratum: str, seed: int, *, duration: float = 0.05, snr_db: float | None = None,
-    target_excess: float | None = None, rig: str | Rig | None = None, sensors: str | Setup | None = None,
-    chosen: Mapping[str, float | str] | None = None, size: float | None = None, gear_apart: bool = False,
+    stratum: str,
+    seed: int,
+    *,
+    duration: float = 0.05,
+    snr_db: float | None = None,
+    target_excess: float | None = None,
+    rig: str | Rig | None = None,
+    sensors: str | Setup | None = None,
+    chosen: Mapping[str, float | str] | None = None,
+    size: float | None = None,
+    gear_apart: bool = False,
 ) -> HiddenCase:
     """One case; see draw_cases, which draws many at a fraction of the cost of each.
 
@@ -71,7 +79,10 @@ def draw_case(
 
 
 def draw_cases(
-    wanted: Sequence[tuple[str, int]], *, duration: float = 0.05, snr_db: float | None = None,
+    wanted: Sequence[tuple[str, int]],
+    *,
+    duration: float = 0.05,
+    snr_db: float | None = None,
     target_excess: float | None = None,
 ) -> list[HiddenCase]:
     """Cases of (stratum, seed), integrated together; each is what it would be alone, to rounding.
@@ -144,20 +155,37 @@ def _truth(one: Draft, sized: Sized, path: Trajectory, seen: np.ndarray, sigma: 
     stiffness = true_mean_stiffness(one.shape)
     rms_rate = float(np.sqrt(np.mean(np.var(path.v, axis=0))))
     return {
-        "stratum": one.stratum, "seed": one.seed, "plan": one.plan, "fault": one.fault, "snr_db": one.snr_db,
-        "noise_std": sigma, "mean_stiffness": stiffness,
+        "stratum": one.stratum,
+        "seed": one.seed,
+        "plan": one.plan,
+        "fault": one.fault,
+        "snr_db": one.snr_db,
+        "noise_std": sigma,
+        "mean_stiffness": stiffness,
         "damping_ratio_percent": 50.0 * one.shape["viscous"] / float(np.sqrt(stiffness * one.rig.mass)),
         "in_catalogue": not any(effect.name in FOREIGN for effect in one.effects),
-        **basis.excess(difference), "excess_percent_by_misreading": misread,
+        **basis.excess(difference),
+        "excess_percent_by_misreading": misread,
         "first_records": basis.excess(difference, with_added=False),
-        "separates": bool(np.any(path.delta < 0.0)), "diverged": bool(np.any(path.diverged)),
+        "separates": bool(np.any(path.delta < 0.0)),
+        "diverged": bool(np.any(path.diverged)),
         "effects": [
-            {"name": effect.name, "parameters": params, "target_percent": target, "excess_percent": predicted,
-             "invariants": invariants(effect, params, one.records[0], rms_rate)}
+            {
+                "name": effect.name,
+                "parameters": params,
+                "target_percent": target,
+                "excess_percent": predicted,
+                "invariants": invariants(effect, params, one.records[0], rms_rate),
+            }
             for effect, params, target, predicted in zip(
-                one.effects, sized.params, one.targets, sized.predicted, strict=True)
+                one.effects, sized.params, one.targets, sized.predicted, strict=True
+            )
         ],
-        "pair": one.rig.name, "natural_frequency": one.rig.natural_frequency, "rate": one.rig.rate,
-        "sensors": one.setup.name, "colour": one.setup.colour,
-        "rig": one.shape, "records": [{"name": f"run_{i + 1}", **vars(c)} for i, c in enumerate(one.conditions)],
+        "pair": one.rig.name,
+        "natural_frequency": one.rig.natural_frequency,
+        "rate": one.rig.rate,
+        "sensors": one.setup.name,
+        "colour": one.setup.colour,
+        "rig": one.shape,
+        "records": [{"name": f"run_{i + 1}", **vars(c)} for i, c in enumerate(one.conditions)],
     }

@@ -79,8 +79,14 @@ def _by_step(values: np.ndarray) -> np.ndarray:
 
 
 def integrate(
-    knobs: Arrays, n_samples: int, rate: float, substeps: int = 4, settle: int = 0,
-    moved: np.ndarray | float = 0.0, pushed: np.ndarray | float = 0.0, held: np.ndarray | None = None,
+    knobs: Arrays,
+    n_samples: int,
+    rate: float,
+    substeps: int = 4,
+    settle: int = 0,
+    moved: np.ndarray | float = 0.0,
+    pushed: np.ndarray | float = 0.0,
+    held: np.ndarray | None = None,
 ) -> Trajectory:
     """Motion of all members at -settle/rate, ..., 0, 1/rate, ..., (n_samples - 1)/rate.
 

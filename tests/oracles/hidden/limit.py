@@ -67,7 +67,12 @@ def wanted_noncentrality(degrees: int, level: float = LEVEL, power: float = POWE
 
 
 def limits(
-    name: str, seed: int, *, duration: float = 0.05, snr_db: float = 30.0, rivals: Collection[str] = (),
+    name: str,
+    seed: int,
+    *,
+    duration: float = 0.05,
+    snr_db: float = 30.0,
+    rivals: Collection[str] = (),
     same: Callable[[str, str], bool] = lambda one, other: one == other,
 ) -> Limit:
     """The limits of an effect in the case of a seed, as `draw_case` draws it with these arguments.

@@ -37,7 +37,11 @@ def transmission_error(knobs: Arrays, path: Trajectory, noise: np.ndarray | floa
 
 
 def response(
-    knobs: Arrays, path: Trajectory, noise: np.ndarray | float = 0.0, order: int = 0, factor: float = 1.0,
+    knobs: Arrays,
+    path: Trajectory,
+    noise: np.ndarray | float = 0.0,
+    order: int = 0,
+    factor: float = 1.0,
     corner: float | None = None,
 ) -> np.ndarray:
     """A channel that sees `factor` times a derivative of x, behind a high-pass where it has a corner / Hz."""

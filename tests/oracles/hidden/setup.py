@@ -129,5 +129,3 @@ def can_show(name: str, effects: Sequence[str]) -> bool:
     if plan.get("datum") and {*effects} & {"sensor_offset", "encoder_error"}:
         return False
     return plan.get("angle", True) or "shaft_angle_error" not in effects
-
-

@@ -83,8 +83,15 @@ class _Draft:
 
 
 def draw_oscillator(
-    stratum: str, seed: int, *, channel: str | None = None, kind: str | None = None, periods: float | None = None,
-    snr_db: float | None = None, target_excess: float | None = None, unit: str | None = None,
+    stratum: str,
+    seed: int,
+    *,
+    channel: str | None = None,
+    kind: str | None = None,
+    periods: float | None = None,
+    snr_db: float | None = None,
+    target_excess: float | None = None,
+    unit: str | None = None,
     force_snr_db: float | None = None,
 ) -> OscillatorCase:
     """A case; the same arguments draw the same case.
