@@ -23,7 +23,7 @@ from gear_damping.explanation.search import looked, search
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import State
 from gear_damping.explanation.steps.calibrate import Calibration, calibrated, recalibrated
-from gear_damping.explanation.steps.confirm import confirmed
+from gear_damping.explanation.steps.confirm import Confirmed, confirmed
 from gear_damping.explanation.steps.estimate import estimated
 from gear_damping.explanation.steps.never_dies import never_dies
 from gear_damping.explanation.steps.out_of_step import out_of_step
@@ -102,29 +102,33 @@ def explain(
     Raises:
         InputError: a record lacks the channel that its system is explained from.
     """
-    log, step, budget = listener.log, listener.progress, budget or Budget()
-    faults = data_faults(measurement)
-    if faults:
+    budget, settings = budget or Budget(), settings or SearchSettings()
+    if faults := data_faults(measurement):
         return Explanation(report_fields.of_faults(measurement, faults))
     if is_casing(measurement):
-        found, studies = explain_casing(measurement, log)
+        found, studies = explain_casing(measurement, listener.log)
         return Explanation(report_fields.of_casing(measurement, found), casing=studies)
-    settings = settings or SearchSettings()
     evidence = replace(evidence_of(measurement), settings=settings, is_over=lambda: budget.spent)
-    faults = mesh_order_faults(evidence)
-    if faults:
+    if faults := mesh_order_faults(evidence):
         return Explanation(report_fields.of_faults(measurement, faults))
-    evidence = at_useful_rate(evidence if library is None else replace(evidence, library=library))
-    stretches = of_useful_length(evidence)
-    evidence = stretches.evidence
-    silent, whole = left_out_ends(evidence), evidence
+    evidence = evidence if library is None else replace(evidence, library=library)
+    return _of_evidence(evidence, measurement, listener, fitting_solver(solver), budget)
+
+
+def _of_evidence(
+    evidence: Evidence, measurement: Measurement, listener: Listener, solver: Solver, budget: Budget
+) -> Explanation:
+    """What explains records without faults: calibration, search, confirmation on sealed records, verdict."""
+    log, step = listener.log, listener.progress
+    stretches = of_useful_length(at_useful_rate(evidence))
+    whole = stretches.evidence
+    silent = left_out_ends(whole)
     for said in filter(None, (silent, stretches.said)):
         log(said)
-    sealed = evidence.holdout if evidence.can_be_sealed else ()
-    evidence = replace(evidence, holdout=(), sealed=True) if sealed else evidence
+    sealed = whole.holdout if whole.can_be_sealed else ()
+    evidence = replace(whole, holdout=(), sealed=True) if sealed else whole
     evidence, noise = with_noise(evidence, measurement, log)
     step(1, STEPS)
-    solver = fitting_solver(solver)
     found = _calibrated(replace(evidence, segments=first_segments(evidence)), solver)
     if isinstance(found, Finding):
         return Explanation(report_fields.of_faults(measurement, [found]))
@@ -133,16 +137,20 @@ def explain(
     if short:
         log(short)
     step(3, STEPS)
+    found = _confirmed(state, sealed, measurement)
+    evidence, noise = found.state.bench.evidence, found.noise
+    doubts = (out_of_step(found.state), never_dies(found.state), INPUT_NOISE if evidence.input_noise else "")
+    said = judged(found, [silent, short, *doubts, stretches.said])
+    step(4, STEPS)
+    return Explanation(report_fields.of_search(measurement, evidence, noise, said), evidence, noise, said.found)
+
+
+def _confirmed(state: State, sealed: tuple[FitRecord, ...], measurement: Measurement) -> Confirmed:
+    """The search's end with what sealed records say of it; where they take a cause away, what is left is looked at."""
     found = confirmed(_with_the_last_time(state), sealed, measurement)
     if found.state.names != state.names:
         found = replace(found, state=replace(found.state, left=looked(found.state).left))
-    found = replace(found, state=estimated(found.state))
-    doubts = (out_of_step(found.state), never_dies(found.state))
-    notes = [silent, short, *doubts, INPUT_NOISE if found.state.bench.evidence.input_noise else ""]
-    said = judged(found, [*notes, stretches.said])
-    step(4, STEPS)
-    evidence, noise = found.state.bench.evidence, found.noise
-    return Explanation(report_fields.of_search(measurement, evidence, noise, said), evidence, noise, said.found)
+    return replace(found, state=estimated(found.state))
 
 
 def _with_the_last_time(state: State) -> State:

@@ -119,67 +119,98 @@ def _value(base: Hypothesis, name: str) -> float:
 
 
 def _candidate(base: Hypothesis, kind: type[Effect], recipe: Recipe, sizes: "_Sizes") -> Candidate:
+    """One recipe of an effect on the calibrated model."""
     replaced = tuple(p for p in base.free if p.name in recipe.replaces)
     kept = tuple(p for p in base.free if p not in replaced)
     base = replace(base, free=kept, given=base.given | {p.name: 0.0 for p in replaced})
     effect = kind(**recipe.options)
     given: Given = {f"{kind.name}.{p.name}": sizes.default(kind, p, recipe) for p in kind.parameters}
-    free, strengths, phases, own_phases = [], [], {}, {}
-    own = _has_own_phases(kind, sizes)
-    own_tooth = f"{kind.name}.phase" if not sizes.rig.indexed and kind.cause.turns_with == "tooth" else ""
     first = len(base.common)
-    for name, size in recipe.strengths.items():
-        for parameter in _elements(kind, name, sizes.size(kind, name, size, recipe), given, recipe):
-            place = first + len(free)
-            free.append(parameter)
-            strengths.append(place)
-            if name in recipe.phases:
-                index = parameter.name.partition("[")[2]
-                phase = f"{kind.name}.{recipe.phases[name]}" + (f"[{index}" if index else "")
-                if own:
-                    own_phases[place] = phase
-                    continue
-                free.append(FreeParameter(phase, 0.0))
-                phases[place] = place + 1
-    joining = [(declared, f"{kind.name}.{declared.name}") for declared in _declared(kind, recipe)]
-    within = sizes.within(kind, recipe)
-    later = [_freed(declared, flat, given, within) for declared, flat in joining if flat != own_tooth]
+    laid = _strengths(kind, recipe, sizes, given, first)
+    own_tooth = f"{kind.name}.phase" if not sizes.rig.indexed and kind.cause.turns_with == "tooth" else ""
+    teeth = sizes.rig.teeth(effect.chosen["shaft"]) if own_tooth else 0
+    free, later = laid.free, _joining(kind, recipe, sizes, given, own_tooth)
     if recipe.non_nested:
         free, later = [*free, *later], []
     initial_values = {}
-    expected = 1.0 if _has_levels(kind) else inf  # a level counts in standard deviations
-    templates = [FreeParameter(one, 0.0, per_record=True, deviation=expected) for one in own_phases.values()]
-    teeth = sizes.rig.teeth(effect.chosen["shaft"]) if own_tooth else 0
-    if own_tooth:
-        templates = [FreeParameter(own_tooth, 0.0, ANGLE_SCALE, per_record=True, places=teeth)]
     for name, start in recipe.jointly_fitted.items():
         if start is not None:
             given[name] = start / UNSEEN
             initial_values[first + len(free)] = log(UNSEEN)
         if name in given or name in base.given:
             free.append(_freed(base.model.parameters()[name], name, base.given | given, recipe.within))
-    moved = {
-        i: log(recipe.restart_scaling[p.name]) for i, p in enumerate(base.common) if p.name in recipe.restart_scaling
-    }
+    templates = _templates(kind, laid.own_phases, own_tooth, teeth)
     extended = base.with_effect([effect], given, [*free, *templates], kind.name)
+    scaling = recipe.restart_scaling
     return Candidate(
         kind.name,
         _label(kind, recipe),
         replace(extended, replaced=base.replaced | {kind.name: replaced}),
-        tuple(strengths),
-        phases,
+        tuple(laid.places),
+        laid.phases,
         initial_values,
-        moved,
-        tuple(later),
-        recipe.non_nested,
-        replaced,
-        frozenset((f"{kind.name}.{name}", end) for name, end in recipe.resting),
-        own_phases,
-        _has_levels(kind),
-        own_tooth,
-        teeth,
-        recipe.options,
+        moved={place: log(scaling[p.name]) for place, p in enumerate(base.common) if p.name in scaling},
+        later=tuple(later),
+        non_nested=recipe.non_nested,
+        replaced=replaced,
+        resting=frozenset((f"{kind.name}.{name}", end) for name, end in recipe.resting),
+        own_phases=laid.own_phases,
+        own_levels=_has_levels(kind),
+        own_tooth=own_tooth,
+        teeth=teeth,
+        tried=recipe.options,
     )
+
+
+@dataclass
+class _Strengths:
+    """The strengths of a recipe as free parameters, with the phases that belong to them.
+
+    Args:
+        free: Strengths, each before its phase.
+        places: Of the strengths among all free parameters.
+        phases: Place of the phase by place of its strength.
+        own_phases: Name of the phase by place of its strength, where every record has one of its own.
+    """
+
+    free: list[FreeParameter] = field(default_factory=list)
+    places: list[int] = field(default_factory=list)
+    phases: dict[int, int] = field(default_factory=dict)
+    own_phases: dict[int, str] = field(default_factory=dict)
+
+
+def _strengths(kind: type[Effect], recipe: Recipe, sizes: "_Sizes", given: Given, first: int) -> _Strengths:
+    """The strengths from place `first` on."""
+    laid, own = _Strengths(), _has_own_phases(kind, sizes)
+    for name, size in recipe.strengths.items():
+        for parameter in _elements(kind, name, sizes.size(kind, name, size, recipe), given, recipe):
+            place = first + len(laid.free)
+            laid.free.append(parameter)
+            laid.places.append(place)
+            if name not in recipe.phases:
+                continue
+            phase = f"{kind.name}.{recipe.phases[name]}" + "".join(parameter.name.partition("[")[1:])
+            if own:
+                laid.own_phases[place] = phase
+            else:
+                laid.free.append(FreeParameter(phase, 0.0))
+                laid.phases[place] = place + 1
+    return laid
+
+
+def _joining(kind: type[Effect], recipe: Recipe, sizes: "_Sizes", given: Given, own_tooth: str) -> list[FreeParameter]:
+    """The scanned and timed parameters, which join in the full fit."""
+    within = sizes.within(kind, recipe)
+    joining = [(declared, f"{kind.name}.{declared.name}") for declared in _declared(kind, recipe)]
+    return [_freed(declared, flat, given, within) for declared, flat in joining if flat != own_tooth]
+
+
+def _templates(kind: type[Effect], own_phases: Mapping[int, str], own_tooth: str, teeth: int) -> list[FreeParameter]:
+    """What every record has of its own: phases, levels, or which tooth is in mesh at its start."""
+    if own_tooth:
+        return [FreeParameter(own_tooth, 0.0, ANGLE_SCALE, per_record=True, places=teeth)]
+    expected = 1.0 if _has_levels(kind) else inf  # a level counts in standard deviations
+    return [FreeParameter(phase, 0.0, per_record=True, deviation=expected) for phase in own_phases.values()]
 
 
 def _has_own_phases(kind: type[Effect], sizes: "_Sizes") -> bool:
