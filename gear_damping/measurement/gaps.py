@@ -22,10 +22,8 @@ from gear_damping.measurement.record import Finding, Record
 from gear_damping.measurement.timebase import CLOCK_JUMPS, LOST, counted, scatter
 
 _GAP, _BESIDE, _FEWEST_GAPS = 1.5, 4, 5  # usual steps in a gap; samples on either side; gaps that a share is had from
-_NEARER, _ERRORS = (
-    0.65,
-    4.0,
-)  # of the way from a clock's jump to a pause; standard errors that it must be beyond that by
+_NEARER = 0.65  # of the way from a clock's jump to a pause
+_ERRORS = 4.0  # standard errors that it must be beyond that by
 _FOLLOWS = 0.1  # of a channel's standard deviation: what a spline may miss of what was lost
 _NO_WORSE = 1.5  # times what it misses of a single sample: what is missed is noise then, and would be without a gap
 _MOST_LOST = 0.02  # of the samples; beyond, another clock is as likely

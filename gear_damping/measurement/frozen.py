@@ -1,0 +1,52 @@
+"""Stretches over which a channel keeps its last value although the motion went on.
+
+A tracker that loses its mark, a logger whose link breaks and a converter that hangs write the last value again, and
+leap to where the motion has got to once they are back. Where values are fine enough that they hardly ever repeat, five
+of the same in a row are no chance; and a motion that really stood, as friction may hold it, begins again with small
+steps.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_damping.measurement.record import Channel, Finding
+from gear_damping.measurement.vocabulary import INPUTS
+
+_REPEATS = 5  # of a value in a row, from which it is held: at a share of zeros as below, one chance in 3e11 a sample
+_HELD = 5e-3  # share of the other steps that are zero, from which values are coarse and repeat by themselves
+_BESIDE = 50  # steps on either side that say how fast the motion was
+_LEAP = 0.5  # times what it moves over as many usual steps: less is how a motion begins again
+
+
+def frozen(channel: Channel) -> Finding | None:
+    """A finding where a response keeps its value and leaps out of it; those at the ends of a record are rests."""
+    if channel.name in INPUTS:
+        return None
+    stretches = _stretches(channel.values)
+    if not stretches:
+        return None
+    count, (first, last) = sum(last - first for first, last in stretches), stretches[0]
+    message = (
+        f"{channel.name} keeps its value over {len(stretches)} stretch(es) of {_REPEATS} or more samples and leaps out "
+        f"of them, the first at samples {first} to {last}, {count} samples in all: a tracker, a link or a converter "
+        "lost the motion there; use slices or windows between them"
+    )
+    return Finding("frozen", message, channel=channel.name, sample=first)
+
+
+def _stretches(values: NDArray[np.float64]) -> list[tuple[int, int]]:
+    """First and last sample of each; none where values repeat elsewhere too."""
+    steps = np.diff(values)
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], (steps == 0).view(np.int8), [0]])))
+    runs = [(int(a), int(b)) for a, b in edges.reshape(-1, 2) if b - a >= _REPEATS]
+    elsewhere = np.count_nonzero(steps == 0) - sum(b - a for a, b in runs)
+    if not runs or elsewhere > _HELD * steps.size:
+        return []
+    return [(a, b) for a, b in runs if a > 0 and b < steps.size and _leaps(steps, a, b)]
+
+
+def _leaps(steps: NDArray[np.float64], first: int, last: int) -> bool:
+    """Whether the step behind a stretch is as long as what the motion beside it had done meanwhile."""
+    beside = np.concatenate([steps[max(first - _BESIDE, 0) : first], steps[last + 1 : last + 1 + _BESIDE]])
+    usual = float(np.median(np.abs(beside[beside != 0]))) if np.any(beside) else 0.0
+    return bool(0 < _LEAP * (last - first) * usual < abs(steps[last]))

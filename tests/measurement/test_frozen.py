@@ -1,0 +1,51 @@
+"""A value that is kept while the motion goes on is a fault of the record; one at which the motion stood is none."""
+
+import numpy as np
+import pytest
+
+from gear_damping.measurement.frozen import frozen
+from gear_damping.measurement.record import Channel
+
+T = np.arange(3000) / 100
+DECAY = np.exp(-0.1 * T) * np.cos(8 * T) + np.random.default_rng(5).normal(0, 0.003, T.size)
+
+
+def _said(values, name="displacement"):
+    return frozen(Channel(name, values, "m"))
+
+
+def test_a_kept_value_is_found_where_the_motion_went_on():
+    values = DECAY.copy()
+    values[400:412], values[900:930] = values[399], values[899]
+    found = _said(values)
+    assert found.kind == "frozen"
+    assert found.sample == 399
+    assert found.severity == "data_problem"
+    assert "2 stretch(es)" in found.message
+    assert "42 samples in all" in found.message
+
+
+def test_a_sound_decay_has_none():
+    assert _said(DECAY) is None
+
+
+def test_rests_at_the_ends_are_none():
+    assert _said(np.concatenate([np.full(40, DECAY[0] - 0.2), DECAY, np.full(40, DECAY[-1] + 0.2)])) is None
+
+
+def test_where_friction_holds_the_motion_begins_again_with_small_steps():
+    speed = np.clip(np.sin(3 * T), 0, None)  # moves for half of a period and stands for the other
+    assert _said(np.cumsum(speed) / 100) is None
+
+
+@pytest.mark.parametrize("step", [0.02, 0.05])
+def test_a_coarse_converter_repeats_values_everywhere(step):
+    values = np.round(DECAY / step) * step
+    values[400:412] = values[399]
+    assert _said(values) is None
+
+
+def test_an_input_may_be_held():
+    values = DECAY.copy()
+    values[900:930] = values[899]
+    assert _said(values, "force") is None
