@@ -24,6 +24,7 @@ from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import State
 from gear_damping.explanation.steps.calibrate import Calibration, calibrated, recalibrated
 from gear_damping.explanation.steps.confirm import Confirmed, confirmed
+from gear_damping.explanation.steps.each_alone import followed_one_by_one
 from gear_damping.explanation.steps.estimate import estimated
 from gear_damping.explanation.steps.never_dies import never_dies
 from gear_damping.explanation.steps.out_of_step import out_of_step
@@ -139,7 +140,12 @@ def _of_evidence(
     step(3, STEPS)
     found = _confirmed(state, sealed, measurement)
     evidence, noise = found.state.bench.evidence, found.noise
-    doubts = (out_of_step(found.state), never_dies(found.state), INPUT_NOISE if evidence.input_noise else "")
+    doubts = (
+        out_of_step(found.state),
+        never_dies(found.state),
+        followed_one_by_one(found.state),
+        INPUT_NOISE if evidence.input_noise else "",
+    )
     said = judged(found, [silent, short, *doubts, stretches.said])
     step(4, STEPS)
     return Explanation(report_fields.of_search(measurement, evidence, noise, said), evidence, noise, said.found)

@@ -13,6 +13,7 @@ from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome
 from gear_damping.explanation.trials.efficient import weighed
 from gear_damping.identification.free_vibration import LEAST_FALL, grows
 from gear_damping.identification.observation import fit_record, has_spring, known_of, require_alike, require_fitted
+from gear_damping.identification.oscillator.each_alone import each_alone, said_of_each
 from gear_damping.identification.oscillator.estimates import Estimate
 from gear_damping.identification.oscillator.fit import OscillatorFit, fit_oscillator
 from gear_damping.identification.oscillator.linear_model import DAMPING
@@ -98,7 +99,8 @@ def content_of(measurement: Measurement, fitted: Fitted) -> dict[str, Any]:
     content = _identification(found, measurement, roles, channel)
     lacking = lack_of_fit(found.predictions, roles["fit"], roles["holdout"], channel, fitted.noise)
     undamped = _undamped(found, roles["fit"], lacking)
-    differs = _differing(found, measurement, roles["fit"], channel)
+    is_lacking = bool(lacking and lacking["significant"])
+    differs = (is_lacking and _apart(fitted, measurement)) or _differing(found, measurement, roles["fit"], channel)
     said = {
         "differing": differs,
         "undamped": undamped,
@@ -109,6 +111,22 @@ def content_of(measurement: Measurement, fitted: Fitted) -> dict[str, Any]:
         or _far_off(found, measurement),
     }
     return content | said | {"lack_of_fit": lacking and lacking | {"source": str(measurement.source)}}
+
+
+def _apart(fitted: Fitted, measurement: Measurement) -> str | None:
+    """The frequency and the damping of every record, where each alone is followed and all together are not."""
+    found, records = fitted.found, fitted.roles["fit"]
+    left = sum(float((one.weight * found.first_residual(one)).square().sum()) for one in records)
+    alone = each_alone(records, left, known_of(measurement))
+    return (
+        None
+        if not alone
+        else (
+            f"one model does not follow all records, and one of its own follows each: {said_of_each(alone)}. A mass, a "
+            "tension, a temperature or the mounting changed between them, or the frequency goes with the amplitude: "
+            "identify them one by one, or let task=explain look for its name"
+        )
+    )
 
 
 def _differing(

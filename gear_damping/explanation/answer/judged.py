@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from gear_damping.explanation.answer.acting import acts_as, inputs_and_loads
 from gear_damping.explanation.answer.gain import nrmse
-from gear_damping.explanation.answer.levels import damping_by_record, of_unit_spread, said_of_levels
+from gear_damping.explanation.answer.levels import of_unit_spread, said_of_levels
 from gear_damping.explanation.answer.stand_in import (
     SWINGS_ON,
     is_untold,
@@ -116,8 +116,8 @@ def _judged(found: Confirmed, notes: Sequence[str]) -> tuple[Judged, tuple[str, 
     acting = acts_as(state) if said.word not in (CONSISTENT, UNEXPLAINED) else ()
     if said.word == CONSISTENT:  # what would take part of so little is no cause
         state, after = replace(state, accepted=(), outcome=state.nominal, left=state.seen), before
-    differs = said_of_levels(damping_by_record(state.outcome, evidence)) if state.accepted else ""
-    said = said.saying(left, differs, *notes, *acting, *inputs_and_loads(state), budget.sentence)
+    differs = said_of_levels(state.outcome, evidence) if state.accepted else []
+    said = said.saying(left, *differs, *notes, *acting, *inputs_and_loads(state), budget.sentence)
     return Judged(state, before, after, said, not_tried, found.t), (doubtful, stands_in)
 
 

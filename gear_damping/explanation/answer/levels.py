@@ -1,6 +1,6 @@
 """Levels that records have of their own, as of their damping: brought to one scale, and told record by record."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -11,12 +11,13 @@ from gear_damping.explanation.answer.gain import damping_ratios
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.candidates import Candidate
 from gear_damping.explanation.model.homogeneity import block_of
-from gear_damping.explanation.model.hypothesis import Outcome
-from gear_damping.explanation.model.own_phases import own_level
+from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency_hz
+from gear_damping.explanation.model.own_phases import own_levels
 from gear_damping.explanation.model.positive import copied
 from gear_damping.identification.output_error.normal_equations import nuisance_basis, project_out
 from gear_damping.identification.output_error.records import SEPARATOR
 from gear_damping.identification.output_error.uncertainty import QUANTILE
+from gear_damping.physics.terms import DampingForce, Effect, ElasticForce
 
 SAME = 0.01  # share of a column that the levels leave of it: less is their mean, but for the steps of slopes
 Rows = list[dict[str, Any]]
@@ -26,8 +27,13 @@ def of_unit_spread(outcome: Outcome, candidates: Sequence[Candidate]) -> Outcome
     """The same motion with levels whose mean square is 1: only their products with the spread act."""
     if not any(one.own_levels for one in candidates):
         return outcome
+    for cause in own_levels(outcome):
+        outcome = _of_unit_spread(outcome, *own_levels(outcome)[cause])
+    return outcome
+
+
+def _of_unit_spread(outcome: Outcome, spread: str, level: str) -> Outcome:
     values, shared = dict(outcome.values), outcome.fitted.shared.clone()
-    spread, level = own_level(outcome)
     levels = {name: value for name, value in values.items() if name.startswith(level + SEPARATOR)}
     size = (sum(value**2 for value in levels.values()) / max(len(levels), 1)) ** 0.5
     if not size:
@@ -46,14 +52,14 @@ def of_unit_spread(outcome: Outcome, candidates: Sequence[Candidate]) -> Outcome
     return replace(outcome, fitted=fitted, values=values, own=own, whitened=predictions[1])
 
 
-def levels_by_record(outcome: Outcome, evidence: Evidence) -> Rows:
-    """By how much the damping coefficient of each fitted record is off the mean one, with its 95 % interval.
+def levels_by_record(outcome: Outcome, cause: str, evidence: Evidence) -> Rows:
+    """By how much the coefficient of a cause is off its mean in each fitted record, with its 95 % interval.
 
     Every parameter is a nuisance but that of the mean, which the levels of all records together are as well.
     """
     problem, prediction = outcome.problem, outcome.linearisation
-    of_spread, level = own_level(outcome)
-    places = {p.name: i for i, p in enumerate(problem.free) if level and p.name.startswith(level + SEPARATOR)}
+    of_spread, level = own_levels(outcome)[cause]
+    places = {p.name: i for i, p in enumerate(problem.free) if p.name.startswith(level + SEPARATOR)}
     spread = outcome.values.get(of_spread, 0.0)
     if not places or not spread:
         return []
@@ -76,33 +82,60 @@ def levels_by_record(outcome: Outcome, evidence: Evidence) -> Rows:
 
 def damping_by_record(outcome: Outcome, evidence: Evidence) -> Rows:
     """The damping ratio of each fitted record in % of critical with its 95 % interval; none where it is one for all."""
-    rows = levels_by_record(outcome, evidence)
+    rows, of_spread, level = _rows_of(outcome, DampingForce, evidence)
     if not rows:
         return []
-    of_spread, level = own_level(outcome)
     spread = outcome.values[of_spread]
-    levels = [0.0, 1.0, *(float(row["value"]) / spread for row in rows)]
-    mean, by_one, *ratios = damping_ratios(outcome, {level: torch.tensor(levels, dtype=torch.float64)})
-    slope = (by_one - mean) / spread
+    mean, by_one = damping_ratios(outcome, {level: torch.tensor([0.0, 1.0], dtype=torch.float64)})
+    return _told(rows, lambda value: max(0.0, mean + (by_one - mean) * value / spread))
+
+
+def frequency_by_record(outcome: Outcome, evidence: Evidence) -> Rows:
+    """The natural frequency of each fitted record in Hz with its 95 % interval; none where it is one for all."""
+    rows, _, _ = _rows_of(outcome, ElasticForce, evidence)
+    if not rows:
+        return []
+    mean, given = natural_frequency_hz(outcome.hypothesis.model, outcome.flat_given()), outcome.flat_given()
+    stiffness = float(given[outcome.hypothesis.system.spring])
+    return _told(rows, lambda value: mean * max(0.0, 1 + value / stiffness) ** 0.5)
+
+
+def _told(rows: Rows, of_level: Callable[[float], float]) -> Rows:
+    """Levels with their intervals as another figure that grows with them."""
     return [
         {
             "record": row["record"],
-            "value": ratio,
-            "interval95": [max(0.0, ratio + slope * (end - row["value"])) for end in row["interval95"]],
+            "value": of_level(row["value"]),
+            "interval95": [of_level(end) for end in row["interval95"]],
         }
-        for row, ratio in zip(rows, ratios, strict=True)
+        for row in rows
     ]
 
 
-def said_of_levels(rows: Rows) -> str:
-    """A sentence with the damping ratio of every record, from the largest."""
+def _rows_of(outcome: Outcome, kind: type[Effect], evidence: Evidence) -> tuple[Rows, str, str]:
+    """The levels of a force of a kind that differs from record to record, with its spread and level by name."""
+    for effect in outcome.hypothesis.effects:
+        if isinstance(effect, kind) and (names := own_levels(outcome).get(effect.name)):
+            return levels_by_record(outcome, effect.name, evidence), *names
+    return [], "", ""
+
+
+def said_of_levels(outcome: Outcome, evidence: Evidence) -> list[str]:
+    """Sentences with the damping ratio, and the natural frequency, of every record, from the largest."""
+    damping, frequency = damping_by_record(outcome, evidence), frequency_by_record(outcome, evidence)
+    return [*_said(damping, "damping ratio", "%", 3), *_said(frequency, "natural frequency", "Hz", 5)]
+
+
+def _said(rows: Rows, what: str, unit: str, digits: int) -> list[str]:
     if not rows:
-        return ""
-    ordered = sorted(rows, key=lambda row: -row["value"])
-    said = [
-        f"{r['value']:.3g} % ({r['interval95'][0]:.3g} to {r['interval95'][1]:.3g}) in {r['record']}" for r in ordered
-    ]
-    return f"The damping ratio is {', '.join(said)}: no one figure stands for all of them."
+        return []
+
+    def text(row: dict[str, Any]) -> str:
+        value, low, high = (f"{one:.{digits}g}" for one in (row["value"], *row["interval95"]))
+        return f"{value} {unit} ({low} to {high}) in {row['record']}"
+
+    listed = ", ".join(text(row) for row in sorted(rows, key=lambda row: -row["value"]))
+    return [f"The {what} is {listed}: no one figure stands for all of them."]
 
 
 def _errors(columns: Tensor, residual: Tensor, block: int) -> Tensor:

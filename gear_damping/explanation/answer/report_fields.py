@@ -17,7 +17,7 @@ from gear_damping.explanation.model.covariance import covariance_of, moves_witho
 from gear_damping.explanation.model.homogeneity import by_record
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.nominal_gear_pair import is_standing
-from gear_damping.explanation.model.own_phases import own_level
+from gear_damping.explanation.model.own_phases import own_levels
 from gear_damping.explanation.report_schema import KEYS, SCHEMA_VERSION
 from gear_damping.explanation.statistics.paired import share_taken
 from gear_damping.explanation.steps.judge import CONSISTENT, DATA_PROBLEM, LARGEST_SET, Judged, is_visible, statuses
@@ -230,8 +230,8 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
 def _by_record(outcome: Outcome, cause: str, evidence: Evidence) -> dict[str, Any]:
     """The strength of a cause record by record; of one that has a level in each, by how much that is off the mean."""
     found = by_record(outcome, cause, evidence)
-    spread, _ = own_level(outcome)
-    return found | {"per_record": levels_by_record(outcome, evidence)} if spread.startswith(cause + ".") else found
+    differs = cause in own_levels(outcome)
+    return found | {"per_record": levels_by_record(outcome, cause, evidence)} if differs else found
 
 
 def _fixed(outcome: Outcome, cause: str) -> dict[str, float]:

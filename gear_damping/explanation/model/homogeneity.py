@@ -14,7 +14,7 @@ from torch import Tensor
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.covariance import FEWEST, groups_of
 from gear_damping.explanation.model.hypothesis import Outcome, time_scale
-from gear_damping.explanation.model.own_phases import own_level
+from gear_damping.explanation.model.own_phases import own_levels
 from gear_damping.explanation.statistics.random_effects import between_deviation, statistic
 from gear_damping.identification.output_error.normal_equations import nuisance_basis, project_out
 from gear_damping.identification.output_error.uncertainty import QUANTILE
@@ -57,7 +57,7 @@ def homogeneity(outcome: Outcome, cause: str, evidence: Evidence) -> Homogeneity
 
     What says of itself that it differs between records is not one for all.
     """
-    if own_level(outcome)[0].partition(".")[0] == cause:
+    if cause in own_levels(outcome):
         return Homogeneity((), (), (), None, evidence.settings.homogeneity_level)
     place = next(i for i, p in enumerate(outcome.problem.free) if p.name.startswith(cause + "."))
     prediction, problem = outcome.linearisation, outcome.problem

@@ -33,13 +33,14 @@ def turn_own_phases(points: Tensor, candidate: Candidate, problem: OutputErrorPr
                 points[2 * number + 1, place] = parameter.coordinate(torch.pi / 2)
 
 
-def own_level(outcome: Outcome) -> tuple[str, str]:
-    """Flat names of a spread between records and of the level of each, where a model has such an effect; else empty."""
+def own_levels(outcome: Outcome) -> dict[str, tuple[str, str]]:
+    """Flat names of the spread between records and of the level of each, by effect that has them."""
+    found = {}
     for effect in outcome.hypothesis.effects:
         if effect.cause and effect.cause.turns_with == "record":
             spread, level = (f"{effect.name}.{parameter.name}" for parameter in effect.parameters)
-            return spread, level
-    return "", ""
+            found[effect.name] = spread, level
+    return found
 
 
 def reach_of_records(problem: OutputErrorProblem) -> Tensor:

@@ -34,7 +34,8 @@ def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
     if names and bench.evidence.has(Trait.REST):  # laws take their part from each other
         likely = chosen(state.ranked, bench.settings, laws=True, every=True)
         names += [name for name in best_by_effect(likely) if name not in names]
-    differing = [name for name in names if best[name].candidate.own_levels and not state.accepted]
+    may_differ = all(cause.candidate.own_levels for cause in state.accepted)  # beside a law another would differ too
+    differing = [name for name in names if best[name].candidate.own_levels and may_differ]
     names = [name for name in names if best[name].gain > 0 and not best[name].candidate.own_levels]
     names = [name for name in names if not bench.budget.refuses(name)]
     found = (bench.full_fit(best[name], state.outcome, reach=state.outcome.fitted.cost) for name in names)

@@ -260,6 +260,8 @@ def _score(candidate: Candidate, orthogonal: Tensor, problem: OutputErrorProblem
         return replace(_unseen(candidate, n_free, len(residual)), failed="its prediction diverged")
     if not bool(orthogonal.any()):
         return _unseen(candidate, n_free, len(residual))
+    if candidate.own_levels:  # what all of them do together is the parameter's that they are off
+        orthogonal = orthogonal - orthogonal.mean(1, keepdim=True)
     basis, singular_values, turned = tall_svd(orthogonal)
     teeth = teeth_of(candidate, orthogonal, base.orthogonal, problem)
     orthogonal = orthogonal if teeth is None else teeth.columns

@@ -1,0 +1,26 @@
+"""Records that one model follows one by one and not together are told with the figures of each."""
+
+from gear_damping.explanation.state import State
+from gear_damping.identification.oscillator.each_alone import each_alone, said_of_each
+from gear_damping.physics.systems.traits import Trait
+
+
+def followed_one_by_one(state: State) -> str:
+    """A sentence where a linear model of its own follows every record, and no cause was found, else nothing.
+
+    Args:
+        state: Where the search ended.
+    """
+    evidence = state.bench.evidence
+    is_cut = bool(evidence.segments) and not evidence.stated_segments and evidence.has_spring
+    if state.accepted or not is_cut or not evidence.has(Trait.REST):
+        return ""
+    residuals = zip(evidence.fitted, state.nominal.fit_residuals, strict=True)
+    left = sum(float((record.weight * one).square().sum()) for record, one in residuals)
+    alone = each_alone(evidence.fit, left, evidence.known, state.bench.solver)
+    if not alone:
+        return ""
+    return (
+        f"A linear model of its own follows each record: {said_of_each(alone)}. They may not be of one rig, or of one "
+        "state of it: a mass, a tension or the mounting changed between them. Explain those of one state alone."
+    )
