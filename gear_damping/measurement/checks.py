@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.frozen import frozen
+from gear_damping.measurement.overflow import overflowed
 from gear_damping.measurement.record import Channel, Finding
 from gear_damping.measurement.resolution import step_of
 from gear_damping.measurement.vocabulary import INPUTS
@@ -158,7 +159,11 @@ def check_channel(channel: Channel, strokes: NDArray[np.int64]) -> list[Finding 
         strokes: Samples at which an input is largest: a hammer's blow, with which a response may leap.
     """
     marked = _marked(channel)
-    found = [marked or _constant(channel) or _clipped(channel) or _straight_lines(channel), frozen(channel)]
+    found = [
+        marked or _constant(channel) or _clipped(channel) or _straight_lines(channel),
+        frozen(channel),
+        overflowed(channel),
+    ]
     if marked or channel.name in STRUCK:
         return found
     spike = _spike(channel, strokes)

@@ -41,7 +41,8 @@ class MadeUp(Bench):
 
 def state_of(causes, outcome, fits=(), without=None):
     """A state with causes (name, rivals), its model and the fits of rivals."""
-    evidence = SimpleNamespace(settings=SearchSettings(), held=[None])
+    record = SimpleNamespace(duration=1.0)
+    evidence = SimpleNamespace(settings=SearchSettings(), held=[record], fitted=[record])
     noise = SimpleNamespace(value=1.0, correlation=1.0)
     bench = MadeUp(evidence, noise, lambda text: None, None, noise, failed=without or {})
     accepted = tuple(Accepted(name, refit(name, outcome), 0.5, rivals) for name, rivals in causes)

@@ -10,6 +10,7 @@ from gear_damping.explanation.evidence.excess import Excess, excess
 from gear_damping.explanation.evidence.input_noise import without_input_noise
 from gear_damping.explanation.evidence.noise import NoiseLevel, noise_of, weighted
 from gear_damping.explanation.evidence.records import Evidence, with_own_angles
+from gear_damping.explanation.evidence.same_length import as_fitted
 from gear_damping.explanation.evidence.unsteady import has_unsteady_shafts, with_unsteady_shafts
 from gear_damping.explanation.model.calibration_error import calibration_error
 from gear_damping.explanation.model.homogeneity import homogeneity
@@ -63,7 +64,7 @@ def confirmed(state: State, sealed: Sequence[FitRecord], measurement: Measuremen
     noise = replace(noise, scatter=scatter)
     extended = opened(state.outcome, evidence, bench.solver, nominal.own) if state.accepted else nominal
     state, t = _validated(_told_apart(replace(state, bench=bench, nominal=nominal, outcome=extended)))
-    before, after = (excess(one.holdout, evidence.held, noise, bench.settings) for one in (nominal, state.outcome))
+    before, after = (_excess(one, evidence, noise) for one in (nominal, state.outcome))
     return Confirmed(state, noise, before, after, t, is_opened=True)
 
 
@@ -89,8 +90,14 @@ def without(found: Confirmed, name: str) -> Confirmed:
     is_late = bench.budget.all_spent  # what is visible beside more causes is so beside fewer
     left = state.left if is_late else bench.assessed(outcome, bench.ranked(outcome))
     t, state = _t(state.nominal, outcome, state), replace(state, left=left)
-    after = excess(outcome.holdout, evidence.held, found.noise, bench.settings) if found.is_opened else state.current
+    after = _excess(outcome, evidence, found.noise) if found.is_opened else state.current
     return replace(found, state=state, after=after, t=t)
+
+
+def _excess(outcome: Outcome, evidence: Evidence, noise: NoiseLevel) -> Excess:
+    """What is left of opened records."""
+    left = as_fitted(outcome.holdout, evidence.held, evidence.fitted)
+    return excess(left, evidence.held, noise, evidence.settings)
 
 
 def _is_beside(cause: Accepted, names: Collection[str]) -> bool:
