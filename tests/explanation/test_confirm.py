@@ -144,7 +144,7 @@ def test_without_a_cause_the_others_are_held_against_the_same_records():
     with (
         patch.object(MadeUp, "ranked", lambda *_: []),
         patch.object(MadeUp, "assessed", lambda *_: "what is left"),
-        patch.object(confirm, "excess", lambda residuals, *_: excess if residuals is fewer.holdout else None),
+        patch.object(confirm, "excess", lambda residuals, *_: excess if residuals[0] is fewer.holdout[0] else None),
     ):
         found = confirm.without(found, "doubtful")
     assert [cause.name for cause in found.state.accepted] == ["needed"]
