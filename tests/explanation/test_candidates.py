@@ -78,6 +78,15 @@ def test_turns_of_the_gear_are_each_records_own_beside_one_mark_of_the_pinion_bu
     assert {c.name for c in one if c.own_phases or c.own_tooth} == {"torque_variation"}, "its clock begins anew"
 
 
+def test_a_swinging_torque_is_no_level_of_each_record():
+    base, evidence = gear_pair((17, 43))
+    found = [c for c in of("torque_variation", base, evidence) if ("form", "sine") in c.options]
+    frequencies = [p for c in found for p in c.later if p.name == "torque_variation.sine_frequency"]
+    assert len(frequencies) == len(found) > 1
+    assert {p.lower for p in frequencies} == {0.5 / evidence.duration}
+    assert min(p.start for p in frequencies) > 0.5 / evidence.duration
+
+
 @pytest.mark.parametrize("teeth", RIGS)
 def test_pitch_errors_have_one_value_a_tooth(teeth):
     base, evidence = gear_pair(teeth)

@@ -10,6 +10,7 @@ import torch
 from gear_damping.explanation.answer import gain, report_fields
 from gear_damping.explanation.answer.gain import mean_stiffness, parameters_of
 from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model import covariance
 from gear_damping.explanation.model.covariance import covariance_of
 from gear_damping.explanation.model.fitting import fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Hypothesis
@@ -88,6 +89,24 @@ def test_the_mean_stiffness_knows_the_shape_of_the_teeth():
     assert abs(float(found[0]) / float(prepared.derived["mean_stiffness"][0]) - 1) > 0.003  # it counts
 
 
+def test_beside_several_causes_no_coordinate_is_known_better_than_records_agree_on_it(monkeypatch):
+    moves = torch.tensor([[0.3, 0.0], [-0.1, 0.0], [0.1, 0.0], [-0.3, 0.0]], dtype=torch.float64)
+    monkeypatch.setattr(covariance, "moves_without_one", lambda outcome: outcome)
+    known = torch.tensor([[0.01, 0.002], [0.002, 0.04]], dtype=torch.float64)
+    found = covariance.wider_of_both(known, moves)
+    jackknife = 3 / 4 * (moves[:, 0] - moves[:, 0].mean()).square().sum()  # Efron & Stein (1981)
+    assert found.flatten().tolist() == pytest.approx([float(jackknife), 0.002, 0.002, 0.04])
+    assert covariance.wider_of_both(known, moves[:2]) is known, "two records are too few to scatter"
+
+
+@pytest.mark.parametrize(("causes", "known"), [(0, "noise"), (1, "noise"), (2, "scatter"), (3, "scatter")])
+def test_the_scatter_between_records_counts_beside_several_causes(causes, known, monkeypatch):
+    monkeypatch.setattr(report_fields, "covariance_of", lambda *_: "noise")
+    monkeypatch.setattr(report_fields, "wider_of_both", lambda *_: "scatter")
+    judged = SimpleNamespace(found=SimpleNamespace(accepted=(None,) * causes, outcome=None))
+    assert report_fields._known(judged, None) == known
+
+
 @pytest.mark.parametrize(
     ("leaves_unnamed", "causes", "visible", "converged", "conditional"),
     [
@@ -100,18 +119,30 @@ def test_the_mean_stiffness_knows_the_shape_of_the_teeth():
     ids=["all is named", "a part has no name", "not all random", "nothing is missing", "not converged"],
 )
 def test_damping_is_conditional_where_more_than_noise_is_left(leaves_unnamed, causes, visible, converged, conditional):
+    said, after = _told(leaves_unnamed, causes, visible, converged)
+    assert said["damping_ratio_percent"]["conditional"] == conditional
+    assert after == ("scatter" if conditional else None)
+
+
+def test_beside_several_causes_the_interval_of_the_damping_counts_the_scatter_between_records_too():
+    said, after = _told(leaves_unnamed=False, causes=2, visible=False, converged=True)
+    assert not said["damping_ratio_percent"]["conditional"]
+    assert after == "scatter"
+
+
+def _told(leaves_unnamed, causes, visible, converged):
+    """What is said of the gain, and what the interval of the damping after it counts beside the noise."""
     left = SimpleNamespace(visible=visible)
     last = SimpleNamespace(fitted=SimpleNamespace(converged=converged), holdout=[])
     found = SimpleNamespace(accepted=(None,) * causes, left=left, nominal=last, outcome=last)
     judged = SimpleNamespace(found=found, verdict=SimpleNamespace(leaves_unnamed=leaves_unnamed))
-    evidence, ratio = SimpleNamespace(held=()), {"value": 1.0}
+    evidence, ratio, counted = SimpleNamespace(held=()), {"value": 1.0}, []
     with (
-        patch.object(report_fields.gain, "damping_ratio", lambda *_: dict(ratio)),
+        patch.object(report_fields.gain, "damping_ratio", lambda *given: counted.append(given[2]) or dict(ratio)),
         patch.object(report_fields, "covariance_of", lambda *_: None),
-        patch.object(report_fields, "moves_without_one", lambda *_: None),
+        patch.object(report_fields, "moves_without_one", lambda *_: "scatter"),
         patch.object(report_fields, "rig_unit", lambda *_: "m/s"),
         patch.object(report_fields, "_confirmed", lambda *_: None),
         patch.object(report_fields, "damping_by_record", lambda *_: []),
     ):
-        said = report_fields._gain(judged, evidence, None)
-    assert said["damping_ratio_percent"]["conditional"] == conditional
+        return report_fields._gain(judged, evidence, None), counted[-1]

@@ -4,6 +4,8 @@ from collections.abc import Sequence
 from math import log10
 from typing import Any
 
+from torch import Tensor
+
 from gear_damping.explanation.answer import gain
 from gear_damping.explanation.answer.levels import damping_by_record, levels_by_record
 from gear_damping.explanation.answer.next_experiment import confusable_beforehand, next_experiment
@@ -13,7 +15,7 @@ from gear_damping.explanation.evidence.declared_units import rig_unit, unit_of
 from gear_damping.explanation.evidence.excess import ac_energy
 from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.evidence.records import Evidence
-from gear_damping.explanation.model.covariance import covariance_of, moves_without_one
+from gear_damping.explanation.model.covariance import covariance_of, moves_without_one, wider_of_both
 from gear_damping.explanation.model.homogeneity import by_record
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.nominal_gear_pair import is_standing
@@ -92,7 +94,7 @@ def of_search(measurement: Measurement, evidence: Evidence, noise: NoiseLevel, j
             "holdout": _residual(first.holdout, last.holdout, unit, factor),
             "segment_s": evidence.segments.seconds or None,
         },
-        "parameters": gain.final_parameters(last, covariance_of(last, evidence), evidence),
+        "parameters": gain.final_parameters(last, _known(judged, evidence), evidence),
         "gain": _gain(judged, evidence, noise),
         "noise": {
             "channel": evidence.channel.name,
@@ -197,7 +199,7 @@ def _of_standing_shafts(evidence: Evidence) -> list[str]:
 def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
     """Accepted causes; where none was, the best of what was tried as a suggestion."""
     found, last = judged.found, judged.found.outcome
-    covariances = covariance_of(last, evidence)
+    covariances = _known(judged, evidence)
     resting = {end for score in found.first_scores for end in score.candidate.resting}
     listed = [
         {
@@ -225,6 +227,13 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
                 | _by_record(refit.outcome, refit.name, evidence)
             )
     return sorted(listed, key=lambda cause: -cause["excess_explained"])
+
+
+def _known(judged: Judged, evidence: Evidence) -> Tensor:
+    """How well the last model's coordinates are known, the scatter between records counted beside several causes."""
+    found, last = judged.found, judged.found.outcome
+    covariances = covariance_of(last, evidence)
+    return wider_of_both(covariances, last) if len(found.accepted) > 1 else covariances
 
 
 def _by_record(outcome: Outcome, cause: str, evidence: Evidence) -> dict[str, Any]:
@@ -256,7 +265,11 @@ def _gain(judged: Judged, evidence: Evidence, noise: NoiseLevel) -> dict[str, An
     floor = sum(len(r.stacked) * noise.by_record[r.name] ** 2 for r in evidence.held)
     is_more = bool(judged.found.accepted) and is_visible(judged.found.left)
     conditional = judged.verdict.leaves_unnamed or is_more or not last.fitted.converged
-    missed = {"before": judged.verdict.leaves_unnamed or bool(judged.found.accepted), "after": conditional}
+    are_several = len(judged.found.accepted) > 1  # forms that trade against each other
+    missed = {
+        "before": judged.verdict.leaves_unnamed or bool(judged.found.accepted),
+        "after": conditional or are_several,
+    }
     damping = {
         key: gain.damping_ratio(
             outcome, covariance_of(outcome, evidence), moves_without_one(outcome) if missed[key] else None

@@ -14,6 +14,7 @@ from gear_damping.physics.terms import DampingForce, Effect, ElasticForce
 from gear_damping.units import parse_unit
 
 UNSEEN = 50.0  # times smaller than where it begins, a parameter that has no size yet does nothing
+LEAST_CYCLES = 0.5  # of a wave in the longest record: with a phase in each record, less is a level of each
 ANGLE_SCALE = 0.1  # rad, a step of order one of an angle that is freed
 EXPONENT = "exponent"  # the name of a parameter that is the power of a law
 SHOWN = (EXPONENT, "order", "phase", "sine_frequency", "ramp_start")  # of a variant, in its label
@@ -263,10 +264,12 @@ class _Sizes:
         return value * float(self.scales.unit_of(parse_unit(parameter.unit).dimension)[0])
 
     def within(self, kind: type[Effect], recipe: Recipe) -> dict[str, tuple[float, float]]:
-        """The narrower bounds of a recipe by flat name, and those of what has a largest value in natural units."""
+        """The narrower bounds of a recipe by flat name, those of what has a largest value, and of slow waves."""
         declared = {p.name: p for p in kind.parameters}
-        most = {name: self.natural(kind, declared[name], value) for name, value in recipe.most.items()}
-        return {**recipe.within, **{f"{kind.name}.{name}": (-inf, value) for name, value in most.items()}}
+        most = {name: (-inf, self.natural(kind, declared[name], value)) for name, value in recipe.most.items()}
+        waves = [name for name in recipe.timed if declared[name].unit == "Hz"]
+        slowest = dict.fromkeys(waves, (LEAST_CYCLES / self.duration, inf))
+        return {**recipe.within, **{f"{kind.name}.{name}": ends for name, ends in {**most, **slowest}.items()}}
 
     def size(self, kind: type[Effect], name: str, size: float | None, recipe: Recipe) -> float:
         """The size of a strength that is tried."""

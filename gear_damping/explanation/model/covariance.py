@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import torch
 from torch import Tensor
 
 from gear_damping.explanation.evidence.records import Evidence
@@ -26,6 +27,20 @@ def moves_without_one(outcome: Outcome) -> Tensor:
     fitted = replace(outcome.fitted, prediction=outcome.linearisation)
     mean_free = mean_free_places(outcome.hypothesis, outcome.problem.free)
     return without_one(outcome.problem, fitted, groups_of(outcome)[0], mean_free)
+
+
+def wider_of_both(covariances: Tensor, outcome: Outcome) -> Tensor:
+    """The covariance, with no coordinate known better than by how it moves without one record each (the jackknife).
+
+    Forms of several causes that are each a little wrong trade against each other in every record in its own way, and
+    the noise knows nothing of it.
+    """
+    moves = moves_without_one(outcome)
+    if len(moves) < FEWEST:
+        return covariances
+    scatter = (len(moves) - 1) * moves.var(0, correction=0)
+    more = (scatter - covariances.diagonal()).clamp(min=0).nan_to_num(0.0, 0.0, 0.0)
+    return covariances + torch.diag(more)
 
 
 def groups_of(outcome: Outcome) -> tuple[list[int], list[str]]:
