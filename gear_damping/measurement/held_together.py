@@ -99,7 +99,7 @@ def _torques(record: Record, known: Mapping[str, float]) -> Iterator[Finding]:
         return
     ratio = known["n_teeth_pinion"] / known["n_teeth_gear"]
     left = pinion - gear * ratio
-    if abs(left) < _LOSS * max(abs(pinion), abs(gear * ratio)):
+    if abs(left) <= _LOSS * max(abs(pinion), abs(gear * ratio)):
         return
     change = left / (known["inertia_pinion"] + known["inertia_gear"] * ratio**2) * record.duration
     if np.ptp(speeds) > _STEADY * abs(change) or abs(change) < _STEADY * abs(speeds[0]):
@@ -124,7 +124,7 @@ def _shafts(record: Record, known: Mapping[str, float]) -> Iterator[Finding]:
     expected = abs(float(speeds.mean())) * teeth[0] / teeth[1]
     found = abs(float(channel.values.mean()))
     allowed = max(_RATIO, 3 * channel.uncertainty, float(np.ptp(np.abs(speeds))) / abs(float(speeds.mean()) or 1.0))
-    if found < _MEANLESS * expected or abs(found / expected - 1) <= allowed:
+    if not expected or found < _MEANLESS * expected or abs(found / expected - 1) <= allowed:
         return
     rpm = 30 / np.pi
     message = (

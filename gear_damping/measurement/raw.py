@@ -16,7 +16,8 @@ from gear_damping.measurement.encoders import ReadColumn, ShaftAngle, shaft_angl
 from gear_damping.measurement.file_clocks import FileClocks, conflict_with_file
 from gear_damping.measurement.formats.table import Table
 from gear_damping.measurement.record import Finding
-from gear_damping.measurement.time_column import finer_than_said, is_time, seconds_by_name
+from gear_damping.measurement.stamp_units import refuse_other_clock, refuse_other_unit
+from gear_damping.measurement.time_column import is_time
 from gear_damping.measurement.timebase import (
     TimeBase,
     stamped_time,
@@ -333,28 +334,17 @@ class RawReader:
 
     def _stamped(self, timing: TimePlan, key: str, read: ReadColumn, first: int) -> TimeBase:
         stamps, one = read(timing.column, key), self._in_seconds(timing, key)
-        self._refuse_other_unit(timing, key, float(stamps[0]) if stamps.size else 0.0, one)
+        refuse_other_unit(self.table, timing, key, stamps, one, self.source)
+        refuse_other_clock(self.table, timing, key, stamps * one, read, self.source)
         return stamped_time(stamps * one, self._named(key, timing.column), self.file, first)
-
-    def _refuse_other_unit(self, timing: TimePlan, key: str, first: float, one: float) -> None:
-        """Refuse a unit of stamps, of `one` s, that their first one or the name of their column contradicts."""
-        if timing.unit is None:
-            return
-        name, said = self.table.names[self.table.index(timing.column, key)], timing.unit
-        finer = finer_than_said(first, one)
-        rule = f"in {said} from 1970 on, stamps of {first:.6g} lie beyond the year 2286"
-        if finer is None and seconds_by_name(name) and one < 1:
-            finer, rule = "s", f"the column is named '{name}'"
-        if finer is not None:
-            remedy = f"write unit: {finer}, or give sampling_rate instead of the time column"
-            raise InputError(Problem(f"{key}.unit", rule, said, remedy, self.source))
 
     def _in_seconds(self, timing: TimePlan, key: str) -> float:
         """One unit of the time stamps in s."""
         header = self.table.unit(self.table.index(timing.column, key))
         unit = timing.unit or header
         if unit is None:
-            raise InputError(Problem(f"{key}.unit", "is missing", None, "give unit: s", self.source))
+            remedy = "give unit: s, or that of its numbers"
+            raise InputError(Problem(f"{key}.unit", "is missing", None, remedy, self.source))
         own = _seconds_of(header)
         if timing.unit is None and own is not None:
             return own

@@ -18,8 +18,14 @@ _SUFFIX = re.compile(r"[_ .\-/](s|sec|ms|us|µs|ns|min|h)$", re.I)
 _SLOW = 200  # whole numbers a step: as milliseconds less than 5 Hz, and few vibrate as slowly
 # Ranges that a time counted from 1970 lies in, by its unit: from 2000 on, and they do not meet.
 _EPOCHS = ((9.4e8, 1e10, "s"), (9.4e11, 1e13, "ms"), (9.4e14, 1e16, "us"), (9.4e17, 1e19, "ns"))
+# Ranges that days lie in from 2000 to 2099, as spreadsheets count them from 1900 and MATLAB from the year 0.
+_DAYS = ((36526.0, 73050.0), (730486.0, 767010.0))
+_DAYLONG, _NO_SECONDS = 1e-4, 1e-6  # steps below which these may be days (9 s), and can be no seconds (a MHz)
+# Ranges that ticks of 100 ns lie in since 2000, as Windows counts them from 1601 and .NET from the year 1.
+_TICKS = ((1.25e17, 1.6e17), (6.3e17, 6.7e17))
+TICKS = "ticks of 100 ns, as Windows counts them"
 _SECONDS, _PARTS = re.compile(r"seconds?(\b|_)", re.I), re.compile(r"milli|micro|nano|msec|usec|nsec", re.I)
-_FEWEST = 8  # stamps, as many as a record needs
+FEWEST_STAMPS = 8  # stamps, as many as a record needs
 _ADVANCING = 0.9  # share of the steps of a named column that go forward
 _SHORT = re.compile(r"^t[a-z]?\d*(_\w+)?$", re.I)  # t1, tb_n: a time only where its steps are even
 _FIRST = re.compile(r"\[0\]\s*$")  # the first column of a matrix, which says nothing of its own
@@ -74,11 +80,11 @@ def find_stamps(columns: Sequence[_Column], untimed: bool = False) -> Stamps | N
     """
     for by in (_by_unit, _by_name, _by_steps, _by_ramp):
         for index, column in enumerate(columns):
-            says = by(index, column) if column.inside.size >= _FEWEST else ""
+            says = by(index, column) if column.inside.size >= FEWEST_STAMPS else ""
             if says:
                 unit, guessed = _unit(column)
                 return Stamps(index, unit, guessed, says)
-    telling = [k for k, one in enumerate(columns) if one.inside.size >= _FEWEST and not counts_rows(one.inside)]
+    telling = [k for k, one in enumerate(columns) if one.inside.size >= FEWEST_STAMPS and not counts_rows(one.inside)]
     if not untimed or not telling:
         return None
     if _rises(columns[telling[0]]):
@@ -107,6 +113,26 @@ def finer_than_said(first: float, one: float) -> str | None:
     return next((other for low, high, other in _EPOCHS if low < first < high), None)
 
 
+def no_seconds(values: NDArray[np.float64], one: float) -> tuple[str, str] | None:
+    """What (n,) stamps in a unit of `one` s are where they can be no such, and the remedy; None where they may be.
+
+    Days since 1900 or the year 0, whose steps would be shorter than a microsecond as seconds; and ticks of 100 ns.
+    """
+    if values.size < FEWEST_STAMPS:
+        return None
+    if any(low < values[0] < high for low, high in _TICKS):
+        return TICKS, "divide the column by 10 and write unit: us, or give sampling_rate instead of it"
+    if one <= 1 and _are_days(values, _NO_SECONDS):
+        return "days since 1900 or the year 0", "write unit: day, or give sampling_rate instead of the time column"
+    return None
+
+
+def _are_days(values: NDArray[np.float64], least: float) -> bool:
+    """Whether (n,) values lie where days from 1900 or the year 0 do, and go on by less than a part of one."""
+    step = float(np.median(np.diff(values)))
+    return any(low < values[0] < high for low, high in _DAYS) and 0 < step < least
+
+
 def seconds_by_name(name: str) -> bool:
     """Whether the name of a column says that its stamps are in seconds, and no smaller part of them."""
     return bool(_SECONDS.search(name)) and not _PARTS.search(name)
@@ -114,7 +140,7 @@ def seconds_by_name(name: str) -> bool:
 
 def stamped_rate(unit: str, values: NDArray[np.float64]) -> float | None:
     """The mean rate in Hz of (n,) values in a unit of time that advance; None of any others."""
-    if values.size < _FEWEST or not np.all(np.isfinite(values)) or np.any(np.diff(values) < 0):
+    if values.size < FEWEST_STAMPS or not np.all(np.isfinite(values)) or np.any(np.diff(values) < 0):
         return None
     lasts = float(values[-1] - values[0]) * to_si(1.0, unit, "s")
     return (values.size - 1) / lasts if lasts > 0 else None
@@ -188,7 +214,7 @@ def _is_nearly_even(column: _Column) -> bool:
 def _advances(column: _Column) -> bool:
     """Whether it goes on; stamps of data that came in bursts repeat, and never go back."""
     steps = np.diff(column.inside)
-    return bool(np.mean(steps > 0) > _ADVANCING or (steps.min() >= 0 and np.count_nonzero(steps) >= _FEWEST))
+    return bool(np.mean(steps > 0) > _ADVANCING or (steps.min() >= 0 and np.count_nonzero(steps) >= FEWEST_STAMPS))
 
 
 def _named(column: _Column) -> str:
@@ -236,6 +262,10 @@ def _unit(column: _Column) -> tuple[str, str]:
     for low, high, unit in _EPOCHS:
         if low < first < high:
             return unit, "counted from 1970"
+    if _are_days(column.inside, _DAYLONG):
+        return "day", "counted from 1900 or the year 0"
+    if any(low < first < high for low, high in _TICKS):
+        return "us", f"{TICKS}: divide the column by 10"
     if np.all(column.inside == np.round(column.inside)):
         step = float(np.median(np.diff(column.inside)))
         unit, other = ("us", "ms") if step >= _SLOW else ("ms", "us")

@@ -14,6 +14,7 @@ from gear_damping.measurement.formats.number_texts import are_decimals_alone, is
 from gear_damping.measurement.formats.table import refuse_size, unreadable
 
 HEAD = 100  # rows among which the header is looked for
+ENDING = 2**16  # bytes of the end of a file by which the sign between its cells is found: some thousand rows
 _DELIMITERS = (";", "\t", "|", ",")  # in the order in which they are taken for it; blanks where none stands
 _ALONE = 80  # last lines that are asked whether they hold a number each
 _NUMBER, IS_COMMENT = re.compile(r"\d"), re.compile(r"\s*(#|%|//)")
@@ -28,6 +29,13 @@ _AROUND = re.compile(rb"^[^\[{]*[\[{]\s*[\[{]|[\]}]\s*[\]}].*\Z", re.DOTALL)
 _LINE_END = re.compile(rb"\r+\n|\r")  # also written twice by a text mode, or alone as computers of the nineties did
 
 
+def _last_lines(utf8: bytes) -> list[str]:
+    """The whole lines of the end of a text; what a line's middle begins with says nothing of its cells."""
+    ending = utf8[-ENDING:]
+    _, found, whole = ending.partition(b"\n")
+    return (whole if found and len(utf8) > ENDING else ending).decode("utf-8", "replace").splitlines()
+
+
 class Text:
     """The content of a file as UTF-8, and the sign between its cells.
 
@@ -38,7 +46,7 @@ class Text:
         self.path = path
         text, self.cut = _whole_lines(_utf8(path, raw))
         self.utf8 = _POWER.sub(b"e", _without_brackets(_LINE_END.sub(b"\n", text)))
-        ending = self.utf8[-(2**16) :].decode("utf-8", "replace").splitlines()
+        ending = _last_lines(self.utf8)
         kept = [line for line in ending if line.strip(" \r" + "".join(_DELIMITERS)) and not IS_COMMENT.match(line)]
         last = _typical([line for line in kept if _NUMBER.search(line)] or kept[-1:])
         if ends := _line_end(last):

@@ -1,0 +1,68 @@
+"""Units of time stamps that the stamps themselves, the name of their column or a clock in the same rows contradict."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.declaration import TimePlan
+from gear_damping.measurement.encoders import ReadColumn
+from gear_damping.measurement.formats.table import Table
+from gear_damping.measurement.time_column import FEWEST_STAMPS, finer_than_said, no_seconds, seconds_by_name
+
+_TELLS = 10.0  # of its own largest steps, from which the length of a clock tells something
+_AS_LONG = 0.02  # of it, by which stamps may differ: more than two clocks drift apart, less than any wrong unit
+
+
+def refuse_other_unit(
+    table: Table, timing: TimePlan, key: str, stamps: NDArray[np.float64], one: float, source: str
+) -> None:
+    """Refuse a unit of stamps, of `one` s, that they or the name of their column contradict.
+
+    Raises:
+        InputError: they do.
+    """
+    if timing.unit is None or not stamps.size:
+        return
+    if found := no_seconds(stamps, one):
+        what, remedy = found
+        rule = f"stamps of {stamps[0]:.6g} look like {what}"
+        raise InputError(Problem(f"{key}.unit", rule, timing.unit, remedy, source))
+    name, first = table.names[table.index(timing.column, key)], float(stamps[0])
+    finer = finer_than_said(first, one)
+    rule = f"in {timing.unit} from 1970 on, stamps of {first:.6g} lie beyond the year 2286"
+    if finer is None and seconds_by_name(name) and one < 1:
+        finer, rule = "s", f"the column is named '{name}'"
+    if finer is not None:
+        remedy = f"write unit: {finer}, or give sampling_rate instead of the time column"
+        raise InputError(Problem(f"{key}.unit", rule, timing.unit, remedy, source))
+
+
+def refuse_other_clock(
+    table: Table, timing: TimePlan, key: str, seconds: NDArray[np.float64], read: ReadColumn, source: str
+) -> None:
+    """Refuse numbers for stamps, (n,) s, that last longer or shorter than dates or clocks in the same rows do.
+
+    Raises:
+        InputError: they do.
+    """
+    place = table.index(timing.column, key)
+    if seconds.size < FEWEST_STAMPS or _clock(table, place, key, read) is not None:
+        return
+    for other, name in enumerate(table.names):
+        clock = None if other == place else _clock(table, other, key, read)
+        if clock is None:
+            continue
+        stamped, lasts, coarse = np.ptp(seconds), np.ptp(clock), float(np.abs(np.diff(clock)).max())
+        if lasts < _TELLS * coarse or abs(stamped - lasts) <= max(2 * coarse, _AS_LONG * lasts):
+            continue
+        rule = f"these stamps last {stamped:.4g} s, and the clock '{name}' in the same rows {lasts:.4g} s"
+        remedy = f"correct the unit, name the column {name}, or give sampling_rate instead"
+        raise InputError(Problem(key, rule, timing.column, remedy, source))
+
+
+def _clock(table: Table, place: int, key: str, read: ReadColumn) -> NDArray[np.float64] | None:
+    """(n,) s of a column of dates or clocks; None of any other."""
+    try:
+        return None if table.begins(place) is None else read(place, key)
+    except InputError:  # texts, or cells that are empty: no clock of all rows
+        return None

@@ -1,0 +1,63 @@
+"""Stamps in days, in ticks of 100 ns, and such as a clock beside them contradicts, are not taken for seconds."""
+
+import numpy as np
+import pytest
+
+from gear_damping.errors import InputError
+from gear_damping.measurement.formats.registry import read_table
+from gear_damping.measurement.inspection import inspect_table
+from gear_damping.measurement.load import load_measurement
+
+SECONDS = np.arange(400) * 0.02
+MOTION = np.exp(-0.05 * SECONDS) * np.cos(5.6 * SECONDS)
+DAYS = {"excel": 45356.586, "matlab": 739316.586}
+
+
+def declared(folder, stamps, unit, more="", columns="t,x", rows=None):
+    rows = rows or [f"{t},{x:.6f}" for t, x in zip(stamps, MOTION, strict=True)]
+    (folder / "a.csv").write_text("\n".join([columns, *rows]) + "\n")
+    (folder / "m.yaml").write_text(
+        "system: oscillator\nrecords:\n  - file: a.csv\n    channels:\n"
+        f"      time: {{column: t, unit: {unit}}}\n      displacement: {{column: x, unit: mm}}\n{more}"
+    )
+    return folder / "m.yaml"
+
+
+@pytest.mark.parametrize("first", DAYS.values(), ids=DAYS)
+def test_days_are_no_seconds(first, tmp_path):
+    stamps = [f"{first + s / 86400:.12f}" for s in SECONDS]
+    with pytest.raises(InputError, match=r"look like days .* write unit: day"):
+        load_measurement(declared(tmp_path, stamps, "s"))
+    record = load_measurement(declared(tmp_path, stamps, "day")).records[0]
+    assert record.time[-1] - record.time[0] == pytest.approx(SECONDS[-1], rel=1e-4)
+
+
+@pytest.mark.parametrize("first", DAYS.values(), ids=DAYS)
+def test_a_clock_of_seconds_that_has_run_as_long_is_one(first, tmp_path):
+    record = load_measurement(declared(tmp_path, [f"{first + s:.3f}" for s in SECONDS], "s")).records[0]
+    assert record.time[-1] - record.time[0] == pytest.approx(SECONDS[-1], rel=1e-6)
+
+
+@pytest.mark.parametrize("first", [133541174300000000, 638451000000000000], ids=["windows", ".net"])
+def test_ticks_of_100_ns_are_told(first, tmp_path):
+    stamps = [str(first + round(s * 1e7)) for s in SECONDS]
+    with pytest.raises(InputError, match="ticks of 100 ns, as Windows counts them; remedy: divide the column by 10"):
+        load_measurement(declared(tmp_path, stamps, "us"))
+
+
+def test_stamps_that_a_clock_in_the_same_rows_contradicts_are_refused(tmp_path):
+    seconds = 5 * SECONDS
+    clocks = [f"05.03.2024 14:03:{10 + int(s):02d}" for s in seconds]
+    rows = [f"{t},{c},{x:.6f}" for t, c, x in zip(seconds * 86.4, clocks, MOTION, strict=True)]
+    path = declared(tmp_path, None, "s", columns="t,clock,x", rows=rows)
+    with pytest.raises(InputError, match=r"last 3447 s, and the clock 'clock' in the same rows 39 s"):
+        load_measurement(path)
+    rows = [f"{t},{c},{x:.6f}" for t, c, x in zip(seconds, clocks, MOTION, strict=True)]
+    record = load_measurement(declared(tmp_path, None, "s", columns="t,clock,x", rows=rows)).records[0]
+    assert record.sampling_rate == pytest.approx(10)
+
+
+def test_inspect_proposes_days(tmp_path):
+    path = declared(tmp_path, [f"{DAYS['excel'] + s / 86400:.12f}" for s in SECONDS], "day")
+    found = inspect_table(read_table(path.parent / "a.csv"))
+    assert found.time.unit == "day"
