@@ -7,7 +7,7 @@ from typing import Any
 from torch import Tensor
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.explanation.answer.gain import damping_ratio, final_parameters, rmse
+from gear_damping.explanation.answer.gain import damping_ratio, final_parameters, nrmse, rmse
 from gear_damping.explanation.answer.unexplained import first_channel
 from gear_damping.explanation.casing.heard import is_casing
 from gear_damping.explanation.evidence.declared_units import radian_of
@@ -138,7 +138,7 @@ def content_of(measurement: Measurement, found: Fitted) -> dict[str, Any]:
     evidence, outcome = found.evidence, found.outcome
     unit, factor = evidence.channel.declared_unit, evidence.channel.declared_factor
     covariances = covariance_of(outcome, evidence)
-    left = _missed(found)
+    left, lost = _missed(found), _lost(found)
     roles = {"fit": (evidence.fitted, outcome.fit_residuals), "holdout": (evidence.held, outcome.holdout)}
     return {
         "system": measurement.system,
@@ -152,8 +152,8 @@ def content_of(measurement: Measurement, found: Fitted) -> dict[str, Any]:
         },
         "residual": {role: {"rmse": rmse(residuals) / factor, "unit": unit} for role, (_, residuals) in roles.items()},
         "lack_of_fit": {
-            "significant": left.significant,
-            "excess_percent": left.percent,
+            "significant": left.significant or lost is not None,
+            "excess_percent": left.percent if lost is None else lost,
             "threshold_percent": left.threshold,
             "source": str(measurement.source),
         },
@@ -176,6 +176,13 @@ def _missed(found: Fitted) -> Excess:
     if held.threshold < WHOLE:
         return held
     return excess(outcome.fit_residuals, evidence.fitted, found.noise)
+
+
+def _lost(found: Fitted) -> float | None:
+    """What is left of the fitted records, in % of their variance, where that is most of it, however random it looks."""
+    evidence, outcome = found.evidence, found.outcome
+    left = nrmse(outcome.fit_residuals, evidence.fitted) ** 2
+    return 100 * left if left > evidence.settings.lost_share else None
 
 
 def table_of(content: dict[str, Any]) -> str:
