@@ -1,6 +1,7 @@
 """How well anybody could know the damping from a record."""
 
 from collections.abc import Mapping, Sequence
+from numbers import Real
 
 import numpy as np
 import torch
@@ -41,6 +42,8 @@ def bound(
     """
     if (noise is None) == (snr_db is None):
         raise InputError(Problem("noise", "one of noise and snr_db is needed", noise, "for example snr_db=30"))
+    if snr_db is not None and not isinstance(snr_db, Real):
+        raise InputError(Problem("snr_db", "is one level", repr(snr_db), "ask once for each, for example snr_db=30"))
     refuse_rest(runs.runs)
     response = runs.runs.response
     level = torch.tensor(noise, dtype=torch.float64) if snr_db is None else response.std(-1) * 10 ** (-snr_db / 20)

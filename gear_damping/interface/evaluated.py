@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from numbers import Real
 from statistics import NormalDist
 from time import perf_counter
 from typing import Any
@@ -64,7 +65,7 @@ def evaluate(
     estimators: Mapping[str, Estimator],
     runs: Simulation,
     *,
-    snr_db: Sequence[float] = (CLEAN,),
+    snr_db: float | Sequence[float] = (CLEAN,),
     bound: bool = True,
     seed: int = 0,
 ) -> Evaluation:
@@ -80,6 +81,10 @@ def evaluate(
     Raises:
         InputError: no estimator is named, nothing moves, or a network was trained on another kind of record.
     """
+    snr_db = (float(snr_db),) if isinstance(snr_db, Real) else snr_db
+    if not isinstance(estimators, Mapping):
+        rule, remedy = "must be named", "for example {'mine': gd.load_estimator(PATH)}"
+        raise InputError(Problem("estimators", rule, repr(estimators), remedy))
     if not estimators:
         raise InputError(Problem("estimators", "none is named", {}, "for example {'mine': gd.load_estimator(PATH)}"))
     _require_alike(estimators, runs)

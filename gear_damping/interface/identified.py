@@ -98,6 +98,9 @@ def identify(
     free = [free] if isinstance(free, str) else free
     if model is None and free:
         raise InputError(Problem("free", "names parameters of a model", list(free), "give the model too"))
+    if model is not None and not isinstance(model, Model):
+        remedy = "give a gd.Model, for example gd.Model(gd.Oscillator(), [gd.ViscousDamping()])"
+        raise InputError(Problem("model", "is no model: a system with its effects", repr(model), remedy))
     if model is not None:
         named = free or given_numbers(model)
         if not named:

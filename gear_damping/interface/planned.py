@@ -99,9 +99,9 @@ class Plan:
 def plan(
     model: Model,
     tests: PlannedTests,
-    sensors: Sequence[PlannedSensor],
+    sensors: PlannedSensor | Sequence[PlannedSensor],
     *,
-    unknown: Sequence[Unknown | str] = (),
+    unknown: Unknown | str | Sequence[Unknown | str] = (),
     goal: PlanGoal | None = None,
     solver: Solver | None = None,
 ) -> Plan:
@@ -123,6 +123,8 @@ def plan(
         InputError: everything that is wrong with it.
     """
     solver = solver or Solver()
+    unknown = [unknown] if isinstance(unknown, str | Unknown) else unknown
+    sensors = [sensors] if isinstance(sensors, PlannedSensor) else sensors
     named = tuple(Unknown(one) if isinstance(one, str) else one for one in unknown)
     goal = goal or PlanGoal()
     rig = Rig(model, {}, goal.law, solver)

@@ -67,3 +67,34 @@ def test_what_nothing_moves_is_said():
         gd.bound(runs, snr_db=30)
     with pytest.raises(gd.InputError, match=r"nothing moves: .* remedy: give initial_displacement"):
         gd.evaluate({"decrement": gd.estimator("log_decrement")}, runs, snr_db=[30])
+
+
+def test_a_bare_system_is_no_model(record):
+    with pytest.raises(gd.InputError, match=r"model = .*: is no model: .*; remedy: give a gd\.Model"):
+        gd.identify(record, gd.Oscillator())
+
+
+@pytest.fixture(scope="module")
+def decays():
+    law = gd.ViscousDamping(damping_coefficient=2)
+    model = gd.Model(gd.Oscillator(stiffness=1e4, initial_displacement=0.01), [law])
+    return gd.simulate(model, sampling_rate=1e3, n_samples=400)
+
+
+def test_a_bound_is_of_one_level(decays):
+    with pytest.raises(gd.InputError, match=r"snr_db = .*: is one level; remedy: ask once for each"):
+        gd.bound(decays, snr_db=[30, 20])
+
+
+def test_estimators_are_named_and_one_level_is_one(decays):
+    ridge = gd.estimator("wavelet_ridge")
+    with pytest.raises(gd.InputError, match="estimators = .*: must be named"):
+        gd.evaluate([ridge], decays)
+    assert list(gd.evaluate({"ridge": ridge}, decays, snr_db=30, bound=False).content["snr_db"]) == ["30"]
+
+
+def test_one_sensor_and_one_unknown_are_one(decays):
+    tests = gd.PlannedTests(durations=(0.5, 1.0), sampling_rate=1e3, amplitudes=(0.005,))
+    sensor = gd.PlannedSensor("displacement", noise=1e-4)
+    one = gd.plan(decays.model, tests, sensor, unknown="stiffness")
+    assert one.content == gd.plan(decays.model, tests, [sensor], unknown=["stiffness"]).content
