@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from math import pi
+from math import floor, log10, pi
 from typing import Any
 
 from gear_damping.explanation.evidence.noise import NoiseLevel, noise_of, weighted
@@ -35,6 +35,9 @@ BEGUN_ANEW = (
     "Something drives it that no channel holds (declare the force, or a `window` in which it dies away; where that is "
     "a random load, model=ambient_spectrum tells the damping), or its frequency changes with the amplitude"
 )
+
+
+NOT_FREE = "no damping is told: the motion was begun anew in every segment, since no one start leads through all of it"
 
 
 @dataclass(frozen=True)
@@ -98,13 +101,16 @@ def content_of(measurement: Measurement, fitted: Fitted) -> dict[str, Any]:
     found, roles, channel = fitted.found, fitted.roles, fitted.channel
     content = _identification(found, measurement, roles, channel)
     lacking = lack_of_fit(found.predictions, roles["fit"], roles["holdout"], channel, fitted.noise)
+    not_yet_free = _not_yet_free(roles["fit"], measurement)
     undamped = _undamped(found, roles["fit"], lacking)
+    if undamped == BEGUN_ANEW and not_yet_free:
+        undamped = NOT_FREE
     is_lacking = bool(lacking and lacking["significant"])
     differs = (is_lacking and _apart(fitted, measurement)) or _differing(found, measurement, roles["fit"], channel)
     said = {
         "differing": differs,
         "undamped": undamped,
-        "not_yet_free": _not_yet_free(roles["fit"]),
+        "not_yet_free": not_yet_free,
         "contradicted": contradicted(
             found.problem.free, found.fitted.shared.tolist(), {name: name.split(".")[-1] for name in found.given}
         )
@@ -156,10 +162,19 @@ def _far_off(found: OscillatorFit, measurement: Measurement) -> str | None:
     return far_from_stated(pairs, "sign, unit and gain of the force and of the motion, and the value itself")
 
 
-def _not_yet_free(fit: Sequence[FitRecord]) -> str | None:
-    """What to leave out of records without an input that begin before their motion is free; None of others."""
+def _not_yet_free(fit: Sequence[FitRecord], measurement: Measurement) -> str | None:
+    """What to leave out of records without an input that begin before their motion is free; None of others.
+
+    By the stamps of the file, which are those that a `window` counts in.
+    """
     waits = {record.name: released_at(record) / record.sampling_rate for record in fit}
-    said = [f"{record.name} before {record.begins + waits[record.name]:.4g} s" for record in fit if waits[record.name]]
+    first = {record.name: float(record.time[0]) for record in measurement.records}
+
+    def until(record: FitRecord) -> str:
+        wait = record.begins + waits[record.name]
+        return f"{record.name} before {first[record.name] + wait:.{max(0, 3 - floor(log10(wait)))}f} s"
+
+    said = [until(record) for record in fit if waits[record.name]]
     if not said or any(map(grows, fit)):
         return None
     return f"the motion is not free from the start: leave out {', '.join(said)} (`window` or `slice` in the file)"

@@ -69,6 +69,7 @@ class RawReader:
         self.blank = 0  # rows at the end that hold nothing
         self.begins = 0.0  # s, of a record that nothing but pulses of encoders tells
         self.doubled: list[int] = []  # rows that hold what an earlier one does, and no later stamp
+        self.foreign: list[int] = []  # rows of other signals, in a table of signals by turns
         self.filled: slice | None = None  # rows of the record in which its slower channels have values
 
     def read(self, sha256: str) -> RawRecord | None:
@@ -78,6 +79,7 @@ class RawReader:
             self._find_rows()
             self.doubled = self._find_doubled()
             self.filled = None if self.doubled else self._find_filled()
+            self.foreign = [] if self.doubled or self.filled else self._find_foreign()
             base = self._base()
             base, within = self._with_rows_beside(base)
             base = base and self._said_of_rows(base)
@@ -190,6 +192,23 @@ class RawReader:
         found -= {None}
         return slice(*found.pop()) if len(found) == 1 else None
 
+    def _find_foreign(self) -> list[int]:
+        """Rows with a stamp in which other columns hold something and those of the record nothing: signals by turns."""
+        columns = [one for one in self.clocks.on_its_clock() if self._size(one) is not None]
+        if self.plan.timing.column is None or not columns or any(self._size(one) < self.stop for one in columns):
+            return []
+        own = {self.table.index(one, "") for one in (*columns, self.plan.timing.column)}
+        rows = set(range(self.first, self.stop))
+        empty = {place: set(self._empty_cells(place)) for place in range(len(self.table.names))}
+        foreign = rows.intersection(*(empty[self.table.index(one, "")] for one in columns))
+        spoken = set().union(*(rows - empty[k] for k in empty if k not in own and empty[k]))
+        return sorted(foreign) if foreign == spoken else []
+
+    def _empty_cells(self, place: int) -> list[int]:
+        with suppress(InputError):  # a column of texts
+            self.table.values(place)
+        return self.table.empty_cells(place)
+
     def _said_of_rows(self, base: TimeBase) -> TimeBase:
         """The time base, with notes of the rows that hold nothing and of those that come twice."""
         found = []
@@ -199,6 +218,12 @@ class RawReader:
         if self.filled:
             message = f"the record holds every {self.filled.step}th row, in which its slower channels have values"
             found.append(Finding("filled_rows", message, severity="note"))
+        if self.foreign:
+            message = (
+                f"{len(self.foreign)} rows hold nothing in the columns of the record, as where signals speak by turns; "
+                "they are left out, and samples are taken at their stamps"
+            )
+            found.append(Finding("foreign_rows", message, severity="note"))
         if self.doubled:
             message = (
                 f"{len(self.doubled)} row(s) hold the values of an earlier one where stamps do not go on, the first "
@@ -238,10 +263,13 @@ class RawReader:
         values = values[self.first : self.stop]
         if self.filled:
             values = values[self.filled]
-        else:
+        foreign = np.array(self.foreign, int) - self.first
+        if not self.filled and (not foreign.size or np.any(np.isnan(np.delete(values, foreign)))):
             self._refuse_cells(column, key, self.first, self.stop)
-        refuse_not_finite(values, self._named(key, column), self.file, self.first)
-        return np.delete(values, np.array(self.doubled, int) - self.first)
+        known = values.copy()
+        known[foreign] = 0.0
+        refuse_not_finite(known, self._named(key, column), self.file, self.first)
+        return np.delete(values, [*foreign, *(np.array(self.doubled, int) - self.first)])
 
     def _refuse_longer(self, column: str | int, key: str, size: int) -> None:
         """A column that goes on for long where the record ends by itself has another rate than that."""

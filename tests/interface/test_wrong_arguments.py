@@ -88,7 +88,7 @@ def test_a_bound_is_of_one_level(decays):
 
 def test_estimators_are_named_and_one_level_is_one(decays):
     ridge = gd.estimator("wavelet_ridge")
-    with pytest.raises(gd.InputError, match="estimators = .*: must be named"):
+    with pytest.raises(gd.InputError, match=r"estimators = .*: must be named"):
         gd.evaluate([ridge], decays)
     assert list(gd.evaluate({"ridge": ridge}, decays, snr_db=30, bound=False).content["snr_db"]) == ["30"]
 

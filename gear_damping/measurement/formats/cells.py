@@ -187,6 +187,11 @@ class CellTable(Table):
         cells, bad = self._bad.get(index, ([], []))
         return self._problems(index, cells, [k for k in bad if first <= k < stop])
 
+    def empty_cells(self, index: int) -> list[int]:
+        """The rows in which a column has a cell with nothing in it."""
+        cells, bad = self._bad.get(index, ([], []))
+        return [k for k in bad if not cells[k].strip()]
+
     def _decimal_points(self, cells: list[str], index: int) -> list[str]:
         """Cells with decimal points and thousands in one piece; points and commas of another use stay, and fail."""
         for sign in ".,":

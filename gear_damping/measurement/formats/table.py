@@ -88,6 +88,10 @@ class Table(ABC):
         """What is wrong with cells of a column in some rows; of a table of numbers nothing."""
         return []
 
+    def empty_cells(self, index: int) -> list[int]:
+        """The rows in which a column has a cell with nothing in it; of a table of numbers none."""
+        return []
+
     def _named(self, column: str) -> list[int]:
         """Those of the very name, else of its letters in other codes (µ and μ), of the last part of its path, or of
         all of it before a unit in brackets or behind a stroke.
