@@ -4,6 +4,7 @@ from gear_damping.explanation.state import State
 from gear_damping.identification.damping_estimate import UndyingMotion, UnsuitedRecord
 from gear_damping.identification.free_vibration import free_vibration
 from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.physics.terms import ExtraStates
 
 
 def never_dies(state: State) -> str:
@@ -16,7 +17,8 @@ def never_dies(state: State) -> str:
     """
     evidence = state.bench.evidence
     is_cut = bool(evidence.segments) and not evidence.stated_segments and evidence.has_spring
-    if not is_cut or not all(map(_goes_on, evidence.fit)):
+    beats = any(isinstance(cause.effect, ExtraStates) for cause in state.accepted)  # and swells between them
+    if beats or not is_cut or not all(map(_goes_on, evidence.fit)):
         return ""
     return (
         "The motion does not die away, and no channel holds what drives it: the search takes it for ring-downs, and "

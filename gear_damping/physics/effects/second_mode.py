@@ -1,7 +1,7 @@
 """A second mode of the structure."""
 
 from collections.abc import Mapping
-from math import inf, pi
+from math import inf, pi, sqrt
 from typing import ClassVar
 
 import torch
@@ -15,13 +15,17 @@ from gear_damping.physics.terms import ExtraStates, Load, Values
 
 PLACE, RATE = "second_mode.displacement", "second_mode.velocity"
 RATIOS = (0.01, 0.1)  # of the masses, that fits begin from: a light part and a heavy one
+BEATS = (3e-4, 1e-3, 3e-3, 1e-2)  # the same at the first mode's own frequency, where they part the two by its root
 LOW, HIGH = 1e-4, 1.0  # of the ratio that is fitted: beyond, the other mass is the first one
 NEAR = 1.15  # of the line that it is sought at: farther, it would take the place of the first mode
 DAMPED = (1e-5, 0.3)  # damping ratios of what shows as a line
 
 
 def _at_the_lines(rig: Rig) -> tuple[Recipe, ...]:
-    """One variant for every frequency that stands out of what is left, and each of several masses."""
+    """One variant for every frequency that stands out of what is left, or its own, and each of several masses."""
+    own = sqrt(max(float(rig.values.get(rig.spring, 0.0)), 0.0)) / (2 * pi) if not rig.has(Trait.MASS) else 0.0
+    sought = [(frequency, ratio) for frequency in rig.frequencies for ratio in RATIOS]
+    sought += [(own, ratio) for ratio in BEATS if own and rig.swings_freely]
     return tuple(
         Recipe(
             {"mass_ratio": ratio},
@@ -34,8 +38,7 @@ def _at_the_lines(rig: Rig) -> tuple[Recipe, ...]:
             },
             in_si=True,
         )
-        for frequency in rig.frequencies
-        for ratio in RATIOS
+        for frequency, ratio in sought
     )
 
 
