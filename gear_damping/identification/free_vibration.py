@@ -286,6 +286,17 @@ def _stretch(found: FreeVibration) -> FreeVibration:
     return FreeVibration(found.values[begin:end], found.sampling_rate, found.frequency_hz, found.noise, last)
 
 
+def never_falls(record: FitRecord) -> bool:
+    """Whether a record has no input and its motion does not die away: something feeds it, or it beats."""
+    if record.inputs:
+        return False
+    try:
+        free_vibration(record)
+    except UnsuitedRecord as said:
+        return isinstance(said, UndyingMotion)
+    return False
+
+
 def _falling_share(log_size: Array) -> float:
     """How much of the variance of ln(amplitude) the nearest curve that never rises takes."""
     left = log_size - isotonic_regression(log_size, increasing=False).x

@@ -33,6 +33,7 @@ class Rig:
         standing: Whether its shafts stand in all records.
         on_shafts: Whether a speed or an acceleration of one shaft was measured.
         records: How many were fitted.
+        swells: Whether a free motion of them grows again after it fell: energy comes back from where it went.
         one_way: Whether nothing brings it back and it moves in one direction in each record, so that what differs
             between directions, or yields before it slides, does not show.
     """
@@ -53,6 +54,7 @@ class Rig:
     on_shafts: bool = False
     one_way: bool = False
     records: int = 1
+    swells: bool = False
 
     def has(self, trait: Trait) -> bool:
         """Whether its system has a trait."""

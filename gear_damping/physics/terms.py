@@ -10,6 +10,7 @@ and the parametrised tests.
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import inf
 from typing import ClassVar
 
 import torch
@@ -196,6 +197,10 @@ class ExtraStates(Effect):
     def decay_time(self, values: Mapping[str, float]) -> float:
         """Seconds in which its free motion falls to 1/e, by own parameters; 0 where it does not swing by itself."""
         return 0.0
+
+    def exchange_time(self, values: Mapping[str, float], natural_frequency_hz: float) -> float:
+        """Seconds after which it has given back what it took from the first mode; infinite where it hardly does."""
+        return inf
 
     def initial(self, p: Values, base: Values) -> dict[str, Tensor]:
         """The states at the start in natural units, by own name; at rest unless said otherwise."""

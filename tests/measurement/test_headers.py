@@ -183,3 +183,14 @@ def test_a_unit_behind_a_stroke_need_not_be_written(tmp_path):
 def test_columns_with_commas_beside_others_with_points_are_named(tmp_path):
     table = table_of(tmp_path, ["t;x;y", *[f"{0.1 * k:.2f};{k},5;7" for k in range(40)]])
     assert table.notes == ("run.csv: read with decimal commas in x, beside decimal points in others",)
+
+
+@pytest.mark.parametrize("sign", ["#", "% ", ""])
+def test_a_row_of_units_in_brackets_is_none_of_names_though_some_are_unknown(tmp_path, sign):
+    rows = "".join(f"{k / 20:.3f}\t{k % 7}\t{k / 20 + 0.01:.3f}\t{k % 5}\n" for k in range(40))
+    path = tmp_path / "two.txt"
+    path.write_text(f"{sign}Time A\tPos A\tTime B\tPos B\n{sign}[s]\t[au]\t[s]\t[au]\n{rows}")
+    table = read_table(path)
+    assert [name.strip() for name in table.names] == ["Time A", "Pos A", "Time B", "Pos B"]
+    assert [table.unit(k) for k in range(4)] == ["s", "au", "s", "au"]
+    assert table.values(1)[:3].tolist() == [0, 1, 2]

@@ -95,14 +95,16 @@ def swinging_on(state: State) -> Iterator[str]:
     """The names of causes that swing by themselves and do not die away.
 
     A motion that goes on all through the records with a start of its own in each is as well a line that somebody
-    else drives, and no mode is without damping.
+    else drives, and no mode is without damping. What gives back within them what it took from the first mode is none:
+    a line takes nothing.
     """
     longest, values = state.bench.evidence.duration, state.outcome.flat_given()
+    natural = natural_frequency_hz(state.outcome.hypothesis.model, values)
     for cause in state.accepted:
         effect = cause.effect
         if isinstance(effect, ExtraStates):
             own = {parameter.name: values[f"{effect.name}.{parameter.name}"] for parameter in effect.parameters}
-            if effect.decay_time(own) > GOES_ON * longest:
+            if effect.decay_time(own) > GOES_ON * longest and effect.exchange_time(own, natural) > longest:
                 yield effect.name
 
 

@@ -9,6 +9,7 @@ from torch import Tensor
 from gear_damping.explanation.evidence.declared_units import radian_of
 from gear_damping.explanation.evidence.records import Evidence, all_stand
 from gear_damping.explanation.model.hypothesis import Hypothesis
+from gear_damping.identification.free_vibration import never_falls
 from gear_damping.identification.oscillator.linear_model import moves_one_way
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.physics.cause import Rig
@@ -52,7 +53,8 @@ def rig_of(base: Hypothesis, evidence: Evidence, residuals: Residuals | None = N
         natural = values["natural_frequency"] / (2 * pi)
         lines = strongest_frequencies(residuals or (), natural)
         one_way = natural == 0 and all(moves_one_way(record) for record in evidence.fit)
-        return Rig(radian=radian, frequencies=lines, one_way=one_way, **common)
+        swells = natural > 0 and any(never_falls(record) for record in evidence.fit)
+        return Rig(radian=radian, frequencies=lines, one_way=one_way, swells=swells, **common)
     values["contact_ratio"] = float(prepared.base["contact_ratio"][0])
     pinion, gear = round(values["n_teeth_pinion"]), round(values["n_teeth_gear"])
     lines = strongest_orders(residuals or (), pinion, gear, values["pinion_speed"])

@@ -20,6 +20,7 @@ _FACTOR_BEFORE = re.compile(r"^(?P<factor>\d[\d.,eE^+\-]*)\s*[*×·]\s*[^\W\d].*
 _IN_STEPS = re.compile(r"\s(?:in|/)\s+(\d[\d.,/]*\s*[A-Za-zµμ°][\w/^]*)\s*$")  # `x in 0.1mm`
 _INDEX = re.compile(r"\w\[\d+\]\s*$")  # `data[3]` is a name, no unit
 _NO_UNIT = ("", "-", "#")
+_IN_BRACKETS = re.compile(r"\[.*\]|\(.*\)")  # a cell as it stands below a name for its unit alone
 _COMMENTED = re.compile(r"^(?:%+|//+)\s*(?=[\w\[])")  # names behind the sign of comments of MATLAB and of C
 _COMMENTS = ("%", "%%", ";", "//", "!", "'", "*")  # that other programs write before a line of names
 _GENERIC = re.compile(
@@ -89,15 +90,15 @@ def find_header(rows: Sequence[Sequence[str]], width: int) -> Header:
         both = _of_two_rows(*([cell.strip() for cell in rows[k][:width]] for k in texts[-2:]), end)
         if both is not None:
             return both
-    texts = [k for k in texts if not (_is_units(rows[k]) and k - 1 in texts and filled(rows[k - 1]) == width)]
+    texts = [k for k in texts if not (is_units(rows[k]) and k - 1 in texts and filled(rows[k - 1]) == width)]
     exact = [k for k in texts if filled(rows[k]) == width]
     wide = [k for k in texts if filled(rows[k]) > width]
-    above_units = [k for k in exact if k + 1 < len(rows) and _is_units(rows[k + 1])]
+    above_units = [k for k in exact if k + 1 < len(rows) and is_units(rows[k + 1])]
     start = max(above_units or exact or wide or texts[-1:], key=lambda k: (len({*rows[k]}), k))
-    start -= bool(start and _is_units(rows[start]) and _are_numbered(rows[start - 1], width))
+    start -= bool(start and is_units(rows[start]) and _are_numbered(rows[start - 1], width))
     names, first = tuple(cell.strip() for cell in rows[start]), start + 1
     units: tuple[str, ...] = ()
-    if first < len(rows) and _is_units(rows[first]):
+    if first < len(rows) and is_units(rows[first]):
         units, first = tuple(cell.strip() for cell in rows[first]), first + 1
     between = max(end - first, 0) if end < len(rows) else 0  # texts that are neither names nor units
     others = tuple(tuple(cell.strip() for cell in rows[k][:width]) for k in exact if k != start)
@@ -112,7 +113,7 @@ def _of_two_rows(upper: list[str], lower: list[str], first: int) -> Header | Non
     said = [cell.strip("[]() ") for cell in lower]
     units = [one if _is_unit(one) else "" for one in said]
     by_time = [is_time(unit) for name, unit in zip(upper, units, strict=True) if unit and NAMED.search(name)]
-    if not any(by_time) or _is_units(lower):
+    if not any(by_time) or is_units(lower):
         return None
     own = [bool(one) and not unit and lower.count(one) == 1 for one, unit in zip(lower, units, strict=True)]
     taken = [k for k, name in enumerate(upper) if own[k] and _GENERIC.match(name) and lower[k] not in upper]
@@ -217,11 +218,12 @@ def filled(row: Sequence[str]) -> int:
     return max((k + 1 for k, cell in enumerate(row) if cell.strip()), default=0)
 
 
-def _is_units(row: Sequence[str]) -> bool:
-    """Whether a row of texts holds units and nothing else, at least one of them."""
+def is_units(row: Sequence[str]) -> bool:
+    """Whether a row of texts holds units and nothing else, at least one of them; in brackets some may be unknown."""
     cells = [cell.strip("[]() ") for cell in row]
     named = [cell for cell in cells if cell not in _NO_UNIT]
-    return bool(named) and not _has_number(row) and all(_is_unit(cell) for cell in named)
+    counts = any if all(_IN_BRACKETS.fullmatch(cell.strip()) for cell in row) else all
+    return bool(named) and not _has_number(row) and counts(_is_unit(cell) for cell in named)
 
 
 def _is_unit(cell: str) -> bool:

@@ -5,7 +5,7 @@ from dataclasses import replace
 from itertools import islice
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.formats.header import Header, filled, find_header
+from gear_damping.measurement.formats.header import Header, filled, find_header, is_units
 from gear_damping.measurement.formats.moments import is_told
 from gear_damping.measurement.formats.number_texts import is_absent, is_number, is_written
 from gear_damping.measurement.formats.text_lines import HEAD, Text
@@ -22,10 +22,10 @@ _VALUES = re.compile(rb"^[\s;,|\"]*[+-]?\.?\d")  # a line that begins with a num
 
 def text_header(text: Text) -> tuple[Header, int]:
     """The header, from a row of texts or the last comment before the values, and the line of the first values."""
-    lines, rows, comment = [], [], []
+    lines, rows, comments = [], [], []
     for line, row in islice(text.rows(), HEAD):
         if row[0].startswith("#"):
-            comment = comment if rows else row
+            comments += [] if rows else [row]
             continue
         lines.append(line)
         rows.append(row)
@@ -56,11 +56,18 @@ def text_header(text: Text) -> tuple[Header, int]:
             )
         raise InputError(Problem("file", rule, str(text.path), remedy))
     if not header.names:
-        names = [name.strip() for name in text.delimiter.join(comment).lstrip("# ").split(text.delimiter)]
-        width = len(rows[header.first])
-        names = names if len(names) == width else [""] * width
-        header = Header(tuple(names), (), header.first, header.skipped)
+        names, units = _of_comments(comments, text.delimiter, len(rows[header.first]))
+        header = Header(names, units, header.first, header.skipped)
     return header, lines[header.first]
+
+
+def _of_comments(rows: list[list[str]], sign: str, width: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Names in the last comment before the values, or above it where that holds their units; empty where it has none."""
+    said = [[cell.strip() for cell in sign.join(row).lstrip("# ").split(sign)] for row in rows[-2:]]
+    *above, last = said or [[]]
+    if above and len(above[0]) == len(last) == width and is_units(last):
+        return tuple(above[0]), tuple(last)
+    return tuple(last if len(last) == width else [""] * width), ()
 
 
 def _labelled(row: list[str]) -> str | None:

@@ -1,7 +1,7 @@
 """A second mode of the structure."""
 
 from collections.abc import Mapping
-from math import inf, pi, sqrt
+from math import hypot, inf, pi
 from typing import ClassVar
 
 import torch
@@ -22,10 +22,12 @@ DAMPED = (1e-5, 0.3)  # damping ratios of what shows as a line
 
 
 def _at_the_lines(rig: Rig) -> tuple[Recipe, ...]:
-    """One variant for every frequency that stands out of what is left, or its own, and each of several masses."""
-    own = sqrt(max(float(rig.values.get(rig.spring, 0.0)), 0.0)) / (2 * pi) if not rig.has(Trait.MASS) else 0.0
+    """One variant for every frequency that stands out of what is left, and each of several masses.
+
+    Where a free motion grows again its own frequency stands for two that beat.
+    """
     sought = [(frequency, ratio) for frequency in rig.frequencies for ratio in RATIOS]
-    sought += [(own, ratio) for ratio in BEATS if own and rig.swings_freely]
+    sought += [(rig.values["natural_frequency"] / (2 * pi), ratio) for ratio in BEATS if rig.swells]
     return tuple(
         Recipe(
             {"mass_ratio": ratio},
@@ -64,6 +66,12 @@ class SecondMode(ExtraStates, Load):
         """1 / (zeta w), of the second mass alone."""
         rate = 2 * pi * values["frequency"] * values["damping_ratio"]
         return 1 / rate if rate > 0 else inf
+
+    def exchange_time(self, values: Mapping[str, float], natural_frequency_hz: float) -> float:
+        """One over the beat, where the two are coupled by more than they are apart."""
+        apart = abs(values["frequency"] - natural_frequency_hz)
+        coupled = natural_frequency_hz * values["mass_ratio"] ** 0.5
+        return 1 / hypot(apart, coupled) if coupled > apart else inf
 
     def prepare(self, values: Values, base: Values) -> dict[str, Tensor]:
         """Coefficients of spring and damper, and a bound on the fastest rate of both masses."""
