@@ -18,7 +18,8 @@ from gear_damping.explanation.evidence.noise import NoiseLevel, Scatter, noise_o
 from gear_damping.explanation.evidence.records import Evidence, evidence_of
 from gear_damping.explanation.evidence.useful_samples import at_useful_rate, of_useful_length
 from gear_damping.explanation.model.calibration_error import calibration_error
-from gear_damping.explanation.model.hypothesis import SEGMENT_TIMES, Outcome, segments_of
+from gear_damping.explanation.model.hypothesis import SEGMENT_TIMES, Outcome, natural_frequency_hz, segments_of
+from gear_damping.explanation.model.rig import swells_again
 from gear_damping.explanation.search import looked, search
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.state import State
@@ -36,7 +37,7 @@ from gear_damping.identification.output_error.segments import Segments
 from gear_damping.identification.time_scale import characteristic_time
 from gear_damping.measurement.record import Finding, Measurement
 from gear_damping.physics.systems.traits import Trait
-from gear_damping.physics.terms import Effect
+from gear_damping.physics.terms import Effect, ExtraStates
 from gear_damping.simulation.solver_settings import Solver
 
 STEPS = 4  # that are reported: evidence, calibration, search, verdict
@@ -214,6 +215,11 @@ def _searched(
     loses = not evidence.has(Trait.SHAFTS) and best_is_lost(state)
     if evidence.segments or not (is_lost or state.is_unpredictable or loses):
         return state
+    if not state.accepted and has_another_mode(nominal, bench):
+        log("a second mode follows records whose motion grows again: whole records are searched")
+        beating = search(nominal, bench)
+        if beating.accepted:
+            return beating
     evidence = replace(evidence, segments=segments_of(nominal.hypothesis, evidence))
     why = "the nominal model loses a record" if is_lost else "small errors grow"
     log(f"{why}: records are predicted in segments of {evidence.segments.seconds:.3g} s")
@@ -222,6 +228,24 @@ def _searched(
     bench = replace(bench, evidence=evidence, noise=noise, floor=noise)
     _tell(nominal, bench)
     return search(nominal, bench, state.first_fits[:1])
+
+
+def has_another_mode(nominal: Outcome, bench: Bench) -> bool:
+    """Whether a motion grows again after it fell, and a linear model with one mode more loses no fitted record.
+
+    Two modes beat: within a segment shorter than a beat they are nearly one, and what is left of it is free to begin
+    anew with every segment. Over whole records a linear model looks as right from its start as at its end.
+    """
+    evidence = bench.evidence
+    modes = [name for name, kind in evidence.library.items() if issubclass(kind, ExtraStates)]
+    frequency = (
+        natural_frequency_hz(nominal.hypothesis.model, nominal.flat_given()) if evidence.has(Trait.REST) else 0.0
+    )
+    if not modes or not frequency or not any(swells_again(record, frequency) for record in evidence.fit):
+        return False
+    tried = bench.ranked(nominal, modes)[: evidence.settings.most_full_fits]
+    fits = (bench.full_fit(score, nominal) for score in tried)
+    return any(fit is not None and not is_lost_by(fit.outcome, evidence) for fit in fits)
 
 
 def _scatter(nominal: Outcome, evidence: Evidence, solver: Solver) -> Scatter:

@@ -12,6 +12,8 @@ from gear_damping.explanation.explain import explain
 from gear_damping.explanation.model.rig import strongest_frequencies
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.measurement.load import load_measurement
+from gear_damping.physics.cause import Rig
+from gear_damping.physics.effects.second_mode import SecondMode
 
 ROLES = ("fit", "fit", "holdout")
 RATE, SECONDS = 200.0, 12.0
@@ -93,3 +95,44 @@ def test_what_lies_between_the_natural_frequency_and_that_of_the_motion_is_the_f
     assert not any(3.8 < frequency < 5.5 for frequency in found)
     still = FitRecord("a", torch.cos(2 * math.pi * 5.0 * time), RATE)
     assert strongest_frequencies([(still, left)], 5.0) == pytest.approx((4.05, 8.3), rel=0.02)
+
+
+def coupled_pendulums(folder, coupling=0.78, noise=0.002):
+    """Two equal pendulums on a soft spring, the first let go: two normal modes by their closed form."""
+    rng, time, records = np.random.default_rng(8), np.arange(round(80 * 20.0)) / 20.0, []
+    rates = math.sqrt(19.8), math.sqrt(19.8 + 2 * coupling)  # together, and against each other
+    for k, size in enumerate((1.0, 0.8)):
+        modes = [np.exp(-0.02 * time) * np.cos(rate * time) for rate in rates]
+        x = size * (modes[0] + modes[1]) / 2 + noise * rng.normal(size=len(time))
+        np.savetxt(folder / f"r{k}.csv", np.c_[time, x], delimiter=",", header="t,x", comments="")
+        channels = {"time": {"column": "t", "unit": "s"}, "displacement": {"column": "x", "unit": "rad"}}
+        records.append({"name": f"r{k}", "file": f"r{k}.csv", "role": ROLES[k + 1], "channels": channels})
+    path = folder / "measurement.yaml"
+    path.write_text(yaml.safe_dump({"system": "oscillator", "records": records}))
+    return path
+
+
+@pytest.mark.slow
+def test_pendulums_that_pass_their_motion_to_and_fro_have_a_second_mode(tmp_path):
+    content = explain(load_measurement(coupled_pendulums(tmp_path))).content
+    assert (content["verdict"], [cause["name"] for cause in content["causes"]]) == ("explained", ["second_mode"])
+    found = content["causes"][0]["parameters"]
+    mass, tuned = 0.78**2 / (19.8 + 0.78) ** 2, math.sqrt(19.8 + 0.78) / (2 * math.pi)  # of the first on its spring
+    assert found["mass_ratio"]["value"] == pytest.approx(mass, rel=0.15)
+    assert found["frequency"]["value"] == pytest.approx(tuned, rel=0.01)
+    assert not any("does not die away" in said for said in content["sentences"])
+
+
+def test_a_mode_gives_back_what_it_took_where_coupling_is_more_than_detuning():
+    mode, values = SecondMode(), {"frequency": 5.0, "mass_ratio": 0.0016, "damping_ratio": 1e-5}
+    assert mode.exchange_time(values, 5.0) == pytest.approx(1 / (5 * 0.04))
+    assert mode.exchange_time(values, 5.1) == pytest.approx(1 / math.hypot(0.1, 5.1 * 0.04))
+    assert mode.exchange_time(values, 5.5) == math.inf
+
+
+@pytest.mark.parametrize(("swells", "count"), [(False, 4), (True, 8)])
+def test_the_own_frequency_stands_for_two_only_where_the_motion_swells(swells, count):
+    rig = Rig("oscillator", frequencies=(7.0, 9.0), values={"natural_frequency": 2 * math.pi * 5}, swells=swells)
+    tried = SecondMode.cause.recipes_for(rig)
+    assert len(tried) == count
+    assert ({recipe.scanned["frequency"] for recipe in tried} == {7.0, 9.0, 5.0}) == swells

@@ -17,6 +17,8 @@ from gear_damping.explanation.steps.told import is_told
 from gear_damping.explanation.steps.told import told as told_of
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.physics.catalogue import effect_class
+from gear_damping.physics.effects.coulomb_friction import CoulombFriction
+from gear_damping.physics.effects.second_mode import SecondMode
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.oscillator import Oscillator
 from gear_damping.simulation.simulate import simulate
@@ -116,7 +118,7 @@ def bench_leaving(left, as_good):
     """A made-up bench, the nominal model, one that leaves this much of an excess of 1 %, and one without a cause."""
     nominal, outcome, without = (SimpleNamespace(is_finite=True, left_out_cost=1.0) for _ in range(3))
     bench = SimpleNamespace(
-        evidence=None,
+        evidence=SimpleNamespace(duration=10.0),
         settings=SearchSettings(),
         log=lambda text: None,
         without=lambda *_: without,
@@ -124,6 +126,13 @@ def bench_leaving(left, as_good):
         excess=lambda one: excess_of(1.0 if one is nominal else left),
     )
     return bench, nominal, outcome, without
+
+
+def made_up(whole, effect=None):
+    """A fit of a candidate that is tried as a whole, or not."""
+    effects = SimpleNamespace(effects=(effect or CoulombFriction(),))
+    score = SimpleNamespace(candidate=SimpleNamespace(non_nested=whole, hypothesis=effects))
+    return SimpleNamespace(score=score, outcome=SimpleNamespace(hypothesis=effects), name="made up")
 
 
 @pytest.mark.parametrize(
@@ -136,8 +145,9 @@ def test_what_explains_all_and_is_missed_is_there_whatever_its_size(left, as_goo
     Of what is tried as a whole, one that is not known is no cause.
     """
     monkeypatch.setattr("gear_damping.explanation.steps.told.is_told", lambda *_: False)
+    monkeypatch.setattr(Accepted, "effect", CoulombFriction())
     bench, nominal, outcome, without = bench_leaving(left, as_good)
-    refit = SimpleNamespace(score=SimpleNamespace(candidate=SimpleNamespace(non_nested=whole)))
+    refit = made_up(whole)
     state = State(bench, nominal, outcome, (Accepted("a", refit, 0.5, ()),))
     found = told_of(state)
     assert bool(found.accepted) is kept
@@ -149,6 +159,7 @@ def test_of_causes_that_trade_against_each_other_the_least_needed_goes_first(ord
     """Three without a size of their own; without `b` most is left, and beside it alone its size is told."""
     costs = {"a": 2.0, "b": 5.0, "c": 1.0}  # of left-out records without each
     monkeypatch.setattr("gear_damping.explanation.steps.told.is_told", lambda outcome, *_: outcome.alone)
+    monkeypatch.setattr(Accepted, "effect", CoulombFriction())
     whole = SimpleNamespace(is_finite=True, left_out_cost=0.5, alone=False, causes=frozenset("abc"))
 
     def without(outcome, name):
@@ -156,7 +167,7 @@ def test_of_causes_that_trade_against_each_other_the_least_needed_goes_first(ord
         return SimpleNamespace(is_finite=True, left_out_cost=costs[name], alone=len(kept) == 1, causes=kept)
 
     bench = SimpleNamespace(evidence=None, settings=SearchSettings(), log=lambda text: None, without=without)
-    refit = SimpleNamespace(score=SimpleNamespace(candidate=SimpleNamespace(non_nested=True)))
+    refit = made_up(True)
     state = State(bench, None, whole, tuple(Accepted(name, refit, 0.5, ()) for name in order))
     found = told_of(state)
     assert [cause.name for cause in found.accepted] == ["b"]
@@ -176,7 +187,21 @@ def test_of_causes_that_trade_against_each_other_the_least_needed_goes_first(ord
 def test_what_is_alone_and_takes_most_is_there_whatever_it_leaves(share, others, as_good, whole, kept, monkeypatch):
     """A relief of the tips of another form: a rest of a fifth that hangs together is no reason against it."""
     monkeypatch.setattr("gear_damping.explanation.steps.told.is_told", lambda *_: False)
+    monkeypatch.setattr(Accepted, "effect", CoulombFriction())
     bench, nominal, outcome, _ = bench_leaving(0.3, as_good)
-    refit = SimpleNamespace(score=SimpleNamespace(candidate=SimpleNamespace(non_nested=whole)))
+    refit = made_up(whole)
     accepted = tuple(Accepted(name, refit, share, ()) for name in ["a", "b"][: 1 + others])
     assert len(told_of(State(bench, nominal, outcome, accepted)).accepted) == (1 if kept else 0)
+
+
+@pytest.mark.parametrize(("mass_ratio", "kept"), [(0.0016, True), (0.0001, False)])
+def test_a_mode_that_gives_back_what_it_took_is_there_whatever_its_size(mass_ratio, kept, monkeypatch):
+    """Two poles tell four figures of five; a beat of 5 s within records of 10 s is nothing that a line does."""
+    monkeypatch.setattr("gear_damping.explanation.steps.told.is_told", lambda *_: False)
+    monkeypatch.setattr("gear_damping.explanation.model.gives_back.natural_frequency_hz", lambda *_: 5.0)
+    bench, nominal, outcome, _ = bench_leaving(0.3, as_good=False)
+    values = {"second_mode.frequency": 5.0, "second_mode.mass_ratio": mass_ratio, "second_mode.damping_ratio": 0.0}
+    outcome.flat_given, outcome.hypothesis = lambda: values, SimpleNamespace(model=None)
+    refit = made_up(True, SecondMode())
+    state = State(bench, nominal, outcome, (Accepted("second_mode", refit, 0.8, ()),))
+    assert bool(told_of(state).accepted) == kept

@@ -17,6 +17,7 @@ from torch import Tensor
 
 from gear_damping.explanation.evidence.excess import ac_energy
 from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.gives_back import gives_back
 from gear_damping.explanation.model.homogeneity import block_of, error_of
 from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency_hz
 from gear_damping.explanation.model.rig import strongest_frequencies
@@ -99,12 +100,12 @@ def swinging_on(state: State) -> Iterator[str]:
     a line takes nothing.
     """
     longest, values = state.bench.evidence.duration, state.outcome.flat_given()
-    natural = natural_frequency_hz(state.outcome.hypothesis.model, values)
     for cause in state.accepted:
         effect = cause.effect
         if isinstance(effect, ExtraStates):
             own = {parameter.name: values[f"{effect.name}.{parameter.name}"] for parameter in effect.parameters}
-            if effect.decay_time(own) > GOES_ON * longest and effect.exchange_time(own, natural) > longest:
+            goes_on = effect.decay_time(own) > GOES_ON * longest
+            if goes_on and not gives_back(effect, state.outcome, state.bench.evidence):
                 yield effect.name
 
 

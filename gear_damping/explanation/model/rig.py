@@ -9,7 +9,6 @@ from torch import Tensor
 from gear_damping.explanation.evidence.declared_units import radian_of
 from gear_damping.explanation.evidence.records import Evidence, all_stand
 from gear_damping.explanation.model.hypothesis import Hypothesis
-from gear_damping.identification.free_vibration import never_falls
 from gear_damping.identification.oscillator.linear_model import moves_one_way
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.physics.cause import Rig
@@ -28,6 +27,9 @@ BLURRED = 3.0  # over the length of a record: as far as the window spreads a lin
 HARMONICS = 5  # of the natural frequency that are no modes
 AROUND, STANDS_OUT = 10, 5.0  # bands at either side; times their median, from which a line stands out
 MODES = 2  # frequencies that are kept
+SWELL_PERIODS = 3.0  # natural ones, over which an amplitude is taken
+SWELLS = 2.0  # times what it had fallen to: noise beside a motion that is seen does not double it
+SEEN = 0.1  # of the largest amplitude: less may be the noise behind the motion's end
 HIGHEST = 0.45  # of the sampling rate
 FEWEST_CYCLES = 8.0  # in a record, below which a band of its spectrum holds too few lines
 GEAR_ORDERS = 3  # of the gear's shaft
@@ -53,7 +55,7 @@ def rig_of(base: Hypothesis, evidence: Evidence, residuals: Residuals | None = N
         natural = values["natural_frequency"] / (2 * pi)
         lines = strongest_frequencies(residuals or (), natural)
         one_way = natural == 0 and all(moves_one_way(record) for record in evidence.fit)
-        swells = natural > 0 and any(never_falls(record) for record in evidence.fit)
+        swells = natural > 0 and any(swells_again(record, natural) for record in evidence.fit)
         return Rig(radian=radian, frequencies=lines, one_way=one_way, swells=swells, **common)
     values["contact_ratio"] = float(prepared.base["contact_ratio"][0])
     pinion, gear = round(values["n_teeth_pinion"]), round(values["n_teeth_gear"])
@@ -63,6 +65,21 @@ def rig_of(base: Hypothesis, evidence: Evidence, residuals: Residuals | None = N
     teeth["standing"] = all_stand(evidence.fit)
     teeth["on_shafts"] = any(channel.derivatives for record in evidence.fit for channel in record.channels)
     return Rig(mesh_harmonics=harmonics, lines=lines, **teeth, **common)
+
+
+def swells_again(record: FitRecord, natural: float) -> bool:
+    """Whether a free motion grows again after it fell, as no dissipative law of one mode lets it.
+
+    Args:
+        record: Without an input; else it is not asked.
+        natural: Natural frequency in Hz.
+    """
+    block = round(SWELL_PERIODS * record.sampling_rate / natural)
+    if record.inputs or not 0 < block <= len(record.response) // 2:
+        return False
+    size = (record.response - record.response.mean()).unfold(0, block, block).square().mean(-1).sqrt()
+    least, most = size.cummin(0).values[:-1], size.flip(0).cummax(0).values.flip(0)[1:]
+    return bool(((most > SWELLS * least) & (most > SEEN * size.max())).any())
 
 
 def strongest_frequencies(residuals: Residuals, natural: float) -> tuple[float, ...]:

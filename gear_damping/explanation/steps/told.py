@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 from gear_damping.explanation.evidence.excess import is_all
+from gear_damping.explanation.model.gives_back import gives_back
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.state import Accepted, State
 from gear_damping.explanation.trials.told_size import is_told
@@ -15,7 +16,8 @@ def told(state: State) -> State:
     its edges): what explains all, or is alone and takes most of what is missing, and is missed when it is taken out, is
     there whatever its size. A large rest of its form, by which a size is judged, is no reason against it. That is no
     rescue for what is tried as a whole: of any stiffness and any inertia, the torsion of a shaft bends to what another
-    one does.
+    one does. What gives back energy that it took does what nothing else can, though of a free motion the poles of two
+    masses tell four figures of five.
     """
     while (untold := _untold(state)) is not None:
         cause, outcome = untold
@@ -37,7 +39,9 @@ def _untold(state: State) -> tuple[Accepted, Outcome] | None:
         if not runs_away and is_told(state.outcome, cause.refit, bench.evidence):
             continue
         outcome = bench.without(state.outcome, cause.name)
-        is_one = not runs_away and not cause.candidate.non_nested
+        is_one = not runs_away and (
+            not cause.candidate.non_nested or gives_back(cause.effect, state.outcome, bench.evidence)
+        )
         is_missed = is_one and (_explain_all(state) or _takes_most(state))
         if not is_missed or bench.is_as_good(outcome, state.outcome):
             found.append((cause, outcome))

@@ -62,7 +62,7 @@ def text_header(text: Text) -> tuple[Header, int]:
 
 
 def _of_comments(rows: list[list[str]], sign: str, width: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Names in the last comment before the values, or above it where that holds their units; empty where it has none."""
+    """Names in the last comment before the values, or above it where that holds their units; else empty ones."""
     said = [[cell.strip() for cell in sign.join(row).lstrip("# ").split(sign)] for row in rows[-2:]]
     *above, last = said or [[]]
     if above and len(above[0]) == len(last) == width and is_units(last):

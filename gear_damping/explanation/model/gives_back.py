@@ -1,0 +1,15 @@
+"""What takes energy from the first mode and gives it back within a record: no line, and no law of one mode, does."""
+
+from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency_hz
+from gear_damping.physics.terms import Effect, ExtraStates
+
+
+def gives_back(effect: Effect, outcome: Outcome, evidence: Evidence) -> bool:
+    """Whether an effect of a fitted model does so, by its fitted parameters."""
+    if not isinstance(effect, ExtraStates):
+        return False
+    given = outcome.flat_given()
+    own = {parameter.name: given[f"{effect.name}.{parameter.name}"] for parameter in effect.parameters}
+    natural = natural_frequency_hz(outcome.hypothesis.model, given)
+    return effect.exchange_time(own, natural) <= evidence.duration
