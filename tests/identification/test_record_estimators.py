@@ -327,3 +327,14 @@ def test_the_spectrum_under_a_random_load_tells_the_damping(order, ratio):
 def test_what_no_random_load_has_made_has_no_such_spectrum(values, inputs, said):
     with pytest.raises(UnsuitedRecord, match=said):
         OF_RECORDS["ambient_spectrum"]({}).estimate(of_channel(values, 0, inputs))
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_two_modes_near_each_other_are_no_one_of_twice_the_damping(seed):
+    random, values = np.random.default_rng(seed), 0.0
+    for frequency in (FREQUENCY, 1.12 * FREQUENCY):
+        omega = 2 * math.pi * frequency
+        pole = np.exp((-0.015 * omega + 1j * omega * math.sqrt(1 - 0.015**2)) / RATE)
+        values = values + lfilter([0, 1.0], [1, -2 * pole.real, abs(pole) ** 2], random.normal(size=round(60 * RATE)))
+    with pytest.raises(UnsuitedRecord, match=r"another shape than that of one mode|a line at"):
+        OF_RECORDS["ambient_spectrum"]({}).estimate(of_channel(values / values.std(), 0))

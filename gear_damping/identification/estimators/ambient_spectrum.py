@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
-from scipy.stats import norm
+from scipy.stats import chi2, norm
 
 from gear_damping.identification.damping_estimate import DampingEstimate, UnsuitedRecord
 from gear_damping.identification.decay_rate import LEVEL
@@ -25,6 +25,7 @@ FEWEST_LINES = 20  # of a spectrum, to tell four figures from
 FEWEST_MEMORIES = 5.0  # times in which the motion forgets itself, that a record must hold
 SCATTERED = 0.5  # variance of the periodogram over its mean: 1 of a random motion, next to 0 of a ring-down
 RARE = 1e-4  # probability that the largest of all lines is as large by chance: more is the line of something that turns
+MOST_GROUPS, FEWEST_IN_GROUP, FIGURES = 16, 8, 4  # of lines that are averaged; lines in one; what was fitted to them
 LEAKED = 2  # lines to either side of a strong one, that it is seen in
 FAR, NEAR = 25.0, 0.3  # of a logarithm, that a level may be from its start, and a frequency
 STEP = 1e-4  # of the logarithm of a parameter, for the slope of the spectrum
@@ -76,6 +77,11 @@ class AmbientSpectrum(RecordEstimator):
         """
         ratio = spectrum.power / spectrum.expected(point)[spectrum.inside]
         found, natural = np.exp(point[1:3])
+        if ratio.var() > SCATTERED and _is_another_shape(ratio):
+            raise UnsuitedRecord(
+                "its spectrum has another shape than that of one mode under a white load, as of two that are near each "
+                "other: filter one out, or take a narrower band (model.ambient_spectrum.band)"
+            )
         if ratio.var() < SCATTERED:
             raise UnsuitedRecord("its spectrum is as smooth as that of a ring-down, which the other estimators are for")
         if found > BROADEST:
@@ -100,6 +106,18 @@ def _refuse_line(spectrum: "_Spectrum", frequency: float) -> None:
     if spectrum.power[top] > expected[top] * np.log(expected.size / RARE):
         line = np.flatnonzero(spectrum.inside)[top] * spectrum.rate / spectrum.samples
         raise UnsuitedRecord(f"a line at {line:.4g} Hz stands in its resonance, which no random load makes")
+
+
+def _is_another_shape(ratio: Array) -> bool:
+    """Whether lines over their expectation, (lines,), are not about one all along the band.
+
+    Means of groups of lines scatter by one over the root of their number: a chi-squared test.
+    """
+    groups = np.array_split(ratio, min(MOST_GROUPS, ratio.size // FEWEST_IN_GROUP))
+    if len(groups) <= FIGURES:
+        return False
+    statistic = sum(group.size * (group.mean() - 1) ** 2 for group in groups)
+    return bool(chi2.sf(statistic, len(groups) - FIGURES) < RARE)
 
 
 @dataclass(frozen=True, eq=False)
