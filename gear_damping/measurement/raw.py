@@ -197,11 +197,13 @@ class RawReader:
         columns = [one for one in self.clocks.on_its_clock() if self._size(one) is not None]
         if self.plan.timing.column is None or not columns or any(self._size(one) < self.stop for one in columns):
             return []
-        own = {self.table.index(one, "") for one in (*columns, self.plan.timing.column)}
-        rows = set(range(self.first, self.stop))
-        empty = {place: set(self._empty_cells(place)) for place in range(len(self.table.names))}
-        foreign = rows.intersection(*(empty[self.table.index(one, "")] for one in columns))
-        spoken = set().union(*(rows - empty[k] for k in empty if k not in own and empty[k]))
+        own, rows = {self.table.index(one, "") for one in columns}, set(range(self.first, self.stop))
+        foreign = rows.intersection(*(self._empty_cells(place) for place in own))
+        if not foreign:
+            return []
+        own.add(self.table.index(self.plan.timing.column, ""))
+        others = (set(self._empty_cells(place)) for place in range(len(self.table.names)) if place not in own)
+        spoken = set().union(*(rows - empty for empty in others if empty))
         return sorted(foreign) if foreign == spoken else []
 
     def _empty_cells(self, place: int) -> list[int]:
@@ -269,7 +271,7 @@ class RawReader:
         known = values.copy()
         known[foreign] = 0.0
         refuse_not_finite(known, self._named(key, column), self.file, self.first)
-        return np.delete(values, [*foreign, *(np.array(self.doubled, int) - self.first)])
+        return np.delete(values, np.r_[foreign, np.array(self.doubled, int) - self.first])
 
     def _refuse_longer(self, column: str | int, key: str, size: int) -> None:
         """A column that goes on for long where the record ends by itself has another rate than that."""

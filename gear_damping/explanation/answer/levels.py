@@ -93,10 +93,11 @@ def damping_by_record(outcome: Outcome, evidence: Evidence) -> Rows:
 def frequency_by_record(outcome: Outcome, evidence: Evidence) -> Rows:
     """The natural frequency of each fitted record in Hz with its 95 % interval; none where it is one for all."""
     rows, _, _ = _rows_of(outcome, ElasticForce, evidence)
-    if not rows:
+    given = outcome.flat_given()
+    stiffness = float(given.get(outcome.hypothesis.system.spring, 0.0))
+    if not rows or stiffness <= 0:  # another law has taken the place of the spring
         return []
-    mean, given = natural_frequency_hz(outcome.hypothesis.model, outcome.flat_given()), outcome.flat_given()
-    stiffness = float(given[outcome.hypothesis.system.spring])
+    mean = natural_frequency_hz(outcome.hypothesis.model, given)
     return _told(rows, lambda value: mean * max(0.0, 1 + value / stiffness) ** 0.5)
 
 
