@@ -18,6 +18,7 @@ from gear_damping.explanation.evidence.noise import NoiseLevel, Scatter, noise_o
 from gear_damping.explanation.evidence.records import Evidence, evidence_of
 from gear_damping.explanation.evidence.useful_samples import at_useful_rate, of_useful_length
 from gear_damping.explanation.model.calibration_error import calibration_error
+from gear_damping.explanation.model.gives_back import takes_and_gives
 from gear_damping.explanation.model.hypothesis import SEGMENT_TIMES, Outcome, natural_frequency_hz, segments_of
 from gear_damping.explanation.model.rig import swells_again
 from gear_damping.explanation.search import looked, search
@@ -37,7 +38,7 @@ from gear_damping.identification.output_error.segments import Segments
 from gear_damping.identification.time_scale import characteristic_time
 from gear_damping.measurement.record import Finding, Measurement
 from gear_damping.physics.systems.traits import Trait
-from gear_damping.physics.terms import Effect, ExtraStates
+from gear_damping.physics.terms import Effect
 from gear_damping.simulation.solver_settings import Solver
 
 STEPS = 4  # that are reported: evidence, calibration, search, verdict
@@ -237,11 +238,11 @@ def has_another_mode(nominal: Outcome, bench: Bench) -> bool:
     anew with every segment. Over whole records a linear model looks as right from its start as at its end.
     """
     evidence = bench.evidence
-    modes = [name for name, kind in evidence.library.items() if issubclass(kind, ExtraStates)]
-    frequency = (
-        natural_frequency_hz(nominal.hypothesis.model, nominal.flat_given()) if evidence.has(Trait.REST) else 0.0
-    )
-    if not modes or not frequency or not any(swells_again(record, frequency) for record in evidence.fit):
+    modes = [name for name, kind in evidence.library.items() if takes_and_gives(kind)]
+    if not modes or not evidence.has(Trait.REST):
+        return False
+    frequency = natural_frequency_hz(nominal.hypothesis.model, nominal.flat_given())
+    if not frequency or not any(swells_again(record, frequency) for record in evidence.fit):
         return False
     tried = bench.ranked(nominal, modes)[: evidence.settings.most_full_fits]
     fits = (bench.full_fit(score, nominal) for score in tried)

@@ -29,7 +29,7 @@ def record(kind, inputs=()):
 
 def state_of(records, segments=CUT, stated=WHOLE, spring=True):
     evidence = SimpleNamespace(fit=records, segments=segments, stated_segments=stated, has_spring=spring)
-    return SimpleNamespace(bench=SimpleNamespace(evidence=evidence))
+    return SimpleNamespace(bench=SimpleNamespace(evidence=evidence), accepted=())
 
 
 def test_a_random_load_that_no_channel_holds_is_said():
@@ -52,3 +52,11 @@ def test_a_random_load_that_no_channel_holds_is_said():
 )
 def test_nothing_is_said_of_anything_else(state):
     assert never_dies(state) == ""
+
+
+def test_nothing_is_said_where_a_second_mode_gives_back_what_it_took(monkeypatch):
+    state = state_of([record("ambient")])
+    state.accepted, state.outcome = (SimpleNamespace(effect=None),), None
+    for gives, said in ((True, False), (False, True)):
+        monkeypatch.setattr("gear_damping.explanation.steps.never_dies.gives_back", lambda *_, gives=gives: gives)
+        assert bool(never_dies(state)) == said

@@ -118,7 +118,7 @@ def bench_leaving(left, as_good):
     """A made-up bench, the nominal model, one that leaves this much of an excess of 1 %, and one without a cause."""
     nominal, outcome, without = (SimpleNamespace(is_finite=True, left_out_cost=1.0) for _ in range(3))
     bench = SimpleNamespace(
-        evidence=SimpleNamespace(duration=10.0),
+        evidence=SimpleNamespace(duration=10.0, fit=[None]),
         settings=SearchSettings(),
         log=lambda text: None,
         without=lambda *_: without,
@@ -194,11 +194,12 @@ def test_what_is_alone_and_takes_most_is_there_whatever_it_leaves(share, others,
     assert len(told_of(State(bench, nominal, outcome, accepted)).accepted) == (1 if kept else 0)
 
 
-@pytest.mark.parametrize(("mass_ratio", "kept"), [(0.0016, True), (0.0001, False)])
-def test_a_mode_that_gives_back_what_it_took_is_there_whatever_its_size(mass_ratio, kept, monkeypatch):
+@pytest.mark.parametrize(("mass_ratio", "swells", "kept"), [(0.0016, 1, True), (0.0001, 1, False), (0.0016, 0, False)])
+def test_a_mode_that_gives_back_what_it_took_is_there_whatever_its_size(mass_ratio, swells, kept, monkeypatch):
     """Two poles tell four figures of five; a beat of 5 s within records of 10 s is nothing that a line does."""
     monkeypatch.setattr("gear_damping.explanation.steps.told.is_told", lambda *_: False)
     monkeypatch.setattr("gear_damping.explanation.model.gives_back.natural_frequency_hz", lambda *_: 5.0)
+    monkeypatch.setattr("gear_damping.explanation.model.gives_back.swells_again", lambda *_: bool(swells))
     bench, nominal, outcome, _ = bench_leaving(0.3, as_good=False)
     values = {"second_mode.frequency": 5.0, "second_mode.mass_ratio": mass_ratio, "second_mode.damping_ratio": 0.0}
     outcome.flat_given, outcome.hypothesis = lambda: values, SimpleNamespace(model=None)

@@ -1,8 +1,8 @@
 """A motion that something drives which no channel holds is no ring-down, whatever a search makes of it."""
 
+from gear_damping.explanation.model.gives_back import gives_back
 from gear_damping.explanation.state import State
 from gear_damping.identification.free_vibration import never_falls
-from gear_damping.physics.terms import ExtraStates
 
 
 def never_dies(state: State) -> str:
@@ -15,7 +15,7 @@ def never_dies(state: State) -> str:
     """
     evidence = state.bench.evidence
     is_cut = bool(evidence.segments) and not evidence.stated_segments and evidence.has_spring
-    beats = any(isinstance(cause.effect, ExtraStates) for cause in state.accepted)  # and swells between them
+    beats = any(gives_back(cause.effect, state.outcome, evidence) for cause in state.accepted)  # and swells between
     if beats or not is_cut or not all(map(never_falls, evidence.fit)):
         return ""
     return (
