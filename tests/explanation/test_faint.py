@@ -14,6 +14,9 @@ from tests.explanation.decisions.made_up import NAMES, bench, fit, left, outcome
 from tests.explanation.decisions.of_trials import is_determined_within
 
 SHOWING, LARGE, SMALL = NAMES[:3]
+OTHER, OF_RECORDS = (
+    SimpleNamespace(name=name, candidate=SimpleNamespace(own_levels=own)) for name, own in (("other", 0), ("own", 1))
+)
 
 
 def tried(gains, shows, refused=(), cheap=False, accepted=()):
@@ -64,7 +67,26 @@ def test_where_fits_are_cheap_whatever_may_be_meant_is_tried(gains, shows, expec
 @pytest.mark.parametrize(("cheap", "expected"), [(False, [SHOWING]), (True, [SHOWING, LARGE, SMALL])])
 def test_what_is_tried_beside_a_cause(cheap, expected):
     """A law of damping takes its part from what another one was fitted to, and no linear score foresees it."""
-    assert tried((0.01, 0.2, 0.1), (SHOWING,), cheap=cheap, accepted=(SimpleNamespace(name="other"),)) == expected
+    assert tried((0.01, 0.2, 0.1), (SHOWING,), cheap=cheap, accepted=(OTHER,)) == expected
+
+
+@pytest.mark.parametrize(
+    ("accepted", "is_tried"), [((), True), ((OF_RECORDS,), True), ((OTHER,), False), ((OF_RECORDS, OTHER), False)]
+)
+def test_what_differs_between_records_is_tried_beside_nothing_that_is_one_for_all(accepted, is_tried, monkeypatch):
+    asked = []
+    monkeypatch.setattr(faint, "_of_records", lambda scores, state: asked.append(len(scores)) or (state, None, ()))
+    differing = scored(0, 0.9)
+    differing.candidate.own_levels = True
+    bench = SimpleNamespace(
+        settings=SearchSettings(),
+        evidence=SimpleNamespace(has=lambda trait: False),
+        budget=SimpleNamespace(refuses=lambda name: False),
+    )
+    visible = SimpleNamespace(shows=lambda name: True, by_name={differing.candidate.name: 10.0})
+    left = SimpleNamespace(visible=visible)
+    faint_cause(State(bench, outcome(), outcome(), accepted=accepted, ranked=(differing,), left=left))
+    assert asked == [int(is_tried)]
 
 
 @pytest.mark.parametrize("most", [(), (SMALL,)])
@@ -82,7 +104,7 @@ def test_beside_a_cause_what_no_score_foresaw_has_to_take_most_of_what_is_left(m
     monkeypatch.setattr(State, "is_validated", lambda *_: False)
     visible = SimpleNamespace(shows=lambda name: name == SHOWING, by_name={SHOWING: 10.0})
     scores = tuple(scored(place, gain) for place, gain in enumerate((0.01, 0.3, 0.1)))
-    accepted = (SimpleNamespace(name="other"),)
+    accepted = (OTHER,)
     state = State(bench, outcome(), outcome(), accepted=accepted, ranked=scores, left=SimpleNamespace(visible=visible))
     assert [fit.name for fit in faint_cause(state)[0].rejected] == [SHOWING, LARGE, *most]
 
