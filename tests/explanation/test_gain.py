@@ -92,18 +92,37 @@ def test_the_mean_stiffness_knows_the_shape_of_the_teeth():
 def test_beside_several_causes_no_coordinate_is_known_better_than_records_agree_on_it(monkeypatch):
     moves = torch.tensor([[0.3, 0.0], [-0.1, 0.0], [0.1, 0.0], [-0.3, 0.0]], dtype=torch.float64)
     monkeypatch.setattr(covariance, "moves_without_one", lambda outcome: outcome)
+    monkeypatch.setattr(covariance, "has_records", lambda outcome: True)
     known = torch.tensor([[0.01, 0.002], [0.002, 0.04]], dtype=torch.float64)
     found = covariance.wider_of_both(known, moves)
     jackknife = 3 / 4 * (moves[:, 0] - moves[:, 0].mean()).square().sum()  # Efron & Stein (1981)
     assert found.flatten().tolist() == pytest.approx([float(jackknife), 0.002, 0.002, 0.04])
-    assert covariance.wider_of_both(known, moves[:2]) is known, "two records are too few to scatter"
+    monkeypatch.setattr(covariance, "has_records", lambda outcome: False)
+    assert covariance.wider_of_both(known, moves) is known
 
 
-@pytest.mark.parametrize(("causes", "known"), [(0, "noise"), (1, "noise"), (2, "scatter"), (3, "scatter")])
-def test_the_scatter_between_records_counts_beside_several_causes(causes, known, monkeypatch):
+def of_records(names):
+    """A made-up problem with a row for each record."""
+    return SimpleNamespace(records=[SimpleNamespace(record=name) for name in names])
+
+
+@pytest.mark.parametrize(("names", "enough"), [("abc", True), ("aaabbb", False)])
+def test_segments_of_few_records_are_no_records(names, enough):
+    assert covariance.has_records(SimpleNamespace(problem=of_records(names))) == enough
+
+
+DIFFERS = (effect_class("stiffness_by_record")(),)
+
+
+@pytest.mark.parametrize(
+    ("causes", "effects", "known"),
+    [(0, (), "noise"), (1, (), "noise"), (2, (), "scatter"), (3, (), "scatter"), (2, DIFFERS, "noise")],
+)
+def test_the_scatter_between_records_counts_beside_several_causes(causes, effects, known, monkeypatch):
     monkeypatch.setattr(report_fields, "covariance_of", lambda *_: "noise")
     monkeypatch.setattr(report_fields, "wider_of_both", lambda *_: "scatter")
-    judged = SimpleNamespace(found=SimpleNamespace(accepted=(None,) * causes, outcome=None))
+    last = SimpleNamespace(hypothesis=SimpleNamespace(effects=effects), problem=of_records("abc"))
+    judged = SimpleNamespace(found=SimpleNamespace(accepted=(None,) * causes, outcome=last))
     assert report_fields._known(judged, None) == known
 
 
@@ -130,10 +149,16 @@ def test_beside_several_causes_the_interval_of_the_damping_counts_the_scatter_be
     assert after == "scatter"
 
 
-def _told(leaves_unnamed, causes, visible, converged):
+@pytest.mark.parametrize(("leaves_unnamed", "counted"), [(False, None), (True, "scatter")])
+def test_records_that_a_cause_lets_differ_are_not_expected_to_agree(leaves_unnamed, counted):
+    assert _told(leaves_unnamed, causes=2, visible=True, converged=True, effects=DIFFERS)[1] == counted
+
+
+def _told(leaves_unnamed, causes, visible, converged, effects=()):
     """What is said of the gain, and what the interval of the damping after it counts beside the noise."""
     left = SimpleNamespace(visible=visible)
     last = SimpleNamespace(fitted=SimpleNamespace(converged=converged), holdout=[])
+    last.hypothesis, last.problem = SimpleNamespace(effects=effects), of_records("abc")
     found = SimpleNamespace(accepted=(None,) * causes, left=left, nominal=last, outcome=last)
     judged = SimpleNamespace(found=found, verdict=SimpleNamespace(leaves_unnamed=leaves_unnamed))
     evidence, ratio, counted = SimpleNamespace(held=()), {"value": 1.0}, []

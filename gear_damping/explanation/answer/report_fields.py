@@ -15,7 +15,7 @@ from gear_damping.explanation.evidence.declared_units import rig_unit, unit_of
 from gear_damping.explanation.evidence.excess import ac_energy
 from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.evidence.records import Evidence
-from gear_damping.explanation.model.covariance import covariance_of, moves_without_one, wider_of_both
+from gear_damping.explanation.model.covariance import covariance_of, has_records, moves_without_one, wider_of_both
 from gear_damping.explanation.model.homogeneity import by_record
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.nominal_gear_pair import is_standing
@@ -231,9 +231,19 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
 
 def _known(judged: Judged, evidence: Evidence) -> Tensor:
     """How well the last model's coordinates are known, the scatter between records counted beside several causes."""
-    found, last = judged.found, judged.found.outcome
+    last = judged.found.outcome
     covariances = covariance_of(last, evidence)
-    return wider_of_both(covariances, last) if len(found.accepted) > 1 else covariances
+    return wider_of_both(covariances, last) if _are_several(judged) and _may_scatter(judged) else covariances
+
+
+def _are_several(judged: Judged) -> bool:
+    """Whether there are causes whose forms trade against each other, and records enough to show it."""
+    return len(judged.found.accepted) > 1 and has_records(judged.found.outcome)
+
+
+def _may_scatter(judged: Judged) -> bool:
+    """Whether records are expected to agree: where a cause says that they differ, their scatter is no error."""
+    return not own_levels(judged.found.outcome)
 
 
 def _by_record(outcome: Outcome, cause: str, evidence: Evidence) -> dict[str, Any]:
@@ -265,10 +275,9 @@ def _gain(judged: Judged, evidence: Evidence, noise: NoiseLevel) -> dict[str, An
     floor = sum(len(r.stacked) * noise.by_record[r.name] ** 2 for r in evidence.held)
     is_more = bool(judged.found.accepted) and is_visible(judged.found.left)
     conditional = judged.verdict.leaves_unnamed or is_more or not last.fitted.converged
-    are_several = len(judged.found.accepted) > 1  # forms that trade against each other
     missed = {
         "before": judged.verdict.leaves_unnamed or bool(judged.found.accepted),
-        "after": conditional or are_several,
+        "after": judged.verdict.leaves_unnamed or (_may_scatter(judged) and (conditional or _are_several(judged))),
     }
     damping = {
         key: gain.damping_ratio(

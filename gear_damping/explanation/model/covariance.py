@@ -6,7 +6,7 @@ import torch
 from torch import Tensor
 
 from gear_damping.explanation.evidence.records import Evidence
-from gear_damping.explanation.model.hypothesis import Outcome, mean_free_places, time_scale
+from gear_damping.explanation.model.hypothesis import Outcome, mean_free_places, off_mean_places, time_scale
 from gear_damping.identification.output_error.uncertainty import covariance, without_one
 
 CORRELATED_PERIODS = 3.0  # characteristic times over which residuals may be correlated
@@ -18,29 +18,39 @@ def covariance_of(outcome: Outcome, evidence: Evidence) -> Tensor:
     """Covariance of the fitted coordinates; residuals may be coloured."""
     scale = time_scale(outcome.hypothesis, evidence)
     fitted = replace(outcome.fitted, prediction=outcome.linearisation)
-    mean_free = mean_free_places(outcome.hypothesis, outcome.problem.free)
-    return covariance(outcome.problem, fitted, CORRELATED_PERIODS * scale, mean_free)
+    return covariance(outcome.problem, fitted, CORRELATED_PERIODS * scale, _known_means(outcome))
 
 
 def moves_without_one(outcome: Outcome) -> Tensor:
     """By how much the fitted coordinates move without one record, or one segment where there are few, (n, n_shared)."""
     fitted = replace(outcome.fitted, prediction=outcome.linearisation)
-    mean_free = mean_free_places(outcome.hypothesis, outcome.problem.free)
-    return without_one(outcome.problem, fitted, groups_of(outcome)[0], mean_free)
+    return without_one(outcome.problem, fitted, groups_of(outcome)[0], _known_means(outcome))
+
+
+def _known_means(outcome: Outcome) -> list[list[int]]:
+    """Places of parameters whose mean is 0: it acts on nothing, or they count from it."""
+    given = outcome.hypothesis, outcome.problem.free
+    return [*mean_free_places(*given), *off_mean_places(*given)]
 
 
 def wider_of_both(covariances: Tensor, outcome: Outcome) -> Tensor:
     """The covariance, with no coordinate known better than by how it moves without one record each (the jackknife).
 
     Forms of several causes that are each a little wrong trade against each other in every record in its own way, and
-    the noise knows nothing of it.
+    the noise knows nothing of it. Segments of few records are no draws of one condition: of a decay the last one alone
+    may tell of a friction.
     """
-    moves = moves_without_one(outcome)
-    if len(moves) < FEWEST:
+    if not has_records(outcome):
         return covariances
+    moves = moves_without_one(outcome)
     scatter = (len(moves) - 1) * moves.var(0, correction=0)
     more = (scatter - covariances.diagonal()).clamp(min=0).nan_to_num(0.0, 0.0, 0.0)
     return covariances + torch.diag(more)
+
+
+def has_records(outcome: Outcome) -> bool:
+    """Whether there are records enough to scatter."""
+    return len({row.record for row in outcome.problem.records}) >= FEWEST
 
 
 def groups_of(outcome: Outcome) -> tuple[list[int], list[str]]:
