@@ -16,7 +16,8 @@ def followed_one_by_one(state: State) -> str:
     if state.accepted or not is_cut or not evidence.has(Trait.REST):
         return ""
     residuals = zip(evidence.fitted, state.nominal.fit_residuals, strict=True)
-    left = sum(float((record.weight * one).square().sum()) for record, one in residuals)
+    first = [(record.weight * one[: len(one) // len(record.channels)]) for record, one in residuals]
+    left = sum(float(one.square().sum()) for one in first)
     alone = each_alone(evidence.fit, left, evidence.known, state.bench.solver)
     if not alone:
         return ""
