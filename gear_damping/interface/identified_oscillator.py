@@ -124,14 +124,12 @@ def _apart(fitted: Fitted, measurement: Measurement) -> str | None:
     found, records = fitted.found, fitted.roles["fit"]
     left = sum(float((one.weight * found.first_residual(one)).square().sum()) for one in records)
     alone = each_alone(records, left, known_of(measurement))
+    if not alone:
+        return None
     return (
-        None
-        if not alone
-        else (
-            f"one model does not follow all records, and one of its own follows each: {said_of_each(alone)}. A mass, a "
-            "tension, a temperature or the mounting changed between them, or the frequency goes with the amplitude: "
-            "identify them one by one, or let task=explain look for its name"
-        )
+        f"one model does not follow all records, and one of its own follows each: {said_of_each(alone)}. A mass, a "
+        "tension, a temperature or the mounting changed between them, or the frequency goes with the amplitude: "
+        "identify them one by one, or let task=explain look for its name"
     )
 
 

@@ -8,13 +8,11 @@ plateau and one through those behind it must both lead beyond it by more than a 
 parabola that turns within a step is a turning point, however long friction held it there.
 """
 
-from collections.abc import Iterator
-
 import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.frozen import frozen
+from gear_damping.measurement.frozen import frozen, stays
 from gear_damping.measurement.overflow import overflowed
 from gear_damping.measurement.record import Channel, Finding
 from gear_damping.measurement.resolution import step_of
@@ -70,7 +68,7 @@ def _would_go_on(outward: NDArray, at: NDArray) -> bool:
     steps = np.diff(outward)
     elsewhere = ~(at[1:] & at[:-1])
     held = float(np.mean(steps[elsewhere] == 0))
-    plateaus = list(_plateaus(at))
+    plateaus = list(stays(at))
     lengths = [last + 1 - first for first, last in plateaus]
     moves = np.sign(steps[steps != 0])
     restless = np.sum(moves[1:] != moves[:-1]) > _RESTLESS * moves.size
@@ -85,12 +83,6 @@ def _held_step(outward: NDArray, at: NDArray) -> float:
     """What lies between the levels that are held: the step of coarse values that were interpolated afterwards."""
     held = np.unique(outward[1:][(np.diff(outward) == 0) & ~at[1:]])
     return float(np.quantile(np.diff(held), 0.25)) if held.size > 1 else 0.0
-
-
-def _plateaus(at: NDArray) -> Iterator[tuple[int, int]]:
-    """First and last sample of each stay."""
-    edges = np.flatnonzero(np.diff(np.r_[0, at.astype(int), 0]))
-    yield from zip(edges[::2].tolist(), (edges[1::2] - 1).tolist(), strict=True)
 
 
 def _cut(outward: NDArray, first: int, last: int, step: float) -> bool:

@@ -6,6 +6,8 @@ of the same in a row are no chance; and a motion that really stood, as friction 
 steps.
 """
 
+from collections.abc import Iterator
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -34,11 +36,16 @@ def frozen(channel: Channel) -> Finding | None:
     return Finding("frozen", message, channel=channel.name, sample=first)
 
 
+def stays(at: NDArray[np.bool_]) -> Iterator[tuple[int, int]]:
+    """First and last place of each run of places where something holds."""
+    edges = np.flatnonzero(np.diff(np.r_[0, at.astype(int), 0]))
+    yield from zip(edges[::2].tolist(), (edges[1::2] - 1).tolist(), strict=True)
+
+
 def _stretches(values: NDArray[np.float64]) -> list[tuple[int, int]]:
     """First and last sample of each; none where values repeat elsewhere too."""
     steps = np.diff(values)
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], (steps == 0).view(np.int8), [0]])))
-    runs = [(int(a), int(b)) for a, b in edges.reshape(-1, 2) if b - a >= _REPEATS]
+    runs = [(first, last + 1) for first, last in stays(steps == 0) if last + 1 - first >= _REPEATS]
     elsewhere = np.count_nonzero(steps == 0) - sum(b - a for a, b in runs)
     if not runs or elsewhere > _HELD * steps.size:
         return []

@@ -133,6 +133,15 @@ class Recipe:
         return (*((name, -1) for name in self.sharpest), *((name, 1) for name in self.whole))
 
 
+FEWEST_RECORDS = 3  # that may differ: of two, one law that depends on their conditions tells as much
+
+
+def of_several_records(rig: Rig) -> tuple[Recipe, ...]:
+    """The recipe of what differs between records, by a `spread` and a `level` of each, where enough were fitted."""
+    by_level = Recipe({"spread": 0.01}, {"spread": "level"}, fixed={"level": 0.0})
+    return (by_level,) if rig.records >= FEWEST_RECORDS else ()
+
+
 def where_there_is_a_spring(*recipes: Recipe) -> Callable[[Rig], tuple[Recipe, ...]]:
     """Recipes of a law about a place of rest: where nothing pulls the rig back there is none to count from."""
 

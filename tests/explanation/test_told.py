@@ -201,8 +201,9 @@ def test_a_mode_that_gives_back_what_it_took_is_there_whatever_its_size(mass_rat
     monkeypatch.setattr("gear_damping.explanation.model.gives_back.natural_frequency_hz", lambda *_: 5.0)
     monkeypatch.setattr("gear_damping.explanation.model.gives_back.swells_again", lambda *_: bool(swells))
     bench, nominal, outcome, _ = bench_leaving(0.3, as_good=False)
-    values = {"second_mode.frequency": 5.0, "second_mode.mass_ratio": mass_ratio, "second_mode.damping_ratio": 0.0}
-    outcome.flat_given, outcome.hypothesis = lambda: values, SimpleNamespace(model=None)
+    values = {"frequency": 5.0, "mass_ratio": mass_ratio, "damping_ratio": 0.0}
+    outcome.values_of, outcome.flat_given = lambda name: values, lambda: {}
+    outcome.hypothesis = SimpleNamespace(model=None)
     refit = made_up(True, SecondMode())
     state = State(bench, nominal, outcome, (Accepted("second_mode", refit, 0.8, ()),))
     assert bool(told_of(state).accepted) == kept

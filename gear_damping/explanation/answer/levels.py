@@ -27,8 +27,8 @@ def of_unit_spread(outcome: Outcome, candidates: Sequence[Candidate]) -> Outcome
     """The same motion with levels whose mean square is 1: only their products with the spread act."""
     if not any(one.own_levels for one in candidates):
         return outcome
-    for cause in own_levels(outcome):
-        outcome = _of_unit_spread(outcome, *own_levels(outcome)[cause])
+    for names in own_levels(outcome).values():
+        outcome = _of_unit_spread(outcome, *names)
     return outcome
 
 

@@ -99,12 +99,11 @@ def swinging_on(state: State) -> Iterator[str]:
     else drives, and no mode is without damping. What gives back within them what it took from the first mode is none:
     a line takes nothing.
     """
-    longest, values = state.bench.evidence.duration, state.outcome.flat_given()
+    longest = state.bench.evidence.duration
     for cause in state.accepted:
         effect = cause.effect
         if isinstance(effect, ExtraStates):
-            own = {parameter.name: values[f"{effect.name}.{parameter.name}"] for parameter in effect.parameters}
-            goes_on = effect.decay_time(own) > GOES_ON * longest
+            goes_on = effect.decay_time(state.outcome.values_of(effect.name)) > GOES_ON * longest
             if goes_on and not gives_back(effect, state.outcome, state.bench.evidence):
                 yield effect.name
 

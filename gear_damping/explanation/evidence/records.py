@@ -153,6 +153,11 @@ class Evidence:
         return self.one_record or not self.base.has(Trait.TEETH)
 
 
+def is_begun_anew(evidence: Evidence) -> bool:
+    """Whether records with a spring are predicted in segments that nobody asked for: the nominal model loses one."""
+    return bool(evidence.segments) and not evidence.stated_segments and evidence.has_spring
+
+
 def evidence_of(measurement: Measurement) -> Evidence:
     """The records of a measurement in their roles.
 

@@ -6,7 +6,9 @@ import torch
 from torch import Tensor
 
 from gear_damping.explanation.evidence.records import Evidence
-from gear_damping.explanation.model.hypothesis import Outcome, mean_free_places, off_mean_places, time_scale
+from gear_damping.explanation.model.hypothesis import Outcome, mean_free_places, places_of, time_scale
+from gear_damping.explanation.model.own_phases import own_levels
+from gear_damping.identification.output_error.records import SEPARATOR
 from gear_damping.identification.output_error.uncertainty import covariance, without_one
 
 CORRELATED_PERIODS = 3.0  # characteristic times over which residuals may be correlated
@@ -29,8 +31,9 @@ def moves_without_one(outcome: Outcome) -> Tensor:
 
 def _known_means(outcome: Outcome) -> list[list[int]]:
     """Places of parameters whose mean is 0: it acts on nothing, or they count from it."""
-    given = outcome.hypothesis, outcome.problem.free
-    return [*mean_free_places(*given), *off_mean_places(*given)]
+    free = outcome.problem.free
+    levels = [level + SEPARATOR for _, level in own_levels(outcome).values()]
+    return [*mean_free_places(outcome.hypothesis, free), *places_of(levels, free)]
 
 
 def wider_of_both(covariances: Tensor, outcome: Outcome) -> Tensor:

@@ -15,8 +15,6 @@ def gives_back(effect: Effect, outcome: Outcome, evidence: Evidence) -> bool:
     """Whether an effect of a fitted model does so, by its fitted parameters, and the motion shows it."""
     if not isinstance(effect, ExtraStates):
         return False
-    given = outcome.flat_given()
-    own = {parameter.name: given[f"{effect.name}.{parameter.name}"] for parameter in effect.parameters}
-    natural = natural_frequency_hz(outcome.hypothesis.model, given)
-    is_soon = effect.exchange_time(own, natural) <= evidence.duration
+    natural = natural_frequency_hz(outcome.hypothesis.model, outcome.flat_given())
+    is_soon = effect.exchange_time(outcome.values_of(effect.name), natural) <= evidence.duration
     return is_soon and any(swells_again(record, natural) for record in evidence.fit)

@@ -148,17 +148,11 @@ def placed(given: Given, values: dict[str, float]) -> Given:
 
 def mean_free_places(hypothesis: Hypothesis, free: Sequence[FreeParameter]) -> list[list[int]]:
     """Places among free parameters of each list of which only the differences act."""
-    return _places([f"{effect.name}.{name}[" for effect in hypothesis.effects for name in effect.mean_free], free)
+    return places_of([f"{effect.name}.{name}[" for effect in hypothesis.effects for name in effect.mean_free], free)
 
 
-def off_mean_places(hypothesis: Hypothesis, free: Sequence[FreeParameter]) -> list[list[int]]:
-    """The same of levels of records, which count from their mean."""
-    differing = [e for e in hypothesis.effects if e.cause and e.cause.turns_with == "record"]
-    names = [f"{effect.name}.{parameter.name}" for effect in differing for parameter in effect.parameters]
-    return _places([name + SEPARATOR for name in names], free)
-
-
-def _places(starts: Sequence[str], free: Sequence[FreeParameter]) -> list[list[int]]:
+def places_of(starts: Sequence[str], free: Sequence[FreeParameter]) -> list[list[int]]:
+    """Places among free parameters of those whose names begin with each of some texts, where there are any."""
     found = [[i for i, parameter in enumerate(free) if parameter.name.startswith(start)] for start in starts]
     return [places for places in found if places]
 

@@ -1,5 +1,6 @@
 """Records that one model follows one by one and not together are told with the figures of each."""
 
+from gear_damping.explanation.evidence.records import is_begun_anew
 from gear_damping.explanation.state import State
 from gear_damping.identification.oscillator.each_alone import each_alone, said_of_each
 from gear_damping.physics.systems.traits import Trait
@@ -12,8 +13,7 @@ def followed_one_by_one(state: State) -> str:
         state: Where the search ended.
     """
     evidence = state.bench.evidence
-    is_cut = bool(evidence.segments) and not evidence.stated_segments and evidence.has_spring
-    if state.accepted or not is_cut or not evidence.has(Trait.REST):
+    if state.accepted or not is_begun_anew(evidence) or not evidence.has(Trait.REST):
         return ""
     residuals = zip(evidence.fitted, state.nominal.fit_residuals, strict=True)
     first = [(record.weight * one[: len(one) // len(record.channels)]) for record, one in residuals]

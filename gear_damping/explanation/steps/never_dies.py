@@ -1,5 +1,6 @@
 """A motion that something drives which no channel holds is no ring-down, whatever a search makes of it."""
 
+from gear_damping.explanation.evidence.records import is_begun_anew
 from gear_damping.explanation.model.gives_back import gives_back
 from gear_damping.explanation.state import State
 from gear_damping.identification.free_vibration import never_falls
@@ -14,9 +15,9 @@ def never_dies(state: State) -> str:
         state: Where the search ended.
     """
     evidence = state.bench.evidence
-    is_cut = bool(evidence.segments) and not evidence.stated_segments and evidence.has_spring
-    beats = any(gives_back(cause.effect, state.outcome, evidence) for cause in state.accepted)  # and swells between
-    if beats or not is_cut or not all(map(never_falls, evidence.fit)):
+    if not is_begun_anew(evidence) or not all(map(never_falls, evidence.fit)):
+        return ""
+    if any(gives_back(cause.effect, state.outcome, evidence) for cause in state.accepted):  # it beats
         return ""
     return (
         "The motion does not die away, and no channel holds what drives it: the search takes it for ring-downs, and "

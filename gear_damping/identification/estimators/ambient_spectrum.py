@@ -77,13 +77,13 @@ class AmbientSpectrum(RecordEstimator):
         """
         ratio = spectrum.power / spectrum.expected(point)[spectrum.inside]
         found, natural = np.exp(point[1:3])
-        if ratio.var() > SCATTERED and _is_another_shape(ratio):
-            raise UnsuitedRecord(
-                "its spectrum has another shape than that of one mode under a white load, as of two that are near each "
-                "other: filter one out, or take a narrower band (model.ambient_spectrum.band)"
-            )
         if ratio.var() < SCATTERED:
             raise UnsuitedRecord("its spectrum is as smooth as that of a ring-down, which the other estimators are for")
+        if _is_another_shape(ratio):
+            raise UnsuitedRecord(
+                "its spectrum has another shape than that of one mode under a white load, as of two that are near each "
+                "other: filter one out, or take a narrower band (model.band)"
+            )
         if found > BROADEST:
             raise UnsuitedRecord("what swings most in it is too broad to be told from the load that makes it")
         memories = seconds * 2 * pi * natural * found

@@ -4,18 +4,10 @@ from typing import ClassVar
 
 from torch import Tensor
 
-from gear_damping.physics.cause import Cause, Recipe, Rig
+from gear_damping.physics.cause import Cause, of_several_records
 from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.terms import DampingForce, Values
-
-FEWEST = 3  # records: of two, one law that depends on their conditions tells as much
-PREPARED = Recipe({"spread": 0.01}, {"spread": "level"}, fixed={"level": 0.0})
-
-
-def _of_several(rig: Rig) -> tuple[Recipe, ...]:
-    """Its variant where enough records were fitted."""
-    return (PREPARED,) if rig.records >= FEWEST else ()
 
 
 class DampingByRecord(DampingForce):
@@ -31,7 +23,7 @@ class DampingByRecord(DampingForce):
     dissipative = True  # with the mean, which it is off
     cause: ClassVar = Cause(
         "a damping that differs from record to record, as with the temperature of the oil",
-        _of_several,
+        of_several_records,
         separated_by="ring_down",
         turns_with="record",
     )

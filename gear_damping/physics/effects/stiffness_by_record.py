@@ -5,19 +5,16 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
-from gear_damping.physics.cause import Cause, Recipe, Rig
+from gear_damping.physics.cause import Cause, Recipe, Rig, of_several_records, where_there_is_a_spring
 from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import ElasticForce, Values
 
-FEWEST = 3  # records: of two, one law that depends on their conditions tells as much
-PREPARED = Recipe({"spread": 0.01}, {"spread": "level"}, fixed={"level": 0.0})
 
-
-def _of_several(rig: Rig) -> tuple[Recipe, ...]:
-    """Its variant where enough records of what swings about a place of rest were fitted."""
-    return (PREPARED,) if rig.records >= FEWEST and rig.values.get(rig.spring, 1.0) > 0 else ()
+def _of_springs(rig: Rig) -> tuple[Recipe, ...]:
+    """Its variant where something pulls the rig back."""
+    return where_there_is_a_spring(*of_several_records(rig))(rig)
 
 
 class StiffnessByRecord(ElasticForce):
@@ -33,7 +30,7 @@ class StiffnessByRecord(ElasticForce):
     )
     cause: ClassVar = Cause(
         "a stiffness, or a mass, that differs from record to record, as with the temperature or the mounting",
-        _of_several,
+        _of_springs,
         separated_by="remount",
         turns_with="record",
     )
