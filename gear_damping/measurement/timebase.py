@@ -236,15 +236,16 @@ def written_in(stamps: NDArray[np.float64], index: NDArray[np.float64] | None = 
 def written_significantly(stamps: NDArray[np.float64]) -> TimeBase | None:
     """The even grid that (n,) stamps in s of a few significant digits stand for, as some programs write all numbers.
 
-    Later ones are rounded to longer steps, until two come out alike. None where they have more digits than a few, or
+    Those far from zero are rounded to longer steps, until two come out alike; those before a trigger lie on the other
+    side of it. None where they have more digits than a few, or
     where no even grid rounds to them.
     """
     steps = np.diff(stamps)
-    if stamps[0] < 0 or np.any(steps < 0) or not np.any(steps):
+    if np.any(steps < 0) or not np.any(steps):
         return None
     for digits in _SIGNIFICANT:
         with np.errstate(divide="ignore"):
-            last = 10.0 ** (np.floor(np.log10(stamps)) - digits + 1)  # of 0: 0
+            last = 10.0 ** (np.floor(np.log10(np.abs(stamps))) - digits + 1)  # of 0: 0
         wholes = stamps / np.where(last > 0, last, 1.0)
         if np.all(np.abs(wholes - np.round(wholes)) <= _EXACT):
             is_gap = steps.max() > 2 * (last.max() + float(np.median(steps[steps > 0])))

@@ -1,5 +1,6 @@
 """Where the first cause is sought from: before the stiffness had its shape, or beside it."""
 
+from math import inf
 from types import SimpleNamespace
 from unittest.mock import patch
 
@@ -19,7 +20,9 @@ def sought(nominal, scores, leaves, made):
     state, order = State(known, nominal, nominal, first_scores=tuple(scores)), []
     rough = outcome()
 
-    def full_fits(_, ranked, begun, against):
+    def full_fits(_, ranked, begun, against, reach=inf):
+        if not ranked:
+            return ()
         place = "shaped" if begun is nominal else "unshaped"
         order.append((place, [one.candidate.name for one in ranked]))
         return tuple(made[place])
@@ -59,6 +62,17 @@ def test_a_rival_that_came_to_no_end_is_fitted_from_the_shape_too(gain, is_conve
     is_tried = gain > 0.9 * 0.85 and not is_converged
     assert ("shaped", [NAMES[1]]) in order or not is_tried
     assert (fits[0] is again) == is_tried
+
+
+@pytest.mark.parametrize(("gain", "is_tried"), [(0.45, True), (0.4, False)])
+def test_what_the_missing_shape_hid_is_fitted_from_the_shape_too(gain, is_tried):
+    """One that was worth no fit before, and promises half of the best one's .85 beside the nominal model."""
+    nominal, best, hidden = outcome(), converged(NAMES[0], 0.3), converged(NAMES[1], 0.1)
+    made = {"unshaped": [best], "shaped": [hidden]}
+    leaves = [(one.outcome, left(1.0)) for one in (best, hidden)]
+    order, fits = sought(nominal, [scored(0, 0.85), scored(1, gain)], leaves, made)
+    assert (("shaped", [NAMES[1]]) in order) == is_tried
+    assert (fits[0] is hidden) == is_tried
 
 
 def test_an_error_of_every_tooth_promises_as_much_of_anything():

@@ -17,6 +17,7 @@ SIZES = {
     "drag": (1 / (1 + 0.2 * TIME), False),
     "beats": (np.exp(-0.02 * TIME) * np.cos(0.085 * TIME), True),
     "half beats": (np.exp(-0.02 * TIME) * (0.6 + 0.4 * np.cos(0.17 * TIME)), True),
+    "beats of eight periods": (np.exp(-0.16 * TIME) * np.sin(0.28 * TIME), True),  # from the one that was at rest
     "struck again": (np.exp(-0.1 * (TIME % 30)), True),
 }
 

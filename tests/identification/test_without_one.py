@@ -39,7 +39,7 @@ def moves(sensitivity: Tensor, target: Tensor, groups: list[int]) -> tuple[Tenso
     left = left - (own @ torch.linalg.lstsq(own, left.unsqueeze(-1)).solution)[..., 0]
     # residuals have the sign of measured less predicted, and their sensitivities that of what is predicted
     prediction = SimpleNamespace(sensitivity=sensitivity.unsqueeze(0), residual=left.unsqueeze(0))
-    problem = SimpleNamespace(n_shared=SHARED, expectation=lambda shared: (PRIOR * shared, PRIOR))
+    problem = SimpleNamespace(n_shared=SHARED, expectation=lambda shared, left: (PRIOR * shared, PRIOR))
     return fit, without_one(problem, SimpleNamespace(prediction=prediction, shared=fit), groups)
 
 

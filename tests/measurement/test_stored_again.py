@@ -16,7 +16,14 @@ def significant(values, digits):
 
 
 @pytest.mark.parametrize(
-    ("rate", "start", "digits"), [(30.0, 0.0, 3), (25.0, 0.2, 3), (1 / 0.0123, 0.0, 3), (240.0, 0.5, 4)]
+    ("rate", "start", "digits"),
+    [
+        (30.0, 0.0, 3),
+        (25.0, 0.2, 3),
+        (1 / 0.0123, 0.0, 3),
+        (240.0, 0.5, 4),
+        (1 / 0.00192012, -1.2, 4),  # a trigger in the middle, as an oscilloscope writes it
+    ],
 )
 def test_stamps_of_a_few_significant_digits_stand_for_an_even_grid(rate, start, digits):
     time = start + np.arange(900) / rate

@@ -34,7 +34,7 @@ def cross_fitted(problem: OutputErrorProblem, fitted: Fitted) -> CrossFit:
     own = nuisance_basis(sensitivity, problem.n_shared)
     columns = project_out(sensitivity[..., : problem.n_shared], own).flatten(0, 1)
     orthogonal = project_out(residual.unsqueeze(-1), own).flatten()
-    expected, slope = problem.expectation(fitted.shared)
+    expected, slope = problem.expectation(fitted.shared, residual)
     free = (problem.unknowns.at_bound(fitted.shared) == 0).to(columns.dtype)  # what a bound holds is held for all
     folds = folds_of(problem).unsqueeze(1).expand(-1, len(problem.response.channels), -1).flatten()
     found = left_out(columns * free, orthogonal, folds, slope * free, expected)

@@ -82,17 +82,22 @@ def _promises_all(state: State) -> bool:
 
 
 def _rivals_from_the_shape(fits: Sequence[Refit], state: State) -> list[Refit]:
-    """Effects that promise as much as any beside the nominal model, fitted from there where no fit came to an end.
+    """Effects fitted from the nominal model, where the best fit came from before its shape was fitted.
 
-    Before the shape was fitted a law of the stiffness, which changes what every harmonic does, may lead too far.
+    From there a law of the stiffness, which changes what every harmonic does, may lead too far: one that promises as
+    much as any beside the nominal model is fitted again where no fit came to an end. And what the shape lacks hides
+    how much others take: what was not worth a fit there and promises much here gets one, as far as it leaves less.
     """
-    bench, scores = state.bench, best_by_effect(state.first_scores)
-    unended = {fit.name for fit in fits} - {fit.name for fit in fits if fit.outcome.fitted.converged}
-    least = bench.settings.rival_share * max((score.gain for score in scores.values()), default=0.0)
-    waiting = [score for name, score in scores.items() if name in unended and score.gain >= least]
-    if not waiting or _best(fits, state) is None:
+    bench, scores, best = state.bench, best_by_effect(state.first_scores), _best(fits, state)
+    if best is None:
         return []
-    return list(bench.full_fits(waiting, state.nominal, state.nominal))
+    tried = {fit.name for fit in fits}
+    unended = tried - {fit.name for fit in fits if fit.outcome.fitted.converged}
+    most = max((score.gain for score in scores.values()), default=0.0)
+    waiting = [scores[n] for n in scores if n in unended and scores[n].gain >= bench.settings.rival_share * most]
+    hidden = [scores[n] for n in scores if n not in tried and scores[n].gain >= bench.settings.taken_by_one * most]
+    found = bench.full_fits(hidden, state.nominal, state.nominal, reach=best.outcome.fitted.cost)
+    return [*found, *bench.full_fits(waiting, state.nominal, state.nominal)]
 
 
 def _from_what_is_stated(fits: Sequence[Refit], state: State) -> list[Refit]:

@@ -74,7 +74,8 @@ def projected(outcome: Outcome) -> tuple[Projector, Tensor]:
     The residual, (samples + n, 1), is as the fit left it.
     """
     prediction = outcome.fitted.prediction
-    project = Projector(prediction.sensitivity[0], *outcome.problem.expectation(outcome.fitted.shared))
+    expected = outcome.problem.expectation(outcome.fitted.shared, prediction.residual[0])
+    project = Projector(prediction.sensitivity[0], *expected)
     return project, torch.cat([prediction.residual[0].reshape(-1, 1), project.expected.unsqueeze(1)])
 
 

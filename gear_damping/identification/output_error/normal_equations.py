@@ -34,6 +34,10 @@ class NormalEquations:
         shared = self.shared * kept.unsqueeze(-1) * kept.unsqueeze(-2)
         return replace(self, shared=shared, between=self.between * kept[:, None, :, None], pull=self.pull * kept)
 
+    def beside(self, slope: Tensor) -> "NormalEquations":
+        """With what is expected of each shared parameter, by its slope, (starts, p)."""
+        return replace(self, shared=self.shared + torch.diag_embed(slope.square()))
+
     def beyond(self, held: Tensor) -> "NormalEquations":
         """What is left to be done once the shared parameters have gone `held`, (starts, p)."""
         pull = self.pull - (self.shared @ held.unsqueeze(-1)).squeeze(-1)

@@ -211,9 +211,26 @@ class OutputErrorProblem:
         factor = torch.where(moved.isfinite() & (moved > 0), 1 / moved, torch.ones_like(moved))
         return torch.cat([own, steps * factor, modes], dim=1)
 
-    def expectation(self, shared: Tensor) -> tuple[Tensor, Tensor]:
-        """Residuals of what is expected of the parameters, (..., n_shared), and their slopes, (n_shared,)."""
-        return self.unknowns.expectation(shared, self.noise)
+    def expectation(self, shared: Tensor, residual: Tensor) -> tuple[Tensor, Tensor]:
+        """Residuals of what is expected of the parameters, and their slopes, both (..., n_shared).
+
+        They are weighed against what is left where that is more than noise: a model that lacks something tells its
+        parameters no better than it follows. Weighed against the noise, a stated inertia bends by eleven of its
+        deviations for the last per mille of a residual that is thirty times the noise.
+
+        Args:
+            shared: Coordinates, (..., n_shared).
+            residual: Weighted residuals there, (..., records, samples).
+        """
+        return self.unknowns.expectation(shared, self._level(residual).unsqueeze(-1))
+
+    def _level(self, residual: Tensor) -> Tensor:
+        """Root mean square of what is left, (...), or the noise where that is more; 0 where no noise is known."""
+        if not self.noise:
+            return residual.new_zeros(residual.shape[:-2])
+        told = (residual != 0).sum((-2, -1)).clamp(min=1)  # those beyond the end of a record are 0
+        found = (residual.square().sum((-2, -1)) / told).sqrt().clamp(min=self.noise)
+        return found.nan_to_num(self.noise, self.noise)  # of a start that runs away
 
     def predict(self, shared: Tensor, states: Tensor, horizon: float | None = None) -> Tensor:
         """Predicted responses (points, records, samples) at coordinates (points, n), (points, records, local).

@@ -46,11 +46,11 @@ def newton_step(problem: OutputErrorProblem, points: Points, linearised: Predict
     One that would go further than the longest step goes just so far, and the others do the best they can beside it:
     cut by themselves, steps leave a narrow valley (the coefficient of a power law, beside its exponent).
     """
-    expected, slope = problem.expectation(points.shared)
+    expected, slope = problem.expectation(points.shared, linearised.residual)
     equations = normal_equations(linearised, problem.n_shared)
     equations = replace(equations, pull=equations.pull + slope * expected)
     free = problem.unknowns.at_bound(points.shared) * equations.pull <= 0
-    return _stepped(problem, points, equations, damping, free)
+    return _stepped(problem, points, equations.beside(slope), damping, free)
 
 
 def accelerated(
@@ -71,7 +71,8 @@ def accelerated(
     straight = linearised.residual - linearised.along(moves(problem, points, ahead))
     bend = (problem.residuals(ahead.shared, ahead.states, horizon) - straight) / AHEAD**2
     equations = normal_equations(replace(linearised, residual=bend.nan_to_num(0, 0, 0)), problem.n_shared)
-    second = _stepped(problem, points, equations, damping, shared != 0)
+    slope = problem.expectation(points.shared, linearised.residual)[1]
+    second = _stepped(problem, points, equations.beside(slope), damping, shared != 0)
     lengths = linearised.sensitivity.square().sum(2)
     step, turn = ((moves(problem, points, to).square() * lengths).sum((1, 2)) for to in (first, second))
     small = 4 * turn <= MOST_BENT**2 * step
@@ -85,9 +86,7 @@ def accelerated(
 def _stepped(
     problem: OutputErrorProblem, points: Points, equations: NormalEquations, damping: Tensor, free: Tensor
 ) -> Points:
-    """Where normal equations lead what is free, with what is expected of the parameters beside them."""
-    slope = problem.expectation(points.shared)[1]
-    equations = replace(equations, shared=equations.shared + torch.diag(slope.square()))
+    """Where normal equations lead what is free."""
     shared, own = equations.only(free).step(damping)
     longest = LONGEST_STEP * torch.where(problem.unknowns.logarithmic, 1.0, points.shared.abs().clamp(min=1))
     far = shared.abs() > longest

@@ -85,7 +85,7 @@ def _information(
     known = orthogonal.isfinite().all(1).all(0) & orthogonal.square().sum((0, 1)).isfinite()
     orthogonal = torch.where(known, orthogonal, 0.0)  # of a fit that runs away with any change nothing is known
     jacobian = orthogonal.flatten(0, 1)
-    expected = problem.expectation(fitted.shared)[1].square()
+    expected = problem.expectation(fitted.shared, fitted.prediction.residual[0])[1].square()
     information = jacobian.T @ jacobian + torch.diag(expected)
     for places in map(torch.tensor, mean_free):  # a mean that is known as well as all of the differences together
         information[places.unsqueeze(1), places] += information.diagonal()[places].sum() / len(places)

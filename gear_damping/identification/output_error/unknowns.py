@@ -95,12 +95,12 @@ class Unknowns:
             found[base][:, segments_of(self._records, record)] = value.unsqueeze(1)
         return found
 
-    def expectation(self, shared: Tensor, noise: float) -> tuple[Tensor, Tensor]:
-        """Residuals of what is expected of the parameters, (..., len(self)), and their slopes, (len(self),).
+    def expectation(self, shared: Tensor, noise: Tensor) -> tuple[Tensor, Tensor]:
+        """Residuals of what is expected of the parameters, and their slopes, both (..., len(self)).
 
         Args:
-            shared: Coordinates.
-            noise: Standard deviation of the records' noise, against which expectations are weighed.
+            shared: Coordinates, (..., len(self)).
+            noise: Standard deviation against which expectations are weighed, (..., 1).
         """
         start, slope = torch.tensor([p.surprise for p in self.free], dtype=torch.float64).reshape(-1, 2).unbind(1)
         return -noise * (start + slope * shared), noise * slope
