@@ -164,3 +164,20 @@ def test_in_a_file_of_decimal_commas_a_point_before_three_digits_parts_thousands
     table = read_table(tmp_path / "run.csv")
     assert table.values(1).tolist() == [1000 * k + 7 * k for k in range(1, 41)]
     assert any("'.' parts thousands, 1.007 is read as 1007" in note for note in table.notes)
+
+
+@pytest.mark.parametrize(("delimiter", "quote"), [(",", '"'), (";", ""), ("\t", "")])
+def test_in_a_file_of_decimal_points_a_comma_before_three_digits_parts_thousands(tmp_path, delimiter, quote):
+    """Every value has one group; in the third column a point before three digits is a decimal one."""
+    rows = [f"{0.005 * k:.3f}|{quote}{k},{7 * k:03d}{quote}|{k}.{7 * k:03d}" for k in range(1, 41)]
+    (tmp_path / "run.csv").write_text("\n".join(["t|F|x", *rows]).replace("|", delimiter))
+    table = read_table(tmp_path / "run.csv")
+    assert table.values(1).tolist() == [1000 * k + 7 * k for k in range(1, 41)]
+    assert table.values(2).tolist() == [float(f"{k}.{7 * k:03d}") for k in range(1, 41)]
+    assert table.notes == ("run.csv: in column 'F' ',' parts thousands, 1,007 is read as 1007",)
+
+
+def test_a_column_of_fractions_has_decimal_commas_beside_decimal_points_too(tmp_path):
+    rows = [f"{0.005 * k:.3f};{k % 3},{7 * k:03d}" for k in range(1, 41)]
+    (tmp_path / "run.csv").write_text("\n".join(["t;F", *rows]))
+    assert read_table(tmp_path / "run.csv").values(1).tolist() == [k % 3 + 0.007 * k for k in range(1, 41)]

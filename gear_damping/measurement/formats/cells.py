@@ -109,12 +109,12 @@ def is_word(cell: str) -> bool:
 class CellTable(Table):
     """Columns of cells that become numbers when they are asked for.
 
-    `decimal_commas` may be in their texts; with `all_commas` they are the decimal sign of the file.
+    `decimal_commas` may be in their texts; `decimal` is the decimal sign of the file, "" where that is not known.
     """
 
-    def __init__(self, path: Path, columns: Sequence[Cells], decimal_commas: bool, all_commas: bool = False) -> None:
+    def __init__(self, path: Path, columns: Sequence[Cells], decimal_commas: bool, decimal: str = "") -> None:
         super().__init__(path, [(one.name, (len(one.values),)) for one in columns])
-        self._columns, self._commas, self._all_commas = list(columns), decimal_commas, all_commas
+        self._columns, self._commas, self._decimal = list(columns), decimal_commas, decimal
         self._read: dict[int, NDArray[np.float64]] = {}
         self._bad: dict[int, tuple[list[str], list[int]]] = {}
         self._begins = {k: one.begins for k, one in enumerate(columns) if one.begins is not None}
@@ -195,7 +195,7 @@ class CellTable(Table):
     def _decimal_points(self, cells: list[str], index: int) -> list[str]:
         """Cells with decimal points and thousands in one piece; points and commas of another use stay, and fail."""
         for sign in ".,":
-            if parts_thousands(cells, sign, self._all_commas and sign == "."):
+            if parts_thousands(cells, sign, self._decimal not in ("", sign)):
                 cells = self._in_one_piece(cells, sign, index)
         if not self._commas or not any("," in cell for cell in cells) or any("." in cell for cell in cells):
             return cells

@@ -23,7 +23,7 @@ from gear_damping.measurement.formats.cells import (
 )
 from gear_damping.measurement.formats.console_text import refuse_what_is_shown
 from gear_damping.measurement.formats.header import Header
-from gear_damping.measurement.formats.number_texts import is_written, parts_thousands
+from gear_damping.measurement.formats.number_texts import is_number, is_written, parts_thousands
 from gear_damping.measurement.formats.octave_text import octave_table
 from gear_damping.measurement.formats.stated_rate import stated_rate
 from gear_damping.measurement.formats.table import Table, is_real
@@ -55,7 +55,7 @@ def read(path: Path, max_bytes: int) -> Table:
     scope = of_oscilloscope([row for _, row in islice(text.rows(), 2)])
     header = header if scope is None else replace(header, names=scope[0], units=scope[1], skipped=0)
     blocks = without_other_headers(text, first_line)
-    parted = _parted(text, first_line)
+    parted, has_points = _parted(text, first_line)
     decimal = "," if _decimal_comma(text, first_line, parted) else "."
     frame = _frame(text, header, first_line, decimal, parted)
     width = frame.shape[1] - 1
@@ -69,7 +69,7 @@ def read(path: Path, max_bytes: int) -> Table:
     columns, below = without_footer(columns)
     _refuse_long_form(path, columns)
     # Decimal commas may always stand in quotes.
-    table = CellTable(path, columns, decimal_commas=True, all_commas=decimal == ",")
+    table = CellTable(path, columns, decimal_commas=True, decimal=decimal if decimal == "," or has_points else "")
     above = [row for line, row in islice(text.rows(), HEAD) if line < first_line]
     table.stated_rate = stated_rate(above if scope is None else [*above, *scope[2]])
     if header.skipped:
@@ -116,15 +116,22 @@ class _Lines:
         return self._numbers[row]
 
 
-def _parted(text: Text, first_line: int) -> set[int]:
-    """The columns in which a sign parts thousands, by their first cells."""
+def _parted(text: Text, first_line: int) -> tuple[set[int], bool]:
+    """The columns in which a sign parts thousands, by their first cells, and whether others have decimal points.
+
+    Beside `0.01` a column of `6,096` has thousands, and beside `0,01` one of `6.096`.
+    """
     rows = [row for _, row in islice(_values(text, first_line), _SAMPLE)]
     columns = list(zip(*(row for row in rows if len(row) >= text.width), strict=False))
     parted = {k for k, cells in enumerate(columns) for sign in ".," if parts_thousands(cells, sign)}
     others = [cells for k, cells in enumerate(columns) if k not in parted]
-    if not _has_decimal_commas(text, others):
-        return parted
-    return parted | {k for k, cells in enumerate(columns) if parts_thousands(cells, ".", other_is_decimal=True)}
+    if any(map(_has_decimal_points, others)):
+        return parted | {
+            k for k, cells in enumerate(columns) if parts_thousands(cells, ",", other_is_decimal=True)
+        }, True
+    if _has_decimal_commas(text, others):
+        parted |= {k for k, cells in enumerate(columns) if parts_thousands(cells, ".", other_is_decimal=True)}
+    return parted, False
 
 
 def _decimal_comma(text: Text, first_line: int, parted: set[int]) -> bool:
@@ -142,6 +149,12 @@ def _with_commas(text: Text, first_line: int, parted: set[int], table: Table) ->
     }
     points = [k for k in held["."] if k not in parted]
     return [table.names[k] or str(k) for k in held[","] if k not in parted] if points else []
+
+
+def _has_decimal_points(cells: Sequence[str]) -> bool:
+    """Whether a column's numbers have a point that parts no thousands."""
+    has_one = any("." in cell and is_number(cell) for cell in cells)
+    return has_one and not parts_thousands(cells, ".", other_is_decimal=True)
 
 
 def _has_decimal_commas(text: Text, lists: Sequence[Sequence[str]]) -> bool:
