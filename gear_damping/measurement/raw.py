@@ -16,7 +16,7 @@ from gear_damping.measurement.encoders import ReadColumn, ShaftAngle, shaft_angl
 from gear_damping.measurement.file_clocks import FileClocks, conflict_with_file
 from gear_damping.measurement.formats.table import Table
 from gear_damping.measurement.record import Finding
-from gear_damping.measurement.stamp_units import refuse_other_clock, refuse_other_unit
+from gear_damping.measurement.stamp_units import refuse_endless, refuse_other_clock, refuse_other_unit
 from gear_damping.measurement.time_column import is_time
 from gear_damping.measurement.timebase import (
     TimeBase,
@@ -144,7 +144,9 @@ class RawReader:
             seconds = to_si(1.0, plan.unit, "s", f"{plan.key}.unit", self.source)
             pulses.append(self.unsliced(plan.column, f"{plan.key}.timestamps") * seconds)
         self.begins = max(float(one[0]) for one in pulses)
-        return max(0, int((min(float(one[-1]) for one in pulses) - self.begins) * rate) + 1)
+        seconds = min(float(one[-1]) for one in pulses) - self.begins
+        refuse_endless(seconds, rate, f"{self.plan.encoders[0].key}.timestamps", self.file)
+        return max(0, int(seconds * rate) + 1)
 
     def _blank_at_the_end(self, columns: Sequence[str | int], n: int) -> int:
         """How many of the last of n rows hold nothing in any column: those of a longer run beside this one.

@@ -6,10 +6,12 @@ from numpy.typing import NDArray
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.declaration import TimePlan
 from gear_damping.measurement.encoders import ReadColumn
+from gear_damping.measurement.formats.registry import MAX_BYTES
 from gear_damping.measurement.formats.table import Table
 from gear_damping.measurement.time_column import FEWEST_STAMPS, finer_than_said, no_seconds, seconds_by_name
 
 _TELLS = 10.0  # of its own largest steps, from which the length of a clock tells something
+MOST_SAMPLES = MAX_BYTES // 8  # of a record: as many numbers as the largest file that is read holds
 _AS_LONG = 0.02  # of it, by which stamps may differ: more than two clocks drift apart, less than any wrong unit
 
 
@@ -66,3 +68,18 @@ def _clock(table: Table, place: int, key: str, read: ReadColumn) -> NDArray[np.f
         return None if table.begins(place) is None else read(place, key)
     except InputError:  # texts, or cells that are empty: no clock of all rows
         return None
+
+
+def refuse_endless(seconds: float, rate: float, key: str, file: str) -> None:
+    """Refuse times of pulses that reach over more samples than any file holds: they count in a smaller unit.
+
+    Args:
+        seconds: From their first to their last, in the unit that is declared.
+        rate: At which angles are taken, in Hz.
+        key: Where the times are declared.
+        file: The file that they come from.
+    """
+    if seconds * rate > MOST_SAMPLES:
+        rule = f"its times reach over {seconds:.3g} s, {seconds * rate:.2g} samples at {rate:g} Hz"
+        remedy = "say what they count in beside it, as unit: us or unit: ns"
+        raise InputError(Problem(key, rule, None, remedy, file))

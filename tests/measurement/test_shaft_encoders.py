@@ -321,6 +321,20 @@ def test_two_encoders_that_stamp_their_edges_need_no_column_but_a_rate(bench, ra
     assert np.std(seen - true) < 0.01 * np.std(true)
 
 
+@pytest.mark.parametrize("digit", [1e-6, 1e-9])
+def test_stamps_of_edges_in_a_smaller_unit_than_said_are_no_endless_record(bench, digit):
+    edges = np.arange(0.5, 2000) / 5000
+    _rig(bench, a=edges / digit, b=edges / digit)
+    record = bench.content["records"][0]
+    record["channels"] = {"sampling_rate": {"value": 25, "unit": "MHz"}}
+    stamped = {"counts_per_revolution": 900}
+    record["encoders"] = {"pinion": {"timestamps": "a"} | stamped, "gear": {"timestamps": "b"} | stamped}
+    problem = bench.only_problem(write=False)
+    assert "pinion.timestamps" in problem
+    assert f"{0.4 / digit:.3g} s" in problem
+    assert "unit: us or unit: ns" in problem
+
+
 @pytest.mark.parametrize("turn", [2048, 32800, 36000, 65535, 65536, 100_000, 9_000_000])
 @pytest.mark.parametrize("direction", [1, -1])
 def test_a_counter_begins_again_after_a_turn_whatever_register_its_counts_would_fill(turn, direction):
