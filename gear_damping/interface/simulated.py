@@ -169,7 +169,10 @@ def simulate(
         inputs=driven,
         solver=solver,
     )
-    if _rests(runs):
+    if runs.n_diverged:
+        lost = f"{runs.n_diverged} of {len(runs.status)} runs diverged: their values are no motion of this model"
+        warnings.warn(f"{lost}; give solver=gd.Solver(substeps=...) or a damping that is less stiff", stacklevel=2)
+    elif _rests(runs):
         warnings.warn(f"{AT_REST}; {MOVED_BY}", stacklevel=2)
     return Simulation(runs)
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import gear_damping as gd
 
@@ -98,3 +99,18 @@ def test_one_sensor_and_one_unknown_are_one(decays):
     sensor = gd.PlannedSensor("displacement", noise=1e-4)
     one = gd.plan(decays.model, tests, sensor, unknown="stiffness")
     assert one.content == gd.plan(decays.model, tests, [sensor], unknown=["stiffness"]).content
+
+
+def test_runs_that_a_stiff_damping_lets_diverge_are_said_and_the_remedy_helps():
+    model = gd.Model(gd.Oscillator(stiffness=1000.0), [gd.PowerLawDamping(coefficient=5000.0, exponent=2)])
+    asked = {"sampling_rate": 100, "n_samples": 20, "initial_displacement": 0.05}
+    with pytest.warns(UserWarning, match=r"1 of 1 runs diverged: .* give solver=gd.Solver\(substeps=...\)"):
+        gd.simulate(model, **asked)
+    found = gd.simulate(model, **asked, solver=gd.Solver(substeps=64)).displacement
+
+    def rates(_, state):
+        return state[1], -5000 * state[1] * abs(state[1]) - 1000 * state[0]
+
+    times = np.arange(20) / 100
+    true = solve_ivp(rates, (0, times[-1]), (0.05, 0.0), "Radau", times, rtol=1e-9, atol=1e-12).y
+    np.testing.assert_allclose(found[0], true[0], rtol=1e-4)
