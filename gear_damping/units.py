@@ -96,6 +96,7 @@ _SPELLINGS = {"⁻¹": "^-1", "⁻²": "^-2", "µ": "u", "μ": "u", "·": "*", "
 _SPELLINGS |= {"N.m": "N*m", "N m": "N*m"}
 _ALSO = {
     "sec": "s", "secs": "s", "second": "s", "seconds": "s", "msec": "ms", "usec": "us", "minutes": "min",
+    "milliseconds": "ms", "microseconds": "us", "nanoseconds": "ns", "minute": "min", "hour": "h", "hours": "h",
     "micron": "um", "microns": "um", "mils": "mil", "thou": "mil", "inch": "in", "inches": "in", "Inch": "in",
     "RPM": "rpm", "U/min": "rpm", "Volt": "V", "Volts": "V", "volt": "V", "volts": "V",
     "Newton": "N", "newton": "N", "newtons": "N",

@@ -16,6 +16,7 @@ from gear_damping.errors import InputError
 from gear_damping.measurement.formats import table as table_module
 from gear_damping.measurement.formats.registry import read_table
 from gear_damping.measurement.formats.uff_file import rounded_rate
+from gear_damping.units import parse_unit
 
 TIME = np.arange(60) / 1000
 WAVE = np.sin(2 * np.pi * 20 * TIME)
@@ -64,6 +65,14 @@ def test_hdf5_datasets_are_columns_under_their_paths(hdf5):
     np.testing.assert_array_equal(_values(table, "table.y"), WAVE)
     np.testing.assert_allclose(_values(table, "table.xyz[1]"), MATRIX[:, 1], atol=1e-6)
     assert [table.unit(table.index(name, "")) for name in ("t", "rig 1/daq/wave", "table.y")] == ["s", "m/s^2", None]
+
+
+@pytest.mark.parametrize(("said", "unit"), [("milliseconds since 2024-01-01", "ms"), ("seconds since 1970-1-1", "s")])
+def test_a_unit_of_time_since_a_date_is_that_unit(tmp_path, said, unit):
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["t"] = np.arange(30.0)
+        file["t"].attrs["units"] = said
+    assert parse_unit(read_table(tmp_path / "a.h5").unit(0)) == parse_unit(unit)
 
 
 def test_a_message_about_a_column_says_what_the_file_holds_with_shapes(hdf5):

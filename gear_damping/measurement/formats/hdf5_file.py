@@ -1,5 +1,6 @@
 """HDF5 files: every dataset of real numbers under its path, fields of compound datasets as `path.field`."""
 
+import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
@@ -24,6 +25,7 @@ SUFFIXES = (".h5", ".hdf5", ".hdf")
 DEADLY = True  # a damaged file may end the process
 
 _FACTORS = ("scale", "scale_factor", "factor", "gain", "sensitivity", "calibration", "slope")
+_SINCE = re.compile(r"\s+since\s.*$", re.I | re.S)  # a time counts from
 _UNIT_ATTRIBUTES = ("unit", "units", "Unit", "Units", "unit_string")
 
 
@@ -97,9 +99,10 @@ def _held(h5py: Any, path: Path, dataset: Any, field: tuple[str, str | None, np.
 
 
 def _unit(dataset: Any) -> str | None:
+    """The unit that an attribute gives; of `milliseconds since 2024-01-01`, as climate and pandas have it, ms."""
     for name in _UNIT_ATTRIBUTES:
         value = dataset.attrs.get(name)
         value = value.decode("utf-8", "replace") if isinstance(value, bytes) else value
         if isinstance(value, str) and value.strip():
-            return value.strip()
+            return _SINCE.sub("", value.strip())
     return None
