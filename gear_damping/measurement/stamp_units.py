@@ -78,6 +78,9 @@ def refuse_endless(seconds: float, rate: float, key: str, file: str) -> None:
         rate: At which angles are taken, in Hz.
         key: Where the times are declared.
         file: The file that they come from.
+
+    Raises:
+        InputError: they do.
     """
     if seconds * rate > MOST_SAMPLES:
         rule = f"its times reach over {seconds:.3g} s, {seconds * rate:.2g} samples at {rate:g} Hz"

@@ -7,14 +7,12 @@ is white, so that its interval holds.
 
 from dataclasses import replace
 
-from torch import Tensor
-
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.hypothesis import Outcome, settled_at
 from gear_damping.explanation.trials.assess import assessed
 from gear_damping.explanation.trials.random_part import Random, Whitener
 from gear_damping.identification.output_error.descent import SMALLEST_DAMPING
-from gear_damping.identification.output_error.problem import OutputErrorProblem, Prediction
+from gear_damping.identification.output_error.problem import Prediction
 from gear_damping.identification.output_error.step import Points, moves, newton_step
 
 FAR_MORE = 2.0  # times the sum of squares: from one estimate to another it changes by a share of a few in all samples
@@ -36,8 +34,8 @@ def efficient(outcome: Outcome, random: Random) -> Outcome:
     initial = Points(fitted.shared.unsqueeze(0), fitted.states.unsqueeze(0))
     end = newton_step(problem, initial, white, fitted.shared.new_full((1,), SMALLEST_DAMPING))
     after = whiten(problem.residuals(end.shared, end.states).reshape(-1, 1)).reshape(white.residual.shape)
-    begun, ended = _cost(problem, initial, white.residual), _cost(problem, end, after)
-    if not ended <= FAR_MORE * begun:  # nor what is not finite: what hardly tells a state sends it anywhere
+    begun, ended = problem.cost(initial.shared, white.residual), problem.cost(end.shared, after)
+    if not bool(ended <= FAR_MORE * begun):  # nor what is not finite: what hardly tells a state sends it anywhere
         return outcome
     shared, states = end.shared[0], end.states[0]
     values = {name: float(value) for name, value in problem.unknowns.parameters(shared).items()}
@@ -49,11 +47,6 @@ def efficient(outcome: Outcome, random: Random) -> Outcome:
         values=values,
         whitened=replace(white, residual=left),
     )
-
-
-def _cost(problem: OutputErrorProblem, points: Points, residual: Tensor) -> float:
-    """Sum of squares of what is left at one point and of what is expected of its parameters."""
-    return float(residual.square().sum() + problem.expectation(points.shared, residual)[0].square().sum())
 
 
 def weighed(outcome: Outcome, evidence: Evidence) -> Outcome:

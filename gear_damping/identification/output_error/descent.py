@@ -226,5 +226,5 @@ class Descent:
         self.costs[places] = torch.cat([self.costs[places, 1:], self.cost[places, None]], 1)
 
     def _cost(self, points: Points, residual: Tensor) -> Tensor:
-        total = residual.square().sum((1, 2)) + self.problem.expectation(points.shared, residual)[0].square().sum(1)
+        total = self.problem.cost(points.shared, residual)
         return torch.where(total.isfinite(), total, torch.full_like(total, float("inf")))

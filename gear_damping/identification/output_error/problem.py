@@ -215,7 +215,7 @@ class OutputErrorProblem:
         """Residuals of what is expected of the parameters, and their slopes, both (..., n_shared).
 
         They are weighed against what is left where that is more than noise: a model that lacks something tells its
-        parameters no better than it follows. Weighed against the noise, a stated inertia bends by eleven of its
+        parameters no better than it follows. Weighed against the noise, a stated inertia bends by thirteen of its
         deviations for the last per mille of a residual that is thirty times the noise.
 
         Args:
@@ -223,6 +223,10 @@ class OutputErrorProblem:
             residual: Weighted residuals there, (..., records, samples).
         """
         return self.unknowns.expectation(shared, self._level(residual).unsqueeze(-1))
+
+    def cost(self, shared: Tensor, residual: Tensor) -> Tensor:
+        """Sum of squares of what is left and of what is expected of the parameters, (...); arguments as before."""
+        return residual.square().sum((-2, -1)) + self.expectation(shared, residual)[0].square().sum(-1)
 
     def _level(self, residual: Tensor) -> Tensor:
         """Root mean square of what is left, (...), or the noise where that is more; 0 where no noise is known."""

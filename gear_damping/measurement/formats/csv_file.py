@@ -125,13 +125,11 @@ def _parted(text: Text, first_line: int) -> tuple[set[int], bool]:
     columns = list(zip(*(row for row in rows if len(row) >= text.width), strict=False))
     parted = {k for k, cells in enumerate(columns) for sign in ".," if parts_thousands(cells, sign)}
     others = [cells for k, cells in enumerate(columns) if k not in parted]
-    if any(map(_has_decimal_points, others)):
-        return parted | {
-            k for k, cells in enumerate(columns) if parts_thousands(cells, ",", other_is_decimal=True)
-        }, True
-    if _has_decimal_commas(text, others):
-        parted |= {k for k, cells in enumerate(columns) if parts_thousands(cells, ".", other_is_decimal=True)}
-    return parted, False
+    has_points = any(map(_has_decimal_points, others))
+    sign = "," if has_points else "." if _has_decimal_commas(text, others) else ""
+    if sign:
+        parted |= {k for k, cells in enumerate(columns) if parts_thousands(cells, sign, other_is_decimal=True)}
+    return parted, has_points
 
 
 def _decimal_comma(text: Text, first_line: int, parted: set[int]) -> bool:
