@@ -64,13 +64,13 @@ def cramer_rao(
     Raises:
         InputError: a name is unknown or there twice, there is not one damping law, or no positive noise.
     """
-    names, used = (*free, *START), samples or runs.response.shape[-1]
-    flat = {name: _flat(runs, name) for name in free}
-    _refuse(runs, noise, names, [*flat.values(), *START], expected or {}, used)
-    columns = torch.stack([_sensitivity(runs, flat.get(name, name), used, solver) for name in names], -1)
+    names, used = (*free, *START), runs.response.shape[-1] if samples is None else samples
+    flat = [*(_flat(runs, name) for name in free), *START]
+    _refuse(runs, noise, names, flat, expected or {}, used)
+    columns = torch.stack([_sensitivity(runs, one, used, solver) for one in flat], -1)
     for place, name in enumerate(names):
         if name == DAMPING_RATIO:  # the ratio grows with the coefficient
-            columns[..., place] *= (runs.values[flat[name]] / runs.damping_ratio_percent).unsqueeze(-1)
+            columns[..., place] *= (runs.values[flat[place]] / runs.damping_ratio_percent).unsqueeze(-1)
     weights = 1 / torch.as_tensor(noise, dtype=torch.float64).expand(len(columns)).square()
     information = columns.mT @ columns * weights[:, None, None]
     prior = torch.tensor([(expected or {}).get(name, inf) for name in names], dtype=torch.float64)
@@ -92,7 +92,8 @@ def _refuse(
     if not bool((level > 0).all()):
         found.append(Problem("noise", "must be positive", level.tolist(), "without noise there is no bound"))
     if not 2 <= used <= longest:
-        found.append(Problem("samples", f"must lie within 2 and {longest}", used, "simulate longer runs"))
+        remedy = "simulate longer runs" if used > longest else "leave it out for all of them"
+        found.append(Problem("samples", f"must lie within 2 and {longest}", used, remedy))
     if len(set(flat)) < len(flat):
         found.append(Problem("free", "names one parameter twice", list(names[: -len(START)]), "name it once"))
     found += [

@@ -4,20 +4,21 @@ from collections.abc import Mapping, Sequence
 from numbers import Real
 
 import numpy as np
-import torch
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.identification.cramer_rao import cramer_rao
+from gear_damping.interface.arguments import names, numbers, of_every_run
 from gear_damping.interface.simulated import Simulation, refuse_rest
 from gear_damping.physics.damping_ratio import DAMPING_RATIO
+from gear_damping.schema.values import Problems
 
 
 def bound(
     runs: Simulation,
-    free: Sequence[str] = (DAMPING_RATIO,),
+    free: str | Sequence[str] = (DAMPING_RATIO,),
     *,
-    noise: float | None = None,
+    noise: float | Sequence[float] | None = None,
     snr_db: float | None = None,
     expected: Mapping[str, float] | None = None,
     samples: int | None = None,
@@ -31,7 +32,7 @@ def bound(
     Args:
         runs: As `simulate` gives them, with the values that are true.
         free: What is unknown beside the start, by flat name; `damping_ratio` in % of critical.
-        noise: Standard deviation of the noise, in the unit of the response; or
+        noise: Standard deviation of the noise, in the unit of the response, of all runs or (batch,); or
         snr_db: its level below the response about its mean, run by run.
         expected: Standard deviations of what is known beforehand, by name (`initial_displacement` and
             `initial_velocity` too).
@@ -46,6 +47,7 @@ def bound(
         raise InputError(Problem("snr_db", "is one level", repr(snr_db), "ask once for each, for example snr_db=30"))
     refuse_rest(runs.runs)
     response = runs.runs.response
-    level = torch.tensor(noise, dtype=torch.float64) if snr_db is None else response.std(-1) * 10 ** (-snr_db / 20)
-    found = cramer_rao(runs.runs, free, level, expected=expected, samples=samples)
+    level = numbers("noise", noise) if snr_db is None else response.std(-1) * 10 ** (-snr_db / 20)
+    Problems(of_every_run("noise", level, len(response))).raise_any()
+    found = cramer_rao(runs.runs, names(free), level, expected=expected, samples=samples)
     return {name: found.deviation(name).numpy() for name in found.names}

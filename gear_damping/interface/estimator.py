@@ -24,6 +24,7 @@ from gear_damping.identification.output_error.segments import stretch
 from gear_damping.identification.saved import FORMAT as NETWORK
 from gear_damping.identification.saved import description_of, read_description, write_shared
 from gear_damping.identification.saved import load_estimator as load_module
+from gear_damping.interface.arguments import refuse_other
 from gear_damping.measurement.record import Measurement, Record
 from gear_damping.physics.systems.gear_pair import teeth_of
 from gear_damping.physics.systems.traits import Trait
@@ -95,6 +96,7 @@ class NetworkEstimator(Estimator):
             InputError: the records are of another system, channel, unit or rate than the network was trained on, a
                 record has no such channel, or is too short.
         """
+        refuse_other(measurement)
         wanted = channel or measurement.base.response
         problems = _without_channel(measurement, wanted) or self._unlike(measurement, wanted)
         if problems:
@@ -163,6 +165,7 @@ def all_recorded(measurement: Measurement, channel: str | None = None) -> dict[s
     Raises:
         InputError: a record has no such channel, or no response at all.
     """
+    refuse_other(measurement)
     problems = _without_channel(measurement, channel, measurement.base.responses) if channel else []
     if problems:
         raise InputError(problems)

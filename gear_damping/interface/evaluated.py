@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from numbers import Real
 from statistics import NormalDist
 from time import perf_counter
 from typing import Any
@@ -22,6 +21,7 @@ from gear_damping.identification.known_model.estimate import Estimates
 from gear_damping.identification.observation import Known
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.seeding import seeded_generator
+from gear_damping.interface.arguments import levels
 from gear_damping.interface.estimator import ClassicalEstimator, Estimator, NetworkEstimator
 from gear_damping.interface.simulated import Simulation, refuse_rest
 from gear_damping.physics.damping_ratio import DAMPING_RATIO
@@ -81,7 +81,6 @@ def evaluate(
     Raises:
         InputError: no estimator is named, nothing moves, or a network was trained on another kind of record.
     """
-    snr_db = (float(snr_db),) if isinstance(snr_db, Real) else snr_db
     if not isinstance(estimators, Mapping):
         rule, remedy = "must be named", "for example {'mine': gd.load_estimator(PATH)}"
         raise InputError(Problem("estimators", rule, repr(estimators), remedy))
@@ -90,13 +89,13 @@ def evaluate(
     _require_alike(estimators, runs)
     refuse_rest(runs.runs)
     signals = runs.runs.response
-    levels = {}
-    for snr in snr_db:
+    found = {}
+    for snr in levels("snr_db", snr_db):
         noise = signals.std(-1, correction=0) * 10 ** (-snr / 20)
         drawn = torch.randn(signals.shape, generator=seeded_generator(seed, "noise", str(snr)), dtype=signals.dtype)
         limit = _limit(runs.runs, noise) if bound and snr < CLEAN else None
-        levels[f"{snr:g}"] = _level(estimators, runs.runs, signals + noise[:, None] * drawn, limit)
-    return Evaluation({"test_runs": len(runs), "snr_db": levels})
+        found[f"{snr:g}"] = _level(estimators, runs.runs, signals + noise[:, None] * drawn, limit)
+    return Evaluation({"test_runs": len(runs), "snr_db": found})
 
 
 def _require_alike(estimators: Mapping[str, Estimator], runs: Simulation) -> None:

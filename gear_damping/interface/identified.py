@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.interface import identified_gears, identified_oscillator
+from gear_damping.interface.arguments import names, refuse_other
 from gear_damping.interface.free_parameters import given_numbers
 from gear_damping.interface.model import Model
 from gear_damping.measurement.record import Measurement
@@ -72,7 +73,7 @@ class Identification:
 def identify(
     measurement: Measurement,
     model: Model | None = None,
-    free: Sequence[str] = (),
+    free: str | Sequence[str] = (),
     *,
     log: Callable[[str], None] = lambda text: None,
     progress: Progress | None = None,
@@ -95,7 +96,7 @@ def identify(
         InputError: the data are damaged, nothing can be fitted, or a name is unknown.
     """
     refuse_faults(measurement)
-    free = [free] if isinstance(free, str) else free
+    free = names(free)
     if model is None and free:
         raise InputError(Problem("free", "names parameters of a model", list(free), "give the model too"))
     if model is not None and not isinstance(model, Model):
@@ -110,17 +111,6 @@ def identify(
     if measurement.base.has(Trait.REST):
         return Identification(measurement, identified_oscillator.linear_fit(measurement, progress, solver))
     return Identification(measurement, identified_gears.nominal_fit(measurement, log, solver))
-
-
-def refuse_other(measurement: object) -> None:
-    """Refuse what is no measurement, as the path of one.
-
-    Raises:
-        InputError: it is not what `load` gives.
-    """
-    if not isinstance(measurement, Measurement):
-        rule, remedy = "must be a measurement", "give what gd.load('measurement.yaml') returns"
-        raise InputError(Problem("measurement", rule, measurement, remedy))
 
 
 def refuse_faults(measurement: Measurement) -> None:

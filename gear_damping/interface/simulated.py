@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.interface.arguments import numbers, of_every_run
 from gear_damping.physics.model import Model
 from gear_damping.reporting import figures
 from gear_damping.schema.values import Number, Problems
@@ -158,9 +159,9 @@ def simulate(
         InputError: a name is unknown, or a value out of range.
     """
     Problems(whole_number_problems("batch", batch, BATCH)).raise_any()
-    given = _within_bounds(model, parameters)
-    driven = inputs if isinstance(inputs, Driven) else Driven(inputs or {})
-    driven = replace(driven, series={name: _rows(value) for name, value in driven.series.items()})
+    given = _within_bounds(model, parameters, int(batch))
+    driven = _driven(inputs)
+    driven = replace(driven, series={name: _rows(name, value) for name, value in driven.series.items()})
     runs = integrate(
         model,
         model.values(batch, **given),
@@ -191,10 +192,27 @@ def _rests(runs: Runs) -> bool:
     return not bool(runs.response.any())
 
 
-def _within_bounds(model: Model, values: Mapping[str, ArrayLike]) -> dict[str, torch.Tensor]:
+def _driven(inputs: Any) -> Driven:
+    """What drives the runs.
+
+    Raises:
+        InputError: series without their names.
+    """
+    if isinstance(inputs, Driven):
+        return inputs
+    if inputs is None or isinstance(inputs, Mapping):
+        return Driven(inputs or {})
+    rule, remedy = f"must say which series is which, and is a {type(inputs).__name__}", "write {'force': ARRAY}"
+    raise InputError(Problem("inputs", rule, remedy=remedy))
+
+
+def _within_bounds(model: Model, values: Mapping[str, ArrayLike], batch: int) -> dict[str, torch.Tensor]:
     """Values as tensors; the model itself refuses names that it does not know."""
-    found = {name: torch.as_tensor(np.asarray(value, dtype=float)) for name, value in values.items()}
-    declared = model.parameters()
+    found, declared = {name: numbers(name, value) for name, value in values.items()}, model.parameters()
+    single = [(name, value) for name, value in found.items() if name in declared and not declared[name].vector]
+    problems = [problem for name, value in single for problem in of_every_run(name, value, batch)]
+    if problems:
+        raise InputError(problems)
     ends = [(name, float(end)) for name, v in found.items() if name in declared for end in (v.min(), v.max())]
     problems = [problem for name, end in ends if (problem := declared[name].problem(end, name))]
     if problems:
@@ -202,8 +220,8 @@ def _within_bounds(model: Model, values: Mapping[str, ArrayLike]) -> dict[str, t
     return found
 
 
-def _rows(series: ArrayLike) -> torch.Tensor:
-    return torch.as_tensor(np.atleast_2d(np.asarray(series, dtype=float)))
+def _rows(name: str, series: ArrayLike) -> torch.Tensor:
+    return torch.atleast_2d(numbers(f"inputs.{name}", series))
 
 
 def run_figure(runs: Runs, response: torch.Tensor, run: int = 0) -> Figure:

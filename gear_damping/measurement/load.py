@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from math import pi
+from numbers import Real
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -49,7 +50,9 @@ def check_declaration(path: str | Path, plugins: Sequence[str | Path] = ()) -> P
         return _checked(content, str(path), plugins)
 
 
-def load_measurement(path: str | Path, max_bytes: int | None = None, plugins: Sequence[str | Path] = ()) -> Measurement:
+def load_measurement(
+    path: str | Path, max_bytes: float | None = None, plugins: Sequence[str | Path] = ()
+) -> Measurement:
     """Read a measurement.yaml and the files that it names.
 
     Args:
@@ -63,6 +66,9 @@ def load_measurement(path: str | Path, max_bytes: int | None = None, plugins: Se
     Raises:
         InputError: everything that cannot be read or understood, all at once.
     """
+    if max_bytes is not None and (not isinstance(max_bytes, Real) or isinstance(max_bytes, bool) or max_bytes <= 0):
+        rule = "must be a positive number of bytes"
+        raise InputError(Problem("max_bytes", rule, max_bytes, "for example max_bytes=4e9"))
     content = _filled(path)
     with _telling_names(content):
         return _loaded(content, Path(path), max_bytes, plugins)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import torch
 from scipy.integrate import solve_ivp
 
 import gear_damping as gd
@@ -114,3 +115,83 @@ def test_runs_that_a_stiff_damping_lets_diverge_are_said_and_the_remedy_helps():
     times = np.arange(20) / 100
     true = solve_ivp(rates, (0, times[-1]), (0.05, 0.0), "Radau", times, rtol=1e-9, atol=1e-12).y
     np.testing.assert_allclose(found[0], true[0], rtol=1e-4)
+
+
+MODEL = gd.Model(gd.Oscillator(stiffness=400), [gd.ViscousDamping(damping_coefficient=0.8)])
+SAMPLED = {"sampling_rate": 200, "n_samples": 400}
+
+
+@pytest.fixture(scope="module")
+def runs():
+    return gd.simulate(MODEL, **SAMPLED, initial_displacement=0.01)
+
+
+@pytest.mark.parametrize("given", ["a.yaml", np.zeros(50), {"t": [1, 2]}])
+def test_an_estimator_takes_a_measurement(given):
+    with pytest.raises(gd.InputError, match=r"measurement = .*: must be a measurement; remedy: give what gd\.load"):
+        gd.estimator("log_decrement").predict(given)
+
+
+def test_a_force_as_arrays_come_drives_the_runs():
+    force = np.sin(np.arange(400) / 10)
+    read_only, forced = force.copy(), gd.simulate(MODEL, **SAMPLED, inputs={"force": force})
+    read_only.flags.writeable = False
+    backwards = force[::-1].copy()[::-1]
+    grown = torch.tensor(force, requires_grad=True)
+    for other in (read_only, backwards, grown, force.tolist()):
+        again = gd.simulate(MODEL, **SAMPLED, inputs={"force": other})
+        np.testing.assert_array_equal(again.displacement, forced.displacement)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"inputs": np.zeros(400)}, r"inputs: must say which series is which, .*\{'force': ARRAY\}"),
+        ({"inputs": {"force": np.zeros(400, complex)}}, r"inputs\.force: must be real"),
+        ({"inputs": {"force": ["a"] * 400}}, r"inputs\.force: must hold numbers"),
+        ({"initial_displacement": [0.01, 0.02]}, r"initial_displacement: must be one number, and holds 2"),
+        ({"initial_displacement": [0.01, 0.02], "batch": 3}, r"must be one number or 3, one for each run, and holds 2"),
+        ({"initial_displacement": "1 cm"}, r"initial_displacement = '1 cm': must hold numbers alone; .* SI"),
+        ({"initial_displacement": 1j}, r"initial_displacement = 1j: must be real"),
+    ],
+)
+def test_what_no_run_can_begin_with_is_answered(given, said):
+    with pytest.raises(gd.InputError, match=said):
+        gd.simulate(MODEL, **SAMPLED, **given)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"free": ["damping_ratio", "damping_ratio"]}, r"free = \[.*\]: names one parameter twice"),
+        ({"free": "dampingratio"}, r"free = 'dampingratio': no such parameter"),
+        ({"noise": [1e-4, 1e-4]}, r"noise: must be one number, and holds 2"),
+        ({"noise": "0.1 mm"}, r"noise = '0\.1 mm': must hold numbers alone"),
+        ({"samples": -5}, r"samples = -5: .*; remedy: leave it out"),
+        ({"samples": 0}, r"samples = 0: must lie within"),
+    ],
+)
+def test_a_bound_of_what_has_none_is_answered(runs, given, said):
+    with pytest.raises(gd.InputError, match=said):
+        gd.bound(runs, **{"noise": 1e-4, **given})
+
+
+def test_one_name_is_one_name_of_a_bound_too(runs):
+    one, listed = (gd.bound(runs, free=free, noise=1e-4) for free in ("damping_ratio", ["damping_ratio"]))
+    assert one["damping_ratio"] == listed["damping_ratio"]
+
+
+def test_a_level_in_words_is_answered(runs):
+    with pytest.raises(gd.InputError, match=r"snr_db: must hold numbers alone; .* dB"):
+        gd.evaluate({"mine": gd.estimator("log_decrement")}, runs, snr_db="30 dB")
+
+
+def test_one_effect_that_is_ruled_out_is_one_name(record):
+    with pytest.raises(gd.InputError, match=r"ruled_out = 'backlsh': no such effect; .*backlash"):
+        gd.explain(record, ruled_out="backlsh")
+
+
+@pytest.mark.parametrize("size", ["1MB", 0, True])
+def test_the_size_of_a_file_is_a_number_of_bytes(record, size):
+    with pytest.raises(gd.InputError, match=r"max_bytes = .*: must be a positive number of bytes"):
+        gd.load(record.source, max_bytes=size)

@@ -1,0 +1,70 @@
+"""What users hand over in Python, checked at the door: one message names the argument, the rule and the remedy."""
+
+from collections.abc import Iterable, Sequence
+from numbers import Number
+from typing import Any
+
+import numpy as np
+import torch
+
+from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.record import Measurement
+
+
+def refuse_other(measurement: object) -> None:
+    """Refuse what is no measurement, as the path of one.
+
+    Raises:
+        InputError: it is not what `load` gives.
+    """
+    if not isinstance(measurement, Measurement):
+        shown = measurement if isinstance(measurement, str) else type(measurement).__name__
+        rule, remedy = "must be a measurement", "give what gd.load('measurement.yaml') returns"
+        raise InputError(Problem("measurement", rule, shown, remedy))
+
+
+def names(given: str | Iterable[str]) -> tuple[str, ...]:
+    """Names as a sequence; one that stands alone is one name, not its letters."""
+    return (given,) if isinstance(given, str) else tuple(given)
+
+
+def numbers(name: str, value: Any, unit: str = "SI") -> torch.Tensor:
+    """Real numbers as a tensor of 64 bits that nothing else writes to, of the shape of what was given.
+
+    Args:
+        name: Of the argument, for messages.
+        value: A number, a sequence, an array or a tensor.
+        unit: That is expected, for messages.
+
+    Raises:
+        InputError: it holds something else, as a text or complex numbers.
+    """
+    given = value.detach().cpu() if isinstance(value, torch.Tensor) else value
+    remedy, shown = f"give real numbers in {unit}", value if isinstance(value, str | Number) else None
+    try:
+        array = np.asarray(given)
+        real = None if array.dtype.kind == "c" else np.array(array, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(Problem(name, "must hold numbers alone", shown, remedy)) from None
+    if real is None:
+        raise InputError(Problem(name, "must be real, and is complex", shown, remedy))
+    return torch.from_numpy(real)
+
+
+def of_every_run(name: str, value: torch.Tensor, batch: int) -> list[Problem]:
+    """What is wrong with the shape of one number, or of one for each of `batch` runs."""
+    if value.shape in ((), (1,), (batch,)):
+        return []
+    held = "x".join(str(n) for n in value.shape)
+    many = f"one number or {batch}, one for each run" if batch > 1 else "one number"
+    return [Problem(name, f"must be {many}, and holds {held}", remedy="batch= says how many runs there are")]
+
+
+def levels(name: str, given: Any) -> tuple[float, ...]:
+    """One level or several, in dB.
+
+    Raises:
+        InputError: it is neither.
+    """
+    found = numbers(name, [given] if isinstance(given, str) or not isinstance(given, Sequence) else given, "dB")
+    return tuple(found.flatten().tolist())
