@@ -4,6 +4,8 @@ import importlib.util
 import inspect
 import pkgutil
 import traceback
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
 
@@ -51,6 +53,33 @@ def classes_of(module: ModuleType, base: type) -> list[type]:
     own = [c for c in dict.fromkeys(own) if c.__module__ == module.__name__]
     bases = {parent for c in own for parent in c.__mro__[1:]}
     return [c for c in own if c not in bases or ("name" in vars(c) and not inspect.isabstract(c))]
+
+
+@contextmanager
+def errors_in(plugins: Mapping[str, str], source_of: Callable[[str], str] = lambda key: "") -> Iterator[None]:
+    """Turn what the code of `plugins` raises into an InputError that names file, line and error.
+
+    Args:
+        plugins: The files, with the key that names each.
+        source_of: Where the configuration has a key from.
+
+    Raises:
+        InputError: something inside was raised by a line of one of the files.
+    """
+    try:
+        yield
+    except InputError:
+        raise
+    except Exception as error:  # the user's own code can fail in any way
+        files = {Path(path).resolve(): path for path in plugins}
+        places = [(frame, Path(frame.filename).resolve()) for frame in traceback.extract_tb(error.__traceback__)]
+        frames = [(frame, place) for frame, place in places if place in files]
+        if not frames:
+            raise
+        said = " ".join(f"{type(error).__name__}: {error}".split())
+        frame, place = frames[-1]
+        rule, key = f"line {frame.lineno}, in {frame.name}, fails with {said}", plugins[files[place]]
+        raise InputError(Problem(key, rule, files[place], REMEDY, source_of(key))) from error
 
 
 def _place(error: BaseException, path: Path) -> str:

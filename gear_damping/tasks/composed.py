@@ -20,7 +20,8 @@ from gear_damping.config.locate import conf_folder, groups
 from gear_damping.config.measured import INSPECT, MEASURED, declares, measurement_file
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
-from gear_damping.tasks.own_parts import errors_in, plugins_of
+from gear_damping.own_files import errors_in
+from gear_damping.tasks.own_parts import plugins_of
 from gear_damping.tasks.wrong_declaration import PATH, placed
 
 

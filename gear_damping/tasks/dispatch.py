@@ -14,9 +14,10 @@ from gear_damping.config.folders import resumable
 from gear_damping.config.measured import INSPECT
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem, met_in_writing, unread
+from gear_damping.own_files import errors_in
 from gear_damping.reporting.run_report import REPORTED
 from gear_damping.tasks.lease import leased
-from gear_damping.tasks.own_parts import errors_in, plugins_of
+from gear_damping.tasks.own_parts import plugins_of
 from gear_damping.tasks.run_folder import FAILED, FINISHED, INTERRUPTED, RunFolder, problem_with_used
 from gear_damping.tasks.wrong_declaration import WRONG_INPUT, log_problems
 

@@ -12,6 +12,12 @@ from gear_damping.tasks.command import main
 ROOT = Path(__file__).parents[2]
 EXAMPLE = ROOT / "docs" / "examples" / "my_format.py"
 RATE, OMEGA, DECREMENT = 500.0, 40.0, 1.5
+HELD = """import numpy as np
+from gear_damping.measurement.formats.table import ArrayTable, Held
+SUFFIXES, a = (".rig",), np.zeros(4)
+def read(path, max_bytes):
+    return ArrayTable(path, [Held({})])
+"""
 OWN = f"measurement.plugins=[{EXAMPLE}]"
 
 
@@ -63,6 +69,17 @@ def test_a_damaged_file_ends_in_a_message(recorded):
         ("SUFFIXES = ('.rig',)", r"lacks read\(path, max_bytes\)"),
         ("def read(path, max_bytes): ...", "lacks SUFFIXES"),
         ("SUFFIXES = ('rig',)\ndef read(path, max_bytes): ...", "lacks SUFFIXES"),
+        ("SUFFIXES = ('.rig',)\ndef read(path): ...", r"read is called as read\(path, max_bytes\), .*too many"),
+        ("SUFFIXES = ('.rig',)\ndef read(path, size): return {}", r"odd\.py.*: read gives a dict; .*ArrayTable"),
+        (
+            "SUFFIXES = ('.rig',)\ndef read(path, size):\n  x = []\n  x[3]",
+            "odd.py.*: line 4, in read, fails with IndexError",
+        ),
+        (HELD.format("3, (4,), a.copy"), "line 5, in read, fails with ValueError: the name of an array is a text"),
+        (HELD.format("'deflection', (4,), a"), "ValueError: read of 'deflection' gives the array when it is called"),
+        (HELD.format("'deflection', (4,), a.copy, 'm', 3.0"), r"ValueError: the clock of 'deflection' is \(first"),
+        (HELD.format("'deflection', (4,), a.copy, 'm', (0, 0)"), r"rate in Hz\), and not \(0, 0\)"),
+        (HELD.format("'deflection', (4,), lambda: a + 1j, 'm', (0, 9.)"), "'deflection' cannot be read .it is complex"),
         ("import nothing_of_the_kind", "cannot be loaded: line 1: ModuleNotFoundError"),
     ],
 )

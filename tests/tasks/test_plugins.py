@@ -10,12 +10,12 @@ from scipy.integrate import solve_ivp
 
 from gear_damping.errors import InputError
 from gear_damping.measurement.load import load_measurement
+from gear_damping.own_files import errors_in
 from gear_damping.physics.catalogue import effect_class
 from gear_damping.physics.effect_files import load_effects
 from gear_damping.reporting.effects_page.__main__ import main as write_effects_page
 from gear_damping.reporting.effects_page.declarations import parameter_row
 from gear_damping.tasks.command import main
-from gear_damping.tasks.own_parts import errors_in
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 EXAMPLE = DOCS / "examples" / "my_effect.py"

@@ -5,6 +5,7 @@ damaged file may kill says `DEADLY = True`: it is tried once in a copy of this p
 """
 
 import faulthandler
+import inspect
 import os
 import signal
 import sys
@@ -19,7 +20,7 @@ from types import ModuleType
 from gear_damping.errors import InputError, Problem, reading
 from gear_damping.measurement import formats as room
 from gear_damping.measurement.formats.table import Table, refuse_size
-from gear_damping.own_files import REMEDY, classes_of, load_module, modules_of
+from gear_damping.own_files import REMEDY, classes_of, errors_in, load_module, modules_of
 
 MAX_BYTES = 512 * 1024**2  # of a file: as text and as floats it is several times that in memory
 KEY = "measurement.plugins"
@@ -51,8 +52,22 @@ def readers(plugins: Sequence[str | Path] = ()) -> dict[str, Reader]:
         faults = _faults(module)
         if faults:
             raise InputError([Problem(KEY, fault, str(path), REMEDY) for fault in faults])
-        found |= dict.fromkeys(module.SUFFIXES, module.read)
+        found |= dict.fromkeys(module.SUFFIXES, _own(module.read, path))
     return found
+
+
+def _own(read: Reader, place: Path) -> Reader:
+    """A user's own reader, whose errors are said as such, and which gives a table or nothing."""
+
+    def guarded(path: Path, max_bytes: int) -> Table:
+        with errors_in({str(place): KEY}):
+            found = read(path, max_bytes)
+        if not isinstance(found, Table):
+            rule, remedy = f"read gives a {type(found).__name__}", "return ArrayTable(path, [Held(...), ...])"
+            raise InputError(Problem(KEY, rule, str(place), remedy))
+        return found
+
+    return guarded
 
 
 def _faults(module: ModuleType) -> list[str]:
@@ -62,8 +77,12 @@ def _faults(module: ModuleType) -> list[str]:
     texts = isinstance(suffixes, tuple) and suffixes and all(isinstance(one, str) for one in suffixes)
     if not texts or not all(one.startswith(".") and one == one.lower() for one in suffixes):
         found.append("lacks SUFFIXES, a tuple of suffixes in lower case such as ('.xyz',)")
-    if not callable(getattr(module, "read", None)):
-        found.append("lacks read(path, max_bytes), which gives a Table")
+    if not callable(read := getattr(module, "read", None)):
+        return [*found, "lacks read(path, max_bytes), which gives a Table"]
+    try:
+        inspect.signature(read).bind(Path(), MAX_BYTES)
+    except TypeError as error:
+        found.append(f"read is called as read(path, max_bytes), and this one says: {error}")
     return found
 
 

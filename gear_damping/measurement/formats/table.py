@@ -6,6 +6,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
+from math import isfinite
+from numbers import Real
 from pathlib import Path
 from types import ModuleType
 from unicodedata import normalize
@@ -15,6 +17,7 @@ from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem, nearest
 
+CLOCK = 2  # numbers of a clock: the first time and the rate
 _SHOWN = 20  # arrays that a message lists
 _UNIT_AT_ONCE = re.compile(r"/\(?[^/()\s]+(/\w+[²³^\d]*)?\)?$")  # `x/mm`, `a/(m/s²)`
 _UNIT_BEHIND = re.compile(r"\s*([(\[](?![\d, ]*[)\]])[^()\[\]]*[)\]](\s*run\s*#?\s*\d+)?|\s/\s*\S+)$", re.I)
@@ -170,6 +173,18 @@ class Held:
     clock: tuple[float, float] | None = None
     begins: Callable[[], float] | None = None
 
+    def __post_init__(self) -> None:
+        """Say at once what a reader hands over wrongly."""
+        if not isinstance(self.name, str):
+            raise ValueError(f"the name of an array is a text, and not {self.name!r}")
+        if not callable(self.read):
+            raise ValueError(f"read of '{self.name}' gives the array when it is called: write array.copy for it")
+        if self.clock is None:
+            return
+        numbers = [end for end in self.clock if isinstance(end, Real)] if isinstance(self.clock, tuple) else []
+        if len(numbers) != CLOCK or not all(map(isfinite, numbers)) or numbers[1] <= 0:
+            raise ValueError(f"the clock of '{self.name}' is (first sample in s, rate in Hz), and not {self.clock!r}")
+
 
 class ArrayTable(Table):
     """Columns of arrays, each of which is read once, when it is first asked for.
@@ -194,7 +209,7 @@ class ArrayTable(Table):
         one = self._held[array]
         if array not in self._arrays:
             with unreadable(self.path, f"'{one.name or array}' cannot be read", "export the file again"):
-                self._arrays[array] = np.reshape(one.read(), one.shape)
+                self._arrays[array] = np.reshape(_real(one.read()), one.shape)
         whole = self._arrays[array]
         return np.asarray(np.moveaxis(whole, int(np.argmax(one.shape)), 0)[(slice(None), *rest)], dtype=np.float64)
 
@@ -210,6 +225,13 @@ class ArrayTable(Table):
         """When the first stamp of the column's array was, where its stamps count from that one."""
         begins = self._held[self._place[index][0]].begins
         return begins() if begins else None
+
+
+def _real(array: NDArray) -> NDArray:
+    """Refuse what is complex, of which a copy as real numbers would lose a part."""
+    if np.iscomplexobj(array):
+        raise ValueError("it is complex, and a channel is real: write its real part, its size or its phase")
+    return array
 
 
 def squeezed(shape: Sequence[int]) -> tuple[int, ...]:
