@@ -7,7 +7,7 @@ from typing import Any
 from gear_damping.config.quantities import quantity, split_suffix
 from gear_damping.config.reader import Reader
 from gear_damping.config.simulator import SimulatorSettings
-from gear_damping.config.source import Origin
+from gear_damping.config.source import ORDER, Origin
 from gear_damping.errors import InputError, nearest
 from gear_damping.identification.test_plan.asked import PlanCosts, PlanGoal, PlannedSensor, PlannedTests, Unknown
 from gear_damping.identification.test_plan.channels import channels_of
@@ -37,6 +37,7 @@ SENSOR = {
     "offset": Given(Flag(), optional=True),
     "cost": Given(Number(0, 1e12), optional=True),
 }
+ASSUMED = "response"  # the sensor of conf/plan
 GROUPS = ("sensors", "unknown", "unknown_each", "cost")
 
 
@@ -75,8 +76,8 @@ def read_plan(node: Mapping[str, Any], simulator: SimulatorSettings, origin: Ori
     for key in set(costs) - set(COSTS):
         reader.refuse_unknown(f"plan.cost.{key}", COSTS)
     prices = reader.plain(costs, COSTS, "plan.cost.")
-    sensors = [_sensor(reader, name, one, simulator) for name, one in _group(reader, node, "sensors").items()
-               if one is not None]  # fmt: skip
+    mounted = _mounted(_group(reader, node, "sensors"), origin)
+    sensors = [_sensor(reader, name, one, simulator) for name, one in mounted.items()]
     unknown = [_unknown(reader, one, key, simulator) for key in ("unknown", "unknown_each")
                for one in _listed(reader, node, key)]  # fmt: skip
     if not given.get("durations") and not any(one.key.startswith("plan.durations") for one in reader.problems):
@@ -95,6 +96,13 @@ def read_plan(node: Mapping[str, Any], simulator: SimulatorSettings, origin: Ori
     )
     tests = PlannedTests(sampling_rate=simulator.sampling_rate, settle=given.get("settle"), **lists)
     return PlanSettings(tests, tuple(sensors), tuple(unknown), goal, plain["simulated_tests"])
+
+
+def _mounted(sensors: Mapping[str, Any], origin: Origin) -> dict[str, Any]:
+    """Sensors that are not taken out; the assumed one gives way to those that somebody names."""
+    found = {name: one for name, one in sensors.items() if one is not None}
+    is_assumed = origin.rank(f"plan.sensors.{ASSUMED}") <= ORDER.index("plan")
+    return {name: one for name, one in found.items() if name != ASSUMED or len(found) == 1 or not is_assumed}
 
 
 def _last_said(reader: Reader, node: Mapping[str, Any], known: Mapping[str, Any], prefix: str) -> dict[str, Any]:

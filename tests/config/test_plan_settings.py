@@ -51,6 +51,15 @@ def test_what_was_said_last_counts():
     assert other.sensors == (PlannedSensor("encoders", None, 12, "transmission_error", True, 0.0),)
 
 
+def test_the_assumed_sensor_gives_way_to_a_named_one():
+    named = plan("++plan.sensors={transmission_error: {noise: 2 um}}")
+    assert [(one.name, one.noise) for one in named.sensors] == [("transmission_error", pytest.approx(2e-6))]
+    both = plan("++plan.sensors.encoders.channel=transmission_error", f"{BY}.snr_db=20")
+    assert [one.name for one in both.sensors] == ["response", "encoders"]
+    other = plan("++plan.sensors.accelerometer.channel=pinion_acceleration", "++plan.sensors.accelerometer=null")
+    assert [one.name for one in other.sensors] == ["response"]
+
+
 def test_an_experiment_is_read_whole():
     found = plan("experiment=plan")
     assert [one.name for one in found.sensors] == ["encoders", "accelerometer"]
