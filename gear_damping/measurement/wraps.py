@@ -38,12 +38,30 @@ def run_over(counts: NDArray[np.float64], name: str, column: str | int) -> Findi
     if np.any(counts != np.round(counts)) or np.unique(counts).size <= _LEVELS:
         return None
     size = next((2**bits for bits in _REGISTERS if counts.min() >= 0 and counts.max() < 2**bits), None)
-    if size is None or not begins_again(counts, float(size)):
+    if size is None:
         return None
-    jumps = int(np.sum(np.abs(np.diff(counts)) > size / 2))
+    steps, size = np.diff(counts), _size(counts, size)
+    jumps = steps[np.abs(steps) > size / 2]
+    both_ways = jumps.size > 1 and jumps.min() < 0 < jumps.max()  # a sawtooth falls again and again, and never jumps up
+    if not begins_again(counts, float(size)) or not (both_ways or size in (2**bits for bits in _REGISTERS)):
+        return None
     message = (
-        f"column '{column}' jumps {jumps} time(s) by about {size} from sample to sample, as counts below zero do that "
-        f"were written without their sign, or a counter that ran over; where it is the sign, take {size} from those "
-        f"above {size // 2 - 1}"
+        f"column '{column}' jumps {len(jumps)} time(s) by about {size} from sample to sample, as counts below zero do "
+        f"that were written without their sign, or a counter that ran over; where it is the sign, take {size} from "
+        f"those above {size // 2 - 1}; where {size} counts are a turn of an encoder, write unit: rev, gain: {size}"
     )
     return Finding("run_over", message, channel=name)
+
+
+def _size(counts: NDArray[np.float64], register: int) -> int:
+    """How many counts there are: a power of two that the jumps agree with, else as many as were met.
+
+    Beside a jump the counts go on by a step like its neighbours, so that it falls short of all counts by one of them.
+    """
+    steps = np.abs(np.diff(counts))
+    far = steps > counts.max() / 2
+    if not far.any() or far.all():
+        return register
+    short = _AS_BESIDE * np.median(steps[~far])
+    powers = (register, 2 ** int(counts.max()).bit_length())
+    return next((size for size in powers if size - np.median(steps[far]) <= short), int(counts.max()) + 1)

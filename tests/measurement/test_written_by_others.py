@@ -136,6 +136,10 @@ def test_counts_without_their_sign_are_a_problem_and_a_switch_is_none(tmp_path):
     assert "run_over" in kinds(counts % 65536)
     assert "run_over" not in kinds(counts)
     assert "run_over" not in kinds(np.where(counts > 0, 65535, 0))
+    for size in (1000, 1024, 3600, 16384):  # a counter of one turn, which the motion passes either way
+        beginning_again = np.round(0.15 * size * WAVE).astype(int) % size
+        assert "run_over" in kinds(beginning_again), size
+    assert "run_over" not in kinds(np.arange(len(WAVE)) * 37 % 1000)  # a sawtooth of a generator
 
 
 def test_a_channel_with_a_rate_alone_begins_with_the_first_row(tmp_path):
