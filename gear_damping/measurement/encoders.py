@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.column_kinds import rises
 from gear_damping.measurement.declaration import EncoderPlan
+from gear_damping.measurement.recordings import past_overflow
 from gear_damping.measurement.timebase import TimeBase, cubic_spline, monotone_spline
 from gear_damping.units import parse_unit, to_si
 
@@ -223,7 +224,7 @@ def shaft_angle(plan: EncoderPlan, base: TimeBase, rows: ReadColumn, whole: Read
         return ShaftAngle(angle - zero, late)
     key = f"{plan.key}.{'timestamps' if plan.timestamps else 'column'}"
     if plan.timestamps:
-        pulses, late = whole(plan.column, key) * to_si(1.0, plan.unit, "s", f"{plan.key}.unit", file), 0.0
+        pulses, late = pulse_times(plan, whole, file), 0.0
     else:
         signal = rows(plan.column, key)
         pulses, late = edges_of_square_pulses(signal, time, _threshold(plan, signal, file))
@@ -231,6 +232,16 @@ def shaft_angle(plan: EncoderPlan, base: TimeBase, rows: ReadColumn, whole: Read
     zero = 0.0 if plan.index is None else _at_index_stamp(plan, angle, time, whole, file)
     gaps = np.diff(pulse_numbers(pulses)) - 1
     return ShaftAngle(angle - zero, late, int(gaps.sum()), float(pulses[int((gaps > 0).argmax())]))
+
+
+def pulse_times(plan: EncoderPlan, whole: ReadColumn, file: str) -> NDArray[np.float64]:
+    """Times of the pulses of an encoder in s, past the end of the register of their clock.
+
+    Raises:
+        InputError: no such column, or no unit of time.
+    """
+    seconds = to_si(1.0, plan.unit, "s", f"{plan.key}.unit", file)
+    return past_overflow(whole(plan.column, f"{plan.key}.timestamps")) * seconds
 
 
 def _refuse_levels(counts: NDArray, plan: EncoderPlan, file: str) -> None:

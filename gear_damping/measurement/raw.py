@@ -12,7 +12,7 @@ from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.checks import refuse_not_finite
 from gear_damping.measurement.cutting import rows_beside, slower, window_rows
 from gear_damping.measurement.declaration import ChannelPlan, EncoderPlan, RecordPlan, TimePlan
-from gear_damping.measurement.encoders import ReadColumn, ShaftAngle, shaft_angle
+from gear_damping.measurement.encoders import ReadColumn, ShaftAngle, pulse_times, shaft_angle
 from gear_damping.measurement.file_clocks import FileClocks, conflict_with_file
 from gear_damping.measurement.formats.table import Table
 from gear_damping.measurement.record import Finding
@@ -139,10 +139,7 @@ class RawReader:
             rule, remedy = "no column gives the number of samples", "declare a time column"
             remedy += ", or sampling_rate, at which the angles are taken" if self.plan.encoders else ""
             raise InputError(Problem(self.plan.key, rule, None, remedy, self.source))
-        pulses = []
-        for plan in map(self._with_unit, self.plan.encoders):
-            seconds = to_si(1.0, plan.unit, "s", f"{plan.key}.unit", self.source)
-            pulses.append(self.unsliced(plan.column, f"{plan.key}.timestamps") * seconds)
+        pulses = [pulse_times(self._with_unit(one), self.unsliced, self.source) for one in self.plan.encoders]
         self.begins = max(float(one[0]) for one in pulses)
         seconds = min(float(one[-1]) for one in pulses) - self.begins
         refuse_endless(seconds, rate, f"{self.plan.encoders[0].key}.timestamps", self.file)

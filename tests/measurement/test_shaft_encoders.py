@@ -321,6 +321,22 @@ def test_two_encoders_that_stamp_their_edges_need_no_column_but_a_rate(bench, ra
     assert np.std(seen - true) < 0.01 * np.std(true)
 
 
+@pytest.mark.parametrize("bits", [24, 32])
+def test_the_clock_of_stamped_edges_goes_on_where_its_register_was_full(bench, bits):
+    edges = {"a": np.arange(1200) * 1000.25, "b": np.arange(1200) * 1000.75}  # ticks of 1 us
+    begun = {name: np.round(one) + 2**bits - 600_000 for name, one in edges.items()}
+    seen = []
+    for stamps in (begun, {name: one % 2**bits for name, one in begun.items()}):
+        _rig(bench, **stamps)
+        record = bench.content["records"][0]
+        record["channels"] = {"sampling_rate": {"value": 5, "unit": "kHz"}}
+        stamped = {"unit": "us", "counts_per_revolution": 900}
+        record["encoders"] = {"pinion": {"timestamps": "a"} | stamped, "gear": {"timestamps": "b"} | stamped}
+        seen.append(bench.load_as_it_is().records[0].channels["transmission_error"].values)
+    assert len(seen[0]) > 5900
+    np.testing.assert_allclose(seen[1], seen[0], atol=1e-12)
+
+
 @pytest.mark.parametrize("digit", [1e-6, 1e-9])
 def test_stamps_of_edges_in_a_smaller_unit_than_said_are_no_endless_record(bench, digit):
     edges = np.arange(0.5, 2000) / 5000
