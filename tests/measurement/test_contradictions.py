@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import yaml
+from scipy.io import savemat
 
 import gear_damping as gd
 from gear_damping.identification.output_error.records import FreeParameter
@@ -69,6 +70,20 @@ def test_a_step_above_the_table_beside_another_rate_is_said(tmp_path):
                     "one that is wrong, or give the column as time"]  # fmt: skip
     (record,) = read(tmp_path, channels | {"sampling_rate": "200 Hz"}, table, "Delta_X,0.005\n").records
     assert "rate_conflict" not in {finding.kind for finding in record.findings}
+
+
+@pytest.mark.parametrize("ending", ["npz", "mat"])
+@pytest.mark.parametrize(("beside", "is_said"), [({"Fs": 100.0}, True), ({"Fs": 200.0}, False), ({"dt": 0.01}, True)])
+def test_a_rate_beside_arrays_that_contradicts_the_declared_one_is_said(ending, beside, is_said, tmp_path):
+    save = np.savez if ending == "npz" else lambda path, **arrays: savemat(path, arrays)
+    save(tmp_path / f"run.{ending}", x=MOTION, **beside)
+    channels = {"sampling_rate": "200 Hz", "displacement": X}
+    content = {"system": "oscillator", "records": [{"file": f"run.{ending}", "channels": channels}]}
+    (tmp_path / "measurement.yaml").write_text(yaml.safe_dump(content))
+    findings = gd.load(tmp_path / "measurement.yaml").records[0].findings
+    said = [one.message for one in findings if one.kind == "rate_conflict"]
+    assert len(said) == is_said
+    assert all(one.startswith(f"'{next(iter(beside))}' beside the table says 100 Hz and") for one in said)
 
 
 def test_a_segment_below_a_sample_is_refused(tmp_path):

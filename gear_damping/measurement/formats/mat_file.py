@@ -16,6 +16,7 @@ from scipy.io.matlab import MatlabFunction, MatlabOpaque, MatReadWarning, matfil
 
 from gear_damping.measurement.formats.octave_text import BEGIN as OCTAVE
 from gear_damping.measurement.formats.octave_text import octave_table
+from gear_damping.measurement.formats.stated_rate import rate_beside
 from gear_damping.measurement.formats.table import (
     ArrayTable,
     Table,
@@ -47,7 +48,9 @@ def read(path: Path, max_bytes: int) -> Table:
     arrays = {name: value for name, value in found.items() if isinstance(value, np.ndarray)}
     held, left_out = held_arrays(arrays)
     left_out += [f"{name} ({value})" for name, value in found.items() if name not in arrays]
-    return ArrayTable(path, held, left_out)
+    table = ArrayTable(path, held, left_out)
+    table.stated_rate = rate_beside(arrays)
+    return table
 
 
 def _octave_text(path: Path, max_bytes: int) -> Table | None:

@@ -6,6 +6,7 @@ from zipfile import ZipFile
 import numpy as np
 from numpy.typing import NDArray
 
+from gear_damping.measurement.formats.stated_rate import rate_beside
 from gear_damping.measurement.formats.table import ArrayTable, Table, held_arrays, refuse_size, unreadable
 
 SUFFIXES = (".npz", ".npy")
@@ -25,7 +26,10 @@ def read(path: Path, max_bytes: int) -> Table:
             refuse_size(path, sum(member.file_size for member in archive.infolist()), max_bytes)
         with np.load(path, allow_pickle=False) as archive:
             parts = [_fields(name, archive[name]) for name in archive.files]
-    return ArrayTable(path, *held_arrays({name: array for part in parts for name, array in part.items()}))
+    arrays = {name: array for part in parts for name, array in part.items()}
+    table = ArrayTable(path, *held_arrays(arrays))
+    table.stated_rate = rate_beside(arrays)
+    return table
 
 
 def _fields(name: str, array: NDArray) -> dict[str, NDArray]:

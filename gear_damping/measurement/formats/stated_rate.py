@@ -6,6 +6,7 @@ from math import inf
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gear_damping.units import is_of_kind, to_si
 
@@ -76,6 +77,12 @@ def beside_their_units(attributes: Mapping[str, Any]) -> list[list[str]]:
         return own.decode("utf-8", "replace") if isinstance(own, bytes) else str(own or "")
 
     return [[name, str(value), unit_of(name)] for name, value in attributes.items() if np.size(value) == 1]
+
+
+def rate_beside(arrays: Mapping[str, NDArray]) -> tuple[str, float] | None:
+    """The rate that single numbers beside arrays state (`Fs`, `dt`), as `stated_rate` has it."""
+    single = {name: one.item() for name, one in arrays.items() if one.size == 1 and one.dtype.kind in "fiu"}
+    return stated_rate(beside_their_units(single))
 
 
 def _factor(unit: str, plain: str) -> float:
