@@ -133,6 +133,22 @@ def test_npz_gives_vectors_and_the_columns_of_matrices(tmp_path):
     assert table.values(0).dtype == np.float64
 
 
+@pytest.mark.parametrize("digits", ["ns", "us", "ms"])
+def test_npz_gives_dates_and_durations_in_seconds(tmp_path, digits):
+    went = np.arange(40).astype(f"timedelta64[{digits}]") * 5
+    dates = np.datetime64("2026-03-01T12:00:00", digits) + went
+    gone = dates.copy()
+    gone[3] = "NaT"
+    np.savez(tmp_path / "a.npz", went=went, dates=dates, later=dates + np.timedelta64(2, "s"), gone=gone)
+    table, seconds = read_table(tmp_path / "a.npz"), np.arange(40) * {"ns": 5e-9, "us": 5e-6, "ms": 5e-3}[digits]
+    for name in ("went", "dates", "later"):
+        np.testing.assert_allclose(_column(table, name), seconds, rtol=1e-12)
+        assert table.unit(table.index(name, "")) == "s"
+    assert np.flatnonzero(np.isnan(_column(table, "gone"))).tolist() == [3]
+    begun = [table.begins(table.index(name, "")) for name in ("went", "dates", "later")]
+    assert begun == [None, 825_681_600.0, 825_681_602.0]  # s since 2000
+
+
 def test_npz_with_python_objects_is_never_unpickled(tmp_path):
     np.savez(tmp_path / "a.npz", x=np.array([{}, 1], dtype=object))
     with pytest.raises(InputError, match="not a readable NPZ"):

@@ -250,9 +250,19 @@ def held_arrays(arrays: Mapping[str, NDArray]) -> tuple[list[Held], list[str]]:
     for name, array in arrays.items():
         if is_real(array.dtype) and array.size:
             held.append(Held(name, squeezed(array.shape), lambda array=array: array))
+        elif array.dtype.kind in "mM" and array.size:
+            held.append(_stamps(name, array))
         else:
             left_out.append(f"{name} ({'empty' if not array.size else kind_of(array.dtype)})")
     return held, left_out
+
+
+def _stamps(name: str, array: NDArray) -> Held:
+    """Dates and durations of numpy, in s: dates from the first one, what is none as nan."""
+    first = array.flat[0] if array.dtype.kind == "M" else np.timedelta64(0, "s")
+    begun = float((first - np.datetime64("2000-01-01")) / np.timedelta64(1, "s")) if array.dtype.kind == "M" else None
+    begins = None if begun is None else lambda: begun
+    return Held(name, squeezed(array.shape), lambda: (array - first) / np.timedelta64(1, "s"), "s", begins=begins)
 
 
 def kind_of(dtype: np.dtype) -> str:
