@@ -418,6 +418,14 @@ def test_xlsx_sheets_rows_of_units_and_times(tmp_path):
     np.testing.assert_array_equal(_values(table, "B/x"), [1, 2])
 
 
+def test_formulas_of_xlsx_without_stored_values_are_said(tmp_path):
+    rows = [["t", "x"], *([k, f"=A{k + 2}*2"] for k in range(9))]
+    table = read_table(_workbook(tmp_path / "a.xlsx", S=rows))
+    assert table.names == ("t",)
+    with pytest.raises(InputError, match=r"holds t \(9\); no real numbers: x \(no values; if they are formulas, open"):
+        table.index("x", "column")
+
+
 def test_a_cell_of_xlsx_that_is_no_number_is_named_with_its_row(tmp_path):
     table = read_table(_workbook(tmp_path / "a.xlsx", S=[["t", "x"], [0, 1], [1, "n/a"], [2, None], [3, 4]]))
     np.testing.assert_array_equal(table.values(0), [0, 1, 2, 3])

@@ -24,6 +24,7 @@ _THOUSANDTHS = re.compile(r"(?<=[0#?])(,+)(?=\.|[^0#?.,]*$)")
 _BEHIND = re.compile(r'[0#?%,]\s*"([^"]+)"\s*$')
 _GROUP = 3  # digits between signs of thousands
 _CLEARLY = 10.0  # times as far from the numbers beside it: what the other reading of a comma must be to be none
+NO_VALUES = "no values; if they are formulas, open the workbook and save it, which stores what they give"
 _HEAD = 100  # rows among which the header is looked for
 
 
@@ -41,10 +42,11 @@ def read(path: Path, max_bytes: int) -> Table:
         sheets = {sheet.title: _cells(sheet) for sheet in book.worksheets}
         book.close()
     several = sum(bool(rows) for rows, _ in sheets.values()) > 1
-    columns, notes = [], []
+    columns, notes, empty_columns = [], [], []
     for title, (rows, units) in sheets.items():
         notes += [f"{path.name}, {title}: {empty}"] if (empty := _empty_rows(rows)) else []
-        found, said = _columns(rows, units, f"{title}/" if several else "")
+        found, said, without = _columns(rows, units, f"{title}/" if several else "")
+        empty_columns += without
         own, below = without_footer(found)
         columns += own
         notes += [f"{path.name}, {title}: {one}" for one in said]
@@ -53,6 +55,7 @@ def read(path: Path, max_bytes: int) -> Table:
         raise InputError(Problem("file", "no rows", str(path), "export it again"))
     table = CellTable(path, columns, decimal_commas=True)
     table.notes += tuple(notes)
+    table.left_out = tuple(f"{name} ({NO_VALUES})" for name in empty_columns)
     return table
 
 
@@ -84,8 +87,8 @@ def _unit_written(number_format: str) -> str:
     return written[1].strip() if written and is_of_kind(written[1].strip(), written[1].strip()) else ""
 
 
-def _columns(rows: list[list[Any]], units: dict[int, str], prefix: str) -> tuple[list[Cells], list[str]]:
-    """The columns of a sheet with rows below its header, and what is noted of them.
+def _columns(rows: list[list[Any]], units: dict[int, str], prefix: str) -> tuple[list[Cells], list[str], list[str]]:
+    """The columns of a sheet with rows below its header, what is noted of them, and names without a value below.
 
     Empty cells at the end of a column are not its own.
     """
@@ -94,15 +97,16 @@ def _columns(rows: list[list[Any]], units: dict[int, str], prefix: str) -> tuple
     )
     texts = [["" if cell is None else str(cell).strip() for cell in row] for _, row in filled[:_HEAD]]
     if not texts:
-        return [], []
+        return [], [], []
     header = find_header(texts, max(sum(cell is not None for cell in row) for _, row in filled))
     body = filled[header.first :]
-    columns, notes = [], []
+    columns, notes, empty = [], [], []
     for k in range(max(len(row) for _, row in filled)):
         cells = [(number, row[k] if k < len(row) else None) for number, row in body]
         while cells and cells[-1][1] is None:
             cells.pop()
         name, unit = header.name(k), header.unit(k) or units.get(kept[k])
+        empty += [f"{prefix}{name}"] if name and not cells else []
         if cells:
             lines = [number for number, _ in cells]
             name = f"{prefix}{name}" if name else ""
@@ -114,7 +118,7 @@ def _columns(rows: list[list[Any]], units: dict[int, str], prefix: str) -> tuple
             values, begins = _values(own)
             unit = unit if begins is None else "s"
             columns.append(Cells(name, unit, values, lines.__getitem__, header.also(k), begins))
-    return columns, notes
+    return columns, notes, empty
 
 
 def _with_points(cells: list[Any]) -> list[Any]:
