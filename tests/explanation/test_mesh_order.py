@@ -24,9 +24,10 @@ def _record(orders: dict[float, float], speed: float, lines: dict[float, float],
     return FitRecord(f"run_{seed}", series["response"], RATE, {"pinion_angle": series["angle"]}, {})
 
 
-def _found(teeth: int | None, orders: dict[float, float], lines=None, speeds=(150.0, 190.0)) -> list[str]:
+def _found(teeth: int | None, orders: dict[float, float], lines=None, speeds=(150.0, 190.0), gear=None) -> list[str]:
     records = tuple(_record(orders, speed, lines or {}, k) for k, speed in enumerate(speeds))
     parameters = {} if teeth is None else {"n_teeth_pinion": float(teeth)}
+    parameters |= {} if gear is None else {"n_teeth_gear": float(gear)}
     channel = Channel("transmission_error", np.zeros(2), "m")
     evidence = Evidence("gear_pair", records[:1], records[1:], Known(parameters, {}), channel, one_record=False)
     return [finding.message for finding in mesh_order_faults(evidence)]
@@ -103,6 +104,34 @@ def test_turns_that_were_counted_by_another_number_of_counts_are_found(factor):
 )
 def test_a_mesh_that_is_there_is_not_miscounted(orders):
     assert _found(24, orders) == []
+
+
+@pytest.mark.parametrize(
+    ("counts", "factor", "is_said"),
+    [
+        ((23, 41), 0.5, True),
+        ((23, 41), 0.25, True),
+        ((23, 40), 0.5, False),
+        ((24, 41), 0.5, False),
+        ((22, 41), 0.25, True),
+    ],
+)
+def test_lines_between_those_of_the_mesh_that_no_shaft_can_make_are_the_mesh(counts, factor, is_said):
+    """The true mesh excites the resonance by its second or fourth harmonic, where the declared one has its first."""
+    orders = {factor * counts[0]: 0.3, counts[0]: 1.0, 2 * counts[0]: 0.2}
+    found = _found(counts[0], orders, gear=counts[1])
+    assert len(found) == is_said
+    assert all(f"mesh {counts[0] * factor:g} times a turn" in one for one in found)
+
+
+@pytest.mark.parametrize("speeds", [(40.0, 60.0), (150.0, 190.0)])
+def test_what_drifts_over_a_turn_is_no_mesh_between_the_lines(speeds):
+    assert _found(23, {23: 1.0, 1: 30.0, 0.2: 60.0, 1.7: 9.0}, speeds=speeds, gear=41) == []
+
+
+def test_a_mesh_counted_too_finely_is_found_by_its_high_harmonics():
+    (message,) = _found(23, {46: 0.3, 92: 0.2, 184: 1.0}, gear=41)
+    assert "mesh 46 times a turn" in message
 
 
 def test_of_one_speed_no_harmonic_is_told_from_a_line_of_the_structure():

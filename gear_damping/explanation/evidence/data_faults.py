@@ -20,6 +20,8 @@ OTHER_SPEED = 0.05  # relative; speeds that differ by this tell an order from a 
 FEWEST_TEETH = 4  # that pass in every record: over fewer, every comb of four harmonics fits as well as the next
 LEAST_ORDER = 0.6  # of the tooth count, from which other combs are compared with the mesh
 DECODED = 4  # counts that an encoder gives for a line of it at most; 1 and 2 are usual too
+BETWEEN = 0.05  # share of a signal's variance between the harmonics of a mesh, where no shaft's own orders lie
+BESIDE = 2  # teeth more and fewer, whose mesh lies where nothing of this one or of a shaft does
 LACKING = 0.01  # of the energy: of a wave of two stiffnesses the first harmonic is never smaller than the second
 
 
@@ -42,7 +44,8 @@ def mesh_order_faults(evidence: Evidence) -> list[Finding]:
     if teeth * min(float(np.ptp(angle)) for angle in shafts) < FEWEST_TEETH * 2 * np.pi:
         return []
     series = [record.response.numpy() - float(record.response.mean()) for record in records]
-    if (factor := _miscounted(series, shafts, teeth)) and _at_other_speeds(records, shafts):
+    other = round(evidence.parameters.get("n_teeth_gear", _declared("n_teeth_gear", evidence)))
+    if (factor := _miscounted(series, shafts, (teeth, other))) and _at_other_speeds(records, shafts):
         message = (
             f"the teeth mesh {factor * teeth:g} times a turn of the angle that is given, and the pinion has {teeth}: "
             "check counts_per_revolution (lines, or the two or four counts of each) and the unit of the angle"
@@ -68,26 +71,33 @@ def mesh_order_faults(evidence: Evidence) -> list[Finding]:
     return [Finding("mesh_order_absent", message, channel=evidence.channel.name)]
 
 
-def _miscounted(series: Sequence[NDArray], shafts: Sequence[NDArray], teeth: int) -> float:
+def _miscounted(series: Sequence[NDArray], shafts: Sequence[NDArray], counts: tuple[int, int]) -> float:
     """By what the order of the mesh is off where turns were counted by another number of counts; 0 where by none.
 
     Of all harmonics of a quarter of the tooth count, those of the mesh that is there hold the energy of every record.
-    Records that are too short for the lowest of them, or too coarse for the highest, tell nothing.
+    Those between the harmonics of the declared mesh may be another machine's on the shaft, beside the mesh, if they go
+    round a whole number of times in a turn of a shaft; if they do in none, the mesh alone makes them. Records that are
+    too short for the lowest, or too coarse for the highest, tell nothing.
     """
+    teeth, _ = counts
     passed = [teeth * float(np.ptp(angle)) / (2 * np.pi) for angle in shafts]
-    if any(
-        one < DECODED * FEWEST_TEETH or 2 * DECODED * one > len(angle)
-        for one, angle in zip(passed, shafts, strict=True)
-    ):
+    highest = min(len(angle) * DECODED / max(2 * one, 1e-300) for one, angle in zip(passed, shafts, strict=True))
+    if min(passed) < DECODED * FEWEST_TEETH or highest < 2 * DECODED:
         return 0.0
-    shares = np.array(
-        [
-            (_waves(values, angle, teeth / DECODED, DECODED**2) ** 2).sum(0) / max(values @ values, 1e-300)
-            for values, angle in zip(series, shafts, strict=True)
-        ]
-    )  # (records, harmonics)
-    number = np.arange(1, DECODED**2 + 1)
+    most = min(int(highest), 2 * DECODED**2)
+    shares = _shares(series, shafts, [teeth / DECODED], most)[:, 0]  # (records, harmonics)
+    number = np.arange(1, most + 1)
     own = number % DECODED == 0
+    for step in (1, 2):
+        between = number % (2 * step) == step
+        of_no_shaft = all(count * step % DECODED for count in counts)
+        if not of_no_shaft or (there := shares[:, between].sum(1)).min() < BETWEEN:
+            continue
+        beside = _shares(series, shafts, [(teeth - BESIDE) / DECODED, (teeth + BESIDE) / DECODED], most)
+        if (there >= STANDS_OUT * beside[..., between].sum(2).max(1)).all():
+            return step / DECODED
+    if most < DECODED**2:
+        return 0.0
     for step in (2, 1):
         others = (number % step == 0) & ~own
         is_there = shares[:, others].sum(1).min() >= STRONG
@@ -106,10 +116,12 @@ def _declared(name: str, evidence: Evidence) -> float:
     return next(float(parameter.default) for parameter in evidence.base.parameters if parameter.name == name)
 
 
-def _shares(series: Sequence[NDArray], shafts: Sequence[NDArray], orders: Sequence[int]) -> NDArray:
+def _shares(
+    series: Sequence[NDArray], shafts: Sequence[NDArray], orders: Sequence[float], count: int = HARMONICS
+) -> NDArray:
     """Share of each record's variance at the first harmonics of each order, (records, orders, harmonics)."""
     energies = [
-        [(_waves(values, angle, order) ** 2).sum(0) / max(values @ values, 1e-300) for order in orders]
+        [(_waves(values, angle, order, count) ** 2).sum(0) / max(values @ values, 1e-300) for order in orders]
         for values, angle in zip(series, shafts, strict=True)
     ]
     return np.array(energies)
