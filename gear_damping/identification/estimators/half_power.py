@@ -12,6 +12,7 @@ from gear_damping.identification.damping_estimate import DampingEstimate, Unsuit
 from gear_damping.identification.decay_rate import LEVEL, ratio_percent
 from gear_damping.identification.estimators.base import Recorded, RecordEstimator
 from gear_damping.identification.free_vibration import FreeVibration
+from gear_damping.measurement.spectral_floor import spectrum_of
 from gear_damping.setting import Setting
 
 Array = NDArray[np.float64]
@@ -22,6 +23,7 @@ WIDEST = 50.0  # of the frequency: the first span, where no resolution is wider
 CLOSER = 3  # times that the spectrum is refined
 RESOLVED = 1.15  # times the width of a record that does not fall at all: less tells no damping
 MOST = 20.0  # % of critical damping: beyond, the line at the negative frequency reaches into the width
+BAND = 0.5  # of the frequency, on either side of it, over which the density of noise is taken
 NEPERS = np.linspace(0.0, 50.0, 5001)  # over a record, for which the width is worked out; more is no vibration
 SEED = 0  # of the noise that is drawn for the interval
 FEWEST_TOLD = 0.9  # of the draws, in which the width must tell a damping
@@ -59,7 +61,8 @@ class HalfPower(RecordEstimator):
         decay = np.exp((-nepers / seconds + 2j * pi * frequency) * free.time)
         basis = np.stack([decay.real, decay.imag], axis=1)
         model = basis @ np.linalg.lstsq(basis, free.values, rcond=None)[0]
-        deviation = max(float(np.std(free.values - model)), free.noise)  # what is no such decay counts as noise
+        left = free.values - model  # what is no such decay counts as noise
+        deviation = max(float(np.std(left)), free.noise, _beside(left, free))
         low, high = self._quantiles(deviation * tones, tones @ model, frequencies, seconds)
         rates = np.array([nepers, nepers - (high - nepers), nepers - (low - nepers)]) / seconds  # the basic bootstrap
         value, lower, upper = (float(one) for one in ratio_percent(rates, frequency))
@@ -98,6 +101,13 @@ class HalfPower(RecordEstimator):
             raise UnsuitedRecord("noise hides where the power is half of its peak: record with less of it, or longer")
         low, high = np.quantile(drawn, [(1 - LEVEL) / 2, (1 + LEVEL) / 2])
         return float(low), float(high)
+
+
+def _beside(left: Array, free: FreeVibration) -> float:
+    """Standard deviation of white noise as dense as what is left about the resonance; 0 of too short a record."""
+    spectrum = spectrum_of(left, free.sampling_rate)
+    near = spectrum is not None and np.abs(spectrum.frequency / free.frequency_hz - 1) < BAND
+    return float((spectrum.density[near].mean() * free.sampling_rate / 2) ** 0.5) if np.any(near) else 0.0
 
 
 def _refined(values: Array, rate: float, guess: float) -> Array:
