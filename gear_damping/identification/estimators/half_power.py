@@ -23,7 +23,7 @@ WIDEST = 50.0  # of the frequency: the first span, where no resolution is wider
 CLOSER = 3  # times that the spectrum is refined
 RESOLVED = 1.15  # times the width of a record that does not fall at all: less tells no damping
 MOST = 20.0  # % of critical damping: beyond, the line at the negative frequency reaches into the width
-BAND = 0.5  # of the frequency, on either side of it, over which the density of noise is taken
+BAND = (0.2, 0.5)  # of the frequency, on either side of it, between which the density of noise is taken
 NEPERS = np.linspace(0.0, 50.0, 5001)  # over a record, for which the width is worked out; more is no vibration
 SEED = 0  # of the noise that is drawn for the interval
 FEWEST_TOLD = 0.9  # of the draws, in which the width must tell a damping
@@ -104,10 +104,16 @@ class HalfPower(RecordEstimator):
 
 
 def _beside(left: Array, free: FreeVibration) -> float:
-    """Standard deviation of white noise as dense as what is left about the resonance; 0 of too short a record."""
+    """Standard deviation of white noise as dense as what is left beside the resonance; 0 of too short a record.
+
+    At the resonance itself lies what is no such decay, as of a frequency that moves.
+    """
     spectrum = spectrum_of(left, free.sampling_rate)
-    near = spectrum is not None and np.abs(spectrum.frequency / free.frequency_hz - 1) < BAND
-    return float((spectrum.density[near].mean() * free.sampling_rate / 2) ** 0.5) if np.any(near) else 0.0
+    if spectrum is None:
+        return 0.0
+    apart = np.abs(spectrum.frequency / free.frequency_hz - 1)
+    beside = (apart > BAND[0]) & (apart < BAND[1])
+    return float((np.median(spectrum.density[beside]) * free.sampling_rate / 2) ** 0.5) if beside.any() else 0.0
 
 
 def _refined(values: Array, rate: float, guess: float) -> Array:
