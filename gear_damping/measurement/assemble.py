@@ -101,12 +101,14 @@ class Assembler:
         rounding = rounding_of(values) if record.plan.resample else 0.0
         if raw.own_time is None:
             recorded, values = values, record.base.resample(values)
-            findings += _lost(recorded, values, plan.name, record.base) if record.plan.resample else []
+            was = getattr(record.base, "recorded", None) or record.base
+            findings += _lost(recorded, was, values, record.base, plan.name) if record.plan.resample else []
         else:
             recorded, own = values, raw.own_time
             findings += [found for found in own.findings if found.kind == "rate_conflict"]
             values = moved(record.base, own, values, plan.key, str(record.table.path))
-            findings += _lost(own.resample(recorded), values, plan.name, own) if is_faster(own, record.base) else []
+            evenly = own.resample(recorded) if is_faster(own, record.base) else None
+            findings += [] if evenly is None else _lost(evenly, own, values, record.base, plan.name)
             done = "filtered and taken" if is_faster(own, record.base) else "interpolated"
             notes.append(f"{plan.name}: {done} from {own.sampling_rate:.6g} Hz to the record's time")
         sensor = plan.sensor | ({"hold": self._held(raw, record, values, notes)} if plan.name in HOLDABLE else {})
@@ -237,12 +239,23 @@ class Assembler:
         notes.append(f"gear_torque: held at {held:.6g} N*m, which balances the mean of pinion_torque")
 
 
-def _lost(recorded: NDArray[np.float64], kept: NDArray[np.float64], name: str, base: TimeBase) -> list[Finding]:
-    """What a filter before a lower rate has taken of a channel, where that is much; uneven samples by their time."""
-    if np.ptp(recorded) == 0:
+def _lost(
+    recorded: NDArray[np.float64], was: TimeBase, kept: NDArray[np.float64], base: TimeBase, name: str
+) -> list[Finding]:
+    """What a filter before a lower rate has taken of a channel, where that is much; uneven samples by their time.
+
+    Args:
+        recorded: (n,) as recorded, at the times of `was`, some of which lie beside the record.
+        was: Their time base.
+        kept: (m,) at the lower rate.
+        base: The time base of the record.
+        name: Of the channel.
+    """
+    inside = (was.time >= base.time[0]) & (was.time <= base.time[-1])
+    recorded = recorded[inside]
+    if not recorded.size or np.ptp(recorded) == 0:
         return []
-    own = getattr(base, "recorded", None)
-    weights = None if own is None or own.uniform else np.gradient(own.time)
+    weights = None if was.uniform else np.gradient(was.time[inside])
     mean = np.average(recorded, weights=weights)
     before = float(np.average((recorded - mean) ** 2, weights=weights))
     share = 1 - float(np.var(kept)) / max(before, 1e-300)

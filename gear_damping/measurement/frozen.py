@@ -17,6 +17,7 @@ from gear_damping.measurement.vocabulary import INPUTS
 _REPEATS = 5  # of a value in a row, from which it is held: at a share of zeros as below, one chance in 3e11 a sample
 _HELD = 5e-3  # share of the other steps that are zero, from which values are coarse and repeat by themselves
 _BESIDE = 50  # steps on either side that say how fast the motion was
+MOSTLY = 0.5  # share of the stretches that leap, where a motion was lost; else values are renewed slowly throughout
 _LEAP = 0.5  # times what it moves over as many usual steps: less is how a motion begins again
 
 
@@ -49,7 +50,9 @@ def _stretches(values: NDArray[np.float64]) -> list[tuple[int, int]]:
     elsewhere = np.count_nonzero(steps == 0) - sum(b - a for a, b in runs)
     if not runs or elsewhere > _HELD * steps.size:
         return []
-    return [(a, b) for a, b in runs if a > 0 and b < steps.size and _leaps(steps, a, b)]
+    inside = [(a, b) for a, b in runs if a > 0 and b < steps.size]
+    leapt = [(a, b) for a, b in inside if _leaps(steps, a, b)]
+    return leapt if MOSTLY * len(inside) < len(leapt) else []
 
 
 def _leaps(steps: NDArray[np.float64], first: int, last: int) -> bool:

@@ -45,6 +45,14 @@ def test_a_coarse_converter_repeats_values_everywhere(step):
     assert _said(values) is None
 
 
+def test_a_value_that_is_renewed_slowly_throughout_is_none():
+    """The speed of a drive that works its encoder out anew every 9 to 30 samples."""
+    renewed = np.r_[0, np.cumsum(np.random.default_rng(3).integers(9, 31, 300))]
+    speed = 100 * np.sign(np.sin(T)) * (1 - np.exp(-5 * (T % np.pi))) + np.random.default_rng(4).normal(0, 1, T.size)
+    last = renewed[np.searchsorted(renewed, np.arange(T.size), side="right") - 1]
+    assert _said(speed[last]) is None
+
+
 def test_an_input_may_be_held():
     values = DECAY.copy()
     values[900:930] = values[899]
