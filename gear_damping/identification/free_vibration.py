@@ -162,7 +162,7 @@ def free_vibration(record: FitRecord, turning: Turning | None = None) -> FreeVib
     begin = _last_drive(record)
     values = values[begin:] - values[begin:].mean()
     if turning is not None:
-        values = _without_orders(values, turning, begin)
+        values = without_orders(values, turning, begin)
     spectrum = spectrum_of(values, rate)
     if spectrum is None:
         raise UnsuitedRecord(f"{values.size} samples are too few for a free vibration: record longer")
@@ -241,8 +241,17 @@ def at_even_instants(record: FitRecord) -> Array:
     return CubicSpline(stamps, values)(np.linspace(stamps[0], stamps[-1], values.size))
 
 
-def _without_orders(values: Array, turning: Turning, begin: int) -> Array:
-    """Without what follows mesh and shafts, up to half the sampling rate, by least squares."""
+def without_orders(values: Array, turning: Turning, begin: int = 0) -> Array:
+    """Without what follows mesh and shafts, up to half the sampling rate, by least squares.
+
+    Args:
+        values: (n,), from sample `begin` of the record on.
+        turning: What turns, over the whole record.
+        begin: The first sample.
+
+    Raises:
+        UnsuitedRecord: it holds too few turns for that.
+    """
     angles = [angle[begin:] for angle in turning.orders() if np.abs(np.diff(angle)).max() < pi]
     if not angles:
         return values

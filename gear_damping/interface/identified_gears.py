@@ -20,6 +20,7 @@ from gear_damping.explanation.model.covariance import covariance_of
 from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Given, Hypothesis, Outcome, natural_frequency_hz
 from gear_damping.explanation.model.nominal_gear_pair import MESH, angles_of, first_gear_pair
+from gear_damping.explanation.model.ringing import with_untold_ringing
 from gear_damping.explanation.steps.too_short import too_short
 from gear_damping.explanation.trials.bench import Log
 from gear_damping.explanation.trials.efficient import weighed
@@ -41,6 +42,7 @@ MOTION = ("amplitude", "characteristic_time")  # of an oscillator: what damping 
 ITERATIONS = 40  # at most, of a fit of one's own model
 STEEL = 1.4e10  # N/m^2: mesh stiffness of steel teeth by their width (ISO 6336-1: 14 N/(mm um) of one pair)
 WIDTH = 10.0  # modules, of usual teeth
+UNTOLD = 2.0  # times the damping ratio: an interval from 0 to there or further
 SOFTEST, STIFFEST = 1e-3, 30.0  # times that: polymers are 100 times softer and often narrower; few teeth are wider
 
 
@@ -137,7 +139,7 @@ def content_of(measurement: Measurement, found: Fitted) -> dict[str, Any]:
     """What stands in identification.json."""
     evidence, outcome = found.evidence, found.outcome
     unit, factor = evidence.channel.declared_unit, evidence.channel.declared_factor
-    covariances = covariance_of(outcome, evidence)
+    covariances = covariance_of(outcome, evidence, with_untold_ringing(outcome, evidence))
     left, lost = _missed(found), _lost(found)
     roles = {"fit": (evidence.fitted, outcome.fit_residuals), "holdout": (evidence.held, outcome.holdout)}
     return {
@@ -199,8 +201,22 @@ def table_of(content: dict[str, Any]) -> str:
             f"signal's variance beyond the noise, and the intervals do not cover what is missing; "
             f"task=explain measurement.path={lacking['source']} looks for its name\n"
         )
-    said = filter(None, (text.rstrip(), content["contradicted"], content["too_short"]))
+    said = filter(None, (text.rstrip(), content["contradicted"], content["too_short"], _hardly_told(content)))
     return "\n\n".join(said) + "\n"
+
+
+def _hardly_told(content: dict[str, Any]) -> str | None:
+    """What would tell a damping that these records do not."""
+    ratio = content["damping_ratio_percent"]
+    is_of_gears = any(name.startswith(MESH) for name in content["parameters"])
+    if ratio is None or not is_of_gears or ratio["interval95"][0] > 0:
+        return None
+    if ratio["interval95"][1] < UNTOLD * ratio["value"]:
+        return None
+    return (
+        "these records hardly tell the damping: in steady running the shape of the mesh stiffness may stand in for it; "
+        "records at other speeds, or a run-up through the resonance, tell it (task=plan says which)"
+    )
 
 
 def _far_off(outcome: Outcome, evidence: Evidence) -> str | None:

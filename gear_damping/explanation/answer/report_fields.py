@@ -20,6 +20,7 @@ from gear_damping.explanation.model.homogeneity import by_record
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.nominal_gear_pair import is_standing
 from gear_damping.explanation.model.own_phases import own_levels
+from gear_damping.explanation.model.ringing import with_untold_ringing
 from gear_damping.explanation.report_schema import KEYS, SCHEMA_VERSION
 from gear_damping.explanation.statistics.paired import share_taken
 from gear_damping.explanation.steps.judge import CONSISTENT, DATA_PROBLEM, LARGEST_SET, Judged, is_visible, statuses
@@ -232,7 +233,7 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
 def _known(judged: Judged, evidence: Evidence) -> Tensor:
     """How well the last model's coordinates are known, the scatter between records counted beside several causes."""
     last = judged.found.outcome
-    covariances = covariance_of(last, evidence)
+    covariances = covariance_of(last, evidence, with_untold_ringing(last, evidence))
     return wider_of_both(covariances, last) if _are_several(judged) and _may_scatter(judged) else covariances
 
 
@@ -281,7 +282,9 @@ def _gain(judged: Judged, evidence: Evidence, noise: NoiseLevel) -> dict[str, An
     }
     damping = {
         key: gain.damping_ratio(
-            outcome, covariance_of(outcome, evidence), moves_without_one(outcome) if missed[key] else None
+            outcome,
+            covariance_of(outcome, evidence, with_untold_ringing(outcome, evidence)),
+            moves_without_one(outcome) if missed[key] else None,
         )
         for key, outcome in (("before", first), ("after", last))
     }

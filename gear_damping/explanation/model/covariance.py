@@ -8,6 +8,7 @@ from torch import Tensor
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.hypothesis import Outcome, mean_free_places, places_of, time_scale
 from gear_damping.explanation.model.own_phases import own_levels
+from gear_damping.identification.output_error.problem import Prediction
 from gear_damping.identification.output_error.records import SEPARATOR
 from gear_damping.identification.output_error.uncertainty import covariance, without_one
 
@@ -16,10 +17,16 @@ FEWEST = 3  # records, or segments, that tell whether they agree: the scatter of
 SILENT = 0.1  # noise levels that a step of order one moves the records by, in all: less says nothing of a parameter
 
 
-def covariance_of(outcome: Outcome, evidence: Evidence) -> Tensor:
-    """Covariance of the fitted coordinates; residuals may be coloured."""
+def covariance_of(outcome: Outcome, evidence: Evidence, linearised: Prediction | None = None) -> Tensor:
+    """Covariance of the fitted coordinates; residuals may be coloured.
+
+    Args:
+        outcome: The fit.
+        evidence: The records.
+        linearised: In the place of the outcome's own linearisation.
+    """
     scale = time_scale(outcome.hypothesis, evidence)
-    fitted = replace(outcome.fitted, prediction=outcome.linearisation)
+    fitted = replace(outcome.fitted, prediction=linearised or outcome.linearisation)
     return covariance(outcome.problem, fitted, CORRELATED_PERIODS * scale, _known_means(outcome))
 
 

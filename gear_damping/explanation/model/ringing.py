@@ -1,0 +1,78 @@
+"""A free ringing that is no more than noise makes of itself tells neither frequency nor damping.
+
+In steady running what repeats with the mesh hardly tells the damping, and the initial state of a record is free. With
+next to no damping it rings on all through the record, at the frequency at which the noise happens to be strongest, and
+the fit then knows that line to a hair. Where the ringing of a record does not stand out of the lines of the noise
+beside it, the record has a frequency and a decay of that ringing of its own.
+"""
+
+from dataclasses import replace
+from math import log
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.hypothesis import Outcome
+from gear_damping.identification.damping_estimate import UnsuitedRecord
+from gear_damping.identification.free_vibration import Turning, without_orders
+from gear_damping.identification.output_error.problem import Prediction
+from gear_damping.identification.output_error.records import SEPARATOR, FitRecord
+from gear_damping.physics.systems.gear_pair import teeth_of
+from gear_damping.physics.systems.traits import Trait
+
+Array = NDArray[np.float64]
+BY_CHANCE = 0.01  # probability at which the strongest of all lines of white noise counts as one
+
+
+def with_untold_ringing(outcome: Outcome, evidence: Evidence) -> Prediction:
+    """The linearisation, with the frequency and the decay of a ringing that noise makes as the record's own.
+
+    Along these the response changes by the time times what the initial state does.
+    """
+    found, rows = outcome.linearisation, len(outcome.problem.records)
+    if not evidence.has(Trait.TEETH) or rows != len(evidence.fitted):  # segments are too short to tell a line
+        return found
+    untold = torch.tensor([not _rings(*pair) for pair in _parts(outcome, evidence)], dtype=torch.float64)
+    own = found.sensitivity[..., outcome.problem.n_shared :]
+    channels = len(outcome.problem.response.channels)
+    time = torch.linspace(0.0, 1.0, own.shape[2] // channels, dtype=torch.float64).repeat(channels)
+    more = untold[:, None, None] * time[:, None] * own
+    return replace(found, sensitivity=torch.cat([found.sensitivity, more], -1))
+
+
+def _parts(outcome: Outcome, evidence: Evidence) -> list[tuple[Array, Array]]:
+    """What neither the mesh nor a shaft repeats of the simulated and of the left response of each record."""
+    found = []
+    for record, residual in zip(evidence.fitted, outcome.fit_residuals, strict=True):
+        left = residual[: len(record.response)].numpy()
+        turning = _turning(record, outcome, evidence)
+        try:
+            parts = [without_orders(one, turning) for one in (record.response.numpy() - left, left)]
+        except UnsuitedRecord:  # so few turns tell no lines
+            parts = [left, np.zeros_like(left)]
+        found.append((parts[0], parts[1]))
+    return found
+
+
+def _turning(record: FitRecord, outcome: Outcome, evidence: Evidence) -> Turning:
+    teeth = teeth_of(evidence.parameters)
+    if "pinion_angle" in record.inputs:
+        return Turning(teeth[0] * record.inputs["pinion_angle"].numpy(), teeth)
+    names = ("pinion_speed", "pinion_acceleration", "pinion_jerk")
+    stated = [record.conditions.get(name, 0.0) for name in names]
+    pairs = zip(names, stated, strict=True)
+    speed, faster, jerk = (outcome.values.get(f"{name}{SEPARATOR}{record.name}", one) for name, one in pairs)
+    time = np.arange(len(record.response)) / record.sampling_rate
+    return Turning(teeth[0] * time * (speed + time * (faster / 2 + time * jerk / 6)), teeth)
+
+
+def _rings(ringing: Array, left: Array) -> bool:
+    """Whether a ringing has more power than white noise makes of a line, and than any line that is left beside it."""
+    n, variance = len(left), float(left.var())
+    if variance <= 0:
+        return True
+    strongest = 2 * float((np.abs(np.fft.rfft(left)[1:]) ** 2).max()) / (n * variance)
+    by_chance = 2 * log(n / 2 / BY_CHANCE)
+    return float(ringing @ ringing) / variance > max(by_chance, strongest)

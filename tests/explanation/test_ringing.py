@@ -1,0 +1,73 @@
+"""A ringing that noise makes of itself tells neither frequency nor damping; one that stands out of it does."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import torch
+
+from gear_damping.explanation.model.ringing import with_untold_ringing
+from gear_damping.identification.output_error.normal_equations import nuisance_basis, project_out
+from gear_damping.identification.output_error.problem import Prediction
+from gear_damping.identification.output_error.records import FitRecord
+
+RATE, N, TEETH, SPEED = 25e3, 4000, 23, 115.0
+TIME = np.arange(N) / RATE
+RINGING = 2 * np.pi * 2800.0
+MESH = 3e-6 * np.cos(TEETH * SPEED * TIME) + 1e-6 * np.sin(2 * TEETH * SPEED * TIME)
+COSINE, SINE = np.cos(RINGING * TIME), np.sin(RINGING * TIME)
+LEVEL = 1e-7  # of the noise
+
+
+def _case(sizes, stated=True, spectrum=None):
+    """Records of one speed, each of which was fitted with a ringing of some size."""
+    fitted, left, owned = [], [], []
+    for seed, size in enumerate(sizes):
+        noise = LEVEL * np.random.default_rng(seed).standard_normal(N) + (0 if spectrum is None else spectrum)
+        series = torch.as_tensor(MESH + size * COSINE + noise)
+        turns = {"pinion_angle": torch.as_tensor(SPEED * TIME)} if stated else {}
+        fitted.append(FitRecord(f"run{seed}", series, RATE, turns, {}))
+        left.append(torch.as_tensor(noise))
+        owned.append(torch.as_tensor(np.stack([-size * TIME * SINE, np.cos(46 * SPEED * TIME), COSINE, SINE], 1)))
+    found = Prediction(torch.stack(left)[None], torch.stack(owned)[None])
+    problem = SimpleNamespace(records=fitted, n_shared=2, response=SimpleNamespace(channels=("transmission_error",)))
+    values = {f"pinion_speed@run{seed}": SPEED for seed in range(len(sizes))}
+    outcome = SimpleNamespace(linearisation=found, problem=problem, fit_residuals=left, values=values)
+    teeth = {"n_teeth_pinion": float(TEETH), "n_teeth_gear": 41.0}
+    return outcome, SimpleNamespace(has=lambda trait: True, fitted=fitted, parameters=teeth)
+
+
+def _told(case, place):
+    """How much of the sensitivity by a parameter is left beside what the records have of their own, by record."""
+    sensitivity = with_untold_ringing(*case).sensitivity[0]
+    apart = project_out(sensitivity[..., :2], nuisance_basis(sensitivity, 2))
+    return (apart.square().sum(1) / sensitivity[..., :2].square().sum(1))[:, place]
+
+
+@pytest.mark.parametrize("stated", [True, False], ids=["angle", "fitted speed"])
+def test_a_ringing_within_the_noise_tells_no_frequency(stated):
+    case = _case([0.05 * LEVEL], stated)
+    assert float(_told(case, 0)) < 1e-6
+    assert float(_told(case, 1)) > 0.99  # what repeats with the mesh tells as much as before
+
+
+def test_a_ringing_that_stands_out_tells_it():
+    assert float(_told(_case([LEVEL]), 0)) > 0.1
+
+
+def test_each_record_is_asked_by_itself():
+    quiet, loud = _told(_case([0.05 * LEVEL, LEVEL]), 0)
+    assert quiet < 1e-6
+    assert loud > 0.1
+
+
+def test_a_line_among_stronger_ones_is_none():
+    lines = sum(0.3 * LEVEL * np.cos(2 * np.pi * f * TIME) for f in (3210.0, 6180.0, 9960.0))
+    assert float(_told(_case([0.25 * LEVEL]), 0)) > 0.1
+    assert float(_told(_case([0.25 * LEVEL], spectrum=lines), 0)) < 1e-6
+
+
+def test_where_nothing_turns_nothing_changes():
+    outcome, evidence = _case([0.05 * LEVEL])
+    evidence.has = lambda trait: False
+    assert with_untold_ringing(outcome, evidence) is outcome.linearisation
