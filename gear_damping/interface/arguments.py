@@ -1,6 +1,6 @@
 """What users hand over in Python, checked at the door: one message names the argument, the rule and the remedy."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from numbers import Number
 from typing import Any
 
@@ -9,6 +9,7 @@ import torch
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.record import Measurement
+from gear_damping.simulation.solver_settings import Solver
 
 
 def refuse_other(measurement: object) -> None:
@@ -23,9 +24,38 @@ def refuse_other(measurement: object) -> None:
         raise InputError(Problem("measurement", rule, shown, remedy))
 
 
-def names(given: str | Iterable[str]) -> tuple[str, ...]:
-    """Names as a sequence; one that stands alone is one name, not its letters."""
-    return (given,) if isinstance(given, str) else tuple(given)
+def refuse_other_kind(name: str, value: object, kind: type, example: str) -> None:
+    """Refuse an argument of another kind; None stands for what is usual.
+
+    Raises:
+        InputError: it is one.
+    """
+    if value is not None and not isinstance(value, kind):
+        raise InputError(Problem(name, f"must be a {kind.__name__}", repr(value), f"for example {name}={example}"))
+
+
+def refuse_other_solver(solver: object) -> None:
+    """Refuse what is no `Solver`, as the name of a method.
+
+    Raises:
+        InputError: it is none.
+    """
+    refuse_other_kind("solver", solver, Solver, "gd.Solver(substeps=4)")
+
+
+def names(argument: str, given: str | Iterable[str]) -> tuple[str, ...]:
+    """Names as a sequence; one that stands alone is one name, not its letters.
+
+    Raises:
+        InputError: they come with values, or one is there twice.
+    """
+    if isinstance(given, Mapping):
+        remedy = f"write {argument}={list(given)}, and give the model the values"
+        raise InputError(Problem(argument, "holds names alone, and values of them are not looked at", remedy=remedy))
+    found = (given,) if isinstance(given, str) else tuple(given)
+    if len(set(found)) < len(found):
+        raise InputError(Problem(argument, "names one twice", list(found), "name it once"))
+    return found
 
 
 def numbers(name: str, value: Any, unit: str = "SI") -> torch.Tensor:

@@ -49,5 +49,5 @@ def bound(
     response = runs.runs.response
     level = numbers("noise", noise) if snr_db is None else response.std(-1) * 10 ** (-snr_db / 20)
     Problems(of_every_run("noise", level, len(response))).raise_any()
-    found = cramer_rao(runs.runs, names(free), level, expected=expected, samples=samples)
+    found = cramer_rao(runs.runs, names("free", free), level, expected=expected, samples=samples)
     return {name: found.deviation(name).numpy() for name in found.names}

@@ -196,7 +196,8 @@ def _of_law(
     fit: Identification, swings: Mapping[str, tuple[float, float]], channels: Mapping[str, str]
 ) -> dict[str, Prediction]:
     """The damping of a fitted simulation over the amplitudes of every record; its mean is that over their logarithm."""
-    if not isinstance(fit.fitted, identified_gears.Fitted) or not fit.fitted.evidence.has(Trait.REST):
+    is_fit = isinstance(fit, Identification) and isinstance(fit.fitted, identified_gears.Fitted)
+    if not is_fit or not fit.fitted.evidence.has(Trait.REST):
         rule, remedy = "is no fitted simulation of an oscillator", "give what gd.identify(record, model) found"
         raise InputError(Problem("laws", rule, remedy=remedy))
     found, first = {}, fit.fitted.evidence.fit[0].observed.name

@@ -12,7 +12,7 @@ from gear_damping.explanation import explain as explaining
 from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.explain import NOBODY, Listener
 from gear_damping.explanation.settings import SearchSettings
-from gear_damping.interface.arguments import names, refuse_other
+from gear_damping.interface.arguments import names, refuse_other, refuse_other_solver
 from gear_damping.interface.model import Model
 from gear_damping.measurement.record import Measurement
 from gear_damping.physics.catalogue import catalogue
@@ -117,7 +117,8 @@ def explain(
     """
     known = catalogue(plugins)
     refuse_other(measurement)
-    wrong, ruled_out = _wrong_minutes(minutes), names(ruled_out)
+    refuse_other_solver(solver)
+    wrong, ruled_out = _wrong_minutes(minutes), names("ruled_out", ruled_out)
     wrong += [Problem("ruled_out", "no such effect", n, nearest(n, list(known))) for n in ruled_out if n not in known]
     wrong += _wrong(thresholds)
     if wrong:

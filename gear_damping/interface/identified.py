@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.interface import identified_gears, identified_oscillator
-from gear_damping.interface.arguments import names, refuse_other
+from gear_damping.interface.arguments import names, refuse_other, refuse_other_solver
 from gear_damping.interface.free_parameters import given_numbers
 from gear_damping.interface.model import Model
 from gear_damping.measurement.record import Measurement
@@ -96,7 +96,8 @@ def identify(
         InputError: the data are damaged, nothing can be fitted, or a name is unknown.
     """
     refuse_faults(measurement)
-    free = names(free)
+    refuse_other_solver(solver)
+    free = names("free", free)
     if model is None and free:
         raise InputError(Problem("free", "names parameters of a model", list(free), "give the model too"))
     if model is not None and not isinstance(model, Model):

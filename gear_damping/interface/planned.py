@@ -12,6 +12,7 @@ from gear_damping.identification.test_plan.plan import Asked, TestPlan, ToldTest
 from gear_damping.identification.test_plan.repeated import Repeated, repeat
 from gear_damping.identification.test_plan.rig import Rig
 from gear_damping.interface import planned_page as page
+from gear_damping.interface.arguments import refuse_other_kind, refuse_other_solver
 from gear_damping.physics.model import Model
 from gear_damping.reporting.figures.test_plan import test_plan_figure
 from gear_damping.simulation.solver_settings import Solver
@@ -122,6 +123,8 @@ def plan(
     Raises:
         InputError: everything that is wrong with it.
     """
+    refuse_other_solver(solver)
+    refuse_other_kind("goal", goal, PlanGoal, "gd.PlanGoal(percent=5)")
     solver = solver or Solver()
     unknown = [unknown] if isinstance(unknown, str | Unknown) else unknown
     sensors = [sensors] if isinstance(sensors, PlannedSensor) else sensors

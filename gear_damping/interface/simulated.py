@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.interface.arguments import numbers, of_every_run
+from gear_damping.interface.arguments import numbers, of_every_run, refuse_other_solver
 from gear_damping.physics.model import Model
 from gear_damping.reporting import figures
 from gear_damping.schema.values import Number, Problems
@@ -159,6 +159,7 @@ def simulate(
         InputError: a name is unknown, or a value out of range.
     """
     Problems(whole_number_problems("batch", batch, BATCH)).raise_any()
+    refuse_other_solver(solver)
     given = _within_bounds(model, parameters, int(batch))
     driven = _driven(inputs)
     driven = replace(driven, series={name: _rows(name, value) for name, value in driven.series.items()})

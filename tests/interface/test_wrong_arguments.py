@@ -163,7 +163,7 @@ def test_what_no_run_can_begin_with_is_answered(given, said):
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        ({"free": ["damping_ratio", "damping_ratio"]}, r"free = \[.*\]: names one parameter twice"),
+        ({"free": ["damping_ratio", "damping_ratio"]}, r"free = \[.*\]: names one twice"),
         ({"free": "dampingratio"}, r"free = 'dampingratio': no such parameter"),
         ({"noise": [1e-4, 1e-4]}, r"noise: must be one number, and holds 2"),
         ({"noise": "0.1 mm"}, r"noise = '0\.1 mm': must hold numbers alone"),
@@ -195,3 +195,25 @@ def test_one_effect_that_is_ruled_out_is_one_name(record):
 def test_the_size_of_a_file_is_a_number_of_bytes(record, size):
     with pytest.raises(gd.InputError, match=r"max_bytes = .*: must be a positive number of bytes"):
         gd.load(record.source, max_bytes=size)
+
+
+@pytest.mark.parametrize(
+    ("ask", "said"),
+    [
+        (lambda record: gd.identify(record, solver="rk4"), r"solver = .*rk4.*must be a Solver; .*gd\.Solver"),
+        (lambda record: gd.simulate(MODEL, **SAMPLED, solver=4), r"solver = .*4.*: must be a Solver"),
+        (lambda record: gd.damping(record, laws={"a": 3}), r"laws: is no fitted simulation"),
+        (
+            lambda record: gd.identify(record, MODEL, free={"stiffness": 300}),
+            r"free: holds names alone, .*\['stiffness'\]",
+        ),
+        (lambda record: gd.identify(record, MODEL, free=["stiffness", "stiffness"]), r"free = .*: names one twice"),
+        (
+            lambda record: gd.plan(MODEL, gd.PlannedTests([0.1], 1000.0), [], goal=5),
+            r"goal = .*5.*: must be a PlanGoal",
+        ),
+    ],
+)
+def test_arguments_of_another_kind_are_answered(record, ask, said):
+    with pytest.raises(gd.InputError, match=said):
+        ask(record)

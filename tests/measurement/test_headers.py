@@ -1,5 +1,6 @@
 """Headers of text tables: settings with more cells than the table, and two rows of names one below the other."""
 
+import numpy as np
 import pytest
 
 from gear_damping.errors import InputError
@@ -194,3 +195,13 @@ def test_a_row_of_units_in_brackets_is_none_of_names_though_some_are_unknown(tmp
     assert [name.strip() for name in table.names] == ["Time A", "Pos A", "Time B", "Pos B"]
     assert [table.unit(k) for k in range(4)] == ["s", "au", "s", "au"]
     assert table.values(1)[:3].tolist() == [0, 1, 2]
+
+
+def test_a_row_above_that_is_shorter_than_the_table_names_what_it_can(tmp_path):
+    """The head of an oscilloscope: settings in two cells, rows of nothing, and names."""
+    above = "Model,MSO54\nLabel,,\nSample Interval,0.01,\nProbe Attenuation,10,\n,\n,\nTIME,CH1\n"
+    rows = "\n".join(f"{k / 100:.5e},{np.cos(k / 9):.5f}" for k in range(60))
+    (tmp_path / "scope.csv").write_text(above + rows + "\n")
+    table = read_table(tmp_path / "scope.csv")
+    assert table.names == ("TIME", "CH1")
+    assert table.values(1).size == 60

@@ -57,7 +57,7 @@ class Header:
 
     def also(self, k: int) -> tuple[str, ...]:
         """What else is written above column `k`."""
-        return tuple(row[k] for row in self.others if row[k])
+        return tuple(row[k] for row in self.others if k < len(row) and row[k])
 
     def unit(self, k: int) -> str | None:
         """The unit below the name of column `k`, or in brackets at its end, as in `Acc DE (m/s^2)`."""
