@@ -16,7 +16,12 @@ from gear_damping.measurement.encoders import ReadColumn, ShaftAngle, pulse_time
 from gear_damping.measurement.file_clocks import FileClocks, conflict_with_file
 from gear_damping.measurement.formats.table import Table
 from gear_damping.measurement.record import Finding
-from gear_damping.measurement.stamp_units import refuse_endless, refuse_other_clock, refuse_other_unit
+from gear_damping.measurement.stamp_units import (
+    refuse_endless,
+    refuse_other_clock,
+    refuse_other_unit,
+    refuse_row_numbers,
+)
 from gear_damping.measurement.time_column import is_time
 from gear_damping.measurement.timebase import (
     TimeBase,
@@ -362,7 +367,9 @@ class RawReader:
         return base
 
     def _stamped(self, timing: TimePlan, key: str, read: ReadColumn, first: int) -> TimeBase:
-        stamps, one = read(timing.column, key), self._in_seconds(timing, key)
+        stamps = read(timing.column, key)
+        refuse_row_numbers(self.table, timing, key, stamps, self.source)
+        one = self._in_seconds(timing, key)
         refuse_other_unit(self.table, timing, key, stamps, one, self.source)
         refuse_other_clock(self.table, timing, key, stamps * one, read, self.source)
         return stamped_time(stamps * one, self._named(key, timing.column), self.file, first)

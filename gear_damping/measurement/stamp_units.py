@@ -4,11 +4,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.column_kinds import counts_rows
 from gear_damping.measurement.declaration import TimePlan
 from gear_damping.measurement.encoders import ReadColumn
 from gear_damping.measurement.formats.registry import MAX_BYTES
 from gear_damping.measurement.formats.table import Table
-from gear_damping.measurement.time_column import FEWEST_STAMPS, finer_than_said, no_seconds, seconds_by_name
+from gear_damping.measurement.time_column import COUNTER, FEWEST_STAMPS, finer_than_said, no_seconds, seconds_by_name
+from gear_damping.units import is_of_kind, to_si
 
 _TELLS = 10.0  # of its own largest steps, from which the length of a clock tells something
 MOST_SAMPLES = MAX_BYTES // 8  # of a record: as many numbers as the largest file that is read holds
@@ -37,6 +39,24 @@ def refuse_other_unit(
     if finer is not None:
         remedy = f"write unit: {finer}, or give sampling_rate instead of the time column"
         raise InputError(Problem(f"{key}.unit", rule, timing.unit, remedy, source))
+
+
+def refuse_row_numbers(table: Table, timing: TimePlan, key: str, stamps: NDArray[np.float64], source: str) -> None:
+    """Refuse a column that counts the rows, whatever unit it is declared in.
+
+    Raises:
+        InputError: it is one; the remedy tells the rate that the file states.
+    """
+    said, rate = table.stated_rate or ("", None)
+    one = to_si(1.0, timing.unit, "s") if timing.unit and is_of_kind(timing.unit, "s") else None
+    if rate and one and abs(rate * one - 1) < _AS_LONG:
+        return
+    is_number = rate or COUNTER.match(table.names[table.index(timing.column, key)])  # beside a step any name will do
+    if not is_number or stamps.size < FEWEST_STAMPS or not counts_rows(stamps):
+        return
+    remedy = "give sampling_rate in its place" + (f"; '{said}' beside the table says {rate:.6g} Hz" if rate else "")
+    rule = "counts the rows: its numbers go on by one, and say nothing of the time between them"
+    raise InputError(Problem(key, rule, timing.column, remedy, source))
 
 
 def refuse_other_clock(

@@ -34,7 +34,7 @@ _NO_TIME = re.compile(r"speed|rpm|omega|drehzahl|freq|volt|curr|weg|^f$", re.I) 
 _NEARLY = 0.1  # of the median step; how far most steps of a column that no name calls time may differ
 _EVEN = 0.05  # of the median step; how far the steps of an unnamed column may differ
 COUNTER = re.compile(
-    r"^\s*#?\s*(samples?|counter|count|index|idx|nr|no|seq(uence)?|packet|frame)\s*(no|nr|number)?\.?\s*$", re.I
+    r"^\s*#?\s*(samples?|counter|count|index|idx|rows?|nr|no|seq(uence)?|packet|frame)\s*(no|nr|number)?\.?\s*$", re.I
 )
 _COUNTS = 0.95  # share of the rows from one to the next number, in a column that counts them
 

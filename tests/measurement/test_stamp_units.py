@@ -61,3 +61,24 @@ def test_inspect_proposes_days(tmp_path):
     path = declared(tmp_path, [f"{DAYS['excel'] + s / 86400:.12f}" for s in SECONDS], "day")
     found = inspect_table(read_table(path.parent / "a.csv"))
     assert found.time.unit == "day"
+
+
+@pytest.mark.parametrize("name", ["Sample", "No.", "Frame", "Index", "frame number"])
+@pytest.mark.parametrize("unit", ["s", "ms"])
+def test_row_numbers_are_no_time(name, unit, tmp_path):
+    path = declared(tmp_path, range(1, 401), unit, columns=f"{name},x")
+    path.write_text(path.read_text().replace("column: t", "column: 0"))
+    with pytest.raises(InputError, match=r"channels\.time = 0: counts the rows.*; remedy: give sampling_rate in its"):
+        load_measurement(path)
+
+
+def test_row_numbers_beside_a_step_that_the_file_states_are_no_time(tmp_path):
+    path = declared(tmp_path, range(400), "s", columns="Sample Interval,0.02\nt,x")
+    with pytest.raises(InputError, match=r"counts the rows.*'Sample Interval' beside the table says 50 Hz"):
+        load_measurement(path)
+
+
+def test_seconds_that_go_on_by_one_are_a_time(tmp_path):
+    path = declared(tmp_path, range(400), "s", columns="Sample Interval,1\nt,x")
+    assert load_measurement(path).records[0].sampling_rate == pytest.approx(1.0)
+    assert load_measurement(declared(tmp_path, range(400), "s")).records[0].sampling_rate == pytest.approx(1.0)
