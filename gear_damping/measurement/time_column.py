@@ -18,6 +18,7 @@ _SUFFIX = re.compile(r"[_ .\-/](s|sec|ms|us|µs|ns|min|h)$", re.I)
 _SLOW = 200  # whole numbers a step: as milliseconds less than 5 Hz, and few vibrate as slowly
 # Ranges that a time counted from 1970 lies in, by its unit: from 2000 on, and they do not meet.
 _EPOCHS = ((9.4e8, 1e10, "s"), (9.4e11, 1e13, "ms"), (9.4e14, 1e16, "us"), (9.4e17, 1e19, "ns"))
+_SLOWEST = 100.0  # s between two samples of a vibration: a free clock of microseconds goes on by more, taken for s
 # Ranges that days lie in from 2000 to 2099, as spreadsheets count them from 1900 and MATLAB from the year 0.
 _DAYS = ((36526.0, 73050.0), (730486.0, 767010.0))
 _DAYLONG, _NO_SECONDS = 1e-4, 1e-6  # steps below which these may be days (9 s), and can be no seconds (a MHz)
@@ -258,16 +259,15 @@ def _unit(column: _Column) -> tuple[str, str]:
     for word, unit in (("milli", "ms"), ("micro", "us"), ("nano", "ns")):
         if word in name:
             return unit, "from its name"
-    first = float(column.inside[0])
+    first, step = float(column.inside[0]), float(np.median(np.diff(column.inside)))
     for low, high, unit in _EPOCHS:
-        if low < first < high:
+        if low < first < high and to_si(step, unit, "s") < _SLOWEST:
             return unit, "counted from 1970"
     if _are_days(column.inside, _DAYLONG):
         return "day", "counted from 1900 or the year 0"
     if any(low < first < high for low, high in _TICKS):
         return "us", f"{TICKS}: divide the column by 10"
     if np.all(column.inside == np.round(column.inside)):
-        step = float(np.median(np.diff(column.inside)))
         unit, other = ("us", "ms") if step >= _SLOW else ("ms", "us")
         why = f"whole numbers in steps of {step:.4g}; write {other} or s where they are those"
         return unit, f"{why}, and give sampling_rate where they count samples"

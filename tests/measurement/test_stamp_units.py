@@ -82,3 +82,10 @@ def test_seconds_that_go_on_by_one_are_a_time(tmp_path):
     path = declared(tmp_path, range(400), "s", columns="Sample Interval,1\nt,x")
     assert load_measurement(path).records[0].sampling_rate == pytest.approx(1.0)
     assert load_measurement(declared(tmp_path, range(400), "s")).records[0].sampling_rate == pytest.approx(1.0)
+
+
+def test_a_free_clock_of_microseconds_is_not_counted_from_1970_in_seconds(tmp_path):
+    rows = "\n".join(f"{3_200_000_000 + 10_000 * k},{x:.6f}" for k, x in enumerate(MOTION))
+    (tmp_path / "dot.csv").write_text("SampleTimeFine,x\n" + rows + "\n")
+    found = inspect_table(read_table(tmp_path / "dot.csv"))
+    assert (found.time.unit, found.rate) == ("us", pytest.approx(100.0))
