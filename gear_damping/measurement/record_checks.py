@@ -21,6 +21,7 @@ from gear_damping.measurement.checks import APPLIED, STRUCK, check_channel
 from gear_damping.measurement.encoders import FROM_ENCODERS
 from gear_damping.measurement.record import Channel, Finding, Record
 from gear_damping.measurement.timebase import written_on_change
+from gear_damping.measurement.vocabulary import INPUTS
 
 WHOLE_SPEEDS = ("pinion_speed", "gear_speed")  # hold the rotation, beside which what is fitted is little
 NEVER_STRAIGHT = ("displacement", "transmission_error", "acceleration")  # a speed may rise evenly
@@ -47,6 +48,7 @@ _SLOPE_ERROR = 0.1  # of the power of s' e; nothing is weighted higher than this
 _FLOOR, _OVER = 0.1, 4.0  # quantile of the power that is noise; times this, what a line must be above
 _DECIDED = 0.35  # share below which the stamps are wrong
 _ERRORS = 4.0  # standard errors that the share must be nearer to none by
+FEW_BEYOND = 10  # samples that an input may lack at an end: the state at the start stands in for so few
 MESH_RESPONSES = ("transmission_error", "gear_speed")  # that make a record one of a simulation, not of a casing
 
 
@@ -226,7 +228,7 @@ def check_record(record: Record) -> tuple[Finding, ...]:
         found.append(stamps_against_values(record))
     found += [check(channel) for channel in record.channels.values() for check in (_drowned, _straight)]
     found += [_magnitude(record), *check_shafts(record), *not_compared(record), _oversampled(record)]
-    found += _beyond_the_band(record)
+    found += [*_beyond_the_band(record), *_inputs_beyond(record)]
     return tuple(replace(finding, record=record.name) for finding in found if finding)
 
 
@@ -307,6 +309,21 @@ def _beyond_the_band(record: Record) -> Iterator[Finding]:
                 f"{record.sampling_rate:.6g} Hz and filters nothing in it; check its unit, or leave it out"
             )
             yield Finding("filter_beyond_band", message, channel=channel.name, severity="note")
+
+
+def _inputs_beyond(record: Record) -> Iterator[Finding]:
+    """Inputs that a delay moves out of the record: what they were there is not known, and stays at its last value."""
+    for channel in record.channels.values():
+        beyond = round(abs(channel.delay) * record.sampling_rate)
+        if channel.name not in INPUTS or beyond <= FEW_BEYOND:
+            continue
+        end = "last" if channel.delay > 0 else "first"
+        message = (
+            f"{channel.name} is moved by {channel.delay:.4g} s and does not reach over the {end} {beyond} samples of the "
+            f"record, where it is taken to keep its {end} value; where that is wrong, move the column by {beyond} rows "
+            "in the file in the place of delay, and leave out the rows that lack it"
+        )
+        yield Finding("input_beyond_record", message, channel=channel.name, severity="note")
 
 
 def mesh_beyond_band(record: Record, n_teeth: float) -> Finding | None:

@@ -86,6 +86,16 @@ def test_a_rate_beside_arrays_that_contradicts_the_declared_one_is_said(ending, 
     assert all(one.startswith(f"'{next(iter(beside))}' beside the table says 100 Hz and") for one in said)
 
 
+@pytest.mark.parametrize(
+    ("delay", "said"), [("0.25 s", "last 50 samples"), ("-0.1 s", "first 20 samples"), ("30 ms", "")]
+)
+def test_an_input_that_a_delay_moves_out_of_the_record_is_said(delay, said, tmp_path):
+    (record,) = read(tmp_path, timed("s") | {"force": F | {"delay": delay}}).records
+    found = [one.message for one in record.findings if one.kind == "input_beyond_record"]
+    assert len(found) == bool(said)
+    assert all(said in one for one in found)
+
+
 def test_a_segment_below_a_sample_is_refused(tmp_path):
     message = refused(tmp_path, timed("s"), segments="1 ms")
     assert "segments = '0.001 s': is shorter than the time to the next sample at 200 Hz" in message
