@@ -319,7 +319,7 @@ def _inputs_beyond(record: Record) -> Iterator[Finding]:
             continue
         end = "last" if channel.delay > 0 else "first"
         message = (
-            f"{channel.name} is moved by {channel.delay:.4g} s and does not reach over the {end} {beyond} samples of the "
+            f"{channel.name} is moved by {channel.delay:.4g} s and does not reach the {end} {beyond} samples of the "
             f"record, where it is taken to keep its {end} value; where that is wrong, move the column by {beyond} rows "
             "in the file in the place of delay, and leave out the rows that lack it"
         )
