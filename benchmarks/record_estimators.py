@@ -20,6 +20,7 @@ from gear_damping.identification.damping_estimate import UnsuitedRecord
 from gear_damping.identification.estimators.base import Recorded, RecordEstimator
 from gear_damping.identification.observation import Known
 from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.physics.systems.oscillator import Oscillator
 
 SEED = 20000  # of the first decay; the tests draw others
 RATIOS, SNRS = (0.2, 1.0, 5.0), (40, 20)  # % and dB
@@ -37,7 +38,7 @@ BEFORE, AFTER = "<!-- measured by `make estimators` -->", "<!-- end -->"
 
 
 def recorded(values: np.ndarray, rate: float) -> Recorded:
-    return Recorded(FitRecord("run", torch.as_tensor(values), rate), "oscillator", Known({}, {}))
+    return Recorded(FitRecord("run", torch.as_tensor(values), rate), Oscillator, Known({}, {}))
 
 
 def linear(ratio_percent: float, snr_db: float, random: np.random.Generator) -> Recorded:
@@ -59,6 +60,12 @@ def quadratic(coefficient: float, snr_db: float, random: np.random.Generator) ->
 
     values = solve_ivp(rates, (0, time_s[-1]), start, t_eval=time_s, rtol=1e-9, atol=1e-12).y[0]
     return recorded(values + values.std() * 10 ** (-snr_db / 20) * random.normal(size=values.size), float(PER_PERIOD))
+
+
+def of_ring_downs() -> dict[str, type[RecordEstimator]]:
+    """The estimators of free decays, by name."""
+    of_records = {n: kind for n, kind in builtin_estimators().items() if issubclass(kind, RecordEstimator)}
+    return {name: kind for name, kind in of_records.items() if kind.of_ring_downs}
 
 
 def rows_linear(count: int, kinds: Mapping[str, type[RecordEstimator]]) -> Iterator[str]:
@@ -118,7 +125,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--records", type=int, default=100, help="of each row")
     chosen = parser.parse_args(arguments)
     torch.set_num_threads(1)
-    kinds = {name: kind for name, kind in builtin_estimators().items() if issubclass(kind, RecordEstimator)}
+    kinds = of_ring_downs()
     lines = [_head(LINEAR, texts=3)]
     for row in rows_linear(chosen.records, kinds):
         print(row, flush=True)
