@@ -1,5 +1,6 @@
 """A ringing that noise makes of itself tells neither frequency nor damping; one that stands out of it does."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,7 +10,7 @@ import torch
 from gear_damping.explanation.model.ringing import with_untold_ringing
 from gear_damping.identification.output_error.normal_equations import nuisance_basis, project_out
 from gear_damping.identification.output_error.problem import Prediction
-from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.identification.output_error.records import FitRecord, Observed
 
 RATE, N, TEETH, SPEED = 25e3, 4000, 23, 115.0
 TIME = np.arange(N) / RATE
@@ -71,3 +72,18 @@ def test_where_nothing_turns_nothing_changes():
     outcome, evidence = _case([0.05 * LEVEL])
     evidence.has = lambda trait: False
     assert with_untold_ringing(outcome, evidence) is outcome.linearisation
+
+
+def test_a_ringing_that_another_channel_shows_is_told():
+    """An accelerometer shows it far above its noise, where the transmission error hides it."""
+    outcome, evidence = _case([0.05 * LEVEL])
+    (record,), noise = evidence.fitted, torch.as_tensor(np.random.default_rng(9).standard_normal(N))
+    shown = torch.as_tensor(COSINE) + noise
+    evidence.fitted = [replace(record, others=((Observed("acceleration", scale=1e-6), 1e6 * shown),))]
+    outcome.fit_residuals = [torch.cat([outcome.fit_residuals[0], noise])]
+    found = outcome.linearisation
+    outcome.linearisation = Prediction(found.residual.repeat(1, 1, 2), found.sensitivity.repeat(1, 1, 2, 1))
+    outcome.problem.response.channels = ("transmission_error", "acceleration")
+    assert float(_told((outcome, evidence), 0)) > 0.1
+    outcome.fit_residuals = [torch.cat([outcome.fit_residuals[0][:N], shown])]  # of which the simulation shows nothing
+    assert float(_told((outcome, evidence), 0)) < 1e-6

@@ -34,7 +34,9 @@ def with_untold_ringing(outcome: Outcome, evidence: Evidence) -> Prediction:
     found, rows = outcome.linearisation, len(outcome.problem.records)
     if not evidence.has(Trait.TEETH) or rows != len(evidence.fitted):  # segments are too short to tell a line
         return found
-    untold = torch.tensor([not _rings(*pair) for pair in _parts(outcome, evidence)], dtype=torch.float64)
+    pairs = zip(evidence.fitted, outcome.fit_residuals, strict=True)
+    told = [_is_told(record, left.numpy(), _turning(record, outcome, evidence)) for record, left in pairs]
+    untold = 1 - torch.tensor(told, dtype=torch.float64)
     own = found.sensitivity[..., outcome.problem.n_shared :]
     channels = len(outcome.problem.response.channels)
     time = torch.linspace(0.0, 1.0, own.shape[2] // channels, dtype=torch.float64).repeat(channels)
@@ -42,18 +44,23 @@ def with_untold_ringing(outcome: Outcome, evidence: Evidence) -> Prediction:
     return replace(found, sensitivity=torch.cat([found.sensitivity, more], -1))
 
 
-def _parts(outcome: Outcome, evidence: Evidence) -> list[tuple[Array, Array]]:
-    """What neither the mesh nor a shaft repeats of the simulated and of the left response of each record."""
-    found = []
-    for record, residual in zip(evidence.fitted, outcome.fit_residuals, strict=True):
-        left = residual[: len(record.response)].numpy()
-        turning = _turning(record, outcome, evidence)
+def _is_told(record: FitRecord, left: Array, turning: Turning) -> bool:
+    """Whether a ringing stands out in any channel of a record, what neither the mesh nor a shaft repeats.
+
+    Args:
+        record: As it was fitted.
+        left: What is left of its channels, one after another, in the unit of the first.
+        turning: What turns.
+    """
+    shown = record.stacked.numpy() - left
+    for own, rest in zip(*(one.reshape(len(record.channels), -1) for one in (shown, left)), strict=True):
         try:
-            parts = [without_orders(one, turning) for one in (record.response.numpy() - left, left)]
+            ringing, beside = (without_orders(one, turning) for one in (own, rest))
         except UnsuitedRecord:  # so few turns tell no lines
-            parts = [left, np.zeros_like(left)]
-        found.append((parts[0], parts[1]))
-    return found
+            return True
+        if _rings(ringing, beside):
+            return True
+    return False
 
 
 def _turning(record: FitRecord, outcome: Outcome, evidence: Evidence) -> Turning:
