@@ -90,7 +90,7 @@ def _unit_written(number_format: str) -> str:
 def _columns(rows: list[list[Any]], units: dict[int, str], prefix: str) -> tuple[list[Cells], list[str], list[str]]:
     """The columns of a sheet with rows below its header, what is noted of them, and names without a value below.
 
-    Empty cells at the end of a column are not its own.
+    Empty cells at the end of a column are not its own; a column without a value keeps its place, by which others count.
     """
     filled, kept = _without_blank_columns(
         [(number, row) for number, row in enumerate(rows, start=1) if any(cell is not None for cell in row)]
@@ -100,7 +100,7 @@ def _columns(rows: list[list[Any]], units: dict[int, str], prefix: str) -> tuple
         return [], [], []
     header = find_header(texts, max(sum(cell is not None for cell in row) for _, row in filled))
     body = filled[header.first :]
-    columns, notes, empty = [], [], []
+    placed, notes, empty = {}, [], []
     for k in range(max(len(row) for _, row in filled)):
         cells = [(number, row[k] if k < len(row) else None) for number, row in body]
         while cells and cells[-1][1] is None:
@@ -117,8 +117,9 @@ def _columns(rows: list[list[Any]], units: dict[int, str], prefix: str) -> tuple
                 notes.append(f"{commas} texts with a comma among the numbers of '{name}' are read as numbers, {said}")
             values, begins = _values(own)
             unit = unit if begins is None else "s"
-            columns.append(Cells(name, unit, values, lines.__getitem__, header.also(k), begins))
-    return columns, notes, empty
+            placed[kept[k]] = Cells(name, unit, values, lines.__getitem__, header.also(k), begins)
+    blank = Cells("", None, np.full(len(body), ""), [number for number, _ in body].__getitem__)
+    return [placed.get(place, blank) for place in range(max(placed, default=-1) + 1)], notes, empty
 
 
 def _with_points(cells: list[Any]) -> list[Any]:
