@@ -26,7 +26,7 @@ from gear_damping.measurement.raw import LEAST_SAMPLES, filled_in
 from gear_damping.measurement.recordings import recordings
 from gear_damping.measurement.resolution import step_of
 from gear_damping.measurement.spectral_floor import Spectrum, spectrum_of
-from gear_damping.measurement.time_column import Stamps, counts_from_1970, find_stamps
+from gear_damping.measurement.time_column import Stamps, counts_from_1970, find_stamps, stamped_rate
 from gear_damping.measurement.timebase import TimeBase, stamped_time, steady_time
 
 _SPARSE = 0.5  # of the longest stretch of values of any column: one with a shorter one is filled here and there
@@ -286,7 +286,8 @@ def _base(
         faults = tuple(problem.rule for problem in error.problems)
         span = float(np.abs(seconds[-1] - seconds[0])) or float(np.median(np.abs(steps))) * steps.size
         is_rate = span > steps.size * SHORTEST
-        return (steady_time(steps.size / span, 0, seconds.size) if is_rate else None), faults
+        rate = stamped_rate("s", seconds) or steps.size / span
+        return (steady_time(rate, 0, seconds.size) if is_rate else None), faults
 
 
 def _seen(

@@ -37,6 +37,7 @@ _EVEN = 0.05  # of the median step; how far the steps of an unnamed column may d
 COUNTER = re.compile(
     r"^\s*#?\s*(samples?|counter|count|index|idx|rows?|nr|no|seq(uence)?|packet|frame)\s*(no|nr|number)?\.?\s*$", re.I
 )
+MOST_CUT = 2  # packets of stamps that the ends of a record may cut; samples to one
 _COUNTS = 0.95  # share of the rows from one to the next number, in a column that counts them
 
 
@@ -140,9 +141,16 @@ def seconds_by_name(name: str) -> bool:
 
 
 def stamped_rate(unit: str, values: NDArray[np.float64]) -> float | None:
-    """The mean rate in Hz of (n,) values in a unit of time that advance; None of any others."""
+    """The mean rate in Hz of (n,) values in a unit of time that advance; None of any others.
+
+    Of samples that share stamps, those between the first change and the last count: packets at the ends may be cut.
+    """
     if values.size < FEWEST_STAMPS or not np.all(np.isfinite(values)) or np.any(np.diff(values) < 0):
         return None
+    changes = np.flatnonzero(np.diff(values)) + 1
+    if MOST_CUT <= len(changes) < values.size / MOST_CUT:
+        first, last = changes[0], changes[-1]
+        return float(last - first) / (float(values[last] - values[first]) * to_si(1.0, unit, "s"))
     lasts = float(values[-1] - values[0]) * to_si(1.0, unit, "s")
     return (values.size - 1) / lasts if lasts > 0 else None
 

@@ -89,3 +89,11 @@ def test_a_free_clock_of_microseconds_is_not_counted_from_1970_in_seconds(tmp_pa
     (tmp_path / "dot.csv").write_text("SampleTimeFine,x\n" + rows + "\n")
     found = inspect_table(read_table(tmp_path / "dot.csv"))
     assert (found.time.unit, found.rate) == ("us", pytest.approx(100.0))
+
+
+@pytest.mark.parametrize("cut", [0, 17])
+def test_packets_that_share_a_stamp_tell_their_rate(cut, tmp_path):
+    """Clocks of whole seconds, 25 samples to each; the first packet may be cut, and the last one."""
+    rows = "\n".join(f"14:03:{10 + k // 25:02d},{x:.6f}" for k, x in enumerate(MOTION[cut : 400 - cut], cut))
+    (tmp_path / "a.csv").write_text("time,x\n" + rows + "\n")
+    assert inspect_table(read_table(tmp_path / "a.csv")).rate == pytest.approx(25.0)
