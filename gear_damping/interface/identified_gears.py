@@ -16,11 +16,10 @@ from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.evidence.records import Evidence, evidence_of, with_own_angles
 from gear_damping.explanation.evidence.useful_samples import at_useful_rate
 from gear_damping.explanation.explain import Listener, explain, fitting_solver, with_noise
-from gear_damping.explanation.model.covariance import covariance_of
 from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Given, Hypothesis, Outcome, natural_frequency_hz
 from gear_damping.explanation.model.nominal_gear_pair import MESH, angles_of, first_gear_pair
-from gear_damping.explanation.model.ringing import with_untold_ringing
+from gear_damping.explanation.model.ringing import told_covariance
 from gear_damping.explanation.steps.too_short import too_short
 from gear_damping.explanation.trials.bench import Log
 from gear_damping.explanation.trials.efficient import weighed
@@ -139,7 +138,7 @@ def content_of(measurement: Measurement, found: Fitted) -> dict[str, Any]:
     """What stands in identification.json."""
     evidence, outcome = found.evidence, found.outcome
     unit, factor = evidence.channel.declared_unit, evidence.channel.declared_factor
-    covariances = covariance_of(outcome, evidence, with_untold_ringing(outcome, evidence))
+    covariances = told_covariance(outcome, evidence)
     left, lost = _missed(found), _lost(found)
     roles = {"fit": (evidence.fitted, outcome.fit_residuals), "holdout": (evidence.held, outcome.holdout)}
     return {

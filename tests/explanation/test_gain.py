@@ -119,7 +119,7 @@ DIFFERS = (effect_class("stiffness_by_record")(),)
     [(0, (), "noise"), (1, (), "noise"), (2, (), "scatter"), (3, (), "scatter"), (2, DIFFERS, "noise")],
 )
 def test_the_scatter_between_records_counts_beside_several_causes(causes, effects, known, monkeypatch):
-    monkeypatch.setattr(report_fields, "covariance_of", lambda *_: "noise")
+    monkeypatch.setattr(report_fields, "told_covariance", lambda *_: "noise")
     monkeypatch.setattr(report_fields, "wider_of_both", lambda *_: "scatter")
     last = SimpleNamespace(hypothesis=SimpleNamespace(effects=effects), problem=of_records("abc"))
     judged = SimpleNamespace(found=SimpleNamespace(accepted=(None,) * causes, outcome=last))
@@ -164,7 +164,7 @@ def _told(leaves_unnamed, causes, visible, converged, effects=()):
     evidence, ratio, counted = SimpleNamespace(held=()), {"value": 1.0}, []
     with (
         patch.object(report_fields.gain, "damping_ratio", lambda *given: counted.append(given[2]) or dict(ratio)),
-        patch.object(report_fields, "covariance_of", lambda *_: None),
+        patch.object(report_fields, "told_covariance", lambda *_: None),
         patch.object(report_fields, "moves_without_one", lambda *_: "scatter"),
         patch.object(report_fields, "rig_unit", lambda *_: "m/s"),
         patch.object(report_fields, "_confirmed", lambda *_: None),

@@ -15,12 +15,12 @@ from gear_damping.explanation.evidence.declared_units import rig_unit, unit_of
 from gear_damping.explanation.evidence.excess import ac_energy
 from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.evidence.records import Evidence
-from gear_damping.explanation.model.covariance import covariance_of, has_records, moves_without_one, wider_of_both
+from gear_damping.explanation.model.covariance import has_records, moves_without_one, wider_of_both
 from gear_damping.explanation.model.homogeneity import by_record
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.nominal_gear_pair import is_standing
 from gear_damping.explanation.model.own_phases import own_levels
-from gear_damping.explanation.model.ringing import with_untold_ringing
+from gear_damping.explanation.model.ringing import told_covariance
 from gear_damping.explanation.report_schema import KEYS, SCHEMA_VERSION
 from gear_damping.explanation.statistics.paired import share_taken
 from gear_damping.explanation.steps.judge import CONSISTENT, DATA_PROBLEM, LARGEST_SET, Judged, is_visible, statuses
@@ -218,7 +218,7 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
     if not listed and judged.verdict.word != CONSISTENT:
         helping = (r for r in found.rejected if r.gain > 0 and r.is_seen_in_fit)
         for refit in [r for r in helping if _share(r.outcome, found.nominal) > 0][:1]:
-            covariances = covariance_of(refit.outcome, evidence)
+            covariances = told_covariance(refit.outcome, evidence)
             own = gain.parameters_of(refit.outcome, covariances, refit.name, evidence, resting)
             alike = confusable_beforehand(found.first_scores, refit.name)[: LARGEST_SET - 1]
             share = _share(refit.outcome, found.nominal)
@@ -233,7 +233,7 @@ def _causes(judged: Judged, evidence: Evidence) -> list[dict[str, Any]]:
 def _known(judged: Judged, evidence: Evidence) -> Tensor:
     """How well the last model's coordinates are known, the scatter between records counted beside several causes."""
     last = judged.found.outcome
-    covariances = covariance_of(last, evidence, with_untold_ringing(last, evidence))
+    covariances = told_covariance(last, evidence)
     return wider_of_both(covariances, last) if _are_several(judged) and _may_scatter(judged) else covariances
 
 
@@ -283,7 +283,7 @@ def _gain(judged: Judged, evidence: Evidence, noise: NoiseLevel) -> dict[str, An
     damping = {
         key: gain.damping_ratio(
             outcome,
-            covariance_of(outcome, evidence, with_untold_ringing(outcome, evidence)),
+            told_covariance(outcome, evidence),
             moves_without_one(outcome) if missed[key] else None,
         )
         for key, outcome in (("before", first), ("after", last))

@@ -12,8 +12,10 @@ from math import log
 import numpy as np
 import torch
 from numpy.typing import NDArray
+from torch import Tensor
 
 from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.covariance import covariance_of
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.identification.damping_estimate import UnsuitedRecord
 from gear_damping.identification.free_vibration import Turning, without_orders
@@ -24,6 +26,11 @@ from gear_damping.physics.systems.traits import Trait
 
 Array = NDArray[np.float64]
 BY_CHANCE = 0.01  # probability at which the strongest of all lines of white noise counts as one
+
+
+def told_covariance(outcome: Outcome, evidence: Evidence) -> Tensor:
+    """Covariance of the fitted coordinates as far as more than a ringing of noise tells them."""
+    return covariance_of(outcome, evidence, with_untold_ringing(outcome, evidence))
 
 
 def with_untold_ringing(outcome: Outcome, evidence: Evidence) -> Prediction:
