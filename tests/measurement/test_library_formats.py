@@ -418,18 +418,15 @@ def test_xlsx_sheets_rows_of_units_and_times(tmp_path):
     np.testing.assert_array_equal(_values(table, "B/x"), [1, 2])
 
 
-@pytest.mark.parametrize("blank", [0, 2])
-def test_columns_of_xlsx_count_as_those_of_a_text_do(tmp_path, blank):
+@pytest.mark.parametrize(("blank", "said"), [(0, "A"), (2, "C"), (None, None)])
+def test_empty_columns_of_xlsx_that_numbers_leave_out_are_said(tmp_path, blank, said):
     rows = [["t", "x", "F"], *([k / 10, np.cos(k), 3.0 * k] for k in range(20))]
-    apart = [[*row[:blank], None, *row[blank:]] for row in rows]
-    texts = "\n".join(",".join("" if cell is None else str(cell) for cell in row) for row in apart)
-    (tmp_path / "a.csv").write_text(texts + "\n")
-    text, book = read_table(tmp_path / "a.csv"), read_table(_workbook(tmp_path / "a.xlsx", S=apart))
-    assert text.names == book.names
-    for k in (k for k in range(4) if k != blank):
-        np.testing.assert_allclose(book.values(k), text.values(k))
-    with pytest.raises(InputError, match=f"column {blank}: all of its cells are empty"):
-        book.values(blank)
+    apart = rows if blank is None else [[*row[:blank], None, *row[blank:]] for row in rows]
+    table = read_table(_workbook(tmp_path / "a.xlsx", S=apart))
+    notes = [note for note in table.notes if "are empty, and numbers of columns do not count them" in note]
+    assert notes == (
+        [] if said is None else [f"a.xlsx, S: columns {said} are empty, and numbers of columns do not count them"]
+    )
 
 
 def test_formulas_of_xlsx_without_stored_values_are_said(tmp_path):

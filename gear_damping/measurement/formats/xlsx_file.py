@@ -25,6 +25,7 @@ _BEHIND = re.compile(r'[0#?%,]\s*"([^"]+)"\s*$')
 _GROUP = 3  # digits between signs of thousands
 _CLEARLY = 10.0  # times as far from the numbers beside it: what the other reading of a comma must be to be none
 NO_VALUES = "no values; if they are formulas, open the workbook and save it, which stores what they give"
+LETTERS = 26  # of the alphabet, A to Z, by which a sheet names its columns
 _HEAD = 100  # rows among which the header is looked for
 
 
@@ -90,7 +91,7 @@ def _unit_written(number_format: str) -> str:
 def _columns(rows: list[list[Any]], units: dict[int, str], prefix: str) -> tuple[list[Cells], list[str], list[str]]:
     """The columns of a sheet with rows below its header, what is noted of them, and names without a value below.
 
-    Empty cells at the end of a column are not its own; a column without a value keeps its place, by which others count.
+    Empty cells at the end of a column are not its own.
     """
     filled, kept = _without_blank_columns(
         [(number, row) for number, row in enumerate(rows, start=1) if any(cell is not None for cell in row)]
@@ -100,7 +101,7 @@ def _columns(rows: list[list[Any]], units: dict[int, str], prefix: str) -> tuple
         return [], [], []
     header = find_header(texts, max(sum(cell is not None for cell in row) for _, row in filled))
     body = filled[header.first :]
-    placed, notes, empty = {}, [], []
+    columns, notes, empty = [], [], []
     for k in range(max(len(row) for _, row in filled)):
         cells = [(number, row[k] if k < len(row) else None) for number, row in body]
         while cells and cells[-1][1] is None:
@@ -117,9 +118,15 @@ def _columns(rows: list[list[Any]], units: dict[int, str], prefix: str) -> tuple
                 notes.append(f"{commas} texts with a comma among the numbers of '{name}' are read as numbers, {said}")
             values, begins = _values(own)
             unit = unit if begins is None else "s"
-            placed[kept[k]] = Cells(name, unit, values, lines.__getitem__, header.also(k), begins)
-    blank = Cells("", None, np.full(len(body), ""), [number for number, _ in body].__getitem__)
-    return [placed.get(place, blank) for place in range(max(placed, default=-1) + 1)], notes, empty
+            columns.append(Cells(name, unit, values, lines.__getitem__, header.also(k), begins))
+    blank = [_letters(place) for place in range(kept[-1]) if place not in kept]
+    notes += [f"columns {', '.join(blank)} are empty, and numbers of columns do not count them"] if blank else []
+    return columns, notes, empty
+
+
+def _letters(place: int) -> str:
+    """What a sheet calls a column: A to Z, then AA and so on."""
+    return (_letters(place // LETTERS - 1) if place >= LETTERS else "") + chr(ord("A") + place % LETTERS)
 
 
 def _with_points(cells: list[Any]) -> list[Any]:
