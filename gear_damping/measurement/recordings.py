@@ -42,10 +42,18 @@ def recordings(stamps: NDArray[np.float64]) -> list[tuple[int, int]]:
     steps = np.diff(past_overflow(stamps))
     far = _RESTART * float(np.median(np.abs(steps)))
     again = np.flatnonzero(steps < -far) + 1
+    if np.any(_goes_on(stamps, again, far)):
+        return [(0, stamps.size)]
     ends = list(pairwise([0, *again.tolist(), stamps.size]))
     long = all(end - first >= _LEAST for first, end in ends)
     is_lasting = long and bool(np.all(steps[again] < far)) and np.sum(steps < 0) == again.size
     return ends if is_lasting else [(0, stamps.size)]
+
+
+def _goes_on(stamps: NDArray[np.float64], again: NDArray[np.int_], far: float) -> NDArray[np.bool_]:
+    """Where the stamp before a fall is the wrong one: without it the clock goes on."""
+    over = stamps[again] - stamps[np.maximum(again - 2, 0)]
+    return (again >= 2) & (over > 0) & (over < far)
 
 
 def refuse_recordings(stamps: NDArray[np.float64], key: str, source: str, first: int) -> None:

@@ -97,3 +97,11 @@ def test_packets_that_share_a_stamp_tell_their_rate(cut, tmp_path):
     rows = "\n".join(f"14:03:{10 + k // 25:02d},{x:.6f}" for k, x in enumerate(MOTION[cut : 400 - cut], cut))
     (tmp_path / "a.csv").write_text("time,x\n" + rows + "\n")
     assert inspect_table(read_table(tmp_path / "a.csv")).rate == pytest.approx(25.0)
+
+
+@pytest.mark.parametrize("wrong", [3000.0, -30.0])
+def test_one_garbled_stamp_is_named_and_no_second_recording(wrong, tmp_path):
+    stamps = SECONDS.copy()
+    stamps[200] = wrong
+    with pytest.raises(InputError, match=r"1 backward time stamp\(s\), the first at sample 200; remedy: leave those"):
+        load_measurement(declared(tmp_path, stamps, "s"))
