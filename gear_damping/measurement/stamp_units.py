@@ -9,7 +9,14 @@ from gear_damping.measurement.declaration import TimePlan
 from gear_damping.measurement.encoders import ReadColumn
 from gear_damping.measurement.formats.registry import MAX_BYTES
 from gear_damping.measurement.formats.table import Table
-from gear_damping.measurement.time_column import COUNTER, FEWEST_STAMPS, finer_than_said, no_seconds, seconds_by_name
+from gear_damping.measurement.time_column import (
+    COUNTER,
+    FEWEST_STAMPS,
+    finer_than_said,
+    no_seconds,
+    seconds_by_name,
+    unit_by_ending,
+)
 from gear_damping.units import is_of_kind, to_si
 
 _TELLS = 10.0  # of its own largest steps, from which the length of a clock tells something
@@ -36,6 +43,9 @@ def refuse_other_unit(
     rule = f"in {timing.unit} from 1970 on, stamps of {first:.6g} lie beyond the year 2286"
     if finer is None and seconds_by_name(name) and one < 1:
         finer, rule = "s", f"the column is named '{name}'"
+    ending = unit_by_ending(name)
+    if finer is None and ending is not None and abs(to_si(1.0, ending, "s") / one - 1) > _AS_LONG:
+        finer, rule = ending, f"the column is named '{name}'"
     if finer is not None:
         remedy = f"write unit: {finer}, or give sampling_rate instead of the time column"
         raise InputError(Problem(f"{key}.unit", rule, timing.unit, remedy, source))

@@ -15,6 +15,7 @@ NAMED = re.compile(
     r"^(t|ts|tt|x_value)$|time|zeit|temps|tiempo|stamp|second|millis|micros|elapsed|clock|abscissa", re.I
 )
 _SUFFIX = re.compile(r"[_ .\-/](s|sec|ms|us|µs|ns|min|h)$", re.I)
+ENDINGS = ("s", "ms", "us", "ns")
 _SLOW = 200  # whole numbers a step: as milliseconds less than 5 Hz, and few vibrate as slowly
 # Ranges that a time counted from 1970 lies in, by its unit: from 2000 on, and they do not meet.
 _EPOCHS = ((9.4e8, 1e10, "s"), (9.4e11, 1e13, "ms"), (9.4e14, 1e16, "us"), (9.4e17, 1e19, "ns"))
@@ -138,6 +139,13 @@ def _are_days(values: NDArray[np.float64], least: float) -> bool:
 def seconds_by_name(name: str) -> bool:
     """Whether the name of a column says that its stamps are in seconds, and no smaller part of them."""
     return bool(_SECONDS.search(name)) and not _PARTS.search(name)
+
+
+def unit_by_ending(name: str) -> str | None:
+    """The part of a second that the name of a column of stamps ends with, as `t_ms`; None of any other."""
+    ending = _SUFFIX.search(_bare(name))
+    unit = {"sec": "s", "µs": "us"}.get(ending[1].lower(), ending[1].lower()) if ending else None
+    return unit if unit in ENDINGS else None
 
 
 def stamped_rate(unit: str, values: NDArray[np.float64]) -> float | None:

@@ -105,3 +105,15 @@ def test_one_garbled_stamp_is_named_and_no_second_recording(wrong, tmp_path):
     stamps[200] = wrong
     with pytest.raises(InputError, match=r"1 backward time stamp\(s\), the first at sample 200; remedy: leave those"):
         load_measurement(declared(tmp_path, stamps, "s"))
+
+
+@pytest.mark.parametrize(
+    ("name", "unit", "right"), [("t_ms", "s", "ms"), ("time_us", "ms", "us"), ("Time_s", "ms", "s")]
+)
+def test_the_ending_of_a_name_is_heeded(name, unit, right, tmp_path):
+    path = declared(tmp_path, SECONDS, unit, columns=f"{name},x")
+    path.write_text(path.read_text().replace("column: t", f"column: {name}"))
+    with pytest.raises(InputError, match=f"the column is named '{name}'; remedy: write unit: {right}, or give"):
+        load_measurement(path)
+    path.write_text(path.read_text().replace(f"unit: {unit}", f"unit: {right}"))
+    assert load_measurement(path).records[0].sampling_rate > 49
