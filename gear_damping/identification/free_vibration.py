@@ -245,7 +245,7 @@ def without_orders(values: Array, turning: Turning, begin: int = 0) -> Array:
     """Without what follows mesh and shafts, up to half the sampling rate, by least squares.
 
     Args:
-        values: (n,), from sample `begin` of the record on.
+        values: (n,), or several signals (n, k), from sample `begin` of the record on.
         turning: What turns, over the whole record.
         begin: The first sample.
 
@@ -256,8 +256,8 @@ def without_orders(values: Array, turning: Turning, begin: int = 0) -> Array:
     if not angles:
         return values
     phases = np.stack(angles, axis=1)
-    basis = np.concatenate([np.cos(phases), np.sin(phases), np.ones((values.size, 1))], axis=1)
-    if basis.shape[1] > values.size / 2:
+    basis = np.concatenate([np.cos(phases), np.sin(phases), np.ones((len(values), 1))], axis=1)
+    if basis.shape[1] > len(values) / 2:
         raise UnsuitedRecord("it holds fewer turns than the orders of mesh and shafts take: record longer")
     return values - basis @ np.linalg.lstsq(basis, values, rcond=None)[0]
 

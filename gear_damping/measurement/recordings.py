@@ -42,7 +42,7 @@ def recordings(stamps: NDArray[np.float64]) -> list[tuple[int, int]]:
     steps = np.diff(past_overflow(stamps))
     far = _RESTART * float(np.median(np.abs(steps)))
     again = np.flatnonzero(steps < -far) + 1
-    if np.any(_goes_on(stamps, again, far)):
+    if np.any(is_too_late(steps)[again - 1]):
         return [(0, stamps.size)]
     ends = list(pairwise([0, *again.tolist(), stamps.size]))
     long = all(end - first >= _LEAST for first, end in ends)
@@ -50,10 +50,10 @@ def recordings(stamps: NDArray[np.float64]) -> list[tuple[int, int]]:
     return ends if is_lasting else [(0, stamps.size)]
 
 
-def _goes_on(stamps: NDArray[np.float64], again: NDArray[np.int_], far: float) -> NDArray[np.bool_]:
-    """Where the stamp before a fall is the wrong one: without it the clock goes on."""
-    over = stamps[again] - stamps[np.maximum(again - 2, 0)]
-    return (again >= 2) & (over > 0) & (over < far)
+def is_too_late(steps: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Whether of the two stamps of a step the first is the wrong one: without it the clock goes on."""
+    before, behind = np.r_[-np.inf, steps[:-1]], np.r_[steps[1:], np.inf]
+    return (steps < 0) & (before + steps > 0) & (steps + behind <= 0)
 
 
 def refuse_recordings(stamps: NDArray[np.float64], key: str, source: str, first: int) -> None:

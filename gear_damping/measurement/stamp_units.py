@@ -41,11 +41,9 @@ def refuse_other_unit(
     name, first = table.names[table.index(timing.column, key)], float(stamps[0])
     finer = finer_than_said(first, one)
     rule = f"in {timing.unit} from 1970 on, stamps of {first:.6g} lie beyond the year 2286"
-    if finer is None and seconds_by_name(name) and one < 1:
-        finer, rule = "s", f"the column is named '{name}'"
-    ending = unit_by_ending(name)
-    if finer is None and ending is not None and abs(to_si(1.0, ending, "s") / one - 1) > _AS_LONG:
-        finer, rule = ending, f"the column is named '{name}'"
+    named = "s" if seconds_by_name(name) and one < 1 else unit_by_ending(name)
+    if finer is None and named is not None and abs(to_si(1.0, named, "s") / one - 1) > _AS_LONG:
+        finer, rule = named, f"the column is named '{name}'"
     if finer is not None:
         remedy = f"write unit: {finer}, or give sampling_rate instead of the time column"
         raise InputError(Problem(f"{key}.unit", rule, timing.unit, remedy, source))

@@ -143,9 +143,14 @@ def seconds_by_name(name: str) -> bool:
 
 def unit_by_ending(name: str) -> str | None:
     """The part of a second that the name of a column of stamps ends with, as `t_ms`; None of any other."""
-    ending = _SUFFIX.search(_bare(name))
-    unit = {"sec": "s", "µs": "us"}.get(ending[1].lower(), ending[1].lower()) if ending else None
+    unit = _ending(name)
     return unit if unit in ENDINGS else None
+
+
+def _ending(reference: str | int) -> str | None:
+    """The unit of time that a name ends with."""
+    ending = _SUFFIX.search(_bare(reference))
+    return {"sec": "s", "µs": "us"}.get(ending[1].lower(), ending[1].lower()) if ending else None
 
 
 def stamped_rate(unit: str, values: NDArray[np.float64]) -> float | None:
@@ -268,9 +273,8 @@ def _unit(column: _Column) -> tuple[str, str]:
     """The unit of the stamps, and why where the file does not say it."""
     if is_time(column.unit):
         return column.unit, ""
-    suffix = _SUFFIX.search(_bare(column.reference))
-    if suffix:
-        return {"sec": "s", "µs": "us"}.get(suffix[1].lower(), suffix[1].lower()), "from its name"
+    if unit := _ending(column.reference):
+        return unit, "from its name"
     name = _bare(column.reference).lower()
     for word, unit in (("milli", "ms"), ("micro", "us"), ("nano", "ns")):
         if word in name:

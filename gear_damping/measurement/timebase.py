@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.record import Finding
-from gear_damping.measurement.recordings import past_overflow, refuse_recordings
+from gear_damping.measurement.recordings import is_too_late, past_overflow, refuse_recordings
 
 Curve = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 RATE_TOLERANCE = 0.01  # relative; rates within are one
@@ -164,7 +164,7 @@ def _with_losses(stamps: NDArray[np.float64], found: Finding) -> TimeBase:
 def _refuse_repeated_or_backward(steps: NDArray, key: str, source: str, first: int) -> None:
     problems = []
     for kind, bad in (("repeated", steps == 0), ("backward", steps < 0)):
-        where = np.flatnonzero(bad) + 1 + first - (_is_too_late(steps)[bad] if kind == "backward" else 0)
+        where = np.flatnonzero(bad) + 1 + first - (is_too_late(steps)[bad] if kind == "backward" else 0)
         if where.size:
             rule = f"{where.size} {kind} time stamp(s), the first at sample {where[0]}"
             is_shuffled = kind == "backward" and where.size > MOST_STRAY * steps.size
@@ -175,12 +175,6 @@ def _refuse_repeated_or_backward(steps: NDArray, key: str, source: str, first: i
             problems.append(Problem(key, rule, remedy=remedy, source=source))
     if problems:
         raise InputError(problems)
-
-
-def _is_too_late(steps: NDArray) -> NDArray[np.bool_]:
-    """Whether of the two stamps of a step the first is the wrong one: without it the clock goes on."""
-    before, behind = np.r_[-np.inf, steps[:-1]], np.r_[steps[1:], np.inf]
-    return (steps < 0) & (before + steps > 0) & (steps + behind <= 0)
 
 
 def moved_to(

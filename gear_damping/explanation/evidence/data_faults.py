@@ -39,13 +39,12 @@ def mesh_order_faults(evidence: Evidence) -> list[Finding]:
     if not evidence.has(Trait.TEETH) or evidence.channel.name != evidence.base.response:
         return []
     records = evidence.records
-    teeth = round(evidence.parameters.get("n_teeth_pinion", _declared("n_teeth_pinion", evidence)))
-    shafts = [shaft_of(record, evidence).angle for record in records]
+    counts = shaft_of(records[0], evidence).teeth
+    teeth, shafts = counts[0], [shaft_of(record, evidence).angle for record in records]
     if teeth * min(float(np.ptp(angle)) for angle in shafts) < FEWEST_TEETH * 2 * np.pi:
         return []
     series = [record.response.numpy() - float(record.response.mean()) for record in records]
-    other = round(evidence.parameters.get("n_teeth_gear", _declared("n_teeth_gear", evidence)))
-    if (factor := _miscounted(series, shafts, (teeth, other))) and _at_other_speeds(records, shafts):
+    if _at_other_speeds(records, shafts) and (factor := _miscounted(series, shafts, counts)):
         message = (
             f"the teeth mesh {factor * teeth:g} times a turn of the angle that is given, and the pinion has {teeth}: "
             "check counts_per_revolution (lines, or the two or four counts of each) and the unit of the angle"
@@ -109,11 +108,6 @@ def _miscounted(series: Sequence[NDArray], shafts: Sequence[NDArray], counts: tu
         if shares[:, there].sum(1).min() >= STRONG and lacking.all():
             return float(factor)
     return 0.0
-
-
-def _declared(name: str, evidence: Evidence) -> float:
-    """The value of a parameter that the system has where nothing is said."""
-    return next(float(parameter.default) for parameter in evidence.base.parameters if parameter.name == name)
 
 
 def _shares(

@@ -21,7 +21,7 @@ from gear_damping.identification.damping_estimate import UnsuitedRecord
 from gear_damping.identification.free_vibration import Turning, without_orders
 from gear_damping.identification.output_error.problem import Prediction
 from gear_damping.identification.output_error.records import SEPARATOR, FitRecord
-from gear_damping.physics.systems.gear_pair import teeth_of
+from gear_damping.physics.systems.gear_pair import teeth_of, turned
 from gear_damping.physics.systems.traits import Trait
 
 Array = NDArray[np.float64]
@@ -59,15 +59,12 @@ def _is_told(record: FitRecord, left: Array, turning: Turning) -> bool:
         left: What is left of its channels, one after another, in the unit of the first.
         turning: What turns.
     """
-    shown = record.stacked.numpy() - left
-    for own, rest in zip(*(one.reshape(len(record.channels), -1) for one in (shown, left)), strict=True):
-        try:
-            ringing, beside = (without_orders(one, turning) for one in (own, rest))
-        except UnsuitedRecord:  # so few turns tell no lines
-            return True
-        if _rings(ringing, beside):
-            return True
-    return False
+    shown, channels = record.stacked.numpy() - left, len(record.channels)
+    try:
+        apart = without_orders(np.stack([shown, left]).reshape(2 * channels, -1).T, turning).T
+    except UnsuitedRecord:  # so few turns tell no lines
+        return True
+    return any(map(_rings, apart[:channels], apart[channels:]))
 
 
 def _turning(record: FitRecord, outcome: Outcome, evidence: Evidence) -> Turning:
@@ -77,9 +74,9 @@ def _turning(record: FitRecord, outcome: Outcome, evidence: Evidence) -> Turning
     names = ("pinion_speed", "pinion_acceleration", "pinion_jerk")
     stated = [record.conditions.get(name, 0.0) for name in names]
     pairs = zip(names, stated, strict=True)
-    speed, faster, jerk = (outcome.values.get(f"{name}{SEPARATOR}{record.name}", one) for name, one in pairs)
-    time = np.arange(len(record.response)) / record.sampling_rate
-    return Turning(teeth[0] * time * (speed + time * (faster / 2 + time * jerk / 6)), teeth)
+    known = {name: outcome.values.get(f"{name}{SEPARATOR}{record.name}", one) for name, one in pairs}
+    time = torch.arange(len(record.response), dtype=torch.float64) / record.sampling_rate
+    return Turning(teeth[0] * turned(known | {"pinion_angle": 0.0}, time)[0].numpy(), teeth)
 
 
 def _rings(ringing: Array, left: Array) -> bool:

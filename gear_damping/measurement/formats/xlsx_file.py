@@ -25,7 +25,6 @@ _BEHIND = re.compile(r'[0#?%,]\s*"([^"]+)"\s*$')
 _GROUP = 3  # digits between signs of thousands
 _CLEARLY = 10.0  # times as far from the numbers beside it: what the other reading of a comma must be to be none
 NO_VALUES = "no values; if they are formulas, open the workbook and save it, which stores what they give"
-LETTERS = 26  # of the alphabet, A to Z, by which a sheet names its columns
 _HEAD = 100  # rows among which the header is looked for
 
 
@@ -93,6 +92,8 @@ def _columns(rows: list[list[Any]], units: dict[int, str], prefix: str) -> tuple
 
     Empty cells at the end of a column are not its own.
     """
+    from openpyxl.utils import get_column_letter  # of the extra that `read` has asked for
+
     filled, kept = _without_blank_columns(
         [(number, row) for number, row in enumerate(rows, start=1) if any(cell is not None for cell in row)]
     )
@@ -119,14 +120,9 @@ def _columns(rows: list[list[Any]], units: dict[int, str], prefix: str) -> tuple
             values, begins = _values(own)
             unit = unit if begins is None else "s"
             columns.append(Cells(name, unit, values, lines.__getitem__, header.also(k), begins))
-    blank = [_letters(place) for place in range(kept[-1]) if place not in kept]
+    blank = [get_column_letter(place + 1) for place in range(kept[-1]) if place not in kept]
     notes += [f"columns {', '.join(blank)} are empty, and numbers of columns do not count them"] if blank else []
     return columns, notes, empty
-
-
-def _letters(place: int) -> str:
-    """What a sheet calls a column: A to Z, then AA and so on."""
-    return (_letters(place // LETTERS - 1) if place >= LETTERS else "") + chr(ord("A") + place % LETTERS)
 
 
 def _with_points(cells: list[Any]) -> list[Any]:

@@ -128,7 +128,7 @@ class GearPair(System):
         if "pinion_angle" in inputs:
             angle, speed = inputs["pinion_angle"], inputs["pinion_angle_rate"]
         else:
-            angle, speed = _turned(p, time)
+            angle, speed = turned(p, time)
         angle, speed = angle + p["angle_error"] + time * p["angle_error_rate"], speed + p["angle_error_rate"]
         ratio = p["n_teeth_pinion"] / p["n_teeth_gear"]
         ahead = p["contact_advance"] * displacement / p["base_radius_pinion"]
@@ -140,13 +140,13 @@ class GearPair(System):
 
     def begun_later(self, values: Values, seconds: Tensor) -> dict[str, Tensor]:
         """Where the shaft is by then, and how fast it turns."""
-        angle, speed = _turned(values, seconds)
+        angle, speed = turned(values, seconds)
         faster = values["pinion_acceleration"] + seconds * values["pinion_jerk"]
         later = values["angle_error"] + seconds * values["angle_error_rate"]
         return {"pinion_angle": angle, "pinion_speed": speed, "pinion_acceleration": faster, "angle_error": later}
 
 
-def _turned(p: Values, time: Tensor) -> tuple[Tensor, Tensor]:
+def turned(p: Values, time: Tensor) -> tuple[Tensor, Tensor]:
     """Angle and speed of the pinion at a time, from what is stated of them at the start."""
     first, second = p["pinion_acceleration"], p["pinion_jerk"]
     speed = p["pinion_speed"] + time * (first + time * second / 2)
