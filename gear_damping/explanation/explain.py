@@ -148,7 +148,7 @@ def _of_evidence(
         followed_one_by_one(found.state),
         INPUT_NOISE if evidence.input_noise else "",
     )
-    said = judged(found, [silent, short, *doubts, stretches.said])
+    said = judged(found, [silent, short, *doubts, stretches.said], bool(short))
     step(4, STEPS)
     return Explanation(report_fields.of_search(measurement, evidence, noise, said), evidence, noise, said.found)
 

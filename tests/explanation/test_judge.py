@@ -328,3 +328,16 @@ def test_what_is_left_is_no_less_than_nothing(left, said):
     told = verdict(found, MUCH, excess_of(left, 10.0), is_one=True)
     assert told.word == PARTLY
     assert told.sentences[0].endswith(f"Part of it has a name: a law (`coulomb_friction`). {said}")
+
+
+@pytest.mark.parametrize(
+    ("is_short", "before", "word"),
+    [
+        (False, excess_of(-0.2, 0.2, threshold=0.5), PARTLY),
+        (True, excess_of(-0.2, 0.2, threshold=0.5), CONSISTENT),  # a bend of .3 % in three periods is anything's
+        (True, MUCH, EXPLAINED),  # a large effect shows in a short record too
+    ],
+)
+def test_held_out_records_that_are_too_short_establish_large_effects_alone(is_short, before, word):
+    found = search(visible=True, accepted=(cause(),))
+    assert verdict(found, before, NOTHING, is_short=is_short, is_one=True).word == word

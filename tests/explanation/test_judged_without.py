@@ -43,7 +43,7 @@ def waves_as_they_are():
 def judge(words, doubts):
     """A judge with a word for every set of causes, and the cause that it doubts."""
 
-    def one(found, notes):
+    def one(found, notes, is_short):
         names = found.state.accepted
         verdict = SimpleNamespace(word=words.get(names, "unexplained"), notes=notes)
         return SimpleNamespace(verdict=verdict, found=found.state), (doubts.get(names, ""), "but it has no size.")
@@ -156,7 +156,7 @@ def searched_for(shares, visible=True, left=1.0):
 def test_they_are_named_where_they_take_nearly_all_that_the_others_leave(left, named):
     told = []
 
-    def one(found, notes):
+    def one(found, notes, is_short):
         told.extend(notes)
         return SimpleNamespace(verdict=SimpleNamespace(word="explained"), found=found.state), ("", "")
 

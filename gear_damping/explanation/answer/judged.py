@@ -28,7 +28,7 @@ AT_BOUND = "but has run into a bound of what it can be."
 WITHIN_FORM = "`{}` would take a little more: so little may as well be the form of the other causes, and is not named."
 
 
-def judged(found: Confirmed, notes: Sequence[str]) -> Judged:
+def judged(found: Confirmed, notes: Sequence[str], is_short: bool = False) -> Judged:
     """The state with its verdict.
 
     Where causes are refused for one among them that is none, those that are left are judged without it. And where
@@ -37,16 +37,17 @@ def judged(found: Confirmed, notes: Sequence[str]) -> Judged:
     Args:
         found: The search with its held-out records.
         notes: What is said beside the verdict.
+        is_short: Whether the held-out records are too short to judge more than large effects.
     """
     found, small = _without_form(found)
     notes = (*notes, *map(WITHIN_FORM.format, small))
-    said, (doubtful, why) = _judged(found, notes)
+    said, (doubtful, why) = _judged(found, notes, is_short)
     fewer = said
     while fewer.verdict.word == UNEXPLAINED and len(fewer.found.accepted) > 1:
         if not doubtful:  # more search must not lose what less of it had found
             doubtful, why = fewer.found.accepted[-1].name, SO_MUCH
         found, notes = without(found, doubtful), (*notes, TOO.format(doubtful, why or AT_BOUND))
-        fewer, (doubtful, why) = _judged(found, notes)
+        fewer, (doubtful, why) = _judged(found, notes, is_short)
     return _reported(said if fewer.verdict.word == UNEXPLAINED else fewer)
 
 
@@ -88,7 +89,7 @@ def _reported(said: Judged) -> Judged:
     return replace(said, found=replace(state, outcome=of_unit_spread(positive(state.outcome, tried), tried)))
 
 
-def _judged(found: Confirmed, notes: Sequence[str]) -> tuple[Judged, tuple[str, str]]:
+def _judged(found: Confirmed, notes: Sequence[str], is_short: bool) -> tuple[Judged, tuple[str, str]]:
     """The state with its verdict, and a cause that may be none with the reason; both empty where there is no such."""
     state, before, after = found.state, found.before, found.after
     evidence, settings, budget = state.bench.evidence, state.bench.settings, state.bench.budget
@@ -110,6 +111,7 @@ def _judged(found: Confirmed, notes: Sequence[str]) -> tuple[Judged, tuple[str, 
         is_untold=is_untold(state),
         shape=shape_without_name(state),
         not_random=_not_random(state),
+        is_short=is_short,
     )
     said = verdict(state, before, after, known)
     left = line_left(state)

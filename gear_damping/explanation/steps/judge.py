@@ -12,6 +12,7 @@ from gear_damping.physics.catalogue import builtin_effects
 CONSISTENT, EXPLAINED, AMBIGUOUS = "consistent", "explained", "ambiguous"
 PARTLY, UNEXPLAINED, DATA_PROBLEM = "partly_explained", "unexplained", "data_problem"
 LARGEST_SET = 4  # names that a sentence lists of causes that are not told apart
+TOO_SHORT = "but the held-out records are too short to judge so small an effect."
 TOO_STILL = "but something is left beside it, and the held-out records tell nothing of either."
 UNTOLD = "but there was no time to see whether it stands in for something else."
 WORSE = "but with it the held-out records are predicted worse than by their means."
@@ -77,6 +78,7 @@ class Known:
         shape: What is visible and has no name, in words; empty where nothing of that kind is.
         not_random: What of the nominal model's residuals shows that it is not random, in % of the fitted records'
             variance.
+        is_short: Whether held-out records are too short to judge more than what is missing of the power in them.
     """
 
     converged: bool = True
@@ -90,6 +92,7 @@ class Known:
     is_untold: bool = False
     shape: str = ""
     not_random: float = inf
+    is_short: bool = False
 
     @property
     def unsettled(self) -> tuple[str, ...]:
@@ -119,6 +122,8 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
     further = (taken.sentence, *_not_told_apart(confused), *known.unsettled)
     if known.stands_in:
         return _not_established(found, before, known, known.stands_in)
+    if known.is_short and not before.significant:
+        return _not_established(found, before, known, TOO_SHORT)
     if taken.is_faint and taken.share < settings.least_share:
         return _not_established(found, before, known, NOT_LESS)
     if not explains_all and before.threshold >= WHOLE and not before.significant:
