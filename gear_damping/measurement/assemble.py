@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.angular_error import GEOMETRY, NEEDED, base_radius, turn_in
+from gear_damping.measurement.column_kinds import unit_at_end
 from gear_damping.measurement.cutting import is_faster, moved
 from gear_damping.measurement.declaration import ChannelPlan, Plan
 from gear_damping.measurement.declared_units import Conversion, UnitSystem
@@ -314,12 +315,27 @@ def _factor_unsaid(raw: RawChannel, said: str) -> Finding:
     return Finding("unit_conflict", message, channel=raw.plan.name)
 
 
+def _name_conflict(raw: RawChannel, said: str, stated: Unit) -> Finding | None:
+    """The name ends in a smaller or larger unit than that of the YAML, `x_um`."""
+    named = unit_at_end(raw.plan.column)
+    own = None if named is None else of_a_shaft(parse_unit(named), stated)
+    if own is None or own.dimension != stated.dimension or abs(own.factor / stated.factor - 1) < SAME_UNIT:
+        return None
+    message = (
+        f"column '{raw.plan.column}' is named like one in {named} and the YAML says '{said}', which was used; correct "
+        "the one that is wrong, or write gain: 1 where it is the name"
+    )
+    return Finding("unit_conflict", message, channel=raw.plan.name)
+
+
 def _unit_conflict(raw: RawChannel, conversion: Conversion) -> Finding | None:
     """The header names a unit and the YAML another one."""
     said = raw.plan.stated_unit or raw.unit
-    if raw.header_unit is None or raw.header_unit == said:
-        return None
     stated = parse_unit(said)
+    if raw.header_unit is None:
+        return None if raw.plan.is_scaled else _name_conflict(raw, said, stated)
+    if raw.header_unit == said:
+        return None
     if step := multiple_of_a_unit(raw.header_unit):
         return None if raw.plan.is_scaled else _step_conflict(raw, said, *step)
     if scaled_unit(raw.header_unit):

@@ -10,15 +10,18 @@ from numpy.typing import NDArray
 from gear_damping.errors import InputError
 from gear_damping.measurement.column_kinds import (
     COUNTER,
+    NAMED_UNITS,
     PULSES,
     TURNING,
     counts_of_turn,
     rises,
     turn_of,
+    unit_of_name,
     unit_of_turn,
 )
 from gear_damping.measurement.files import UNKNOWN
-from gear_damping.measurement.inspection import Column, Inspection
+from gear_damping.measurement.formats.table import Table
+from gear_damping.measurement.inspection import Column, Inspection, clock_of, inspect_table, of_columns
 from gear_damping.measurement.staircase import is_staircase
 from gear_damping.measurement.vocabulary import INPUTS
 from gear_damping.units import parse_unit
@@ -45,11 +48,6 @@ _OSCILLATOR_NAMES = (
     ("velocity", r"vel|speed|rate|gyro|omega|dot$|^v$|^dq"),
     ("displacement", r"disp|pos|angle|theta|phi|roll|pitch|yaw|heave|deflec|output|^[qxyz](_?\w)?$|^s$|way|weg"),
 )
-_NAMED_UNITS = {
-    "mm": "mm", "um": "um", "cm": "cm", "deg": "deg", "mrad": "mrad", "rad": "rad", "rpm": "rpm", "nm": "N*m",
-    "mv": "mV", "volt": "V", "volts": "V", "degrees": "deg", "radians": "rad", "mps2": "m/s^2",
-    "urad": "urad", "arcsec": "arcsec",
-}  # fmt: skip
 _OF_FREQUENCY = ("Hz", "kHz", "MHz")  # an axis of a spectrum, or what an exciter was set to
 _OTHERWISE = {"torque": "N*m", "tacho": "V"}
 _LOWEST, _CLEARLY = 4, 1.2  # lines of a spectrum that hold drifts; ratio by which one column beats an earlier one
@@ -73,6 +71,7 @@ class Guess:
         used: Whether it is the one of its channel that the YAML declares.
         counts: How many counts of a shaft's counter make a turn; None where nothing says it.
         index: The column that pulses once a turn of it; None where none does.
+        clock: The column of its own time stamps; None where those of the record are its.
     """
 
     column: Column
@@ -83,6 +82,28 @@ class Guess:
     used: bool = True
     counts: int | None = None
     index: Column | None = None
+    clock: Column | None = None
+
+
+def guessed(table: Table) -> tuple[Inspection, tuple[str, str], list[Guess]]:
+    """What a file holds, the system that it may be of with what says so, and what each column may be.
+
+    A clock beside all that is used is that of the record; one beside some of it is theirs.
+
+    Raises:
+        InputError: no column holds numbers, or they are a spectrum.
+    """
+    found, system, listed = _guessed(inspect_table(table))
+    clocks = {id(guess.clock): guess.clock for guess in listed if guess.used}
+    only = clocks.popitem()[1] if len(clocks) == 1 else None
+    return (found, system, listed) if only is None else _guessed(inspect_table(table, only.reference))
+
+
+def _guessed(found: Inspection) -> tuple[Inspection, tuple[str, str], list[Guess]]:
+    system = system_of(found)
+    listed = [replace(guess, clock=clock_of(found, guess.column)) for guess in guesses(found, system[0])]
+    found = of_columns(found, [guess.column for guess in listed if guess.used and guess.clock is None])
+    return found, system, listed
 
 
 def system_of(found: Inspection) -> tuple[str, str]:
@@ -111,7 +132,7 @@ def guesses(found: Inspection, system: str) -> list[Guess]:
 
 
 def _oscillator_channel(column: Column) -> tuple[str | None, str]:
-    unit = column.unit or _unit_of_name(column)
+    unit = column.unit or unit_of_name(column.reference)
     by_unit = _channel_of_unit(unit)
     if by_unit:
         return by_unit, f"by its unit {unit}"
@@ -182,7 +203,7 @@ def _gear_channel(column: Column) -> tuple[str | None, str]:
         return None, "named like an angle, and does not turn"
     if name in ("torque", "speed"):
         return f"{shaft}_{name}", "by its name"
-    unit = column.unit or _unit_of_name(column)
+    unit = column.unit or unit_of_name(column.reference)
     by_unit = _channel_of_unit(unit) if name is None else None
     if by_unit == "acceleration":
         return by_unit, f"by its unit {unit}"
@@ -208,10 +229,10 @@ def _plain(column: Column) -> str:
     """The last word of a name, without the path before it and a unit at its end."""
     words = [word for word in re.split(r"[/\s]+|\.(?=\D)", _bare(column)) if word]
     kept = words[-1] if words else ""
-    if len(words) > 1 and kept in _NAMED_UNITS:
+    if len(words) > 1 and kept in NAMED_UNITS:
         return words[-2]
     head, _, tail = kept.rpartition("_")
-    return head if head and tail in _NAMED_UNITS else kept
+    return head if head and tail in NAMED_UNITS else kept
 
 
 def _guess(column: Column, channel: str | None, why: str) -> Guess:
@@ -227,21 +248,13 @@ def _unit(column: Column, channel: str | None) -> tuple[str, str]:
         except InputError:
             return UNKNOWN, f"the file says '{column.unit}', which is no unit that is known"
         return column.unit, ""
-    named = _unit_of_name(column)
+    named = unit_of_name(column.reference)
     if named:
         return named, "from its name"
     turn = turn_of(column.inside)
     if turn is not None and unit_of_turn(turn):
         return unit_of_turn(turn), f"it falls back by {turn:.4g}"
     return _unit_by_meaning(column, channel)
-
-
-def _unit_of_name(column: Column) -> str | None:
-    """The unit that a name ends in, as in `speed_rpm`, or that it is, as in `V1`."""
-    words = re.split(r"[_\s/.\[\](]+", str(column.reference).strip(")] "))
-    if len(words) > 1 and words[-1].lower() in _NAMED_UNITS:
-        return _NAMED_UNITS[words[-1].lower()]
-    return "V" if re.match(r"^[UV]\d+$", words[-1]) else None  # a small v is as well a velocity
 
 
 def _unit_by_meaning(column: Column, channel: str | None) -> tuple[str, str]:

@@ -36,6 +36,7 @@ _EVEN = 1e-6  # of an advance from sample to sample: differences below it are ro
 _ANY_SIGNAL = re.compile(r"^(values?|data|signal|[xyzt]|time\w*)$", re.I)  # a name that tells no record from a channel
 MOST_BETWEEN = 20  # blank cells between two values of a slower channel; what has more is no motion beside the others
 MOST_LISTED = 6  # recordings of a file that a line lists
+_OTHER_PACE = 0.01  # of the mean step, by which the steps of two clocks may differ: jitter, and they are one
 _RATE = re.compile(r"samp\w*[ _]?(freq|rate)|^(fs|f_s|sr|s_?rate)$|abtastrate", re.I)  # of a single number
 SHORTEST = 1e-15  # s between two samples: below it lie damaged stamps, and no sensor
 
@@ -80,6 +81,9 @@ class Column:
         return float(np.std(centred - place * (centred @ place) / (place @ place))) if values.size > 1 else 0.0
 
 
+_NOTHING = Column("", np.empty(0), (0, 0), None)
+
+
 @dataclass(frozen=True, eq=False)
 class Inspection:
     """What a file holds.
@@ -118,8 +122,12 @@ class Inspection:
         return [c for c in self.columns if c.values.size == self.length and c.kind not in dull]
 
 
-def inspect_table(table: Table) -> Inspection:
+def inspect_table(table: Table, clock: str | int | None = None) -> Inspection:
     """Look at every column of a file.
+
+    Args:
+        table: The file.
+        clock: The column of time stamps; the first that looks like one where absent.
 
     Raises:
         InputError: none of them holds numbers, or they are a spectrum.
@@ -131,7 +139,7 @@ def inspect_table(table: Table) -> Inspection:
         raise InputError(Problem("file", rule, str(table.path), "export the channels as numbers"))
     may_be_rate = _may_be_rate(columns)
     untimed = may_be_rate is None and not any(table.clock(k) for k in range(len(columns)))
-    stamps = find_stamps(columns, untimed)
+    stamps = find_stamps([c if clock in (None, c.reference) else _NOTHING for c in columns], untimed)
     if stamps is None:
         _refuse_spectrum(table, columns)
     columns, some = _where_filled(columns) if stamps else (columns, "")
@@ -141,7 +149,15 @@ def inspect_table(table: Table) -> Inspection:
     named, rate = (may_be_rate or table.stated_rate or ("", None)) if base is None and stamps is None else ("", None)
     base = steady_time(rate, rows[0], rows[1] - rows[0]) if rate else base
     found = [_seen(c, stamps, columns, base, length, table.clock(k)) for k, c in enumerate(columns)]
-    return Inspection(table, tuple(found), length, stamps, base, rows, faults, named, taken or some)
+    seen = Inspection(table, tuple(found), length, stamps, base, rows, faults, named, taken or some)
+    return replace(seen, columns=tuple(_by_own_clock(seen, column) for column in found))
+
+
+def _by_own_clock(found: Inspection, column: Column) -> Column:
+    """The column with its rate and its spectrum, where it has a clock of its own."""
+    clock = clock_of(found, column) if column.spectrum is not None else None
+    rate = None if clock is None else stamped_rate(find_stamps([clock]).unit, clock.inside)
+    return replace(column, rate=rate, spectrum=spectrum_of(_whole(column), rate)) if rate else column
 
 
 def _refuse_spectrum(table: Table, columns: Sequence[Column]) -> None:
@@ -190,6 +206,23 @@ def of_columns(found: Inspection, used: Collection[Column]) -> Inspection:
     rows, taken = _of_one_recording(found.columns, found.time, found.length, rows)
     base, faults = _base(found.table, found.columns, found.time, found.length, rows)
     return replace(found, rows=rows, base=base, faults=faults, taken=taken)
+
+
+def clock_of(found: Inspection, column: Column) -> Column | None:
+    """The clock beside a column that is not the one of the record: the nearest to its left; None where it is that.
+
+    Arrays have no order that says anything.
+    """
+    if found.time is None or isinstance(found.table, ArrayTable):
+        return None
+    main, place = found.columns[found.time.index], found.columns.index(column)
+    clocks = [one for one in found.columns[:place] if one.kind == TIME and find_stamps([one])]
+    if not clocks or clocks[-1] is main:
+        return None
+    n = min(main.inside.size, clocks[-1].inside.size)
+    same = find_stamps([clocks[-1]]).in_seconds * np.diff(clocks[-1].inside[:n])
+    apart = np.abs(same - found.time.in_seconds * np.diff(main.inside[:n]))
+    return clocks[-1] if apart.mean() > _OTHER_PACE * np.abs(same).mean() else None
 
 
 def _may_be_rate(columns: Sequence[Column]) -> tuple[str, float] | None:
@@ -307,12 +340,18 @@ def _seen(
         return replace(column, kind=kind, says=says)
     if stamps is not None and counts_from_1970(column.inside):
         return replace(column, kind=TIME, says="advances, and may be counted from 1970: another clock")
+    if stamps is not None and (again := find_stamps([column])):
+        return replace(column, kind=TIME, says=f"{again.says}: another clock")
     own = clock[1] if clock else None
     rate = base.sampling_rate if base is not None and column.values.size == length else own
-    turn = turn_of(column.inside) if kind == TURNING else None
-    whole = column.inside if turn is None else np.unwrap(column.inside, period=turn)
-    spectrum = spectrum_of(whole, rate or 1.0)
-    return replace(column, kind=kind, says=says, step=_step_of(column.inside), spectrum=spectrum, rate=rate)
+    seen = replace(column, kind=kind, says=says, step=_step_of(column.inside), rate=rate)
+    return replace(seen, spectrum=spectrum_of(_whole(seen), rate or 1.0))
+
+
+def _whole(column: Column) -> NDArray[np.float64]:
+    """The longest stretch of a column, of an angle that falls back once a turn unwrapped."""
+    turn = turn_of(column.inside) if column.kind == TURNING else None
+    return column.inside if turn is None else np.unwrap(column.inside, period=turn)
 
 
 def _step_of(values: NDArray[np.float64]) -> float:

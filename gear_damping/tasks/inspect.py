@@ -16,8 +16,8 @@ from gear_damping.measurement.column_kinds import CONSTANT
 from gear_damping.measurement.encoders import FROM_ENCODERS
 from gear_damping.measurement.files import UNKNOWN
 from gear_damping.measurement.formats.registry import read_table, readers
-from gear_damping.measurement.guessing import Guess, guesses, system_of
-from gear_damping.measurement.inspection import Column, Inspection, inspect_table, of_columns
+from gear_damping.measurement.guessing import Guess, guessed
+from gear_damping.measurement.inspection import Column, Inspection
 from gear_damping.measurement.load import load_measurement
 from gear_damping.measurement.record import Channel, Measurement, Record
 from gear_damping.measurement.record_checks import MESH_RESPONSES
@@ -44,11 +44,8 @@ def run(settings: InspectSettings, folder: RunFolder) -> dict[str, Any]:
 
 def _bare(path: Path, plugins: Sequence[str], folder: RunFolder) -> dict[str, Any]:
     start = folder.path / YAML_NAME
-    found = inspect_table(read_table(path, known=readers(plugins)))
+    found, system, listed = guessed(read_table(path, known=readers(plugins)))
     folder.add_inputs([path], "measurement.path")
-    system = system_of(found)
-    listed = guesses(found, system[0])
-    found = of_columns(found, [guess.column for guess in listed if guess.used])
     text = starting_yaml(found, system, listed)
     with start.open("x", encoding="utf-8") as file:
         file.write(text)

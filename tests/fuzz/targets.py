@@ -22,8 +22,7 @@ Case = Callable[[random.Random, Path], str]
 def file_target(kind: str, folder: Path) -> Case:
     """Damaged files of one kind, through everything that task=inspect does before it draws."""
     from gear_damping.measurement.formats.registry import read_table
-    from gear_damping.measurement.guessing import guesses, system_of
-    from gear_damping.measurement.inspection import inspect_table
+    from gear_damping.measurement.guessing import guessed
     from gear_damping.measurement.starting_yaml import starting_yaml
 
     kept = [(path.suffix, path.read_bytes()) for path in seeds.FILES[kind](folder)]
@@ -32,9 +31,8 @@ def file_target(kind: str, folder: Path) -> Case:
         suffix, content = source.choice(kept)
         path = place / f"damaged{suffix}"
         path.write_bytes(damaged(content, source))
-        found = inspect_table(read_table(path))
-        system = system_of(found)
-        starting_yaml(found, system, guesses(found, system[0]))
+        found, system, listed = guessed(read_table(path))
+        starting_yaml(found, system, listed)
         return READ
 
     return _refusing(case)

@@ -5,8 +5,10 @@ import pytest
 
 from gear_damping.measurement.column_kinds import COUNTER, PULSES, ROW_NUMBER, SIGNAL
 from gear_damping.measurement.formats.registry import read_table
-from gear_damping.measurement.guessing import guesses
+from gear_damping.measurement.guessing import guessed, guesses
 from gear_damping.measurement.inspection import inspect_table
+from gear_damping.measurement.load import load_measurement
+from gear_damping.measurement.starting_yaml import starting_yaml
 from tests.measurement.bare import column, inspected
 
 N = 6000
@@ -100,3 +102,32 @@ def test_whole_milliseconds_of_a_loop_that_waits_are_the_time(tmp_path):
     found = inspect_table(read_table(tmp_path / "loop.csv"))
     assert found.time is not None
     assert (found.time.index, found.time.unit) == (0, "ms")
+
+
+def _two_clocks(folder, names):
+    """A force at 100 Hz and, beside it, half as many rows of a displacement at 50 Hz that swings at 1.5 Hz."""
+    fast, slow = np.arange(1200) / 100, np.arange(600) / 50
+    x = np.round(np.cos(3 * np.pi * slow) + 0.001 * RNG(10).normal(size=600), 5)
+    slower = [f"{t:.2f},{value}" for t, value in zip(slow, x, strict=True)] + [","] * 600
+    rows = (f"{t:.2f},{np.sin(9 * t):.5f},{other}" for t, other in zip(fast, slower, strict=True))
+    (folder / "two.csv").write_text("\n".join([names, *rows]) + "\n")
+    return guessed(read_table(folder / "two.csv"))
+
+
+def test_a_channel_with_a_clock_of_its_own_beside_it_is_declared_with_that(tmp_path):
+    found, system, listed = _two_clocks(tmp_path, "Time [s],Force [N],Time 2 [s],Disp [mm]")
+    assert found.rate == pytest.approx(100)
+    text = starting_yaml(found, system, listed)
+    assert 'displacement: {column: "Disp [mm]", unit: mm, time: {column: "Time 2 [s]", unit: s}}' in text
+    swings = column(found, "Disp [mm]").spectrum
+    assert swings.frequency[1 + np.argmax(swings.density[1:])] == pytest.approx(1.5, abs=0.1)
+    declared = tmp_path / "measurement.yaml"
+    declared.write_text(text)
+    assert load_measurement(declared).records[0].sampling_rate == pytest.approx(100)
+
+
+def test_the_clock_of_all_that_is_declared_is_that_of_the_record(tmp_path):
+    found, system, listed = _two_clocks(tmp_path, "X[s],EMG 1,X[s].1,Disp [mm]")
+    assert found.rate == pytest.approx(50)
+    assert found.rows == (0, 600)
+    assert 'time: {column: "X[s].1", unit: s}' in starting_yaml(found, system, listed)

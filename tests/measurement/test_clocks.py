@@ -23,6 +23,8 @@ HUNDREDTHS = np.arange(0, 3.2, 0.01)
         "01/03/2024 02:00:{:06.3f} p. m.",
         "0 days 00:00:{:06.3f}",  # pandas
         "2 days, 0:00:{:06.3f}",  # Python
+        "2024/03/01-12:00:{:06.3f}",
+        "2024-061 12:00:{:06.3f}",  # the day of a leap year
     ],
 )
 def test_dates_with_clocks_are_seconds_from_the_first(form):
@@ -99,3 +101,20 @@ def test_stamps_of_whole_packets_are_not_left_out_row_by_row(tmp_path):
     with pytest.raises(InputError, match=r"360 repeated time stamp.*10 samples at each.*give sampling_rate") as caught:
         load_measurement(tmp_path / "m.yaml")
     assert "leave those rows out" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "form", ["2024-03-01_12-00-{:02d}.{:03d}", "2024-03-01 12-00-{:02d}_{:03d}", "2024_03_01-12.00.{:02d},{:03d}"]
+)
+def test_a_clock_as_it_stands_in_names_of_files(form):
+    texts = [form.format(k // 100, 10 * (k % 100)) for k in range(320)]
+    np.testing.assert_allclose(moments_of(texts).seconds, HUNDREDTHS, atol=1e-9)
+
+
+def test_a_date_among_numbers_is_what_a_spreadsheet_made_of_one(tmp_path):
+    body = "".join(f"{k / 100},{'2024-01-05' if k == 30 else 0.5 * k}\n" for k in range(60))
+    (tmp_path / "run.csv").write_text(f"t,x\n{body}")
+    channels = "{time: {column: t, unit: s}, displacement: {column: x, unit: mm}}"
+    (tmp_path / "m.yaml").write_text(f"system: oscillator\nrecords: [{{file: run.csv, channels: {channels}}}]\n")
+    with pytest.raises(InputError, match=r"where a spreadsheet made a date of a number, correct the cell"):
+        load_measurement(tmp_path / "m.yaml")

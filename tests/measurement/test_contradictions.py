@@ -217,3 +217,19 @@ def test_a_prior_of_a_gear_pair_that_its_records_contradict_is_named():
     assert said.startswith("damping_ratio lies 10 of its stated uncertainties away: correct its value")
     assert contradicted(free, [0.05, 1.0], stated) is None  # 2.5 of them
     assert contradicted(free, [coordinate, 1.0], {}) is None  # nobody stated it
+
+
+@pytest.mark.parametrize(
+    ("column", "said", "conflicts"),
+    [
+        ({"column": "x_um", "unit": "mm"}, "x_um", True),
+        ({"column": "x_um", "unit": "um"}, "x_um", False),
+        ({"column": "x_um", "unit": "mm", "gain": 1}, "x_um", False),  # said to be the name that is wrong
+        ({"column": "U1", "unit": "mV"}, "U1", False),  # a name of a voltage, and no unit
+        ({"column": "v_rad", "unit": "mm"}, "v_rad", False),  # radial
+    ],
+)
+def test_the_unit_that_a_name_ends_in_contradicts_another_of_its_kind(column, said, conflicts, tmp_path):
+    channels = {"time": {"column": "t", "unit": "s"}, "displacement": column}
+    (record,) = read(tmp_path, channels, {"t": TIME, said: MOTION}).records
+    assert any("is named like one in um" in one.message for one in record.findings) is conflicts

@@ -205,3 +205,36 @@ def test_a_row_above_that_is_shorter_than_the_table_names_what_it_can(tmp_path):
     table = read_table(tmp_path / "scope.csv")
     assert table.names == ("TIME", "CH1")
     assert table.values(1).size == 60
+
+
+def test_rows_that_say_before_the_columns_what_they_hold_are_the_header(tmp_path):
+    head = ["imc FAMOS ASCII", "Name\tWeg\tKraft", "Einheit\tmm\tN", "X0\t0\t0", "DeltaX\t0,01\t0,01", ""]
+    table = table_of(tmp_path, [*head, *(row.replace(".", ",") for row in rows(60, cells=2, sign="\t"))])
+    assert table.names == ("Weg", "Kraft")
+    assert [table.unit(k) for k in range(2)] == ["mm", "N"]
+    assert table.stated_rate == ("DeltaX", pytest.approx(100.0))
+    assert len(table.values(1)) == 60
+
+
+def test_the_four_rows_above_a_table_of_a_logger(tmp_path):
+    head = ['"TOA5","site","CR1000","1"', '"TIMESTAMP","RECORD","Disp"', '"TS","RN","mm"', '"","","Smp"']
+    table = table_of(tmp_path, [*head, *(f'"2024-03-01 11:59:{k % 60:02d}",{k},{k / 7:.3f}' for k in range(50))])
+    assert table.names == ("TIMESTAMP", "RECORD", "Disp")
+    assert [table.unit(k) for k in range(3)] == ["s", None, "mm"]
+
+
+def test_a_line_that_a_device_says_at_its_start_names_no_columns(tmp_path):
+    table = table_of(tmp_path, ["MPU6050 found!", *rows(60, cells=2, sign=",")])
+    assert table.names == ("", "")
+
+
+@pytest.mark.parametrize(
+    "line", ["// Update Rate: 100.0Hz", "Output Rate,100,Hz", "Capture Frame Rate;100", "# scan frequency = .1 kHz"]
+)
+def test_the_rate_of_a_table_has_many_names(tmp_path, line):
+    table = table_of(tmp_path, [line, "a,b", *rows(60, cells=2, sign=",")])
+    assert table.stated_rate[1] == pytest.approx(100.0)
+
+
+def test_a_rate_of_bits_is_none_of_samples(tmp_path):
+    assert table_of(tmp_path, ["# baud rate: 9600", "a,b", *rows(60, cells=2, sign=",")]).stated_rate is None

@@ -254,7 +254,11 @@ class CellTable(Table):
         for k in bad[:SHOWN]:
             rule = "an empty cell" if not cells[k].strip() else _not_a_number(cells[k])
             key = f"{self.path.name}, row {k} (line {self._columns[index].line(k)}), {title}"
-            remedy = "give sampling_rate" if rule == MOMENT else "correct the cell, or leave its row out"
+            remedy = "correct the cell, or leave its row out"
+            if rule == MOMENT and 2 * len(bad) > len(cells):
+                remedy = "give sampling_rate"
+            elif rule == MOMENT:
+                remedy = f"where a spreadsheet made a date of a number, {remedy}"
             if self._is_header(k):
                 rule = "a row of names among the values: from here on columns may hold something else"
                 remedy = "make what stands below it a file and a record of its own"

@@ -26,8 +26,18 @@ _COMMENTS = ("%", "%%", ";", "//", "!", "'", "*")  # that other programs write b
 _GENERIC = re.compile(
     r"^(analog(ue)?|digital|channel|chan|ch|kanal|ai|ao|di|do|in(put)?|signal|sensor|col(umn)?)[ _.#-]*\d+$", re.I
 )
-_IN_PROSE = re.compile(r"[:,;]$|^[(\[]")  # of a word: a name of a column does not end so, and its unit stands behind it
+_IN_PROSE = re.compile(
+    r"[:,;!?]$|^[(\[]"
+)  # of a word: a name of a column does not end so, and its unit stands behind it
 _COUNTED_FROM = {"0": -1, "1": 0, "2": 1}  # by the number of the second column, that of the first
+_LABELS = (
+    ("names", re.compile(r"^(name|channel|kanal|signal)s?$", re.I)),
+    ("units", re.compile(r"^(unit|einheit)(en|s)?$", re.I)),
+)
+_LOGGER, _OF_LOGGER = (
+    "TOA5",
+    4,
+)  # first word and rows of the head of Campbell's loggers: station, names, units, processing
 _TABLE = 3  # rows that a table begins with, none of them of texts alone
 
 
@@ -78,6 +88,8 @@ def find_header(rows: Sequence[Sequence[str]], width: int) -> Header:
         the last of several, one above a row of units before any other; else a wider one, else the last one. Without a
         row of texts the values begin at the first row.
     """
+    if known := known_header(rows, width):
+        return known
     end = _first_values(rows, width)
     is_named = any(filled(row) >= width for row in rows[:end])
     if not is_named and _names_by_numbers(rows[end : end + 1 + _TABLE], width):
@@ -103,6 +115,30 @@ def find_header(rows: Sequence[Sequence[str]], width: int) -> Header:
     between = max(end - first, 0) if end < len(rows) else 0  # texts that are neither names nor units
     others = tuple(tuple(cell.strip() for cell in rows[k][:width]) for k in exact if k != start)
     return Header(names, units, first + between, start + between, others=others)
+
+
+def known_header(rows: Sequence[Sequence[str]], width: int) -> Header | None:
+    """The header of a table whose rows say themselves what they are; None of any other."""
+    return _of_logger(rows) or _labelled(rows, width)
+
+
+def _of_logger(rows: Sequence[Sequence[str]]) -> Header | None:
+    """The header of four rows of a logger's file, whose units may be kinds of columns (`TS`, `RN`)."""
+    if len(rows) <= _OF_LOGGER or not rows[0] or rows[0][0].strip() != _LOGGER:
+        return None
+    names, units = ([cell.strip() for cell in row] for row in rows[1:3])
+    return Header(tuple(names), tuple(unit if _is_unit(unit) else "" for unit in units), _OF_LOGGER, 1)
+
+
+def _labelled(rows: Sequence[Sequence[str]], width: int) -> Header | None:
+    """The header whose rows say in a cell before the columns what they hold (`Name`, `Unit`); None of any other."""
+    found: dict[str, tuple[str, ...]] = {}
+    end = next((k for k, row in enumerate(rows) if filled(row) == width and all(map(is_written, row[:width]))), 0)
+    for row in rows[:end]:
+        for what, label in _LABELS:
+            if filled(row) == width + 1 and label.match(row[0].strip()):
+                found[what] = tuple(cell.strip() for cell in row[1 : width + 1])
+    return Header(found["names"], found.get("units", ()), end, end) if "names" in found else None
 
 
 def _of_two_rows(upper: list[str], lower: list[str], first: int) -> Header | None:

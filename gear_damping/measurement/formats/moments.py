@@ -3,7 +3,7 @@
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import date, datetime
+from datetime import date, datetime, timedelta
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,15 +18,19 @@ _CLOCK = (
 )
 _ZONE = r"\s*(?P<zone>Z|UTC|[+-]\d{2}(:?\d{2})?)?"
 _ELAPSED = r"(?P<elapsed>\d{1,5})(\.|\s*days?,?\s+)"  # whole days before a clock, as .NET and Python write them
-_MOMENT = re.compile(rf"({_DATE}[T ,;_]+|{_ELAPSED})?{_CLOCK}{_ZONE}", re.I)
+_MOMENT = re.compile(rf"({_DATE}(?:[T ,;_]+|-(?=\d{{2}}:))|{_ELAPSED})?{_CLOCK}{_ZONE}", re.I)
 _MINUTES = re.compile(r"(?P<minutes>\d{1,4}):(?P<seconds>\d{2})[.,](?P<part>\d+)")  # and seconds since a start
 _COMPACT = re.compile(r"(\d{4})(\d{2})(\d{2})T(\d{2})(\d{2})(\d{2})(?=\D|$)")  # of ISO 8601, without signs
+_FILE_NAME = re.compile(  # of clocks that may stand in the name of a file
+    r"(\d{4}[-/._]\d{1,2}[-/._]\d{1,2})[T ,;_-]+(\d{2})[-_.](\d{2})[-_.](\d{2})(?:[-_.,](\d+))?"
+)
+_OF_YEAR = re.compile(r"((?:19|20)\d{2})[-/](\d{3})(?=[T ,;_]+\d{1,2}:)")  # the day of a year
 _IDEOGRAPHS = str.maketrans({"年": "-", "月": "-", "日": " "})  # behind the parts of a date
 _ENGLISH = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec")
 _MONTHS = {name: k for k, name in enumerate(_ENGLISH, start=1)}
 MINUTES = 60  # in an hour: a clock that shows fewer may begin again with the next one
 _FRAME_RATES = (24, 25, 30, 50, 60)  # frames a second of time codes hh:mm:ss:ff (SMPTE ST 12-1)
-_TOLD = re.compile(r"\d{1,2}:\d{2}|\d{4}-\d{2}-\d{2}|\d{1,2}[./]\d{1,2}[./]\d{2,4}")
+_TOLD = re.compile(r"\d{4}-\d{3}[T ]|\d{1,2}:\d{2}|\d{4}-\d{2}-\d{2}|\d{1,2}[./]\d{1,2}[./]\d{2,4}")
 
 
 def is_told(cell: str) -> bool:
@@ -82,7 +86,15 @@ def moments_of(cells: Sequence[str]) -> Moments | None:
 
 
 def _with_signs(cell: str) -> str:
-    return _COMPACT.sub(r"\1-\2-\3T\4:\5:\6", cell.strip().translate(_IDEOGRAPHS))
+    text = _COMPACT.sub(r"\1-\2-\3T\4:\5:\6", cell.strip().translate(_IDEOGRAPHS))
+    if found := _FILE_NAME.fullmatch(text):
+        day, hours, minutes, seconds, part = found.groups()
+        return f"{day.replace('_', '-')} {hours}:{minutes}:{seconds}.{part or 0}"
+    return _OF_YEAR.sub(lambda found: _day_of_year(int(found[1]), int(found[2])), text)
+
+
+def _day_of_year(year: int, day: int) -> str:
+    return (date(year, 1, 1) + timedelta(days=day - 1)).isoformat()
 
 
 def _frames(moments: Sequence[re.Match[str]]) -> int:

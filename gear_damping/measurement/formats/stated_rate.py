@@ -16,7 +16,9 @@ _STEP = re.compile(
     r"(interval\w*|period\w*|increment\w*|step\w*))" + _END, re.I,
 )  # fmt: skip
 _RATE = re.compile(
-    r"\b(samp(le|ling)[ _-]?(rate|freq(uency)?)|samples (per|a) second|abtast(rate|frequenz)|fs)" + _END, re.I
+    r"\b(samp(le|ling)[ _-]?(rate|freq(uency)?)|samples (per|a) second|abtast(rate|frequenz)|fs|"
+    r"(update|output|scan|acquisition|logging|frame)[ _-]?(rate|freq(uency)?))" + _END,
+    re.I,
 )
 _IN_NAME = re.compile(r"_(ns|us|ms|s|hz|khz|mhz)[\s:=]*$", re.I)  # `sample_interval_us`
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?", re.I)

@@ -5,7 +5,7 @@ from dataclasses import replace
 from itertools import islice
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.formats.header import Header, filled, find_header, is_units
+from gear_damping.measurement.formats.header import Header, filled, find_header, is_units, known_header
 from gear_damping.measurement.formats.moments import is_told
 from gear_damping.measurement.formats.number_texts import is_absent, is_number, is_written
 from gear_damping.measurement.formats.text_lines import HEAD, Text
@@ -35,7 +35,7 @@ def text_header(text: Text) -> tuple[Header, int]:
     settings, lines, rows = rows[:start], lines[start:], rows[start:]
     # LabVIEW writes channels of one sample a block into the first row of each alone.
     width = filled(rows[0]) if start and rows[0][0] == _PLACE else text.width
-    header = _below_preamble(rows, width) or find_header(rows, width)
+    header = known_header(rows, width) or _below_preamble(rows, width) or find_header(rows, width)
     header = _of_labview(header, settings) if start else header
     header = _of_cassy(header, settings) if start and not any(header.names) else header
     is_title = (
