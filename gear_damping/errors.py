@@ -42,7 +42,7 @@ class InputError(ValueError):
 
     def __init__(self, problems: Problem | Sequence[Problem]) -> None:
         self.problems = [problems] if isinstance(problems, Problem) else list(problems)
-        super().__init__("\n".join(f"- {problem}" for problem in self.problems))
+        super().__init__("\n".join(dict.fromkeys(f"- {problem}" for problem in self.problems)))
 
 
 def _shortened(text: str) -> str:

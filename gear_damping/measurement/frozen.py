@@ -22,17 +22,36 @@ _LEAP = 0.5  # times what it moves over as many usual steps: less is how a motio
 
 
 def frozen(channel: Channel) -> Finding | None:
-    """A finding where a response keeps its value and leaps out of it; those at the ends of a record are rests."""
+    """A finding where a response keeps its value and leaps out of it, or keeps its last one; before it all is a rest."""
     if channel.name in INPUTS:
         return None
     stretches = _stretches(channel.values)
     if not stretches:
-        return None
+        return _stopped(channel)
     count, (first, last) = sum(last - first for first, last in stretches), stretches[0]
     message = (
         f"{channel.name} keeps its value over {len(stretches)} stretch(es) of {_REPEATS} or more samples and leaps out "
         f"of them, the first at samples {first} to {last}, {count} samples in all: a tracker, a link or a converter "
         "lost the motion there; use slices or windows between them"
+    )
+    return Finding("frozen", message, channel=channel.name, sample=first)
+
+
+def _stopped(channel: Channel) -> Finding | None:
+    """A finding where a response keeps one value to the end that the motion before did not come to rest at."""
+    values = channel.values
+    steps = np.diff(values)
+    moving = np.flatnonzero(steps)
+    first = int(moving[-1]) + 1 if moving.size else 0  # the sample from which on nothing moves
+    before = np.abs(steps[max(first - 1 - _BESIDE, 0) : first - 1])
+    kept = values.size - first
+    if kept < _REPEATS or not np.any(before) or np.mean(steps[:first] == 0) > _HELD:
+        return None
+    if abs(steps[first - 1]) < _LEAP * float(np.median(before[before > 0])):
+        return None  # slower and slower, as friction brings a motion to rest
+    message = (
+        f"{channel.name} keeps one value over its last {kept} samples, at which the motion before did not come to rest: "
+        f"a buffer was filled up, or the sensor was lost; end the record with slice: [0, {first}] or a window"
     )
     return Finding("frozen", message, channel=channel.name, sample=first)
 

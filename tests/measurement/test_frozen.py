@@ -57,3 +57,17 @@ def test_an_input_may_be_held():
     values = DECAY.copy()
     values[900:930] = values[899]
     assert _said(values, "force") is None
+
+
+@pytest.mark.parametrize("last", [0.0, DECAY[-1]], ids=["filled up with zeros", "lost"])
+def test_one_value_to_the_end_at_which_nothing_came_to_rest_is_a_fault(last):
+    found = _said(np.concatenate([DECAY[:800], np.full(60, last)]))
+    assert found.severity == "data_problem"
+    assert "over its last 60 samples" in found.message
+    assert "slice: [0, 800]" in found.message
+
+
+def test_a_motion_that_friction_brought_to_rest_ends_in_a_rest():
+    moves = np.arange(400) / 100
+    slower = np.exp(-0.1 * moves) * np.cos(np.pi * moves)  # stops where it turns
+    assert _said(np.concatenate([slower, np.full(60, slower[-1])])) is None
