@@ -107,9 +107,10 @@ def chosen(
             size. No linear score foresees these.
         every: Whether all that promise much are, whether they resemble the first or not.
 
-    What differs from record to record by its own account is worth one where it promises most.
+    What differs from record to record by its own account is worth one where it promises as much as any.
     """
-    scores = [score for place, score in enumerate(scores) if not place or not score.candidate.own_levels]
+    most = settings.rival_share * scores[0].gain if scores else 0.0
+    scores = [score for score in scores if not score.candidate.own_levels or score.gain >= most]
     forms: dict[tuple, Score] = {}
     for score in scores:
         forms.setdefault((score.candidate.name, *score.candidate.form), score)
