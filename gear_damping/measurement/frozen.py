@@ -22,7 +22,7 @@ _LEAP = 0.5  # times what it moves over as many usual steps: less is how a motio
 
 
 def frozen(channel: Channel) -> Finding | None:
-    """A finding where a response keeps its value and leaps out of it, or keeps its last one; before it all is a rest."""
+    """A finding where a response keeps its value and leaps out of it, or keeps its last one; its first is a rest."""
     if channel.name in INPUTS:
         return None
     stretches = _stretches(channel.values)
@@ -50,8 +50,8 @@ def _stopped(channel: Channel) -> Finding | None:
     if abs(steps[first - 1]) < _LEAP * float(np.median(before[before > 0])):
         return None  # slower and slower, as friction brings a motion to rest
     message = (
-        f"{channel.name} keeps one value over its last {kept} samples, at which the motion before did not come to rest: "
-        f"a buffer was filled up, or the sensor was lost; end the record with slice: [0, {first}] or a window"
+        f"{channel.name} keeps one value over its last {kept} samples, at which the motion before did not come to "
+        f"rest: a buffer was filled up, or the sensor was lost; end the record with slice: [0, {first}] or a window"
     )
     return Finding("frozen", message, channel=channel.name, sample=first)
 

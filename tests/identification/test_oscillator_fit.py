@@ -171,3 +171,17 @@ def test_records_seen_through_different_channels_are_fitted_together():
     assert found.damping_ratio_percent.value == pytest.approx(100 * RATIO, rel=1e-3)
     assert len(found.predictions["speed"]) == len(found.predictions["held"]) == 1500
     assert float((found.predictions["speed"] - other.response).abs().max()) < 1e-3 * float(other.response.abs().max())
+
+
+def test_a_damping_that_no_first_stretch_tells_is_found_over_the_whole_of_it():
+    """A rod of .0019 % rings beside a line: a hundred of its 837 periods hold no damping at all."""
+    rng, time = np.random.default_rng(7), np.arange(5000) / 1e4
+    ringing = np.exp(-0.2 * time) * np.cos(2 * np.pi * 1674 * time + 0.3)
+    beside = 0.28 * np.exp(-0.33 * time) * np.cos(2 * np.pi * 4978.85 * time + 2) + 0.05 * np.cos(
+        2 * np.pi * 538 * time
+    )
+    values = torch.from_numpy(ringing + beside + 0.004 * rng.standard_normal(time.size))
+    record = FitRecord("rod", values, 1e4, observed=Observed(offset=True))
+    found = fit_oscillator([record]).damping_ratio_percent
+    assert found.interval95[0] < 100 * 0.2 / (2 * np.pi * 1674) < found.interval95[1]
+    assert found.interval95[0] > 0

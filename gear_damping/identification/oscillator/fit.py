@@ -32,6 +32,8 @@ FIRST_RATES = (0.1, 1.0, 10.0)  # damping coefficients of the starts without a s
 HORIZON_PERIODS = (4, 20, 100)  # natural periods of the rounds before the whole record
 SEGMENT_TIMES = 5.0  # characteristic times of a segment
 FEWEST_SEGMENTS = 2  # of a record that is cut
+UNDYING = 0.01  # of a motion, that it loses within the longest record: then a damping may have run to none on the way
+LOSES = (0.1, 1.0)  # times that a motion then dies by a factor of e within that record, of two more starts
 LOST = 0.5  # of a record's motion: a frequency that changes with the amplitude has run out of step by then
 
 
@@ -170,12 +172,32 @@ def _fitted(
     be the better guess; and a stretch that ends in the stroke leads astray, so that it is tried over all at once.
     """
     found = fit(problem, _starts(problem, spring), Rounds(horizons=_horizons(problem, scale), report=report))
+    found = _that_dies(found, problem) if spring else found
     rate = _first_rate(problem)
     own = 2 * pi * first_frequency(problem.records[0], driven=False) / rate if rate > 0 else 0.0
     is_new = not min(FIRST_SHIFTS) <= own <= max(FIRST_SHIFTS) or is_stroke(problem.records[0])
     if not spring or own <= 0 or not is_new:
         return found
     other = fit(problem, _starts(problem, spring, (own,)))
+    return min(found, other, key=lambda one: one.cost)
+
+
+def _that_dies(found: Fitted, problem: OutputErrorProblem) -> Fitted:
+    """The fit, or a better one from motions that die away, where it found one that does not.
+
+    Over a first stretch of few periods a small damping is not told from none; in the logarithm of what runs there,
+    none is a place without a slope.
+    """
+    place = next((i for i, parameter in enumerate(problem.free) if parameter.name == DAMPING), None)
+    if place is None:
+        return found
+    lasts = max(record.duration for record in problem.records)
+    rate = float(problem.unknowns.parameters(found.shared)[DAMPING]) / (2 * fitted_mass(problem))
+    if not 0 < rate * lasts < UNDYING:
+        return found
+    starts = found.shared.repeat(len(LOSES), 1)
+    starts[:, place] += torch.tensor([log(times / (rate * lasts)) for times in LOSES], dtype=starts.dtype)
+    other = fit(problem, starts, states=found.states.expand(len(LOSES), *found.states.shape))
     return min(found, other, key=lambda one: one.cost)
 
 
