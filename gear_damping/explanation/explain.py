@@ -18,6 +18,7 @@ from gear_damping.explanation.evidence.noise import NoiseLevel, Scatter, noise_o
 from gear_damping.explanation.evidence.records import Evidence, evidence_of
 from gear_damping.explanation.evidence.useful_samples import at_useful_rate, of_useful_length
 from gear_damping.explanation.model.calibration_error import calibration_error
+from gear_damping.explanation.model.contradicted import contradicts_stated
 from gear_damping.explanation.model.gives_back import takes_and_gives
 from gear_damping.explanation.model.hypothesis import SEGMENT_TIMES, Outcome, natural_frequency_hz, segments_of
 from gear_damping.explanation.model.rig import swells_again
@@ -146,6 +147,7 @@ def _of_evidence(
         out_of_step(found.state),
         never_dies(found.state),
         followed_one_by_one(found.state),
+        contradicts_stated(found.state.outcome, evidence),
         INPUT_NOISE if evidence.input_noise else "",
     )
     said = judged(found, [silent, short, *doubts, stretches.said], bool(short))

@@ -16,6 +16,7 @@ from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.evidence.records import Evidence, evidence_of, with_own_angles
 from gear_damping.explanation.evidence.useful_samples import at_useful_rate
 from gear_damping.explanation.explain import Listener, explain, fitting_solver, with_noise
+from gear_damping.explanation.model.contradicted import contradicts_stated
 from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Given, Hypothesis, Outcome, natural_frequency_hz
 from gear_damping.explanation.model.nominal_gear_pair import MESH, angles_of, first_gear_pair
@@ -26,7 +27,7 @@ from gear_damping.explanation.trials.efficient import weighed
 from gear_damping.identification.oscillator.linear_model import DAMPING, linear_model
 from gear_damping.identification.output_error.least_squares import Rounds
 from gear_damping.identification.output_error.records import FitRecord
-from gear_damping.interface.far_from_stated import contradicted, far_from_stated
+from gear_damping.interface.far_from_stated import far_from_stated
 from gear_damping.interface.free_parameters import FLAT, free_parameters
 from gear_damping.interface.identified_page import MOST_PANELS, estimate_rows, panel, residual_rows
 from gear_damping.measurement.record import Measurement
@@ -220,14 +221,13 @@ def _hardly_told(content: dict[str, Any]) -> str | None:
 
 def _far_off(outcome: Outcome, evidence: Evidence) -> str | None:
     """What is stated and the records put far away, as they do with a mesh stiffness beside a torque in a wrong unit."""
-    stated = {FLAT.get(name, name): name for name in evidence.known.uncertainty}
     pairs = {
         stated: (outcome.values[fitted], evidence.parameters[stated])
         for stated, fitted in (("mesh_stiffness_max", f"{MESH}.maximum"),)
         if stated in evidence.parameters and fitted in outcome.values
     }
     return (
-        contradicted(outcome.problem.free, outcome.fitted.shared.tolist(), stated)
+        contradicts_stated(outcome, evidence)
         or _unlike_steel(outcome, evidence)
         or far_from_stated(pairs, "unit and gain of the torque and of the response, and the value itself")
     )

@@ -8,6 +8,7 @@ from typing import Any
 from gear_damping.explanation.evidence.noise import NoiseLevel, noise_of, weighted
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.evidence.release import released_at
+from gear_damping.explanation.model.contradicted import contradicted
 from gear_damping.explanation.model.homogeneity import FEWEST, homogeneity
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome
 from gear_damping.explanation.trials.efficient import weighed
@@ -19,7 +20,7 @@ from gear_damping.identification.oscillator.fit import OscillatorFit, fit_oscill
 from gear_damping.identification.oscillator.linear_model import DAMPING
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import WHOLE, Segments
-from gear_damping.interface.far_from_stated import contradicted, far_from_stated
+from gear_damping.interface.far_from_stated import far_from_stated
 from gear_damping.interface.identified_page import MOST_PANELS, estimate_rows, panel, residual_rows
 from gear_damping.interface.lack_of_fit import lack_of_fit, sentence
 from gear_damping.measurement.record import Channel, Measurement

@@ -341,3 +341,8 @@ def test_what_is_left_is_no_less_than_nothing(left, said):
 def test_held_out_records_that_are_too_short_establish_large_effects_alone(is_short, before, word):
     found = search(visible=True, accepted=(cause(),))
     assert verdict(found, before, NOTHING, is_short=is_short, is_one=True).word == word
+
+
+def test_what_only_other_figures_than_the_stated_ones_follow_is_not_consistent():
+    assert verdict(search(visible=False), NOTHING, NOTHING, is_stated_otherwise=True).word == UNEXPLAINED
+    assert verdict(search(visible=False), NOTHING, NOTHING).word == CONSISTENT

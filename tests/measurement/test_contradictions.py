@@ -6,8 +6,8 @@ import yaml
 from scipy.io import savemat
 
 import gear_damping as gd
+from gear_damping.explanation.model.contradicted import contradicted
 from gear_damping.identification.output_error.records import FreeParameter
-from gear_damping.interface.far_from_stated import contradicted
 
 TIME = np.arange(400) / 200.0
 MOTION = 2.0 * np.exp(-0.5 * TIME) * np.cos(2 * np.pi * 4 * TIME)

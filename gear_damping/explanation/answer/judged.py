@@ -15,6 +15,7 @@ from gear_damping.explanation.answer.stand_in import (
     swinging_on,
 )
 from gear_damping.explanation.evidence.excess import excess
+from gear_damping.explanation.model.contradicted import contradicts_stated
 from gear_damping.explanation.model.homogeneity import homogeneity
 from gear_damping.explanation.model.positive import positive
 from gear_damping.explanation.state import State
@@ -112,6 +113,7 @@ def _judged(found: Confirmed, notes: Sequence[str], is_short: bool) -> tuple[Jud
         shape=shape_without_name(state),
         not_random=_not_random(state),
         is_short=is_short,
+        is_stated_otherwise=bool(contradicts_stated(state.nominal, evidence)),
     )
     said = verdict(state, before, after, known)
     left = line_left(state)

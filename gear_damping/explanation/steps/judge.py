@@ -19,6 +19,10 @@ WORSE = "but with it the held-out records are predicted worse than by their mean
 NOT_LESS = "but what is visible and not random stays."
 WITHIN_NOISE = "What is left is no more than the noise of the held-out records, and is not all random."
 AT_BOUND = "but it has run into the end of what it can be, and leaves most: it stands in for something else."
+OTHER_FIGURES = (
+    "The simulation follows the records, but with figures far from those that are stated: one of these is wrong, or "
+    "what measured the records has a wrong gain, which bends them."
+)
 OTHER_SIZES = (
     "but with another size in other records: its form is another one, or it stands in for something that has no name."
 )
@@ -78,6 +82,7 @@ class Known:
         shape: What is visible and has no name, in words; empty where nothing of that kind is.
         not_random: What of the nominal model's residuals shows that it is not random, in % of the fitted records'
             variance.
+        is_stated_otherwise: Whether the nominal model has figures far from what is stated of them.
         is_short: Whether held-out records are too short to judge more than what is missing of the power in them.
     """
 
@@ -93,6 +98,7 @@ class Known:
     shape: str = ""
     not_random: float = inf
     is_short: bool = False
+    is_stated_otherwise: bool = False
 
     @property
     def unsettled(self) -> tuple[str, ...]:
@@ -249,6 +255,8 @@ def _without_name(found: State, before: Excess, known: Known) -> Verdict:
             "are too short to tell whether a random load makes it or something is missing."
         )
         return Verdict(UNEXPLAINED, (text, *known.unsettled))
+    if known.is_stated_otherwise:
+        return Verdict(UNEXPLAINED, (OTHER_FIGURES, *known.unsettled))
     if visible and (is_more or before.significant):
         text = (
             f"What the simulation misses is not random, and less than {max(before.percent, before.threshold):.2g} % of "

@@ -1,0 +1,37 @@
+"""What the file states with an uncertainty and the records put far from it."""
+
+from collections.abc import Mapping, Sequence
+
+from gear_damping.explanation.evidence.records import Evidence
+from gear_damping.explanation.model.hypothesis import Outcome
+from gear_damping.explanation.model.nominal_gear_pair import RENAMED
+from gear_damping.identification.oscillator.linear_model import LAWS
+from gear_damping.identification.output_error.records import FreeParameter
+
+CONTRADICTS = 5.0  # stated standard deviations: of one in two million statements that hold
+
+
+def contradicts_stated(outcome: Outcome, evidence: Evidence) -> str:
+    """A sentence of what a model had to move far from what is stated, empty where it is all within its uncertainty."""
+    fitted = {LAWS.get(name, RENAMED.get(name, name)): name for name in evidence.known.uncertainty}
+    return contradicted(outcome.problem.free, outcome.fitted.shared.tolist(), fitted) or ""
+
+
+def contradicted(free: Sequence[FreeParameter], coordinates: Sequence[float], stated: Mapping[str, str]) -> str | None:
+    """A sentence of what is stated with an uncertainty that the records contradict; None where nothing is.
+
+    Args:
+        free: What was fitted.
+        coordinates: What it came to.
+        stated: Key of the file by flat name.
+    """
+    away = {}
+    for parameter, coordinate in zip(free, coordinates, strict=True):
+        expected, slope = parameter.surprise
+        size = abs(expected + slope * coordinate)
+        if parameter.name in stated and size > CONTRADICTS:
+            away[stated[parameter.name]] = size
+    if not away:
+        return None
+    said = " and ".join(f"{name} lies {size:.3g} of its stated uncertainties away" for name, size in away.items())
+    return f"{said}: correct its value or its uncertainty, which draws the other figures to it"
