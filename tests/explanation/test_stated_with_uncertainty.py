@@ -3,9 +3,12 @@
 from types import SimpleNamespace
 
 import pytest
+import torch
 
 from gear_damping.explanation.answer import report_fields
+from gear_damping.explanation.model.contradicted import contradicts_stated
 from gear_damping.identification.oscillator.linear_model import uncertain_parameter
+from gear_damping.identification.output_error.records import FreeParameter
 from gear_damping.physics.systems.gear_pair import GearPair
 
 DECLARED = {parameter.name: parameter for parameter in GearPair.parameters}
@@ -31,3 +34,16 @@ def test_what_standing_shafts_do_not_use_is_said(stands, monkeypatch):
     assert said == (
         ["The shafts stand, so that one stiffness is fitted: contact_ratio of the file is not used."] * stands
     )
+
+
+@pytest.mark.parametrize(("coordinate", "is_said"), [(0.2, True), (0.04, False)])
+def test_what_a_calibration_moved_far_from_what_is_stated_is_said_by_the_key_of_the_file(coordinate, is_said):
+    stiffness = "fourier_mesh_stiffness.maximum"
+    free = [FreeParameter(stiffness, 3e8, logarithmic=True, deviation=0.02, expected=3e8)]
+    outcome = SimpleNamespace(
+        problem=SimpleNamespace(free=free), fitted=SimpleNamespace(shared=torch.tensor([coordinate]))
+    )
+    evidence = SimpleNamespace(known=SimpleNamespace(uncertainty={"mesh_stiffness_max": 0.02}))
+    said = contradicts_stated(outcome, evidence)
+    assert said.startswith("mesh_stiffness_max lies 10 of its stated uncertainties away") is is_said
+    assert bool(said) is is_said
