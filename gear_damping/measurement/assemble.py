@@ -34,6 +34,7 @@ LOST = 0.1  # of a channel's variance, from which it is said that resampling too
 _TEETH = tuple(GEOMETRY.values())
 _GEOMETRY = (*_TEETH, *NEEDED)
 _STANDS = 0.1  # of the largest speed: what a vibration's mean is below and that of a shaft that turns is not
+MORE_STAMPS = 2.0  # times the rate of a record: what stamps then hold between two samples is lost
 _OTHERWISE = 0.1  # of a condition: no two instruments differ by so much
 _INERTIAS = ("inertia_pinion", "inertia_gear")
 
@@ -144,6 +145,7 @@ class Assembler:
                 message = f"{one.lost} pulses are missing between others, the first after {one.lost_after:.6g} s; "
                 message += "the turn of the shaft there is counted as if they were there"
                 findings.append(Finding("lost_pulses", message, channel=name, severity="note"))
+            notes += _folded_back(name, one, raw.base)
         told = raw.angles.get("pinion", raw.angles.get("tacho"))
         if told is None and "pinion_angle" not in channels and "gear" in raw.angles:
             told = self._behind_the_gear(raw.angles["gear"], f"{raw.plan.key}.encoders.gear", notes)
@@ -290,6 +292,18 @@ def _beside_condition(channel: Channel, stated: Quantity) -> Finding:
     message += f", which it never reaches ({reached}); correct the one that is wrong"
     severity = "data_problem" if channel.name in SHAFT_SPEEDS else "note"  # a torque meter may be off by as much
     return Finding("condition_mismatch", message, channel=channel.name, severity=severity)
+
+
+def _folded_back(name: str, shaft: ShaftAngle, base: TimeBase) -> list[str]:
+    """What is said of stamps that hold more than the rate at which the angle of their shaft is taken."""
+    rate = (shaft.values.size - 1) / float(base.time[-1] - base.time[0])  # before a lower one was asked for
+    if shaft.stamped_rate <= MORE_STAMPS * rate:
+        return []
+    return [
+        f"{name}: its stamps come {shaft.stamped_rate:.3g} times a second, and the angle is taken at {rate:.6g} Hz, so "
+        f"that motions above {rate / 2:.6g} Hz are folded back onto lower ones: give a sampling_rate near that of the "
+        "stamps, and resample for a lower one"
+    ]
 
 
 def _step_conflict(raw: RawChannel, said: str, number: float, unit: Unit) -> Finding | None:

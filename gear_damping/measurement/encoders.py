@@ -37,12 +37,14 @@ class ShaftAngle:
         timing_error: Standard deviation in s by which all of it may be late, where edges are known to a sample.
         lost: How many pulses are missing between others; their turns are counted.
         lost_after: Time in s of the last pulse before the first that is missing.
+        stamped_rate: Stamps a second, in Hz, of a shaft whose pulses are stamped by a clock; 0.0 of any other.
     """
 
     values: NDArray[np.float64]
     timing_error: float = 0.0
     lost: int = 0
     lost_after: float = 0.0
+    stamped_rate: float = 0.0
 
 
 def angle_from_counts(counts: NDArray[np.float64], per_revolution: float, direction: int = 1) -> NDArray[np.float64]:
@@ -231,7 +233,8 @@ def shaft_angle(plan: EncoderPlan, base: TimeBase, rows: ReadColumn, whole: Read
     angle = angle_from_pulses(pulses, time, plan.per_revolution, plan.direction, key, file)
     zero = 0.0 if plan.index is None else _at_index_stamp(plan, angle, time, whole, file)
     gaps = np.diff(pulse_numbers(pulses)) - 1
-    return ShaftAngle(angle - zero, late, int(gaps.sum()), float(pulses[int((gaps > 0).argmax())]))
+    rate = 1 / float(np.median(np.diff(pulses))) if plan.timestamps else 0.0
+    return ShaftAngle(angle - zero, late, int(gaps.sum()), float(pulses[int((gaps > 0).argmax())]), rate)
 
 
 def pulse_times(plan: EncoderPlan, whole: ReadColumn, file: str) -> NDArray[np.float64]:

@@ -346,9 +346,13 @@ class RawReader:
         return base, None
 
     def _sound_beside(self, most: int) -> tuple[int, int]:
-        """How many rows before and behind the record hold numbers in all of its columns, at most so many each."""
-        before, behind = most, most
-        for column in self.clocks.on_its_clock():
+        """How many rows before and behind the record hold numbers in all of its columns, at most so many each.
+
+        None where there are no such columns: stamps of pulses alone end with the record.
+        """
+        columns = [*self.clocks.on_its_clock()]
+        before = behind = most if columns else 0
+        for column in columns:
             with suppress(InputError):  # which its channel will say
                 values = np.isfinite(self._all(column, ""))
                 before = min(before, _leading(values[: self.first][::-1]))

@@ -73,6 +73,28 @@ def test_a_fit_of_segments_counts_for_whole_records_only_where_these_bear_it_out
     assert (found.name, found.error_amplification) == ("whole" if cost < 4 else "near", growth)
 
 
+@pytest.mark.parametrize(
+    ("there", "again", "kept"),
+    [
+        (1.0, 0.999, "again"),  # nothing crosses it: no fit went on from the width of the widest motion
+        (1.05, 1.02, "found"),
+        (40.0, 0.5, "found"),  # crossed: not even tried
+    ],
+)
+def test_a_gap_that_no_motion_crosses_is_any_wider_one(there, again, kept, monkeypatch):
+    found, beyond, best = (
+        SimpleNamespace(name=name, is_finite=True, fitted=SimpleNamespace(cost=cost), error_amplification=1.0)
+        for name, cost in (("found", 1.0), ("there", there), ("again", again))
+    )
+    found.hypothesis, found.values = None, {parting_flanks.GAP: 26e-6}
+    fits = iter([beyond, best])
+    monkeypatch.setattr(parting_flanks, "fit_hypothesis", lambda *_, **__: next(fits))
+    monkeypatch.setattr(parting_flanks, "settled_at", lambda _, values: values[parting_flanks.GAP])
+    monkeypatch.setattr(parting_flanks, "replace", lambda one, **new: SimpleNamespace(**{**vars(one), **new}))
+    evidence = SimpleNamespace(settings=SimpleNamespace(most_growth=2.0))
+    assert parting_flanks._out_of_reach(found, evidence, None).name == kept
+
+
 @pytest.mark.parametrize(("left_without", "missed"), [(2.5, True), (1.5, False)])
 def test_a_gap_seen_in_segments_takes_half_of_what_is_left_of_the_same_segments(left_without, missed, monkeypatch):
     """Any model leaves little of segments that begin anew, whatever is hidden beside it."""

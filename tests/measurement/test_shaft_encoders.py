@@ -321,6 +321,23 @@ def test_two_encoders_that_stamp_their_edges_need_no_column_but_a_rate(bench, ra
     assert np.std(seen - true) < 0.01 * np.std(true)
 
 
+@pytest.mark.parametrize(
+    ("rate", "resample", "is_said"), [(2.0, None, True), (8.0, None, False), (8.0, {"value": 2, "unit": "kHz"}, False)]
+)
+def test_stamps_that_hold_more_than_the_rate_of_their_angles_are_said(bench, rate, resample, is_said):
+    time = np.linspace(0, 1, 400_001)
+    shafts = (60 * time + 1e-4 * np.sin(2 * pi * 9 * time), 30 * time)
+    edges = [np.interp(np.arange(0.5, one[-1] * 900 / (2 * pi)), one * 900 / (2 * pi), time) for one in shafts]
+    _rig(bench, a=edges[0], b=edges[1])
+    record = bench.content["records"][0]
+    record["channels"] = {"sampling_rate": {"value": rate, "unit": "kHz"}}
+    record |= {} if resample is None else {"resample": resample}
+    stamped = {"unit": "s", "counts_per_revolution": 900}
+    record["encoders"] = {"pinion": {"timestamps": "a"} | stamped, "gear": {"timestamps": "b"} | stamped}
+    said = [note for note in bench.load_as_it_is().records[0].notes if "folded back" in note]
+    assert [note.split(":")[0] for note in said] == (["pinion", "gear"] if is_said else [])
+
+
 @pytest.mark.parametrize("bits", [24, 32])
 def test_the_clock_of_stamped_edges_goes_on_where_its_register_was_full(bench, bits):
     edges = {"a": np.arange(1200) * 1000.25, "b": np.arange(1200) * 1000.75}  # ticks of 1 us

@@ -12,7 +12,7 @@ from scipy.stats import chi2
 from torch import Tensor
 
 from gear_damping.explanation.evidence.records import Evidence
-from gear_damping.explanation.model.covariance import FEWEST, groups_of
+from gear_damping.explanation.model.covariance import FEWEST, SILENT, groups_of
 from gear_damping.explanation.model.hypothesis import Outcome, time_scale
 from gear_damping.explanation.model.own_phases import own_levels
 from gear_damping.explanation.statistics.random_effects import between_deviation, statistic
@@ -68,7 +68,8 @@ def homogeneity(outcome: Outcome, cause: str, evidence: Evidence) -> Homogeneity
     energy = columns.square().sum(0)
     kept = (energy > SHARE * energy.sum() / len(names)).nonzero().flatten().tolist()
     strength = _size(outcome, place)
-    if len(kept) < FEWEST or not strength:
+    moves = float(prediction.sensitivity[0, ..., place].norm()) >= SILENT * evidence.noise  # or it is any size
+    if len(kept) < FEWEST or not strength or not moves:
         return Homogeneity((), (), (), None, evidence.settings.homogeneity_level)
     shift = torch.linalg.lstsq(columns[:, kept], residual.unsqueeze(1), driver="gelsd").solution[:, 0]
     block = block_of(outcome, evidence)

@@ -16,7 +16,7 @@ from torch import Tensor
 
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.fitting import InitialValues, error_amplification_over, fit_hypothesis
-from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, segments_of
+from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, segments_of, settled_at
 from gear_damping.explanation.model.nominal_gear_pair import (
     ANGLES_KEPT,
     ROUGH_ITERATIONS,
@@ -27,7 +27,7 @@ from gear_damping.explanation.model.nominal_gear_pair import (
 )
 from gear_damping.explanation.model.rig import rig_of
 from gear_damping.identification.output_error.first_guess import participation
-from gear_damping.identification.output_error.least_squares import Rounds
+from gear_damping.identification.output_error.least_squares import NONE, Rounds
 from gear_damping.identification.output_error.records import FitRecord, FreeParameter
 from gear_damping.physics.effects.backlash import GAPS, Backlash
 from gear_damping.physics.systems.traits import Trait
@@ -44,6 +44,7 @@ PARABOLA, SHORTEST = 2, 3  # degree, and least samples of the window in which th
 SHOWN = 0.9  # of an acceleration at the natural frequency, by a window that is not too wide
 LOOKS = 2  # at the angles of the mesh, each followed by a fit: with the damping that is stated, and with what was found
 FAR = 4.0  # times the cost in segments: whole records have fewer initial states to bend, and no more is their doing
+WIDER, NEARLY = 2.0, 1.1  # times the gap, and the cost: of one that is crossed a wider one leaves many times as much
 ITERATIONS = 30  # over whole records, and with a free shape of the stiffness
 
 
@@ -149,7 +150,24 @@ def with_parting_flanks(evidence: Evidence, harmonics: int, solver: Solver | Non
     if rough is None:
         return None
     found = _shaped(rough, evidence, harmonics, solver)
-    return found if found.is_finite else None
+    return _out_of_reach(found, evidence, solver) if found.is_finite else None
+
+
+def _out_of_reach(found: Outcome, evidence: Evidence, solver: Solver | None) -> Outcome:
+    """The fit, or one with a gap that no motion crosses, where that leaves no more.
+
+    A gap just as wide as the widest motion is a place from which no fit goes on: a wider one changes nothing.
+    """
+    wider = settled_at(found.hypothesis, {GAP: WIDER * float(found.values[GAP])})
+    if found.error_amplification > evidence.settings.most_growth:
+        evidence = _in_short(found.hypothesis, evidence)
+    initial = InitialValues(after=found, is_near=True)
+    there = fit_hypothesis(wider, evidence, initial, NONE, solver=solver)
+    if not there.is_finite or there.fitted.cost > NEARLY * found.fitted.cost:
+        return found
+    again = fit_hypothesis(wider, evidence, initial, Rounds(ITERATIONS), solver=solver)
+    is_better = again.is_finite and again.fitted.cost <= found.fitted.cost
+    return replace(again, error_amplification=found.error_amplification) if is_better else found
 
 
 def _shaped(rough: Outcome, evidence: Evidence, harmonics: int, solver: Solver | None) -> Outcome:

@@ -99,8 +99,8 @@ def takes_the_random_part_for_noise(settings: SearchSettings):
     return tuple(bench(settings).knowing(one).noise == "raised" for one in seen)
 
 
-def of_one_size(shifts: list[float], error: float, settings: SearchSettings) -> bool:
-    """Whether strengths that differ by these shares, known to `error`, count as one."""
+def of_one_size(shifts: list[float], error: float, settings: SearchSettings, moves: float = 1.0) -> bool:
+    """Whether strengths that differ by these shares, known to `error`, count as one; they move records by `moves`."""
     count, length = len(shifts), 400
     columns = torch.zeros(count * length, count, dtype=torch.float64)
     residual = torch.zeros(count * length, dtype=torch.float64)
@@ -111,8 +111,8 @@ def of_one_size(shifts: list[float], error: float, settings: SearchSettings) -> 
         residual[rows] = shift + error * length**0.5 / 2**0.5 * noise.double()
     parameter = SimpleNamespace(name="a.strength", logarithmic=True)
     model = outcome(problem=SimpleNamespace(free=[parameter], n_shared=1), hypothesis=SimpleNamespace(effects=()))
-    model.linearisation = SimpleNamespace(sensitivity=[None], residual=[None])
-    evidence = SimpleNamespace(settings=settings, sampling_rate=1.0)
+    model.linearisation = SimpleNamespace(sensitivity=torch.full((1, 1, 1, 1), moves), residual=[None])
+    evidence = SimpleNamespace(settings=settings, sampling_rate=1.0, noise=1.0)
     with (
         patch.object(homogeneity, "groups_of", lambda _: ([*range(count)], [str(k) for k in range(count)])),
         patch.object(homogeneity, "_orthogonal_columns", lambda *_: (columns, residual)),
