@@ -1,10 +1,12 @@
 """Order analysis of a casing on signals whose answer is known in closed form."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.stats import kstest
 
-from gear_damping.explanation.casing import orders
+from gear_damping.explanation.casing import findings, orders
 from gear_damping.explanation.casing.averages import by_revolution
 from gear_damping.explanation.casing.cycles import patterns, series
 from gear_damping.explanation.casing.heard import Heard
@@ -156,3 +158,28 @@ def test_a_line_at_no_order_of_a_shaft_is_asynchronous():
     line = orders.asynchronous(patterns(heard(values, turn)))
     assert line.order == pytest.approx(7.67, abs=0.03)
     assert line.p < 1e-6
+
+
+@pytest.mark.parametrize(("declared", "said"), [(23, None), (24, 23), (41, 23)])
+def test_the_mesh_of_other_teeth_than_the_declared_ones_is_seen(declared, said):
+    """Beside a burst once a turn, which has lines at every order."""
+    _time, turn = turns_of_a_shaft()
+    mesh = sum(np.cos(2 * np.pi * 23 * h * turn + h) / h for h in (1, 2, 3))
+    values = mesh + 0.3 * pulse(23 * turn, 5, 23) + 0.1 * np.random.default_rng(4).normal(size=turn.size)
+    one = heard(values, turn, (declared, 41 if declared != 41 else 23))
+    assert orders.mesh_elsewhere(one, *orders.spectrum(one)) == said
+
+
+def test_no_mesh_is_seen_elsewhere_in_noise():
+    _time, turn = turns_of_a_shaft()
+    one = heard(np.random.default_rng(5).normal(size=turn.size), turn)
+    assert orders.mesh_elsewhere(one, *orders.spectrum(one)) is None
+
+
+@pytest.mark.parametrize(("order", "times"), [(5.753, 4), (11.51, 2), (5.9, None)])
+def test_a_part_of_the_mesh_order_may_be_the_mesh_of_more_pulses(order, times):
+    line = SimpleNamespace(order=order, ratio=900.0, p=0.0)
+    study = SimpleNamespace(heard=SimpleNamespace(name="run", orders={"mesh": 23.0}, speed=100.0), asynchronous=line)
+    said = findings._asynchronous(study, 0.01)["sentence"]
+    assert ("times as many pulses" in said) is (times is not None)
+    assert times is None or f"has {times} times as many pulses as are declared." in said

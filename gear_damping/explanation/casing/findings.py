@@ -19,12 +19,14 @@ from gear_damping.explanation.casing.compare import (
     na4,
 )
 from gear_damping.explanation.casing.cycles import SHAFTS
+from gear_damping.explanation.casing.orders import mesh_elsewhere
 from gear_damping.explanation.casing.study import Study
 
 ALPHA = 0.01  # of any false flag in a measurement
 FAMILIES = (PINION, GEAR, AT_MESH, ASYNCHRONOUS)
 ONCE = {"pinion": PINION, "gear": GEAR}
 TESTS = 3  # a record: one tooth of either shaft, one line at no shaft's order
+PART_OF_MESH = 2e-3  # of an order: lines are known to a part of their width
 COMPARED = 5  # tests a record beside references
 Entry = dict[str, Any]
 
@@ -101,6 +103,11 @@ def _at_the_mesh(study: Study) -> Entry:
     order = study.heard.orders["mesh"]
     common = {"record": study.heard.name, "family": AT_MESH, "shaft": None, "order": order}
     said = f"The mesh (order {order:g} and its harmonics) holds {100 * share:.3g} % of the signal; every pair has it."
+    if teeth := mesh_elsewhere(study.heard, study.orders, study.amplitude):
+        said = (
+            f"No line stands out at the mesh (order {order:g}), and some do at {teeth}, {2 * teeth} and {3 * teeth}: "
+        )
+        said += "check n_teeth_pinion, which shaft the angle is of, and its pulses a turn."
     return _Tested("share_of_energy", share).said(common, said)
 
 
@@ -113,7 +120,11 @@ def _asynchronous(study: Study, limit: float) -> Entry:
     flagged = line.p <= limit
     hertz = line.order * study.heard.speed
     said = f"A line at order {line.order:.4g} ({hertz:.4g} Hz), which is no order of either shaft, "
-    said += "stands out: a bearing, a belt, another machine or the mains." if flagged else "is no more than chance."
+    said += "stands out: a bearing, a belt, another machine or the mains" if flagged else "is no more than chance"
+    times = study.heard.orders["mesh"] / line.order
+    if flagged and round(times) > 1 and abs(times / round(times) - 1) < PART_OF_MESH:
+        said += f"; or the mesh, where a turn of the pinion has {round(times)} times as many pulses as are declared"
+    said += "."
     tested = _Tested("line_over_floor", line.ratio, line.p, limit, flagged)
     return tested.said(common | {"order": line.order}, said)
 

@@ -17,6 +17,8 @@ SHAFT_HARMONICS = 3  # sidebands on either side of each
 FLOOR = 50  # lines on either side that give the floor of a line
 NEIGHBOURS = 2.0  # orders over which the skirt of a synchronous line reaches
 
+TEETH = range(8, 201)  # of a pinion
+COMB, STRONGER = 3, 10.0  # harmonics; times any line of the declared mesh, assumed: a burst makes all orders alike
 LOWEST = 1.0  # order: below, load and speed drift
 HIGHEST = 0.8  # of half the sampling rate: above, a filter against aliasing leaves no even floor
 
@@ -78,6 +80,28 @@ def lines(heard: Heard, orders: Array, amplitude: Array) -> list[Line]:
             around = amplitude[max(at - FLOOR, 1) : at + FLOOR]
             found.append(Line(what, order, float(amplitude[at - 1 : at + 2].max()), float(np.median(around))))
     return found
+
+
+def mesh_elsewhere(heard: Heard, orders: Array, amplitude: Array) -> int | None:
+    """The number of teeth whose mesh the spectrum shows, where it shows none of the declared one; else None.
+
+    All its lines stand out from what is beside them, and by far more than any of the declared mesh: a burst once a turn
+    has lines at every order.
+    """
+
+    def least_and_most(teeth: float) -> tuple[float, float]:
+        places = [round(h * teeth / orders[1]) for h in range(1, COMB + 1)]
+        if places[-1] + FLOOR >= len(amplitude):
+            return 0.0, 0.0
+        heights = [
+            float(amplitude[at - 1 : at + 2].max() / max(np.median(amplitude[at - FLOOR : at + FLOOR]), 1e-300))
+            for at in places
+        ]
+        return min(heights), max(heights)
+
+    declared = least_and_most(heard.orders["mesh"])[1]
+    others = (teeth for teeth in TEETH if declared and round(teeth / orders[1]) > FLOOR)
+    return next((teeth for teeth in others if least_and_most(teeth)[0] > STRONGER * declared), None)
 
 
 def _harmonics() -> range:
