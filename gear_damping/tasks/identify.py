@@ -108,7 +108,7 @@ def _by_network(
         },
     }
     folder.write_json("identification.json", content)
-    unknown = [name for name, one in found.items() if one.familiarity is None]
+    unknown = [name for name, one in found.items() if one.familiarity is None and not one.outside]
     if unknown:
         why = "the network does not say what its training was like, or they are shorter than its runs"
         statements.log(f"note: whether {', '.join(unknown)} are like the training was not looked at: {why}")

@@ -104,9 +104,7 @@ def _at_the_mesh(study: Study) -> Entry:
     common = {"record": study.heard.name, "family": AT_MESH, "shaft": None, "order": order}
     said = f"The mesh (order {order:g} and its harmonics) holds {100 * share:.3g} % of the signal; every pair has it."
     if teeth := mesh_elsewhere(study.heard, study.orders, study.amplitude):
-        said = (
-            f"No line stands out at the mesh (order {order:g}), and some do at {teeth}, {2 * teeth} and {3 * teeth}: "
-        )
+        said = f"The mesh (order {order:g}) hardly stands out, and orders {teeth}, {2 * teeth} and {3 * teeth} do: "
         said += "check n_teeth_pinion, which shaft the angle is of, and its pulses a turn."
     return _Tested("share_of_energy", share).said(common, said)
 

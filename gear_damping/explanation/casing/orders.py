@@ -17,7 +17,7 @@ SHAFT_HARMONICS = 3  # sidebands on either side of each
 FLOOR = 50  # lines on either side that give the floor of a line
 NEIGHBOURS = 2.0  # orders over which the skirt of a synchronous line reaches
 
-TEETH = range(8, 201)  # of a pinion
+TEETH = range(8, 201)  # of a pinion: fewer do not mesh, and more are not cut on one that a casing hears
 COMB, STRONGER = 3, 10.0  # harmonics; times any line of the declared mesh, assumed: a burst makes all orders alike
 LOWEST = 1.0  # order: below, load and speed drift
 HIGHEST = 0.8  # of half the sampling rate: above, a filter against aliasing leaves no even floor
