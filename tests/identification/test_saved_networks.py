@@ -5,13 +5,14 @@ import json
 import shutil
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 import torch
 
 from gear_damping.errors import InputError
 from gear_damping.identification.datamodule import Material, WindowDataModule
-from gear_damping.identification.lightning_module import CWT_LSTM, EstimatorConfig
+from gear_damping.identification.lightning_module import CWT_LSTM, DampingModule, EstimatorConfig
 from gear_damping.identification.noise import SensorNoise
 from gear_damping.identification.protocols import BY_RUN
 from gear_damping.identification.runs import RunSet
@@ -194,3 +195,12 @@ def test_a_checkpoint_names_no_function_that_makes_its_network(tmp_path):
     hyper = dict(module.hparams) | {"_instantiator": "gear_damping.no_such_module.run", "plugins": ["evil.py"]}
     torch.save({"hyper_parameters": hyper, "state_dict": module.state_dict(), "history": []}, tmp_path / "a.ckpt")
     assert load_estimator(tmp_path / "a.ckpt").predict_record(record, 40e3)[0] == module.predict_record(record, 40e3)[0]
+
+
+@pytest.mark.parametrize(
+    ("rate", "remedy"), [(25e3, "train at 25000 Hz"), (80e3, "resample the record to 40000 Hz, or train")]
+)
+def test_a_record_of_another_rate_is_told_what_can_be_done(rate, remedy):
+    network = SimpleNamespace(data={"sampling_rate": 40e3, "window": 30})
+    with pytest.raises(InputError, match=f"remedy: {remedy}"):
+        DampingModule._check_record(network, torch.zeros(100), rate)

@@ -169,10 +169,7 @@ def test_evaluate_asks_every_network_of_a_training_and_what_knows_the_equation(t
         (["evaluation.effects=[tooth_crak]"], "did you mean 'tooth_crack'?"),
         (["evaluation.effects=['torque_variation:ramps']"], "torque_variation has no such form"),
         (["evaluation.effects=[fourier_mesh_stiffness]"], "evaluation.effects: fourier_mesh_stiffness"),
-        (
-            ["simulator.sampling_rate=20000"],
-            "was trained at 40000 Hz and the record has 20000 Hz; remedy: train at 20000 Hz",
-        ),
+        (["simulator.sampling_rate=20000"], "was trained at 40000 Hz"),
     ],
 )
 def test_what_cannot_be_evaluated_is_said(asked, rule, trained, tmp_path, said):
