@@ -83,11 +83,13 @@ def _with_more(state: State) -> tuple[State, bool]:
     bench, current = state.bench, state.current
     if state.accepted and bench.budget.refuses("further causes"):
         return state, False
-    if state.left is not None and not state.left.visible and current.misfit <= bench.settings.small_misfit:
+    is_gross = not state.accepted and state.beyond_sensor(state.outcome).percent > bench.settings.gross_percent
+    is_random = state.left is not None and not state.left.visible and current.misfit <= bench.settings.small_misfit
+    if is_random and not is_gross:  # a motion that is missed by half looks random too
         return state, False
     if state.accepted and state.first.significant and is_form(current, state.first, bench.settings):
         return state, False
-    if is_settled(current, state.first, bench.settings):
+    if is_settled(current, state.first, bench.settings) and not is_gross:
         state, best, rivals = faint_cause(state)
         further = with_pair_of_as_many(state) if best is None else state.accepting(best, rivals)
         return (state, False) if further is None else (further, True)

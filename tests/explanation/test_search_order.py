@@ -12,19 +12,29 @@ from gear_damping.explanation.state import State
 from tests.explanation.decisions.made_up import bench, left, outcome
 
 
-def step_after(rest, accepted=True, first=10.0):
-    """The step that is taken where the nominal model leaves `first` % and the present one `rest`."""
+def step_after(rest, accepted=True, first=10.0, visible=True, beyond=None):
+    """The step that is taken where the nominal model leaves `first` % and the present one `rest`.
+
+    Args:
+        rest: What the present model leaves beyond the noise as it is known now.
+        accepted: Whether a cause is.
+        first: What the nominal model leaves.
+        visible: Whether what is left is not random.
+        beyond: % that the present model leaves beyond the noise of the sensor, where that is another one.
+    """
     nominal, present = outcome(), outcome()
     known = bench(SearchSettings(), [(nominal, left(first, 40.0)), (present, rest)])
     state = State(known, nominal, present, accepted=(SimpleNamespace(name="a"),) if accepted else ())
-    state = replace(state, left=SimpleNamespace(visible=True))
+    state = replace(state, left=SimpleNamespace(visible=visible))
+    of_sensor = left(rest.percent if beyond is None else beyond, 1.0)
     taken = []
     none = {
         name: patch.object(search, name, lambda s, name=name: taken.append(name) or (s, None, ()))
         for name in ("faint_cause", "single_cause")
     }
     pairs = (patch.object(search, name, lambda s: None) for name in ("with_pair", "with_pair_of_as_many"))
-    with none["faint_cause"], none["single_cause"], next(pairs), next(pairs):
+    measured = patch.object(State, "beyond_sensor", lambda *_: of_sensor)
+    with measured, none["faint_cause"], none["single_cause"], next(pairs), next(pairs):
         search._with_more(state)
     return taken
 
@@ -40,3 +50,18 @@ def step_after(rest, accepted=True, first=10.0):
 )
 def test_what_is_done_next(rest, accepted, step):
     assert step_after(rest, accepted) == step
+
+
+@pytest.mark.parametrize(
+    ("visible", "beyond", "step"),
+    [
+        (False, 49.0, ["single_cause"]),  # a hardening spring whose linear model misses half of the motion
+        (True, 68.0, ["single_cause"]),
+        (False, 2.0, []),  # what a random load may do
+        (True, 2.0, ["faint_cause"]),
+    ],
+)
+def test_what_is_missed_grossly_is_looked_for_however_random_it_looks(visible, beyond, step):
+    """So much coloured noise hides it, and few held-out records tell little of it."""
+    rest = left(30.0, 1.3, threshold=73.0)
+    assert step_after(rest, accepted=False, first=30.0, visible=visible, beyond=beyond) == step
