@@ -8,6 +8,7 @@ from torch import Tensor
 
 from gear_damping.errors import InputError
 from gear_damping.explanation.answer import report_fields
+from gear_damping.explanation.answer.gain import rmse
 from gear_damping.explanation.answer.judged import judged
 from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.casing.heard import is_casing
@@ -18,7 +19,7 @@ from gear_damping.explanation.evidence.noise import NoiseLevel, Scatter, noise_o
 from gear_damping.explanation.evidence.records import Evidence, evidence_of
 from gear_damping.explanation.evidence.useful_samples import at_useful_rate, of_useful_length
 from gear_damping.explanation.model.calibration_error import calibration_error
-from gear_damping.explanation.model.contradicted import contradicts_stated
+from gear_damping.explanation.model.contradicted import contradicts_stated, noise_above
 from gear_damping.explanation.model.gives_back import takes_and_gives
 from gear_damping.explanation.model.hypothesis import SEGMENT_TIMES, Outcome, natural_frequency_hz, segments_of
 from gear_damping.explanation.model.rig import swells_again
@@ -148,6 +149,7 @@ def _of_evidence(
         never_dies(found.state),
         followed_one_by_one(found.state),
         contradicts_stated(found.state.outcome, evidence),
+        noise_above(found.state.bench.floor, rmse(found.state.outcome.fit_residuals), evidence.channel) or "",
         INPUT_NOISE if evidence.input_noise else "",
     )
     said = judged(found, [silent, short, *doubts, stretches.said], bool(short))

@@ -16,7 +16,7 @@ from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.evidence.records import Evidence, evidence_of, with_own_angles
 from gear_damping.explanation.evidence.useful_samples import at_useful_rate
 from gear_damping.explanation.explain import Listener, explain, fitting_solver, with_noise
-from gear_damping.explanation.model.contradicted import contradicts_stated
+from gear_damping.explanation.model.contradicted import contradicts_stated, noise_above
 from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Given, Hypothesis, Outcome, natural_frequency_hz
 from gear_damping.explanation.model.nominal_gear_pair import MESH, angles_of, first_gear_pair
@@ -159,7 +159,8 @@ def content_of(measurement: Measurement, found: Fitted) -> dict[str, Any]:
             "threshold_percent": left.threshold,
             "source": str(measurement.source),
         },
-        "contradicted": _far_off(outcome, evidence),
+        "contradicted": _far_off(outcome, evidence)
+        or noise_above(found.noise, rmse(outcome.fit_residuals), evidence.channel),
         "too_short": too_short(evidence, outcome) or None,
         "segment_s": evidence.segments.seconds or None,
         "records": {

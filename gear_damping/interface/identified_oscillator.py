@@ -8,7 +8,7 @@ from typing import Any
 from gear_damping.explanation.evidence.noise import NoiseLevel, noise_of, weighted
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.evidence.release import released_at
-from gear_damping.explanation.model.contradicted import contradicted
+from gear_damping.explanation.model.contradicted import contradicted, noise_above
 from gear_damping.explanation.model.homogeneity import FEWEST, homogeneity
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome
 from gear_damping.explanation.trials.efficient import weighed
@@ -115,7 +115,8 @@ def content_of(measurement: Measurement, fitted: Fitted) -> dict[str, Any]:
         "contradicted": contradicted(
             found.problem.free, found.fitted.shared.tolist(), {name: name.split(".")[-1] for name in found.given}
         )
-        or _far_off(found, measurement),
+        or _far_off(found, measurement)
+        or noise_above(fitted.noise, found.rmse["fit"], channel),
     }
     return content | said | {"lack_of_fit": lacking and lacking | {"source": str(measurement.source)}}
 

@@ -6,7 +6,8 @@ import pytest
 import torch
 
 from gear_damping.explanation.answer import report_fields
-from gear_damping.explanation.model.contradicted import contradicts_stated
+from gear_damping.explanation.evidence.noise import NoiseLevel
+from gear_damping.explanation.model.contradicted import contradicts_stated, noise_above
 from gear_damping.identification.oscillator.linear_model import uncertain_parameter
 from gear_damping.identification.output_error.records import FreeParameter
 from gear_damping.physics.systems.gear_pair import GearPair
@@ -47,3 +48,16 @@ def test_what_a_calibration_moved_far_from_what_is_stated_is_said_by_the_key_of_
     said = contradicts_stated(outcome, evidence)
     assert said.startswith("mesh_stiffness_max lies 10 of its stated uncertainties away") is is_said
     assert bool(said) is is_said
+
+
+@pytest.mark.parametrize(
+    ("method", "stated", "is_said"),
+    [("declared", 5e-4, True), ("declared", 1e-5, False), ("spectral floor above the signal", 5e-4, False)],
+)
+def test_a_noise_that_is_stated_far_above_all_that_is_left_is_said(method, stated, is_said):
+    channel = SimpleNamespace(declared_unit="mm", declared_factor=1e-3)
+    said = noise_above(NoiseLevel({"run": stated}, method, 1e9, True), 5e-6, channel)
+    assert (said is not None) is is_said
+    assert not is_said or said.startswith(
+        "noise is stated as 0.5 mm, and the simulation follows the records within 0.005"
+    )

@@ -9,6 +9,7 @@ import torch
 from scipy.integrate import solve_ivp
 from scipy.signal import lfilter
 
+import gear_damping as gd
 from gear_damping.explanation.evidence.noise import noise_level
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.interface.lack_of_fit import lack_of_fit
@@ -140,3 +141,12 @@ def test_a_declared_noise_is_what_the_residual_is_held_against():
 def test_a_record_too_short_for_its_noise_is_not_judged():
     record = FitRecord("fit", torch.as_tensor(LINEAR[:6].copy()), RATE)
     assert lacking({"fit": record.response}, [record], [], lowpass=1.0) is None
+
+
+def test_a_noise_stated_a_hundred_times_too_large_is_said(tmp_path):
+    noisy = LINEAR + 1e-5 * np.random.default_rng(5).standard_normal(len(LINEAR))
+    np.savetxt(tmp_path / "decay.csv", np.column_stack([TIME, 1e3 * noisy]), "%.12g", ",", header="t,x", comments="")
+    channels = "{time: {column: t, unit: s}, displacement: {column: x, unit: mm, noise: 1 mm}}"
+    path = tmp_path / "measurement.yaml"
+    path.write_text(f"system: oscillator\nrecords:\n- {{file: decay.csv, channels: {channels}}}\n")
+    assert "noise is stated as 1 mm, and the simulation follows" in gd.identify(gd.load(path)).table()

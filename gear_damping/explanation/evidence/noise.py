@@ -10,6 +10,7 @@ from gear_damping.identification.output_error.records import FitRecord, Observed
 from gear_damping.measurement.record import Channel, Measurement
 from gear_damping.measurement.resolution import step_of
 
+DECLARED = "declared"  # how a noise was found that the file states for every record
 BANDS = ((0.6, 0.78), (0.78, 0.96))  # of the usable band; above the signal, below the anti-alias corner
 AGREEMENT = 1.2  # estimates farther apart than this are said, and widen the threshold
 CUT = 5.0  # times the floor: a line above it is signal
@@ -75,7 +76,7 @@ def noise_level(records: Sequence[FitRecord], channels: Mapping[str, Channel]) -
     correlation = max(r.sampling_rate / 2 / usable[r.name] for r in records)
     declared = {r.name: channels[r.name].noise for r in records if channels[r.name].noise is not None}
     if len(declared) == len(records):
-        return NoiseLevel(declared, "declared", 1e9, True, correlation)
+        return NoiseLevel(declared, DECLARED, 1e9, True, correlation)
     floors = _floors([record for record in records if record.name not in declared], usable, channels)
     method = f"{floors.method}; declared of {', '.join(declared)}" if declared else floors.method
     levels = {record.name: (declared | floors.by_record)[record.name] for record in records}

@@ -2,13 +2,16 @@
 
 from collections.abc import Mapping, Sequence
 
+from gear_damping.explanation.evidence.noise import DECLARED, NoiseLevel
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.nominal_gear_pair import RENAMED
 from gear_damping.identification.oscillator.linear_model import LAWS
 from gear_damping.identification.output_error.records import FreeParameter
+from gear_damping.measurement.record import Channel
 
 CONTRADICTS = 5.0  # stated standard deviations: of one in two million statements that hold
+ABOVE = 3.0  # times what a model leaves, noise and all: a noise that is stated so large is another's
 
 
 def contradicts_stated(outcome: Outcome, evidence: Evidence) -> str:
@@ -35,3 +38,20 @@ def contradicted(free: Sequence[FreeParameter], coordinates: Sequence[float], st
         return None
     said = " and ".join(f"{name} lies {size:.3g} of its stated uncertainties away" for name, size in away.items())
     return f"{said}: correct its value or its uncertainty, which draws the other figures to it"
+
+
+def noise_above(stated: NoiseLevel, left: float, channel: Channel) -> str | None:
+    """A sentence where a noise that the file states is far more than a model leaves; None where it is not.
+
+    Args:
+        stated: The noise as it was known beforehand.
+        left: Root mean square of what is left of the fitted records, in the unit that they are kept in.
+        channel: The first channel of the response, with its declared unit.
+    """
+    if stated.method != DECLARED or stated.value <= ABOVE * left:
+        return None
+    unit, factor = channel.declared_unit, channel.declared_factor
+    return (
+        f"noise is stated as {stated.value / factor:.3g} {unit}, and the simulation follows the records within "
+        f"{left / factor:.3g} {unit}, noise and all: correct it, for beside so much of it nothing that is missing shows"
+    )

@@ -26,18 +26,14 @@ _COMMENTS = ("%", "%%", ";", "//", "!", "'", "*")  # that other programs write b
 _GENERIC = re.compile(
     r"^(analog(ue)?|digital|channel|chan|ch|kanal|ai|ao|di|do|in(put)?|signal|sensor|col(umn)?)[ _.#-]*\d+$", re.I
 )
-_IN_PROSE = re.compile(
-    r"[:,;!?]$|^[(\[]"
-)  # of a word: a name of a column does not end so, and its unit stands behind it
+_IN_PROSE = re.compile(r"[:,;!?]$|^[(\[]")  # of a word: no name of a column ends so, and its unit stands behind it
 _COUNTED_FROM = {"0": -1, "1": 0, "2": 1}  # by the number of the second column, that of the first
-_LABELS = (
-    ("names", re.compile(r"^(name|channel|kanal|signal)s?$", re.I)),
-    ("units", re.compile(r"^(unit|einheit)(en|s)?$", re.I)),
-)
-_LOGGER, _OF_LOGGER = (
-    "TOA5",
-    4,
-)  # first word and rows of the head of Campbell's loggers: station, names, units, processing
+_LABELS = {  # of a row, in a cell before the columns
+    "names": re.compile(r"^(name|channel|kanal|signal)s?$", re.I),
+    "units": re.compile(r"^(unit|einheit)(en|s)?$", re.I),
+}
+_LOGGER = "TOA5"  # the first word in files of Campbell's loggers,
+_OF_LOGGER = 4  # ... and rows of their head: the station, names, units, what was done with the values
 _TABLE = 3  # rows that a table begins with, none of them of texts alone
 
 
@@ -135,7 +131,7 @@ def _labelled(rows: Sequence[Sequence[str]], width: int) -> Header | None:
     found: dict[str, tuple[str, ...]] = {}
     end = next((k for k, row in enumerate(rows) if filled(row) == width and all(map(is_written, row[:width]))), 0)
     for row in rows[:end]:
-        for what, label in _LABELS:
+        for what, label in _LABELS.items():
             if filled(row) == width + 1 and label.match(row[0].strip()):
                 found[what] = tuple(cell.strip() for cell in row[1 : width + 1])
     return Header(found["names"], found.get("units", ()), end, end) if "names" in found else None
