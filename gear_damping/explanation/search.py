@@ -6,6 +6,7 @@ from dataclasses import replace
 from gear_damping.explanation.evidence.excess import is_form, is_settled
 from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.state import State
+from gear_damping.explanation.steps.each_alone import followed_one_by_one
 from gear_damping.explanation.steps.faint import faint_cause
 from gear_damping.explanation.steps.pairs import with_pair, with_pair_instead, with_pair_of_as_many
 from gear_damping.explanation.steps.revise import beside_the_others, exchanged, pruned, simplified
@@ -83,13 +84,14 @@ def _with_more(state: State) -> tuple[State, bool]:
     bench, current = state.bench, state.current
     if state.accepted and bench.budget.refuses("further causes"):
         return state, False
-    is_gross = not state.accepted and state.beyond_sensor(state.outcome).percent > bench.settings.gross_percent
+    settled = is_settled(current, state.first, bench.settings)
     is_random = state.left is not None and not state.left.visible and current.misfit <= bench.settings.small_misfit
-    if is_random and not is_gross:  # a motion that is missed by half looks random too
+    is_gross = (settled or is_random) and _is_missed_grossly(state)
+    if is_random and not is_gross:
         return state, False
     if state.accepted and state.first.significant and is_form(current, state.first, bench.settings):
         return state, False
-    if is_settled(current, state.first, bench.settings) and not is_gross:
+    if settled and not is_gross:
         state, best, rivals = faint_cause(state)
         further = with_pair_of_as_many(state) if best is None else state.accepting(best, rivals)
         return (state, False) if further is None else (further, True)
@@ -99,6 +101,16 @@ def _with_more(state: State) -> tuple[State, bool]:
     else:
         further = _calibrated_anew(state, best) or with_pair_instead(exchanged(state.accepting(best, rivals)))
     return (state, False) if further is None else (further, True)
+
+
+def _is_missed_grossly(state: State) -> bool:
+    """Whether without a cause so much is missed beyond the noise of the sensor that it is looked for, however random.
+
+    A motion of which half is missed looks random too, beside held-out records that are few. Not where each record by
+    itself is that of a linear model: a second mode would be another rig's.
+    """
+    beyond, gross = state.beyond_sensor(state.outcome).percent, state.bench.settings.gross_percent
+    return not state.accepted and beyond > gross and not followed_one_by_one(state)
 
 
 def _calibrated_anew(state: State, best: Refit) -> State | None:

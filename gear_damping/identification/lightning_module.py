@@ -259,9 +259,9 @@ class DampingModule(L.LightningModule):
             problems.append(Problem("values", "must be finite", remedy="cut out the broken samples"))
         if not abs(sampling_rate / trained - 1) <= _RATE_TOLERANCE:
             rule = f"the estimator was trained at {trained:g} Hz and the record has {sampling_rate:g} Hz"
-            remedy = f"train at {sampling_rate:g} Hz"
-            if sampling_rate > trained:
-                remedy = f"resample the record to {trained:g} Hz, or {remedy}"
+            remedy = f"resample the record to {trained:g} Hz, or train at {sampling_rate:g} Hz"
+            if sampling_rate < trained:
+                remedy = f"train at {sampling_rate:g} Hz: what a record does not hold, no way to resample it adds"
             problems.append(Problem("sampling_rate", rule, sampling_rate, remedy))
         if problems:
             raise InputError(problems)

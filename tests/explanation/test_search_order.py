@@ -12,7 +12,7 @@ from gear_damping.explanation.state import State
 from tests.explanation.decisions.made_up import bench, left, outcome
 
 
-def step_after(rest, accepted=True, first=10.0, visible=True, beyond=None):
+def step_after(rest, accepted=True, first=10.0, visible=True, beyond=None, alone=""):
     """The step that is taken where the nominal model leaves `first` % and the present one `rest`.
 
     Args:
@@ -20,6 +20,7 @@ def step_after(rest, accepted=True, first=10.0, visible=True, beyond=None):
         accepted: Whether a cause is.
         first: What the nominal model leaves.
         visible: Whether what is left is not random.
+        alone: What is said of records that a model of its own follows each.
         beyond: % that the present model leaves beyond the noise of the sensor, where that is another one.
     """
     nominal, present = outcome(), outcome()
@@ -34,7 +35,8 @@ def step_after(rest, accepted=True, first=10.0, visible=True, beyond=None):
     }
     pairs = (patch.object(search, name, lambda s: None) for name in ("with_pair", "with_pair_of_as_many"))
     measured = patch.object(State, "beyond_sensor", lambda *_: of_sensor)
-    with measured, none["faint_cause"], none["single_cause"], next(pairs), next(pairs):
+    each = patch.object(search, "followed_one_by_one", lambda _: alone)
+    with measured, each, none["faint_cause"], none["single_cause"], next(pairs), next(pairs):
         search._with_more(state)
     return taken
 
@@ -65,3 +67,5 @@ def test_what_is_missed_grossly_is_looked_for_however_random_it_looks(visible, b
     """So much coloured noise hides it, and few held-out records tell little of it."""
     rest = left(30.0, 1.3, threshold=73.0)
     assert step_after(rest, accepted=False, first=30.0, visible=visible, beyond=beyond) == step
+    one_by_one = step_after(rest, accepted=False, first=30.0, visible=visible, beyond=beyond, alone="each its own")
+    assert one_by_one == (["faint_cause"] if visible else [])
