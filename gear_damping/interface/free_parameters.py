@@ -5,8 +5,7 @@ from dataclasses import replace
 
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.explanation.model.hypothesis import Given
-from gear_damping.explanation.model.nominal_gear_pair import EXPECTED_SHAPE, MESH, PHASED, RENAMED, SHAPE
-from gear_damping.identification.oscillator.linear_model import DAMPING
+from gear_damping.explanation.model.nominal_gear_pair import EXPECTED_SHAPE, FLAT, MESH, PHASED, SHAPE
 from gear_damping.identification.output_error.records import FreeParameter
 from gear_damping.physics.damping_ratio import DAMPING_RATIO
 from gear_damping.physics.model import Model
@@ -15,7 +14,6 @@ from gear_damping.physics.systems.traits import Trait
 
 IN_SHAPE = (*PHASED, f"{MESH}.edge")  # its harmonics contain these
 SHAPE_STEP, MOST_SHAPE = 0.02, 0.5  # of the mean stiffness: a step of a harmonic, and the most that teeth can have
-FLAT = {**RENAMED, "damping_coefficient": DAMPING}  # of an oscillator too
 TIMES = "s"  # the unit of lists that say when something happens: they are read off, and not fitted
 
 

@@ -19,7 +19,7 @@ from gear_damping.explanation.explain import Listener, explain, fitting_solver, 
 from gear_damping.explanation.model.contradicted import contradicts_stated, noise_above
 from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Given, Hypothesis, Outcome, natural_frequency_hz
-from gear_damping.explanation.model.nominal_gear_pair import MESH, angles_of, first_gear_pair
+from gear_damping.explanation.model.nominal_gear_pair import FLAT, MESH, angles_of, first_gear_pair
 from gear_damping.explanation.model.ringing import told_covariance
 from gear_damping.explanation.steps.too_short import too_short
 from gear_damping.explanation.trials.bench import Log
@@ -28,7 +28,7 @@ from gear_damping.identification.oscillator.linear_model import DAMPING, linear_
 from gear_damping.identification.output_error.least_squares import Rounds
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.interface.far_from_stated import far_from_stated
-from gear_damping.interface.free_parameters import FLAT, free_parameters
+from gear_damping.interface.free_parameters import free_parameters
 from gear_damping.interface.identified_page import MOST_PANELS, estimate_rows, panel, residual_rows
 from gear_damping.measurement.record import Measurement
 from gear_damping.physics.damping_ratio import DAMPING_RATIO

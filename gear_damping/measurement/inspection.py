@@ -26,7 +26,7 @@ from gear_damping.measurement.raw import LEAST_SAMPLES, filled_in
 from gear_damping.measurement.recordings import recordings
 from gear_damping.measurement.resolution import step_of
 from gear_damping.measurement.spectral_floor import Spectrum, spectrum_of
-from gear_damping.measurement.time_column import Stamps, counts_from_1970, find_stamps, stamped_rate
+from gear_damping.measurement.time_column import Stamps, counts_from_1970, find_stamps, named_clock, stamped_rate
 from gear_damping.measurement.timebase import TimeBase, stamped_time, steady_time
 
 _SPARSE = 0.5  # of the longest stretch of values of any column: one with a shorter one is filled here and there
@@ -55,6 +55,7 @@ class Column:
         step: The quantisation step, 0.0 where none was seen.
         spectrum: Of a signal with a constant rate; in cycles a sample where no rate is known.
         rate: Its own samples a second, or None.
+        stamps: What it is as the time stamps of columns beside it; None of all but further clocks.
     """
 
     reference: str | int
@@ -66,6 +67,7 @@ class Column:
     step: float = 0.0
     spectrum: Spectrum | None = None
     rate: float | None = None
+    stamps: Stamps | None = None
 
     @property
     def inside(self) -> NDArray[np.float64]:
@@ -156,7 +158,7 @@ def inspect_table(table: Table, clock: str | int | None = None) -> Inspection:
 def _by_own_clock(found: Inspection, column: Column) -> Column:
     """The column with its rate and its spectrum, where it has a clock of its own."""
     clock = clock_of(found, column) if column.spectrum is not None else None
-    rate = None if clock is None else stamped_rate(find_stamps([clock]).unit, clock.inside)
+    rate = None if clock is None else stamped_rate(clock.stamps.unit, clock.inside)
     return replace(column, rate=rate, spectrum=spectrum_of(_whole(column), rate)) if rate else column
 
 
@@ -216,13 +218,13 @@ def clock_of(found: Inspection, column: Column) -> Column | None:
     if found.time is None or isinstance(found.table, ArrayTable):
         return None
     main, place = found.columns[found.time.index], found.columns.index(column)
-    clocks = [one for one in found.columns[:place] if one.kind == TIME and find_stamps([one])]
-    if not clocks or clocks[-1] is main:
+    nearest = next((one for one in reversed(found.columns[:place]) if one is main or one.stamps), main)
+    if nearest is main:
         return None
-    n = min(main.inside.size, clocks[-1].inside.size)
-    same = find_stamps([clocks[-1]]).in_seconds * np.diff(clocks[-1].inside[:n])
-    apart = np.abs(same - found.time.in_seconds * np.diff(main.inside[:n]))
-    return clocks[-1] if apart.mean() > _OTHER_PACE * np.abs(same).mean() else None
+    n = min(main.inside.size, nearest.inside.size)
+    own = nearest.stamps.in_seconds * np.diff(nearest.inside[:n])
+    apart = np.abs(own - found.time.in_seconds * np.diff(main.inside[:n]))
+    return nearest if apart.mean() > _OTHER_PACE * np.abs(own).mean() else None
 
 
 def _may_be_rate(columns: Sequence[Column]) -> tuple[str, float] | None:
@@ -340,8 +342,8 @@ def _seen(
         return replace(column, kind=kind, says=says)
     if stamps is not None and counts_from_1970(column.inside):
         return replace(column, kind=TIME, says="advances, and may be counted from 1970: another clock")
-    if stamps is not None and (again := find_stamps([column])):
-        return replace(column, kind=TIME, says=f"{again.says}: another clock")
+    if stamps is not None and (other := named_clock(column)):
+        return replace(column, kind=TIME, says=f"{other.says}: another clock", stamps=other)
     own = clock[1] if clock else None
     rate = base.sampling_rate if base is not None and column.values.size == length else own
     seen = replace(column, kind=kind, says=says, step=_step_of(column.inside), rate=rate)

@@ -9,7 +9,6 @@ from gear_damping.measurement.column_kinds import ELSEWHERE
 from gear_damping.measurement.files import UNKNOWN
 from gear_damping.measurement.guessing import GEAR, Guess
 from gear_damping.measurement.inspection import Inspection
-from gear_damping.measurement.time_column import find_stamps
 
 _PLAIN = re.compile(r"^[A-Za-z_/][\w./*^-]*$")
 _WORDS = ("y", "n", "yes", "no", "on", "off", "true", "false", "null")
@@ -108,7 +107,7 @@ def _gear_channels(used: set[str | None]) -> Iterator[str]:
 
 def _declared(guess: Guess) -> str:
     stated = {"column": guess.column.reference, "unit": guess.unit}
-    clock = {"time": {"column": guess.clock.reference, "unit": find_stamps([guess.clock]).unit}} if guess.clock else {}
+    clock = {"time": {"column": guess.clock.reference, "unit": guess.clock.stamps.unit}} if guess.clock else {}
     return _mapping(stated | ({"shaft": UNKNOWN} if _is_of_a_shaft(guess) else {}) | clock)
 
 

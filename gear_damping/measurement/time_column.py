@@ -98,6 +98,12 @@ def find_stamps(columns: Sequence[_Column], untimed: bool = False) -> Stamps | N
     return Stamps(steady[0], *_unit(columns[steady[0]]), "goes on by the same whole number in nearly all rows")
 
 
+def named_clock(column: _Column) -> Stamps | None:
+    """The stamps of a column that bears the unit or the name of time and advances, wherever it stands; else None."""
+    says = (_by_unit(0, column) or _by_name(0, column)) if column.inside.size >= FEWEST_STAMPS else ""
+    return Stamps(0, *_unit(column), says) if says else None
+
+
 def counts_from_1970(values: NDArray[np.float64]) -> bool:
     """Whether (n,) values never fall and lie where a finer clock than that of seconds stands since 2000."""
     inside = any(low < values[0] < high for low, high, _ in _EPOCHS[1:])

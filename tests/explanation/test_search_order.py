@@ -20,8 +20,8 @@ def step_after(rest, accepted=True, first=10.0, visible=True, beyond=None, alone
         accepted: Whether a cause is.
         first: What the nominal model leaves.
         visible: Whether what is left is not random.
-        alone: What is said of records that a model of its own follows each.
         beyond: % that the present model leaves beyond the noise of the sensor, where that is another one.
+        alone: What is said of records that a model of its own follows each.
     """
     nominal, present = outcome(), outcome()
     known = bench(SearchSettings(), [(nominal, left(first, 40.0)), (present, rest)])

@@ -131,3 +131,10 @@ def test_the_clock_of_all_that_is_declared_is_that_of_the_record(tmp_path):
     assert found.rate == pytest.approx(50)
     assert found.rows == (0, 600)
     assert 'time: {column: "X[s].1", unit: s}' in starting_yaml(found, system, listed)
+
+
+def test_a_steady_shaft_beside_stamps_is_no_other_clock(tmp_path):
+    """Neither a name nor a unit says that it is one, however evenly it goes on."""
+    found = _logged(tmp_path, 5 * np.arange(400), 3 * np.arange(400), np.round(900 * np.sin(np.arange(400) / 9)))
+    assert found.time.index == 0
+    assert [one.kind for one in found.columns[1:]] == [COUNTER, SIGNAL]

@@ -77,9 +77,13 @@ def lines(heard: Heard, orders: Array, amplitude: Array) -> list[Line]:
     for what, order in named:
         at = round(order / step)
         if order <= orders[-1] and at >= 2:
-            around = amplitude[max(at - FLOOR, 1) : at + FLOOR]
-            found.append(Line(what, order, float(amplitude[at - 1 : at + 2].max()), float(np.median(around))))
+            found.append(Line(what, order, *_height_and_floor(amplitude, at)))
     return found
+
+
+def _height_and_floor(amplitude: Array, at: int) -> tuple[float, float]:
+    around = amplitude[max(at - FLOOR, 1) : at + FLOOR]
+    return float(amplitude[at - 1 : at + 2].max()), float(np.median(around))
 
 
 def mesh_elsewhere(heard: Heard, orders: Array, amplitude: Array) -> int | None:
@@ -93,11 +97,9 @@ def mesh_elsewhere(heard: Heard, orders: Array, amplitude: Array) -> int | None:
         places = [round(h * teeth / orders[1]) for h in range(1, COMB + 1)]
         if places[-1] + FLOOR >= len(amplitude):
             return 0.0, 0.0
-        heights = [
-            float(amplitude[at - 1 : at + 2].max() / max(np.median(amplitude[at - FLOOR : at + FLOOR]), 1e-300))
-            for at in places
-        ]
-        return min(heights), max(heights)
+        lines = (_height_and_floor(amplitude, at) for at in places)
+        over = [height / max(floor, 1e-300) for height, floor in lines]
+        return min(over), max(over)
 
     declared = least_and_most(heard.orders["mesh"])[1]
     others = (teeth for teeth in TEETH if declared and round(teeth / orders[1]) > FLOOR)

@@ -5,8 +5,7 @@ from collections.abc import Mapping, Sequence
 from gear_damping.explanation.evidence.noise import DECLARED, NoiseLevel
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.hypothesis import Outcome
-from gear_damping.explanation.model.nominal_gear_pair import RENAMED
-from gear_damping.identification.oscillator.linear_model import LAWS
+from gear_damping.explanation.model.nominal_gear_pair import FLAT
 from gear_damping.identification.output_error.records import FreeParameter
 from gear_damping.measurement.record import Channel
 
@@ -16,7 +15,7 @@ ABOVE = 3.0  # times what a model leaves, noise and all: a noise that is stated 
 
 def contradicts_stated(outcome: Outcome, evidence: Evidence) -> str:
     """A sentence of what a model had to move far from what is stated, empty where it is all within its uncertainty."""
-    fitted = {LAWS.get(name, RENAMED.get(name, name)): name for name in evidence.known.uncertainty}
+    fitted = {FLAT.get(name, name): name for name in evidence.known.uncertainty}
     return contradicted(outcome.problem.free, outcome.fitted.shared.tolist(), fitted) or ""
 
 

@@ -9,7 +9,7 @@ import torch
 from gear_damping.explanation.evidence.records import Evidence, all_stand
 from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Given, Hypothesis, Outcome, natural_frequency_hz, settled_at
-from gear_damping.identification.oscillator.linear_model import DAMPING, expected_about, uncertain_parameter
+from gear_damping.identification.oscillator.linear_model import DAMPING, LAWS, expected_about, uncertain_parameter
 from gear_damping.identification.output_error.angles import STARTS, angle_bases, harmonics_to_resonance, scanned
 from gear_damping.identification.output_error.least_squares import NONE, Rounds
 from gear_damping.identification.output_error.problem import OutputErrorProblem
@@ -32,6 +32,7 @@ RENAMED = {
     "backlash_gap": "backlash.gap",
     "damping_ratio": DAMPING,
 }
+FLAT = {**RENAMED, **LAWS}  # of an oscillator too
 PHASED = ("mesh_phase", f"{MESH}.minimum", f"{MESH}.contact_ratio")  # what of a mesh shows while teeth change alone
 TORQUES = ("pinion_torque", "gear_torque")
 SHAPE_BAND = 1.6  # harmonics of the stiffness count up to this many natural frequencies, at the slowest record, at

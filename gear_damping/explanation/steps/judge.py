@@ -132,12 +132,8 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
         return _not_established(found, before, known, TOO_SHORT)
     if taken.is_faint and taken.share < settings.least_share:
         return _not_established(found, before, known, NOT_LESS)
-    if not explains_all and before.threshold >= WHOLE and not before.significant:
-        return _not_established(found, before, known, TOO_STILL)
-    if not explains_all and after.percent > WHOLE:
-        return _not_established(found, before, known, WORSE)
-    if not explains_all and known.is_untold:
-        return _not_established(found, before, known, UNTOLD)
+    if not explains_all and (why := _beside_a_rest(before, after, known)):
+        return _not_established(found, before, known, why)
     if not explains_all:
         if _is_part_named(found, taken.share, after, known):
             left = WITHIN_NOISE
@@ -169,6 +165,15 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
         return Verdict(AMBIGUOUS, (named, *_one_class(classes), *further, *_small_residual(found, after)))
     same = _same_record(found.accepted)
     return Verdict(EXPLAINED, (f"{missing}: {said}.", *further, *same, *_small_residual(found, after)))
+
+
+def _beside_a_rest(before: Excess, after: Excess, known: Known) -> str:
+    """Why nothing is established beside something that is left, whatever it takes; empty where it may be."""
+    if before.threshold >= WHOLE and not before.significant:
+        return TOO_STILL
+    if after.percent > WHOLE:
+        return WORSE
+    return UNTOLD if known.is_untold else ""
 
 
 def _is_all(found: State, before: Excess, after: Excess) -> bool:
