@@ -17,7 +17,7 @@ from gear_damping.measurement.encoders import FROM_ENCODERS
 from gear_damping.measurement.files import UNKNOWN
 from gear_damping.measurement.formats.registry import read_table, readers
 from gear_damping.measurement.guessing import Guess, guessed
-from gear_damping.measurement.inspection import Column, Inspection
+from gear_damping.measurement.inspection import Column, Inspection, clock_of
 from gear_damping.measurement.load import load_measurement
 from gear_damping.measurement.record import Channel, Measurement, Record
 from gear_damping.measurement.record_checks import MESH_RESPONSES
@@ -174,6 +174,8 @@ def _panels(found: Inspection, listed: Sequence[Guess]) -> Iterator[Panel]:
             time = (time - found.rows[0]) / found.rate + found.base.time[0]
             if found.base.time.size == found.rows[1] - found.rows[0]:
                 time[found.rows[0] : found.rows[1]] = found.base.time
+        if clock := clock_of(found, column):
+            time = clock.stamps.in_seconds * clock.values
         name = str(column.reference)
         yield Panel(name, units.get(id(column), ""), (_curve(name, time, column.values, column.spectrum),))
 

@@ -9,6 +9,7 @@ from gear_damping.measurement.guessing import guessed, guesses
 from gear_damping.measurement.inspection import inspect_table
 from gear_damping.measurement.load import load_measurement
 from gear_damping.measurement.starting_yaml import starting_yaml
+from gear_damping.tasks.inspect import _panels
 from tests.measurement.bare import column, inspected
 
 N = 6000
@@ -121,6 +122,8 @@ def test_a_channel_with_a_clock_of_its_own_beside_it_is_declared_with_that(tmp_p
     assert 'displacement: {column: "Disp [mm]", unit: mm, time: {column: "Time 2 [s]", unit: s}}' in text
     swings = column(found, "Disp [mm]").spectrum
     assert swings.frequency[1 + np.argmax(swings.density[1:])] == pytest.approx(1.5, abs=0.1)
+    drawn = {panel.name: panel.curves[0].time for panel in _panels(found, listed)}
+    assert [np.nanmax(drawn[name]) for name in ("Force [N]", "Disp [mm]")] == pytest.approx([11.99, 11.98])
     declared = tmp_path / "measurement.yaml"
     declared.write_text(text)
     assert load_measurement(declared).records[0].sampling_rate == pytest.approx(100)
