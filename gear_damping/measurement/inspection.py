@@ -22,9 +22,9 @@ from gear_damping.measurement.column_kinds import (
     turn_of,
 )
 from gear_damping.measurement.formats.table import ArrayTable, Table
-from gear_damping.measurement.raw import LEAST_SAMPLES, filled_in
 from gear_damping.measurement.recordings import recordings
 from gear_damping.measurement.resolution import step_of
+from gear_damping.measurement.rows import LEAST_SAMPLES, filled_in
 from gear_damping.measurement.spectral_floor import Spectrum, spectrum_of
 from gear_damping.measurement.time_column import Stamps, counts_from_1970, find_stamps, named_clock, stamped_rate
 from gear_damping.measurement.timebase import TimeBase, stamped_time, steady_time

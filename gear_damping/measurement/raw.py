@@ -15,7 +15,7 @@ from gear_damping.measurement.declaration import ChannelPlan, EncoderPlan, Recor
 from gear_damping.measurement.encoders import ReadColumn, ShaftAngle, pulse_times, shaft_angle
 from gear_damping.measurement.file_clocks import FileClocks, conflict_with_file
 from gear_damping.measurement.formats.table import Table
-from gear_damping.measurement.record import Finding
+from gear_damping.measurement.rows import LEAST_SAMPLES, MOST_MISSING, Columns, Rows, filled_in, last_number
 from gear_damping.measurement.stamp_units import (
     refuse_endless,
     refuse_other_clock,
@@ -27,15 +27,10 @@ from gear_damping.measurement.timebase import (
     TimeBase,
     stamped_time,
     steady_time,
-    written_significantly,
 )
 from gear_damping.schema.values import Problems
 from gear_damping.units import multiple_of_a_unit, parse_unit, scaled_unit, to_si
 
-LEAST_SAMPLES = 8  # of a record, for a spectrum at all
-MOST_DOUBLED = 0.01  # of the rows of a record; where more come twice, something else is wrong
-DOUBLED_WITHIN = 100  # rows behind the one that a row is stored again of
-MOST_MISSING = 0.01  # of a record: a sheet whose last cells are blank, and no channel of another rate
 _SAME_RATE = 1e-3  # how far a declared rate may lie from the file's
 SAME_UNIT = 1e-9  # the same of units
 
@@ -70,24 +65,20 @@ class RawReader:
     def __init__(self, plan: RecordPlan, table: Table, problems: Problems, source: str) -> None:
         self.plan, self.table, self.problems, self.source = plan, table, problems, source
         self.file, self.clocks = str(table.path), FileClocks(plan, table)
-        self.first, self.stop = plan.rows or (0, 0)
-        self.blank = 0  # rows at the end that hold nothing
+        timing = plan.timing.column
+        self.columns = Columns(table, timing, self.clocks.on_its_clock(), f"{plan.key}.channels.time.column")
+        self.rows = Rows(*(plan.rows or (0, 0)))
         self.begins = 0.0  # s, of a record that nothing but pulses of encoders tells
-        self.doubled: list[int] = []  # rows that hold what an earlier one does, and no later stamp
-        self.foreign: list[int] = []  # rows of other signals, in a table of signals by turns
-        self.filled: slice | None = None  # rows of the record in which its slower channels have values
 
     def read(self, sha256: str) -> RawRecord | None:
         """The record, or None where it has no time base; `complete` where all of it could be read."""
         before, base, within = len(self.problems), None, None
         with self.problems.collecting():
             self._find_rows()
-            self.doubled = self._find_doubled()
-            self.filled = None if self.doubled else self._find_filled()
-            self.foreign = [] if self.doubled or self.filled else self._find_foreign()
+            self.rows = self.columns.without(self.rows)
             base = self._base()
             base, within = self._with_rows_beside(base)
-            base = base and self._said_of_rows(base)
+            base = base and replace(base, findings=(*base.findings, *self.rows.said()))
         channels = []
         for plan in self.plan.channels:
             with self.problems.collecting():
@@ -115,19 +106,20 @@ class RawReader:
         counted = [plan for plan in self.plan.encoders if not plan.timestamps]
         columns = [(self.plan.timing.column, time)] if self.plan.timing.column is not None else []
         columns += [(plan.column, f"{plan.key}.column") for plan in (*shared, *counted)]
-        sizes = (self._size(column) for column, _ in columns)
+        sizes = (self.columns.size(column) for column, _ in columns)
         n = next((size for size in sizes if size is not None), None) or self._samples(columns)
-        if self.stop > n:
-            self.stop = n
+        first, stop = self.rows.first, self.rows.stop
+        if stop > n:
+            self.rows = replace(self.rows, stop=n)
             rule, remedy = f"{self.table.path.name} has {n} rows", f"end the slice at {n} or before"
             raise InputError(Problem(f"{self.plan.key}.slice", rule, list(self.plan.rows), remedy, self.source))
-        self.blank = 0 if self.stop or not columns else self._blank_at_the_end([column for column, _ in columns], n)
-        self.stop = self.stop or n - self.blank
+        blank = 0 if stop or not columns else self.columns.blank_at_the_end([column for column, _ in columns], n)
+        self.rows = Rows(first, stop or n - blank, blank)
         if self.plan.window:
-            rows = window_rows(self._seconds(), self.plan.window, f"{self.plan.key}.window", self.source)
-            self.first, self.stop = self.first + rows[0], self.first + rows[1]
-        if self.stop - self.first < LEAST_SAMPLES:
-            rule = f"{self.stop - self.first} samples; a record needs at least {LEAST_SAMPLES}"
+            within = window_rows(self._seconds(), self.plan.window, f"{self.plan.key}.window", self.source)
+            self.rows = replace(self.rows, first=first + within[0], stop=first + within[1])
+        if self.rows.count < LEAST_SAMPLES:
+            rule = f"{self.rows.count} samples; a record needs at least {LEAST_SAMPLES}"
             remedy = "use a longer slice, window or file"
             if n < LEAST_SAMPLES and columns:
                 rule += f", and {columns[0][1]} = {columns[0][0]!r} holds {n}"
@@ -138,7 +130,7 @@ class RawReader:
     def _samples(self, columns: Sequence[tuple[str | int, str]]) -> int:
         """The number of rows where no column can be read: of times of pulses alone those that all of them cover."""
         if columns:
-            return self._all(*columns[0]).size
+            return self.columns.all(*columns[0]).size
         rate = self.plan.timing.sampling_rate
         if not self.plan.encoders or rate is None:
             rule, remedy = "no column gives the number of samples", "declare a time column"
@@ -150,139 +142,39 @@ class RawReader:
         refuse_endless(seconds, rate, f"{self.plan.encoders[0].key}.timestamps", self.file)
         return max(0, int(seconds * rate) + 1)
 
-    def _blank_at_the_end(self, columns: Sequence[str | int], n: int) -> int:
-        """How many of the last of n rows hold nothing in any column: those of a longer run beside this one.
-
-        A few in which the stamps alone go on count too.
-        """
-        sound = (self._all(column, "") if self._size(column) is not None else np.zeros(0) for column in columns)
-        filled = [_filled(values[:n]) for values in sound]
-        last = max(filled)
-        own = max(filled[1:], default=last) if self.plan.timing.column is not None else last
-        last = own if last - own <= MOST_MISSING * last else last
-        return n - last if last else 0
-
-    def _find_doubled(self) -> list[int]:
-        """Rows with the values of an earlier one where stamps do not go on: a recorder has stored that again.
-
-        It is the row of such a stamp or the one before it. None where that does not mend all of them.
-        """
-        column = self.plan.timing.column
-        if column is None:
-            return []
-        stamps = self._all(column, f"{self.plan.key}.channels.time.column")[self.first : self.stop]
-        late = np.flatnonzero(np.diff(stamps) <= 0) + 1 + self.first
-        if not 0 < late.size <= MOST_DOUBLED * stamps.size or written_significantly(stamps) is not None:
-            return []
-        columns = [one for one in self.clocks.on_its_clock() if self._size(one) is not None]
-        if not columns or any(self._size(one) < self.stop for one in columns):
-            return []
-        rows = np.stack([self._all(one, "")[: self.stop] for one in columns], 1)
-
-        def is_again(k: int) -> bool:
-            """Whether a row holds the values of one before it."""
-            return bool(np.any(np.all(rows[max(self.first, k - DOUBLED_WITHIN) : k] == rows[k], 1)))
-
-        again = [next((row for row in (k, k - 1) if is_again(row)), None) for k in late.tolist()]
-        kept = np.delete(stamps, [k - self.first for k in again if k is not None])
-        return [] if None in again or np.any(np.diff(kept) <= 0) else sorted({*again})
-
-    def _find_filled(self) -> slice | None:
-        """Every k-th row, where slower channels have blank cells in all others; None where none has, or they differ."""
-        found = set()
-        for column in self.clocks.on_its_clock():
-            with suppress(InputError):  # which its channel will say
-                found.add(filled_in(self._all(column, "")[self.first : self.stop]))
-        found -= {None}
-        return slice(*found.pop()) if len(found) == 1 else None
-
-    def _find_foreign(self) -> list[int]:
-        """Rows with a stamp in which other columns hold something and those of the record nothing: signals by turns."""
-        columns = [one for one in self.clocks.on_its_clock() if self._size(one) is not None]
-        if self.plan.timing.column is None or not columns or any(self._size(one) < self.stop for one in columns):
-            return []
-        own, rows = {self.table.index(one, "") for one in columns}, set(range(self.first, self.stop))
-        foreign = rows.intersection(*(self._empty_cells(place) for place in own))
-        if not foreign:
-            return []
-        own.add(self.table.index(self.plan.timing.column, ""))
-        others = (set(self._empty_cells(place)) for place in range(len(self.table.names)) if place not in own)
-        spoken = set().union(*(rows - empty for empty in others if empty))
-        return sorted(foreign) if foreign == spoken else []
-
-    def _empty_cells(self, place: int) -> list[int]:
-        with suppress(InputError):  # a column of texts
-            self.table.values(place)
-        return self.table.empty_cells(place)
-
-    def _said_of_rows(self, base: TimeBase) -> TimeBase:
-        """The time base, with notes of the rows that hold nothing and of those that come twice."""
-        found = []
-        if self.blank:
-            message = f"the last {self.blank} rows hold nothing in the columns of the record, which ends before them"
-            found.append(Finding("blank_rows", message, severity="note"))
-        if self.filled:
-            message = f"the record holds every {self.filled.step}th row, in which its slower channels have values"
-            found.append(Finding("filled_rows", message, severity="note"))
-        if self.foreign:
-            message = (
-                f"{len(self.foreign)} rows hold nothing in the columns of the record, as where signals speak by turns; "
-                "they are left out, and samples are taken at their stamps"
-            )
-            found.append(Finding("foreign_rows", message, severity="note"))
-        if self.doubled:
-            message = (
-                f"{len(self.doubled)} row(s) hold the values of an earlier one where stamps do not go on, the first "
-            )
-            message += f"row {self.doubled[0]} of the file; they are left out"
-            found.append(Finding("doubled_rows", message, severity="note"))
-        return replace(base, findings=(*base.findings, *found)) if found else base
-
     def _seconds(self) -> NDArray[np.float64]:
         """The times of the record's rows as they stand in the file, which may be no times at all."""
         column = self.plan.timing.column
         if column is None:
             return self._steady().time
         key = f"{self.plan.key}.channels.time"
-        return self._all(column, key)[self.first : self.stop] * self._in_seconds(self.plan.timing, key)
-
-    def _size(self, column: str | int) -> int | None:
-        """The length of a column; None where it cannot be read, which its channel will say."""
-        try:
-            return self._all(column, "").size
-        except InputError:
-            return None
-
-    def _all(self, column: str | int, key: str) -> NDArray[np.float64]:
-        return self.table.values(self.table.index(column, key))
+        return self.rows.of(self.columns.all(column, key)) * self._in_seconds(self.plan.timing, key)
 
     def sliced(self, column: str | int, key: str) -> NDArray[np.float64]:
         """(n,) finite values in the rows of the record."""
-        values = self._all(column, key)
-        if values.size < self.stop:
-            rule = f"column '{column}' has {values.size} samples, the record {self.stop}"
-            last, few = values.size, self.stop - values.size <= MOST_MISSING * self.stop
+        values, rows = self.columns.all(column, key), self.rows
+        if values.size < rows.stop:
+            rule = f"column '{column}' has {values.size} samples, the record {rows.stop}"
+            last, few = values.size, rows.stop - values.size <= MOST_MISSING * rows.stop
             remedy = "give the channel its own time or sampling_rate"
-            remedy = f"end the slice at {last}, or {remedy}" if few and last > self.first else remedy
+            remedy = f"end the slice at {last}, or {remedy}" if few and last > rows.first else remedy
             raise InputError(Problem(key, rule, remedy=remedy, source=self.file))
-        self._refuse_longer(column, key, _filled(values))
-        values = values[self.first : self.stop]
-        if self.filled:
-            values = values[self.filled]
-        foreign = np.array(self.foreign, int) - self.first
-        if not self.filled and (not foreign.size or np.any(np.isnan(np.delete(values, foreign)))):
-            self._refuse_cells(column, key, self.first, self.stop)
+        self._refuse_longer(column, key, last_number(values))
+        values, foreign = rows.of(values), rows.places(rows.foreign)
+        if not rows.filled and (not foreign.size or np.any(np.isnan(np.delete(values, foreign)))):
+            self._refuse_cells(column, key, rows.first, rows.stop)
         known = values.copy()
         known[foreign] = 0.0
-        refuse_not_finite(known, self._named(key, column), self.file, self.first)
-        return np.delete(values, np.r_[foreign, np.array(self.doubled, int) - self.first])
+        refuse_not_finite(known, self._named(key, column), self.file, rows.first)
+        return np.delete(values, np.r_[foreign, rows.places(rows.doubled)])
 
     def _refuse_longer(self, column: str | int, key: str, size: int) -> None:
         """A column that goes on for long where the record ends by itself has another rate than that."""
-        if self.plan.rows or self.plan.window or size - self.stop - self.blank <= MOST_MISSING * self.stop:
+        stop = self.rows.stop
+        if self.plan.rows or self.plan.window or size - stop - self.rows.blank <= MOST_MISSING * stop:
             return
-        rule = f"column '{column}' has {size} samples, the record {self.stop}"
-        remedy = f"give the channel its own time or sampling_rate, or slice: [0, {self.stop}] where rows are shared"
+        rule = f"column '{column}' has {size} samples, the record {stop}"
+        remedy = f"give the channel its own time or sampling_rate, or slice: [0, {stop}] where rows are shared"
         raise InputError(Problem(key, rule, remedy=remedy, source=self.file))
 
     def _refuse_cells(self, column: str | int, key: str, first: int, stop: int) -> None:
@@ -296,11 +188,12 @@ class RawReader:
 
     def _base(self) -> TimeBase | None:
         if self.plan.timing.column is not None:
-            return self._stamped(self.plan.timing, f"{self.plan.key}.channels.time", self.sliced, self.first)
+            return self._stamped(self.plan.timing, f"{self.plan.key}.channels.time", self.sliced, self.rows.first)
         base = self._steady()
-        if base is None or not self.filled:
+        filled = self.rows.filled
+        if base is None or not filled:
             return base
-        return replace(base, time=base.time[self.filled], sampling_rate=base.sampling_rate / self.filled.step)
+        return replace(base, time=base.time[filled], sampling_rate=base.sampling_rate / filled.step)
 
     def _steady(self) -> TimeBase | None:
         """The time base of the declared rate, else of the file's; None where the missing rate is said already."""
@@ -312,11 +205,11 @@ class RawReader:
                 remedy = "write sampling_rate: {value: 50, unit: kHz}"
                 raise InputError(Problem(f"{self.plan.key}.channels", rule, None, remedy, self.source))
             return None
-        start = clock[0] if clock else self.begins
-        base = steady_time(rate or clock[1], self.first, self.stop - self.first, start)
-        found = self.clocks.lost_numbers(self.first, self.stop)
+        start, rows = clock[0] if clock else self.begins, self.rows
+        base = steady_time(rate or clock[1], rows.first, rows.count, start)
+        found = self.clocks.lost_numbers(rows.first, rows.stop)
         if clock is None:
-            return replace(base, findings=(*self.clocks.other_rate(rate, self.first, self.stop), *found))
+            return replace(base, findings=(*self.clocks.other_rate(rate, rows.first, rows.stop), *found))
         is_other = rate is not None and abs(rate / clock[1] - 1) > _SAME_RATE
         return replace(base, findings=(conflict_with_file(rate, clock[1]), *found) if is_other else found)
 
@@ -327,37 +220,23 @@ class RawReader:
         """
         if (
             base is None
-            or self.filled
+            or self.rows.filled
             or self.plan.resample is None
             or not base.uniform
             or self.plan.resample >= base.sampling_rate
         ):
             return base, None
-        first, stop = self.first, self.stop
-        before, behind = self._sound_beside(rows_beside(base, self.plan.resample))
+        rows = self.rows
+        before, behind = self.columns.sound_beside(rows, rows_beside(base, self.plan.resample))
         if not before + behind:
             return base, None
-        self.first, self.stop = first - before, stop + behind
+        self.rows = replace(rows, first=rows.first - before, stop=rows.stop + behind)
         with suppress(InputError):  # of stamps that are none there
             wider = self._base()
             if wider.uniform and abs(wider.sampling_rate / base.sampling_rate - 1) <= _SAME_RATE:
                 return replace(wider, findings=base.findings), (float(base.time[0]), float(base.time[-1]))
-        self.first, self.stop = first, stop
+        self.rows = rows
         return base, None
-
-    def _sound_beside(self, most: int) -> tuple[int, int]:
-        """How many rows before and behind the record hold numbers in all of its columns, at most so many each.
-
-        None where there are no such columns: stamps of pulses alone end with the record.
-        """
-        columns = [*self.clocks.on_its_clock()]
-        before = behind = most if columns else 0
-        for column in columns:
-            with suppress(InputError):  # which its channel will say
-                values = np.isfinite(self._all(column, ""))
-                before = min(before, _leading(values[: self.first][::-1]))
-                behind = min(behind, _leading(values[self.stop :]))
-        return before, behind
 
     def _at_its_rate(self, base: TimeBase, within: tuple[float, float] | None) -> TimeBase:
         """The time base at the rate that `resample` asks for."""
@@ -406,7 +285,10 @@ class RawReader:
             raise InputError(Problem(f"{plan.key}.unit", f"the header says '{unit}'", None, remedy, self.source))
         clock = self._clock_beside(plan, base)
         if plan.timing is None and clock is None:
-            if self.filled and filled_in(self._all(plan.column, "")[self.first : self.stop]) is None:
+            if (
+                self.rows.filled
+                and filled_in(replace(self.rows, filled=None).of(self.columns.all(plan.column))) is None
+            ):
                 return self._faster(plan, unit, header)
             return RawChannel(plan, self.sliced(plan.column, f"{plan.key}.column"), unit, header)
         values = self.unsliced(plan.column, f"{plan.key}.column")
@@ -416,7 +298,7 @@ class RawReader:
     def _faster(self, plan: ChannelPlan, unit: str, header: str | None) -> RawChannel:
         """A channel that has values in all rows, beside slower ones."""
         whole = copy(self)
-        whole.filled = None
+        whole.rows = replace(self.rows, filled=None)
         return RawChannel(plan, whole.sliced(plan.column, f"{plan.key}.column"), unit, header, whole._base())
 
     def _clock_beside(self, plan: ChannelPlan, base: TimeBase | None) -> tuple[float, float] | None:
@@ -425,13 +307,13 @@ class RawReader:
             return None
         rate = self.plan.timing.sampling_rate
         if self.plan.timing.column is not None:
-            rate = base.sampling_rate * (self.filled.step if self.filled else 1)
+            rate = base.sampling_rate * self.rows.step
         return self.clocks.of_channel(plan, rate, self._first_stamp())
 
     def unsliced(self, column: str | int, key: str) -> NDArray[np.float64]:
         """All finite values of a column, without the empty rows behind a slower one."""
-        values = self._all(column, key)
-        values = values[: _filled(values) or None]
+        values = self.columns.all(column, key)
+        values = values[: last_number(values) or None]
         if every := filled_in(values):
             return values[slice(*every)]
         self._refuse_cells(column, key, 0, values.size)
@@ -444,7 +326,7 @@ class RawReader:
         if timing.column is None:
             return 0.0
         key = f"{self.plan.key}.channels.time"
-        stamps = self._all(timing.column, key)
+        stamps = self.columns.all(timing.column, key)
         known = stamps[np.isfinite(stamps)]
         return float(known[0]) * self._in_seconds(timing, key) if known.size else 0.0
 
@@ -473,24 +355,3 @@ def _seconds_of(header: str | None) -> float | None:
         return to_si(1.0, header, "s")
     step = multiple_of_a_unit(header)
     return step[0] * step[1].factor if step and step[1].dimension == parse_unit("s").dimension else None
-
-
-def _filled(values: NDArray[np.float64]) -> int:
-    """How many of (n,) values there are up to the last that is a number."""
-    places = np.flatnonzero(np.isfinite(values))
-    return int(places[-1]) + 1 if places.size else 0
-
-
-def filled_in(values: NDArray[np.float64]) -> tuple[int, int, int] | None:
-    """First, end and step of the rows that hold numbers, where (n,) values do in every second or later row alone."""
-    rows = np.flatnonzero(np.isfinite(values))
-    if rows.size < LEAST_SAMPLES:
-        return None
-    steps = np.diff(rows)
-    is_regular = steps[0] > 1 and bool(np.all(steps == steps[0]))
-    return (int(rows[0]), int(rows[-1]) + 1, int(steps[0])) if is_regular else None
-
-
-def _leading(true: NDArray[np.bool_]) -> int:
-    """How many of (n,) are true before the first that is not."""
-    return int(true.size if true.all() else np.argmin(true))
