@@ -88,6 +88,20 @@ def test_a_channel_is_named_where_its_other_sign_follows_the_records(evidence, a
         assert "`polarity: -1`" in fault.message
 
 
+@pytest.mark.parametrize(("share", "asked"), [(0.01, [2, 4]), (0.7, [2])])
+def test_all_records_are_fitted_only_where_those_that_move_most_are_followed(evidence, share, asked):
+    small = [replace(one, response=0.1 * one.response, name=f"small {one.name}") for one in evidence.fit]
+    many, sizes = replace(evidence, fit=(small[0], *evidence.fit, small[1])), []
+
+    def fitted(tried):
+        sizes.append(len(tried.fit))
+        assert not any(one.name.startswith("small") for one in tried.fit) or len(tried.fit) == len(many.fit)
+        return outcome(tried, share)
+
+    assert (polarity.polarity_fault(many, outcome(many, 2.0), fitted) is not None) == (len(asked) == 2)
+    assert sizes == asked
+
+
 def test_a_free_decay_has_no_sign_to_be_wrong(tmp_path):
     free = evidence_of(base_excited(tmp_path, inputs=False))
     assert found(free, 2.0, 0.01) is None

@@ -15,6 +15,7 @@ from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.measurement.record import Finding
 
 Fit = Callable[[Evidence], Outcome]
+FEW = 2  # records on which the opposite sign is tried before all: each fit of a pair of gears takes long
 LEAVES_LESS = 0.1  # of what the declared sign leaves: no parameter of the nominal model was ever worth so much
 
 
@@ -28,7 +29,10 @@ def polarity_fault(evidence: Evidence, nominal: Outcome | None, fitted: Fit) -> 
     """
     left = 1.0 if nominal is None else _share_left(nominal, evidence)
     for turned, name in _turned(evidence):
+        few = _few(turned)
         try:
+            if few is not turned and _share_left(fitted(few), few) > evidence.settings.lost_share:
+                continue
             again = fitted(turned)
         except InputError:  # neither sign can be simulated
             continue
@@ -46,6 +50,13 @@ def _turned(evidence: Evidence) -> Iterator[tuple[Evidence, str]]:
     for place, name in enumerate(names):
         if all([channel.name for channel in record.channels] == names for record in evidence.fit):
             yield replace(evidence, fit=tuple(_with_sign(r, place) for r in evidence.fit), holdout=()), name
+
+
+def _few(evidence: Evidence) -> Evidence:
+    """The evidence with those records alone that move most; as it is where there are no more."""
+    most = sorted(evidence.fit, key=ac_energy, reverse=True)[:FEW]
+    few = tuple(record for record in evidence.fit if any(record is one for one in most))
+    return evidence if len(few) == len(evidence.fit) else replace(evidence, fit=few)
 
 
 def _with_sign(record: FitRecord, place: int) -> FitRecord:
