@@ -1,5 +1,7 @@
 """A declaration that its file contradicts ends in one message that names the key, the rule and the remedy."""
 
+import math
+
 import numpy as np
 import pytest
 import yaml
@@ -217,6 +219,20 @@ def test_a_prior_of_a_gear_pair_that_its_records_contradict_is_named():
     assert said.startswith("damping_ratio lies 10 of its stated uncertainties away: correct its value")
     assert contradicted(free, [0.05, 1.0], stated) is None  # 2.5 of them
     assert contradicted(free, [coordinate, 1.0], {}) is None  # nobody stated it
+
+
+@pytest.mark.parametrize(
+    ("pinion", "gear", "is_said"), [(0.112, 0.046, True), (0.112, 0.2, False), (0.09, 0.046, False)]
+)
+def test_figures_of_both_shafts_that_are_each_others_are_called_exchanged(pinion, gear, is_said):
+    free = [
+        FreeParameter(name, stated, logarithmic=True, deviation=0.03, expected=stated)
+        for name, stated in (("inertia_pinion", 0.045), ("inertia_gear", 0.11))
+    ]
+    found = [math.log(pinion / 0.045), math.log(gear / 0.11)]
+    said = contradicted(free, found, {"inertia_pinion": "inertia_pinion", "inertia_gear": "inertia_gear"})
+    assert said.startswith("inertia_pinion lies ")
+    assert ("exchange the two" in said) == is_said
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,9 @@
 """What the file states with an uncertainty and the records put far from it."""
 
+import re
 from collections.abc import Mapping, Sequence
+
+import torch
 
 from gear_damping.explanation.evidence.noise import DECLARED, NoiseLevel
 from gear_damping.explanation.evidence.records import Evidence
@@ -8,6 +11,7 @@ from gear_damping.explanation.model.hypothesis import Outcome
 from gear_damping.explanation.model.nominal_gear_pair import FLAT
 from gear_damping.identification.output_error.records import FreeParameter
 from gear_damping.measurement.record import Channel
+from gear_damping.physics.cause import SHAFTS
 
 CONTRADICTS = 5.0  # stated standard deviations: of one in two million statements that hold
 ABOVE = 3.0  # times what a model leaves, noise and all: a noise that is stated so large is another's
@@ -29,14 +33,33 @@ def contradicted(free: Sequence[FreeParameter], coordinates: Sequence[float], st
     """
     away = {}
     for parameter, coordinate in zip(free, coordinates, strict=True):
-        expected, slope = parameter.surprise
-        size = abs(expected + slope * coordinate)
-        if parameter.name in stated and size > CONTRADICTS:
-            away[stated[parameter.name]] = size
+        if parameter.name in stated and _surprise(parameter, coordinate) > CONTRADICTS:
+            away[stated[parameter.name]] = (parameter, coordinate)
     if not away:
         return None
-    said = " and ".join(f"{name} lies {size:.3g} of its stated uncertainties away" for name, size in away.items())
+    said = " and ".join(
+        f"{name} lies {_surprise(*one):.3g} of its stated uncertainties away" for name, one in away.items()
+    )
+    if len(away) == len(SHAFTS) and _are_exchanged(away):
+        return f"{said}: each is what is stated of the other, so exchange the two"
     return f"{said}: correct its value or its uncertainty, which draws the other figures to it"
+
+
+def _surprise(parameter: FreeParameter, coordinate: float) -> float:
+    """How far a parameter lies from what is stated of it, in standard deviations."""
+    expected, slope = parameter.surprise
+    return abs(expected + slope * coordinate)
+
+
+def _are_exchanged(away: Mapping[str, tuple[FreeParameter, float]]) -> bool:
+    """Whether two figures are of one kind, one of either shaft, and each is as the other one is stated."""
+    if len({re.sub("|".join(SHAFTS), "", name) for name in away}) > 1:
+        return False
+    values = [float(parameter.value(torch.tensor(at, dtype=torch.float64))) for parameter, at in away.values()]
+    others = [parameter for parameter, _ in away.values()][::-1]
+    return all(
+        _surprise(other, other.coordinate(value)) <= CONTRADICTS for other, value in zip(others, values, strict=True)
+    )
 
 
 def noise_above(stated: NoiseLevel, left: float, channel: Channel) -> str | None:
