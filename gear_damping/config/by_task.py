@@ -1,17 +1,23 @@
 """What a task needs of the values that it reads, and which of them act beside the others."""
 
-from collections.abc import Callable
+import json
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 import torch
 
 from gear_damping.config.acting import ACTS, OFF, Found
 from gear_damping.config.folders import RESUMABLE, resumable
 from gear_damping.config.light import no_file
+from gear_damping.config.shown import going_on
 from gear_damping.config.whole import Whole
 from gear_damping.identification.network_files import holds_network
 from gear_damping.physics.terms import HeldLoad
 from gear_damping.simulation.prior import DAMPING_RATIO
+
+OF_ITS_RUNS = ("simulator", "family", "seed", "protocol", "wavelet")  # keys that decide what a network learns from
+MOST_SAID = 3  # keys of a message: more of them are another experiment
 
 
 def _checkpoint(whole: Whole) -> Found:
@@ -112,6 +118,41 @@ def _resume(whole: Whole) -> Found:
     if path is not None and task in RESUMABLE and not resumable(task, Path(path)):
         what, kind = ("finished part", "study") if task == "paper" else ("checkpoint", "training")
         yield "resume", f"holds no {what} to go on from", path, f"give the folder of an interrupted {kind}"
+    elif path is not None and task == "train":
+        yield from _resumed_otherwise(whole, path)
+
+
+def _resumed_otherwise(whole: Whole, path: str) -> Found:
+    """A training goes on with the runs, the windows and the networks that it began with."""
+    try:
+        record = json.loads((Path(path) / "run.json").read_text(encoding="utf-8"))
+        begun, again = record["config"], going_on(record["command"], Path(path))
+    except (OSError, ValueError, KeyError):  # of a folder that was copied in part: its checkpoints say the rest
+        return
+    ours = json.loads(json.dumps(whole.config, default=str))
+    own = [f"model.{name}" for name in whole["model"]["names"] if name in begun["model"].get("names", ())]
+    found = [one for key in (*OF_ITS_RUNS, *own) for one in _differing(key, _at(begun, key), _at(ours, key))]
+    if not found:
+        return
+    said = ", ".join(f"{key} = {was} (here {now})" for key, was, now in found[:MOST_SAID])
+    rule = f"was begun with {said}{' and others' if len(found) > MOST_SAID else ''}"
+    yield "resume", rule, path, f"repeat its command: {again}"
+
+
+def _at(node: Any, key: str) -> Any:
+    """What stands at a key with points; None where nothing does."""
+    for part in key.split("."):
+        node = node.get(part) if isinstance(node, Mapping) else None
+    return node
+
+
+def _differing(key: str, was: Any, now: Any) -> Iterator[tuple[str, Any, Any]]:
+    """Each key below this one that has another value."""
+    if isinstance(was, Mapping) and isinstance(now, Mapping):
+        for name in {**was, **now}:
+            yield from _differing(f"{key}.{name}", was.get(name), now.get(name))
+    elif was != now:
+        yield key, was, now
 
 
 BY_TASK: tuple[tuple[tuple[str, ...], Callable[[Whole], Found]], ...] = (

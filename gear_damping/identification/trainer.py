@@ -15,6 +15,7 @@ from lightning.pytorch.plugins.environments import LightningEnvironment
 from lightning.pytorch.strategies import DDPStrategy
 from torch import Tensor
 
+from gear_damping.errors import InputError, Problem
 from gear_damping.identification.datamodule import Material, WindowDataModule
 from gear_damping.identification.kept_memory import keep_memory
 from gear_damping.identification.lightning_module import CONSTANT, COSINE, DampingModule, EstimatorConfig
@@ -150,7 +151,7 @@ def fit_estimator(
 
     Raises:
         KeyboardInterrupt: as the user sent it, after the files were closed; `last.ckpt` can be resumed.
-        ValueError: `resume` is of another data set.
+        InputError: `resume` is of another data set.
         RuntimeError: no epoch ended with a finite validation error.
     """
     folder, resume = Path(place.folder), place.resume
@@ -211,7 +212,9 @@ def _take_over(resume: Path, folder: Path, module: DampingModule, training: Trai
     earlier = load_estimator(resume, module.plugins)
     ours, theirs = module.data["id"], earlier.data["id"]
     if ours != theirs:
-        raise ValueError(f"resume is of data set {theirs!r}, not of {ours!r}: train anew, or use that set")
+        rule = f"was trained on the runs {theirs!r}, and these are {ours!r}"
+        remedy = "repeat the command that it was begun with, in the same version of the package, or train anew"
+        raise InputError(Problem("resume", rule, str(resume), remedy))
     for name, path in {"last.ckpt": resume, "best.ckpt": resume.with_name("best.ckpt")}.items():
         if path.exists() and path.resolve() != (folder / name).resolve():
             shutil.copyfile(path, folder / name)

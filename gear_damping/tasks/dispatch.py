@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from gear_damping.config.folders import resumable
 from gear_damping.config.measured import INSPECT
+from gear_damping.config.shown import going_on
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem, met_in_writing, unread
 from gear_damping.own_files import errors_in
@@ -63,7 +64,8 @@ def run_job(config: Mapping[str, Any], origin: Origin, folder: Path) -> int:
         return _failed(run_folder, InputError([_placed(problem, config, origin) for problem in error.problems]))
     except KeyboardInterrupt:
         _close(run_folder, INTERRUPTED)
-        log.info("interrupted%s", f"; go on with: resume={folder}" if resumable(config["task"], folder) else "")
+        again = going_on(run_folder.record["command"], folder)
+        log.info("interrupted%s", f"; go on with: {again}" if resumable(config["task"], folder) else "")
         raise
     except Exception as error:
         if isinstance(error, OSError) and error.errno is not None:  # of the machine: a full disk, a missing right

@@ -12,6 +12,7 @@ import numpy as np
 
 from gear_damping.config.light import InspectSettings
 from gear_damping.config.measured import YAML_SUFFIXES
+from gear_damping.config.shown import shown
 from gear_damping.measurement.column_kinds import CONSTANT
 from gear_damping.measurement.encoders import FROM_ENCODERS
 from gear_damping.measurement.files import UNKNOWN
@@ -57,7 +58,8 @@ def _bare(path: Path, plugins: Sequence[str], folder: RunFolder) -> dict[str, An
     )
     folder.write_json(JSON_NAME, _file_content(found, listed) | {"open": blanks})
     log(f"\n{start} declares it: {wanted}, and go on with")
-    log(f"  python -m gear_damping task=inspect measurement.path={start}")
+    again = [f"measurement.plugins=[{','.join(plugins)}]"] if plugins else []
+    log(f"  {shown(['task=inspect', f'measurement.path={start}', *again])}")
     return {"system": system[0], "columns": len(found.columns), "sampling_rate": found.rate, "open": blanks}
 
 

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from gear_damping.config.measured import INSPECT, YAML_SUFFIXES
+from gear_damping.config.shown import shown
 from gear_damping.config.source import Origin
 from gear_damping.errors import Problem, reading, writing, written_whole
 from gear_damping.tasks.lease import is_held
@@ -44,7 +45,7 @@ class RunFolder:
         self.record: dict[str, Any] = {
             "status": RUNNING,
             "task": config.get("task"),
-            "command": " ".join(["python -m gear_damping", *(word.lstrip("+") for word in origin.overrides)]),
+            "command": shown(word.lstrip("+") for word in origin.overrides),
             "config": dict(config),
             "choices": dict(origin.choices),
             "seed": config.get("seed"),

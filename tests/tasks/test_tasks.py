@@ -250,6 +250,8 @@ def test_an_interrupted_run_says_so_and_can_go_on(tmp_path, monkeypatch, said):
     assert (folder / "raw_lstm" / "seed_0" / "last.ckpt").is_file()
     monkeypatch.setattr(train, "compare_models", original)
     again = [f"hydra.run.dir={tmp_path / 'again'}", f"data_folder={tmp_path / 'data'}", f"resume={folder}"]
+    assert main([*QUICK, "model=raw_lstm", "seed=3", "training.max_epochs=1", *again]) == 1
+    assert "was begun with seed = 0 (here 3); remedy: repeat its command" in said()
     assert main([*QUICK, "model=raw_lstm", *again]) == 0
 
 
