@@ -77,6 +77,14 @@ def test_beside_a_rest_nothing_is_established_by_held_out_records_that_hardly_mo
         assert "%" not in said.sentences[0]
 
 
+@pytest.mark.parametrize(("is_any", "word"), [(True, UNEXPLAINED), (False, PARTLY)])
+def test_beside_a_rest_a_cause_of_any_size_is_none(is_any, word):
+    found = search(accepted=(cause(),), left=True, sensor=200.0, rest=40.0, not_random=0.1)
+    said = verdict(found, MUCH, excess_of(0.6, 20.0), is_one=True, is_any=is_any)
+    assert said.word == word
+    assert ("not one of its figures" in said.sentences[0]) == is_any
+
+
 @pytest.mark.parametrize(("left", "word"), [(1080.0, UNEXPLAINED), (60.0, UNEXPLAINED), (40.0, PARTLY)])
 def test_of_a_signal_no_more_can_be_missing_than_all_of_it(left, word):
     """A pendulum's swing of 3.5 s took a low-pass of 1.3 Hz for its friction: 1080 % left of 67 500."""

@@ -36,6 +36,14 @@ def test_settings_with_more_cells_than_the_table_are_left_out(tmp_path, trigger)
     assert table.notes == ("run.csv: 5 line(s) before the header are left out",)
 
 
+def test_names_of_two_columns_stand_below_settings_of_a_name_and_a_number_each(tmp_path):
+    settings = ["Model,X30", "", "Point Format,Y,", "Horizontal Units,S,", "Horizontal Scale,0.04,"]
+    settings += ["Sample Interval,5E-03,", "Record Length,60,", "Vertical Units,V,", "Vertical Offset,0,", "Label,,"]
+    table = table_of(tmp_path, [*settings, "TIME,CH1", *rows(60, 2, ",")])
+    assert table.names[:2] == ("TIME", "CH1")
+    assert [len(table.values(k)) for k in range(2)] == [60, 60]
+
+
 def test_a_row_with_too_many_cells_is_a_fault_and_no_setting(tmp_path):
     with pytest.raises(InputError, match=r"row 2 \(line 4\): 4 cells where the first line has 3"):
         table_of(tmp_path, ["a;b;c", *rows(2), "1;2;3;4", *rows(60)])

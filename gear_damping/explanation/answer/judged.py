@@ -21,6 +21,7 @@ from gear_damping.explanation.model.positive import positive
 from gear_damping.explanation.state import State
 from gear_damping.explanation.steps.confirm import Confirmed, without
 from gear_damping.explanation.steps.judge import CONSISTENT, UNEXPLAINED, Judged, Known, verdict
+from gear_damping.explanation.trials.told_size import is_any
 from gear_damping.physics.terms import Sensor
 
 TOO = "`{}` would take part of what is left too, {}"
@@ -113,6 +114,7 @@ def _judged(found: Confirmed, notes: Sequence[str], is_short: bool) -> tuple[Jud
         shape=shape_without_name(state),
         not_random=_not_random(state),
         is_short=is_short,
+        is_any=any(is_any(state.outcome, cause.name, evidence) for cause in state.accepted),
         is_stated_otherwise=bool(contradicts_stated(state.nominal, evidence)),
     )
     said = verdict(state, before, after, known)

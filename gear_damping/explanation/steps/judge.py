@@ -23,6 +23,7 @@ OTHER_FIGURES = (
     "The simulation follows the records, but with figures far from those that are stated: one of these is wrong, or "
     "what measured the records has a wrong gain, which bends them."
 )
+ANY_SIZE = "but not one of its figures is told by the records, and too much is left for it to be the cause."
 OTHER_SIZES = (
     "but with another size in other records: its form is another one, or it stands in for something that has no name."
 )
@@ -82,6 +83,7 @@ class Known:
         shape: What is visible and has no name, in words; empty where nothing of that kind is.
         not_random: What of the nominal model's residuals shows that it is not random, in % of the fitted records'
             variance.
+        is_any: Whether not one figure of some cause is known within itself.
         is_stated_otherwise: Whether the nominal model has figures far from what is stated of them.
         is_short: Whether held-out records are too short to judge more than what is missing of the power in them.
     """
@@ -98,6 +100,7 @@ class Known:
     shape: str = ""
     not_random: float = inf
     is_short: bool = False
+    is_any: bool = False
     is_stated_otherwise: bool = False
 
     @property
@@ -140,7 +143,8 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
             if after.percent > 0:
                 left = f"An unexplained residual of {after.percent:.3g} % has none."
             return Verdict(PARTLY, (f"{missing}. Part of it has a name: {said}. {left}", *further))
-        why = OTHER_SIZES if known.is_one is False else "but too much is left for it to be the cause."
+        why = ANY_SIZE if known.is_any else "but too much is left for it to be the cause."
+        why = OTHER_SIZES if known.is_one is False else why
         return _not_established(found, before, known, why)
     is_part = known.whole < settings.taken_by_one
     is_unsteady = before.misfit < settings.random_misfit  # held-out: less noise
@@ -206,10 +210,10 @@ def _not_established(found: State, before: Excess, known: Known, why: str) -> Ve
 def _is_part_named(found: State, share: float, after: Excess, known: Known) -> bool:
     """Whether causes that take a share of what was missing are established although a residual is left.
 
-    What has another size in other records, or has run into the end of what it can be, stands in for something else,
-    however much it takes.
+    What has another size in other records, or any size, or has run into the end of what it can be, stands in for
+    something else, however much it takes.
     """
-    if known.is_one is False or any(found.is_at_bound(cause) for cause in found.accepted):
+    if known.is_one is False or known.is_any or any(found.is_at_bound(cause) for cause in found.accepted):
         return False
     settings = found.bench.settings
     nobody_knows = known.is_one is None and known.of_fit >= settings.taken_by_all  # but nearly all of one record

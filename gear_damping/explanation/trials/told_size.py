@@ -58,6 +58,17 @@ def is_told(outcome: Outcome, refit: Refit, evidence: Evidence) -> bool:
     return max(_statistic(outcome, column, lags) for column in alone) > limit
 
 
+def is_any(outcome: Outcome, name: str, evidence: Evidence) -> bool:
+    """Whether a cause has figures of its own and not one of them is known within itself: it bends to any motion."""
+    free, shared = outcome.problem.free, outcome.fitted.shared
+    half = QUANTILE * covariance_of(outcome, evidence).diagonal().clamp(min=0).sqrt()
+    own = [i for i, parameter in enumerate(free) if parameter.name.startswith(f"{name}.")]
+    return bool(own) and not any(
+        float(half[i]) < (WITHIN if free[i].logarithmic else abs(float(free[i].value(shared[i]))) / free[i].scale)
+        for i in own
+    )
+
+
 def _are_sized(outcome: Outcome, places: list[int], shape: list[int], evidence: Evidence) -> bool:
     """Whether the sizes of what is tried as a whole are known at all, each within a factor.
 

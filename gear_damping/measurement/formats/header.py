@@ -102,7 +102,7 @@ def find_header(rows: Sequence[Sequence[str]], width: int) -> Header:
     exact = [k for k in texts if filled(rows[k]) == width]
     wide = [k for k in texts if filled(rows[k]) > width]
     above_units = [k for k in exact if k + 1 < len(rows) and is_units(rows[k + 1])]
-    start = max(above_units or exact or wide or texts[-1:], key=lambda k: (len({*rows[k]}), k))
+    start = max(above_units or exact or wide or texts[-1:], key=lambda k: (len({*rows[k]} - {""}), k))
     start -= bool(start and is_units(rows[start]) and _are_numbered(rows[start - 1], width))
     names, first = tuple(cell.strip() for cell in rows[start]), start + 1
     units: tuple[str, ...] = ()
@@ -232,10 +232,17 @@ def _has_number(row: Sequence[str]) -> bool:
 
 
 def _first_values(rows: Sequence[Sequence[str]], width: int) -> int:
-    """The first row of values: settings may be numbers too, but a table goes on for a few rows without one of texts."""
+    """The first row of values: settings may be numbers too, but a table goes on for a few rows without one of texts.
+
+    Settings of a name and a number each look like values of two columns, where names of two stand below them.
+    """
     texts = [not _has_number(row) for row in rows]
     values = (k for k, row in enumerate(rows) if _is_values(row, width))
-    return next((k for k in values if not any(texts[k : k + _TABLE])), len(rows))
+    first = next((k for k in values if not any(texts[k : k + _TABLE])), len(rows))
+    if first == len(rows) or is_written(rows[first][0]):
+        return first
+    named = (k + 1 for k in range(first, len(rows) - _TABLE) if texts[k] and filled(rows[k]) == width)
+    return next((k for k in named if all(is_written(cell) for row in rows[k:] for cell in row[:width])), first)
 
 
 def _is_values(row: Sequence[str], width: int) -> bool:
