@@ -44,6 +44,26 @@ def test_names_of_two_columns_stand_below_settings_of_a_name_and_a_number_each(t
     assert [len(table.values(k)) for k in range(2)] == [60, 60]
 
 
+@pytest.mark.parametrize(
+    ("encoding", "name"),
+    [
+        ("cp932", "変位"),
+        ("cp932", "加速度センサ"),
+        ("latin-1", "Größe"),
+        ("latin-1", "créée"),
+        ("cp1252", "Weg „A“"),
+        ("utf-8", "変位"),
+        ("utf-16", "変位"),
+    ],
+)
+def test_names_are_read_in_the_code_pages_of_older_programs(tmp_path, encoding, name):
+    lines = [f"temps élevé,{name} [mm]" if name == "créée" else f"t,{name} [mm]", *rows(60, 2, ",")]
+    (tmp_path / "run.csv").write_bytes("\n".join(lines).encode(encoding))
+    table = read_table(tmp_path / "run.csv")
+    assert table.names[1] == f"{name} [mm]"
+    assert table.unit(1) == "mm"
+
+
 def test_a_row_with_too_many_cells_is_a_fault_and_no_setting(tmp_path):
     with pytest.raises(InputError, match=r"row 2 \(line 4\): 4 cells where the first line has 3"):
         table_of(tmp_path, ["a;b;c", *rows(2), "1;2;3;4", *rows(60)])

@@ -4,6 +4,7 @@ import csv
 import gzip
 import io
 import re
+import unicodedata
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
@@ -26,6 +27,7 @@ _POWER = re.compile(rb"(?<=[\d.])\*\^(?=[+-]?\d)")  # the exponent of Mathematic
 _LISTS = re.compile(rb"\s*(?:[\w.]+\s*[=(]\s*){0,2}(?:\[\s*\[|\{\s*\{)(?=[^\]}:\"]*[\]}])")
 _BETWEEN_ROWS = re.compile(rb"[\]}]\s*[,;]?\s*[\[{]")
 _AROUND = re.compile(rb"^[^\[{]*[\[{]\s*[\[{]|[\]}]\s*[\]}].*\Z", re.DOTALL)
+_HIGH = re.compile(rb"[\x80-\xff]+")  # bytes of no English letter
 _LINE_END = re.compile(rb"\r+\n|\r")  # also written twice by a text mode, or alone as computers of the nineties did
 
 
@@ -130,7 +132,7 @@ def bytes_of(path: Path, max_bytes: int) -> bytes:
 
 
 def _utf8(path: Path, raw: bytes) -> bytes:
-    """The text in UTF-8; older programs write µ, ° and ² in Latin-1."""
+    """The text in UTF-8; older programs write µ, ° and ² in the code page of Windows, and Japanese in Shift-JIS."""
     wide = raw.startswith((b"\xff\xfe", b"\xfe\xff"))
     if b"\0" in raw.rstrip(b"\0")[:4096] and not wide:
         packed = path.suffix.lower() == ".gz"
@@ -139,7 +141,21 @@ def _utf8(path: Path, raw: bytes) -> bytes:
     try:
         return raw.decode("utf-16").encode() if wide else raw.removeprefix(b"\xef\xbb\xbf").decode().encode()
     except UnicodeDecodeError:
-        return raw.decode("latin-1").encode()
+        return raw.decode("cp932" if _is_shift_jis(raw) else "cp1252", "replace").encode()
+
+
+def _is_shift_jis(raw: bytes) -> bool:
+    """Whether a text can be Shift-JIS, whose letters are of two bytes, and most bytes of other letters stand together.
+
+    In the code page of Windows a letter that is none of English stands alone among those that are.
+    """
+    try:
+        letters = [one for one in raw.decode("cp932") if one > "\x7f"]
+    except UnicodeDecodeError:
+        return False
+    high = [len(run) for run in _HIGH.findall(raw)]
+    together = sum(size for size in high if size > 1) > 0.5 * sum(high)  # a majority
+    return together and all(unicodedata.category(one)[0] in "LSPN" for one in letters)
 
 
 def _without_brackets(text: bytes) -> bytes:
