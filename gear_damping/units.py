@@ -51,6 +51,7 @@ _KG, _M, _S = Dimension(mass=1), Dimension(length=1), Dimension(time=1)
 # Exponents again, of what is kept apart at the door only.
 _RAD, _V, _A, _ONE = Dimension(angle=1), Dimension(voltage=1), Dimension(current=1), Dimension()
 _N = Dimension(1, 1, -2)  # mass times length over time squared
+_PA = Dimension(1, -1, -2)  # a force over an area
 
 _ATOMS: dict[str, Unit] = {
     "1": Unit(1.0, _ONE), "%": Unit(1e-2, _ONE), "dB": Unit(1.0, _ONE),
@@ -71,6 +72,8 @@ _ATOMS: dict[str, Unit] = {
     "A": Unit(1.0, _A), "mA": Unit(1e-3, _A),
     "gn": Unit(9.80665, _M * _S**-2), "mgn": Unit(9.80665e-3, _M * _S**-2),
     "kNm": Unit(1e3, _N * _M), "mNm": Unit(1e-3, _N * _M),
+    "Pa": Unit(1.0, _PA), "hPa": Unit(100.0, _PA), "kPa": Unit(1e3, _PA), "MPa": Unit(1e6, _PA),
+    "bar": Unit(1e5, _PA), "mbar": Unit(100.0, _PA), "psi": Unit(6894.757293168361, _PA),
     "mil": Unit(2.54e-5, _M), "ips": Unit(0.0254, _M * _S**-1),
 }  # fmt: skip
 

@@ -140,7 +140,8 @@ def refuse_not_finite(values: NDArray[np.float64], key: str, source: str, first:
         longest = max(map(len, np.split(bad, np.flatnonzero(np.diff(bad) > 1) + 1)))
         rule = f"{bad.size} value(s) are not finite, the first at sample {bad[0] + first}"
         rule += f", up to {longest} in a row" if longest > 1 else ""
-        raise InputError(Problem(key, rule, remedy="use slices that leave them out", source=source))
+        remedy = "use slices that leave them out" if bad.size < values.size else "name another column, or leave it out"
+        raise InputError(Problem(key, rule, remedy=remedy, source=source))
 
 
 def check_channel(channel: Channel, strokes: NDArray[np.int64]) -> list[Finding | None]:

@@ -33,6 +33,7 @@ REMEDY = "or give sampling_rate instead of the time column, where the stamps are
 CLOCK_JUMPS, LOST = "clock_jumps", "dropped_samples"  # kinds of findings
 _HALF = 0.5  # of a step; a stamp that far from where it is due counts as another sample's
 _WHOLE = 0.05  # of a gap; how near a whole number of steps it must be, beside what the jitter allows
+_LAST_SECOND, _MINUTE = 59, 60  # s, of a clock HHMMSS before it shows the next minute
 _LISTED = 5  # gaps that a message lists
 _RUN = 0.8  # share of gaps behind a gap from which they are a lower rate, not losses
 _MANY = 0.1  # share of the steps; so many are no jumps but another rate, or none
@@ -382,11 +383,22 @@ def _dropped(lost: NDArray, stamps: NDArray, gaps: NDArray, first: int) -> Findi
     rows = ", ".join(str(gap + 1 + first) for gap in gaps[:_LISTED].tolist())
     times = ", ".join(f"{stamps[gap + 1]:.6g}" for gap in gaps[:_LISTED].tolist())
     more = " and others" if gaps.size > _LISTED else ""
+    if _are_clocks(stamps[gaps], stamps[gaps + 1]):
+        message = (
+            f"numbers such as {stamps[gaps[0]]:.12g} and then {stamps[gaps[0] + 1]:.12g} are clocks, HHMMSS, and no "
+            "seconds; write them as 12:34:56.7, or give sampling_rate instead of the time column"
+        )
+        return Finding(LOST, message, channel="time", sample=int(gaps[0]) + 1)
     message = (
         f"about {lost.sum():.12g} sample(s) were dropped in {gaps.size} gap(s), before row(s) {rows} of the file "
         f"(at {times} s){more}; use slices or windows between the gaps"
     )
     return Finding(LOST, message, channel="time", sample=int(gaps[0]) + 1)
+
+
+def _are_clocks(before: NDArray, behind: NDArray) -> bool:
+    """Whether stamps leap from the last second of a minute to the next hundred, as those of HHMMSS do."""
+    return bool(np.all(before % 100 >= _LAST_SECOND) and np.all(behind % 100 < 1) and np.all(before % 100 < _MINUTE))
 
 
 def _changing(steps: NDArray, where: int, first: int) -> Finding:

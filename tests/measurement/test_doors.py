@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from gear_damping.errors import InputError
+from gear_damping.measurement.checks import refuse_not_finite
 from gear_damping.measurement.record_checks import share_at_stamps
 from gear_damping.measurement.timebase import irregularity, stamped_time
 
@@ -281,3 +283,18 @@ def test_gaps_are_told_by_the_rows_that_a_slice_counts():
     stamps = np.delete(np.arange(2000) / RATE, [500, 501, 1200])
     message = irregularity(stamps, first=300).message
     assert "about 3 sample(s) were dropped in 2 gap(s), before row(s) 800, 1498 of the file (at " in message
+
+
+def test_stamps_that_leap_at_each_full_minute_are_clocks():
+    seconds = 55 + np.arange(2000) / 100
+    message = irregularity(105900 + np.where(seconds >= 60, 4040, 0) + seconds).message
+    assert message.startswith("numbers such as 105959.99 and then 110000 are clocks, HHMMSS")
+    assert "dropped" in irregularity(105900 + np.where(seconds >= 60, 33, 0) + seconds).message
+
+
+def test_a_column_without_a_number_is_to_be_left_out():
+    values = np.full(2000, np.nan)
+    with pytest.raises(InputError, match="name another column, or leave it out"):
+        refuse_not_finite(values, "channels.force", "run.csv")
+    with pytest.raises(InputError, match="use slices that leave them out"):
+        refuse_not_finite(np.r_[0.0, values], "channels.force", "run.csv")
