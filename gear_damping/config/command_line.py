@@ -158,10 +158,14 @@ def _read_override(argument: str, many: bool, before: str) -> tuple[list[Problem
 def _parsed(argument: str, many: bool) -> tuple[Override, str]:
     """The override, and the word that it was read from.
 
-    A path that Hydra does not read, `run(2).csv`, is put in quotes, and of one run one with commas, `5,5Nm.csv`.
+    A path that Hydra does not read, `run(2).csv`, is put in quotes, and of one run one with commas, `5,5Nm.csv`. A
+    shell leaves the `~` of a folder as it is behind `=`.
     """
     key, _, value = argument.partition("=")
     is_path = key in OF_A_PATH and not {"'", '"'} & set(value)
+    if is_path and value.startswith("~/"):
+        value = str(Path(value).expanduser())
+        argument = f"{key}={value}"
     quoted = f'{key}="{value}"'
     try:
         parsed = parse(argument)

@@ -218,10 +218,11 @@ def load_estimator(path: Path | str, plugins: Sequence[str] = ()) -> Estimator:
     Raises:
         InputError: a file is missing or damaged, is none of these kinds, or of an estimator that no file declares.
     """
-    if Path(path).suffix == ".json":
-        content = read_description(Path(path))
+    path = Path(path).expanduser()
+    if path.suffix == ".json":
+        content = read_description(path)
         if content.get("format") != NETWORK:
-            return _classical(content, Path(path), plugins)
+            return _classical(content, path, plugins)
     return NetworkEstimator(load_module(path, plugins))
 
 

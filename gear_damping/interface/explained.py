@@ -14,6 +14,7 @@ from gear_damping.explanation.explain import NOBODY, Listener
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.interface.arguments import names, refuse_other, refuse_other_solver
 from gear_damping.interface.model import Model
+from gear_damping.interface.new_file import written_anew
 from gear_damping.measurement.record import Measurement
 from gear_damping.physics.catalogue import catalogue
 from gear_damping.reporting.explanation_report import render, report_input
@@ -74,10 +75,7 @@ class Answer:
         Raises:
             FileExistsError: there is such a file.
         """
-        path = Path(path)
-        with path.open("x", encoding="utf-8") as file:
-            file.write(render(report_input(self.found)))
-        return path
+        return written_anew(path, render(report_input(self.found)))
 
     def __repr__(self) -> str:
         return f"<{self.verdict}: {self.sentences[0]}>"

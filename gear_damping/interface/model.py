@@ -9,6 +9,7 @@ import yaml
 from gear_damping.config.simulator import SimulatorSettings, read_simulator
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
+from gear_damping.interface.new_file import written_anew
 from gear_damping.physics import model as physics
 from gear_damping.physics.systems.base import System
 from gear_damping.physics.terms import Effect
@@ -51,7 +52,9 @@ class Model(physics.Model):
         Raises:
             InputError: everything that is wrong with it.
         """
-        content, source = (node, "the mapping") if isinstance(node, Mapping) else (_read(Path(node)), str(node))
+        content, source = (
+            (node, "the mapping") if isinstance(node, Mapping) else (_read(Path(node).expanduser()), str(node))
+        )
         return cls.of_settings(read_simulator({**HOW, **content}, FIXED, _Given(source)))
 
     @classmethod
@@ -83,10 +86,7 @@ class Model(physics.Model):
         Raises:
             FileExistsError: there is such a file.
         """
-        path = Path(path)
-        with path.open("x", encoding="utf-8") as file:
-            file.write(HEADER + yaml.safe_dump(self.to_config(), sort_keys=False))
-        return path
+        return written_anew(path, HEADER + yaml.safe_dump(self.to_config(), sort_keys=False))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Model):

@@ -71,7 +71,7 @@ def load_measurement(
         raise InputError(Problem("max_bytes", rule, max_bytes, "for example max_bytes=4e9"))
     content = _filled(path)
     with _telling_names(content):
-        return _loaded(content, Path(path), max_bytes, plugins)
+        return _loaded(content, Path(path).expanduser(), max_bytes, plugins)
 
 
 def _filled(path: str | Path) -> object:
@@ -84,7 +84,7 @@ def _filled(path: str | Path) -> object:
         rule = f"must be a path, and is a {type(path).__name__}"
         remedy = "give the path of a measurement.yaml, or what was read from it to identify and explain"
         raise InputError(Problem("path", rule, remedy=remedy))
-    content = read_yaml(Path(path))
+    content = read_yaml(Path(path).expanduser())
     rule, remedy = f"{UNKNOWN} stands for what is not filled in yet", "write what the rig or its recorder says"
     if missing := list(unfilled(content)):
         with _telling_names(content):

@@ -1,5 +1,7 @@
 """A folder or a pattern as `measurement.path` of a sweep."""
 
+from pathlib import Path
+
 import pytest
 
 from gear_damping.config.command_line import parse, read_command_line
@@ -59,3 +61,10 @@ def test_a_path_with_a_comma_is_one_path_of_one_run_and_two_of_a_sweep():
     assert "out,5" in {parse(word).value() for word in one.overrides if "hydra.run.dir" in word}
     many = read_command_line(["--multirun", "task=inspect", "measurement.path=a.yaml,b.yaml"])
     assert any(parse(word).is_sweep_override() for word in many.overrides if "measurement.path" in word)
+
+
+def test_a_path_may_begin_at_home():
+    words = read_command_line(["task=inspect", "measurement.path=~/a.yaml", "hydra.run.dir=~/b (1)"]).overrides
+    read = {parse(word).key_or_group: parse(word).value() for word in words}
+    assert read["measurement.path"] == f"{Path.home()}/a.yaml"
+    assert read["hydra.run.dir"] == f"{Path.home()}/b (1)"

@@ -113,10 +113,10 @@ def test_the_configuration_says_the_same(tmp_path):
     again = gd.Model.from_config(model.to_config())
     assert again == model
     assert again != rig()
-    path = model.write(tmp_path / "model.yaml")
+    path = model.write(tmp_path / "new" / "model.yaml")
     assert gd.Model.from_config(path) == model
     assert yaml.safe_load(path.read_text())["profile_error"]["amplitudes"] == [1e-6, 2e-7]
-    with pytest.raises(FileExistsError):
+    with pytest.raises(FileExistsError, match="is there and stays as it is: give another path"):
         model.write(path)
     wrong = {"system": "gear_pair", "fourier_mesh_stiffness": {}, "backlash": {"gap": {"value": 8, "unit": "kg"}}}
     with pytest.raises(gd.InputError, match="the unit 'kg' is not one of the kind of 'm'"):
@@ -249,7 +249,7 @@ def test_an_explanation_names_the_spring(record, tmp_path):
     assert not answer.damping_ratio["conditional"]
     report = answer.report(tmp_path / "report.html")
     assert "cubic" in report.read_text(encoding="utf-8")
-    with pytest.raises(FileExistsError):
+    with pytest.raises(FileExistsError, match="is there and stays as it is: give another path"):
         answer.report(report)
 
 
