@@ -13,6 +13,15 @@ SHAFTS = ("pinion", "gear")
 
 
 @dataclass(frozen=True)
+class Mode:
+    """A mass on a spring behind another one: its frequency alone in Hz, its mass over the other, its damping ratio."""
+
+    frequency: float
+    mass_ratio: float
+    damping_ratio: float
+
+
+@dataclass(frozen=True)
 class Rig:
     """What a recipe may depend on: the rig and the records of it.
 
@@ -34,6 +43,7 @@ class Rig:
         on_shafts: Whether a speed or an acceleration of one shaft was measured.
         records: How many were fitted.
         swells: Whether a free motion of them grows again after it fell: energy comes back from where it went.
+        mode: A mass on a spring with which loads and motions agree best, where nothing holds the driven one.
         one_way: Whether nothing brings it back and it moves in one direction in each record, so that what differs
             between directions, or yields before it slides, does not show.
     """
@@ -53,6 +63,7 @@ class Rig:
     standing: bool = False
     on_shafts: bool = False
     one_way: bool = False
+    mode: Mode | None = None
     records: int = 1
     swells: bool = False
 

@@ -7,7 +7,7 @@ from typing import ClassVar
 import torch
 from torch import Tensor
 
-from gear_damping.physics.cause import Cause, Recipe, Rig
+from gear_damping.physics.cause import Cause, Mode, Recipe, Rig
 from gear_damping.physics.kinematics import Kinematics
 from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.systems.traits import Trait
@@ -16,6 +16,8 @@ from gear_damping.physics.terms import ExtraStates, Load, Values
 PLACE, RATE = "second_mode.displacement", "second_mode.velocity"
 RATIOS = (0.01, 0.1)  # of the masses, that fits begin from: a light part and a heavy one
 BEATS = (3e-4, 1e-3, 3e-3, 1e-2)  # the same at the first mode's own frequency, where they part the two by its root
+HEAVY = 10.0  # of a mass behind one that no spring holds: a motor that carries a beam is the smaller one
+ABOUT = 2.0  # of its frequency, which the load of short records tells to so much
 LOW, HIGH = 1e-4, 1.0  # of the ratio that is fitted: beyond, the other mass is the first one
 NEAR = 1.15  # of the line that it is sought at: farther, it would take the place of the first mode
 DAMPED = (1e-5, 0.3)  # damping ratios of what shows as a line
@@ -28,19 +30,22 @@ def _at_the_lines(rig: Rig) -> tuple[Recipe, ...]:
     """
     sought = [(frequency, ratio) for frequency in rig.frequencies for ratio in RATIOS]
     sought += [(rig.values["natural_frequency"] / (2 * pi), ratio) for ratio in BEATS if rig.swells]
-    return tuple(
-        Recipe(
-            {"mass_ratio": ratio},
-            non_nested=True,
-            scanned={"frequency": frequency, "damping_ratio": 0.01},
-            within={
-                "second_mode.mass_ratio": (LOW, HIGH),
-                "second_mode.frequency": (frequency / NEAR, frequency * NEAR),
-                "second_mode.damping_ratio": DAMPED,
-            },
-            in_si=True,
-        )
-        for frequency, ratio in sought
+    found = tuple(_begun(Mode(frequency, ratio, 0.01), HIGH, NEAR) for frequency, ratio in sought)
+    return found if rig.mode is None else (*found, _begun(rig.mode, HEAVY, ABOUT))
+
+
+def _begun(mode: Mode, most: float, near: float) -> Recipe:
+    """One variant that fits begin from, with the largest ratio of the masses and the range of its frequency."""
+    return Recipe(
+        {"mass_ratio": min(max(mode.mass_ratio, 2 * LOW), most / 2)},
+        non_nested=True,
+        scanned={"frequency": mode.frequency, "damping_ratio": mode.damping_ratio},
+        within={
+            "second_mode.mass_ratio": (LOW, most),
+            "second_mode.frequency": (mode.frequency / near, mode.frequency * near),
+            "second_mode.damping_ratio": DAMPED,
+        },
+        in_si=True,
     )
 
 

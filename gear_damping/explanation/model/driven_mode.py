@@ -1,0 +1,81 @@
+"""A mass on a spring behind a driven one that no spring holds, from what the load makes of the motion.
+
+Where nothing holds the first mass, its motion has no frequency of its own beside which a line could stand. What the
+load does to it says all the same where the other mass swings alone: there it holds the first one still.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import nnls
+
+from gear_damping.identification.output_error.records import FitRecord
+from gear_damping.physics.cause import Mode
+
+Array = NDArray[np.complex128]
+FORCE = "force"
+PLACES = 120  # between the lowest and the highest frequency that the load holds: steps smaller than a resonance is wide
+DAMPED = (0.003, 0.03, 0.2)  # damping ratios that are tried, the width of a resonance apart
+DRIVEN = 1e-3  # of the largest power of the load in any line: less drives nothing
+LOWEST = 3  # lines of a record: below, the window's own width blurs the motion into its rates
+
+
+@dataclass(frozen=True)
+class _Lines:
+    """What a record holds at its frequencies: rad/s, the load, the first channel as a rate, (lines,)."""
+
+    angular: NDArray[np.float64]
+    load: Array
+    rate: Array
+
+
+def driven_mode(records: Sequence[FitRecord]) -> Mode | None:
+    """The mass on a spring with which loads and motions agree best; None where none makes them agree better.
+
+    Mass times rate, damping and the pull of the other mass are summed at each frequency by least squares, with the
+    frequency of that mass tried all along the band that the load holds. Nothing of it is a result: fits begin from it.
+    """
+    lines = [one for record in records if FORCE in record.inputs and (one := _lines(record)) is not None]
+    if not lines:
+        return None
+    low, high = min(one.angular[0] for one in lines), max(one.angular[-1] for one in lines)
+    tried = [(at, zeta) for at in np.geomspace(low, high, PLACES) for zeta in DAMPED]
+    alone, _ = _left(lines, None)
+    found = [(*_left(lines, one), *one) for one in tried]
+    left, ratio, angular, damping = min(found, key=lambda one: one[0])
+    return Mode(float(angular) / (2 * pi), float(ratio), float(damping)) if ratio > 0 and left < alone else None
+
+
+def _lines(record: FitRecord) -> _Lines | None:
+    """The lines of a record at frequencies at which its load holds power; None where that holds none."""
+    order, series = record.observed.derivatives, record.response.numpy()
+    if order == 0:  # a place that wanders far leaks through any window, and its rate does not
+        order, series = 1, np.gradient(series) * record.sampling_rate
+    window = np.hanning(len(series))
+    load, motion = (np.fft.rfft(window * (one - one.mean())) for one in (record.inputs[FORCE].numpy(), series))
+    angular = 2 * pi * np.fft.rfftfreq(len(series), 1 / record.sampling_rate)
+    power = np.abs(load) ** 2
+    kept = (np.arange(len(angular)) >= LOWEST) & (power > DRIVEN * power.max())
+    if not kept.any():
+        return None
+    return _Lines(angular[kept], load[kept], motion[kept] * (1j * angular[kept]) ** (1 - order))
+
+
+def _left(lines: Sequence[_Lines], mode: tuple[float, float] | None) -> tuple[float, float]:
+    """Share of the power of all rates that is left, and the other mass over the first, beside a mode (rad/s, zeta)."""
+    columns, wanted = [], []
+    for one in lines:
+        own = [one.load / (1j * one.angular), -one.rate / (1j * one.angular)]
+        if mode is not None:
+            natural, zeta = mode
+            spring = natural**2 + 2j * zeta * natural * one.angular
+            own.append(-one.rate * spring / (spring - one.angular**2))
+        columns.append(np.stack([np.r_[column.real, column.imag] for column in own], 1))
+        wanted.append(np.r_[one.rate.real, one.rate.imag])
+    matrix, target = np.concatenate(columns), np.concatenate(wanted)
+    scale = np.linalg.norm(matrix, axis=0)
+    sizes, norm = nnls(matrix / scale, target)
+    return float(norm**2 / (target @ target)), float(sizes[-1] / scale[-1]) if mode is not None else 0.0
