@@ -160,7 +160,7 @@ def check_channel(channel: Channel, strokes: NDArray[np.int64]) -> list[Finding 
     if marked or channel.name in STRUCK:
         return found
     spike = _spike(channel, strokes)
-    return [*found, spike or (_strays(channel) if channel.name in _CONTINUOUS else None)]
+    return [*found, spike or _strays(channel)]
 
 
 def _constant(channel: Channel) -> Finding | None:
@@ -215,7 +215,10 @@ def _spike(channel: Channel, strokes: NDArray[np.int64]) -> Finding | None:
 
 
 def _strays(channel: Channel) -> Finding | None:
-    """Single samples, here and there, that lie far beside those before and behind them: no mass moves so."""
+    """Single samples, here and there, that lie far beside those before and behind them: no mass moves so.
+
+    A shock bends a place and breaks a rate, so that of rates those alone count that drop out, all to one value.
+    """
     from scipy.ndimage import median_filter  # here, since it takes long to import
 
     values = channel.values
@@ -229,6 +232,8 @@ def _strays(channel: Channel) -> Finding | None:
     at = at[(at >= half) & (at < values.size - half)]
     at = at[away[at] > _ALONE * np.abs(values[at + 1] - values[at - 1])]  # a motion may begin with a leap, and goes on
     if not 0 < at.size <= _MOST_STRAYS * values.size:
+        return None
+    if channel.name not in _CONTINUOUS and (np.ptp(values[at]) or (at.size == 1 and values[at[0]])):
         return None
     message = (
         f"{at.size} single sample(s) of {channel.name} lie far beside their neighbours, the first at {at[0]} "

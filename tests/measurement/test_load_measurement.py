@@ -296,6 +296,21 @@ def test_single_wrong_samples_are_told_and_a_blow_or_a_coarse_step_is_none(tmp_p
 
 
 @pytest.mark.parametrize(
+    ("at", "to", "is_said"), [([700, 1500], [0, 0], True), ([700], [0], True), ([700, 1500], [40, 90], False)]
+)
+def test_a_speed_that_drops_out_is_told_and_one_that_a_shock_breaks_is_not(tmp_path, at, to, is_said):
+    time = np.arange(3000) / 100
+    speed = 900 * np.exp(-0.02 * time) + np.random.default_rng(1).normal(0, 0.2, time.size)
+    speed[at] = to
+    np.savez(tmp_path / "a.npz", t=time, v=speed)
+    channels = {"time": {"column": "t", "unit": "s"}, "velocity": {"column": "v", "unit": "rpm"}}
+    content = {"system": "oscillator", "records": [{"file": "a.npz", "channels": channels}]}
+    (tmp_path / "measurement.yaml").write_text(yaml.safe_dump(content))
+    (record,) = load_measurement(tmp_path / "measurement.yaml").records
+    assert [finding.sample for finding in record.findings if finding.kind == "stray_samples"] == [700] * is_said
+
+
+@pytest.mark.parametrize(
     ("first", "second", "is_said"),
     [
         ({}, {}, True),
