@@ -35,6 +35,7 @@ _REVERSALS = 3  # of a shaft that is turned back and forth by its drive
 _STILL = 0.01  # of the way that all parts make; a part below stands still
 SAMPLES_PER_PERIOD = 100  # of the fastest content; more only slow the work
 _CONTENT = 0.999  # share of the energy that counts as content
+_BESIDE = 0.01  # of the samples, which noise may take beyond zero
 _DRIFT = 0.1  # of the way that a straight line goes; what may lie about it
 _TEETH = range(5, 301)  # tooth counts that are tried
 _TURN = 2 * np.pi  # rad in one turn of a shaft
@@ -227,7 +228,13 @@ def check_record(record: Record) -> tuple[Finding, ...]:
     if not any(finding.severity == "data_problem" and finding.channel == "time" for finding in record.findings):
         found.append(stamps_against_values(record))
     found += [check(channel) for channel in record.channels.values() for check in (_drowned, _straight)]
-    found += [_magnitude(record), *check_shafts(record), *not_compared(record), _oversampled(record)]
+    found += [
+        _magnitude(record),
+        _other_side(record),
+        *check_shafts(record),
+        *not_compared(record),
+        _oversampled(record),
+    ]
     found += [*_beyond_the_band(record), *_inputs_beyond(record)]
     return tuple(replace(finding, record=record.name) for finding in found if finding)
 
@@ -281,6 +288,25 @@ def _magnitude(record: Record) -> Finding | None:
         check = "check the tooth counts and the counts per revolution, and whether counts were lost"
     message = f"the transmission error reaches {largest:.3g} m, and gear pairs stay below 1 mm; {check}"
     return Finding("implausible_magnitude", message, channel=channel.name, sample=where)
+
+
+def _other_side(record: Record) -> Finding | None:
+    """A transmission error with a zero of its own that is, throughout, where the torque parts the flanks."""
+    error, torque = record.channels.get("transmission_error"), record.channels.get("pinion_torque")
+    known = record.conditions.get("pinion_torque")
+    if error is None or error.datum != "absolute" or (torque is None and known is None):
+        return None
+    load = np.atleast_1d(known.value if torque is None else torque.values)
+    way = np.sign(np.median(load))
+    if np.any(way * load <= 0) or np.quantile(way * error.values, 1 - _BESIDE) >= 0:
+        return None
+    low, high = (end / error.declared_factor for end in (error.values.min(), error.values.max()))
+    message = (
+        f"transmission_error lies between {low:.3g} and {high:.3g} {error.declared_unit}, on the side to which a "
+        f"torque of {np.mean(load):.3g} N m does not press the flanks; write polarity: -1 where it counts the other "
+        "way round, or datum: arbitrary where its zero means nothing"
+    )
+    return Finding("other_side", message, channel="transmission_error")
 
 
 def _oversampled(record: Record) -> Finding | None:

@@ -249,3 +249,33 @@ def test_the_unit_that_a_name_ends_in_contradicts_another_of_its_kind(column, sa
     channels = {"time": {"column": "t", "unit": "s"}, "displacement": column}
     (record,) = read(tmp_path, channels, {"t": TIME, said: MOTION}).records
     assert any("is named like one in um" in one.message for one in record.findings) is conflicts
+
+
+@pytest.mark.parametrize(
+    ("mean", "torque", "more", "is_said"),
+    [
+        (-6.0, 60, {}, True),
+        (6.0, 60, {}, False),
+        (6.0, -60, {}, True),
+        (-6.0, -60, {}, False),
+        (-6.0, 60, {"polarity": -1}, False),
+        (-6.0, 60, {"datum": "arbitrary"}, False),
+        (-0.4, 60, {}, False),  # it crosses zero
+    ],
+)
+def test_a_transmission_error_lies_where_its_torque_presses(tmp_path, mean, torque, more, is_said):
+    time = np.arange(4000) / 20e3
+    error = mean + np.sin(2 * math.pi * 350 * time) + np.random.default_rng(2).normal(0, 0.05, time.size)
+    np.savetxt(tmp_path / "a.csv", error, header="te", comments="")
+    parameters = {
+        "n_teeth_pinion": 21, "n_teeth_gear": 40, "module": "3 mm", "inertia_pinion": "0.001 kg*m^2",
+        "inertia_gear": "0.01 kg*m^2",
+    }  # fmt: skip
+    channels = {"sampling_rate": "20 kHz", "transmission_error": {"column": "te", "unit": "um", **more}}
+    conditions = {"pinion_speed": "1000 rpm", "pinion_torque": f"{torque} N*m"}
+    record = {"file": "a.csv", "channels": channels, "conditions": conditions}
+    content = {"system": "gear_pair", "parameters": parameters, "records": [record]}
+    (tmp_path / "measurement.yaml").write_text(yaml.safe_dump(content))
+    found = [one for one in gd.load(tmp_path / "measurement.yaml").findings if one.kind == "other_side"]
+    assert [one.severity for one in found] == ["data_problem"] * is_said
+    assert all("write polarity: -1" in one.message for one in found)

@@ -56,7 +56,7 @@ def test_a_milligram_is_not_taken_for_one():
         parse_unit("mg*m^2")
 
 
-@pytest.mark.parametrize("text", ["furlong", "rounds/min", "knots", "bar"])
+@pytest.mark.parametrize("text", ["furlong", "rounds/min", "knots", "torr"])
 def test_no_unit_is_suggested_that_shares_hardly_a_letter(text):
     with pytest.raises(InputError) as caught:
         parse_unit(text)
@@ -146,3 +146,9 @@ def test_turns_are_not_taken_for_radians(value, unit, expected, said):
     """Between the two lies 2 pi, which no dimension shows: it is asked back."""
     with pytest.raises(InputError, match=re.escape(said)):
         to_si(value, unit, expected)
+
+
+@pytest.mark.parametrize(("text", "factor"), [("psi", 6894.757293168361), ("bar", 1e5), ("hPa", 100.0), ("MPa", 1e6)])
+def test_a_pressure_is_a_force_over_an_area(text, factor):
+    assert parse_unit(text).factor == pytest.approx(factor, rel=1e-12)
+    assert parse_unit(text).dimension == parse_unit("N/m^2").dimension
