@@ -36,6 +36,7 @@ _STILL = 0.01  # of the way that all parts make; a part below stands still
 SAMPLES_PER_PERIOD = 100  # of the fastest content; more only slow the work
 _CONTENT = 0.999  # share of the energy that counts as content
 _BESIDE = 0.01  # of the samples, which noise may take beyond zero
+_FEWEST_SWINGS = 8  # through its mean: what creeps back to zero passes that once
 _DRIFT = 0.1  # of the way that a straight line goes; what may lie about it
 _TEETH = range(5, 301)  # tooth counts that are tried
 _TURN = 2 * np.pi  # rad in one turn of a shaft
@@ -228,13 +229,8 @@ def check_record(record: Record) -> tuple[Finding, ...]:
     if not any(finding.severity == "data_problem" and finding.channel == "time" for finding in record.findings):
         found.append(stamps_against_values(record))
     found += [check(channel) for channel in record.channels.values() for check in (_drowned, _straight)]
-    found += [
-        _magnitude(record),
-        _other_side(record),
-        *check_shafts(record),
-        *not_compared(record),
-        _oversampled(record),
-    ]
+    found += [_magnitude(record), _other_side(record), _rests_elsewhere(record), _oversampled(record)]
+    found += [*check_shafts(record), *not_compared(record)]
     found += [*_beyond_the_band(record), *_inputs_beyond(record)]
     return tuple(replace(finding, record=record.name) for finding in found if finding)
 
@@ -307,6 +303,23 @@ def _other_side(record: Record) -> Finding | None:
         "way round, or datum: arbitrary where its zero means nothing"
     )
     return Finding("other_side", message, channel="transmission_error")
+
+
+def _rests_elsewhere(record: Record) -> Finding | None:
+    """A motion with a zero of its own that swings about another place, where nothing that is declared holds it."""
+    place = record.channels.get("displacement")
+    if place is None or place.datum != "absolute" or {*INPUTS} & {*record.channels, *record.conditions}:
+        return None
+    late = place.values[place.values.size // 2 :]
+    rest = float(np.mean(late))
+    swings = np.count_nonzero(np.diff(np.sign(late - rest)))
+    if swings < _FEWEST_SWINGS or late.min() <= 0 <= late.max():
+        return None
+    message = (
+        f"displacement swings about {rest / place.declared_factor:.3g} {place.declared_unit} and no longer crosses its "
+        "zero: write datum: arbitrary where that means nothing, or declare the force that holds it there"
+    )
+    return Finding("rests_elsewhere", message, channel="displacement")
 
 
 def _oversampled(record: Record) -> Finding | None:

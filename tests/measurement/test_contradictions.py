@@ -279,3 +279,28 @@ def test_a_transmission_error_lies_where_its_torque_presses(tmp_path, mean, torq
     found = [one for one in gd.load(tmp_path / "measurement.yaml").findings if one.kind == "other_side"]
     assert [one.severity for one in found] == ["data_problem"] * is_said
     assert all("write polarity: -1" in one.message for one in found)
+
+
+@pytest.mark.parametrize(
+    ("rest", "rate", "more", "is_said"),
+    [
+        (5.0, 18.0, {"datum": "absolute"}, True),
+        (5.0, 18.0, {"datum": "arbitrary"}, False),
+        (5.0, 18.0, {}, False),
+        (0.5, 18.0, {"datum": "absolute"}, False),  # it still crosses zero
+        (5.0, 0.0, {"datum": "absolute"}, False),  # it creeps
+    ],
+)
+def test_a_motion_that_swings_about_another_place_has_no_zero_there(tmp_path, rest, rate, more, is_said):
+    time = np.arange(2000) / 100
+    np.savetxt(
+        tmp_path / "a.csv",
+        rest * np.exp(-0.05 * time) ** (rate == 0) + 7 * np.exp(-0.1 * time) * np.cos(rate * time),
+        header="x",
+        comments="",
+    )
+    channels = {"sampling_rate": "100 Hz", "displacement": {"column": "x", "unit": "mm", **more}}
+    content = {"system": "oscillator", "records": [{"file": "a.csv", "channels": channels}]}
+    (tmp_path / "measurement.yaml").write_text(yaml.safe_dump(content))
+    found = [one for one in gd.load(tmp_path / "measurement.yaml").findings if one.kind == "rests_elsewhere"]
+    assert [one.severity for one in found] == ["data_problem"] * is_said
