@@ -48,6 +48,7 @@ _OSCILLATOR_NAMES = (
     ("velocity", r"vel|speed|rate|gyro|omega|dot$|^v$|^dq"),
     ("displacement", r"disp|pos|angle|theta|phi|roll|pitch|yaw|heave|deflec|output|^[qxyz](_?\w)?$|^s$|way|weg"),
 )
+_LETTERED = re.compile(r"(ch(an(nel)?)?|kanal|input|port|probe)[ ._-]*[a-d]")  # of an oscilloscope, and no quantity
 _OF_FREQUENCY = ("Hz", "kHz", "MHz")  # an axis of a spectrum, or what an exciter was set to
 _OTHERWISE = {"torque": "N*m", "tacho": "V"}
 _LOWEST, _CLEARLY = 4, 1.2  # lines of a spectrum that hold drifts; ratio by which one column beats an earlier one
@@ -214,6 +215,8 @@ def _gear_channel(column: Column) -> tuple[str | None, str]:
 
 def _by_name(column: Column, names: Sequence[tuple[str, str]]) -> str | None:
     plain, whole = _plain(column), _bare(column).split("/")[-1]
+    if _LETTERED.fullmatch(whole):
+        return None
     return next((channel for channel, words in names if re.search(words, plain) or re.search(words, whole)), None)
 
 

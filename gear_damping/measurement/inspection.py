@@ -34,6 +34,7 @@ _FREQUENCIES = ("Hz", "kHz")  # units of the axis of a spectrum; rad/s are as we
 _AXIS = 0.1  # of a step, within which the lines of a spectrum stand apart, as they were rounded
 _EVEN = 1e-6  # of an advance from sample to sample: differences below it are rounding
 _ANY_SIGNAL = re.compile(r"^(values?|data|signal|[xyzt]|time\w*)$", re.I)  # a name that tells no record from a channel
+_LYING = 20  # columns for each row of a table that lies on its side: no recorder has so many channels of so few samples
 MOST_BETWEEN = 20  # blank cells between two values of a slower channel; what has more is no motion beside the others
 MOST_LISTED = 6  # recordings of a file that a line lists
 _OTHER_PACE = 0.01  # of the mean step, by which the steps of two clocks may differ: jitter, and they are one
@@ -132,8 +133,9 @@ def inspect_table(table: Table, clock: str | int | None = None) -> Inspection:
         clock: The column of time stamps; the first that looks like one where absent.
 
     Raises:
-        InputError: none of them holds numbers, or they are a spectrum.
+        InputError: none of them holds numbers, they lie in rows, or they are a spectrum.
     """
+    _refuse_lying(table)
     columns = [_column(table, index) for index in range(len(table.names))]
     columns = _of_one_group(columns) if isinstance(table, ArrayTable) else columns
     if not any(column.values.size for column in columns):
@@ -160,6 +162,15 @@ def _by_own_clock(found: Inspection, column: Column) -> Column:
     clock = clock_of(found, column) if column.spectrum is not None else None
     rate = None if clock is None else stamped_rate(clock.stamps.unit, clock.inside)
     return replace(column, rate=rate, spectrum=spectrum_of(_whole(column), rate)) if rate else column
+
+
+def _refuse_lying(table: Table) -> None:
+    """Refuse a table with a row for each channel, whose columns are its samples."""
+    rows, columns = max(table.lengths, default=0), len(table.names)
+    if not 0 < rows < LEAST_SAMPLES or columns < _LYING * rows:
+        return
+    rule = f"{columns} columns and {rows} rows of numbers: a row for each channel"
+    raise InputError(Problem("file", rule, str(table.path), "write a column for each channel, a line for each sample"))
 
 
 def _refuse_spectrum(table: Table, columns: Sequence[Column]) -> None:

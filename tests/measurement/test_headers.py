@@ -5,6 +5,7 @@ import pytest
 
 from gear_damping.errors import InputError
 from gear_damping.measurement.formats.registry import read_table
+from gear_damping.measurement.guessing import guessed
 from gear_damping.measurement.inspection import inspect_table
 
 SETTINGS = [
@@ -266,3 +267,19 @@ def test_the_rate_of_a_table_has_many_names(tmp_path, line):
 
 def test_a_rate_of_bits_is_none_of_samples(tmp_path):
     assert table_of(tmp_path, ["# baud rate: 9600", "a,b", *rows(60, cells=2, sign=",")]).stated_rate is None
+
+
+def test_a_table_that_lies_on_its_side_is_refused_in_one_sentence(tmp_path):
+    time = ",".join(f"{k / 200:.3f}" for k in range(500))
+    place = ",".join(f"{np.sin(k / 10):.4f}" for k in range(500))
+    table = table_of(tmp_path, [f"Time [s],{time}", f"x [mm],{place}"])
+    with pytest.raises(InputError, match="501 columns and 2 rows of numbers: a row for each channel"):
+        inspect_table(table)
+
+
+@pytest.mark.parametrize(("name", "is_told"), [("Channel A", False), ("CH B", False), ("Probe A", False), ("a", True)])
+def test_the_letter_of_an_oscilloscopes_channel_names_no_quantity(tmp_path, name, is_told):
+    lines = [f"{k / 200:.4f};{np.exp(-k / 200) * np.sin(k / 5):.5f}" for k in range(600)]
+    _, _, listed = guessed(table_of(tmp_path, [f"Time (s);{name} [mV]", *lines]))
+    (found,) = [guess for guess in listed if guess.column.reference == f"{name} [mV]"]
+    assert ("by its name" in found.why) == is_told
