@@ -331,8 +331,8 @@ class Motion(Response):
 
     usual_frame: ClassVar[str] = "relative"
     frame: Annotated[str, OneOf(("absolute", "relative"))] = key(
-        "Beside a measured `base_acceleration`: against the ground, or relative to the base. Absent, relative for "
-        "displacement and velocity, absolute for acceleration.", "response",
+        "Beside a measured `base_acceleration`: relative to the base, or of an acceleration alone against the ground. "
+        "Absent, relative for displacement and velocity, absolute for acceleration.", "response",
     )  # fmt: skip
 
     @model_validator(mode="after")
