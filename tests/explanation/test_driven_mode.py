@@ -12,11 +12,11 @@ from gear_damping.explanation.explain import explain
 from gear_damping.explanation.model.driven_mode import driven_mode
 from gear_damping.measurement.load import load_measurement
 
-RATE, COUNT, DAMPING, GAIN = 200.0, 1600, 9.0, 50.0
+RATE, COUNT, DAMPING, GAIN, NOISE = 200.0, 1600, 9.0, 50.0, 0.0003
 CHANNELS = {"displacement": ("rad", [1, 0, 0, 0]), "velocity": ("rad/s", [0, 1, 0, 0])}
 
 
-def driven(folder, mode, channel="displacement", noise=0.003):
+def driven(folder, mode, channel="displacement", noise=NOISE):
     """Records of a motor in a loop that turns a beam, or nothing: loads that sweep up, down and at random."""
     rng, time = np.random.default_rng(7), np.arange(COUNT) / RATE
     rig = np.array([[0, 1, 0, 0], [0, -DAMPING, 0, 0], [0, 0, 0, 1], [0, 0, 0, -1.0]])
@@ -43,23 +43,30 @@ def driven(folder, mode, channel="displacement", noise=0.003):
 
 
 @pytest.mark.parametrize("channel", CHANNELS)
-@pytest.mark.parametrize(("frequency", "ratio"), [(2.5, 1.7), (1.2, 0.3), (4.0, 0.6)])
+@pytest.mark.parametrize(("frequency", "ratio"), [(2.5, 1.7), (3.0, 0.1), (4.0, 0.6)])
 def test_the_frequency_at_which_the_other_mass_holds_the_first_is_found(tmp_path, frequency, ratio, channel):
-    found = driven_mode(evidence_of(driven(tmp_path, (frequency, ratio, 0.01), channel)).fit)
+    records = evidence_of(driven(tmp_path, (frequency, ratio, 0.01), channel)).fit
+    found = driven_mode(records, NOISE * np.ptp(records[0].response.numpy()))
     assert found.frequency == pytest.approx(frequency, rel=0.15)
     assert ratio / 2 < found.mass_ratio < 1.2 * ratio  # noise of the motion makes it look small
+
+
+@pytest.mark.parametrize("channel", CHANNELS)
+def test_one_mass_has_none_behind_it(tmp_path, channel):
+    records = evidence_of(driven(tmp_path, None, channel)).fit
+    assert driven_mode(records, NOISE * np.ptp(records[0].response.numpy())) is None
 
 
 def test_loads_that_are_not_measured_drive_nothing(tmp_path):
     records = evidence_of(driven(tmp_path, (2.5, 1.7, 0.01))).fit
     for record in records:
         record.inputs.clear()
-    assert driven_mode(records) is None
+    assert driven_mode(records, 0.0) is None
 
 
 @pytest.mark.parametrize("mode", [(2.5, 1.7, 0.01), None])
 def test_a_beam_on_a_motor_is_named_and_a_motor_alone_is_not(tmp_path, mode):
-    content = explain(driven(tmp_path, mode)).content
+    content = explain(driven(tmp_path, mode, noise=10 * NOISE)).content
     if mode is None:
         assert (content["verdict"], content["causes"]) == ("consistent", [])
         return

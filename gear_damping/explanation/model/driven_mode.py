@@ -20,25 +20,44 @@ FORCE = "force"
 PLACES = 120  # between the lowest and the highest frequency that the load holds: steps smaller than a resonance is wide
 DAMPED = (0.003, 0.03, 0.2)  # damping ratios that are tried, the width of a resonance apart
 DRIVEN = 1e-3  # of the largest power of the load in any line: less drives nothing
+SEEN = 0.99  # of the power of the rate beyond the noise, which grows with the frequency: above there is hardly any
+TAKES = 0.5  # of what one mass alone leaves: where less is of the other mass, something else is missed, as a friction
 LOWEST = 3  # lines of a record: below, the window's own width blurs the motion into its rates
 
 
 @dataclass(frozen=True)
 class _Lines:
-    """What a record holds at its frequencies: rad/s, the load, the first channel as a rate, (lines,)."""
+    """What a record holds at its frequencies.
+
+    Args:
+        angular: Frequencies, rad/s, (lines,).
+        load: The load, (lines,).
+        rate: The motion as a rate, (lines,).
+        noise: Power of the sensor's noise in all rates.
+    """
 
     angular: NDArray[np.float64]
     load: Array
     rate: Array
+    noise: float
+
+    @property
+    def power(self) -> float:
+        """Of all rates."""
+        return float(np.sum(np.abs(self.rate) ** 2))
 
 
-def driven_mode(records: Sequence[FitRecord]) -> Mode | None:
-    """The mass on a spring with which loads and motions agree best; None where none makes them agree better.
+def driven_mode(records: Sequence[FitRecord], noise: float) -> Mode | None:
+    """The mass on a spring with which loads and motions agree best; None where none takes most of what one mass leaves.
 
     Mass times rate, damping and the pull of the other mass are summed at each frequency by least squares, with the
     frequency of that mass tried all along the band that the load holds. Nothing of it is a result: fits begin from it.
+
+    Args:
+        records: Those without a load say nothing.
+        noise: Standard deviation of the sensor's noise, of a record of weight 1.
     """
-    lines = [one for record in records if FORCE in record.inputs and (one := _lines(record)) is not None]
+    lines = [one for record in records if FORCE in record.inputs and (one := _lines(record, noise)) is not None]
     if not lines:
         return None
     low, high = min(one.angular[0] for one in lines), max(one.angular[-1] for one in lines)
@@ -46,10 +65,13 @@ def driven_mode(records: Sequence[FitRecord]) -> Mode | None:
     alone, _ = _left(lines, None)
     found = [(*_left(lines, one), *one) for one in tried]
     left, ratio, angular, damping = min(found, key=lambda one: one[0])
-    return Mode(float(angular) / (2 * pi), float(ratio), float(damping)) if ratio > 0 and left < alone else None
+    sensor = sum(one.noise for one in lines) / sum(one.power for one in lines)
+    if left - sensor >= (1 - TAKES) * (alone - sensor):
+        return None
+    return Mode(float(angular) / (2 * pi), float(ratio), float(damping))
 
 
-def _lines(record: FitRecord) -> _Lines | None:
+def _lines(record: FitRecord, noise: float) -> _Lines | None:
     """The lines of a record at frequencies at which its load holds power; None where that holds none."""
     order, series = record.observed.derivatives, record.response.numpy()
     if order == 0:  # a place that wanders far leaks through any window, and its rate does not
@@ -57,11 +79,16 @@ def _lines(record: FitRecord) -> _Lines | None:
     window = np.hanning(len(series))
     load, motion = (np.fft.rfft(window * (one - one.mean())) for one in (record.inputs[FORCE].numpy(), series))
     angular = 2 * pi * np.fft.rfftfreq(len(series), 1 / record.sampling_rate)
+    rate = motion * np.where(angular > 0, 1j * angular, 1.0) ** (1 - order)
+    sensor = (noise / record.weight) ** 2 * float(np.sum(window**2))
+    sensor *= np.where(angular > 0, angular, 1.0) ** (2.0 - 2.0 * record.observed.derivatives)
+    moved = np.cumsum(np.abs(rate) ** 2 - sensor)
     power = np.abs(load) ** 2
     kept = (np.arange(len(angular)) >= LOWEST) & (power > DRIVEN * power.max())
+    kept &= np.arange(len(angular)) <= int(np.argmax(moved >= SEEN * moved.max()))
     if not kept.any():
         return None
-    return _Lines(angular[kept], load[kept], motion[kept] * (1j * angular[kept]) ** (1 - order))
+    return _Lines(angular[kept], load[kept], rate[kept], float(sensor[kept].sum()))
 
 
 def _left(lines: Sequence[_Lines], mode: tuple[float, float] | None) -> tuple[float, float]:
@@ -73,8 +100,9 @@ def _left(lines: Sequence[_Lines], mode: tuple[float, float] | None) -> tuple[fl
             natural, zeta = mode
             spring = natural**2 + 2j * zeta * natural * one.angular
             own.append(-one.rate * spring / (spring - one.angular**2))
-        columns.append(np.stack([np.r_[column.real, column.imag] for column in own], 1))
-        wanted.append(np.r_[one.rate.real, one.rate.imag])
+        *known, rate = (np.r_[column.real, column.imag] for column in (*own, one.rate))
+        columns.append(np.stack(known, 1))
+        wanted.append(rate)
     matrix, target = np.concatenate(columns), np.concatenate(wanted)
     scale = np.linalg.norm(matrix, axis=0)
     sizes, norm = nnls(matrix / scale, target)

@@ -57,7 +57,7 @@ def rig_of(base: Hypothesis, evidence: Evidence, residuals: Residuals | None = N
         lines = strongest_frequencies(residuals or (), natural)
         one_way = natural == 0 and all(moves_one_way(record) for record in evidence.fit)
         swells = natural > 0 and any(swells_again(record, natural) for record in evidence.fit)
-        mode = driven_mode(evidence.fit) if natural == 0 and residuals else None
+        mode = driven_mode(evidence.fit, evidence.noise) if natural == 0 and residuals else None
         return Rig(radian=radian, frequencies=lines, one_way=one_way, swells=swells, mode=mode, **common)
     values["contact_ratio"] = float(prepared.base["contact_ratio"][0])
     pinion, gear = round(values["n_teeth_pinion"]), round(values["n_teeth_gear"])
