@@ -254,6 +254,21 @@ def test_a_stretch_that_is_the_whole_record_is_not_shown_twice(samples, panels):
 
 
 @pytest.mark.parametrize(
+    ("size", "unit", "label"), [(4e-6, "m", "µm"), (0.05, "m", "mm"), (7.0, "m", "m"), (4e-6, "V", "V")]
+)
+def test_small_fractions_of_a_metre_are_drawn_in_a_smaller_unit(size, unit, label):
+    wave = size * np.sin(np.arange(900) / 9)
+    figure = figures.overlay_figure(
+        figures.Overlay("a", np.arange(900) / 1e3, wave, 0.9 * wave, noise=0.1 * size), unit
+    )
+    factor = {"µm": 1e6, "mm": 1e3}.get(label, 1.0)
+    upper, middle, _ = figure.axes
+    assert upper.get_ylabel() == f"transmission error / {label}"
+    assert np.abs(upper.lines[-1].get_ydata()).max() == pytest.approx(factor * size, rel=0.01)
+    assert middle.patches[0].get_height() == pytest.approx(factor * 0.4 * size)
+
+
+@pytest.mark.parametrize(
     ("unit", "label"), [("µm", "residual / µm"), ("m/s²", "residual / (m/s²)"), ("1", "residual"), ("", "residual")]
 )
 def test_an_axis_has_a_unit_where_there_is_one(unit, label):

@@ -7,6 +7,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
+PREFIXED = ("m", "rad")  # units whose values are mostly small fractions of one
+PREFIXES, MOST = (
+    ((1e6, "µ"), (1e3, "m")),
+    1e3,
+)  # factors with their signs; the largest number that an axis shows with one
 
 
 def series(**named: ArrayLike) -> tuple[Array, ...]:
@@ -50,6 +55,14 @@ def extent(values: Iterable[Any], margin: float = 0.0) -> tuple[float, float] | 
 def any_finite(*arrays: ArrayLike) -> bool:
     """Whether there is anything to draw."""
     return any(np.isfinite(np.asarray(values, dtype=float)).any() for values in arrays)
+
+
+def in_prefixed(unit: str, *given: Array) -> tuple[float, str]:
+    """Factor and unit in which the largest of values in m or rad is no small fraction; 1 and the unit of all others."""
+    largest = max((float(np.nanmax(np.abs(one))) for one in given if any_finite(one)), default=0.0)
+    if unit not in PREFIXED or not largest:
+        return 1.0, unit
+    return next(((factor, f"{sign}{unit}") for factor, sign in PREFIXES if largest * factor < MOST), (1.0, unit))
 
 
 def time_axis(time: Array) -> tuple[Array, str]:

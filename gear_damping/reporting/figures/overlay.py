@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
-from gear_damping.reporting.figures.arrays import Array, any_finite, extent, series, time_axis
+from gear_damping.reporting.figures.arrays import Array, any_finite, extent, in_prefixed, series, time_axis
 from gear_damping.reporting.figures.axis_names import axis
 from gear_damping.reporting.style import BLUE, INK, PALE, RED, SKY, legend_above, mark_empty, new_figure, styled
 
@@ -57,6 +57,9 @@ def overlay_figure(
     given = {"time": shown.time, "measured": shown.measured, "nominal": shown.nominal}
     more = {} if shown.extended is None else {"extended": shown.extended}
     time, measured, *simulated = series(**given, **more)
+    factor, unit = in_prefixed(unit, measured)
+    measured, *simulated = (factor * values for values in (measured, *simulated))
+    noise = shown.noise and factor * shown.noise
     residuals = [measured - values for values in simulated]
     looks = (NOMINAL, EXTENDED)[: len(simulated)]
     time, time_label = time_axis(time)
@@ -72,7 +75,7 @@ def overlay_figure(
         upper.set(ylabel=axis(quantity, unit))
         upper.tick_params(labelbottom=False)
         for axes, excerpt in zip(below, (part, slice(None)), strict=False):
-            _residuals(axes, time[excerpt], [r[excerpt] for r in residuals], looks, shown.noise)
+            _residuals(axes, time[excerpt], [r[excerpt] for r in residuals], looks, noise)
             axes.set_ylabel(axis("residual", unit))
         _limits(upper, time[part])
         for axes in below:
@@ -80,7 +83,7 @@ def overlay_figure(
         if any_finite(time[part]) and not is_all:
             lower.axvspan(np.nanmin(time[part]), np.nanmax(time[part]), color=SKY, alpha=0.3, linewidth=0, zorder=0)
             lower.set_title("the whole record; the stretch above is shaded", fontsize=9)
-        if shown.noise:
+        if noise:
             middle.set_title(f"grey: the noise, ±{NOISE_BAND:g} standard deviations", fontsize=9)
         if not any_finite(*residuals):
             mark_empty(upper)
