@@ -58,7 +58,13 @@ def free_parameters(
     found: dict[str, FreeParameter] = {}
     for name in (*names, *(n for n in uncertain if n in declared and n not in names and _has_size(given.get(n, 0.0)))):
         flat = model.damping_coefficient if name == DAMPING_RATIO and name not in declared else name
-        if flat is None or flat not in declared:
+        if flat is None:
+            laws = [f"{law.name}.{law.parameters[0].name}" for law in model.damping_laws]
+            rule = f"the model has {len(laws) or 'no'} damping laws, and it stands for the coefficient of one"
+            remedy = f"name {' or '.join(laws)}" if laws else "add ViscousDamping()"
+            problems.append(Problem(f"free.{name}", rule, remedy=remedy))
+            continue
+        if flat not in declared:
             remedy = nearest(name, [*declared, DAMPING_RATIO])
             problems.append(Problem(f"free.{name}", "no such parameter of the model", remedy=remedy))
             continue

@@ -54,3 +54,14 @@ def test_what_the_file_is_unsure_of_is_free_about_what_it_states():
 def test_a_list_without_any_size_cannot_be_free():
     with pytest.raises(gd.InputError, match="begins at zero"):
         free(model(gd.PitchError(values=20 * [0.0])), ["pitch_error.values"])
+
+
+def test_a_damping_ratio_of_two_laws_names_their_coefficients():
+    law = gd.PowerLawDamping(coefficient=240, exponent=2)
+    with pytest.raises(
+        gd.InputError, match=r"name viscous_damping.damping_coefficient or power_law_damping.coefficient"
+    ):
+        free(model(law), ["damping_ratio"])
+    bare = gd.Model(gd.GearPair(), [gd.FourierMeshStiffness(**MESH)])
+    with pytest.raises(gd.InputError, match=r"the model has no damping laws.*; remedy: add ViscousDamping"):
+        free(bare, ["damping_ratio"])
