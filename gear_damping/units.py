@@ -73,7 +73,7 @@ _ATOMS: dict[str, Unit] = {
     "gn": Unit(9.80665, _M * _S**-2), "mgn": Unit(9.80665e-3, _M * _S**-2),
     "kNm": Unit(1e3, _N * _M), "mNm": Unit(1e-3, _N * _M),
     "Pa": Unit(1.0, _PA), "hPa": Unit(100.0, _PA), "kPa": Unit(1e3, _PA), "MPa": Unit(1e6, _PA),
-    "bar": Unit(1e5, _PA), "mbar": Unit(100.0, _PA), "psi": Unit(6894.757293168361, _PA),
+    "bar": Unit(1e5, _PA), "mbar": Unit(100.0, _PA),
     "mil": Unit(2.54e-5, _M), "ips": Unit(0.0254, _M * _S**-1),
 }  # fmt: skip
 
@@ -92,7 +92,7 @@ _POUND = "write 'lbf' for a force, or give a mass in kg"
 _MEANT = {
     "g": "write 'gram' or 'gn' (9.80665 m/s^2)", "mg": "write 'mgn' (9.80665e-3 m/s^2), or a mass in 'gram'",
     "degc": "a temperature is not read", "ft-lb": "write 'ft*lbf'", "ft-lbs": "write 'ft*lbf'",
-    "d": "write 'day'", "lb": _POUND, "lbs": _POUND, "pound": _POUND, "pounds": _POUND,
+    "psi": "write 'lbf/in^2'", "d": "write 'day'", "lb": _POUND, "lbs": _POUND, "pound": _POUND, "pounds": _POUND,
 }  # fmt: skip
 
 _SPELLINGS = {"⁻¹": "^-1", "⁻²": "^-2", "µ": "u", "μ": "u", "·": "*", "²": "^2", "³": "^3", "°": "deg", "**": "^"}

@@ -14,6 +14,7 @@ from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.override_parser.types import Override
 from hydra.errors import HydraException
 
+from gear_damping.at_home import at_home
 from gear_damping.config.locate import conf_folder, groups
 from gear_damping.config.many_records import PATH, all_named
 from gear_damping.errors import Problem, nearest
@@ -25,6 +26,8 @@ NEEDED = {  # what a launcher is made of: its module, and what brings it
     "slurm": ("hydra_plugins.hydra_submitit_launcher", "slurm"),
 }
 OF_A_PATH = (PATH, "checkpoint", "resume", "sweep", "data_folder", "hydra.run.dir", "hydra.sweep.dir")
+NAMES_FILES = (*OF_A_PATH, "simulator.extended", "simulator.plugins", "measurement.plugins", "model.plugins")
+_AT_HOME = re.compile(r"(?<=[=,\[])~/")
 LONGEST_KEY = 200  # letters; a folder of configurations is looked up by them, and file systems end at 255
 OFF_BY_NULL = ("experiment",)  # groups that may be left out
 SHOWS = ("--cfg", "-c", "--info", "-i", "--resolve", "--version", "--hydra-help", "--shell-completion", "-sc")
@@ -127,6 +130,8 @@ def _read_override(argument: str, many: bool, before: str) -> tuple[list[Problem
         return [Problem(argument, "is not an override", remedy=remedy, source=SOURCE)], []
     if not {"'", '"'} & set(argument):  # what is quoted is read as it stands
         argument = _MICRO.sub(r"\g<space>u", argument)
+    if argument.partition("=")[0] in NAMES_FILES:  # a shell leaves the home of a path as it is behind `=`
+        argument = _AT_HOME.sub(f"{at_home('~')}/", argument)
     if many and argument.startswith(f"{PATH}="):
         argument = f"{PATH}={all_named(argument.partition('=')[2])}"
     try:
@@ -158,14 +163,10 @@ def _read_override(argument: str, many: bool, before: str) -> tuple[list[Problem
 def _parsed(argument: str, many: bool) -> tuple[Override, str]:
     """The override, and the word that it was read from.
 
-    A path that Hydra does not read, `run(2).csv`, is put in quotes, and of one run one with commas, `5,5Nm.csv`. A
-    shell leaves the `~` of a folder as it is behind `=`.
+    A path that Hydra does not read, `run(2).csv`, is put in quotes, and of one run one with commas, `5,5Nm.csv`.
     """
     key, _, value = argument.partition("=")
     is_path = key in OF_A_PATH and not {"'", '"'} & set(value)
-    if is_path and value.startswith("~/"):
-        value = str(Path(value).expanduser())
-        argument = f"{key}={value}"
     quoted = f'{key}="{value}"'
     try:
         parsed = parse(argument)

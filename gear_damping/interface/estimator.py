@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import torch
 
+from gear_damping.at_home import at_home
 from gear_damping.errors import InputError, Problem
 from gear_damping.explanation.evidence.release import released_at
 from gear_damping.identification.catalogue import record_estimator
@@ -218,7 +219,7 @@ def load_estimator(path: Path | str, plugins: Sequence[str] = ()) -> Estimator:
     Raises:
         InputError: a file is missing or damaged, is none of these kinds, or of an estimator that no file declares.
     """
-    path = Path(path).expanduser()
+    path = at_home(path)
     if path.suffix == ".json":
         content = read_description(path)
         if content.get("format") != NETWORK:

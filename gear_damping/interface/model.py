@@ -6,6 +6,7 @@ from typing import Any
 
 import yaml
 
+from gear_damping.at_home import at_home
 from gear_damping.config.simulator import SimulatorSettings, read_simulator
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
@@ -52,9 +53,7 @@ class Model(physics.Model):
         Raises:
             InputError: everything that is wrong with it.
         """
-        content, source = (
-            (node, "the mapping") if isinstance(node, Mapping) else (_read(Path(node).expanduser()), str(node))
-        )
+        content, source = (node, "the mapping") if isinstance(node, Mapping) else (_read(at_home(node)), str(node))
         return cls.of_settings(read_simulator({**HOW, **content}, FIXED, _Given(source)))
 
     @classmethod

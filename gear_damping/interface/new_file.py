@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+from gear_damping.at_home import at_home
+
 
 def written_anew(path: Path | str, text: str) -> Path:
     """Write a text into a file that is not there yet; folders on the way are made.
@@ -9,7 +11,7 @@ def written_anew(path: Path | str, text: str) -> Path:
     Raises:
         FileExistsError: there is such a file, which stays as it is.
     """
-    path = Path(path).expanduser()
+    path = at_home(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     try:
         with path.open("x", encoding="utf-8") as file:

@@ -140,7 +140,8 @@ def refuse_not_finite(values: NDArray[np.float64], key: str, source: str, first:
         longest = max(map(len, np.split(bad, np.flatnonzero(np.diff(bad) > 1) + 1)))
         rule = f"{bad.size} value(s) are not finite, the first at sample {bad[0] + first}"
         rule += f", up to {longest} in a row" if longest > 1 else ""
-        remedy = "use slices that leave them out" if bad.size < values.size else "name another column, or leave it out"
+        remedy = "use slices that leave them out"
+        remedy = remedy if bad.size < values.size else f"{remedy}, name another column, or leave it out"
         raise InputError(Problem(key, rule, remedy=remedy, source=source))
 
 
@@ -217,7 +218,7 @@ def _spike(channel: Channel, strokes: NDArray[np.int64]) -> Finding | None:
 def _strays(channel: Channel) -> Finding | None:
     """Single samples, here and there, that lie far beside those before and behind them: no mass moves so.
 
-    A shock bends a place and breaks a rate, so that of rates those alone count that drop out, all to one value.
+    A shock bends a place and breaks a rate, so that of rates those alone count that drop, all to one value nearer 0.
     """
     from scipy.ndimage import median_filter  # here, since it takes long to import
 
@@ -233,7 +234,8 @@ def _strays(channel: Channel) -> Finding | None:
     at = at[away[at] > _ALONE * np.abs(values[at + 1] - values[at - 1])]  # a motion may begin with a leap, and goes on
     if not 0 < at.size <= _MOST_STRAYS * values.size:
         return None
-    if channel.name not in _CONTINUOUS and (np.ptp(values[at]) or (at.size == 1 and values[at[0]])):
+    falls = np.all(np.abs(values[at]) < np.abs(values[at - 1])) and not np.ptp(values[at])
+    if channel.name not in _CONTINUOUS and (not falls or (at.size == 1 and values[at[0]])):
         return None
     message = (
         f"{at.size} single sample(s) of {channel.name} lie far beside their neighbours, the first at {at[0]} "

@@ -10,6 +10,7 @@ from typing import ClassVar
 
 import yaml
 
+from gear_damping.at_home import at_home
 from gear_damping.errors import InputError, Problem, reading
 from gear_damping.measurement.formats.registry import Reader, read_table
 from gear_damping.measurement.formats.table import Table
@@ -113,16 +114,8 @@ def data_root() -> Path:
     """The folder of measured records: GEAR_DAMPING_DATA, or `shared/data` beside the checkout."""
     chosen = os.environ.get(DATA_VARIABLE)
     if chosen:
-        return _at_home(chosen)
+        return at_home(chosen)
     return Path(__file__).resolve().parents[2].parent / "shared" / "data"
-
-
-def _at_home(text: str) -> Path:
-    """The path with `~` filled in where it is a home; a name may begin so, as those of temporary copies do."""
-    try:
-        return Path(text).expanduser()
-    except RuntimeError:  # of nobody who is known here
-        return Path(text)
 
 
 def resolve_file(text: str, folder: Path, key: str, source: str) -> Path:
@@ -135,7 +128,7 @@ def resolve_file(text: str, folder: Path, key: str, source: str) -> Path:
     if "${" in filled:
         rule = f"only ${{{DATA_VARIABLE}}} is filled in"
         raise InputError(Problem(key, rule, text, "write the path itself", source))
-    path = folder / _at_home(filled)
+    path = folder / at_home(filled)
     try:
         if path.is_file():
             return path

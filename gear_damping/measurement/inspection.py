@@ -167,9 +167,9 @@ def _by_own_clock(found: Inspection, column: Column) -> Column:
 def _refuse_lying(table: Table) -> None:
     """Refuse a table with a row for each channel, whose columns are its samples."""
     rows, columns = max(table.lengths, default=0), len(table.names)
-    if not 0 < rows < LEAST_SAMPLES or columns < _LYING * rows:
+    if isinstance(table, ArrayTable) or not 0 < rows < LEAST_SAMPLES or columns < _LYING * rows:
         return
-    rule = f"{columns} columns and {rows} rows of numbers: a row for each channel"
+    rule = f"{columns} columns and {rows} row{'s' * (rows > 1)} of numbers, perhaps a row for each channel"
     raise InputError(Problem("file", rule, str(table.path), "write a column for each channel, a line for each sample"))
 
 

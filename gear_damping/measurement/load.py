@@ -14,6 +14,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from gear_damping.at_home import at_home
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.declaration import Plan, RecordPlan, declared_plan
 from gear_damping.measurement.declared_units import UnitSystem
@@ -71,7 +72,7 @@ def load_measurement(
         raise InputError(Problem("max_bytes", rule, max_bytes, "for example max_bytes=4e9"))
     content = _filled(path)
     with _telling_names(content):
-        return _loaded(content, Path(path).expanduser(), max_bytes, plugins)
+        return _loaded(content, at_home(path), max_bytes, plugins)
 
 
 def _filled(path: str | Path) -> object:
@@ -84,7 +85,7 @@ def _filled(path: str | Path) -> object:
         rule = f"must be a path, and is a {type(path).__name__}"
         remedy = "give the path of a measurement.yaml, or what was read from it to identify and explain"
         raise InputError(Problem("path", rule, remedy=remedy))
-    content = read_yaml(Path(path).expanduser())
+    content = read_yaml(at_home(path))
     rule, remedy = f"{UNKNOWN} stands for what is not filled in yet", "write what the rig or its recorder says"
     if missing := list(unfilled(content)):
         with _telling_names(content):

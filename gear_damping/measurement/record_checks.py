@@ -37,6 +37,8 @@ SAMPLES_PER_PERIOD = 100  # of the fastest content; more only slow the work
 _CONTENT = 0.999  # share of the energy that counts as content
 _BESIDE = 0.01  # of the samples, which noise may take beyond zero
 _FEWEST_SWINGS = 8  # through its mean: what creeps back to zero passes that once
+_SWINGS_BEYOND = 0.5  # of a swing's deviation: what passes to both sides so far, and more than its middle moves
+_CLEAR_OF_NOISE = 3.0  # times that of the noise, which swings at every sample
 _DRIFT = 0.1  # of the way that a straight line goes; what may lie about it
 _TEETH = range(5, 301)  # tooth counts that are tried
 _TURN = 2 * np.pi  # rad in one turn of a shaft
@@ -311,13 +313,19 @@ def _rests_elsewhere(record: Record) -> Finding | None:
     if place is None or place.datum != "absolute" or {*INPUTS} & {*record.channels, *record.conditions}:
         return None
     late = place.values[place.values.size // 2 :]
-    rest = float(np.mean(late))
-    swings = np.count_nonzero(np.diff(np.sign(late - rest)))
-    if swings < _FEWEST_SWINGS or late.min() <= 0 <= late.max():
+    rest, creep = (
+        float(np.mean(late)),
+        np.polynomial.Polynomial.fit(np.arange(late.size), late, 2)(np.arange(late.size)),
+    )
+    swing, noise = np.std(late - creep), np.std(np.diff(late, 2)) / 6**0.5  # white noise has 6 times its variance there
+    ways = np.sign(late - creep)[np.abs(late - creep) > _SWINGS_BEYOND * swing]
+    swings = np.count_nonzero(np.diff(ways))
+    is_steady = swing > max(_SWINGS_BEYOND * np.ptp(creep), _CLEAR_OF_NOISE * noise)
+    if swings < _FEWEST_SWINGS or not is_steady or late.min() <= 0 <= late.max():
         return None
     message = (
         f"displacement swings about {rest / place.declared_factor:.3g} {place.declared_unit} and no longer crosses its "
-        "zero: write datum: arbitrary where that means nothing, or declare the force that holds it there"
+        "zero: write datum: arbitrary where that means nothing"
     )
     return Finding("rests_elsewhere", message, channel="displacement")
 

@@ -50,19 +50,40 @@ def test_names_of_two_columns_stand_below_settings_of_a_name_and_a_number_each(t
     [
         ("cp932", "変位"),
         ("cp932", "加速度センサ"),
-        ("latin-1", "Größe"),
-        ("latin-1", "créée"),
+        ("cp932", "データ1"),
+        ("cp932", "変位\u3000"),
+        ("cp1252", "Größe"),
+        ("cp1252", "créée"),
+        ("cp1252", "Aceleração"),
+        ("cp1252", "gemäß"),
+        ("cp1252", "±µ"),
+        ("cp1252", "«École»"),
+        ("cp1252", "Young’s"),
         ("cp1252", "Weg „A“"),
         ("utf-8", "変位"),
         ("utf-16", "変位"),
     ],
 )
 def test_names_are_read_in_the_code_pages_of_older_programs(tmp_path, encoding, name):
-    lines = [f"temps élevé,{name} [mm]" if name == "créée" else f"t,{name} [mm]", *rows(60, 2, ",")]
+    lines = [f"t,{name} [mm]", *rows(60, 2, ",")]
     (tmp_path / "run.csv").write_bytes("\n".join(lines).encode(encoding))
     table = read_table(tmp_path / "run.csv")
     assert table.names[1] == f"{name} [mm]"
     assert table.unit(1) == "mm"
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        ["x,v", "-,0.5", *rows(28, 2, ","), "-,-", *rows(30, 2, ",")],
+        ["a,b", ",0.5", *rows(20, 2, ","), "a,b", ",0.5", *rows(30, 2, ",")],
+    ],
+    ids=["a row of blanks", "two blocks"],
+)
+def test_no_row_of_values_is_taken_for_settings(tmp_path, lines):
+    table = table_of(tmp_path, lines)
+    assert table.names == tuple(lines[0].split(","))
+    assert len(table.values(1)) >= len(lines) - 3
 
 
 def test_a_row_with_too_many_cells_is_a_fault_and_no_setting(tmp_path):
@@ -273,7 +294,7 @@ def test_a_table_that_lies_on_its_side_is_refused_in_one_sentence(tmp_path):
     time = ",".join(f"{k / 200:.3f}" for k in range(500))
     place = ",".join(f"{np.sin(k / 10):.4f}" for k in range(500))
     table = table_of(tmp_path, [f"Time [s],{time}", f"x [mm],{place}"])
-    with pytest.raises(InputError, match="501 columns and 2 rows of numbers: a row for each channel"):
+    with pytest.raises(InputError, match="501 columns and 2 rows of numbers, perhaps a row for each channel"):
         inspect_table(table)
 
 

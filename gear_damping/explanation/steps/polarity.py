@@ -5,6 +5,7 @@ nominal simulation then leaves most of the records, and with the opposite sign o
 """
 
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import replace
 
 from gear_damping.errors import InputError
@@ -29,10 +30,9 @@ def polarity_fault(evidence: Evidence, nominal: Outcome | None, fitted: Fit) -> 
     """
     left = 1.0 if nominal is None else _share_left(nominal, evidence)
     for turned, name in _turned(evidence):
-        few = _few(turned)
+        if _loses_few(turned, fitted):
+            continue
         try:
-            if few is not turned and _share_left(fitted(few), few) > evidence.settings.lost_share:
-                continue
             again = fitted(turned)
         except InputError:  # neither sign can be simulated
             continue
@@ -50,6 +50,14 @@ def _turned(evidence: Evidence) -> Iterator[tuple[Evidence, str]]:
     for place, name in enumerate(names):
         if all([channel.name for channel in record.channels] == names for record in evidence.fit):
             yield replace(evidence, fit=tuple(_with_sign(r, place) for r in evidence.fit), holdout=()), name
+
+
+def _loses_few(evidence: Evidence, fitted: Fit) -> bool:
+    """Whether the records that move most are not followed by themselves; False where there are no others."""
+    few = _few(evidence)
+    with suppress(InputError):  # those alone cannot be simulated: all may tell
+        return few is not evidence and _share_left(fitted(few), few) > evidence.settings.lost_share
+    return False
 
 
 def _few(evidence: Evidence) -> Evidence:

@@ -239,10 +239,15 @@ def _first_values(rows: Sequence[Sequence[str]], width: int) -> int:
     texts = [not _has_number(row) for row in rows]
     values = (k for k, row in enumerate(rows) if _is_values(row, width))
     first = next((k for k in values if not any(texts[k : k + _TABLE])), len(rows))
-    if first == len(rows) or is_written(rows[first][0]):
-        return first
-    named = (k + 1 for k in range(first, len(rows) - _TABLE) if texts[k] and filled(rows[k]) == width)
-    return next((k for k in named if all(is_written(cell) for row in rows[k:] for cell in row[:width])), first)
+    words = [_is_word(row[0]) for row in rows]
+    named = (k for k in range(first + 1, len(rows) - _TABLE) if texts[k - 1] and filled(rows[k - 1]) == width)
+    below = (k for k in named if all(words[first:k]) and all(map(is_written, rows[k][:width])))
+    return next((k for k in below if not any(words[k:])), first)
+
+
+def _is_word(cell: str) -> bool:
+    """Whether a cell says something, and neither a number nor that there is none."""
+    return bool(cell.strip()) and not is_absent(cell) and not is_written(cell)
 
 
 def _is_values(row: Sequence[str], width: int) -> bool:

@@ -4,7 +4,6 @@ import csv
 import gzip
 import io
 import re
-import unicodedata
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
@@ -27,7 +26,8 @@ _POWER = re.compile(rb"(?<=[\d.])\*\^(?=[+-]?\d)")  # the exponent of Mathematic
 _LISTS = re.compile(rb"\s*(?:[\w.]+\s*[=(]\s*){0,2}(?:\[\s*\[|\{\s*\{)(?=[^\]}:\"]*[\]}])")
 _BETWEEN_ROWS = re.compile(rb"[\]}]\s*[,;]?\s*[\[{]")
 _AROUND = re.compile(rb"^[^\[{]*[\[{]\s*[\[{]|[\]}]\s*[\]}].*\Z", re.DOTALL)
-_HIGH = re.compile(rb"[\x80-\xff]+")  # bytes of no English letter
+_HIGH = re.compile(rb"[\x80-\xff]")  # a byte of no English letter
+_LETTERS = re.compile(rb"(?:[\x81-\x9f][\x40-\x7e\x80-\xfc]){2,}")  # signs, kana and most kanji of Shift-JIS
 _LINE_END = re.compile(rb"\r+\n|\r")  # also written twice by a text mode, or alone as computers of the nineties did
 
 
@@ -145,17 +145,16 @@ def _utf8(path: Path, raw: bytes) -> bytes:
 
 
 def _is_shift_jis(raw: bytes) -> bool:
-    """Whether a text can be Shift-JIS, whose letters are of two bytes, and most bytes of other letters stand together.
+    """Whether a text can be Shift-JIS, and most of its bytes of other letters are of two such letters or more together.
 
-    In the code page of Windows a letter that is none of English stands alone among those that are.
+    Those of two bytes begin with one that in the code page of Windows is a sign, as a quotation mark, and no letter.
     """
     try:
-        letters = [one for one in raw.decode("cp932") if one > "\x7f"]
+        raw.decode("cp932")
     except UnicodeDecodeError:
         return False
-    high = [len(run) for run in _HIGH.findall(raw)]
-    together = sum(size for size in high if size > 1) > 0.5 * sum(high)  # a majority
-    return together and all(unicodedata.category(one)[0] in "LSPN" for one in letters)
+    together = sum(len(_HIGH.findall(run)) for run in _LETTERS.findall(raw))
+    return 2 * together > len(_HIGH.findall(raw))
 
 
 def _without_brackets(text: bytes) -> bytes:
