@@ -16,7 +16,9 @@ from gear_damping.identification.network_files import holds_network
 from gear_damping.physics.terms import HeldLoad
 from gear_damping.simulation.prior import DAMPING_RATIO
 
-OF_ITS_RUNS = ("simulator", "family", "seed", "protocol", "wavelet")  # keys that decide what a network learns from
+# Keys that decide what a network is and learns from, and those below them that do not.
+OF_ITS_RUNS = ("simulator", "family", "seed", "protocol", "wavelet", "model")
+NOT_OF_ITS_RUNS = ("protocol.windows_per_epoch", "protocol.evaluation_stride", "model.names", "model.plugins")
 MOST_SAID = 3  # keys of a message: more of them are another experiment
 
 
@@ -124,34 +126,36 @@ def _resume(whole: Whole) -> Found:
 
 def _resumed_otherwise(whole: Whole, path: str) -> Found:
     """A training goes on with the runs, the windows and the networks that it began with."""
-    try:
-        record = json.loads((Path(path) / "run.json").read_text(encoding="utf-8"))
-        begun, again = record["config"], going_on(record["command"], Path(path))
-    except (OSError, ValueError, KeyError):  # of a folder that was copied in part: its checkpoints say the rest
+    record = _begun(Path(path))
+    if record is None:  # of a folder that was copied in part: its checkpoints say the rest
         return
+    begun, command = record
     ours = json.loads(json.dumps(whole.config, default=str))
-    own = [f"model.{name}" for name in whole["model"]["names"] if name in begun["model"].get("names", ())]
-    found = [one for key in (*OF_ITS_RUNS, *own) for one in _differing(key, _at(begun, key), _at(ours, key))]
+    found = [one for key in OF_ITS_RUNS for one in _differing(key, begun.get(key), ours.get(key))]
     if not found:
         return
     said = ", ".join(f"{key} = {was} (here {now})" for key, was, now in found[:MOST_SAID])
     rule = f"was begun with {said}{' and others' if len(found) > MOST_SAID else ''}"
-    yield "resume", rule, path, f"repeat its command: {again}"
+    yield "resume", rule, path, f"repeat its command: {going_on(command, Path(path))}"
 
 
-def _at(node: Any, key: str) -> Any:
-    """What stands at a key with points; None where nothing does."""
-    for part in key.split("."):
-        node = node.get(part) if isinstance(node, Mapping) else None
-    return node
+def _begun(folder: Path) -> tuple[Mapping[str, Any], str] | None:
+    """The configuration and the command of a run; None where its run.json does not say them."""
+    try:
+        record = json.loads((folder / "run.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    config, command = (isinstance(record, Mapping) and record.get(key) for key in ("config", "command"))
+    return (config, command) if isinstance(config, Mapping) and isinstance(command, str) else None
 
 
 def _differing(key: str, was: Any, now: Any) -> Iterator[tuple[str, Any, Any]]:
-    """Each key below this one that has another value."""
+    """Each key below this one that has another value; of keys of one side alone an effect, for versions know others."""
     if isinstance(was, Mapping) and isinstance(now, Mapping):
         for name in {**was, **now}:
-            yield from _differing(f"{key}.{name}", was.get(name), now.get(name))
-    elif was != now:
+            if (name in was and name in now) or isinstance(was.get(name, now.get(name)), Mapping):
+                yield from _differing(f"{key}.{name}", was.get(name), now.get(name))
+    elif was != now and key not in NOT_OF_ITS_RUNS:
         yield key, was, now
 
 

@@ -15,5 +15,10 @@ def shown(words: Iterable[str]) -> str:
 
 def going_on(command: str, folder: Path) -> str:
     """The command that goes on with what another one began in a folder, into a folder of its own."""
-    kept = (word for word in shlex.split(command.removeprefix(PROGRAM)) if not word.startswith(ITS_FOLDERS))
+    words = command.removeprefix(PROGRAM)
+    try:
+        parted = shlex.split(words)
+    except ValueError:  # of a version that wrote words as they were
+        parted = words.split()
+    kept = (word for word in parted if not word.startswith(ITS_FOLDERS))
     return shown([*kept, f"resume={folder}"])

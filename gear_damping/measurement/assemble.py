@@ -21,7 +21,7 @@ from gear_damping.measurement.gaps import borne_out
 from gear_damping.measurement.held_together import check_together
 from gear_damping.measurement.raw import SAME_UNIT, RawChannel, RawRecord
 from gear_damping.measurement.record import Channel, Finding, Quantity, Record
-from gear_damping.measurement.record_checks import check_record, mesh_beyond_band, tooth_ratio
+from gear_damping.measurement.record_checks import check_record, mesh_beyond_band, other_side, tooth_ratio
 from gear_damping.measurement.resolution import rounding_of
 from gear_damping.measurement.staircase import is_staircase
 from gear_damping.measurement.timebase import TimeBase
@@ -74,9 +74,10 @@ class Assembler:
         return replace(record, findings=(*record.findings, *check_record(record), *together, *self._mesh(record)))
 
     def _mesh(self, record: Record) -> list[Finding]:
-        teeth = self.plan.parameters.get("n_teeth_pinion")
-        found = None if teeth is None else mesh_beyond_band(record, teeth.value)
-        return [found] if found else []
+        pinion, gear = (self.plan.parameters.get(name) for name in _TEETH)
+        found = [] if pinion is None else [mesh_beyond_band(record, pinion.value)]
+        found += [] if pinion is None or gear is None else [other_side(record, (pinion.value, gear.value))]
+        return [one for one in found if one]
 
     def _channel(self, raw: RawChannel, record: RawRecord, notes: list[str], findings: list[Finding]) -> Channel:
         plan = raw.plan

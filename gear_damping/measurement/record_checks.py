@@ -231,7 +231,7 @@ def check_record(record: Record) -> tuple[Finding, ...]:
     if not any(finding.severity == "data_problem" and finding.channel == "time" for finding in record.findings):
         found.append(stamps_against_values(record))
     found += [check(channel) for channel in record.channels.values() for check in (_drowned, _straight)]
-    found += [_magnitude(record), _other_side(record), _rests_elsewhere(record), _oversampled(record)]
+    found += [_magnitude(record), _rests_elsewhere(record), _oversampled(record)]
     found += [*check_shafts(record), *not_compared(record)]
     found += [*_beyond_the_band(record), *_inputs_beyond(record)]
     return tuple(replace(finding, record=record.name) for finding in found if finding)
@@ -288,8 +288,15 @@ def _magnitude(record: Record) -> Finding | None:
     return Finding("implausible_magnitude", message, channel=channel.name, sample=where)
 
 
-def _other_side(record: Record) -> Finding | None:
-    """A transmission error with a zero of its own that is, throughout, where the torque parts the flanks."""
+def other_side(record: Record, n_teeth: tuple[float, float]) -> Finding | None:
+    """A transmission error with a zero of its own that is, throughout, where the torque parts the flanks.
+
+    Over a turn of both shafts errors of the teeth and of their seats are on either side; of less it is a note.
+
+    Args:
+        record: One of a gear pair.
+        n_teeth: Teeth of the pinion and of the gear.
+    """
     error, torque = record.channels.get("transmission_error"), record.channels.get("pinion_torque")
     known = record.conditions.get("pinion_torque")
     if error is None or error.datum != "absolute" or (torque is None and known is None):
@@ -304,7 +311,9 @@ def _other_side(record: Record) -> Finding | None:
         f"torque of {np.mean(load):.3g} N m does not press the flanks; write polarity: -1 where it counts the other "
         "way round, or datum: arbitrary where its zero means nothing"
     )
-    return Finding("other_side", message, channel="transmission_error")
+    turns = abs(_pinion_speed(record)) * record.duration / _TURN * min(1.0, n_teeth[0] / n_teeth[1])
+    severity = "data_problem" if turns >= 1 else "note"
+    return Finding("other_side", message, record.name, "transmission_error", severity=severity)
 
 
 def _rests_elsewhere(record: Record) -> Finding | None:
@@ -373,6 +382,17 @@ def _inputs_beyond(record: Record) -> Iterator[Finding]:
         yield Finding("input_beyond_record", message, channel=channel.name, severity="note")
 
 
+def _pinion_speed(record: Record) -> float:
+    """Its mean in rad/s, by its angle, else its speed; 0 where neither tells it."""
+    angle, speed = record.channels.get("pinion_angle"), record.channels.get("pinion_speed")
+    stated = record.conditions.get("pinion_speed")
+    if angle is not None:
+        return float(angle.values[-1] - angle.values[0]) / record.duration
+    if speed is not None and speed.coupling != "AC":
+        return float(np.mean(speed.values))
+    return stated.value if stated else 0.0
+
+
 def mesh_beyond_band(record: Record, n_teeth: float) -> Finding | None:
     """The note that teeth mesh faster than half the sampling rate; of shafts whose speed is not told, None.
 
@@ -380,15 +400,7 @@ def mesh_beyond_band(record: Record, n_teeth: float) -> Finding | None:
         record: One of a gear pair.
         n_teeth: Teeth of the pinion.
     """
-    angle, speed = record.channels.get("pinion_angle"), record.channels.get("pinion_speed")
-    stated = record.conditions.get("pinion_speed")
-    if angle is not None:
-        rate = float(angle.values[-1] - angle.values[0]) / record.duration
-    elif speed is not None and speed.coupling != "AC":
-        rate = float(np.mean(speed.values))
-    else:
-        rate = stated.value if stated else 0.0
-    mesh, half = abs(rate) * n_teeth / _TURN, record.sampling_rate / 2
+    mesh, half = abs(_pinion_speed(record)) * n_teeth / _TURN, record.sampling_rate / 2
     if mesh <= half:
         return None
     message = (

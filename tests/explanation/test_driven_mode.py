@@ -1,5 +1,6 @@
 """A mass on a spring behind a driven one that no spring holds, by scipy's response of two masses to a swept load."""
 
+from dataclasses import replace
 from math import pi
 
 import numpy as np
@@ -49,6 +50,19 @@ def test_the_frequency_at_which_the_other_mass_holds_the_first_is_found(tmp_path
     found = driven_mode(records, NOISE * np.ptp(records[0].response.numpy()))
     assert found.frequency == pytest.approx(frequency, rel=0.15)
     assert ratio / 2 < found.mass_ratio < 1.2 * ratio  # noise of the motion makes it look small
+
+
+def test_a_load_may_count_the_other_way_round(tmp_path):
+    records = evidence_of(driven(tmp_path, (2.5, 1.7, 0.01), "velocity")).fit
+    noise = NOISE * np.ptp(records[0].response.numpy())
+    turned = [replace(one, inputs={"force": -one.inputs["force"]}) for one in records]
+    assert driven_mode(turned, noise) == driven_mode(records, noise)
+
+
+@pytest.mark.parametrize("noise", [1.5, 3.0])
+def test_beside_a_noise_that_is_stated_too_large_nothing_is_begun(tmp_path, noise):
+    records = evidence_of(driven(tmp_path, None, "velocity", noise=0.1)).fit
+    assert driven_mode(records, noise * 0.1 * np.ptp(records[0].response.numpy())) is None
 
 
 @pytest.mark.parametrize("channel", CHANNELS)

@@ -77,12 +77,12 @@ def test_beside_a_rest_nothing_is_established_by_held_out_records_that_hardly_mo
         assert "%" not in said.sentences[0]
 
 
-@pytest.mark.parametrize(("is_any", "word"), [(True, UNEXPLAINED), (False, PARTLY)])
-def test_beside_a_rest_a_cause_of_any_size_is_none(is_any, word):
+@pytest.mark.parametrize(("unknown", "word"), [("coulomb_friction", UNEXPLAINED), ("", PARTLY)])
+def test_beside_a_rest_a_cause_of_any_size_is_none(unknown, word):
     found = search(accepted=(cause(),), left=True, sensor=200.0, rest=40.0, not_random=0.1)
-    said = verdict(found, MUCH, excess_of(0.6, 20.0), is_one=True, is_any=is_any)
+    said = verdict(found, MUCH, excess_of(0.6, 20.0), is_one=True, any_figures=unknown)
     assert said.word == word
-    assert ("not one of its figures" in said.sentences[0]) == is_any
+    assert ("but not one figure of `coulomb_friction` is told" in said.sentences[0]) == bool(unknown)
 
 
 @pytest.mark.parametrize(("left", "word"), [(1080.0, UNEXPLAINED), (60.0, UNEXPLAINED), (40.0, PARTLY)])

@@ -26,6 +26,7 @@ from gear_damping.physics.terms import Sensor
 
 TOO = "`{}` would take part of what is left too, {}"
 SO_MUCH = "but beside it too much is left that has no name."
+BENDS = "but not one of its figures is told by the records."
 AT_BOUND = "but has run into a bound of what it can be."
 WITHIN_FORM = "`{}` would take a little more: so little may as well be the form of the other causes, and is not named."
 
@@ -96,6 +97,7 @@ def _judged(found: Confirmed, notes: Sequence[str], is_short: bool) -> tuple[Jud
     state, before, after = found.state, found.before, found.after
     evidence, settings, budget = state.bench.evidence, state.bench.settings, state.bench.budget
     doubtful, stands_in = _doubtful(state)
+    unknown = next((cause.name for cause in state.accepted if is_any(state.outcome, cause.name, evidence)), "")
     not_tried = tuple(budget.not_tried)
     fitted, beyond = (
         excess(state.nominal.fit_residuals, evidence.fitted, noise, settings)
@@ -114,7 +116,7 @@ def _judged(found: Confirmed, notes: Sequence[str], is_short: bool) -> tuple[Jud
         shape=shape_without_name(state),
         not_random=_not_random(state),
         is_short=is_short,
-        is_any=any(is_any(state.outcome, cause.name, evidence) for cause in state.accepted),
+        any_figures=unknown,
         is_stated_otherwise=bool(contradicts_stated(state.nominal, evidence)),
     )
     said = verdict(state, before, after, known)
@@ -124,6 +126,8 @@ def _judged(found: Confirmed, notes: Sequence[str], is_short: bool) -> tuple[Jud
         state, after = replace(state, accepted=(), outcome=state.nominal, left=state.seen), before
     differs = said_of_levels(state.outcome, evidence) if state.accepted else []
     said = said.saying(left, *differs, *notes, *acting, *inputs_and_loads(state), budget.sentence)
+    if unknown and not doubtful:
+        doubtful, stands_in = unknown, BENDS
     return Judged(state, before, after, said, not_tried, found.t), (doubtful, stands_in)
 
 

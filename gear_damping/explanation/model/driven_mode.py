@@ -17,7 +17,8 @@ from gear_damping.physics.cause import Mode
 
 Array = NDArray[np.complex128]
 FORCE = "force"
-PLACES = 120  # between the lowest and the highest frequency that the load holds: steps smaller than a resonance is wide
+PLACES = 120  # between the lowest and the highest frequency that the load holds: fits find the way from one to the next
+MOST_LINES = 2000  # of a record: more tell the place of a resonance no better
 DAMPED = (0.003, 0.03, 0.2)  # damping ratios that are tried, the width of a resonance apart
 DRIVEN = 1e-3  # of the largest power of the load in any line: less drives nothing
 SEEN = 0.99  # of the power of the rate beyond the noise, which grows with the frequency: above there is hardly any
@@ -54,10 +55,11 @@ def driven_mode(records: Sequence[FitRecord], noise: float) -> Mode | None:
     frequency of that mass tried all along the band that the load holds. Nothing of it is a result: fits begin from it.
 
     Args:
-        records: Those without a load say nothing.
+        records: Those without a load, or with uneven stamps, say nothing.
         noise: Standard deviation of the sensor's noise, of a record of weight 1.
     """
-    lines = [one for record in records if FORCE in record.inputs and (one := _lines(record, noise)) is not None]
+    even = (record for record in records if FORCE in record.inputs and record.stamps is None)
+    lines = [one for record in even if (one := _lines(record, noise)) is not None]
     if not lines:
         return None
     low, high = min(one.angular[0] for one in lines), max(one.angular[-1] for one in lines)
@@ -66,7 +68,7 @@ def driven_mode(records: Sequence[FitRecord], noise: float) -> Mode | None:
     found = [(*_left(lines, one), *one) for one in tried]
     left, ratio, angular, damping = min(found, key=lambda one: one[0])
     sensor = sum(one.noise for one in lines) / sum(one.power for one in lines)
-    if left - sensor >= (1 - TAKES) * (alone - sensor):
+    if alone <= sensor or left - sensor >= (1 - TAKES) * (alone - sensor):
         return None
     return Mode(float(angular) / (2 * pi), float(ratio), float(damping))
 
@@ -86,9 +88,11 @@ def _lines(record: FitRecord, noise: float) -> _Lines | None:
     power = np.abs(load) ** 2
     kept = (np.arange(len(angular)) >= LOWEST) & (power > DRIVEN * power.max())
     kept &= np.arange(len(angular)) <= int(np.argmax(moved >= SEEN * moved.max()))
-    if not kept.any():
+    kept = np.flatnonzero(kept)[:: 1 + int(kept.sum()) // MOST_LINES]
+    if not kept.size:
         return None
-    return _Lines(angular[kept], load[kept], rate[kept], float(sensor[kept].sum()))
+    weight = record.weight
+    return _Lines(angular[kept], weight * load[kept], weight * rate[kept], weight**2 * float(sensor[kept].sum()))
 
 
 def _left(lines: Sequence[_Lines], mode: tuple[float, float] | None) -> tuple[float, float]:
@@ -105,5 +109,7 @@ def _left(lines: Sequence[_Lines], mode: tuple[float, float] | None) -> tuple[fl
         wanted.append(rate)
     matrix, target = np.concatenate(columns), np.concatenate(wanted)
     scale = np.linalg.norm(matrix, axis=0)
-    sizes, norm = nnls(matrix / scale, target)
+    signs = np.ones((2, len(scale)))
+    signs[1, 0] = -1.0  # the gain of a load may have either
+    sizes, norm = min((nnls(sign * matrix / scale, target) for sign in signs), key=lambda one: one[1])
     return float(norm**2 / (target @ target)), float(sizes[-1] / scale[-1]) if mode is not None else 0.0

@@ -23,7 +23,8 @@ OTHER_FIGURES = (
     "The simulation follows the records, but with figures far from those that are stated: one of these is wrong, or "
     "what measured the records has a wrong gain, which bends them."
 )
-ANY_SIZE = "but not one of its figures is told by the records, and too much is left for it to be the cause."
+TOO_MUCH = "but too much is left for it to be the cause."
+ANY_FIGURES = "but not one figure of `{}` is told by the records, and too much is left for it to be the cause."
 OTHER_SIZES = (
     "but with another size in other records: its form is another one, or it stands in for something that has no name."
 )
@@ -83,7 +84,7 @@ class Known:
         shape: What is visible and has no name, in words; empty where nothing of that kind is.
         not_random: What of the nominal model's residuals shows that it is not random, in % of the fitted records'
             variance.
-        is_any: Whether not one figure of some cause is known within itself.
+        any_figures: A cause of which not one figure is known within itself; empty where none is such.
         is_stated_otherwise: Whether the nominal model has figures far from what is stated of them.
         is_short: Whether held-out records are too short to judge more than what is missing of the power in them.
     """
@@ -100,7 +101,7 @@ class Known:
     shape: str = ""
     not_random: float = inf
     is_short: bool = False
-    is_any: bool = False
+    any_figures: str = ""
     is_stated_otherwise: bool = False
 
     @property
@@ -143,7 +144,7 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
             if after.percent > 0:
                 left = f"An unexplained residual of {after.percent:.3g} % has none."
             return Verdict(PARTLY, (f"{missing}. Part of it has a name: {said}. {left}", *further))
-        why = ANY_SIZE if known.is_any else "but too much is left for it to be the cause."
+        why = ANY_FIGURES.format(known.any_figures) if known.any_figures else TOO_MUCH
         why = OTHER_SIZES if known.is_one is False else why
         return _not_established(found, before, known, why)
     is_part = known.whole < settings.taken_by_one
@@ -213,7 +214,7 @@ def _is_part_named(found: State, share: float, after: Excess, known: Known) -> b
     What has another size in other records, or any size, or has run into the end of what it can be, stands in for
     something else, however much it takes.
     """
-    if known.is_one is False or known.is_any or any(found.is_at_bound(cause) for cause in found.accepted):
+    if known.is_one is False or known.any_figures or any(found.is_at_bound(cause) for cause in found.accepted):
         return False
     settings = found.bench.settings
     nobody_knows = known.is_one is None and known.of_fit >= settings.taken_by_all  # but nearly all of one record
