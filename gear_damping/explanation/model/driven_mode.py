@@ -22,6 +22,7 @@ MOST_LINES = 2000  # of a record: more tell the place of a resonance no better
 DAMPED = (0.003, 0.03, 0.2)  # damping ratios that are tried, the width of a resonance apart
 DRIVEN = 1e-3  # of the largest power of the load in any line: less drives nothing
 SEEN = 0.99  # of the power of the rate beyond the noise, which grows with the frequency: above there is hardly any
+ABOVE = 2.0  # times the power of the noise: what one mass leaves is more of the motion than of the sensor
 TAKES = 0.5  # of what one mass alone leaves: where less is of the other mass, something else is missed, as a friction
 LOWEST = 3  # lines of a record: below, the window's own width blurs the motion into its rates
 
@@ -68,7 +69,7 @@ def driven_mode(records: Sequence[FitRecord], noise: float) -> Mode | None:
     found = [(*_left(lines, one), *one) for one in tried]
     left, ratio, angular, damping = min(found, key=lambda one: one[0])
     sensor = sum(one.noise for one in lines) / sum(one.power for one in lines)
-    if alone <= sensor or left - sensor >= (1 - TAKES) * (alone - sensor):
+    if alone < ABOVE * sensor or left - sensor >= (1 - TAKES) * (alone - sensor):
         return None
     return Mode(float(angular) / (2 * pi), float(ratio), float(damping))
 
