@@ -212,7 +212,7 @@ def _take_over(resume: Path, folder: Path, module: DampingModule, training: Trai
     earlier = load_estimator(resume, module.plugins)
     ours, theirs = module.data["id"], earlier.data["id"]
     if ours != theirs:
-        rule = f"was trained on the runs {theirs!r}, and these are {ours!r}"
+        rule = f"is of data set {theirs!r}, not of {ours!r}"
         remedy = "repeat the command that it was begun with, in the same version of the package, or train anew"
         raise InputError(Problem("resume", rule, str(resume), remedy))
     for name, path in {"last.ckpt": resume, "best.ckpt": resume.with_name("best.ckpt")}.items():
