@@ -24,7 +24,7 @@ def test_a_null_names_no_cause(explained, seed, snr_db):
     ("effect", "parameter", "tolerance", "alike"),
     [
         pytest.param("gear_stiffness_modulation", "amplitude", 0.05, set(), marks=pytest.mark.slow),
-        ("pinion_eccentricity", "amplitude", 0.05, {"encoder_error"}),  # the same signal
+        pytest.param("pinion_eccentricity", "amplitude", 0.05, {"encoder_error"}, marks=pytest.mark.slow),  # one signal
         pytest.param("cubic_stiffness", "coefficient", 0.08, set(), marks=pytest.mark.slow),
         pytest.param("windage_drag", "coefficient", 0.05, set(), marks=pytest.mark.slow),
         pytest.param("torque_variation", "ramp_change", 0.05, set(), marks=pytest.mark.slow),

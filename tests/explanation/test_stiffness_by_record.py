@@ -58,6 +58,7 @@ def test_it_is_named_with_the_frequency_of_every_record(frequencies, tmp_path):
     assert low < 2 < high < low + 0.2
 
 
+@pytest.mark.slow
 def test_a_damping_that_differs_too_is_named_beside_it(tmp_path):
     ratios = (0.02, 0.024, 0.03, 0.017, 0.022)
     content = explain(measured(tmp_path, (3.1, 3.14, 3.05, 3.2, 3.1), ratios)).content

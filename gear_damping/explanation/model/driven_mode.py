@@ -53,7 +53,8 @@ def driven_mode(records: Sequence[FitRecord], noise: float) -> Mode | None:
     """The mass on a spring with which loads and motions agree best; None where none takes most of what one mass leaves.
 
     Mass times rate, damping and the pull of the other mass are summed at each frequency by least squares, with the
-    frequency of that mass tried all along the band that the load holds. Nothing of it is a result: fits begin from it.
+    frequency of that mass tried all along the band that the load holds. Nothing of it is a result: fits begin from it,
+    and delays and filters of sensors are left to them.
 
     Args:
         records: Those without a load, or with uneven stamps, say nothing.
