@@ -317,15 +317,16 @@ def other_side(record: Record, n_teeth: tuple[float, float]) -> Finding | None:
 
 
 def _rests_elsewhere(record: Record) -> Finding | None:
-    """A motion with a zero of its own that swings about another place, where nothing that is declared holds it."""
+    """A motion with a zero of its own that swings about another place, where nothing that is declared holds it.
+
+    A note: of two wells with the zero between them it may be so.
+    """
     place = record.channels.get("displacement")
     if place is None or place.datum != "absolute" or {*INPUTS} & {*record.channels, *record.conditions}:
         return None
     late = place.values[place.values.size // 2 :]
-    rest, creep = (
-        float(np.mean(late)),
-        np.polynomial.Polynomial.fit(np.arange(late.size), late, 2)(np.arange(late.size)),
-    )
+    rest, at = float(np.mean(late)), np.arange(late.size)
+    creep = np.polynomial.Polynomial.fit(at, late, 2)(at)
     swing, noise = np.std(late - creep), np.std(np.diff(late, 2)) / 6**0.5  # white noise has 6 times its variance there
     ways = np.sign(late - creep)[np.abs(late - creep) > _SWINGS_BEYOND * swing]
     swings = np.count_nonzero(np.diff(ways))
@@ -336,7 +337,7 @@ def _rests_elsewhere(record: Record) -> Finding | None:
         f"displacement swings about {rest / place.declared_factor:.3g} {place.declared_unit} and no longer crosses its "
         "zero: write datum: arbitrary where that means nothing"
     )
-    return Finding("rests_elsewhere", message, channel="displacement")
+    return Finding("rests_elsewhere", message, channel="displacement", severity="note")
 
 
 def _oversampled(record: Record) -> Finding | None:
