@@ -250,7 +250,11 @@ def _identification(
 
 
 def _table(content: dict[str, Any]) -> str:
+    """The figures; without those that are over a frequency of which nothing is known, as it may be none."""
     named = {key: content[key] for key in ("damping_ratio_percent", "natural_frequency_hz", "log_decrement")}
+    frequency = content["natural_frequency_hz"]
+    if frequency is not None and not frequency["interval95"][0] > 0:
+        named = {}
     rows = estimate_rows({**named, **content["parameters"]}) + residual_rows(content["records"])
     is_si = any(entry["unit"] in NEWTONS for entry in content["parameters"].values())
     title = "identified by output error" + ("" if is_si else ", per unit of mass")
