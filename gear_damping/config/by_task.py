@@ -8,7 +8,7 @@ from typing import Any
 import torch
 
 from gear_damping.config.acting import ACTS, OFF, Found
-from gear_damping.config.folders import RESUMABLE, resumable
+from gear_damping.config.folders import RESUMABLE, read_record, resumable
 from gear_damping.config.light import no_file
 from gear_damping.config.shown import going_on
 from gear_damping.config.whole import Whole
@@ -141,11 +141,8 @@ def _resumed_otherwise(whole: Whole, path: str) -> Found:
 
 def _begun(folder: Path) -> tuple[Mapping[str, Any], str] | None:
     """The configuration and the command of a run; None where its run.json does not say them."""
-    try:
-        record = json.loads((folder / "run.json").read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        return None
-    config, command = (isinstance(record, Mapping) and record.get(key) for key in ("config", "command"))
+    record = read_record(folder) or {}
+    config, command = record.get("config"), record.get("command")
     return (config, command) if isinstance(config, Mapping) and isinstance(command, str) else None
 
 

@@ -1,9 +1,20 @@
-"""Folders of runs: whether one can be made and written to, and whether an interrupted task can go on from it."""
+"""Folders of runs: what one says of itself, whether it can be made and written to, and whether a task can go on from it."""
 
+import json
 import os
 from pathlib import Path
+from typing import Any
 
 RESUMABLE = {"paper": "parts/*.json", "train": "*/seed_*/last.ckpt"}  # what an interrupted task leaves in its folder
+
+
+def read_record(folder: Path) -> dict[str, Any] | None:
+    """What run.json of a folder says; None where there is none that can be read."""
+    try:
+        found = json.loads((folder / "run.json").read_text())
+    except (OSError, ValueError):
+        return None
+    return found if isinstance(found, dict) and "status" in found else None
 
 
 def resumable(task: str, folder: Path) -> bool:

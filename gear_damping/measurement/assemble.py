@@ -21,8 +21,9 @@ from gear_damping.measurement.gaps import borne_out
 from gear_damping.measurement.held_together import check_together
 from gear_damping.measurement.raw import SAME_UNIT, RawChannel, RawRecord
 from gear_damping.measurement.record import Channel, Finding, Quantity, Record
-from gear_damping.measurement.record_checks import check_record, mesh_beyond_band, other_side, tooth_ratio
+from gear_damping.measurement.record_checks import check_record
 from gear_damping.measurement.resolution import rounding_of
+from gear_damping.measurement.shaft_checks import mesh_beyond_band, other_side, tooth_ratio
 from gear_damping.measurement.staircase import is_staircase
 from gear_damping.measurement.timebase import TimeBase
 from gear_damping.measurement.vocabulary import HOLDABLE, SHAFT_SPEEDS
@@ -75,8 +76,9 @@ class Assembler:
 
     def _mesh(self, record: Record) -> list[Finding]:
         pinion, gear = (self.plan.parameters.get(name) for name in _TEETH)
-        found = [] if pinion is None else [mesh_beyond_band(record, pinion.value)]
-        found += [] if pinion is None or gear is None else [other_side(record, (pinion.value, gear.value))]
+        if pinion is None:
+            return []
+        found = [mesh_beyond_band(record, pinion.value), gear and other_side(record, (pinion.value, gear.value))]
         return [one for one in found if one]
 
     def _channel(self, raw: RawChannel, record: RawRecord, notes: list[str], findings: list[Finding]) -> Channel:

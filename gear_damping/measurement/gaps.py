@@ -18,8 +18,9 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from gear_damping.measurement.irregular_stamps import CLOCK_JUMPS, LOST, scatter
 from gear_damping.measurement.record import Finding, Record
-from gear_damping.measurement.timebase import CLOCK_JUMPS, LOST, counted, scatter
+from gear_damping.measurement.timebase import counted
 
 _GAP, _BESIDE, _FEWEST_GAPS = 1.5, 4, 5  # usual steps in a gap; samples on either side; gaps that a share is had from
 _NEARER = 0.65  # of the way from a clock's jump to a pause

@@ -23,11 +23,7 @@ from gear_damping.measurement.stamp_units import (
     refuse_row_numbers,
 )
 from gear_damping.measurement.time_column import is_time
-from gear_damping.measurement.timebase import (
-    TimeBase,
-    stamped_time,
-    steady_time,
-)
+from gear_damping.measurement.timebase import TimeBase, stamped_time, steady_time
 from gear_damping.schema.values import Problems
 from gear_damping.units import multiple_of_a_unit, parse_unit, scaled_unit, to_si
 
@@ -285,10 +281,7 @@ class RawReader:
             raise InputError(Problem(f"{plan.key}.unit", f"the header says '{unit}'", None, remedy, self.source))
         clock = self._clock_beside(plan, base)
         if plan.timing is None and clock is None:
-            if (
-                self.rows.filled
-                and filled_in(replace(self.rows, filled=None).of(self.columns.all(plan.column))) is None
-            ):
+            if self.rows.filled and filled_in(self.rows.whole.of(self.columns.all(plan.column))) is None:
                 return self._faster(plan, unit, header)
             return RawChannel(plan, self.sliced(plan.column, f"{plan.key}.column"), unit, header)
         values = self.unsliced(plan.column, f"{plan.key}.column")
@@ -298,7 +291,7 @@ class RawReader:
     def _faster(self, plan: ChannelPlan, unit: str, header: str | None) -> RawChannel:
         """A channel that has values in all rows, beside slower ones."""
         whole = copy(self)
-        whole.rows = replace(self.rows, filled=None)
+        whole.rows = self.rows.whole
         return RawChannel(plan, whole.sliced(plan.column, f"{plan.key}.column"), unit, header, whole._base())
 
     def _clock_beside(self, plan: ChannelPlan, base: TimeBase | None) -> tuple[float, float] | None:

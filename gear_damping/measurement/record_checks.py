@@ -1,7 +1,5 @@
 """What is suspicious in a record as a whole, beyond the values of one channel.
 
-Shafts turn as declared: the angle that advances, the speed that is stated, the ratio of two encoders.
-
 Samples were taken at their uneven stamps. A stamp that is off its place by e moves a sample by e times the slope of the
 signal, s' e, if the sample was taken there; if the sampling was even and only the stamps are late, the values know
 nothing of e. The share b of s' e in the values (1 where the stamps are right, 0 where they are not) is fitted by least
@@ -19,33 +17,24 @@ from numpy.typing import NDArray
 
 from gear_damping.measurement.checks import APPLIED, STRUCK, check_channel
 from gear_damping.measurement.encoders import FROM_ENCODERS
+from gear_damping.measurement.irregular_stamps import written_on_change
 from gear_damping.measurement.record import Channel, Finding, Record
-from gear_damping.measurement.timebase import written_on_change
+from gear_damping.measurement.shaft_checks import LARGEST_TRANSMISSION_ERROR, check_shafts
 from gear_damping.measurement.vocabulary import INPUTS
 
 WHOLE_SPEEDS = ("pinion_speed", "gear_speed")  # hold the rotation, beside which what is fitted is little
 NEVER_STRAIGHT = ("displacement", "transmission_error", "acceleration")  # a speed may rise evenly
 STRAIGHT, FEWEST_OF_A_LINE = 1e-6, 16  # of its range; samples: fewer steps of a converter may lie on a line
 MOST_NOISE = 30.0  # times what a channel holds: no guess of a noise is so far off, and a wrong unit is 1000 times
-LARGEST_TRANSMISSION_ERROR = 1e-3  # m; a gear pair deflects by micrometres
-SPEED_TOLERANCE = 0.02  # of a stated speed: about the slip of an induction motor
-_COARSE = 50  # parts of a record in which a shaft is seen to advance
-_ONE_WAY = 0.9  # share of the parts that turn one way
-_REVERSALS = 3  # of a shaft that is turned back and forth by its drive
-_STILL = 0.01  # of the way that all parts make; a part below stands still
 SAMPLES_PER_PERIOD = 100  # of the fastest content; more only slow the work
 _CONTENT = 0.999  # share of the energy that counts as content
-_BESIDE = 0.01  # of the samples, which noise may take beyond zero
 _FEWEST_SWINGS = 8  # through its mean: what creeps back to zero passes that once
 _SWINGS_BEYOND = 0.5  # of a swing's deviation: what passes to both sides so far, and more than its middle moves
 _CLEAR_OF_NOISE = 3.0  # times that of the noise, which swings at every sample
 _DRIFT = 0.1  # of the way that a straight line goes; what may lie about it
-_TEETH = range(5, 301)  # tooth counts that are tried
-_TURN = 2 * np.pi  # rad in one turn of a shaft
 _LOCAL = 9  # samples about which a stamp's place is judged; slower wandering of a clock is left alone
 _MATTERS = 1e-4  # share of the signal's variance that s' e must have to matter
 _ONE_COUNT, _COUNTED = 0.01, 0.95  # of a step: the same count; share of the steps that are one
-_MEANLESS = 0.1  # of the mean size of a speed: of a shaft that turns one way the mean is all of it
 _FEWEST = 64  # samples, below which nothing is decided
 _NEIGHBOURS = 33  # frequencies that give the level about a line
 _SLOPE_ERROR = 0.1  # of the power of s' e; nothing is weighted higher than this error of the slope allows
@@ -54,91 +43,6 @@ _DECIDED = 0.35  # share below which the stamps are wrong
 _ERRORS = 4.0  # standard errors that the share must be nearer to none by
 FEW_BEYOND = 10  # samples that an input may lack at an end: the state at the start stands in for so few
 MESH_RESPONSES = ("transmission_error", "gear_speed")  # that make a record one of a simulation, not of a casing
-
-
-def check_shafts(record: Record) -> list[Finding | None]:
-    """What is suspicious in the angle and the speed of the pinion."""
-    return [_turning(record), _speed(record)]
-
-
-def tooth_ratio(
-    pinion: NDArray[np.float64], gear: NDArray[np.float64], teeth: tuple[float, float], radius_pinion: float
-) -> Finding | None:
-    """The finding where the mean slopes of two shaft angles contradict the tooth counts.
-
-    Teeth hold the shafts together: over any time the angles may depart from the ratio by the transmission error
-    alone, so that the ratio is known the better the longer the shafts have turned.
-
-    Args:
-        pinion: (n,) rad.
-        gear: (n,) rad.
-        teeth: Declared counts of pinion and gear.
-        radius_pinion: Base radius in m.
-    """
-    declared = teeth[1] / teeth[0]
-    turned = [float(np.polyfit(np.linspace(0, 1, angle.size), angle, 1)[0]) for angle in (pinion, gear)]
-    allowed = LARGEST_TRANSMISSION_ERROR / radius_pinion
-    if abs(turned[0] - declared * turned[1]) <= allowed or abs(turned[1]) <= allowed:
-        return None
-    measured = turned[0] / turned[1]
-    tolerance = allowed / abs(turned[1])
-    said = f"{teeth[1]:g}/{teeth[0]:g} = {declared:.6g}"
-    message = f"the two encoders turn at a ratio of {measured:.6g}, and the teeth say {said}"
-    if abs(measured + declared) <= tolerance:
-        return Finding("tooth_ratio", f"{message}; one direction is wrong: give it direction: -1")
-    if abs(measured - 1 / declared) <= tolerance:
-        return Finding("tooth_ratio", f"{message}; the encoders of pinion and gear, or the tooth counts, are exchanged")
-    near = _nearest_teeth(abs(measured), tolerance, teeth)
-    guess = f" (as {near[1]}/{near[0]} teeth would)" if near else ""
-    return Finding("tooth_ratio", f"{message}{guess}; check n_teeth_pinion, n_teeth_gear and the counts per revolution")
-
-
-def _nearest_teeth(ratio: float, tolerance: float, teeth: tuple[float, float]) -> tuple[int, int] | None:
-    """The counts nearest to the declared ones whose ratio is the measured one; None where none in range is."""
-    found = [
-        (pinion, round(pinion * ratio))
-        for pinion in _TEETH
-        if abs(round(pinion * ratio) / pinion - ratio) <= tolerance and round(pinion * ratio) in _TEETH
-    ]
-    return min(found, key=lambda pair: abs(pair[0] - teeth[0]) + abs(pair[1] - teeth[1]), default=None)
-
-
-def _turning(record: Record) -> Finding | None:
-    """A shaft angle advances one way, apart from its encoder's noise; it may stop, and turn back over whole turns."""
-    angle = record.channels.get("pinion_angle")
-    if angle is None or np.ptp(angle.values) == 0:
-        return None
-    parts = np.diff(angle.values[:: max(1, angle.values.size // _COARSE)])
-    moving = np.sign(parts[np.abs(parts) > _STILL * np.abs(parts).max()])
-    if max(np.mean(moving > 0), np.mean(moving < 0)) >= _ONE_WAY:
-        return None
-    if np.sum(moving[1:] != moving[:-1]) <= _REVERSALS and np.ptp(angle.values) >= _TURN:
-        return None
-    message = "pinion_angle does not advance like that of a turning shaft; was another column taken for it?"
-    return Finding("angle_not_turning", message, channel="pinion_angle")
-
-
-def _speed(record: Record) -> Finding | None:
-    """The stated or measured speed against the angle that was turned through."""
-    angle, condition = record.channels.get("pinion_angle"), record.conditions.get("pinion_speed")
-    measured = record.channels.get("pinion_speed")
-    if angle is None or not (condition or measured):
-        return None
-    if condition:
-        stated = fastest = condition.value
-    else:
-        stated = float(np.trapezoid(measured.values, record.time)) / record.duration
-        fastest = float(np.mean(np.abs(measured.values)))
-    rate = float(angle.values[-1] - angle.values[0]) / record.duration
-    allowed = max(SPEED_TOLERANCE, 3 * (condition.uncertainty if condition else measured.uncertainty))
-    is_fluctuation = not condition and abs(stated) < _MEANLESS * fastest  # what a coupled sensor leaves of a speed
-    if abs(rate - stated) <= allowed * abs(fastest) or stated == 0 or is_fluctuation:
-        return None
-    message = (
-        f"the pinion angle turns at {rate * 30 / np.pi:.5g} rpm and the stated speed is "
-        f"{stated * 30 / np.pi:.5g} rpm; check unit, direction and counts per revolution"
-    )
-    return Finding("speed_mismatch", message, channel="pinion_angle")
 
 
 def stamps_against_values(record: Record) -> Finding | None:
@@ -288,34 +192,6 @@ def _magnitude(record: Record) -> Finding | None:
     return Finding("implausible_magnitude", message, channel=channel.name, sample=where)
 
 
-def other_side(record: Record, n_teeth: tuple[float, float]) -> Finding | None:
-    """A transmission error with a zero of its own that is, throughout, where the torque parts the flanks.
-
-    Over a turn of both shafts errors of the teeth and of their seats are on either side; of less it is a note.
-
-    Args:
-        record: One of a gear pair.
-        n_teeth: Teeth of the pinion and of the gear.
-    """
-    error, torque = record.channels.get("transmission_error"), record.channels.get("pinion_torque")
-    known = record.conditions.get("pinion_torque")
-    if error is None or error.datum != "absolute" or (torque is None and known is None):
-        return None
-    load = np.atleast_1d(known.value if torque is None else torque.values)
-    way = np.sign(np.median(load))
-    if np.any(way * load <= 0) or np.quantile(way * error.values, 1 - _BESIDE) >= 0:
-        return None
-    low, high = (end / error.declared_factor for end in (error.values.min(), error.values.max()))
-    message = (
-        f"transmission_error lies between {low:.3g} and {high:.3g} {error.declared_unit}, on the side to which a "
-        f"torque of {np.mean(load):.3g} N m does not press the flanks; write polarity: -1 where it counts the other "
-        "way round, or datum: arbitrary where its zero means nothing"
-    )
-    turns = abs(_pinion_speed(record)) * record.duration / _TURN * min(1.0, n_teeth[0] / n_teeth[1])
-    severity = "data_problem" if turns >= 1 else "note"
-    return Finding("other_side", message, record.name, "transmission_error", severity=severity)
-
-
 def _rests_elsewhere(record: Record) -> Finding | None:
     """A motion with a zero of its own that swings about another place, where nothing that is declared holds it.
 
@@ -381,34 +257,6 @@ def _inputs_beyond(record: Record) -> Iterator[Finding]:
             "in the file in the place of delay, and leave out the rows that lack it"
         )
         yield Finding("input_beyond_record", message, channel=channel.name, severity="note")
-
-
-def _pinion_speed(record: Record) -> float:
-    """Its mean in rad/s, by its angle, else its speed; 0 where neither tells it."""
-    angle, speed = record.channels.get("pinion_angle"), record.channels.get("pinion_speed")
-    stated = record.conditions.get("pinion_speed")
-    if angle is not None:
-        return float(angle.values[-1] - angle.values[0]) / record.duration
-    if speed is not None and speed.coupling != "AC":
-        return float(np.mean(speed.values))
-    return stated.value if stated else 0.0
-
-
-def mesh_beyond_band(record: Record, n_teeth: float) -> Finding | None:
-    """The note that teeth mesh faster than half the sampling rate; of shafts whose speed is not told, None.
-
-    Args:
-        record: One of a gear pair.
-        n_teeth: Teeth of the pinion.
-    """
-    mesh, half = abs(_pinion_speed(record)) * n_teeth / _TURN, record.sampling_rate / 2
-    if mesh <= half:
-        return None
-    message = (
-        f"the teeth mesh at {mesh:.4g} Hz, above half the sampling rate, {half:.4g} Hz: "
-        "the mesh is filtered away, or folds back onto lower frequencies"
-    )
-    return Finding("mesh_beyond_band", message, record.name, severity="note")
 
 
 def _fastest_content(values: NDArray[np.float64], rate: float) -> float:

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,6 +44,11 @@ class Rows:
     def count(self) -> int:
         """Rows from the first to the last, whatever they hold."""
         return self.stop - self.first
+
+    @property
+    def whole(self) -> "Rows":
+        """The same with the rows between filled ones."""
+        return replace(self, filled=None)
 
     @property
     def step(self) -> int:
@@ -119,10 +124,15 @@ class Columns:
     def without(self, rows: Rows) -> Rows:
         """The rows, with those among them that are told apart: doubled, else filled, else foreign ones."""
         if doubled := self._doubled(rows):
-            return Rows(rows.first, rows.stop, rows.blank, doubled=doubled)
+            return replace(rows, doubled=doubled)
         if filled := self._filled(rows):
-            return Rows(rows.first, rows.stop, rows.blank, filled=filled)
-        return Rows(rows.first, rows.stop, rows.blank, foreign=self._foreign(rows))
+            return replace(rows, filled=filled)
+        return replace(rows, foreign=self._foreign(rows))
+
+    def _covering(self, rows: Rows) -> list[Column]:
+        """The shared columns that can be read; none where one of them ends before the record."""
+        sizes = {column: size for column in self.shared if (size := self.size(column)) is not None}
+        return [] if any(size < rows.stop for size in sizes.values()) else list(sizes)
 
     def _doubled(self, rows: Rows) -> tuple[int, ...]:
         """Rows with the values of an earlier one where stamps do not go on: a recorder has stored that again.
@@ -135,8 +145,8 @@ class Columns:
         late = np.flatnonzero(np.diff(stamps) <= 0) + 1 + rows.first
         if not 0 < late.size <= MOST_DOUBLED * stamps.size or written_significantly(stamps) is not None:
             return ()
-        columns = [one for one in self.shared if self.size(one) is not None]
-        if not columns or any(self.size(one) < rows.stop for one in columns):
+        columns = self._covering(rows)
+        if not columns:
             return ()
         values = np.stack([self.all(one)[: rows.stop] for one in columns], 1)
 
@@ -159,8 +169,8 @@ class Columns:
 
     def _foreign(self, rows: Rows) -> tuple[int, ...]:
         """Rows with a stamp in which other columns hold something and those of the record nothing: signals by turns."""
-        columns = [one for one in self.shared if self.size(one) is not None]
-        if self.time is None or not columns or any(self.size(one) < rows.stop for one in columns):
+        columns = self._covering(rows)
+        if self.time is None or not columns:
             return ()
         own, within = {self.table.index(one, "") for one in columns}, set(range(rows.first, rows.stop))
         foreign = within.intersection(*(self._empty_cells(place) for place in own))

@@ -109,15 +109,6 @@ def problem_with_used(folder: Path, config: Mapping[str, Any]) -> Problem | None
     return Problem("hydra.run.dir", f"holds {article} {name} already", str(folder), remedy)
 
 
-def read_record(folder: Path) -> dict[str, Any] | None:
-    """What run.json of a folder says; None where there is none that can be read."""
-    try:
-        found = json.loads((folder / "run.json").read_text())
-    except (OSError, ValueError):
-        return None
-    return found if isinstance(found, dict) and "status" in found else None
-
-
 def status_of(folder: Path, record: Mapping[str, Any]) -> str:
     """How a run stands: as run.json says, unless its process ended without a word, killed or on a full disk.
 

@@ -6,10 +6,11 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from gear_damping.config.folders import read_record
 from gear_damping.errors import written_whole
 from gear_damping.reporting.headline import headline
 from gear_damping.reporting.run_report import REPORT
-from gear_damping.tasks.run_folder import CUT_OFF, FAILED, FINISHED, RUNNING, read_record, status_of
+from gear_damping.tasks.run_folder import CUT_OFF, FAILED, FINISHED, RUNNING, status_of
 from gear_damping.tasks.sweep.folder import NOTE, read_sweep
 
 if TYPE_CHECKING:

@@ -5,8 +5,9 @@ import pytest
 
 from gear_damping.errors import InputError
 from gear_damping.measurement.checks import refuse_not_finite
+from gear_damping.measurement.irregular_stamps import irregularity
 from gear_damping.measurement.record_checks import share_at_stamps
-from gear_damping.measurement.timebase import irregularity, stamped_time
+from gear_damping.measurement.timebase import stamped_time
 
 RATE = 1000.0
 TURN = 2 * np.pi

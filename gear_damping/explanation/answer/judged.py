@@ -21,7 +21,7 @@ from gear_damping.explanation.model.positive import positive
 from gear_damping.explanation.state import State
 from gear_damping.explanation.steps.confirm import Confirmed, without
 from gear_damping.explanation.steps.judge import CONSISTENT, UNEXPLAINED, Judged, Known, verdict
-from gear_damping.explanation.trials.told_size import is_any
+from gear_damping.explanation.trials.told_size import without_a_figure
 from gear_damping.physics.terms import Sensor
 
 TOO = "`{}` would take part of what is left too, {}"
@@ -97,7 +97,7 @@ def _judged(found: Confirmed, notes: Sequence[str], is_short: bool) -> tuple[Jud
     state, before, after = found.state, found.before, found.after
     evidence, settings, budget = state.bench.evidence, state.bench.settings, state.bench.budget
     doubtful, stands_in = _doubtful(state)
-    unknown = next((cause.name for cause in state.accepted if is_any(state.outcome, cause.name, evidence)), "")
+    unknown = without_a_figure(state.outcome, [cause.name for cause in state.accepted], evidence)
     not_tried = tuple(budget.not_tried)
     fitted, beyond = (
         excess(state.nominal.fit_residuals, evidence.fitted, noise, settings)

@@ -62,9 +62,9 @@ def _loses_few(evidence: Evidence, fitted: Fit) -> bool:
 
 def _few(evidence: Evidence) -> Evidence:
     """The evidence with those records alone that move most; as it is where there are no more."""
-    most = sorted(evidence.fit, key=ac_energy, reverse=True)[:FEW]
-    few = tuple(record for record in evidence.fit if any(record is one for one in most))
-    return evidence if len(few) == len(evidence.fit) else replace(evidence, fit=few)
+    if len(evidence.fit) <= FEW:
+        return evidence
+    return replace(evidence, fit=tuple(sorted(evidence.fit, key=ac_energy, reverse=True)[:FEW]))
 
 
 def _with_sign(record: FitRecord, place: int) -> FitRecord:

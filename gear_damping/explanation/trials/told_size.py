@@ -3,6 +3,8 @@
 A law that bends to what another leaves may lower the cost while its own size is anybody's guess.
 """
 
+from collections.abc import Sequence
+
 import torch
 from scipy.stats import chi2
 from torch import Tensor
@@ -58,15 +60,22 @@ def is_told(outcome: Outcome, refit: Refit, evidence: Evidence) -> bool:
     return max(_statistic(outcome, column, lags) for column in alone) > limit
 
 
-def is_any(outcome: Outcome, name: str, evidence: Evidence) -> bool:
-    """Whether a cause has figures of its own and not one of them is known within itself: it bends to any motion."""
+def without_a_figure(outcome: Outcome, names: Sequence[str], evidence: Evidence) -> str:
+    """The first of several causes that has figures and not one of them known within itself; empty where none has.
+
+    It bends to any motion.
+    """
+    if not names:
+        return ""
     free, shared = outcome.problem.free, outcome.fitted.shared
     half = QUANTILE * covariance_of(outcome, evidence).diagonal().clamp(min=0).sqrt()
-    own = [i for i, parameter in enumerate(free) if parameter.name.startswith(f"{name}.")]
-    return bool(own) and not any(
-        float(half[i]) < (WITHIN if free[i].logarithmic else abs(float(free[i].value(shared[i]))) / free[i].scale)
-        for i in own
-    )
+
+    def is_known(i: int) -> bool:
+        within = WITHIN if free[i].logarithmic else abs(float(free[i].value(shared[i]))) / free[i].scale
+        return float(half[i]) < within
+
+    own = {name: [i for i, p in enumerate(free) if p.name.startswith(f"{name}.")] for name in names}
+    return next((name for name, places in own.items() if places and not any(map(is_known, places))), "")
 
 
 def _are_sized(outcome: Outcome, places: list[int], shape: list[int], evidence: Evidence) -> bool:

@@ -8,10 +8,8 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 PREFIXED = ("m", "rad")  # units whose values are mostly small fractions of one
-PREFIXES, MOST = (
-    ((1e6, "µ"), (1e3, "m")),
-    1e3,
-)  # factors with their signs; the largest number that an axis shows with one
+PREFIXES = ((1e6, "µ"), (1e3, "m"))  # factors with their signs, the smallest unit first
+MOST = 1e3  # the largest number that an axis shows in a prefixed unit
 
 
 def series(**named: ArrayLike) -> tuple[Array, ...]:

@@ -9,11 +9,11 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from gear_damping.config.folders import resumable
+from gear_damping.config.folders import read_record, resumable
 from gear_damping.config.source import Origin
 from gear_damping.tasks.dispatch import OK, run_job
 from gear_damping.tasks.lease import leased
-from gear_damping.tasks.run_folder import EDITED, FINISHED, read_record
+from gear_damping.tasks.run_folder import EDITED, FINISHED
 from gear_damping.tasks.sweep.folder import NOT_DECIDING, Place
 from gear_damping.tasks.sweep.line import line_of
 

@@ -2,8 +2,9 @@
 
 from pathlib import Path
 
+from gear_damping.config.folders import read_record
 from gear_damping.reporting.headline import headline
-from gear_damping.tasks.run_folder import FINISHED, read_record
+from gear_damping.tasks.run_folder import FINISHED
 from gear_damping.tasks.sweep.folder import Place, read_sweep
 
 BAR = 20  # characters, so that the line fits a terminal of 80

@@ -5,10 +5,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from gear_damping.config.folders import read_record
 from gear_damping.config.quantities import number_of
 from gear_damping.errors import InputError, Problem, written_whole
 from gear_damping.reporting.run_report import REPORT
-from gear_damping.tasks.run_folder import FINISHED, read_record, status_of
+from gear_damping.tasks.run_folder import FINISHED, status_of
 from gear_damping.tasks.sweep.folder import NOTE, Sweep, read_sweep
 
 TABLE, FIGURE, MAP = "sweep.csv", "sweep.png", "sweep_map.png"
