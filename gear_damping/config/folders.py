@@ -1,4 +1,4 @@
-"""Folders of runs: what one says of itself, whether it can be made and written to, and whether a task can go on from it."""
+"""Folders of runs: what one says of itself, whether it can be made, and whether a task can go on from it."""
 
 import json
 import os

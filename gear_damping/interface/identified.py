@@ -7,6 +7,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.explanation.explain import NOBODY, Listener
 from gear_damping.interface import identified_gears, identified_oscillator
 from gear_damping.interface.arguments import names, refuse_other, refuse_other_solver
 from gear_damping.interface.free_parameters import given_numbers
@@ -89,7 +90,7 @@ def identify(
             force gain. What the file states with an uncertainty is free too, about what it states; initial states and
             unknown zeros of channels always are.
         log: Told what is found on the way.
-        progress: Told (done, total) of the fit of an oscillator.
+        progress: Told (done, total) of the fit of an oscillator or a gear pair, but not of a `model` of one's own.
         solver: Settings of the solver.
 
     Raises:
@@ -111,7 +112,8 @@ def identify(
         return Identification(measurement, identified_gears.own_fit(measurement, model, named, log, solver))
     if measurement.base.has(Trait.REST):
         return Identification(measurement, identified_oscillator.linear_fit(measurement, progress, solver))
-    return Identification(measurement, identified_gears.nominal_fit(measurement, log, solver))
+    listener = Listener(log, progress or NOBODY.progress)
+    return Identification(measurement, identified_gears.nominal_fit(measurement, listener, solver))
 
 
 def refuse_faults(measurement: Measurement) -> None:

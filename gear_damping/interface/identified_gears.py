@@ -55,14 +55,14 @@ class Fitted:
     outcome: Outcome
 
 
-def nominal_fit(measurement: Measurement, log: Log, solver: Solver | None) -> Fitted:
+def nominal_fit(measurement: Measurement, listener: Listener, solver: Solver | None) -> Fitted:
     """The nominal gear pair as `explain` fits it, where no effect may be a cause.
 
     Raises:
         InputError: nothing was measured that a simulation can be compared with, or the data are damaged.
     """
     _refuse_casing(measurement)
-    found = explain(measurement, Listener(log), solver, library={})
+    found = explain(measurement, listener, solver, library={})
     if found.found is None:
         faults = found.content["sentences"][1:]
         raise InputError([Problem("records", fault, source=str(measurement.source)) for fault in faults])

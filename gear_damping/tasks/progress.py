@@ -1,6 +1,7 @@
 """Progress of long work on the terminal."""
 
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -13,7 +14,7 @@ LINE_EVERY = 20.0  # seconds between lines where there is no terminal to draw a 
 
 @contextmanager
 def progress_bar(title: str, wanted: bool = True) -> Iterator[Callable[[int, int], None]]:
-    """A callable (done, total): a bar on a terminal, now and then a line elsewhere."""
+    """A callable (done, total): a bar on a terminal, a line every so often elsewhere, however long a step takes."""
     if not wanted:
         yield lambda done, total: None
     elif sys.stderr.isatty():
@@ -22,16 +23,26 @@ def progress_bar(title: str, wanted: bool = True) -> Iterator[Callable[[int, int
             task = bar.add_task(title)
             yield lambda done, total: bar.update(task, completed=done, total=total)
     else:
-        yield _lines(title)
+        with _lines(title) as report:
+            yield report
 
 
-def _lines(title: str) -> Callable[[int, int], None]:
-    last = time.monotonic()
+@contextmanager
+def _lines(title: str) -> Iterator[Callable[[int, int], None]]:
+    begun, percent, ended = time.monotonic(), 0.0, threading.Event()
 
     def report(done: int, total: int) -> None:
-        nonlocal last
-        if time.monotonic() - last > LINE_EVERY:
-            last = time.monotonic()
-            print(f"{title}: {100 * done / total:.0f} %", file=sys.stderr, flush=True)
+        nonlocal percent
+        percent = 100 * done / total
 
-    return report
+    def speak() -> None:
+        while not ended.wait(LINE_EVERY):
+            print(f"{title}: {percent:.0f} %, {time.monotonic() - begun:.0f} s so far", file=sys.stderr, flush=True)
+
+    speaker = threading.Thread(target=speak, daemon=True)
+    speaker.start()
+    try:
+        yield report
+    finally:
+        ended.set()
+        speaker.join()

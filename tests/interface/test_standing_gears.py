@@ -45,7 +45,9 @@ records:
     [(1.5e8, 14.6, 1600), (4.89e7, 0.0, 4000)],  # the second rings far below where a search begins, and bears no load
 )
 def test_a_ring_down_of_standing_gears_tells_damping_and_one_stiffness(tmp_path, stiffness, torque, samples):
-    fit = gd.identify(recorded(tmp_path, stiffness, torque, samples))
+    told = []
+    fit = gd.identify(recorded(tmp_path, stiffness, torque, samples), progress=lambda *steps: told.append(steps))
+    assert told == [(1, 4), (2, 4), (3, 4), (4, 4)]
     ratio = fit.damping_ratio_percent
     assert ratio["value"] == pytest.approx(100 * RATIO, rel=0.02)
     assert ratio["interval95"][1] - ratio["interval95"][0] < 0.1  # %; with a mesh phase it was all that can be
