@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import json
 from collections.abc import Callable
 from pathlib import Path
 
@@ -132,6 +133,20 @@ def xlsx(folder: Path) -> list[Path]:
     return [path]
 
 
+def json_files(folder: Path) -> list[Path]:
+    rows = [{"t": t, "rig": {"x": x}} for t, x in zip(TIME.tolist(), WAVE.tolist(), strict=True)]
+    contents = {
+        "columns": {"fs": 1000, "t": TIME.tolist(), "x": {"unit": "mm", "values": WAVE.tolist()}},
+        "rows": rows,
+        "apart": {"columns": ["t", "x"], "data": [[row["t"], row["rig"]["x"]] for row in rows]},
+    }
+    paths = []
+    for name, content in contents.items():
+        paths.append(folder / f"{name}.json")
+        paths[-1].write_text(json.dumps(content))
+    return paths
+
+
 def declarations(folder: Path) -> list[Path]:
     """Oscillators and gear pairs, with most of what their files may say."""
     np.savez(folder / "data.npz", t=TIME, x=WAVE, f=WAVE, pulses=np.arange(40) / 40, a=ANGLE)
@@ -190,5 +205,5 @@ OVERRIDES = (
 )
 FILES: dict[str, Callable[[Path], list[Path]]] = {
     "csv": csv, "csv.gz": gz, "mat": mat, "mat 7.3": mat73, "npz": npz, "wav": wav, "hdf5": hdf5, "uff": uff,
-    "tdms": tdms, "xlsx": xlsx,
+    "tdms": tdms, "xlsx": xlsx, "json": json_files,
 }  # fmt: skip

@@ -1,0 +1,123 @@
+"""JSON as loggers, web services and pandas write it: columns by name, rows as objects or lists, one object a line.
+
+What lies deeper bears the path to it, `axle.x`, and rows of lists are columns `x[0]`, `x[1]`, as elsewhere.
+"""
+
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_damping.measurement.formats.moments import moments_of
+from gear_damping.measurement.formats.number_texts import is_number
+from gear_damping.measurement.formats.stated_rate import rate_beside
+from gear_damping.measurement.formats.table import ArrayTable, Held, Table, held_arrays, unreadable
+
+SUFFIXES = (".json", ".jsonl", ".ndjson")
+
+_UNITS = ("unit", "units")  # beside the one list of an object, which then is a channel
+_NAMES = "columns"  # beside rows of lists, as pandas writes them apart (`orient="split"`)
+
+
+def read(path: Path, max_bytes: int) -> Table:
+    """The lists of a JSON file as columns; numbers as they are, clocks as s from the first, null as nan.
+
+    Raises:
+        InputError: not JSON, or it holds no list of numbers.
+    """
+    with unreadable(path, "not a readable JSON file", "export it again, or as CSV"):
+        held, left_out, single = [], [], {}
+        for name, values, unit in _lists("", _parsed(path.read_bytes())):
+            array, begins = _array(values)
+            own, other = held_arrays({name: array})
+            if array.size == 1 and own:
+                single[name] = array
+            begun = None if begins is None else lambda begins=begins: begins
+            held += [replace(one, unit=unit, begins=begun) for one in own]
+            left_out += other
+        table = ArrayTable(path, _channels(held), left_out)
+    table.stated_rate = rate_beside(single)
+    return table
+
+
+def _channels(held: list[Held]) -> list[Held]:
+    """What has more than one value, where anything has: the others state something of it."""
+    return [one for one in held if one.shape != (1,)] or held
+
+
+def _parsed(content: bytes) -> Any:
+    """What a file holds; a list of its lines where each is JSON of its own."""
+    text = content.decode(json.detect_encoding(content)).removeprefix("\ufeff")
+    try:
+        return json.loads(text)
+    except json.JSONDecodeError as error:
+        try:
+            return [json.loads(line) for line in text.splitlines() if line.strip()]
+        except json.JSONDecodeError:
+            raise error from None
+
+
+def _lists(name: str, value: Any, unit: str | None = None) -> Iterator[tuple[str, Sequence[Any], str | None]]:
+    """Every list of single values below a value: its path, what it holds, its unit."""
+    if isinstance(value, dict):
+        yield from _of_object(name, value)
+    elif not isinstance(value, list):
+        yield name, [value], unit
+    elif any(isinstance(one, dict) for one in value):
+        rows = [one if isinstance(one, dict) else {} for one in value]
+        for key in dict.fromkeys(key for row in rows for key in row):
+            yield from _lists(_below(name, key), [row.get(key) for row in rows])
+    elif any(isinstance(one, list) for one in value):
+        rows = [one if isinstance(one, list) else [] for one in value]
+        for place in range(max(map(len, rows))):
+            column = [row[place] if place < len(row) else None for row in rows]
+            yield from _lists(f"{name}[{place}]" if name else "", column, unit)
+    else:
+        yield name, value, unit
+
+
+def _of_object(name: str, value: dict[str, Any]) -> Iterator[tuple[str, Sequence[Any], str | None]]:
+    lists = [key for key, one in value.items() if isinstance(one, list)]
+    names = value.get(_NAMES)
+    if isinstance(names, list) and len(lists) > 1 and all(isinstance(one, str) for one in names):
+        for key in (key for key in lists if key != _NAMES):
+            rows = [dict(zip(names, row, strict=False)) for row in value[key] if isinstance(row, list)]
+            yield from _lists(name, rows) if rows else ()
+        return
+    if len(value) > 1 and all(key.isdecimal() for key in value):  # rows by their number, as pandas writes a column
+        yield from _lists(name, list(value.values()))
+        return
+    unit = next((value[key] for key in _UNITS if isinstance(value.get(key), str)), None)
+    if len(lists) == 1 and unit is not None:
+        yield from _lists(name or lists[0], value[lists[0]], unit)
+        return
+    for key, one in value.items():
+        yield from _lists(_below(name, key), one)
+
+
+def _below(name: str, key: str) -> str:
+    return f"{name}.{key}" if name else key
+
+
+def _array(values: Sequence[Any]) -> tuple[NDArray, float | None]:
+    """Numbers, written as texts too, and clocks with when the first was; of anything else an array of objects."""
+    told = [k for k, one in enumerate(values) if one is not None]
+    cells, numbers = [values[k] for k in told], np.full(len(values), np.nan)
+    if not cells:
+        return np.empty(0), None
+    if all(isinstance(one, int | float) for one in cells):
+        numbers[told] = cells
+        return numbers, None
+    texts = [one.strip() for one in cells if isinstance(one, str)]
+    if len(texts) == len(cells):
+        if all(is_number(one) for one in texts):
+            numbers[told] = [float(one) for one in texts]
+            return numbers, None
+        if (found := moments_of(texts)) is not None:
+            numbers[told] = found.seconds
+            return numbers, found.begins
+    return np.array([str(one) for one in values], dtype=object), None
