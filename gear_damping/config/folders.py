@@ -3,6 +3,7 @@
 import json
 import os
 from pathlib import Path
+from tempfile import mkdtemp
 from typing import Any
 
 RESUMABLE = {"paper": "parts/*.json", "train": "*/seed_*/last.ckpt"}  # what an interrupted task leaves in its folder
@@ -11,7 +12,7 @@ RESUMABLE = {"paper": "parts/*.json", "train": "*/seed_*/last.ckpt"}  # what an 
 def read_record(folder: Path) -> dict[str, Any] | None:
     """What run.json of a folder says; None where there is none that can be read."""
     try:
-        found = json.loads((folder / "run.json").read_text())
+        found = json.loads((folder / "run.json").read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return None
     return found if isinstance(found, dict) and "status" in found else None
@@ -29,6 +30,10 @@ def unusable(folder: Path) -> str | None:
         existing = next(path for path in (folder, *folder.parents) if path.exists())
     except OSError as error:  # a name that no folder can bear
         return f"cannot be made: {error.strerror}"
-    if existing.is_dir() and os.access(existing, os.W_OK | os.X_OK):
-        return None
-    return f"cannot be made: {existing} is not a folder that can be written to"
+    if not (existing.is_dir() and os.access(existing, os.W_OK | os.X_OK)):
+        return f"cannot be made: {existing} is not a folder that can be written to"
+    try:
+        os.rmdir(mkdtemp(prefix=".", dir=existing))
+    except OSError as error:  # a file system that is none, such as /proc, allows everything and does nothing
+        return f"cannot be made: {existing} takes no folder ({error.strerror})"
+    return None

@@ -97,6 +97,7 @@ FAULTS = {
         ["simulator.pitch_error.values", "40 teeth", "(from command line: simulator.pitch_error.shaft=gear)"],
     ),
     "run_folder_below_a_file": (["hydra.run.dir=README.md/run"], ["hydra.run.dir", "cannot be made"]),
+    "run_folder_where_none_can_be": (["hydra.run.dir=/proc/run"], ["hydra.run.dir", "cannot be made"]),
     "no_extended_file": (["simulator.extended=nope.yaml"], ["simulator.extended", "nope.yaml", "cannot be read"]),
     "torque_of_the_gear_that_follows": (
         ["simulator.gear_torque=100"],
