@@ -113,8 +113,11 @@ class Simulation:
             raise ValueError(f"no wavelet '{wavelet}'; choose one of {', '.join(known)}")
         kind = known[wavelet] if isinstance(wavelet, str) else wavelet
         if frequencies_hz is None:
-            lowest = LOWEST * self.sampling_rate / len(self.runs.time)
-            frequencies_hz = np.geomspace(lowest, HIGHEST * self.sampling_rate, SCALES).tolist()
+            lowest, highest = LOWEST / len(self.runs.time), HIGHEST
+            if lowest >= highest:
+                few = f"{len(self.runs.time)} samples hold no {LOWEST:g} periods of any frequency"
+                raise ValueError(f"{few}; simulate {int(LOWEST / HIGHEST) + 1} of them or more")
+            frequencies_hz = (self.sampling_rate * np.geomspace(lowest, highest, SCALES)).tolist()
         transform = kind(self.sampling_rate, frequencies_hz=frequencies_hz)
         signal = self.runs.channel(channel or self.model.system.response)
         return transform(signal).numpy(), np.asarray(frequencies_hz)

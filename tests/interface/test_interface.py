@@ -157,6 +157,9 @@ def test_a_simulation_is_that_of_the_engine():
         gd.simulate(model, sampling_rate=40e3, n_samples=20, **{"backlash.gap": -1.0})
     with pytest.raises(ValueError, match="no wavelet 'haar'"):
         found.cwt("haar")
+    few = gd.simulate(model, sampling_rate=40e3, n_samples=9)
+    with pytest.raises(ValueError, match="9 samples hold no 4 periods of any frequency; simulate 11"):
+        few.cwt()
 
 
 def test_a_simulation_follows_the_closed_form():
