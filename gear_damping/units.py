@@ -295,10 +295,11 @@ def _turns_or_radians(value: float, unit: str, found: Unit, expected: str) -> st
     Between the two lies 2 pi for every turn, which a dimension does not see.
     """
     power = -found.dimension.time
+    wanted = {"1/s": 1, "1/s^2": 2}.get(expected, 0)
     if expected.endswith("Hz") and "rad" in unit:
         ours = value * found.factor / (2 * pi) ** power / parse_unit(expected).factor
-    elif expected in ("1/s", "1/s^2") and "Hz" in unit:
-        ours = value * found.factor * (2 * pi) ** power
+    elif wanted and "Hz" in unit and power in (1, wanted):
+        ours = (value * found.factor * (2 * pi) ** power) ** (wanted / power)
     else:
         return ""
     return f"give it in '{expected}'; {value:g} {unit} are {ours:.6g} {expected}, with 2 pi a turn"

@@ -10,7 +10,6 @@ from gear_damping.errors import InputError, Problem
 from gear_damping.explanation.explain import NOBODY, Listener
 from gear_damping.interface import identified_gears, identified_oscillator
 from gear_damping.interface.arguments import names, refuse_other, refuse_other_solver
-from gear_damping.interface.free_parameters import given_numbers
 from gear_damping.interface.model import Model
 from gear_damping.measurement.record import Measurement
 from gear_damping.physics.systems.traits import Trait
@@ -86,15 +85,16 @@ def identify(
         measurement: As `load` gives it.
         model: What is fitted; the linear oscillator, or the nominal gear pair, where absent.
         free: Its free parameters, by flat name (`backlash.gap`); `damping_ratio` stands for the coefficient of its one
-            damping law. Where absent, every number that its effects were given, and an oscillator's stiffness and
-            force gain. What the file states with an uncertainty is free too, about what it states; initial states and
-            unknown zeros of channels always are.
+            damping law. Where absent, every number that its effects were given, and an oscillator's stiffness,
+            viscous damping and gains, given or not. What the file states with an uncertainty is free too, about what
+            it states; initial states and unknown zeros of channels always are.
         log: Told what is found on the way.
         progress: Told (done, total) of the fit of an oscillator or a gear pair, but not of a `model` of one's own.
         solver: Settings of the solver.
 
     Raises:
-        InputError: the data are damaged, nothing can be fitted, or a name is unknown.
+        InputError: the data are damaged, nothing can be fitted, a name is unknown, or an oscillator's stiffness or
+            gain is neither free nor known.
     """
     refuse_faults(measurement)
     refuse_other_solver(solver)
@@ -105,11 +105,7 @@ def identify(
         remedy = "give a gd.Model, for example gd.Model(gd.Oscillator(), [gd.ViscousDamping()])"
         raise InputError(Problem("model", "is no model: a system with its effects", repr(model), remedy))
     if model is not None:
-        named = free or given_numbers(model)
-        if not named:
-            rule = "names nothing to be fitted, and the model was given no values"
-            raise InputError(Problem("free", rule, remedy="for example ['damping_ratio']"))
-        return Identification(measurement, identified_gears.own_fit(measurement, model, named, log, solver))
+        return Identification(measurement, identified_gears.own_fit(measurement, model, free, log, solver))
     if measurement.base.has(Trait.REST):
         return Identification(measurement, identified_oscillator.linear_fit(measurement, progress, solver))
     listener = Listener(log, progress or NOBODY.progress)

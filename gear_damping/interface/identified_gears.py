@@ -28,7 +28,7 @@ from gear_damping.identification.oscillator.linear_model import DAMPING, linear_
 from gear_damping.identification.output_error.least_squares import Rounds
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.interface.far_from_stated import far_from_stated
-from gear_damping.interface.free_parameters import free_parameters
+from gear_damping.interface.free_parameters import free_parameters, given_numbers
 from gear_damping.interface.identified_page import MOST_PANELS, estimate_rows, panel, residual_rows
 from gear_damping.measurement.record import Measurement
 from gear_damping.physics.damping_ratio import DAMPING_RATIO
@@ -73,10 +73,11 @@ def own_fit(measurement: Measurement, model: Model, free: Sequence[str], log: Lo
     """A model of one's own with these parameters free; what it was not given is what the file states of the rig.
 
     What neither gives keeps the default that the model prints; where it is free, it begins at what `explain` would
-    begin with.
+    begin with. Where no parameter is named, those that it was given are free, and of an oscillator its linear ones.
 
     Raises:
-        InputError: the model is of another system, a name is unknown, or a free parameter begins at zero.
+        InputError: the model is of another system, a name is unknown, a free parameter begins at zero, nothing is
+            free, or an oscillator's stiffness or gain is neither free nor known.
     """
     _refuse_casing(measurement)
     evidence = at_useful_rate(evidence_of(measurement))
@@ -87,7 +88,13 @@ def own_fit(measurement: Measurement, model: Model, free: Sequence[str], log: Lo
     first = {k: v for k, v in _first(evidence).items() if k in model.parameters()}
     named = {FLAT.get(name, name): value for name, value in evidence.parameters.items()}  # a ratio is no coefficient
     stated = {name: first[name] if name == DAMPING else value for name, value in named.items() if name in first}
+    linear = [name for name in _linear(evidence) if name in first and name not in model.given]
+    free = free or (*given_numbers(model), *linear)
+    if not free:
+        rule = "names nothing to be fitted, and the model was given no values"
+        raise InputError(Problem("free", rule, remedy="for example ['damping_ratio']"))
     names = {model.damping_coefficient if name == DAMPING_RATIO else name for name in free}
+    _refuse_unknown(model, [name for name in linear if name not in {DAMPING, *names, *stated}])
     initial = {name: first[name] for name in names if name in first}
     motion = {name: first[name] for name in MOTION if name in first}
     given = initial | motion | _radians(model, evidence) | stated | model.given
@@ -103,6 +110,29 @@ def own_fit(measurement: Measurement, model: Model, free: Sequence[str], log: Lo
         remedy = "begin with values nearer to those of the rig, or free fewer parameters"
         raise InputError(Problem("model", rule, remedy=remedy, source=str(measurement.source)))
     return Fitted(evidence, noise, weighed(outcome, evidence))
+
+
+def _linear(evidence: Evidence) -> list[str]:
+    """What a linear oscillator is fitted with: stiffness, damping and gains; nothing of a gear pair."""
+    if not evidence.has(Trait.REST):
+        return []
+    names = {evidence.base.spring, DAMPING, *evidence.base.gains.values()}
+    return [one.name for one in linear_model(evidence.fit, evidence.known)[0] if one.name in names]
+
+
+def _refuse_unknown(model: Model, names: Sequence[str]) -> None:
+    """Refuse to hold what scales the motion at a default, which is that of no rig."""
+    declared = model.parameters()
+    problems = [
+        Problem(
+            "free",
+            f"lacks '{name}', which is not known and would be held at {declared[name].default:g}",
+            remedy="free it, give it to the model, or state it under `parameters`",
+        )
+        for name in names
+    ]
+    if problems:
+        raise InputError(problems)
 
 
 def _radians(model: Model, evidence: Evidence) -> dict[str, float]:

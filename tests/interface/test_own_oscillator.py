@@ -66,3 +66,18 @@ def test_a_pendulum_in_degrees_is_one_in_radians(tmp_path):
     found = gd.identify(gd.load(tmp_path / "measurement.yaml"), model).content["parameters"]
     assert found["sine_restoring.stiffness"]["value"] == pytest.approx(40.0, rel=1e-3)
     assert found["viscous_damping.damping_coefficient"]["value"] == pytest.approx(0.2, rel=0.02)
+
+
+def test_a_model_that_was_given_nothing_is_the_linear_one(decay):
+    found = gd.identify(decay, gd.Model(gd.Oscillator(), [gd.ViscousDamping()]))
+    assert found.parameters["stiffness"]["value"] == pytest.approx(STIFFNESS, rel=1e-3)
+    assert found.damping_ratio_percent["value"] == pytest.approx(100 * DAMPING / (2 * STIFFNESS**0.5), rel=0.1)
+
+
+def test_a_stiffness_that_nobody_knows_is_not_held_at_its_default(decay):
+    """It was held at 1 1/s^2, and a damping of 2500 % came out of 2 %."""
+    model = gd.Model(gd.Oscillator(), [gd.ViscousDamping()])
+    with pytest.raises(InputError, match="free: lacks 'stiffness', which is not known and would be held at 1"):
+        gd.identify(decay, model, free="damping_ratio")
+    free_too = gd.identify(decay, model, free=["damping_ratio", "stiffness"])
+    assert free_too.parameters["stiffness"]["value"] == pytest.approx(STIFFNESS, rel=1e-3)

@@ -139,6 +139,7 @@ def test_a_factor_behind_a_unit_is_seen(text, unit):
         (62.83, "rad/s", "Hz", "62.83 rad/s are 9.99971 Hz"),
         (6283, "rad/s", "kHz", "are 0.999971 kHz"),
         (9.61, "Hz^2", "1/s^2", "9.61 Hz^2 are 379.388 1/s^2"),
+        (5, "Hz", "1/s^2", "5 Hz are 986.96 1/s^2"),
         (0.001, "kHz", "1/s", "0.001 kHz are 6.28319 1/s"),
     ],
 )
