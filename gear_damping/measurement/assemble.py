@@ -110,7 +110,7 @@ class Assembler:
             findings += _lost(recorded, was, values, record.base, plan.name) if record.plan.resample else []
         else:
             recorded, own = values, raw.own_time
-            findings += [found for found in own.findings if found.kind == "rate_conflict"]
+            findings += [found for found in own.findings if found.kind in ("rate_conflict", "two_clocks")]
             values = moved(record.base, own, values, plan.key, str(record.table.path))
             evenly = own.resample(recorded) if is_faster(own, record.base) else None
             findings += [] if evenly is None else _lost(evenly, own, values, record.base, plan.name)

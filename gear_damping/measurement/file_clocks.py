@@ -120,6 +120,16 @@ def conflict_with_file(rate: float, own: float, channel: str = "time") -> Findin
     return Finding("rate_conflict", message, channel=channel, severity="note" if own <= _DOUBTFUL else "data_problem")
 
 
+def two_clocks(rate: float, own: float, channel: str) -> Finding:
+    """What is said where a channel of as many rows as the record lasts longer, by its own rate, both in Hz."""
+    message = (
+        f"its own clock runs at {own:.4g} Hz, and that of the record beside it at {rate:.4g} Hz over as many rows: "
+        f"they last {rate / own:.4g} times as long, and those beyond the record are not used; where the rows belong "
+        "together, leave out the clock of the channel, or correct its unit"
+    )
+    return Finding("two_clocks", message, channel=channel, severity="note")
+
+
 def _rate_conflict(rate: float, said: str, own: float) -> Finding:
     message = (
         f"{said} {own:.6g} Hz and sampling_rate says {rate:.6g} Hz, which was used; "

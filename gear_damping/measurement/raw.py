@@ -13,7 +13,7 @@ from gear_damping.measurement.checks import refuse_not_finite
 from gear_damping.measurement.cutting import rows_beside, slower, window_rows
 from gear_damping.measurement.declaration import ChannelPlan, EncoderPlan, RecordPlan, TimePlan
 from gear_damping.measurement.encoders import ReadColumn, ShaftAngle, pulse_times, shaft_angle
-from gear_damping.measurement.file_clocks import FileClocks, conflict_with_file
+from gear_damping.measurement.file_clocks import FileClocks, conflict_with_file, two_clocks
 from gear_damping.measurement.formats.table import Table
 from gear_damping.measurement.rows import LEAST_SAMPLES, MOST_MISSING, Columns, Rows, filled_in, last_number
 from gear_damping.measurement.stamp_units import (
@@ -28,6 +28,7 @@ from gear_damping.schema.values import Problems
 from gear_damping.units import multiple_of_a_unit, parse_unit, scaled_unit, to_si
 
 _SAME_RATE = 1e-3  # how far a declared rate may lie from the file's
+_CLOCKS_AGREE = 0.9  # of a rate: two clocks of the same rows are nearer to each other, however poor their quartz
 SAME_UNIT = 1e-9  # the same of units
 
 
@@ -285,7 +286,12 @@ class RawReader:
                 return self._faster(plan, unit, header)
             return RawChannel(plan, self.sliced(plan.column, f"{plan.key}.column"), unit, header)
         values = self.unsliced(plan.column, f"{plan.key}.column")
-        own = self._own_time(plan, values.size) if clock is None else steady_time(clock[1], 0, values.size, clock[0])
+        if clock is not None:
+            return RawChannel(plan, values, unit, header, steady_time(clock[1], 0, values.size, clock[0]))
+        own, rate = self._own_time(plan, values.size), base and base.sampling_rate * self.rows.step
+        rows = {self.columns.size(column) for column in self.columns.shared}
+        if rate and own.time.size in rows and own.sampling_rate < _CLOCKS_AGREE * rate:
+            own = replace(own, findings=(*own.findings, two_clocks(rate, own.sampling_rate, plan.name)))
         return RawChannel(plan, values, unit, header, own)
 
     def _faster(self, plan: ChannelPlan, unit: str, header: str | None) -> RawChannel:

@@ -136,3 +136,29 @@ def test_a_mesh_counted_too_finely_is_found_by_its_high_harmonics():
 
 def test_of_one_speed_no_harmonic_is_told_from_a_line_of_the_structure():
     assert _found(24, {48: 1.0, 96: 0.3}, speeds=(150.0, 150.0)) == []
+
+
+UNIT = "the number of its speed were in {} and not in {}: check its unit"
+
+
+@pytest.mark.parametrize(
+    ("factor", "declared", "meant"),
+    [
+        (30 / np.pi, "rad/s", "rpm"),
+        (np.pi / 30, "rpm", "rad/s"),
+        (1 / (2 * np.pi), "rad/s", "Hz"),
+        (2 * np.pi, "Hz", "rad/s"),
+    ],
+)
+def test_a_speed_in_another_unit_is_told_by_where_its_mesh_stands(factor, declared, meant):
+    """Both shafts are declared to turn `factor` times as fast as they do."""
+    seen = {23 * number / factor: size for number, size in ((1, 1.0), (2, 0.4), (3, 0.1))}
+    speeds = (150.0 * factor, 190.0 * factor)
+    (message,) = _found(23, seen, speeds=speeds, gear=41)
+    assert message.endswith(UNIT.format(meant, declared))
+
+
+def test_what_a_shaft_makes_once_or_twice_a_turn_is_no_mesh_of_another_unit():
+    runout = {2.0: 1.0, 4.0: 0.4, 6.0: 0.2}  # an oval disc, where 19 teeth at rad/s for rpm would be 1.99
+    found = _found(19, runout, speeds=(1500.0, 1900.0), gear=41)
+    assert not [one for one in found if "check its unit" in one]

@@ -22,6 +22,11 @@ LEAST_ORDER = 0.6  # of the tooth count, from which other combs are compared wit
 DECODED = 4  # counts that an encoder gives for a line of it at most; 1 and 2 are usual too
 BETWEEN = 0.05  # share of a signal's variance between the harmonics of a mesh, where no shaft's own orders lie
 BESIDE = 2  # teeth more and fewer, whose mesh lies where nothing of this one or of a shaft does
+UNITS = {  # by which a speed or an angle is wrong whose number is of the second unit, and was declared in the first
+    np.pi / 30: ("rad/s", "rpm"), 30 / np.pi: ("rpm", "rad/s"), 1 / 60: ("Hz", "rpm"), 60.0: ("rpm", "Hz"),
+    2 * np.pi: ("rad/s", "Hz"), 0.5 / np.pi: ("Hz", "rad/s"), np.pi / 180: ("rad", "deg"), 180 / np.pi: ("deg", "rad"),
+}  # fmt: skip
+TURNS_APART = 2.0  # turns of a shaft over a record by which an order differs from a whole one: two lines are told apart
 LACKING = 0.01  # of the energy: of a wave of two stiffnesses the first harmonic is never smaller than the second
 
 
@@ -50,6 +55,13 @@ def mesh_order_faults(evidence: Evidence) -> list[Finding]:
             "check counts_per_revolution (lines, or the two or four counts of each) and the unit of the angle"
         )
         return [Finding("turns_miscounted", message, channel=evidence.channel.name)]
+    if units := _other_unit(series, shafts, counts):
+        message = (
+            f"the mesh order {teeth} is absent, and stands where it would with a pinion that turns as if the number of "
+            f"its {'angle' if units[0] in ('rad', 'deg') else 'speed'} were in {units[1]} and not in {units[0]}: check "
+            "its unit"
+        )
+        return [Finding("other_unit", message, channel=evidence.channel.name)]
     orders = [n for n in range(max(5, round(LEAST_ORDER * teeth)), 2 * teeth) if n == teeth or n % teeth]
     shares = _shares(series, shafts, orders)
     combs = shares.sum(2)  # (records, orders)
@@ -108,6 +120,30 @@ def _miscounted(series: Sequence[NDArray], shafts: Sequence[NDArray], counts: tu
         if shares[:, there].sum(1).min() >= STRONG and lacking.all():
             return float(factor)
     return 0.0
+
+
+def _other_unit(
+    series: Sequence[NDArray], shafts: Sequence[NDArray], counts: tuple[int, int]
+) -> tuple[str, str] | None:
+    """The declared unit of the turning and the one in which its number gives the mesh that is there; None of none.
+
+    Harmonics of that mesh hold much of every record, far more than combs of two teeth more and fewer, and the declared
+    mesh next to nothing. What a shaft makes, at whole orders of its own, is none.
+    """
+    teeth, turns = counts[0], [float(np.ptp(angle)) / (2 * np.pi) for angle in shafts]
+    for factor, units in UNITS.items():
+        order = factor * teeth
+        seen = [(order * one, len(angle) / 4) for one, angle in zip(turns, shafts, strict=True)]
+        if not all(FEWEST_TEETH <= passed <= most for passed, most in seen):
+            continue
+        own_orders = ((order * n / teeth, min(turns) * teeth / n) for n in counts)  # of each shaft, and its turns
+        if factor < 1 and any(abs(one - round(one)) * count < TURNS_APART for one, count in own_orders):
+            continue
+        shares = _shares(series, shafts, [order, teeth, order - BESIDE * factor, order + BESIDE * factor])
+        there, own, *beside = shares.sum(2).T  # (orders, records)
+        if there.min() >= STRONG and (own < FAINT * there).all() and (there >= STANDS_OUT * np.max(beside, 0)).all():
+            return units
+    return None
 
 
 def _shares(
