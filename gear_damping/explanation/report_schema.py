@@ -162,6 +162,7 @@ class DampingRatio(Part):
     interval95: Interval95 = said("95 % interval, of the noise; by what records differ too where more is missed", "%")
     reference_velocity: float = said("velocity amplitude at which it is taken", "`velocity_unit`")
     velocity_unit: str = said("the unit of that")
+    by_law: dict[str, float] = said("what each law of damping adds to it, where there are several; else empty", "%")
 
 
 class DampingRatios(Part):

@@ -32,6 +32,8 @@ from gear_damping.schema.values import Problems
 from gear_damping.units import Unit, multiple_of_a_unit, of_a_shaft, parse_unit, scaled_unit
 
 LOST = 0.1  # of a channel's variance, from which it is said that resampling took it
+ALL = 0.9  # of it, above which what is left is no motion
+_ENDS = 2  # samples of a lower rate, which depend on how the signal is thought to go on beyond the record
 _TEETH = tuple(GEOMETRY.values())
 _GEOMETRY = (*_TEETH, *NEEDED)
 _STANDS = 0.1  # of the largest speed: what a vibration's mean is below and that of a shaft that turns is not
@@ -264,14 +266,15 @@ def _lost(
     weights = None if was.uniform else np.gradient(was.time[inside])
     mean = np.average(recorded, weights=weights)
     before = float(np.average((recorded - mean) ** 2, weights=weights))
-    share = 1 - float(np.var(kept)) / max(before, 1e-300)
+    share = 1 - float(np.var(kept[_ENDS:-_ENDS])) / max(before, 1e-300)
     if share < LOST:
         return []
     message = (
         f"the lower rate takes {100 * share:.0f} % of the variance of {name} away, which lies above half of it; "
         "where that is the motion, give a higher rate"
     )
-    return [Finding("resampled_away", message, channel=name, severity="note")]
+    severity = "data_problem" if share > ALL else "note"
+    return [Finding("resampled_away", message, channel=name, severity=severity)]
 
 
 def _mean_lost(channel: Channel) -> bool:

@@ -8,7 +8,7 @@ from pydantic import model_validator
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.angular_error import is_angle, is_angular_acceleration
-from gear_damping.measurement.quantities import PERIODS, Column, Corner, Cutoff, Measured, Rate
+from gear_damping.measurement.quantities import PERIODS, Column, Corner, Cutoff, Gain, Measured, Rate
 from gear_damping.measurement.record import Quantity
 from gear_damping.schema.mappings import Declared, key
 from gear_damping.schema.values import Flag, Number, OneOf, Text, refuse
@@ -64,7 +64,7 @@ class AnyChannel(Timed):
     )  # fmt: skip
     unit: Annotated[str, Text()] = key("Unit of the values; absent, that of the column's header.", "values")
     polarity: Annotated[int, OneOf((1, -1))] = key("Sign that the values are multiplied by.", "values", 1)
-    gain: Annotated[float, Number(nonzero=True)] = key(
+    gain: Annotated[float, Gain(nonzero=True)] = key(
         "The file's value over the quantity: values are divided by it, and `unit` is that of the quantity.",
         "values",
         1.0,

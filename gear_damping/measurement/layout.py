@@ -26,6 +26,12 @@ COUNTS = ("1", "count", "counts")  # what the column of an encoder may be said t
 _NO_FILE = "name the file of the record, relative to this YAML"
 
 
+_COUNTS = (
+    "write counts_per_revolution: what the column counts in one turn, four times the lines where it counts every edge"
+)
+_PULSES = "write pulses_per_revolution"
+
+
 class Pulses(Declared):
     """Where the angle of a shaft comes from."""
 
@@ -47,6 +53,9 @@ class Encoder(Pulses):
     """An encoder that counts."""
 
     title: ClassVar[str] = "an encoder"
+    meant: ClassVar[Mapping[str, str]] = Frozen(
+        dict.fromkeys(("cpr", "ppr", "pulses_per_revolution", "lines", "resolution", "counts", "pulses"), _COUNTS)
+    )
     unit: Annotated[str, Text()] = key("Unit of `timestamps`; where absent that of the file, else s.", "angle")
     counts_per_revolution: Annotated[float, Number(least=1)] = key(
         "Counts in one turn of its shaft.", "angle", missing="give the number in one turn of its shaft"
@@ -68,6 +77,9 @@ class Tacho(Pulses):
     """A pulse train."""
 
     title: ClassVar[str] = "a tacho"
+    meant: ClassVar[Mapping[str, str]] = Frozen(
+        dict.fromkeys(("ppr", "cpr", "counts_per_revolution", "pulses", "pulses_per_turn"), _PULSES)
+    )
     refused: ClassVar[c.Reasons] = Frozen({"index": ("the zero of its angle is its first pulse", "leave it out")})
     unit: Annotated[str, Text()] = key(
         "Unit of the column; where absent that of the file, else V, or s of `timestamps`. Half way between two levels "
@@ -113,6 +125,14 @@ class GearChannels(c.Timed):
     """The channels of a gear pair."""
 
     title: ClassVar[str] = "a gear_pair"
+    meant: ClassVar[Mapping[str, str]] = Frozen(
+        {
+            **PERIODS,
+            "gear_angle": "write encoders: {gear: {column: ..., counts_per_revolution: 360}} beside channels (deg)",
+            "tacho": "it is a key of encoders, which stands beside channels: write it there",
+            "encoder": "write encoders beside channels, with pinion and gear below it",
+        }
+    )
     transmission_error: c.TransmissionError = key("r_b1 theta_1 - r_b2 theta_2, closing positive.", "response")
     pinion_torque: c.Torque = key("Driving torque.", "load")
     gear_torque: Annotated[c.GearTorque, Word(*GEAR_TORQUE_MODES)] = key(
@@ -191,7 +211,9 @@ class Window(Declared):
 class AnyRecord(Declared):
     """What the records of every system have."""
 
-    meant: ClassVar[Mapping[str, str]] = PERIODS
+    meant: ClassVar[Mapping[str, str]] = Frozen(
+        {**PERIODS, "parameters": "they are those of the rig, for all records: write them beside records"}
+    )
     name: Annotated[str, Text()] = key("Name of the record; that of its file where absent.", "report")
     file: Annotated[str, FileName()] = key(
         "The file, relative to this YAML; `${GEAR_DAMPING_DATA}` is filled in.", "values", missing=_NO_FILE

@@ -11,7 +11,7 @@ from typing import Any
 from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.measurement.record import Quantity
 from gear_damping.schema.values import Number, OneOf, Text, Value, refuse
-from gear_damping.units import parse_unit, said_as, spoken, to_si
+from gear_damping.units import is_of_kind, parse_unit, said_as, spoken, to_si
 
 ORDERS = (1, 2, 4)  # poles of a Butterworth filter that the simulated sensor has too (`sensor_lowpass`)
 NOT_UNCERTAIN = (
@@ -29,6 +29,7 @@ Found = list[Problem]
 _THOUSANDS = re.compile(r"^\s*([+-]?\d{1,3}(?:[, '’]\d{3})+)\s*([A-Za-z%µμ°].*?)?\s*$")  # `1,000 Hz`, `1 000 Hz`
 _BARE = re.compile(r"^\s*[+-]?\d+(\.\d+)?\s*$")
 _DECIMAL_COMMA = re.compile(r"^\s*([+-]?\d+),(\d+([eE][+-]?\d+)?\s*\D.*?)\s*$")
+_ELECTRIC = ("V", "A")  # in which columns of sensors usually are
 # The units that people mean by a bare number, by the unit that it is converted to.
 _USUAL = Frozen(
     {
@@ -42,6 +43,22 @@ _USUAL = Frozen(
         "N/m": ("N/um", "N/mm", "N/m"),
     }
 )
+
+
+class Gain(Number):
+    """What a column holds for one unit of a quantity: a number, as the unit of the column is not declared."""
+
+    def read(self, value: Any, name: str) -> float:
+        """The number."""
+        number, unit = said_as(value) or (0.0, "")
+        of_column, _, of_quantity = unit.partition("/")
+        if not of_quantity:
+            return super().read(value, name)
+        remedy = f"write unit: {of_quantity}, and gain: {number:g} where the column is in {of_column}"
+        whole = next((one for one in _ELECTRIC if of_column != one and is_of_kind(of_column, one)), "")
+        if whole:
+            remedy += f", {to_si(number, of_column, whole):g} where it is in {whole}"
+        return refuse("must be a number: what the column holds for one unit", value, remedy)
 
 
 class Column(Value):

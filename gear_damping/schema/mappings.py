@@ -4,6 +4,7 @@ A key has its meaning, what acts on it, and the kind of its value (`values`). A 
 meaning elsewhere is refused in it. `read_declared` turns pydantic's errors into problems with path, rule and remedy.
 """
 
+import re
 from collections.abc import Callable, Iterable, Mapping
 from typing import Annotated, Any, ClassVar, get_args
 
@@ -17,6 +18,7 @@ from gear_damping.schema.values import Given, OneOf, Problems, Value, refuse
 Path = tuple[str | int, ...]
 _LOST = object()  # stands for an item of a list that was wrong
 _DEEPEST = 12  # mappings within mappings that are copied, since a YAML may hold itself
+_NUMBERED = re.compile(r"(.*?)_?\d+")  # a name such as `acceleration_2`
 _LEFT = "leave the group as it is"
 
 
@@ -255,7 +257,11 @@ def _unknown(model: type[Declared], name: object, value: object) -> Problem:
     within = [part for part in names(model) if name in _names_at(model, (part,))]
     if within:
         return Problem("", model.unknown, None, f"it is a key of {' or of '.join(within)}: write it there")
-    return Problem("", model.unknown, None, nearest(str(name), tuple(names(model))))
+    known, numbered = tuple(names(model)), _NUMBERED.fullmatch(str(name))
+    if numbered and numbered[1] in known:
+        remedy = f"there is one '{numbered[1]}' and no second: leave out the one that is not needed"
+        return Problem("", model.unknown, None, remedy)
+    return Problem("", model.unknown, None, nearest(str(name), known))
 
 
 def _names_at(model: type[Declared], place: Path) -> tuple[str, ...]:

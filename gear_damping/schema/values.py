@@ -101,9 +101,9 @@ class OneOf(Value):
 
     def read(self, value: Any, name: str) -> Any:
         """The word; Python takes True for 1, people do not."""
-        if not isinstance(value, bool) and isinstance(value, str | int) and value in self.choices:
-            return value
         words = [str(choice) for choice in self.choices]
+        if not isinstance(value, bool) and isinstance(value, str | int) and str(value) in words:
+            return self.choices[words.index(str(value))]
         return refuse(f"must be one of {', '.join(words)}", value, nearest(str(value), words))
 
     def says(self) -> str:

@@ -18,6 +18,7 @@ from gear_damping.identification.output_error.records import FitRecord, FreePara
 from gear_damping.physics.catalogue import effect_class
 from gear_damping.physics.model import Model
 from gear_damping.physics.systems.gear_pair import GearPair
+from gear_damping.physics.systems.oscillator import Oscillator
 from gear_damping.simulation.simulate import simulate
 
 NOISE = 1e-8
@@ -171,3 +172,17 @@ def _told(leaves_unnamed, causes, visible, converged, effects=()):
         patch.object(report_fields, "damping_by_record", lambda *_: []),
     ):
         return report_fields._gain(judged, evidence, None), counted[-1]
+
+
+def test_every_law_of_damping_has_its_part_of_the_ratio():
+    """By hand: c / (2 sqrt(k m)) of the viscous one, 4 F / (pi V) in the place of c of a dry friction."""
+    effects = [effect_class(name)() for name in ("viscous_damping", "coulomb_friction")]
+    given = {"stiffness": 900.0, "amplitude": 0.01, "viscous_damping.damping_coefficient": 1.2}
+    given |= {"coulomb_friction.force": 0.05, "coulomb_friction.width": 1e-4}
+    hypothesis = Hypothesis(Oscillator(), tuple(effects), given, ())
+    outcome = SimpleNamespace(hypothesis=hypothesis, flat_given=lambda: given)
+    found, velocity = gain._by_law(outcome, {}, 1)
+    assert list(found) == ["viscous_damping", "coulomb_friction"]
+    assert float(found["viscous_damping"][0]) == pytest.approx(100 * 1.2 / 60)
+    assert float(found["coulomb_friction"][0]) == pytest.approx(100 * 4 * 0.05 / (np.pi * velocity) / 60, rel=1e-2)
+    assert float(gain._summed(found, 1)[0]) == pytest.approx(sum(float(each[0]) for each in found.values()))

@@ -197,6 +197,7 @@ def test_what_a_lower_rate_takes_away_is_said(with_plan_of_a_fork):
     assert not kept
     assert len(lost) == 1
     assert "takes 100 % of the variance of displacement away" in lost[0].message
+    assert lost[0].severity == "data_problem"  # what is left are edges of the filter, and no motion
 
 
 @pytest.fixture

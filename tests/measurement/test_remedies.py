@@ -250,3 +250,31 @@ def test_what_yaml_takes_for_a_truth_value_is_to_be_put_in_quotes():
 def test_other_words_for_the_scale_of_a_channel_lead_to_its_key(bench, word, said):
     bench.channels["transmission_error"][word] = 2.0
     assert said in bench.only_problem()
+
+
+@pytest.mark.parametrize(
+    ("place", "key", "value", "remedy"),
+    [
+        ((), "parameters", {"contact_ratio": 1.5}, "write them beside records"),
+        (("channels",), "tacho", {"column": "te"}, "it is a key of encoders, which stands beside channels"),
+        (("channels",), "gear_angle", {"column": "te", "unit": "deg"}, "counts_per_revolution: 360}} beside channels"),
+        (("channels",), "acceleration_2", {"column": "te"}, "there is one 'acceleration' and no second"),
+        (("encoders", "pinion"), "cpr", 1024, "write counts_per_revolution"),
+        (("encoders", "tacho"), "ppr", 60, "write pulses_per_revolution"),
+    ],
+)
+def test_a_key_in_the_wrong_place_or_by_another_name_is_told_where_and_how(bench, place, key, value, remedy):
+    at = bench.record
+    for part in place:
+        at = at.setdefault(part, {})
+    at[key] = value
+    (said,) = [one for one in bench.problems() if one.startswith(".".join(("records[0]", *place, key)) + ":")]
+    assert remedy in said
+
+
+def test_a_sensitivity_with_its_unit_is_answered_with_the_gain_and_a_quoted_sign_is_taken(bench):
+    channel = bench.record["channels"]["transmission_error"]
+    channel |= {"polarity": "-1", "gain": "100 mV/g"}
+    assert "write unit: g, and gain: 100 where the column is in mV, 0.1 where it is in V" in bench.only_problem()
+    channel["gain"] = 2.0
+    assert bench.load().records[0].channels["transmission_error"].polarity == -1

@@ -46,5 +46,8 @@ def test_damping_beside_what_has_no_name_is_said_to_be_conditional():
     gain = {"damping_ratio_percent": {"before": before, "after": after, "conditional": False}}
     plain = damping_sentence(gain)
     assert "100 % too high" in plain
+    after["by_law"] = {"viscous_damping": 1.634, "coulomb_friction": 1.9}
+    assert "(viscous_damping 1.63 %, coulomb_friction 1.9 %)" in damping_sentence(gain)
+    after["by_law"] = {}
     gain["damping_ratio_percent"]["conditional"] = True
     assert damping_sentence(gain) == plain + CONDITIONAL

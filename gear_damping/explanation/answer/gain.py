@@ -143,7 +143,8 @@ def damping_ratio(outcome: Outcome, covariances: Tensor, moves: Tensor | None = 
         return None
     points = shared.repeat(len(shared) + 1, 1)
     points[1:] += STEP * torch.eye(len(shared), dtype=torch.float64)
-    ratios, velocity = _ratios(outcome, problem.unknowns.parameters(points), len(points))
+    by_law, velocity = _by_law(outcome, problem.unknowns.parameters(points), len(points))
+    ratios = _summed(by_law, len(points))
     if not bool(ratios.isfinite().all()):
         return None
     slope = (ratios[1:] - ratios[0]) / STEP
@@ -152,7 +153,8 @@ def damping_ratio(outcome: Outcome, covariances: Tensor, moves: Tensor | None = 
         half = max(half, half_width(jackknife_error((moves @ slope).numpy()), len(moves) - 1))
     value = float(ratios[0])
     ends = (max(value - half, min(value, 0.0)), value + half)
-    return Interval(value, ends, "%").plain() | {"reference_velocity": velocity}
+    several = {name: float(each[0]) for name, each in by_law.items()} if len(by_law) > 1 else {}
+    return Interval(value, ends, "%").plain() | {"reference_velocity": velocity, "by_law": several}
 
 
 def _has_no_spring(outcome: Outcome, covariances: Tensor) -> bool:
@@ -169,11 +171,16 @@ def damping_ratios(outcome: Outcome, others: Mapping[str, Tensor]) -> list[float
     """The equivalent damping ratios in % of critical with other values of some parameters, (batch,) each."""
     batch = len(next(iter(others.values())))
     fitted = {name: torch.full((batch,), value, dtype=torch.float64) for name, value in outcome.values.items()}
-    return _ratios(outcome, fitted | dict(others), batch)[0].tolist()
+    return _summed(_by_law(outcome, fitted | dict(others), batch)[0], batch).tolist()
 
 
-def _ratios(outcome: Outcome, free: Mapping[str, Tensor], batch: int) -> tuple[Tensor, float]:
-    """Damping ratios in % of a batch of points."""
+def _summed(by_law: Mapping[str, Tensor], batch: int) -> Tensor:
+    """(batch,) of all laws together."""
+    return sum(by_law.values(), torch.zeros(batch, dtype=torch.float64))
+
+
+def _by_law(outcome: Outcome, free: Mapping[str, Tensor], batch: int) -> tuple[dict[str, Tensor], float]:
+    """Damping ratios in % of a batch of points, (batch,) of each law of damping, and the velocity that they are at."""
     model = outcome.hypothesis.model
     values = model.values(batch, **outcome.flat_given())
     for name, value in free.items():
@@ -183,15 +190,16 @@ def _ratios(outcome: Outcome, free: Mapping[str, Tensor], batch: int) -> tuple[T
     derived = prepared.derived | {"mean_stiffness": mean_stiffness(model, prepared)}
     speed = reference_velocity(prepared.derived)
     speed = speed[:1].expand(batch)  # the same amplitude for every point
-    total = torch.zeros(batch, dtype=torch.float64)
+    found: dict[str, Tensor] = {}
     for effect in model.effects:
         if isinstance(effect, DampingLaw):
             own = {p.name: values[f"{effect.name}.{p.name}"] for p in effect.parameters}
-            total = total + effect.damping_ratio(own, derived["equivalent_mass"], derived["mean_stiffness"], speed)
+            ratio = effect.damping_ratio(own, derived["equivalent_mass"], derived["mean_stiffness"], speed)
+            found[effect.name] = 100 * ratio
         elif isinstance(effect, DampingForce) and not effect.requires:  # what acts in a gap alone damps no contact
             critical = 2 * torch.sqrt(derived["mean_stiffness"] * derived["equivalent_mass"])
-            total = total + damping_coefficient(effect, prepared, speed) / critical
-    return 100 * total, float(speed[0])
+            found[effect.name] = 100 * damping_coefficient(effect, prepared, speed) / critical
+    return found, float(speed[0])
 
 
 def mean_stiffness(model: Model, prepared: Prepared) -> Tensor:

@@ -177,7 +177,7 @@ def rate_sentence(explanation: Mapping[str, Any]) -> str:
 
 
 def _damping(before: Mapping[str, Any], after: Mapping[str, Any], at: str) -> str:
-    was, now = (estimate({**found, "unit": "%"}) for found in (before, after))
+    was, now = (f"{estimate({**found, 'unit': '%'})}{_parts(found)}" for found in (before, after))
     if not _known(after.get("value")) or after["value"] == before["value"]:
         return f"The damping ratio is {was} of critical{at}."
     said = f"The damping ratio came out at {was} of critical{at} with the nominal simulation"
@@ -187,6 +187,12 @@ def _damping(before: Mapping[str, Any], after: Mapping[str, Any], at: str) -> st
         return f"{said}: a difference within its uncertainty."
     way = "high" if change > 0 else "low"
     return f"{said}: what the simulation missed had made damping look {number(abs(100 * change), 2)} % too {way}."
+
+
+def _parts(ratio: Mapping[str, Any]) -> str:
+    """What each law of damping adds to a ratio, in brackets; nothing where one makes all of it."""
+    parts = ratio.get("by_law") or {}
+    return f" ({', '.join(f'{name} {number(value, 3)} %' for name, value in parts.items())})" if parts else ""
 
 
 def next_experiment_sentences(experiment: Mapping[str, Any] | None) -> list[str]:
