@@ -37,6 +37,7 @@ SOLVER = {
     "engine": OneOf(get_args(Engine)),
     "chunk": Number(1, 10_000_000, whole=True),
 }
+OTHER_GROUP = "choose the group that brings its own: simulator=oscillator family=none, or simulator=gear_pair"
 HOW = (*(name for name in PLAIN if name != "system"), "solver", "plugins")  # keys that say how to simulate
 SENSOR_NOISE = "sensor_noise"
 
@@ -103,6 +104,9 @@ def read_simulator(node: Mapping[str, Any], family: Mapping[str, Any], origin: O
     system_class = systems.get(plain["system"])
     if system_class is None:
         raise InputError(reader.problems)
+    if group := _of_another_system(plain["system"], origin):
+        reader.refuse("simulator.system", f"stands beside the parameters of a {group}", plain["system"], OTHER_GROUP)
+        raise InputError(reader.problems)
     declared = {p.name: p for p in system_class.parameters}
     options = {option.name for option in system_class.options}
     chosen = {key: value for key, value in node.items() if key in options}
@@ -125,6 +129,16 @@ def read_simulator(node: Mapping[str, Any], family: Mapping[str, Any], origin: O
     return SimulatorSettings(
         model=model, given=given, family=drawn, sampling_rate=rate, solver=Solver(**solver), plugins=plugins, **plain
     )
+
+
+def _of_another_system(system: str, origin: Origin) -> str:
+    """The system whose parameters the chosen group brings, where another one of the package was typed; else empty.
+
+    A system of one's own may have the parameters of one of the package's.
+    """
+    of_group = origin.given_by("simulator").get("simulator.system", system)
+    is_other = system in SYSTEMS and system != of_group and origin.place("simulator.system") == COMMAND_LINE
+    return of_group if is_other else ""
 
 
 def _solver(reader: Reader, node: Any) -> dict[str, Any]:

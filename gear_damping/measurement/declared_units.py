@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.record import Quantity
 from gear_damping.measurement.vocabulary import OSCILLATOR_CHANNELS, SHAFT_SPEEDS
-from gear_damping.units import Dimension, Unit, of_a_shaft, other_kind, parse_unit
+from gear_damping.units import LEVEL, Dimension, Unit, of_a_shaft, other_kind, parse_unit
 
 _PER_SECOND = Dimension(time=-1)  # exponent of a derivative in time
 _PER = {0: "", 1: "/s", 2: "/s^2"}
@@ -73,6 +73,9 @@ class UnitSystem:
         Raises:
             InputError: the unit is unknown or of another kind than the channel.
         """
+        if text.strip() == LEVEL:
+            rule, remedy = "a level is a logarithm, and no signal", "give the values themselves, 10^(level/20)"
+            raise InputError(Problem(key, rule, text, remedy, source))
         unit = parse_unit(text, key, source)
         if name in SHAFT_SPEEDS and (radius or unit.dimension == _VELOCITY.dimension):
             return _around(unit, radius, self.si[name], key, text, source)

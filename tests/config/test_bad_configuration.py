@@ -98,6 +98,10 @@ FAULTS = {
     ),
     "run_folder_below_a_file": (["hydra.run.dir=README.md/run"], ["hydra.run.dir", "cannot be made"]),
     "run_folder_where_none_can_be": (["hydra.run.dir=/proc/run"], ["hydra.run.dir", "cannot be made"]),
+    "system_beside_the_group_of_another": (
+        ["simulator.system=oscillator"],
+        ["simulator.system = 'oscillator'", "the parameters of a gear_pair", "simulator=oscillator family=none"],
+    ),
     "no_extended_file": (["simulator.extended=nope.yaml"], ["simulator.extended", "nope.yaml", "cannot be read"]),
     "torque_of_the_gear_that_follows": (
         ["simulator.gear_torque=100"],

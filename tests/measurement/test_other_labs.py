@@ -395,10 +395,20 @@ def test_the_rate_of_a_dataset_is_the_file_s_and_a_scale_beside_it_is_said(tmp_p
     h5py = pytest.importorskip("h5py")
     with h5py.File(tmp_path / "a.h5", "w") as file:
         file["acc"] = DECAY
-        file["acc"].attrs.update({"sampling_rate": 500.0, "unit": "m", "scale": 0.5})
+        file["acc"].attrs.update({"sampling_rate": 500.0, "unit": "m", "scale": 0.5, "add_offset": 3.0})
     table = read_table(tmp_path / "a.h5")
     assert table.clock(0) == (0.0, 500.0)
     assert any("scale = 0.5, which is not applied" in note for note in table.notes)
+    assert any("add_offset = 3.0, which is not applied" in note for note in table.notes)
+
+
+def test_a_level_is_no_motion(tmp_path):
+    rows = "\n".join(f"{t:.4f},{x:.6g}" for t, x in zip(TIME, DECAY, strict=True))
+    channels = {"time": {"column": "t", "unit": "s"}, "displacement": {"column": "x", "unit": "dB"}}
+    with pytest.raises(
+        InputError, match=r"displacement.unit = 'dB': a level is a logarithm, and no signal; remedy: give"
+    ):
+        loaded(tmp_path, "t,x\n" + rows, channels)
 
 
 def test_rows_that_are_written_when_something_changes_have_lost_nothing(tmp_path):

@@ -25,6 +25,7 @@ SUFFIXES = (".h5", ".hdf5", ".hdf")
 DEADLY = True  # a damaged file may end the process
 
 _FACTORS = ("scale", "scale_factor", "factor", "gain", "sensitivity", "calibration", "slope")
+_ZEROS = ("add_offset", "offset", "intercept")  # that they may have to be moved by
 _SINCE = re.compile(r"\s+since\s.*$", re.I | re.S)  # a time counts from
 _UNIT_ATTRIBUTES = ("unit", "units", "Unit", "Units", "unit_string")
 
@@ -57,9 +58,10 @@ def read(path: Path, max_bytes: int) -> Table:
 
 
 def _not_applied(path: Path, dataset: Any) -> Iterator[str]:
-    """A note for each attribute by which stored numbers may have to be multiplied: nothing says that they have not."""
+    """A note for each attribute by which numbers may have to be multiplied or moved: nothing says that they are."""
     for name, value in dataset.attrs.items():
-        if name.lower() in _FACTORS and np.size(value) == 1 and value != 1:
+        nothing = {**dict.fromkeys(_FACTORS, 1), **dict.fromkeys(_ZEROS, 0)}.get(name.lower())
+        if nothing is not None and np.size(value) == 1 and value != nothing:
             yield f"{path.name}: '{dataset.name.strip('/')}' has an attribute {name} = {value}, which is not applied"
 
 
