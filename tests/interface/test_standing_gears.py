@@ -56,6 +56,24 @@ def test_a_ring_down_of_standing_gears_tells_damping_and_one_stiffness(tmp_path,
     assert "lack of fit" not in fit.table()
 
 
+@pytest.mark.parametrize(
+    "stated",
+    [
+        "mesh_stiffness_max: {value: 2.4e8, unit: N/m, uncertainty: 0.05}\n  mesh_stiffness_min: {value: 1.45e8, unit: N/m, uncertainty: 0.05}",
+        "mesh_stiffness_max: {value: 2.4e8, unit: N/m, uncertainty: 0.05}",
+    ],
+)
+def test_one_pair_of_teeth_that_carries_contradicts_no_stiffness_of_two(tmp_path, stated):
+    """A pair stands wherever it stands: its stiffness was expected to be the largest one."""
+    recorded(tmp_path, 1.5e8, 14.6, 1600)
+    path = tmp_path / "measurement.yaml"
+    path.write_text(path.read_text().replace("records:", f"  {stated}\nrecords:"))
+    fit = gd.identify(gd.load(path))
+    assert fit.parameters["fourier_mesh_stiffness.maximum"]["value"] == pytest.approx(1.5e8, rel=2e-3)
+    assert fit.damping_ratio_percent["value"] == pytest.approx(100 * RATIO, rel=0.02)
+    assert fit.content["contradicted"] is None
+
+
 def test_the_speed_of_a_shaft_that_stands_is_its_vibration(tmp_path):
     """A gyro on the pinion, whose share of the motion is by hand what its inertia makes of the force on the teeth."""
     recorded(tmp_path, 1.5e8, 0.0, 1600)

@@ -153,7 +153,8 @@ def damping_ratio(outcome: Outcome, covariances: Tensor, moves: Tensor | None = 
         half = max(half, half_width(jackknife_error((moves @ slope).numpy()), len(moves) - 1))
     value = float(ratios[0])
     ends = (max(value - half, min(value, 0.0)), value + half)
-    several = {name: float(each[0]) for name, each in by_law.items()} if len(by_law) > 1 else {}
+    parts = {name: float(each[0]) for name, each in by_law.items() if float(each[0])}
+    several = parts if len(parts) > 1 else {}
     return Interval(value, ends, "%").plain() | {"reference_velocity": velocity, "by_law": several}
 
 

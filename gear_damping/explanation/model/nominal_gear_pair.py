@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from math import ceil, cos, floor, inf, pi, sin, sqrt
+from math import ceil, cos, floor, hypot, inf, log, pi, sin, sqrt
 
 import torch
 
@@ -95,6 +95,8 @@ def first_gear_pair(evidence: Evidence) -> Hypothesis:
     free = [FreeParameter(DAMPING, damping, logarithmic=True, lower=LEAST_DAMPING * damping / ratio), *free]
     if evidence.has_index:
         free = [FreeParameter("mesh_phase", 0.0, deviation=INDEX_ERROR if evidence.mesh_index else inf), *free]
+    if untold:
+        free = [_of_any_teeth(p, stated, uncertain) if p.name == f"{MESH}.maximum" else p for p in free]
     free = [expected_about(parameter, uncertain.pop(parameter.name, None)) for parameter in free]
     declared = Model(system, effects).parameters()
     free += [
@@ -104,6 +106,15 @@ def first_gear_pair(evidence: Evidence) -> Hypothesis:
     ]
     told = tuple(parameter for parameter in free if parameter.name not in untold)
     return Hypothesis(system, tuple(effects), start | {DAMPING: damping}, told)
+
+
+def _of_any_teeth(parameter: FreeParameter, stated: Mapping[str, float], uncertain: dict[str, float]) -> FreeParameter:
+    """The one stiffness of a pair that stands, expected anywhere between that of one pair of teeth and that of two."""
+    relative, low = uncertain.pop(parameter.name, None), stated.get(f"{MESH}.minimum")
+    if not relative or not low:
+        return parameter
+    spread = abs(log(parameter.start / low)) / sqrt(12)  # the standard deviation of what is alike in between
+    return replace(parameter, expected=sqrt(parameter.start * low), deviation=hypot(relative, spread))
 
 
 def typical_torques(evidence: Evidence) -> dict[str, float]:
