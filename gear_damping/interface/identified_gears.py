@@ -94,11 +94,11 @@ def own_fit(measurement: Measurement, model: Model, free: Sequence[str], log: Lo
         rule = "names nothing to be fitted, and the model was given no values"
         raise InputError(Problem("free", rule, remedy="for example ['damping_ratio']"))
     names = {model.damping_coefficient if name == DAMPING_RATIO else name for name in free}
-    _refuse_unknown(model, [name for name in linear if name not in {DAMPING, *names, *stated}])
     initial = {name: first[name] for name in names if name in first}
     motion = {name: first[name] for name in MOTION if name in first}
     given = initial | motion | _radians(model, evidence) | stated | model.given
     moved = free_parameters(model, given, free, stated, evidence.known.uncertainty)
+    _refuse_unknown(model, [name for name in linear if name not in {DAMPING, *names, *stated}])
     hypothesis = Hypothesis(model.system, model.effects, given, moved)
     solver, own = fitting_solver(solver), {}
     if not evidence.has_index:

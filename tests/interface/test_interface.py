@@ -208,7 +208,6 @@ def test_a_damping_coefficient_that_the_file_states_holds_where_the_model_has_no
     [
         (["stifness"], "did you mean 'stiffness'?"),
         (["cubic_stiffness.coefficient"], "begins at zero"),
-        ([], "names nothing to be fitted"),
     ],
 )
 def test_what_cannot_be_free_is_said(record, free, said):
@@ -219,6 +218,13 @@ def test_what_cannot_be_free_is_said(record, free, said):
         gd.identify(record, rig(), free=["pinion_speed"])
     with pytest.raises(gd.InputError, match="give the model too"):
         gd.identify(record, free=["stiffness"])
+
+
+def test_a_gear_pair_that_was_given_nothing_has_nothing_to_be_fitted(tmp_path):
+    """An oscillator's linear model is found from nothing; which of a gear pair's many values are doubted is not."""
+    record = gd.load(write_case(draw_case("null", 6, duration=0.02, snr_db=30.0), tmp_path / "measured"))
+    with pytest.raises(gd.InputError, match="names nothing to be fitted, and the model was given no values"):
+        gd.identify(record, gd.Model(gd.GearPair(), [gd.FourierMeshStiffness(), gd.ViscousDamping()]))
 
 
 def test_a_gear_pair_of_ones_own_is_fitted_with_what_the_file_states(tmp_path):
