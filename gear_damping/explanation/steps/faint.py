@@ -19,18 +19,20 @@ from gear_damping.physics.systems.traits import Trait
 def faint_cause(state: State) -> tuple[State, Refit | None, tuple[str, ...]]:
     """The state with the fits that were made, the next cause and its rivals; None where none is confirmed.
 
-    Tried is what shows, and what promises a good part of all that is left: beside coloured residuals, which may be its
-    own doing, it need not show. About a place of rest, where fits are cheap, every law is; beside a cause what no score
-    foresaw has to take most of what is left.
+    Tried is what shows most, and besides what promises a good part of all that is left: beside coloured residuals,
+    which may be its own doing, it need not show, and what shows as its shadow must not keep it out. About a place of
+    rest, where fits are cheap, every law is. Beside a cause what is not among the first few has to take most of what is
+    left.
     """
     seen, bench = state.left, state.bench
     if seen is None:
         return state, None, ()
     best = best_by_effect(state.ranked)
-    names = sorted((n for n in best if seen.visible.shows(n)), key=lambda n: -seen.visible.by_name[n])
+    shown = sorted((n for n in best if seen.visible.shows(n)), key=lambda n: -seen.visible.by_name[n])
+    names = shown[: bench.settings.full_fits]
     names += [n for n in best if n not in names and best[n].gain >= bench.settings.least_share]
-    names = names[: bench.settings.full_fits]
-    foreseen = {*names} if state.accepted else {*best}  # at first what shows may be meant by any of the laws
+    names = names[: bench.settings.most_full_fits]
+    foreseen = {*names[: bench.settings.full_fits]} if state.accepted else {*best}  # at first any law may be meant
     if names and bench.evidence.has(Trait.REST):  # laws take their part from each other
         likely = chosen(state.ranked, bench.settings, laws=True, every=True)
         names += [name for name in best_by_effect(likely) if name not in names]
