@@ -147,6 +147,14 @@ def test_lines_of_settings_that_define_no_column_are_counted_once(tmp_path):
     assert table.notes == ("run.csv: 2 line(s) before the header are left out",)
 
 
+@pytest.mark.parametrize("above", [["12.5", "3", "0.001"], ["12.5", "3", "0.001", "7", "1"], ["12.5,3", "7", "1"]])
+def test_numbers_above_the_names_that_are_fewer_than_the_columns_are_no_values(tmp_path, above):
+    table = table_of(tmp_path, [*above, "time,left,right", *rows(30, 3, ",")])
+    assert table.names == ("time", "left", "right")
+    assert len(table.values(0)) == 30
+    assert table.notes == (f"run.csv: {len(above)} line(s) before the header are left out",)
+
+
 def test_names_with_blanks_between_them_stand_above_rows_with_tabs(tmp_path):
     assert table_of(tmp_path, ["t       y", *rows(30, 2, "\t")]).names == ("t", "y")
     titled = table_of(tmp_path, ["swing of the spring", *rows(30, 2, "\t")])
