@@ -74,8 +74,15 @@ def wrong_measurement(config: Mapping[str, Any], origin: Origin) -> Found:
         example = "PATH/FILE" if task == INSPECT else "PATH/measurement.yaml"
         yield "measurement.path", f"task={task} needs a measurement", None, f"measurement.path={example}"
     elif not measurement_file(path).is_file():
-        each = ", or --multirun for a job for each measurement in it" if measurement_file(path).is_dir() else ""
+        each = _for_each(measurement_file(path))
         yield "measurement.path", no_file(measurement_file(path)), path, f"give the path of {kind}{each}"
+
+
+def _for_each(path: Path) -> str:
+    """How several measurements are asked about: those of a folder, or those that match a pattern."""
+    if path.is_dir():
+        return ", or --multirun for a job for each measurement in it"
+    return ", or --multirun for a job for each file that matches" if set("*?") & set(path.name) else ""
 
 
 def no_file(path: Path) -> str:

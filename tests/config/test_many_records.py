@@ -48,6 +48,8 @@ def test_what_stands_for_none_is_left_as_it_is_and_a_folder_of_one_run_is_told_o
         assert paths(f"{folder}/{value}") == [f"{folder}/{value}"]
     assert main(["task=explain", f"measurement.path={folder}"]) == 1
     assert "is a folder, no file; remedy: give the path of a measurement.yaml, or --multirun" in caplog.text
+    assert main(["task=explain", f"measurement.path={folder}/*.csv"]) == 1
+    assert "or --multirun for a job for each file that matches" in caplog.text
 
 
 def test_a_list_and_a_name_that_no_file_can_bear_are_left_to_others(folder):
