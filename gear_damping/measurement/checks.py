@@ -41,6 +41,7 @@ _STRAY = 12.0  # usual steps away; the largest of a sine of 4 samples a period i
 _ALONE = 3.0  # times what its two neighbours differ by
 _LEAST_STRAY = 0.1  # of the deviation of all values, below which one tells nothing
 _MOST_STRAYS = 0.01  # of the samples; more are no single ones
+_LISTED = 5  # of them in a message
 _CONTINUOUS = ("displacement", "transmission_error")  # what a shock bends and does not break
 _SPEEDS = ("velocity", "pinion_speed", "gear_speed")
 APPLIED = (*INPUTS, "pinion_angle", "pinion_speed")  # what drives the system
@@ -237,9 +238,11 @@ def _strays(channel: Channel) -> Finding | None:
     falls = np.all(np.abs(values[at]) < np.abs(values[at - 1])) and not np.ptp(values[at])
     if channel.name not in _CONTINUOUS and (not falls or (at.size == 1 and values[at[0]])):
         return None
+    places = ", ".join(map(str, at[:_LISTED])) + (" and others" if at.size > _LISTED else "")
     message = (
-        f"{at.size} single sample(s) of {channel.name} lie far beside their neighbours, the first at {at[0]} "
-        f"({values[at[0]]:.4g} {channel.unit}): faults of the sensor or of the transmission; they count as they are"
+        f"{at.size} single sample(s) of {channel.name} lie far beside their neighbours, at {places} (the first "
+        f"{values[at[0]]:.4g} {channel.unit}): faults of the sensor or of the transmission; they count as they are. "
+        "Where stamps of time stand beside them, take their rows out of a copy of the file: the gaps are bridged"
     )
     return Finding("stray_samples", message, channel=channel.name, sample=int(at[0]), severity="note")
 

@@ -11,7 +11,7 @@ TIME, CONSTANT, EMPTY, UNREADABLE, TURNING, COUNTER, PULSES, SIGNAL, ROW_NUMBER,
     "time stamps", "constant", "empty", "not readable", "turning angle", "counter", "pulses", "signal", "row number",
     "another record",
 )  # fmt: skip
-ANGLE = re.compile(r"angle|winkel|theta|phi|phase|encoder|azimuth|rotation|revol|position", re.I)
+ANGLE = re.compile(r"angle|winkel|[aáâ]ngulo|angolo|theta|phi|phase|encoder|azimuth|rotation|revol|position", re.I)
 MOTION = re.compile(r"accel|veloc|displac|force|torque", re.I)  # what bears such a name is no pulse train
 _LEVELS, _AT_LEVEL, _FEWEST_PULSES = 0.15, 0.95, 4  # of the range; of the samples; rises
 _OFTEN, _HALF_WAY = 0.2, 0.5  # of the samples, at the rarer level; of those between the levels, that turn back

@@ -29,24 +29,31 @@ from gear_damping.units import parse_unit
 GEAR, OSCILLATOR = "gear_pair", "oscillator"
 _OF_THE_PINION = r"pinion|ritzel|_?1$|drive|(?<![a-z])in"
 _OF_THE_GEAR = r"gear|wheel|_?2$|driven|(?<![a-z])out"
+# Roots of words in English, German, Spanish, Portuguese, Italian and French.
+_ANGLE, _ACCELERATION = r"angle|winkel|[aáâ]ngulo|angolo", r"acc|acel|beschl"
 # The first that fits counts; names in lower case without units and paths.
 _GEAR_NAMES = (
     ("transmission_error", r"transmission|^d?te$|dte|^te[_ ]|[_ ]te$"),
     ("torque", r"torque|moment|^t[12]$|^m[12]$"),
-    ("speed", r"speed|rpm|omega|drehzahl|^n[12]?$"),
-    ("angle", r"angle|theta|phi|winkel|encoder|enc"),
+    ("speed", r"speed|rpm|omega|drehzahl|veloc|vitesse|^n[12]?$"),
+    ("angle", rf"{_ANGLE}|theta|phi|encoder|enc"),
     ("tacho", r"tacho|tach|pulse|keyphas|trigger|once"),
-    ("acceleration", r"acc|^a_?[xyz]?\d?$|vibration|^case|casing|housing"),
+    ("acceleration", rf"{_ACCELERATION}|^a_?[xyz]?\d?$|vibration|^case|casing|housing"),
 )
 _OSCILLATOR_NAMES = (
     ("base_acceleration", r"(base|ground|table|shaker).*(acc|^a)"),
-    ("acceleration", r"acc|^a_?[xyz]?$|ddot"),
+    ("acceleration", rf"{_ACCELERATION}|^a_?[xyz]?$|ddot"),
     (
         "force",
-        r"force|kraft|torque|load|input|excit|command|volt|spannung|current|strom|^u_?\d?$|^f_?\d?$|^tau|^vir$|^i$",
+        r"force|kraft|fuerza|forza|torque|load|input|entrada|excit|command|volt|spannung|tensi[oó]n|tensão|current|strom|corrient|"
+        r"corrente|courant|^u_?\d?$|^f_?\d?$|^tau|^vir$|^i$",
     ),
-    ("velocity", r"vel|speed|rate|gyro|omega|dot$|^v$|^dq"),
-    ("displacement", r"disp|pos|angle|theta|phi|roll|pitch|yaw|heave|deflec|output|^[qxyz](_?\w)?$|^s$|way|weg"),
+    ("velocity", r"vel|speed|vitesse|geschw|rate|gyro|omega|dot$|^v$|^dq"),
+    (
+        "displacement",
+        rf"disp|pos|{_ANGLE}|theta|phi|roll|pitch|yaw|heave|deflec|desplaz|spost|d[eé]plac|auslenk|output|"
+        r"^[qxyz](_?\w)?$|^s$|way|weg",
+    ),
 )
 _LETTERED = re.compile(r"(ch(an(nel)?)?|kanal|input|port|probe)[ ._-]*[a-d]")  # of an oscilloscope, and no quantity
 _OF_FREQUENCY = ("Hz", "kHz", "MHz")  # an axis of a spectrum, or what an exciter was set to
@@ -265,7 +272,7 @@ def _unit_by_meaning(column: Column, channel: str | None) -> tuple[str, str]:
     meant = "torque" if re.search("torque", name) else channel
     if meant in _OTHERWISE:
         return _OTHERWISE[meant], "the usual one"
-    if channel in ("displacement", "pinion_angle") and re.search("angle|theta|phi|roll|pitch|yaw|winkel", name):
+    if channel in ("displacement", "pinion_angle") and re.search(f"{_ANGLE}|theta|phi|roll|pitch|yaw", name):
         if column.kind != TURNING and np.max(np.abs(column.inside)) <= _SOME_TURNS:
             return "rad", f"an angle within {np.max(np.abs(column.inside)):.3g}"
         return ("deg", "an angle by its name") if column.kind != TURNING else (UNKNOWN, "")

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gear_damping.config.light import InspectSettings
 from gear_damping.config.measured import YAML_SUFFIXES
@@ -31,6 +32,8 @@ from gear_damping.tasks.run_folder import EDITED, RunFolder
 
 YAML_NAME, TEXT_NAME, FIGURE_NAME = EDITED["inspect"], "inspection.txt", "inspection.png"
 JSON_NAME = "inspection.json"  # what the report is made of
+LISTED = 20  # of what a file holds besides real numbers
+LEVELS = 4  # between which a command switches: fewer than a converter has that rounds a motion
 ROUNDED = 1e-9  # of the range: less is what a difference of large angles or a sum of many values is rounded by
 log = logging.getLogger("gear_damping").info
 
@@ -71,9 +74,11 @@ def _log(folder: RunFolder, lines: Sequence[str]) -> None:
 
 def _file_lines(found: Inspection) -> Iterator[str]:
     table = found.table
-    yield f"{table.path.name}: {len(found.columns)} columns in {len(table.shapes)} arrays, {found.length} rows"
+    lengths = {column.values.size for column in found.columns}
+    rows = f"{found.length} rows" if lengths == {found.length} else f"{min(lengths)} to {max(lengths)} rows"
+    yield f"{table.path.name}: {len(found.columns)} columns in {len(table.shapes)} arrays, {rows}"
     if table.left_out:
-        yield f"  no real numbers: {', '.join(table.left_out)}"
+        yield f"  no real numbers: {_few(table.left_out)}"
     yield from (f"  {note}" for note in table.notes)
     yield f"  time: {_time(found)}"
     notes = found.base.notes + tuple(finding.message for finding in found.base.findings) if found.base else ()
@@ -84,6 +89,12 @@ def _file_lines(found: Inspection) -> Iterator[str]:
         yield f"  rows {first} to {last} are {why}"
     elif found.taken:
         yield f"  rows: {found.taken}"
+
+
+def _few(names: Sequence[str]) -> str:
+    """Some of what a file holds, and how many there are."""
+    more = f", and {len(names) - LISTED} more" if len(names) > LISTED else ""
+    return ", ".join(names[:LISTED]) + more
 
 
 def _file_content(found: Inspection, listed: Sequence[Guess]) -> dict[str, Any]:
@@ -154,11 +165,13 @@ def _looks(column: Column, found: Inspection) -> Iterator[str]:
         yield f"{missing} of {column.values.size} values are not finite"
     if values.size and column.kind != CONSTANT:
         yield f"from {values.min() + 0.0:.5g} to {values.max() + 0.0:.5g}, offset (mean) {_mean(values):.5g}"  # no -0
-    yield _noise(column.spectrum, column.step, column.rate)
+    yield _noise(values, column.spectrum, column.step, column.rate)
 
 
-def _noise(spectrum: Spectrum | None, step: float, rate: float | None) -> str:
-    """The floor of a spectrum, its highest line, and the step with the noise that it makes."""
+def _noise(values: NDArray, spectrum: Spectrum | None, step: float, rate: float | None) -> str:
+    """The floor of a spectrum, its highest line, and the step with the noise that it makes; of a command its levels."""
+    if step and 1 < (levels := np.unique(values).size) <= LEVELS:
+        return f"switches between {levels} levels"
     parts = []
     if spectrum is not None:
         parts.append(f"noise {spectrum.noise:.3g} (floor of the spectrum)")
@@ -278,7 +291,7 @@ def _channel(record: Record, channel: Channel, values: np.ndarray, spectrum: Spe
     said += f", offset (mean) {_mean(values):.5g}"
     is_difference = channel.name == "transmission_error" and FROM_ENCODERS in record.notes
     step = 0.0 if is_difference else step_of(values)  # what the steps of two encoders divide by is no step of either
-    noise = _noise(spectrum, step, record.sampling_rate)
+    noise = _noise(values, spectrum, step, record.sampling_rate)
     datum = "" if channel.datum == "absolute" else ", datum arbitrary"
     return f"{said}{datum}{', ' if noise else ''}{noise}"
 

@@ -300,6 +300,16 @@ def test_of_several_displacements_the_one_that_swings_is_declared(tmp_path):
 
 
 @pytest.mark.parametrize(
+    "names", [("ENTRADA", "ANGULO"), ("Corriente", "ángulo"), ("tensão", "desplazamiento"), ("courant", "Déplacement")]
+)
+def test_names_in_other_languages_are_understood(names, tmp_path):
+    swing = np.exp(-0.3 * T) * np.sin(20 * T) + 1e-3 * RNG(8).normal(size=N)
+    pushed = np.sign(np.sin(3 * T)) + 1e-3 * RNG(9).normal(size=N)
+    answer, push = names[1], names[0]
+    assert channels(tmp_path, tiempo=T, **{push: pushed, answer: swing})[1] == {answer: "displacement", push: "force"}
+
+
+@pytest.mark.parametrize(
     ("faster", "used"),
     [(None, {"Voltage": "displacement"}), ("current", {"Voltage": "displacement", "current": "force"})],
 )

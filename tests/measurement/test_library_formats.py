@@ -140,6 +140,37 @@ def test_mat_structures_cells_and_matrices_are_reachable(tmp_path):
     ]  # fmt: skip
 
 
+def named_elements(names, beside=0):
+    """An array of structures as what turns a TDMS file into a MAT file writes it, and more vectors beside its data."""
+    fields = ["Name", "Total_Samples", "Data", *["Also"] * bool(beside)]
+    made = np.zeros(len(names), dtype=[(field, "O") for field in fields])
+    for k, name in enumerate(names):
+        data = (k + 1) * WAVE if k else np.zeros((0, 0))
+        made[k] = (name, float(data.size), data, *[WAVE] * bool(beside))
+    return {"data": {"MeasuredData": made}}
+
+
+def test_elements_with_a_name_and_one_vector_are_called_by_it(tmp_path):
+    savemat(tmp_path / "a.mat", named_elements(["Root", "run1/Position", "run1/Duty"]))
+    table = read_table(tmp_path / "a.mat")
+    assert table.names == ("data.MeasuredData.Total_Samples", "run1/Position", "run1/Duty")
+    for name in ("run1/Position", "Position", "data.MeasuredData.Data[1]", "data.MeasuredData[1].Data"):
+        np.testing.assert_array_equal(_values(table, name), 2 * WAVE)
+    with pytest.raises(InputError, match="no such column"):
+        table.index("", "column")
+
+
+@pytest.mark.parametrize(
+    ("names", "beside"),
+    [(["Root", "x", "x"], 0), (["Root", "x", "y"], 1), (["Root", "data.MeasuredData.Data[2]", ""], 0)],
+)
+def test_elements_whose_names_do_not_tell_them_apart_keep_their_numbers(tmp_path, names, beside):
+    savemat(tmp_path / "a.mat", named_elements(names, beside))
+    table = read_table(tmp_path / "a.mat")
+    assert {"data.MeasuredData.Data[1]", "data.MeasuredData.Data[2]"} <= set(table.names)
+    np.testing.assert_array_equal(_values(table, "data.MeasuredData.Data[1]"), 2 * WAVE)
+
+
 def test_mat_that_unpacks_to_too_much_inside_a_structure_is_refused(tmp_path):
     savemat(tmp_path / "a.mat", {"run": {"y": np.zeros(100_000)}}, do_compression=True)
     assert (tmp_path / "a.mat").stat().st_size < 10_000

@@ -292,7 +292,22 @@ def test_single_wrong_samples_are_told_and_a_blow_or_a_coarse_step_is_none(tmp_p
         content = {"system": "oscillator", "records": [{"file": f"{name}.npz", "channels": channels}]}
         (tmp_path / "measurement.yaml").write_text(yaml.safe_dump(content))
         (record,) = load_measurement(tmp_path / "measurement.yaml").records
-        assert [finding.sample for finding in record.findings if finding.kind == "stray_samples"] == [700] * said
+        strays = [finding for finding in record.findings if finding.kind == "stray_samples"]
+        assert [finding.sample for finding in strays] == [700] * said
+        assert all("at 700, 1500 (the first" in finding.message for finding in strays)
+
+
+def test_single_wrong_samples_are_left_out_with_their_rows(tmp_path):
+    """What the note says: the others count at their stamps."""
+    time = np.arange(3000) / 100
+    swing = np.exp(-0.02 * time) * np.sin(9 * time) + 1e-4 * np.random.default_rng(2).normal(size=time.size)
+    kept = np.delete(np.column_stack([time, swing]), [700, 1500, 1900], axis=0)
+    np.savez(tmp_path / "a.npz", t=kept[:, 0], a=kept[:, 1])
+    channels = {"time": {"column": "t", "unit": "s"}, "displacement": {"column": "a", "unit": "mm"}}
+    content = {"system": "oscillator", "records": [{"file": "a.npz", "channels": channels}]}
+    (tmp_path / "measurement.yaml").write_text(yaml.safe_dump(content))
+    (record,) = load_measurement(tmp_path / "measurement.yaml").records
+    assert [(finding.kind, finding.severity) for finding in record.findings] == [("dropped_samples", "note")]
 
 
 @pytest.mark.parametrize(

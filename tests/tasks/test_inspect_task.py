@@ -299,6 +299,31 @@ def test_of_a_casing_no_holding_out_is_promised(tmp_path):
     assert "holds out" not in text
 
 
+def told(path, out):
+    assert main(["task=inspect", f"measurement.path={path}", f"hydra.run.dir={out}"]) == 0
+    return (out / "inspection.txt").read_text()
+
+
+def test_a_command_that_switches_has_levels_and_no_rounding(tmp_path):
+    np.savez(tmp_path / "a.npz", t=TIME, u=6.0 * (TIME < 1), x=np.round(np.cos(20 * TIME), 1))
+    said = told(tmp_path / "a.npz", tmp_path / "out")
+    assert "switches between 2 levels" in said
+    assert "steps of 6" not in said
+    assert "steps of 0.1, whose rounding makes 0.029" in said
+
+
+def test_of_arrays_of_other_lengths_the_shortest_and_the_longest_are_said(tmp_path):
+    np.savez(tmp_path / "a.npz", x=TIME**2, y=TIME[:300] ** 3, z=np.array([4.0]))
+    assert told(tmp_path / "a.npz", tmp_path / "out").startswith("a.npz: 3 columns in 3 arrays, 1 to 1000 rows")
+
+
+def test_of_much_that_is_no_number_some_is_named(tmp_path):
+    np.savez(tmp_path / "a.npz", x=TIME**2, **{f"word{k}": np.array(["a", "b"]) for k in range(30)})
+    said = told(tmp_path / "a.npz", tmp_path / "out")
+    assert "word19 (text), and 10 more" in said
+    assert "word20" not in said
+
+
 def test_a_mean_that_was_taken_out_is_no_number_of_rounding(tmp_path):
     values = 3.0 + np.sin(0.37 * np.arange(4000))
     np.savez(tmp_path / "run.npz", t=np.arange(4000) / 1e3, x=values - values.mean())

@@ -1,11 +1,15 @@
 """MATLAB files: up to version 7 by scipy, version 7.3 by pymatreader.
 
-Fields of structures are `run.y`, elements of cells and of arrays of structures `c[0]`, `run.y[0]`.
+Fields of structures are `run.y`, elements of cells and of arrays of structures `c[0]`, `run.y[0]`. Where each element
+of an array of structures has a name and one vector, as in MAT files made of TDMS files, that is its name too.
 """
 
+import re
 import warnings
 import zlib
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +26,7 @@ from gear_damping.measurement.formats.table import (
     Table,
     extra_library,
     held_arrays,
+    is_real,
     refuse_size,
     unreadable,
 )
@@ -32,6 +37,8 @@ DEADLY = True  # a damaged file may end the process
 _HDF5_MAGIC = b"\x89HDF"
 _COMPRESSED = 15  # the type of an element that is deflated
 _OBJECT = "MATLAB object; in MATLAB save its arrays, as t = ts.Time; y = ts.Data"
+_FIELD = re.compile(r"^(?P<array>.+)\.(?P<field>\w+)\[(?P<element>\d+)\]$")  # of an element of an array of structures
+_NAME = re.compile(r"^(channel_?)?(name|label)$", re.I)  # the field that says what an element is
 
 
 def read(path: Path, max_bytes: int) -> Table:
@@ -47,10 +54,35 @@ def read(path: Path, max_bytes: int) -> Table:
         found = dict(_flat(content, ""))
     arrays = {name: value for name, value in found.items() if isinstance(value, np.ndarray)}
     held, left_out = held_arrays(arrays)
-    left_out += [f"{name} ({value})" for name, value in found.items() if name not in arrays]
+    own = _own_names(found)
+    held = [replace(one, name=own[one.name], also=one.name) if one.name in own else one for one in held]
+    texts = {name: "text" if isinstance(value, np.str_) else value for name, value in found.items()}
+    left_out += [f"{name} ({what})" for name, what in texts.items() if name not in arrays]
     table = ArrayTable(path, held, left_out)
     table.stated_rate = rate_beside(arrays)
     return table
+
+
+def _own_names(found: Mapping[str, NDArray | str]) -> dict[str, str]:
+    """What elements of arrays of structures are called by a field of theirs, where each has one vector beside it."""
+    names: dict[tuple[str, str], str] = {}
+    vectors: dict[str, dict[str, dict[str, str]]] = {}
+    for path, value in found.items():
+        place = _FIELD.match(path)
+        if place is None:
+            continue
+        if isinstance(value, np.str_) and _NAME.match(place["field"]):
+            names[place["array"], place["element"]] = str(value).strip()
+        elif isinstance(value, np.ndarray) and is_real(value.dtype) and value.size > 1:
+            vectors.setdefault(place["array"], {}).setdefault(place["field"], {})[path] = place["element"]
+    own = {
+        path: names.get((array, element), "")
+        for array, fields in vectors.items()
+        if len(fields) == 1
+        for path, element in next(iter(fields.values())).items()
+    }
+    borne = Counter(own.values())
+    return {path: name for path, name in own.items() if name and borne[name] == 1 and name not in found}
 
 
 def _octave_text(path: Path, max_bytes: int) -> Table | None:
@@ -126,7 +158,7 @@ def _read_hdf5(path: Path, max_bytes: int) -> dict[str, Any]:
 
 
 def _flat(value: Any, name: str) -> Iterator[tuple[str, NDArray | str]]:
-    """Every array in nested structures and cells under its name; a text says what something else is."""
+    """Every array and text (`np.str_`) in nested structures and cells under its name; a `str` says what else it is."""
     if isinstance(value, dict):
         for key, inner in value.items():
             yield from _flat(inner, f"{name}.{key}" if name else key)
@@ -140,7 +172,7 @@ def _flat(value: Any, name: str) -> Iterator[tuple[str, NDArray | str]]:
     elif isinstance(value, np.ndarray | int | float | complex | np.number | np.bool_):
         yield name, np.asarray(value)
     else:
-        yield name, "text" if isinstance(value, str | np.str_) else type(value).__name__
+        yield name, np.str_(value) if isinstance(value, str) else type(value).__name__
 
 
 def _flat_cells(cells: list | NDArray, name: str) -> Iterator[tuple[str, NDArray | str]]:

@@ -164,6 +164,7 @@ class Held:
         unit: Its unit, where the file says it.
         clock: The time of its first sample in s and its rate in Hz, where the file says them.
         begins: When the first was, of stamps that count from it, as `Moments` has it.
+        also: Another name, by which it may be asked for too.
     """
 
     name: str
@@ -172,6 +173,7 @@ class Held:
     unit: str | None = None
     clock: tuple[float, float] | None = None
     begins: Callable[[], float] | None = None
+    also: str = ""
 
     def __post_init__(self) -> None:
         """Say at once what a reader hands over wrongly."""
@@ -202,6 +204,11 @@ class ArrayTable(Table):
         clocks = {one.clock for one in held}
         if len(clocks) == 1 and None not in clocks:
             self.sampling_rate = held[0].clock[1]
+
+    def _named(self, column: str) -> list[int]:
+        """Those of the name, or of the other one of their array."""
+        named = super()._named(column)
+        return named or [k for k, (array, _) in enumerate(self._place) if column == self._held[array].also != ""]
 
     def values(self, index: int) -> NDArray[np.float64]:
         """(n,) float64: the column at a 0-based index; raises InputError where the file is damaged there."""
