@@ -22,6 +22,7 @@ from gear_damping.measurement.column_kinds import (
     turn_of,
 )
 from gear_damping.measurement.formats.table import ArrayTable, Table
+from gear_damping.measurement.irregular_stamps import HALF
 from gear_damping.measurement.recordings import recordings
 from gear_damping.measurement.resolution import step_of
 from gear_damping.measurement.rows import LEAST_SAMPLES, filled_in
@@ -330,10 +331,15 @@ def _base(
     except InputError as error:
         steps = np.diff(seconds)
         faults = tuple(problem.rule for problem in error.problems)
-        span = float(np.abs(seconds[-1] - seconds[0])) or float(np.median(np.abs(steps))) * steps.size
-        is_rate = span > steps.size * SHORTEST
-        rate = stamped_rate("s", seconds) or steps.size / span
-        return (steady_time(rate, 0, seconds.size) if is_rate else None), faults
+        step = 1 / rate if (rate := stamped_rate("s", seconds)) else _usual_step(steps)
+        return (steady_time(1 / step, 0, seconds.size) if step > SHORTEST else None), faults
+
+
+def _usual_step(steps: NDArray[np.float64]) -> float:
+    """The mean of the steps about the median one: a clock that leaps once has the pace of all others."""
+    median = float(np.median(steps))
+    usual = steps[np.abs(steps - median) <= HALF * abs(median)]
+    return abs(float(usual.mean() if median and usual.size else steps.mean()))
 
 
 def _seen(

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -77,6 +78,43 @@ def without_footer(columns: Sequence[Cells]) -> tuple[list[Cells], str]:
     said = next(cell for cell in below[0] if is_word(cell))
     note = f"the last {rows - first} row(s), from '{said}' on (line {columns[0].line(first)}), lie below the table and "
     return [replace(one, values=one.values[:first]) for one in columns], note + "are left out"
+
+
+def lone_rows(lines: Sequence[int]) -> int:
+    """How many rows at the end of a table its only empty lines part from all others; 0 where they are many, or lines
+    are empty elsewhere too.
+
+    Args:
+        lines: The line of each row.
+    """
+    apart = [k for k, (line, behind) in enumerate(pairwise(lines), 1) if behind > line + 1]
+    return len(lines) - apart[0] if len(apart) == 1 and len(lines) - apart[0] < FEWEST_BEHIND else 0
+
+
+def without_lone_rows(columns: Sequence[Cells], lone: int) -> tuple[list[Cells], str]:
+    """Columns without the `lone` last rows, where a clock goes back at them, and what is noted of these.
+
+    One row beside no column that rises all through is left out too: what a program puts there is a mean as well.
+    """
+    rows = max((len(one.values) for one in columns), default=0)
+    above = rows - lone
+    if not 0 < lone < FEWEST_BEHIND <= above:
+        return list(columns), ""
+    rising = [one.values for one in columns if _rises(one.values[:above])]
+    goes_back = any(np.any(values[above:].astype(float) < values[above - 1]) for values in rising)
+    if not goes_back and (rising or lone > 1):
+        return list(columns), ""
+    why = "where a column that rises above goes back" if goes_back else "as a mean does"
+    note = f"the last {lone} row(s), behind an empty line, stand apart (line {columns[0].line(above)}), {why}, and are "
+    return [replace(one, values=one.values[:above]) for one in columns], note + "left out"
+
+
+def _rises(values: NDArray) -> bool:
+    """Whether numbers rise from each row to the next, as a clock does, or stand where it is rounded."""
+    if not is_real(values.dtype):
+        return False
+    steps = np.diff(values.astype(float))
+    return bool(np.all(steps >= 0) and np.any(steps > 0))
 
 
 def _first_word(cells: NDArray) -> int | None:

@@ -12,14 +12,17 @@ from typing import Any
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.formats.cells import (
+    FEWEST_BEHIND,
     MOST_BELOW,
     SHOWN,
     Cells,
     CellTable,
     decimal_commas,
     is_word,
+    lone_rows,
     said_of_empty_rows,
     without_footer,
+    without_lone_rows,
 )
 from gear_damping.measurement.formats.console_text import refuse_what_is_shown
 from gear_damping.measurement.formats.header import Header
@@ -67,6 +70,8 @@ def read(path: Path, max_bytes: int) -> Table:
     lines = _Lines(path, max_bytes, first_line)
     columns = [Cells(header.name(k), header.unit(k), frame[k].to_numpy(), lines, header.also(k)) for k in range(width)]
     columns, below = without_footer(columns)
+    if not below and not blocks:
+        columns, below = without_lone_rows(columns, _lone_rows(text, first_line))
     _refuse_long_form(path, columns)
     # Decimal commas may always stand in quotes.
     table = CellTable(path, columns, decimal_commas=True, decimal=decimal if decimal == "," or has_points else "")
@@ -78,7 +83,7 @@ def read(path: Path, max_bytes: int) -> Table:
         table.notes += (f"{path.name}: {header.says}",)
     if blocks:
         table.notes += (f"{path.name}: {blocks} more block(s) with a header of their own follow the first",)
-    elif empty := _empty_rows(text, first_line):
+    elif not below and (empty := _empty_rows(text, first_line)):
         table.notes += (f"{path.name}: {empty}",)
     if text.cut:
         table.notes += (f"{path.name}: {text.cut}",)
@@ -206,6 +211,16 @@ def _empty_rows(text: Text, first_line: int) -> str:
     lines = text.utf8.rstrip(b'\n\r\t ;,|"').split(b"\n")[first_line:]
     empty = [k for k, line in enumerate(lines, first_line + 1) if not line.strip(b' \t;,|"')]
     return said_of_empty_rows(empty, len(lines))
+
+
+def _lone_rows(text: Text, first_line: int) -> int:
+    """How many rows at its end the only empty lines of a table part from all others."""
+    lines = text.utf8.rstrip(b'\n\r\t ;,|"').split(b"\n")[first_line - 1 :]
+    is_filled = [bool(line.strip(b' \t;,|"')) for line in lines[-FEWEST_BEHIND:]]
+    if all(is_filled):
+        return 0
+    told = [k for k, line in enumerate(lines) if line.strip(b' \t;,|"')]
+    return sum(not _COMMENT.match(lines[k]) for k in told[len(told) - lone_rows(told) :])
 
 
 def _values(text: Text, first_line: int) -> Iterator[tuple[int, list[str]]]:

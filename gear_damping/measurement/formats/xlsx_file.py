@@ -10,7 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.formats.cells import Cells, CellTable, said_of_empty_rows, without_footer
+from gear_damping.measurement.formats.cells import (
+    Cells,
+    CellTable,
+    lone_rows,
+    said_of_empty_rows,
+    without_footer,
+    without_lone_rows,
+)
 from gear_damping.measurement.formats.header import find_header
 from gear_damping.measurement.formats.moments import Moments, moment_since, past_midnight
 from gear_damping.measurement.formats.table import Table, extra_library, refuse_size, unreadable
@@ -44,11 +51,14 @@ def read(path: Path, max_bytes: int) -> Table:
     several = sum(bool(rows) for rows, _ in sheets.values()) > 1
     columns, notes, empty_columns = [], [], []
     for title, (rows, units) in sheets.items():
-        notes += [f"{path.name}, {title}: {empty}"] if (empty := _empty_rows(rows)) else []
         found, said, without = _columns(rows, units, f"{title}/" if several else "")
         empty_columns += without
         own, below = without_footer(found)
+        if not below:
+            own, below = without_lone_rows(found, lone_rows(_filled(rows)))
         columns += own
+        empty = "" if below else _empty_rows(rows)
+        notes += [f"{path.name}, {title}: {empty}"] if empty else []
         notes += [f"{path.name}, {title}: {one}" for one in said]
         notes += [f"{path.name}, {title}: {below}"] if below else []
     if not columns:
@@ -152,6 +162,12 @@ def _without_blank_columns(rows: list[tuple[int, list[Any]]]) -> tuple[list[tupl
     wide = [[*row, *[None] * (width - len(row))] for _, row in rows]
     kept = [k for k, column in enumerate(zip(*wide, strict=True)) if any(cell is not None for cell in column)]
     return [(number, [row[k] for k in kept]) for (number, _), row in zip(rows, wide, strict=True)], kept
+
+
+def _filled(rows: list[list[Any]]) -> list[int]:
+    """The numbers of the rows of values, from the first that holds one on."""
+    first = next((k for k, row in enumerate(rows) if any(isinstance(cell, int | float) for cell in row)), len(rows))
+    return [k for k, row in enumerate(rows) if k >= first and any(cell is not None for cell in row)]
 
 
 def _empty_rows(rows: list[list[Any]]) -> str:
