@@ -11,6 +11,7 @@ What was recorded beside a response and is not compared with a simulation is sai
 
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +36,7 @@ _DRIFT = 0.1  # of the way that a straight line goes; what may lie about it
 _LOCAL = 9  # samples about which a stamp's place is judged; slower wandering of a clock is left alone
 _MATTERS = 1e-4  # share of the signal's variance that s' e must have to matter
 _ONE_COUNT, _COUNTED = 0.01, 0.95  # of a step: the same count; share of the steps that are one
+_OTHER_RATE = 0.02  # of a usual step, by which that of the samples about it leaps where a logger changes its rate
 _FEWEST = 64  # samples, below which nothing is decided
 _NEIGHBOURS = 33  # frequencies that give the level about a line
 _SLOPE_ERROR = 0.1  # of the power of s' e; nothing is weighted higher than this error of the slope allows
@@ -52,8 +54,10 @@ def stamps_against_values(record: Record) -> Finding | None:
     for channel in record.channels.values():
         if _is_counted(channel.values):
             continue
-        share, error = share_at_stamps(channel.values, record.time)
-        if abs(share) + _ERRORS * error < _DECIDED:  # a share far below 0 is neither: values that wait for an event
+        for part in _stretches(record.time):
+            share, error = share_at_stamps(channel.values[part], record.time[part])
+            if abs(share) + _ERRORS * error >= _DECIDED:  # also far below 0: values that wait for an event
+                continue
             message = (
                 f"the values of {channel.name} were sampled evenly and the stamps were not ({100 * share:.2g} % of the "
                 f"jitter of the stamps shows in the values, +-{100 * error:.2g} %): a computer wrote them late; "
@@ -61,6 +65,21 @@ def stamps_against_values(record: Record) -> Finding | None:
             )
             return Finding("uneven_stamps", message, channel=channel.name)
     return None
+
+
+def _stretches(stamps: NDArray[np.float64]) -> list[slice]:
+    """The long stretches of one rate that most of (n,) stamps lie in; all of them where such are few.
+
+    Where a logger changes its rate, no even sampling could have made the values, and the bend of its stamps is none of
+    their jitter.
+    """
+    from scipy.ndimage import median_filter
+
+    usual = np.log(median_filter(np.diff(stamps), _LOCAL, mode="nearest"))
+    edges = [0, *(np.flatnonzero(np.abs(np.diff(usual)) > _OTHER_RATE) + 1).tolist(), stamps.size - 1]
+    parts = [slice(first, end + 1) for first, end in pairwise(edges) if end - first >= _FEWEST]
+    held = sum(part.stop - part.start for part in parts)
+    return parts if 2 * held > stamps.size else [slice(0, stamps.size)]
 
 
 def _is_counted(values: NDArray[np.float64]) -> bool:

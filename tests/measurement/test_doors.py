@@ -103,6 +103,26 @@ def test_lost_samples_are_counted_under_jitter_too(bench, rng):
     assert record.sampling_rate == pytest.approx(RATE, rel=0.01)
 
 
+@pytest.mark.parametrize("until", [800, 1000, 1940])
+@pytest.mark.parametrize("slower", [4, 5])
+def test_the_bend_where_a_logger_changes_its_rate_is_no_late_stamp(bench, rng, slower, until):
+    """A decay of 3.1 Hz at 100 Hz, then at 25 or 20 Hz: its values know where they were taken."""
+    time = np.r_[0:until, until:2000:slower] / 100
+    values = 12 * np.exp(-0.29 * time) * np.cos(TURN * 3.1 * time) + 0.02 * rng.standard_normal(time.size)
+    record = _oscillator(bench, time, values)
+    assert _problems(record) == []
+    assert not any(
+        "sampling_rate instead" in finding.message for finding in record.findings if finding.channel != "time"
+    )
+
+
+def test_late_stamps_are_told_within_each_rate_of_a_logger(bench, rng):
+    even = np.r_[0:1000, 1000:2000:2] / RATE
+    step = np.where(np.arange(even.size) < 1000, 1, 2) / RATE
+    stamps = even + 0.2 * step * rng.uniform(-1, 1, even.size)
+    assert "uneven_stamps" in _problems(_stamped(bench, stamps, taken=even))
+
+
 @pytest.mark.parametrize("jitter", [0.0, 0.02])
 @pytest.mark.parametrize("change", [0.05, 1.0])
 def test_samples_of_a_changing_rate_are_taken_at_their_stamps(bench, rng, change, jitter):
