@@ -34,6 +34,11 @@ MOST_STRAY = 0.1  # of the steps go back in a clock that stumbles; beyond, rows 
 _WRITTEN = 1.2  # last digits over which rounded stamps may spread about their grid
 _SIGNIFICANT = range(2, 6)  # digits of stamps that may come out alike; with more, rows are stored twice
 _CLOSELY = 1e-12  # of a step: to which it is sought that the first of ten thousand stamps allow
+_LEAST_LEAPS = 8  # changes of stamps that many samples share: fewer tell no rate
+_OFF = 2  # changes of so many stamps, that a straight line through their ends may be off by over the record
+_HALVINGS = 60  # of an interval: as many as a number has binary digits
+_ROUND_DIGITS = 4  # of a rate that somebody sets: 1024 and 51.2, and hardly more
+_BY_CHANCE = 0.1  # of the way between rates of so many digits: a longer interval of rates holds one too often
 _HOLES = 2  # in stamps of few digits that are lost samples, where more of them, regular, are rounding
 
 
@@ -93,7 +98,10 @@ def stamped_time(stamps: NDArray[np.float64], key: str, source: str, first: int 
     refuse_recordings(stamps, key, source, first)
     if np.any(np.diff(stamps) == 0) and (few := written_significantly(stamps)) is not None:
         return few
-    _refuse_repeated_or_backward(np.diff(stamps), key, source, first)
+    shared = shared_grid(stamps)
+    if shared is not None and shared.rate is not None:
+        return shared.base(stamps.size)
+    _refuse_repeated_or_backward(np.diff(stamps), key, source, first, shared)
     rate = (stamps.size - 1) / float(stamps[-1] - stamps[0])
     grid = np.linspace(stamps[0], stamps[-1], stamps.size)
     away = float(np.max(np.abs(stamps - grid))) * rate
@@ -148,7 +156,9 @@ def _with_losses(stamps: NDArray[np.float64], found: Finding) -> TimeBase:
     return TimeBase(time, written.rate, uniform=False, notes=(note,), findings=(found,))
 
 
-def _refuse_repeated_or_backward(steps: NDArray, key: str, source: str, first: int) -> None:
+def _refuse_repeated_or_backward(
+    steps: NDArray, key: str, source: str, first: int, shared: "Shared | None" = None
+) -> None:
     problems = []
     for kind, bad in (("repeated", steps == 0), ("backward", steps < 0)):
         where = np.flatnonzero(bad) + 1 + first - (is_too_late(steps)[bad] if kind == "backward" else 0)
@@ -158,7 +168,8 @@ def _refuse_repeated_or_backward(steps: NDArray, key: str, source: str, first: i
             remedy = "sort the rows by time" if is_shuffled else f"leave those rows out, {REMEDY}"
             if kind == "repeated" and 2 * where.size > steps.size:
                 rule += f", {(steps.size + 1) // (steps.size + 1 - where.size)} samples at each on average"
-                remedy = "give sampling_rate instead of the time column, whose stamps are those of whole packets"
+                rule += f"; {shared.says}" if shared else ""
+                remedy = "give sampling_rate instead of the time column, whose stamps are rounded or of whole packets"
             problems.append(Problem(key, rule, remedy=remedy, source=source))
     if problems:
         raise InputError(problems)
@@ -220,6 +231,87 @@ def written_in(stamps: NDArray[np.float64], index: NDArray[np.float64] | None = 
     return Written(digit, float(stamps[0] + (off.max() + off.min()) / 2), rate)
 
 
+@dataclass(frozen=True)
+class Shared:
+    """An even grid whose samples share stamps that were rounded to steps longer than its own.
+
+    Args:
+        digit: The last digit of the stamps in s.
+        start: Time of the first sample in s.
+        rates: The lowest and the highest rate in Hz that rounds to the stamps.
+        rate: The round one of them, in Hz; None where several may be meant.
+    """
+
+    digit: float
+    start: float
+    rates: tuple[float, float]
+    rate: float | None
+
+    @property
+    def says(self) -> str:
+        """What the stamps tell of the rate."""
+        low, high = self.rates
+        return f"rounded to {self.digit:.3g} s they may stand for any even rate from {low:.6g} to {high:.6g} Hz"
+
+    def base(self, n: int) -> TimeBase:
+        """The time of n samples at the round rate."""
+        within = 50 * (self.rates[1] - self.rates[0]) / self.rate
+        note = (
+            f"time stamps are rounded to {self.digit:.3g} s, or those of whole packets: taken as an even "
+            f"{self.rate:.6g} Hz, of which they tell {within:.2g} %; where that is wrong, give sampling_rate instead"
+        )
+        return TimeBase(self.start + np.arange(n) / self.rate, self.rate, notes=(note,))
+
+
+def shared_grid(stamps: NDArray[np.float64]) -> Shared | None:
+    """The even grid that (n,) stamps in s stand for, of which most repeat the one before; None where there is none."""
+    steps, since = np.diff(stamps), stamps - stamps[0]
+    leaps = np.flatnonzero(steps)
+    if np.any(steps < 0) or leaps.size < _LEAST_LEAPS or 2 * leaps.size >= steps.size:
+        return None
+    digit = last_digit(since, 4 * np.spacing(np.abs(stamps).max()))
+    if digit is None:
+        return None
+    ends = np.r_[0, np.column_stack([leaps, leaps + 1]).ravel(), steps.size]  # of the samples that share a stamp
+    since = since[ends]
+
+    def spread(step: float) -> float:  # convex in the step
+        return float(np.ptp(since - step * ends))
+
+    def is_possible(step: float) -> bool:
+        return spread(step) <= (1 + EXACT) * digit
+
+    centred = ends - ends.mean()
+    fitted = float(centred @ since / (centred @ centred))
+    near = (1 - _OFF / leaps.size) * fitted, (1 + _OFF / leaps.size) * fitted
+    best = minimum(spread, near, _CLOSELY * fitted)
+    if not is_possible(best):
+        return None
+    low, high = (1 / _last(is_possible, best, best * end) for end in (2.0, 0.5))
+    rate = _round_in(low, high)
+    off = since - ends / (rate or 1 / best)
+    return Shared(digit, float(stamps[0] + (off.max() + off.min()) / 2), (low, high), rate)
+
+
+def _last(is_possible: Callable[[float], bool], inside: float, beyond: float) -> float:
+    """The last possible number on the way from one to a number beyond it, by halving."""
+    for _ in range(_HALVINGS):
+        middle = (inside + beyond) / 2
+        inside, beyond = (middle, beyond) if is_possible(middle) else (inside, middle)
+    return inside
+
+
+def _round_in(low: float, high: float) -> float | None:
+    """The rate of few digits, or of such a step, from low to high in Hz; None where it may be there by chance."""
+    middle = (low + high) / 2
+    for places in range(1, _ROUND_DIGITS + 1):
+        for rate in (float(f"{middle:.{places}g}"), 1 / float(f"{1 / middle:.{places}g}")):
+            if low <= rate <= high:
+                apart = 10.0 ** (np.floor(np.log10(middle)) + 1 - places)  # from one rate of so many digits to the next
+                return rate if high - low <= _BY_CHANCE * apart else None
+    return None
+
+
 def written_significantly(stamps: NDArray[np.float64]) -> TimeBase | None:
     """The even grid that (n,) stamps in s of a few significant digits stand for, as some programs write all numbers.
 
@@ -245,10 +337,15 @@ def written_significantly(stamps: NDArray[np.float64]) -> TimeBase | None:
     return None
 
 
-def _even(stamps: NDArray, half: NDArray) -> tuple[float, float] | None:
-    """Start and rate of the plainest grid from which no stamp lies farther than half of its last digit."""
+def minimum(of: Callable[[float], float], between: tuple[float, float], closely: float) -> float:
+    """Where a convex function of a number is least."""
     from scipy.optimize import minimize_scalar
 
+    return float(minimize_scalar(of, bounds=between, method="bounded", options={"xatol": closely}).x)
+
+
+def _even(stamps: NDArray, half: NDArray) -> tuple[float, float] | None:
+    """Start and rate of the plainest grid from which no stamp lies farther than half of its last digit."""
     index, slope = np.arange(stamps.size), np.polyfit(np.arange(stamps.size), stamps, 1)[0]
     half = (1 + EXACT) * half + GRID_TOLERANCE * slope
 
@@ -260,7 +357,7 @@ def _even(stamps: NDArray, half: NDArray) -> tuple[float, float] | None:
         return starts(step)[0] - starts(step)[1]
 
     near = (1 - SAME_RATE) * slope, (1 + SAME_RATE) * slope
-    best = 1 / minimize_scalar(apart, bounds=near, method="bounded", options={"xatol": _CLOSELY * slope}).x
+    best = 1 / minimum(apart, near, _CLOSELY * slope)
     for rate in (*(float(f"{best:.{places}g}") for places in range(1, 7)), float(best)):
         if apart(1 / rate) <= 0:
             return sum(starts(1 / rate)) / 2, rate
