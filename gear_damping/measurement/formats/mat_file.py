@@ -1,7 +1,8 @@
 """MATLAB files: up to version 7 by scipy, version 7.3 by pymatreader.
 
-Fields of structures are `run.y`, elements of cells and of arrays of structures `c[0]`, `run.y[0]`. Where each element
-of an array of structures has a name and one vector, as in MAT files made of TDMS files, that is its name too.
+Fields of structures are `run.y`, elements of cells and of arrays of structures `c[0]`, `run.y[0]`, columns of a cell
+array with names above its numbers `raw.t [s]`. Where each element of an array of structures has a name and one vector,
+as in MAT files made of TDMS files, that is its name too.
 """
 
 import re
@@ -18,6 +19,8 @@ from numpy.typing import NDArray
 from scipy.io import loadmat
 from scipy.io.matlab import MatlabFunction, MatlabOpaque, MatReadWarning, matfile_version
 
+from gear_damping.measurement.formats.header import bracket_unit
+from gear_damping.measurement.formats.mat_cells import MIXED, columns_of, is_scattered
 from gear_damping.measurement.formats.octave_text import BEGIN as OCTAVE
 from gear_damping.measurement.formats.octave_text import octave_table
 from gear_damping.measurement.formats.stated_rate import rate_beside
@@ -56,6 +59,7 @@ def read(path: Path, max_bytes: int) -> Table:
     held, left_out = held_arrays(arrays)
     own = _own_names(found)
     held = [replace(one, name=own[one.name], also=one.name) if one.name in own else one for one in held]
+    held = [replace(one, unit=bracket_unit(one.name)) for one in held]
     texts = {name: "text" if isinstance(value, np.str_) else value for name, value in found.items()}
     left_out += [f"{name} ({what})" for name, what in texts.items() if name not in arrays]
     table = ArrayTable(path, held, left_out)
@@ -176,12 +180,21 @@ def _flat(value: Any, name: str) -> Iterator[tuple[str, NDArray | str]]:
 
 
 def _flat_cells(cells: list | NDArray, name: str) -> Iterator[tuple[str, NDArray | str]]:
-    """The elements of a cell array in MATLAB's linear order; one that holds one number each is a vector."""
+    """The columns of a cell array that holds a table, else its elements in MATLAB's linear order.
+
+    Where each holds one number, the row or the column of them is a vector.
+    """
+    table = columns_of(cells) if isinstance(cells, np.ndarray) else None
+    if table is not None:
+        yield from ((f"{name}.{heading}" if heading else name, column) for heading, column in table)
+        return
     elements = cells if isinstance(cells, list) else list(cells.flatten(order="F"))
     if len(elements) == 1 and isinstance(cells, np.ndarray):
         yield from _flat(elements[0], name)
     elif elements and all(isinstance(one, int | float | np.number) for one in elements):
         yield name, np.asarray(elements)
+    elif isinstance(cells, np.ndarray) and is_scattered(cells):
+        yield name, MIXED
     else:
         for k, one in enumerate(elements):
             yield from _flat(one, f"{name}[{k}]")
