@@ -16,7 +16,9 @@ def fit(cost):
 @pytest.mark.parametrize(
     ("rough", "own", "is_one", "has_shape"),
     [
-        ((20e3, 19.5e3), None, True, False),  # the same misfit of the rough wave
+        ((20e3, 19.5e3), (1.2e3, 1.1e3), True, True),  # the same misfit of the rough wave
+        ((20e3, 19.5e3), (9e3, 8e3), True, True),  # something else is missing
+        ((20e3, 19.5e3), (9e3, 1.0e3), False, True),  # marks that are a few degrees apart, beside which it lacks more
         ((25e3, 21e3), (1.2e3, 1.1e3), True, True),  # own phases bend to what the rough wave lacks, and only to that
         ((25e3, 21e3), (1.9e3, 1.0e3), False, True),  # one phase is wrong, though the rough wave hid it
         ((40e3, 21e3), None, False, False),  # wrong by far

@@ -88,6 +88,27 @@ def test_a_pair_with_a_law_of_no_known_size_takes_the_place_of_none_that_is_told
         assert _accepted(pairs, left(100.0), state) is pairs[taken]
 
 
+@pytest.mark.parametrize(
+    ("replaces", "causes", "parameters", "t", "is_taken"),
+    [
+        (True, 2, 3, 50.0, True),  # two that had come near give way to two that predict better
+        (True, 2, 2, 50.0, False),  # with more parameters it has to take a good part of what is left
+        (True, 2, 3, 0.5, False),
+        (True, 1, 3, 50.0, False),  # one gives way to two as one is joined by a further cause
+        (False, 2, 3, 50.0, False),
+    ],
+)
+def test_a_pair_in_the_place_of_one_of_as_many_parameters_has_to_predict_better(
+    replaces, causes, parameters, t, is_taken
+):
+    better = replace(pair(0.9, t=t), replaces=replaces)
+    present = outcome(1.0, 1.0, hypothesis=SimpleNamespace(free=[None] * parameters))
+    leaves = [(better.second.outcome, left(90.0))]
+    state = State(bench(SearchSettings(), leaves), outcome(), present, accepted=(SimpleNamespace(),) * causes)
+    with patch.object(Bench, "is_as_good", lambda *_: False), patch.object(steps, "_is_told", lambda *_: True):
+        assert (_accepted([better], left(100.0), state) is better) is is_taken
+
+
 @pytest.mark.parametrize(("first", "second", "finite"), [(True, True, True), (False, True, True), (True, True, False)])
 def test_a_pair_is_told_where_both_of_its_effects_are(first, second, finite):
     made = pair(0.1)

@@ -180,8 +180,12 @@ def shaped(rough: Outcome, evidence: Evidence, iterations: int, solver: Solver |
 
 def leaves_noise(found: Outcome, evidence: Evidence) -> bool:
     """Whether a fit leaves hardly more than the noise, so that nothing hides behind what it lacks."""
-    samples = sum(len(record.stacked) for record in evidence.fitted)
-    return found.fitted.cost < SHAPED * samples * evidence.noise**2
+    return found.fitted.cost < SHAPED * noise_power(evidence)
+
+
+def noise_power(evidence: Evidence) -> float:
+    """What a fit costs that leaves the noise alone."""
+    return sum(len(record.stacked) for record in evidence.fitted) * evidence.noise**2
 
 
 def angles_of(hypothesis: Hypothesis, evidence: Evidence, horizon: float, solver: Solver | None) -> Mapping[str, float]:

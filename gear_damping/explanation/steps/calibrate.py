@@ -24,6 +24,7 @@ from gear_damping.explanation.model.nominal_gear_pair import (
     first_gear_pair,
     is_standing,
     leaves_noise,
+    noise_power,
     phase_starts,
     shaped,
     standing,
@@ -52,7 +53,6 @@ EDGES = (0.0, 0.2, 0.4)  # of a mesh period: of spur teeth, wide ones and helica
 STIFFNESSES = (1.0, 0.85, 0.92, 1.08, 1.17)  # times where it begins: with a wrong one angles of records are wrong too
 APART = 1.5  # times the cost of a phase for every record: one phase of all leaves that much where there is none; angles
 # that begin anywhere agree that well once in a thousand times, for three records
-EQUIVOCAL = 1.05  # times: less than a twentieth of what the rough wave lacks is what its phases bend to in any records
 POORLY = 0.05  # of what moved: a stiffness that varies by a fifth leaves about so much behind a model linear in it
 FEWEST_PHASES = 4  # of records: two more than a line has numbers
 SLOPES = 201  # of a line that is tried through phases, up to half a mesh period between rest and the highest speed
@@ -323,7 +323,8 @@ def _angles_counted(
 
     An angle that was measured may begin anew in every record, as behind an encoder without an index: then one phase
     of the mesh does not fit them all. The rough fit that was made to find out comes with it, and that with the teeth's
-    own shape where it was needed: what the rough wave lacks hides the difference of the two.
+    own shape where it was needed: what the rough wave lacks hides the difference of the two, and a trigger may begin
+    all records within a few degrees of the mesh.
     """
     if evidence.has_index and evidence.mesh_index:
         return evidence, None, None
@@ -333,11 +334,12 @@ def _angles_counted(
     one, many = (_rough_gear_pair(either, solver) for either in (evidence, apart))
     if one.fitted.cost > APART * many.fitted.cost:
         return (evidence, one, None) if _are_in_line(many, evidence) else (apart, many, None)
-    if one.fitted.cost <= EQUIVOCAL * many.fitted.cost or leaves_noise(one, evidence):
+    if leaves_noise(one, evidence):
         return evidence, one, None
-    own, of_many = (
-        shaped(rough, either, SHAPE_ITERATIONS, solver) for rough, either in ((one, evidence), (many, apart))
-    )
+    own = shaped(one, evidence, SHAPE_ITERATIONS, solver)
+    if own.fitted.cost <= APART * noise_power(evidence):  # nothing leaves so much less than the noise
+        return evidence, one, own
+    of_many = shaped(many, apart, SHAPE_ITERATIONS, solver)
     is_one = own.fitted.cost <= APART * of_many.fitted.cost or _are_in_line(of_many, evidence)
     return (evidence, one, own) if is_one else (apart, many, of_many)
 

@@ -111,14 +111,19 @@ def _accepted(pairs: Sequence[Pair], current: Excess, state: State) -> Pair | No
 
     A law of which a part has run into a bound bends to what it is not: a pair with such a one is the last choice, and
     takes no other's place. Nor is one the choice of which the records do not tell the size, where others are told: it
-    would be dropped, and the other effect of the pair stay alone.
+    would be dropped, and the other effect of the pair stay alone. A pair in the place of one of no fewer parameters
+    need not take a good part of what that leaves, as a further cause must: it has to predict better.
     """
     bench, settings = state.bench, state.bench.settings
 
     def takes(pair: Pair) -> float:
         return (current.percent - bench.excess(pair.second.outcome).percent) / current.percent
 
-    worth = [pair for pair in pairs if pair.second.t > settings.accepted_t and takes(pair) >= settings.least_share]
+    def is_enough(pair: Pair) -> bool:
+        is_exchange = pair.replaces and len(state.accepted) == PAIR and not _is_richer(pair, state)
+        return takes(pair) >= (0.0 if is_exchange else settings.least_share)
+
+    worth = [pair for pair in pairs if pair.second.t > settings.accepted_t and is_enough(pair)]
     worth = [pair for pair in worth if pair.is_inside] or [pair for pair in worth if not pair.replaces]
     worth = sorted(worth, key=lambda pair: pair.second.outcome.left_out_cost)
     worth = [pair for pair in worth if _is_told(pair, state)] or worth
@@ -127,6 +132,11 @@ def _accepted(pairs: Sequence[Pair], current: Excess, state: State) -> Pair | No
     best = worth[0]
     alike = [pair for pair in worth if bench.is_as_good(pair.second.outcome, best.second.outcome)]
     return min([best, *alike], key=lambda pair: len(pair.second.outcome.hypothesis.free))
+
+
+def _is_richer(pair: Pair, state: State) -> bool:
+    """Whether a pair has more parameters than the present model."""
+    return len(pair.second.outcome.hypothesis.free) > len(state.outcome.hypothesis.free)
 
 
 def _is_told(pair: Pair, state: State) -> bool:

@@ -115,18 +115,24 @@ class GearPair(System):
 
     def load(self, at: Kinematics, p: Values) -> Tensor:
         """F = m_e (r_b1 T1 / I1 + r_b2 T2 / I2), which is T1 / r_b1 when the torques balance."""
-        pinion = _true_torque(at.inputs.get("pinion_torque", p["pinion_torque"]), p)
-        gear = at.inputs.get("gear_torque", p["gear_torque"])
+        return self._load(at.inputs, p)
+
+    @staticmethod
+    def _load(inputs: Values, p: Values) -> Tensor:
+        pinion = _true_torque(inputs.get("pinion_torque", p["pinion_torque"]), p)
+        gear = inputs.get("gear_torque", p["gear_torque"])
         return p["load_per_pinion_torque"] * pinion + p["load_per_gear_torque"] * gear
 
     def rotations(self, time: Tensor, inputs: Values, p: Values, displacement: Tensor) -> dict[str, Rotation]:
         """The shafts and the mesh at this time; a measured pinion angle replaces the stated speed.
 
         Which teeth carry goes with the mean rotation, and with a share of x beside it: m_e / (I_1 / r_b1^2) where the
-        pinion's own angle says it, as in models of both rotations, -m_e / (I_2 / r_b2^2) where the gear's does.
+        pinion's own angle says it, as in models of both rotations, -m_e / (I_2 / r_b2^2) where the gear's does. A
+        measured angle is one under load: what that deflects it by is in it, and the rest of x alone goes beside it.
         """
         if "pinion_angle" in inputs:
             angle, speed = inputs["pinion_angle"], inputs["pinion_angle_rate"]
+            displacement = displacement - self._load(inputs, p) / p["mean_stiffness"]
         else:
             angle, speed = turned(p, time)
         angle, speed = angle + p["angle_error"] + time * p["angle_error_rate"], speed + p["angle_error_rate"]
