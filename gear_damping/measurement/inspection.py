@@ -151,7 +151,9 @@ def inspect_table(table: Table, clock: str | int | None = None) -> Inspection:
     length = _length(columns, stamps)
     rows, taken = _of_one_recording(columns, stamps, length, _rows([c for c in columns if c.values.size == length]))
     base, faults = _base(table, columns, stamps, length, rows)
-    named, rate = (may_be_rate or table.stated_rate or ("", None)) if base is None and stamps is None else ("", None)
+    named, rate = (
+        (may_be_rate or _stated_rate(table, columns, length)) if base is None and stamps is None else ("", None)
+    )
     base = steady_time(rate, rows[0], rows[1] - rows[0]) if rate else base
     found = [_seen(c, stamps, columns, base, length, table.clock(k)) for k, c in enumerate(columns)]
     seen = Inspection(table, tuple(found), length, stamps, base, rows, faults, named, taken or some)
@@ -237,6 +239,17 @@ def clock_of(found: Inspection, column: Column) -> Column | None:
     own = nearest.stamps.in_seconds * np.diff(nearest.inside[:n])
     apart = np.abs(own - found.time.in_seconds * np.diff(main.inside[:n]))
     return nearest if apart.mean() > _OTHER_PACE * np.abs(own).mean() else None
+
+
+def _stated_rate(table: Table, columns: Sequence[Column], length: int) -> tuple[str, float | None]:
+    """What the file calls the rate, and the rate in Hz: that of all of it, or of the groups of the record's columns."""
+    own = (str(c.reference) for c in columns if c.kind != ELSEWHERE and c.values.size == length)
+    groups = dict.fromkeys(name.rpartition("/")[0] for name in own)
+    found = [(group, *table.stated_rates.get(group, ("", None))) for group in groups]
+    if table.stated_rate or len({rate for *_, rate in found}) != 1 or not found[0][1]:
+        return table.stated_rate or ("", None)
+    group, name, rate = found[0]
+    return f"{name} of {group}", rate
 
 
 def _may_be_rate(columns: Sequence[Column]) -> tuple[str, float] | None:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from gear_damping.config.light import InspectSettings
 from gear_damping.config.measured import YAML_SUFFIXES
 from gear_damping.config.shown import shown
-from gear_damping.measurement.column_kinds import CONSTANT
+from gear_damping.measurement.column_kinds import CONSTANT, ELSEWHERE
 from gear_damping.measurement.encoders import FROM_ENCODERS
 from gear_damping.measurement.files import UNKNOWN
 from gear_damping.measurement.formats.registry import read_table, readers
@@ -74,7 +74,7 @@ def _log(folder: RunFolder, lines: Sequence[str]) -> None:
 
 def _file_lines(found: Inspection) -> Iterator[str]:
     table = found.table
-    lengths = {column.values.size for column in found.columns}
+    lengths = {column.values.size for column in found.columns if column.kind != ELSEWHERE}
     rows = f"{found.length} rows" if lengths == {found.length} else f"{min(lengths)} to {max(lengths)} rows"
     yield f"{table.path.name}: {len(found.columns)} columns in {len(table.shapes)} arrays, {rows}"
     if table.left_out:

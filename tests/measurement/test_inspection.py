@@ -57,6 +57,31 @@ def test_groups_with_members_of_the_same_names_are_records_of_their_own(tmp_path
     assert "guess: what the file calls fs" in text
 
 
+def test_of_groups_with_rates_of_their_own_that_of_the_proposed_column_is_taken(tmp_path):
+    with h5py.File(tmp_path / "campaign.h5", "w") as file:
+        for group, rate in (("low", 500.0), ("high", 1000.0)):
+            file.create_group(group).attrs["fs"] = rate
+            file[f"{group}/acc"] = np.sin(0.3 * np.arange(900))
+    found = inspect_table(read_table(tmp_path / "campaign.h5"))
+    assert [one.reference for one in found.measured] == ["high/acc"]
+    assert (found.rate, found.rate_of) == (1000.0, "fs of high")
+
+
+def test_groups_with_rates_of_their_own_in_one_record_state_none(tmp_path):
+    with h5py.File(tmp_path / "campaign.h5", "w") as file:
+        for group, name, rate in (("low", "acc", 500.0), ("high", "force", 1000.0)):
+            file.create_group(group).attrs["fs"] = rate
+            file[f"{group}/{name}"] = np.sin(0.3 * np.arange(900))
+    assert inspect_table(read_table(tmp_path / "campaign.h5")).rate is None
+
+
+@pytest.mark.parametrize(("unit", "rate"), [("s", 500.0), ("Hz", None)])
+def test_the_step_of_an_abscissa_in_a_structure_is_one_of_time_where_its_unit_says_so(unit, rate, tmp_path):
+    over = {"start_value": 0.0, "increment": 0.002, "quantity": {"label": unit}}
+    savemat(tmp_path / "a.mat", {"Signal": {"x_values": over, "y_values": {"values": np.sin(0.3 * np.arange(900))}}})
+    assert inspect_table(read_table(tmp_path / "a.mat")).rate == rate
+
+
 def test_groups_of_one_signal_each_are_one_record(tmp_path):
     with h5py.File(tmp_path / "one.h5", "w") as file:
         for group in ("speed", "volt"):
@@ -211,7 +236,7 @@ def test_stamps_of_data_that_came_in_bursts_are_the_time_and_their_mean_the_rate
     assert "repeated" in found.faults[0]
 
 
-@pytest.mark.parametrize("name", ["SampFreq", "fs", "sampling_rate", "Sample Rate"])
+@pytest.mark.parametrize("name", ["SampFreq", "fs", "sampling_rate", "Sample Rate", "rate"])
 def test_a_number_named_like_a_rate_may_be_it(name, tmp_path):
     found = inspected(tmp_path, **{name: np.array([RATE]), "x": np.sin(9 * T), "offset": np.array([3.0])})
     assert found.rate == RATE

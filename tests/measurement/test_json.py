@@ -59,6 +59,41 @@ def test_units_rates_and_when_clocks_began_are_the_files_own(tmp_path):
     assert _table(tmp_path, {"sample_rate": 200, "x": WAVE}).names == ("x",)
 
 
+def test_channels_in_a_list_of_objects_go_by_their_names_with_unit_and_rate(tmp_path):
+    pos = {"name": "pos", "unit": "mm", "gain": 2, "data": WAVE}
+    speed = {"name": "speed", "units": "m/s", "data": WAVE[::-1]}
+    table = _table(tmp_path, {"meta": {"fs": 200, "sensor": "laser"}, "channels": [pos, speed]})
+    assert table.names == ("pos", "speed")
+    assert [table.unit(k) for k in (0, 1)] == ["mm", "m/s"]
+    assert table.values(0).tolist() == WAVE
+    assert table.stated_rate == ("fs", RATE)
+
+
+def test_channels_without_names_go_by_their_numbers(tmp_path):
+    table = _table(tmp_path, {"channels": [{"data": WAVE, "unit": "mm"}, {"data": TIME, "unit": "s"}]})
+    assert (table.names, table.lengths, table.unit(1)) == (("channels[0]", "channels[1]"), (60, 60), "s")
+
+
+def test_short_vectors_in_rows_are_no_channels(tmp_path):
+    rows = [{"t": t, "acc": [x, 0.0, 9.8]} for t, x in zip(TIME, WAVE, strict=True)]
+    assert _table(tmp_path, rows).names == ("t", "acc[0]", "acc[1]", "acc[2]")
+
+
+@pytest.mark.parametrize(
+    ("stated", "rate"),
+    [
+        ({"fs": 500}, 500.0), ({"sample_rate": 500.0}, 500.0), ({"dt": 0.002}, 500.0), ({"rate_hz": 500}, 500.0),
+        ({"rate": 500}, 500.0), ({"Ts": 0.002}, 500.0), ({"rate_khz": 0.5}, 500.0),
+        ({"heart rate": 70}, None), ({"ts": 3}, None), ({"rates": 3}, None),
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("others", [{}, {"unit": "mm"}, {"unit": "mm", "sensor": "laser"}])
+def test_a_rate_is_seen_whatever_stands_beside_it(stated, rate, others, tmp_path):
+    table = _table(tmp_path, {**others, **stated, "data": WAVE})
+    assert table.stated_rate == (None if rate is None else (next(iter(stated)), rate))
+    assert (table.names, table.unit(0)) == (("data",), others.get("unit"))
+
+
 def test_what_is_missing_is_missing_and_texts_are_left_out(tmp_path):
     table = _table(tmp_path, [{**row, "x": None if k == 5 else row["x"], "state": "run"} for k, row in enumerate(ROWS)])
     assert [k for k, one in enumerate(table.values(1).tolist()) if one != one] == [5]

@@ -317,6 +317,13 @@ def test_of_arrays_of_other_lengths_the_shortest_and_the_longest_are_said(tmp_pa
     assert told(tmp_path / "a.npz", tmp_path / "out").startswith("a.npz: 3 columns in 3 arrays, 1 to 1000 rows")
 
 
+def test_what_belongs_to_further_records_counts_for_no_length(tmp_path):
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        for group in ("run1", "run2"):
+            file[f"{group}/pos"] = TIME**2
+    assert told(tmp_path / "a.h5", tmp_path / "out").startswith("a.h5: 2 columns in 2 arrays, 1000 rows")
+
+
 def test_of_much_that_is_no_number_some_is_named(tmp_path):
     np.savez(tmp_path / "a.npz", x=TIME**2, **{f"word{k}": np.array(["a", "b"]) for k in range(30)})
     said = told(tmp_path / "a.npz", tmp_path / "out")

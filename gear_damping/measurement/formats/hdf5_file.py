@@ -49,10 +49,13 @@ def read(path: Path, max_bytes: int) -> Table:
                 left_out.append(f"{dataset.name.strip('/')} ({kind if dataset.size else 'empty'})")
                 continue
             held += [_held(h5py, path, dataset, field) for field in found]
-        settings = _settings(one for one in items if not isinstance(one, h5py.Dataset))
+        groups = [one for one in items if not isinstance(one, h5py.Dataset)]
+        settings = _settings(groups)
+        rates = {one.name.strip("/"): stated for one in groups if (stated := stated_rate(_settings([one])))}
         notes = [note for dataset in datasets for note in _not_applied(path, dataset)]
     table = ArrayTable(path, held, left_out)
     table.stated_rate = stated_rate(settings)
+    table.stated_rates = rates
     table.notes += tuple(notes)
     return table
 

@@ -1,9 +1,11 @@
 """JSON as loggers, web services and pandas write it: columns by name, rows as objects or lists, one object a line.
 
-What lies deeper bears the path to it, `axle.x`, and rows of lists are columns `x[0]`, `x[1]`, as elsewhere.
+Channels in a list of objects, `{"name": "x", "unit": "mm", "data": [...]}`, go by their names. What lies deeper bears
+the path to it, `axle.x`, and rows of lists are columns `x[0]`, `x[1]`, as elsewhere.
 """
 
 import json
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -20,6 +22,9 @@ from gear_damping.measurement.formats.table import ArrayTable, Held, Table, held
 SUFFIXES = (".json", ".jsonl", ".ndjson")
 
 _UNITS = ("unit", "units")  # beside the one list of an object, which then is a channel
+_NAME = re.compile(
+    r"^(channel|signal|sensor)?_?(name|label|id)$|^(channel|signal)$", re.I
+)  # the key of what it is called
 _NAMES = "columns"  # beside rows of lists, as pandas writes them apart (`orient="split"`)
 
 
@@ -67,6 +72,13 @@ def _lists(name: str, value: Any, unit: str | None = None) -> Iterator[tuple[str
         yield from _of_object(name, value)
     elif not isinstance(value, list):
         yield name, [value], unit
+    elif (channels := _own_names(value)) is not None:
+        for own, (channel, key) in channels.items():
+            unit = next((channel[one] for one in _UNITS if isinstance(channel.get(one), str)), None)
+            own = name + own if own.startswith("[") else own
+            yield own, channel[key], unit
+            for other in (one for one in channel if one not in (key, *_UNITS) and not _NAME.match(one)):
+                yield from _lists(_below(own, other), channel[other])
     elif any(isinstance(one, dict) for one in value):
         rows = [one if isinstance(one, dict) else {} for one in value]
         for key in dict.fromkeys(key for row in rows for key in row):
@@ -78,6 +90,23 @@ def _lists(name: str, value: Any, unit: str | None = None) -> Iterator[tuple[str
             yield from _lists(f"{name}[{place}]" if name else "", column, unit)
     else:
         yield name, value, unit
+
+
+def _own_names(value: list[Any]) -> dict[str, tuple[dict[str, Any], str]] | None:
+    """The channels of a list by their names, each with the key of its values; None of a list of anything else.
+
+    A channel is an object with a name that no other has, and one list of single values; without a name the lists must
+    be longer than that of the objects, and it goes by its number, `[0]`.
+    """
+    found: dict[str, tuple[dict[str, Any], str]] = {}
+    for k, one in enumerate(value):
+        keys = [key for key, inner in one.items() if isinstance(inner, list)] if isinstance(one, dict) else []
+        named = [one[key] for key in one if _NAME.match(key) and isinstance(one[key], str)] if keys else []
+        named = named or [f"[{k}]" for key in keys if len(one[key]) > len(value)]
+        if len(keys) != 1 or not named or named[0] in found or any(isinstance(k, dict | list) for k in one[keys[0]]):
+            return None
+        found[named[0]] = one, keys[0]
+    return found or None
 
 
 def _of_object(name: str, value: dict[str, Any]) -> Iterator[tuple[str, Sequence[Any], str | None]]:
@@ -94,6 +123,8 @@ def _of_object(name: str, value: dict[str, Any]) -> Iterator[tuple[str, Sequence
     unit = next((value[key] for key in _UNITS if isinstance(value.get(key), str)), None)
     if len(lists) == 1 and unit is not None:
         yield from _lists(name or lists[0], value[lists[0]], unit)
+        for key in (key for key in value if key not in (lists[0], *_UNITS)):
+            yield from _lists(_below(name, key), value[key])
         return
     for key, one in value.items():
         yield from _lists(_below(name, key), one)

@@ -41,6 +41,7 @@ _HDF5_MAGIC = b"\x89HDF"
 _COMPRESSED = 15  # the type of an element that is deflated
 _OBJECT = "MATLAB object; in MATLAB save its arrays, as t = ts.Time; y = ts.Data"
 _FIELD = re.compile(r"^(?P<array>.+)\.(?P<field>\w+)\[(?P<element>\d+)\]$")  # of an element of an array of structures
+_STEP, _STEP_IN = ".x_values.increment", ".x_values.quantity.label"  # of the abscissa in files of Simcenter
 _NAME = re.compile(r"^(channel_?)?(name|label)$", re.I)  # the field that says what an element is
 
 
@@ -63,8 +64,13 @@ def read(path: Path, max_bytes: int) -> Table:
     texts = {name: "text" if isinstance(value, np.str_) else value for name, value in found.items()}
     left_out += [f"{name} ({what})" for name, what in texts.items() if name not in arrays]
     table = ArrayTable(path, held, left_out)
-    table.stated_rate = rate_beside(arrays)
+    table.stated_rate = rate_beside({name: one for name, one in arrays.items() if not _is_over_something(name, found)})
     return table
+
+
+def _is_over_something(name: str, found: Mapping[str, NDArray | str]) -> bool:
+    """Whether a number is the step of an abscissa that is no time in s, as its unit says."""
+    return name.endswith(_STEP) and str(found.get(f"{name.removesuffix(_STEP)}{_STEP_IN}", "")) != "s"
 
 
 def _own_names(found: Mapping[str, NDArray | str]) -> dict[str, str]:

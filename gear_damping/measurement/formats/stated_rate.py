@@ -20,32 +20,37 @@ _RATE = re.compile(
     r"(update|output|scan|acquisition|logging|frame)[ _-]?(rate|freq(uency)?))" + _END,
     re.I,
 )
+_ALONE = re.compile(r"(?:^|(?<=[./]))rate(?:_k?hz)?\s*$", re.I)  # of a single number beside arrays: all of its name
+_STEP_ALONE = re.compile(
+    r"(?:^|(?<=[./]))(Ts|x_values\.increment)\s*$"
+)  # of MATLAB, and of its files made by Simcenter
 _IN_NAME = re.compile(r"_(ns|us|ms|s|hz|khz|mhz)[\s:=]*$", re.I)  # `sample_interval_us`
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?", re.I)
 _DECIMAL_COMMA = re.compile(r"(?<=\d),(?=\d)")  # within a cell: one that parts cells is in none
 _LONGEST_NAME = 40  # characters, assumed: what is longer is a sentence
 
 
-def stated_rate(rows: Iterable[Sequence[str]]) -> tuple[str, float] | None:
+def stated_rate(rows: Iterable[Sequence[str]], beside_arrays: bool = False) -> tuple[str, float] | None:
     """The words that state a rate and the rate in Hz; None where none does, or two of them disagree.
 
     Args:
         rows: The cells of the lines above a table of texts, comments among them, or attributes: a name and its value.
+        beside_arrays: Whether they are numbers beside arrays, of which one that is called `rate` is that of these.
     """
-    found = [one for row in rows if (one := _of_row(row)) is not None]
+    found = [one for row in rows if (one := _of_row(row, beside_arrays)) is not None]
     rates = {f"{rate:.5g}" for _, rate in found}
     return found[0] if len(rates) == 1 else None
 
 
-def _of_row(row: Sequence[str]) -> tuple[str, float] | None:
+def _of_row(row: Sequence[str], beside_arrays: bool) -> tuple[str, float] | None:
     cells = (_DECIMAL_COMMA.sub(".", cell.strip().strip('"')) for cell in row if cell.strip())
     text = " ".join(cells).lstrip("#%/;*! ")
     number = next((one for one in _NUMBER.finditer(text) if not text[one.start() - 1 : one.start()].isalpha()), None)
     if number is None:
         return None
     name, behind = text[: number.start()], text[number.end() :].split()
-    is_step = _STEP.search(name)
-    words = is_step or _RATE.search(name)
+    is_step = _STEP.search(name) or (_STEP_ALONE.search(name) if beside_arrays else None)
+    words = is_step or _RATE.search(name) or (_ALONE.search(name) if beside_arrays else None)
     if len(name) > _LONGEST_NAME or words is None:
         return None
     value = float(number[0])
@@ -57,7 +62,7 @@ def _of_row(row: Sequence[str]) -> tuple[str, float] | None:
     is_step = is_step and not is_of_kind(unit, "Hz")  # steps at 8 kHz
     size = value * _factor(unit, "s" if is_step else "Hz")
     rate = rate_of(size) if is_step else size
-    return (words[0], rate) if rate is not None and 0 < rate < inf else None
+    return (words[0].strip(), rate) if rate is not None and 0 < rate < inf else None
 
 
 def rate_of(step: Any) -> float | None:
@@ -82,9 +87,9 @@ def beside_their_units(attributes: Mapping[str, Any]) -> list[list[str]]:
 
 
 def rate_beside(arrays: Mapping[str, NDArray]) -> tuple[str, float] | None:
-    """The rate that single numbers beside arrays state (`Fs`, `dt`), as `stated_rate` has it."""
+    """The rate that single numbers beside arrays state (`Fs`, `dt`, `rate`), as `stated_rate` has it."""
     single = {name: one.item() for name, one in arrays.items() if one.size == 1 and one.dtype.kind in "fiu"}
-    return stated_rate(beside_their_units(single))
+    return stated_rate(beside_their_units(single), beside_arrays=True)
 
 
 def _factor(unit: str, plain: str) -> float:

@@ -47,6 +47,7 @@ class Table(ABC):
         self._place = [(column[1], column[2]) for column in columns]
         self.sampling_rate: float | None = None  # Hz, where the format itself holds one for the whole file
         self.stated_rate: tuple[str, float] | None = None  # its name in lines above, or attributes; Hz; a guess
+        self.stated_rates: dict[str, tuple[str, float]] = {}  # the same of groups, by their path
         self.full_scale: float | None = None  # the value of full scale, where samples are fractions of it
         self.notes: tuple[str, ...] = ()
 
