@@ -10,6 +10,7 @@ from gear_damping.errors import InputError
 from gear_damping.explanation.answer import report_fields
 from gear_damping.explanation.answer.gain import rmse
 from gear_damping.explanation.answer.judged import judged
+from gear_damping.explanation.answer.other_shafts_torque import torque_of_the_other_shaft
 from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.casing.heard import is_casing
 from gear_damping.explanation.casing.report_fields import CasingStudy, explain_casing
@@ -149,6 +150,7 @@ def _of_evidence(
         never_dies(found.state),
         followed_one_by_one(found.state),
         contradicts_stated(found.state.outcome, evidence),
+        torque_of_the_other_shaft(found.state.outcome, evidence),
         noise_above(found.state.bench.floor, rmse(found.state.outcome.fit_residuals), evidence.channel) or "",
         INPUT_NOISE if evidence.input_noise else "",
     )

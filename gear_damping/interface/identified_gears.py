@@ -8,6 +8,7 @@ from torch import Tensor
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.explanation.answer.gain import damping_ratio, final_parameters, nrmse, rmse
+from gear_damping.explanation.answer.other_shafts_torque import torque_of_the_other_shaft
 from gear_damping.explanation.answer.unexplained import first_channel
 from gear_damping.explanation.casing.heard import is_casing
 from gear_damping.explanation.evidence.declared_units import radian_of
@@ -259,6 +260,7 @@ def _far_off(outcome: Outcome, evidence: Evidence) -> str | None:
     }
     return (
         contradicts_stated(outcome, evidence)
+        or torque_of_the_other_shaft(outcome, evidence)
         or _unlike_steel(outcome, evidence)
         or far_from_stated(pairs, "unit and gain of the torque and of the response, and the value itself")
     )
