@@ -109,9 +109,24 @@ def guessed(table: Table) -> tuple[Inspection, tuple[str, str], list[Guess]]:
 
 def _guessed(found: Inspection) -> tuple[Inspection, tuple[str, str], list[Guess]]:
     system = system_of(found)
-    listed = [replace(guess, clock=clock_of(found, guess.column)) for guess in guesses(found, system[0])]
+    listed = _of_one_run([replace(guess, clock=clock_of(found, guess.column)) for guess in guesses(found, system[0])])
     found = of_columns(found, [guess.column for guess in listed if guess.used and guess.clock is None])
     return found, system, listed
+
+
+def _of_one_run(listed: list[Guess]) -> list[Guess]:
+    """The same where the columns that were chosen have several clocks, and one clock has a column of each channel.
+
+    Those are runs side by side, and the force of one is none of the motion of another.
+    """
+    wanted, runs = {guess.channel for guess in listed if guess.used}, {}
+    for guess in (guess for guess in listed if guess.channel):
+        runs.setdefault(id(guess.clock), []).append(guess)
+    whole = next((run for run in runs.values() if wanted <= {guess.channel for guess in run}), None)
+    if whole is None or len({id(guess.clock) for guess in listed if guess.used}) < 2:
+        return listed
+    kept = {id(guess.column) for guess in _one_each(whole) if guess.used and guess.channel in wanted}
+    return [replace(guess, used=id(guess.column) in kept) for guess in listed]
 
 
 def system_of(found: Inspection) -> tuple[str, str]:

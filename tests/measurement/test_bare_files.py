@@ -136,6 +136,33 @@ def test_the_clock_of_all_that_is_declared_is_that_of_the_record(tmp_path):
     assert 'time: {column: "X[s].1", unit: s}' in starting_yaml(found, system, listed)
 
 
+RUN_NAMES = [
+    ("Run 1: Time (s)", "Run 1: Position (m)", "Run 1: Force (N)"),
+    ("Latest: Time (s)", "Latest: Position (m)", "Latest: Force (N)"),
+]
+
+
+@pytest.mark.parametrize("shorter", [0, 1])
+@pytest.mark.parametrize("sizes", [(1.0, 1.0), (3.0, 0.2), (0.2, 3.0)])
+def test_of_two_runs_side_by_side_the_columns_of_one_are_declared(shorter, sizes, tmp_path):
+    """At one rate, the other run longer; the position of the second stands out most, and the force by its size."""
+    time, cells = np.arange(800) / 100, []
+    for run, size in enumerate(sizes):
+        noise = RNG(run).normal(size=(2, 800))
+        x, force = 0.01 * (1 + run) * np.cos(19 * time) + 1e-4 * noise[0], size * np.sin(40 * time) + 0.01 * noise[1]
+        own = [f"{t:.2f},{a:.6f},{b:.5f}" for t, a, b in zip(time, x, force, strict=True)]
+        cells.append([*own[:500], *[",,"] * 300] if run == shorter else own)
+    rows = [",".join(row) for row in zip(*cells, strict=True)]
+    (tmp_path / "two.csv").write_text("\n".join([",".join([*RUN_NAMES[0], *RUN_NAMES[1]]), *rows]) + "\n")
+    found, system, listed = guessed(read_table(tmp_path / "two.csv"))
+    names = [str(guess.column.reference) for guess in listed if guess.used]
+    names.append(str(found.columns[found.time.index].reference))
+    run = [{*one} for one in RUN_NAMES].index({*names})
+    declared = tmp_path / "measurement.yaml"
+    declared.write_text(starting_yaml(found, system, listed))
+    assert load_measurement(declared).records[0].time.size == (500 if run == shorter else 800)
+
+
 def test_a_steady_shaft_beside_stamps_is_no_other_clock(tmp_path):
     """Neither a name nor a unit says that it is one, however evenly it goes on."""
     found = _logged(tmp_path, 5 * np.arange(400), 3 * np.arange(400), np.round(900 * np.sin(np.arange(400) / 9)))
