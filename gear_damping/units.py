@@ -220,6 +220,31 @@ def number_in(value: object, unit: str, key: str = "") -> object:
     return float(f"{to_si(said[0], said[1], unit, key) / parse_unit(unit).factor:.{DIGITS}g}")
 
 
+def per_mass(declared: str, length: str | None) -> str:
+    """A unit that is declared in SI, where masses are 1 and lengths are in another unit, as N/m is 1/s^2.
+
+    Args:
+        declared: What holds in SI.
+        length: The unit of lengths; None: nobody knows it.
+
+    Returns:
+        "" where it follows from a length that nobody knows.
+    """
+    found = parse_unit(declared).dimension
+    if not found.length and not found.mass:
+        return declared
+    if found.length and length is None:
+        return ""
+    powers = ((length or "", found.length), ("rad", found.angle), ("s", found.time))
+    above = [_raised(name, power) for name, power in powers if power > 0]
+    return "/".join(["*".join(above) or "1", *(_raised(name, -power) for name, power in powers if power < 0)])
+
+
+def _raised(name: str, power: float) -> str:
+    name = f"({name})" if power != 1 and {"/", "*", "^"} & {*name} else name
+    return name if power == 1 else f"{name}^{power:g}"
+
+
 def _parse_factor(piece: str, text: str, key: str, source: str) -> tuple[Unit, float]:
     match = _FACTOR.match(piece)
     name = match["atom"] if match else piece

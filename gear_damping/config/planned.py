@@ -1,7 +1,7 @@
 """The `plan` node: tests that could be made, sensors, what is unknown, what is wanted and what tests cost."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from gear_damping.config.quantities import quantity, split_suffix
@@ -70,7 +70,9 @@ def read_plan(node: Mapping[str, Any], simulator: SimulatorSettings, origin: Ori
     for key in node:
         if split_suffix(key, AXES)[0] not in AXES and key not in (*PLAIN, *GROUPS):
             reader.refuse_unknown(f"plan.{key}", [*AXES, *PLAIN, *GROUPS])
-    given = reader.parameters(_last_said(reader, node, AXES, "plan."), AXES, "plan.")
+    system = simulator.model.system
+    axes = {name: replace(one, unit=system.unit_of(one.unit)) for name, one in AXES.items()}
+    given = reader.parameters(_last_said(reader, node, axes, "plan."), axes, "plan.")
     plain = reader.plain(node, PLAIN, "plan.")
     costs = _group(reader, node, "cost")
     for key in set(costs) - set(COSTS):
@@ -173,6 +175,6 @@ def _unknown(reader: Reader, one: Any, key: str, simulator: SimulatorSettings) -
     if isinstance(deviation, Mapping) and deviation.get("unit") == "%":
         percent = reader.collect(lambda: 100 * quantity(deviation, "1", full, reader.origin.of(full)))
         return Unknown(one["name"], percent=percent, each=each)
-    unit, place = declared[one["name"]].unit, f"{full}.{one['name']}"
+    unit, place = simulator.model.system.unit_of(declared[one["name"]].unit), f"{full}.{one['name']}"
     found = reader.collect(lambda: quantity(deviation, unit, place, reader.origin.of(full)))
     return Unknown(one["name"], found, each=each)

@@ -21,7 +21,14 @@ def split_suffix(key: str, known: Mapping[str, Any]) -> tuple[str, str | None]:
 
 
 def quantity(value: Any, expected: str, key: str, source: str, unit: str | None = None) -> float:
-    """A number in SI from a plain number (SI, or in `unit`), {value, unit} or a text such as `80um`.
+    """A number in `expected` from a plain number (in that, or in `unit`), {value, unit} or a text such as `80um`.
+
+    Args:
+        value: As it was given.
+        expected: SI; of a rig that is measured in another unit, that; "" where nobody knows it.
+        key: Its key.
+        source: Where it comes from.
+        unit: Of a plain number.
 
     Raises:
         InputError: it is neither, not finite, or in a unit of another kind.
@@ -36,9 +43,14 @@ def quantity(value: Any, expected: str, key: str, source: str, unit: str | None 
         unit, value = value.get("unit", unit), value["value"]
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not isfinite(value):
         rule = "must be a finite number" + (f" in {unit or expected}" if (unit or expected) != "1" else "")
-        remedy = f"write a number, or {{value: …, unit: {expected}}}"
+        remedy = "write a number" + (f", or {{value: …, unit: {expected}}}" if expected else "")
         raise InputError(Problem(key, rule, value, remedy, source))
-    return to_si(float(value), unit, expected, key, source) if unit else float(value)
+    if unit and not expected:
+        rule, remedy = "is in a unit, and that of the rig is not known", "add simulator.unit=m, or what the rig is in"
+        raise InputError(Problem(key, rule, f"{value:g} {unit}", remedy, source))
+    if not unit or unit.strip() == expected:
+        return float(value)
+    return to_si(float(value), unit, expected, key, source) / parse_unit(expected).factor
 
 
 def number_of(key: str, value: Any) -> Any:

@@ -1,7 +1,7 @@
 """The `simulator` and `family` nodes: checked against the declarations of systems and effects."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, get_args
 
@@ -39,7 +39,7 @@ SOLVER = {
 }
 OTHER_GROUP = "choose the group that brings its own: simulator=oscillator family=none, or simulator=gear_pair"
 HOW = (*(name for name in PLAIN if name != "system"), "solver", "plugins")  # keys that say how to simulate
-SENSOR_NOISE = "sensor_noise"
+SENSOR_NOISE, UNIT = "sensor_noise", "unit"  # an effect; the option of a rig that says what it is measured in
 
 
 @dataclass(frozen=True)
@@ -107,20 +107,21 @@ def read_simulator(node: Mapping[str, Any], family: Mapping[str, Any], origin: O
     if group := _of_another_system(plain["system"], origin):
         reader.refuse("simulator.system", f"stands beside the parameters of a {group}", plain["system"], OTHER_GROUP)
         raise InputError(reader.problems)
-    declared = {p.name: p for p in system_class.parameters}
     options = {option.name for option in system_class.options}
-    chosen = {key: value for key, value in node.items() if key in options}
+    chosen = _unit_unknown(node, options) | {key: value for key, value in node.items() if key in options}
     system = reader.collect(lambda: system_class(**chosen), "simulator") or system_class()
+    declared = {p.name: p for p in _in_units_of(system, system_class.parameters)}
     given = reader.parameters(node, declared, "simulator.")
     sampled = {SAMPLING_RATE.name: SAMPLING_RATE}
     rate = reader.parameters(node, sampled, "simulator.").get(SAMPLING_RATE.name, SAMPLING_RATE.default)
     _refuse_unknown(reader, node, known, declared | sampled, options if plugins is not None else None)
-    effects = [_effect(reader, known[key], value, given) for key, value in node.items() if key in known]
+    effects = [_effect(reader, known[key], value, given, system) for key, value in node.items() if key in known]
     effects = [effect for effect in effects if effect is not None]
     if plugins is None:  # model, family and damping law may need the effects of a file that cannot be used
         raise InputError(reader.problems)
     model = _model(reader, system, effects, given)
-    flat = declared | {f"{effect.name}.{p.name}": p for effect in effects for p in effect.parameters}
+    own = {effect.name: _in_units_of(system, effect.parameters) for effect in effects}
+    flat = declared | {f"{name}.{p.name}": p for name, listed in own.items() for p in listed}
     drawn = read_prior(reader, family, flat, given)
     plain["damping_law"] = _damping_law(reader, plain["damping_law"], effects)
     if reader.problems:
@@ -204,11 +205,21 @@ def _refuse_unknown(
                 reader.refuse(full, "no such effect or parameter", remedy=OTHER_FAMILY if of_a_family else remedy)
 
 
-def _effect(reader: Reader, kind: type[Effect], node: Any, given: dict[str, Any]) -> Effect | None:
+def _unit_unknown(node: Mapping[str, Any], options: set[str]) -> dict[str, None]:
+    """What the unit of a rig is that comes from a file which does not say it."""
+    return {UNIT: None} if node.get("extended") and UNIT in options else {}
+
+
+def _in_units_of(system: System, declared: Sequence[Parameter]) -> list[Parameter]:
+    """Parameters in the units that the values of a system are in."""
+    return [replace(one, unit=system.unit_of(one.unit)) for one in declared]
+
+
+def _effect(reader: Reader, kind: type[Effect], node: Any, given: dict[str, Any], system: System) -> Effect | None:
     """The effect where it is on; its parameters go into `given` by flat name."""
     if not isinstance(node, Mapping):
         return None
-    declared = {p.name: p for p in kind.parameters}
+    declared = {p.name: p for p in _in_units_of(system, kind.parameters)}
     options = {option.name for option in kind.options}
     prefix = f"simulator.{kind.name}."
     for key in node:

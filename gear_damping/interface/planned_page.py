@@ -8,16 +8,17 @@ from typing import Any
 from gear_damping.identification.test_plan.channels import channels_of
 from gear_damping.identification.test_plan.maps import IntervalCurves, IntervalMap
 from gear_damping.identification.test_plan.plan import Precision, TestPlan, ToldTest
+from gear_damping.physics.systems.base import System
 from gear_damping.reporting.figures.test_plan import PlanCurves, PlanMap, PlanPicture
-from gear_damping.reporting.numbers import number
+from gear_damping.reporting.numbers import number, pretty_unit
 from gear_damping.reporting.tables import plan_table
 
 RPM = 30 / pi  # revolutions a minute in one rad/s
 WIDE = 50.0  # % of the value; beyond it some estimates run off to no damping at all (docs/plan.md)
 MOST_OF_FRONT = 8  # sets that a reader looks through
 LEAST_GAIN = 1.1  # from one of them to the next; who pays more wants to see more
-# Unit that an axis is shown in, and how many of it are in one SI unit.
-AXES = {"pinion_speed": ("rpm", RPM), "pinion_torque": ("N m", 1.0), "initial_displacement": ("m", 1.0)}
+# Unit that an axis of gears is shown in, and how many of it are in one SI unit.
+AXES = {"pinion_speed": ("rpm", RPM), "pinion_torque": ("N m", 1.0)}
 
 
 def content(plan: TestPlan) -> dict[str, Any]:
@@ -27,9 +28,10 @@ def content(plan: TestPlan) -> dict[str, Any]:
     return {
         "rig": {
             "system": rig.model.system.name,
+            "unit": rig.model.system.unit_of("m") or None,
             "damping_law": rig.damping.name,
             "damping_ratio_percent": surveyed.ratio_percent,
-            "at_velocity_m_s": float(rig.velocity),
+            **_in_metres(rig.model.system, "at_velocity", "m/s", float(rig.velocity)),
             "exponent": float(rig.values[rig.exponent][0]) if rig.exponent else None,
         },
         "unknown": [{"name": one.name, "deviation_si": one.deviation, "percent": one.percent, "each_test": one.each}
@@ -66,7 +68,7 @@ def sentences(plan: TestPlan) -> list[str]:
     found = [said, _how_found(plan)]
     rig = surveyed.rig
     ratio = f"the damping ratio is {number(surveyed.ratio_percent)} % of critical at a velocity amplitude of "
-    ratio += f"{number(float(rig.velocity), 3)} m/s, by {rig.damping.name}"
+    ratio += f"{_with_unit(float(rig.velocity), rig.model.system.unit_of('m/s'), 3)}, by {rig.damping.name}"
     found.append(ratio + (", its exponent unknown" if goal.joint else ""))
     if WIDE < goal_precision(plan, chosen or plan.best).percent < inf:
         found.append(f"beyond ± {WIDE:g} % some estimates run off to no damping at all: no interval is promised there")
@@ -88,7 +90,7 @@ def table(plan: TestPlan, most: int | None = None) -> str:
     shown = list(plan.single) if most is None or most >= len(rows) else rows[:most]
     left = f"; {len(shown)} of {len(rows)}, those that tell most" if len(shown) < len(rows) else ""
     axes = list(plan.survey.settings[0])
-    columns = (*(AXES[name][0] for name in axes), "s", "sensors", *_precisions(plan), "cost")
+    columns = (*(_shown_in(plan, name)[0] or "amplitude" for name in axes), "s", "sensors", *_precisions(plan), "cost")
     text = plan_table(f"halves of 95 % intervals of the damping ratio, in % of it{left}", columns,
                       [_row(plan, one) for one in shown])  # fmt: skip
     front = _thinned(plan, list(plan.front))
@@ -107,7 +109,9 @@ def picture(plan: TestPlan, found: IntervalMap | None, curves: IntervalCurves | 
         chosen_points = sorted({*numbers})
         shown: PlanMap | PlanCurves = PlanMap(found.speeds * RPM, found.torques, found.percent, points, chosen_points)
     else:
-        labels = [", ".join(_axis(name, value) for name, value in one.items()) or "as configured" for one in settings]
+        labels = [
+            ", ".join(_axis(plan, name, value) for name, value in one.items()) or "as configured" for one in settings
+        ]
         seconds = [(setting, plan.survey.lengths[length] / plan.survey.tests.sampling_rate)
                    for setting, length in chosen.tests]  # fmt: skip
         shown = PlanCurves(curves.durations, curves.percent, labels, seconds)
@@ -121,7 +125,7 @@ def picture(plan: TestPlan, found: IntervalMap | None, curves: IntervalCurves | 
 def _plain(plan: TestPlan, told: ToldTest) -> dict[str, Any]:
     rate = plan.survey.tests.sampling_rate
     return {
-        "tests": [{**_setting(plan.survey.settings[setting]), "duration_s": plan.survey.lengths[length] / rate}
+        "tests": [{**_setting(plan, plan.survey.settings[setting]), "duration_s": plan.survey.lengths[length] / rate}
                   for setting, length in told.tests],
         "sensors": [plan.asked.sensors[n].name for n in told.sensors],
         "exponent_known": _halves(told.alone),
@@ -130,9 +134,25 @@ def _plain(plan: TestPlan, told: ToldTest) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _setting(one: dict[str, float]) -> dict[str, float]:
-    keys = {"pinion_speed": "speed_rpm", "pinion_torque": "torque_nm", "initial_displacement": "amplitude_m"}
-    return {keys[name]: value * AXES[name][1] for name, value in one.items()}
+def _setting(plan: TestPlan, one: dict[str, float]) -> dict[str, float]:
+    system, keys = plan.survey.rig.model.system, {"pinion_speed": "speed_rpm", "pinion_torque": "torque_nm"}
+    found = {keys[name]: value * AXES[name][1] for name, value in one.items() if name in keys}
+    own = [_in_metres(system, "amplitude", "m", value) for name, value in one.items() if name not in keys]
+    return found | (own[0] if own else {})
+
+
+def _in_metres(system: System, name: str, unit: str, value: float) -> dict[str, float]:
+    """A value with its unit in the key; without one where it is in another, which `unit` of the rig says."""
+    return {f"{name}_{unit.replace('/', '_')}" if system.unit_of(unit) == unit else name: value}
+
+
+def _shown_in(plan: TestPlan, name: str) -> tuple[str, float]:
+    """The unit that an axis is shown in, "" for one that nobody knows, and how many are in one of its values."""
+    return AXES.get(name) or (pretty_unit(plan.survey.rig.model.system.unit_of("m")), 1.0)
+
+
+def _with_unit(value: float, unit: str, digits: int = 4) -> str:
+    return f"{number(value, digits)} {pretty_unit(unit)}".strip()
 
 
 def _halves(one: Precision) -> dict[str, float | None]:
@@ -155,14 +175,14 @@ def _told(plan: TestPlan, told: ToldTest) -> str:
 def _settings(plan: TestPlan, told: ToldTest) -> Iterator[str]:
     rate = plan.survey.tests.sampling_rate
     for (setting, length), times in Counter(told.tests).items():
-        where = [_axis(name, value) for name, value in plan.survey.settings[setting].items()]
+        where = [_axis(plan, name, value) for name, value in plan.survey.settings[setting].items()]
         text = ", ".join([*where, f"{number(plan.survey.lengths[length] / rate)} s"])
         yield f"{times} × {text}" if times > 1 else text
 
 
-def _axis(name: str, value: float) -> str:
-    unit, factor = AXES[name]
-    return f"{number(value * factor)} {unit}"
+def _axis(plan: TestPlan, name: str, value: float) -> str:
+    unit, factor = _shown_in(plan, name)
+    return f"{number(value * factor)} {unit}".strip()
 
 
 def _sensors(plan: TestPlan, told: ToldTest) -> str:
@@ -198,7 +218,7 @@ def _cells(plan: TestPlan, told: ToldTest) -> tuple[str, ...]:
 
 def _row(plan: TestPlan, told: ToldTest) -> tuple[str, ...]:
     setting, length = told.tests[0]
-    where = [number(value * AXES[name][1]) for name, value in plan.survey.settings[setting].items()]
+    where = [number(value * _shown_in(plan, name)[1]) for name, value in plan.survey.settings[setting].items()]
     seconds = number(plan.survey.lengths[length] / plan.survey.tests.sampling_rate)
     return (*where, seconds, _sensors(plan, told), *_cells(plan, told), number(told.cost))
 

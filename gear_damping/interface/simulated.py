@@ -241,7 +241,8 @@ def run_figure(runs: Runs, response: torch.Tensor, run: int = 0) -> Figure:
     time, rate = runs.time.numpy(), runs.sampling_rate
     words: dict[str, Any] = {"label": name.replace("_", " "), "title": f"run {run + 1} of {len(runs.status)}"}
     if "pinion_speed" not in runs.values:
-        return figures.simulation_figure(figures.ShownRun(time, signal, velocity, "m", rate, **words))
+        units = {"unit": runs.model.system.unit_of("m"), "velocity_unit": runs.model.system.unit_of("m/s")}
+        return figures.simulation_figure(figures.ShownRun(time, signal, velocity, sampling_rate=rate, **units, **words))
     speed, teeth = (float(runs.values[key][run]) for key in ("pinion_speed", "n_teeth_pinion"))
     shafts = {"shaft_frequency_hz": abs(speed) / (2 * pi) or None, "n_teeth_pinion": teeth}
     shafts["gear_order"] = teeth / float(runs.values["n_teeth_gear"][run])

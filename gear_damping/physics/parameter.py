@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from math import inf, pi
 
-from gear_damping.errors import Problem, nearest
+from gear_damping.errors import InputError, Problem, nearest
 from gear_damping.units import Dimension, parse_unit
 
 # The units of drawings, and their size in SI.
@@ -73,3 +73,20 @@ class Option:
             return None
         rule = "must be one of " + ", ".join(str(choice) for choice in self.choices)
         return Problem(key, rule, value, nearest(str(value), [str(c) for c in self.choices]), source)
+
+
+@dataclass(frozen=True)
+class UnitOption(Option):
+    """A unit, of any kind; None where nobody knows it."""
+
+    def problem(self, value: object, key: str, source: str = "") -> Problem | None:
+        """The problem with `value`, or None when it is a unit."""
+        if value is None:
+            return None
+        if not isinstance(value, str):
+            return Problem(key, "must be a unit", value, f"for example {self.default}", source)
+        try:
+            parse_unit(value, key, source)
+        except InputError as error:
+            return error.problems[0]
+        return None

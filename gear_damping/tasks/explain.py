@@ -5,6 +5,7 @@ from typing import Any
 
 from gear_damping.config.settings import Settings
 from gear_damping.explanation.budget import Budget
+from gear_damping.explanation.evidence.declared_units import length_unit
 from gear_damping.explanation.explain import Explanation, Listener, explain
 from gear_damping.explanation.model.extended_simulator import write_extended
 from gear_damping.measurement.load import load_measurement
@@ -46,7 +47,8 @@ def _library(settings: Settings) -> dict[str, type[Effect]]:
 
 def _write_extended(path: Path, found: Explanation, measurement: Measurement) -> None:
     causes = ", ".join(cause["name"] for cause in found.content["causes"] if cause["status"] == "established")
-    write_extended(path, found.found.outcome, {"measurement": measurement.source.name, "causes": causes or "none"})
+    notes = {"measurement": measurement.source.name, "causes": causes or "none"}
+    write_extended(path, found.found.outcome, notes, length_unit(found.evidence.channel))
 
 
 def _metrics(content: dict[str, Any]) -> dict[str, Any]:

@@ -10,11 +10,12 @@ from gear_damping.measurement.record import Channel, Quantity, Record
 from gear_damping.measurement.vocabulary import INPUTS, OSCILLATOR_CHANNELS, PARAMETERS
 from gear_damping.physics.effects.torque_variation import TorqueVariation
 from gear_damping.physics.kinematics import Kinematics
+from gear_damping.physics.model import Model
 from gear_damping.physics.systems.swinging import MOTION
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.physics.terms import MeshStiffness
 from gear_damping.simulation.inspect import forces_of
-from gear_damping.simulation.runs import Runs
+from gear_damping.simulation.runs import Runs, effect_state_units
 
 UNITS = {"transmission_error": "m", "pinion_torque": "N*m", "gear_torque": "N*m", "pinion_angle": "rad"}
 OWN_UNITS = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s^2", "force": "N",
@@ -42,6 +43,13 @@ def recorded_channels(runs: Runs, seed: int) -> Channels:
         return channels | {name: series for name, series in runs.inputs.items() if name in OSCILLATOR_CHANNELS}
     channels["pinion_angle"] = runs.measured("pinion_angle", generator)
     return channels | _torques(runs)
+
+
+def units_of(model: Model) -> dict[str, str]:
+    """The unit of every channel: SI, or the rig's own; "" where nobody knows it."""
+    if model.system.has(Trait.SHAFTS):
+        return UNITS | effect_state_units(model)
+    return {name: model.system.unit_of(unit) for name, unit in (OWN_UNITS | effect_state_units(model)).items()}
 
 
 def _torques(runs: Runs) -> Channels:
@@ -82,11 +90,11 @@ def as_records(runs: Runs, channels: Channels) -> list[Record]:
     mode = system.chosen["gear_torque_mode"] if system.has(Trait.TORQUE) else None
     if mode == "balanced":
         names.remove("gear_torque")
-    units = OWN_UNITS if mode is None else UNITS
+    units = units_of(runs.model)
     speed = runs.values.get("pinion_speed")
     records = []
     for i in range(len(runs.status)):
-        signals = {name: Channel(name, channels[name][i].numpy().copy(), units[name]) for name in names}
+        signals = {name: Channel(name, channels[name][i].numpy().copy(), units[name] or "1") for name in names}
         record = Record(
             name=f"run_{i + 1}",
             file=Path(f"run_{i + 1}.csv"),

@@ -6,8 +6,8 @@ from torch import Tensor
 
 from gear_damping.simulation.plan import SimulationPlan
 from gear_damping.simulation.prior import DAMPING_RATIO
-from gear_damping.simulation.runs import Runs, effect_state_units
-from gear_damping.tasks.recorded import OWN_UNITS, UNITS, Channels
+from gear_damping.simulation.runs import Runs
+from gear_damping.tasks.recorded import Channels, units_of
 
 MOST_RUNS = 1000  # that are told one by one; runs.npz has all
 
@@ -25,7 +25,7 @@ def summary_of(runs: Runs, plan: SimulationPlan, channels: Channels) -> dict[str
     varied = [name for name in plan.prior.distributions if name != DAMPING_RATIO and name in runs.values]
     ratio, response = runs.damping_ratio_percent, channels[model.system.response]
     rms = (response - response.mean(1, keepdim=True)).square().mean(1).sqrt()
-    units = UNITS | OWN_UNITS | effect_state_units(model)
+    units = units_of(model)
     return {
         "system": model.system.name,
         "effects": {effect.name: effect.equation for effect in model.effects},
@@ -37,7 +37,7 @@ def summary_of(runs: Runs, plan: SimulationPlan, channels: Channels) -> dict[str
         "response": model.system.response,
         "unit": units.get(model.system.response, "m"),
         "damping_ratio_percent": [float(ratio.min()), float(ratio.max())],
-        "varied": {name: declared[name].unit for name in varied},
+        "varied": {name: model.system.unit_of(declared[name].unit) for name in varied},
         "channels": {name: {"unit": units.get(name, "")} | _range(series) for name, series in channels.items()},
         "each": [
             {

@@ -20,6 +20,7 @@ from gear_damping.physics.terms import (
     StiffnessFactor,
     SystemChange,
 )
+from gear_damping.reporting.numbers import number, pretty_unit, quantity
 from gear_damping.reporting.run_report.training import control_sentences
 from gear_damping.simulation.floquet import floquet_multiplier, has_multiplier
 from gear_damping.simulation.runs import Runs
@@ -67,8 +68,20 @@ def _damping(runs: Runs, law: str | None) -> str:
     alpha = runs.values.get(f"{law}.coefficient")
     if alpha is not None:
         exponent = float(runs.values[f"{law}.exponent"][0])
-        line += f", alpha {alpha.min():.1f} … {alpha.max():.1f} N (s/m)^{exponent:g}"
-    return f"{line}, at a velocity amplitude of {float(runs.reference_velocity[0]):.3g} m/s"
+        line += f", alpha {_shown(float(alpha.min()))} … {_shown(float(alpha.max()))}{_unit_of_law(runs, exponent)}"
+    amplitude = quantity(float(runs.reference_velocity[0]), runs.model.system.unit_of("m/s"))
+    return f"{line}, at a velocity amplitude of {amplitude}"
+
+
+def _shown(coefficient: float) -> str:
+    """A coefficient of a law; of a small one the digits that count."""
+    return f"{coefficient:.1f}" if coefficient >= 1 else number(coefficient, 3)
+
+
+def _unit_of_law(runs: Runs, exponent: float) -> str:
+    """The unit of the coefficient of a power law, behind a space; "" where nobody knows it."""
+    force, slowness = (runs.model.system.unit_of(unit) for unit in ("N", "s/m"))
+    return f" {pretty_unit(force)} ({slowness})^{exponent:g}" if slowness else ""
 
 
 def _log_stability(runs: Runs) -> None:

@@ -64,3 +64,35 @@ def test_a_wrong_value_in_the_file_names_the_file(extended):
     with pytest.raises(InputError, match="did you mean 'amplitude'") as caught:
         simulator(f"++simulator.extended='{extended}'")
     assert str(extended) in str(caught.value)
+
+
+MILLIMETRES = {
+    "system": "oscillator", "unit": "mm", "amplitude": 12.0, "stiffness": 142.5,
+    "viscous_damping": {"damping_coefficient": 0.1},
+}  # fmt: skip
+
+
+def oscillator(tmp_path, content, *overrides):
+    path = tmp_path / "extended_simulator.yaml"
+    path.write_text(yaml.safe_dump(content))
+    return simulator(
+        "task=simulate", "simulator=oscillator", "family=none", f"++simulator.extended='{path}'", *overrides
+    )
+
+
+def test_what_is_said_in_a_unit_becomes_the_unit_of_the_rig(tmp_path):
+    """A centimetre was .01, and simulated as .01 mm."""
+    found = oscillator(tmp_path, MILLIMETRES, "++simulator.initial_displacement=1cm", "++simulator.initial_velocity=3")
+    assert found.given["initial_displacement"] == pytest.approx(10)
+    assert found.given["initial_velocity"] == 3
+    assert found.model.system.unit_of("m/s") == "mm/s"
+    assert found.model.system.unit_of("N*s/m") == "1/s"
+
+
+def test_of_a_rig_whose_unit_nobody_knows_none_is_converted(tmp_path):
+    unknown = {key: value for key, value in MILLIMETRES.items() if key != "unit"}
+    assert oscillator(tmp_path, unknown).model.system.unit_of("m") == ""
+    with pytest.raises(InputError, match=r"that of the rig is not known; remedy: add simulator\.unit=m"):
+        oscillator(tmp_path, unknown, "++simulator.initial_displacement=1cm")
+    with pytest.raises(InputError, match="unknown unit 'qq'"):
+        oscillator(tmp_path, MILLIMETRES | {"unit": "qq"})

@@ -80,6 +80,8 @@ def test_the_extended_simulator_runs_again(explained, tmp_path):
     config = json.loads((tmp_path / "run.json").read_text())
     assert str(extended) in config["inputs"]
     assert "cubic_stiffness" in yaml.safe_load(extended.read_text())
+    assert yaml.safe_load(extended.read_text())["unit"] == "deg"
+    assert json.loads((tmp_path / "simulation.json").read_text())["unit"] == "deg"
     with np.load(tmp_path / "runs.npz") as runs:
         assert np.isfinite(runs["displacement"]).all()
 

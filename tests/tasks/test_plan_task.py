@@ -64,3 +64,28 @@ def test_what_cannot_be_planned_ends_in_one_message(tmp_path, said):
     assert "plan.speeds" in text
     assert "is nothing that an oscillator has" in text
     assert "Traceback" not in text
+
+
+@pytest.mark.parametrize("unit", ["mm", None])
+def test_figures_of_a_rig_in_millimetres_are_no_metres(tmp_path, said, unit):
+    """They were said as 50 m and 152 m/s; of a rig whose unit nobody knows, none is said."""
+    path = tmp_path / "extended_simulator.yaml"
+    path.write_text("system: oscillator\namplitude: 12.7\nstiffness: 142.5\nviscous_damping: {}\n"
+                    + (f"unit: {unit}\n" if unit else ""))  # fmt: skip
+    rig = ["simulator=oscillator", "family=none", f"simulator.extended={path}", "progress=false"]
+    plan = ["task=plan", "plan.amplitudes=[10,50]", "plan.durations=[2]", "simulator.damping_ratio_percent=1"]
+    assert main([*rig, *plan, f"hydra.run.dir={tmp_path / 'plan'}"]) == 0
+    assert main([*rig, "task=simulate", "simulator.initial_displacement=20", "write_measurement=true",
+                 f"hydra.run.dir={tmp_path / 'simulated'}"]) == 0  # fmt: skip
+    told = said() + (tmp_path / "plan" / "plan.txt").read_text()
+    assert " m/s" not in told
+    assert "0 m," not in told
+    assert ("0 mm, 2 s" in told) == ("velocity amplitude of 152 mm/s" in told) == (unit == "mm")
+    content = json.loads((tmp_path / "plan" / "plan.json").read_text())
+    amplitudes = [one["tests"][0]["amplitude"] for one in content["tests"]]
+    assert (content["rig"]["unit"], amplitudes) == (unit, [10, 50])
+    shown = json.loads((tmp_path / "simulated" / "simulation.json").read_text())
+    assert (shown["unit"], shown["channels"]["velocity"]["unit"]) == ((unit, "mm/s") if unit else ("", ""))
+    declared = (tmp_path / "simulated" / "measurement" / "measurement.yaml").read_text()
+    assert f"unit: {unit or repr('1')}" in declared
+    assert ("amplitude&nbsp;/&nbsp;mm" in (tmp_path / "plan" / "report.html").read_text()) == (unit == "mm")

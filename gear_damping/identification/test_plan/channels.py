@@ -21,10 +21,11 @@ OF_SHAFTS = {
 
 
 def channels_of(system: System) -> dict[str, str]:
-    """What may be seen of a system, with the SI unit of each."""
+    """What may be seen of a system, with the unit of each: SI, or the rig's own."""
     if system.has(Trait.SHAFTS):
         return {RESPONSE: OF_MOTION[0], system.response: OF_MOTION[0], **OF_SHAFTS}
-    return {RESPONSE: OF_MOTION[0], **dict(zip(system.responses, OF_MOTION, strict=True))}
+    units = [system.unit_of(unit) for unit in OF_MOTION]
+    return {RESPONSE: units[0], **dict(zip(system.responses, units, strict=True))}
 
 
 def needs_acceleration(channels: Sequence[str]) -> bool:

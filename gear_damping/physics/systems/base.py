@@ -39,6 +39,10 @@ class System(Declared, ABC):
     def _key(self, name: str) -> str:
         return name  # beside those of effects
 
+    def unit_of(self, declared: str) -> str:
+        """The unit of what is declared in `declared` (SI), as its values are in; "" where nobody knows it."""
+        return declared
+
     @abstractmethod
     def derived(self, values: Values, mean_stiffness: Tensor | None) -> dict[str, Tensor]:
         """Quantities that follow from the parameters, in SI, with the units of `derived_units`."""

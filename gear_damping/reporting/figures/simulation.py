@@ -34,7 +34,7 @@ class ShownRun:
     Args:
         time: In s, shape (time,).
         signal: In `unit`, shape (time,).
-        velocity: In m/s, shape (time,).
+        velocity: In `velocity_unit`, shape (time,).
         unit: Unit of the signal.
         sampling_rate: Samples per second (Hz).
         label: What the signal is.
@@ -42,6 +42,7 @@ class ShownRun:
         shaft_frequency_hz: Turns of the pinion per second; None: no shaft, the spectrum is over Hz.
         n_teeth_pinion: Order of the mesh.
         gear_order: Turns of the gear per turn of the pinion.
+        velocity_unit: Unit of the velocity.
     """
 
     time: ArrayLike
@@ -54,6 +55,7 @@ class ShownRun:
     shaft_frequency_hz: float | None = None
     n_teeth_pinion: float | None = None
     gear_order: float | None = None
+    velocity_unit: str = "m/s"
 
 
 def simulation_figure(run: ShownRun) -> Figure:
@@ -86,7 +88,7 @@ def simulation_figure(run: ShownRun) -> Figure:
             figure.legend(handles=spectrum.get_legend_handles_labels()[0][1:], loc="outside lower center", ncols=3)
         first.set_ylabel(axis("amplitude", run.unit))
         _phase_plane(phase, signal, velocity)
-        phase.set(xlabel=axis(run.label, run.unit), ylabel="velocity / (m/s)")
+        phase.set(xlabel=axis(run.label, run.unit), ylabel=axis("velocity", run.velocity_unit))
         phase.locator_params(axis="x", nbins=4)
         return figure
 

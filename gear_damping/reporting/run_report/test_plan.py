@@ -4,12 +4,13 @@ from collections.abc import Mapping, Sequence
 from math import inf
 from typing import Any
 
-from gear_damping.reporting.numbers import NOTHING, number
+from gear_damping.reporting.numbers import NOTHING, number, pretty_unit
 from gear_damping.reporting.page.picture import Picture
 from gear_damping.reporting.page.table import Table
 from gear_damping.reporting.run_report.report_schema import DOUBTFUL, FINE, Left, RunReport, Section
 
 AXES = {"speed_rpm": "speed / rpm", "torque_nm": "torque / N·m", "amplitude_m": "amplitude / m"}
+OWN = "amplitude"  # of a rig whose displacement is in no metres
 PERCENT, EXPONENT = "half_interval95_percent_of_ratio", "half_interval95_exponent"
 MOST_TESTS = 24  # rows of the table of tests; plan.txt has all
 
@@ -30,7 +31,7 @@ def report_of(left: Left) -> RunReport:
 
 
 def _axes(content: Mapping[str, Any]) -> list[str]:
-    return [key for key in AXES if key in content["best"]["tests"][0]]
+    return [key for key in (*AXES, OWN) if key in content["best"]["tests"][0]]
 
 
 def _where(content: Mapping[str, Any], test: Mapping[str, Any]) -> list[str]:
@@ -38,7 +39,13 @@ def _where(content: Mapping[str, Any], test: Mapping[str, Any]) -> list[str]:
 
 
 def _headings(content: Mapping[str, Any]) -> list[str]:
-    return [*(AXES[key] for key in _axes(content)), "length / s"]
+    return [*(_axis(content, key) for key in _axes(content)), "length / s"]
+
+
+def _axis(content: Mapping[str, Any], key: str) -> str:
+    """What stands above a column; without a unit where nobody knows it."""
+    unit = pretty_unit(content.get("rig", {}).get("unit"))
+    return AXES.get(key) or (f"{OWN} / {unit}" if unit else OWN)
 
 
 def _precision(content: Mapping[str, Any]) -> list[str]:
@@ -119,7 +126,7 @@ def _map(left: Left, content: Mapping[str, Any]) -> list[Picture]:
     known = [value for value in values if value is not None]
     ends = f"from {number(min(known), 3)} to {number(max(known), 3)} %" if known else "nowhere known"
     axes = [key for key in _axes(content) if len({one["tests"][0][key] for one in content["tests"]}) > 1]
-    over = " and ".join(AXES[key].split(" /")[0] for key in axes)
+    over = " and ".join(_axis(content, key).split(" /")[0] for key in axes)
     kind = f"Map over {over}" if len(axes) > 1 else "Line chart over the length of a record"
     alt = f"{kind}: half of the 95 % interval of the damping ratio, {ends} of it for the tests, which are marked."
     caption = "How well the damping would be known between the tests. The chosen ones are filled."
