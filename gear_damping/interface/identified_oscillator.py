@@ -212,7 +212,7 @@ def table_of(content: dict[str, Any]) -> str:
     """The parameters with their intervals, and what is missing."""
     text, lacking = _table(content), content["lack_of_fit"]
     said = [content[key] for key in ("undamped", "not_yet_free", "differing", "contradicted")]
-    said += [sentence(lacking) if lacking and lacking["significant"] else None]
+    said += [sentence(lacking) if lacking else None]
     return "\n\n".join([text.rstrip(), *filter(None, said)]) + "\n"
 
 

@@ -12,6 +12,9 @@ from gear_damping.identification.output_error.holdout import rmse
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.measurement.record import Channel
 
+ABOVE = 3.0  # times the noise: what noise of another colour leaves about a resonance is less
+LINEAR = 0.1  # % of the signal: no better is a sensor linear
+
 
 def lack_of_fit(
     predictions: Mapping[str, Tensor],
@@ -50,11 +53,24 @@ def lack_of_fit(
     }
 
 
-def sentence(found: Mapping[str, Any]) -> str:
-    """What a significant lack of fit means for the figures, and what to do about it."""
+def sentence(found: Mapping[str, Any]) -> str | None:
+    """What a lack of fit means for the figures, and what to do about it; None where there is hardly one."""
+    if not found["significant"]:
+        is_seen = found["residual"] > ABOVE * found["noise"] > 0 and found["percent_of_signal"] > LINEAR
+        return _small(found) if is_seen else None
     return (
         f"lack of fit: the linear oscillator leaves {found['residual']:.3g} {found['unit']}, "
         f"{found['percent_of_signal']:.3g} % of the signal, where the noise is {found['noise']:.3g} {found['unit']} "
         f"({found['noise_method']}). Stiffness and damping are those of the nearest linear motion, and their "
         f"intervals do not cover what is missing; task=explain measurement.path={found['source']} looks for its name"
+    )
+
+
+def _small(found: Mapping[str, Any]) -> str:
+    """What the noise of a sensor does not leave, though it is less of the signal than is looked for a name of."""
+    times = found["residual"] / found["noise"]
+    return (
+        f"The residual, {found['percent_of_signal']:.2g} % of the signal, is {times:.2g} times the noise of "
+        f"{found['noise']:.3g} {found['unit']} ({found['noise_method']}). What makes it is too small to be looked for, "
+        "as channels that are a part of a sample apart; the intervals do not cover what it does to the figures"
     )

@@ -63,6 +63,27 @@ def test_a_linear_oscillator_is(noise, tmp_path, caplog, capsys):
     assert "lack of fit" not in caplog.text + capsys.readouterr().err
 
 
+@pytest.mark.parametrize(("late", "noise", "is_said"), [(0.5, 1e-5, True), (0.5, 2e-4, False), (0.0, 1e-5, False)])
+def test_channels_that_are_half_a_sample_apart_leave_what_the_noise_does_not(late, noise, is_said, tmp_path):
+    """Less of the variance than is called a lack of fit, and several times the noise: the intervals do not hold it."""
+    time = np.arange(6000) / RATE
+    push = lfilter([0.05], [1, -0.95], np.random.default_rng(3).standard_normal(time.size))
+
+    def rates(t, state):
+        return [state[1], np.interp(t, time, push) - DAMPING * state[1] - 400.0 * state[0]]
+
+    at = time + late / RATE
+    found = solve_ivp(rates, (0, at[-1]), [0, 0], "DOP853", at, rtol=1e-9, atol=1e-12, max_step=1 / RATE).y[0]
+    found += noise * np.std(found) * 100 * np.random.default_rng(4).standard_normal(time.size)
+    np.savez(tmp_path / "a.npz", t=time, u=push, x=found)
+    channels = "{time: {column: t, unit: s}, force: {column: u, unit: N}, displacement: {column: x, unit: m}}"
+    path = tmp_path / "measurement.yaml"
+    path.write_text(f"system: oscillator\nrecords:\n- {{file: a.npz, channels: {channels}}}\n")
+    fit = gd.identify(gd.load(path))
+    assert ("times the noise of" in fit.table()) is is_said
+    assert "lack of fit" not in fit.table()
+
+
 def test_what_goes_on_by_a_drive_that_no_channel_holds_is_no_decay(tmp_path, caplog, capsys):
     found = identified(tmp_path, 1e-2 * np.cos(OMEGA * TIME), 1e-4)
     said = caplog.text + capsys.readouterr().err
