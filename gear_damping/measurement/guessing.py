@@ -243,10 +243,11 @@ def _by_name(column: Column, names: Sequence[tuple[str, str]]) -> str | None:
 
 
 def _bare(column: Column) -> str:
-    """A name in lower case, without the unit in its brackets or behind a stroke."""
+    """A name in lower case, without the unit in its brackets, behind a stroke or an `in`."""
     if isinstance(column.reference, int):
         return ""
     bare = re.sub(r"[(\[][^)\]]*[)\]]\s*$", "", column.reference).strip()
+    bare = re.sub(rf"(^|\s)in\s+{re.escape(column.unit)}$", "", bare) if column.unit else bare
     return bare.removesuffix(column.unit or "").rstrip(" /").lower() if "/" in bare else bare.lower()
 
 

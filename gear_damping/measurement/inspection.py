@@ -23,12 +23,20 @@ from gear_damping.measurement.column_kinds import (
 )
 from gear_damping.measurement.formats.table import ArrayTable, Table
 from gear_damping.measurement.irregular_stamps import HALF
-from gear_damping.measurement.recordings import recordings
+from gear_damping.measurement.recordings import past_overflow, recordings
 from gear_damping.measurement.resolution import step_of
 from gear_damping.measurement.rows import LEAST_SAMPLES, filled_in, last_number
 from gear_damping.measurement.spectral_floor import Spectrum, spectrum_of
-from gear_damping.measurement.time_column import Stamps, counts_from_1970, find_stamps, named_clock, stamped_rate
+from gear_damping.measurement.time_column import (
+    ENDINGS,
+    Stamps,
+    counts_from_1970,
+    find_stamps,
+    named_clock,
+    stamped_rate,
+)
 from gear_damping.measurement.timebase import TimeBase, stamped_time, steady_time
+from gear_damping.units import to_si
 
 _SPARSE = 0.5  # of the longest stretch of values of any column: one with a shorter one is filled here and there
 _FREQUENCIES = ("Hz", "kHz")  # units of the axis of a spectrum; rad/s are as well those of a shaft that runs up
@@ -39,6 +47,7 @@ _LYING = 20  # columns for each row of a table that lies on its side: no recorde
 MOST_BETWEEN = 20  # blank cells between two values of a slower channel; what has more is no motion beside the others
 MOST_LISTED = 6  # recordings of a file that a line lists
 _OTHER_PACE = 0.01  # of the mean step, by which the steps of two clocks may differ: jitter, and they are one
+_CERAMIC = 0.01  # by which the clock of a small board may be fast or slow: its resonator is good to half of that
 _RATE = re.compile(r"samp\w*[ _]?(freq|rate)|^(fs|f_s|sr|s_?rate)$|abtastrate", re.I)  # of a single number
 SHORTEST = 1e-15  # s between two samples: below it lie damaged stamps, and no sensor
 
@@ -372,6 +381,8 @@ def _seen(
     kind, says = kind_of(column.inside, str(column.reference), column.unit)
     if kind in (CONSTANT, EMPTY, ROW_NUMBER):
         return replace(column, kind=kind, says=says)
+    if stamps is not None and (unit := _counts_time(column, columns[stamps.index], stamps)):
+        return replace(column, kind=TIME, says=f"goes on with the time stamps, in {unit}: another clock")
     if stamps is not None and counts_from_1970(column.inside):
         return replace(column, kind=TIME, says="advances, and may be counted from 1970: another clock")
     if stamps is not None and (other := named_clock(column)):
@@ -380,6 +391,19 @@ def _seen(
     rate = base.sampling_rate if base is not None and column.values.size == length else own
     seen = replace(column, kind=kind, says=says, step=_step_of(column.inside), rate=rate)
     return replace(seen, spectrum=spectrum_of(_whole(seen), rate or 1.0))
+
+
+def _counts_time(column: Column, clock: Column, stamps: Stamps) -> str | None:
+    """The unit in which whole numbers without a name go on as stamps beside them do, as `micros()`; None of others."""
+    values = past_overflow(column.inside)
+    if isinstance(column.reference, str) or column.finite != clock.finite or values.size < LEAST_SAMPLES:
+        return None
+    if np.any(values != np.round(values)) or np.any(np.diff(values) < 0):
+        return None
+    lasts = np.ptp(clock.inside) * stamps.in_seconds
+    return next(
+        (unit for unit in ENDINGS[1:] if abs(np.ptp(values) * to_si(1, unit, "s") / lasts - 1) < _CERAMIC), None
+    )
 
 
 def _whole(column: Column) -> NDArray[np.float64]:

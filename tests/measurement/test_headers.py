@@ -312,3 +312,17 @@ def test_the_letter_of_an_oscilloscopes_channel_names_no_quantity(tmp_path, name
     _, _, listed = guessed(table_of(tmp_path, [f"Time (s);{name} [mV]", *lines]))
     (found,) = [guess for guess in listed if guess.column.reference == f"{name} [mV]"]
     assert ("by its name" in found.why) == is_told
+
+
+def test_a_unit_behind_in_is_that_of_its_column_and_no_name(tmp_path):
+    lines = [f"{k / 100:.2f},{np.cos(0.3 * k):.4f},{np.sin(0.3 * k):.4f}" for k in range(400)]
+    found, _, listed = guessed(table_of(tmp_path, ["in s,C1 in V,Weg in mm", *lines]))
+    assert [found.table.unit(k) for k in range(3)] == ["s", "V", "mm"]
+    assert (found.rate, found.time.guessed) == (pytest.approx(100.0), "")
+    assert {str(guess.column.reference): guess.channel for guess in listed}["C1 in V"] is None
+    assert [str(guess.column.reference) for guess in listed if guess.used] == ["Weg in mm"]
+
+
+@pytest.mark.parametrize("name", ["plug in", "built in 2019", "x in place", "turn-in A"])
+def test_an_in_before_no_unit_says_nothing(name, tmp_path):
+    assert table_of(tmp_path, [f"t,{name}", *rows(60, 2, ",")]).unit(1) is None

@@ -18,6 +18,7 @@ _FACTOR_BEHIND = re.compile(
 )  # `x [mm]*1000`
 _FACTOR_BEFORE = re.compile(r"^(?P<factor>\d[\d.,eE^+\-]*)\s*[*×·]\s*[^\W\d].*[(\[](?P<unit>[^()\[\]]+)[)\]]\s*$")
 _IN_STEPS = re.compile(r"\s(?:in|/)\s+(\d[\d.,/]*\s*[A-Za-zµμ°][\w/^]*)\s*$")  # `x in 0.1mm`
+_IN = re.compile(r"(?:^|\s)in\s+([^\W\d]\S*|[°%µ]\S*)\s*$")  # `C1 in V`, as oscilloscopes of Rohde & Schwarz have it
 _INDEX = re.compile(r"\w\[\d+\]\s*$")  # `data[3]` is a name, no unit
 _NO_UNIT = ("", "-", "#")
 _IN_BRACKETS = re.compile(r"\[.*\]|\(.*\)")  # a cell as it stands below a name for its unit alone
@@ -208,7 +209,7 @@ def _are_numbered(row: Sequence[str], width: int) -> bool:
 
 
 def bracket_unit(name: str) -> str | None:
-    """What stands in brackets at the end of a name, or within it or behind its first stroke where that is a unit."""
+    """What stands in brackets at the end of a name, or within it, behind its first stroke or `in` where that is one."""
     if _INDEX.search(name) or _ARGUMENT.match(name):
         return None
     for pattern in (_FACTOR_BEHIND, _FACTOR_BEFORE):
@@ -223,6 +224,8 @@ def bracket_unit(name: str) -> str | None:
     units = [one for one in within if not is_number(one) and _is_unit(one)]
     if len(units) == 1:
         return units[0]
+    if (said := _IN.search(name)) and _is_unit(said[1]):
+        return said[1]
     behind = _SLASH.search(name.strip())
     return behind[1] if behind is not None and (_is_unit(behind[1]) or scaled_unit(behind[1])) else None
 

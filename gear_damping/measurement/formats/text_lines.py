@@ -28,6 +28,10 @@ _BETWEEN_ROWS = re.compile(rb"[\]}]\s*[,;]?\s*[\[{]")
 _AROUND = re.compile(rb"^[^\[{]*[\[{]\s*[\[{]|[\]}]\s*[\]}].*\Z", re.DOTALL)
 _HIGH = re.compile(rb"[\x80-\xff]")  # a byte of no English letter
 _LETTERS = re.compile(rb"(?:[\x81-\x9f][\x40-\x7e\x80-\xfc]){2,}")  # signs, kana and most kanji of Shift-JIS
+_ARROW, _LONG = (
+    re.compile(rb"^(\d{1,2}:\d{2}:\d{2}\.\d+) -> ", re.MULTILINE),
+    1000,
+)  # before a line of a serial monitor; bytes of one
 _LINE_END = re.compile(rb"\r+\n|\r")  # also written twice by a text mode, or alone as computers of the nineties did
 
 
@@ -48,6 +52,7 @@ class Text:
         self.path = path
         text, self.cut = _whole_lines(_utf8(path, raw))
         self.utf8 = _POWER.sub(b"e", _without_brackets(_LINE_END.sub(b"\n", text)))
+        self.utf8 = _with_clocks_apart(self.utf8)
         ending = _last_lines(self.utf8)
         kept = [line for line in ending if line.strip(" \r" + "".join(_DELIMITERS)) and not IS_COMMENT.match(line)]
         last = _typical([line for line in kept if _NUMBER.search(line)] or kept[-1:])
@@ -80,6 +85,20 @@ class Text:
         except csv.Error as error:
             rule = f"line {reader.line_num} is no row of a table ({error})"
             raise InputError(Problem("file", rule, str(self.path), "export it again")) from None
+
+
+def _with_clocks_apart(text: bytes) -> bytes:
+    """Lines behind a clock and an arrow, as Arduino's serial monitor shows them, with the clock as a cell of its own.
+
+    Beside names it is `clock`.
+    """
+    last = text.rstrip()[-_LONG:].split(b"\n")[-1]
+    found = _ARROW.match(last)
+    if found is None:
+        return text
+    sign = _sign_of(last[found.end() :].decode("utf-8", "replace")).encode()
+    text = re.sub(_ARROW.pattern + rb"(?=[^\W\d])", b"clock" + sign, text, flags=re.MULTILINE)
+    return _ARROW.sub(rb"\1" + sign, text)
 
 
 def _sign_of(line: str) -> str:

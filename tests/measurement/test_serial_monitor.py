@@ -1,0 +1,38 @@
+"""Lines that a serial monitor shows behind the clock at which they came and an arrow."""
+
+import numpy as np
+import pytest
+
+from gear_damping.measurement.formats.registry import read_table
+from gear_damping.measurement.guessing import guessed
+
+N = 400
+COUNTS = np.round(9000 * np.sin(0.19 * np.arange(N))).astype(int)
+MICROS = (4294000000 + 10_000 * np.arange(N)) % 2**32
+
+
+def _table(folder, lines):
+    shown = (f"10:{12 + k // 6000:02d}:{(k % 6000) / 100:06.3f} -> {line}" for k, line in enumerate(lines))
+    (folder / "a.txt").write_text("\n".join(shown) + "\n")
+    return read_table(folder / "a.txt")
+
+
+@pytest.mark.parametrize("sign", [",", ";", "\t", " "])
+def test_the_clock_before_an_arrow_is_a_column_of_its_own(sign, tmp_path):
+    table = _table(tmp_path, [f"{us}{sign}{count}" for us, count in zip(MICROS, COUNTS, strict=True)])
+    assert (table.unit(0), table.begins(0)) == ("s", pytest.approx(10 * 3600 + 12 * 60))
+    assert table.values(1).tolist() == MICROS.tolist()
+    assert table.values(2).tolist() == COUNTS.tolist()
+
+
+def test_a_single_number_behind_it_and_names_are_read(tmp_path):
+    table = _table(tmp_path, ["weg_mm", *COUNTS])
+    assert table.names == ("clock", "weg_mm")
+    assert table.values(1).tolist() == COUNTS.tolist()
+
+
+def test_microseconds_beside_the_clock_are_another_clock_and_no_encoder(tmp_path):
+    found, system, listed = guessed(_table(tmp_path, [f"{us},{x}" for us, x in zip(MICROS, COUNTS, strict=True)]))
+    assert (system[0], found.rate) == ("oscillator", pytest.approx(100.0))
+    assert [guess.column.reference for guess in listed] == [2]
+    assert found.columns[1].says == "goes on with the time stamps, in us: another clock"
