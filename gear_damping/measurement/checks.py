@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.frozen import frozen, stays
+from gear_damping.measurement.out_of_range import CONTINUOUS, out_of_range
 from gear_damping.measurement.overflow import overflowed
 from gear_damping.measurement.record import Channel, Finding
 from gear_damping.measurement.resolution import step_of
@@ -42,7 +43,6 @@ _ALONE = 3.0  # times what its two neighbours differ by
 _LEAST_STRAY = 0.1  # of the deviation of all values, below which one tells nothing
 _MOST_STRAYS = 0.01  # of the samples; more are no single ones
 _LISTED = 5  # of them in a message
-_CONTINUOUS = ("displacement", "transmission_error")  # what a shock bends and does not break
 _SPEEDS = ("velocity", "pinion_speed", "gear_speed")
 APPLIED = (*INPUTS, "pinion_angle", "pinion_speed")  # what drives the system
 
@@ -155,7 +155,7 @@ def check_channel(channel: Channel, strokes: NDArray[np.int64]) -> list[Finding 
     """
     marked = _marked(channel)
     found = [
-        marked or _constant(channel) or _clipped(channel) or _straight_lines(channel),
+        marked or _constant(channel) or _clipped(channel) or out_of_range(channel) or _straight_lines(channel),
         frozen(channel),
         overflowed(channel),
     ]
@@ -236,7 +236,7 @@ def _strays(channel: Channel) -> Finding | None:
     if not 0 < at.size <= _MOST_STRAYS * values.size:
         return None
     falls = np.all(np.abs(values[at]) < np.abs(values[at - 1])) and not np.ptp(values[at])
-    if channel.name not in _CONTINUOUS and (not falls or (at.size == 1 and values[at[0]])):
+    if channel.name not in CONTINUOUS and (not falls or (at.size == 1 and values[at[0]])):
         return None
     places = ", ".join(map(str, at[:_LISTED])) + (" and others" if at.size > _LISTED else "")
     message = (
