@@ -61,6 +61,19 @@ class NoiseLevel:
         alike = [level for name, level in self.by_record.items() if self.channels.get(name) == own]
         return float(np.mean(np.square(alike))) ** 0.5
 
+    def elsewhere(self, floor: "NoiseLevel", own: float) -> float:
+        """The level of a record that was not fitted, of which the floor of its spectrum is known.
+
+        What looks random and is more than the floors of the fitted records, as noise of another colour is, goes with
+        these where that makes the records more alike; else it is as large everywhere, as what a load makes.
+        """
+        if self.by_record == floor.by_record:
+            return own
+        levels = np.array([self.by_record[name] for name in floor.by_record])
+        shares = levels / np.maximum([floor.by_record[name] for name in floor.by_record], 1e-300)
+        goes_with_floors = shares.max() / shares.min() < levels.max() / levels.min()
+        return max(own, self.value, own * float(np.median(shares)) if goes_with_floors else 0.0)
+
 
 def noise_level(records: Sequence[FitRecord], channels: Mapping[str, Channel]) -> NoiseLevel:
     """What each record declares of its noise, or the floor of its spectrum in two bands above the signal.

@@ -130,8 +130,7 @@ def _with_sealed(state: State, sealed: Sequence[FitRecord], measurement: Measure
     if has_unsteady_shafts(evidence.fit):
         seen = with_unsteady_shafts(seen)
     _, scaled, found = noise_of(evidence.fit, seen.holdout, measurement)
-    least = known.value if known.by_record != state.bench.floor.by_record else 0.0  # much more looks random
-    levels = {record.name: max(found.by_record[record.name], least) for record in sealed}
+    levels = {record.name: known.elsewhere(state.bench.floor, found.by_record[record.name]) for record in sealed}
     noise = replace(known, by_record={**known.by_record, **levels})
     return replace(evidence, holdout=weighted(scaled, noise)), noise
 
