@@ -93,8 +93,8 @@ def identify(
         solver: Settings of the solver.
 
     Raises:
-        InputError: the data are damaged, nothing can be fitted, a name is unknown, or an oscillator's stiffness or
-            gain is neither free nor known.
+        InputError: the data are damaged, nothing can be fitted, a name is unknown, or an oscillator's stiffness,
+            viscous damping or gain is neither free nor known.
     """
     refuse_faults(measurement)
     refuse_other_solver(solver)

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from math import inf
 from typing import Any
 
 from torch import Tensor
@@ -17,6 +18,7 @@ from gear_damping.explanation.evidence.noise import NoiseLevel
 from gear_damping.explanation.evidence.records import Evidence, evidence_of, with_own_angles
 from gear_damping.explanation.evidence.useful_samples import at_useful_rate
 from gear_damping.explanation.explain import Listener, explain, fitting_solver, with_noise
+from gear_damping.explanation.model.candidates import first_sizes
 from gear_damping.explanation.model.contradicted import contradicts_stated, noise_above
 from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Given, Hypothesis, Outcome, natural_frequency_hz
@@ -40,6 +42,7 @@ from gear_damping.simulation.solver_settings import Solver
 
 SHOWN = ("mesh_stiffness_shape",)  # what is fitted in many numbers stands in the JSON alone
 MOTION = ("amplitude", "characteristic_time")  # of an oscillator: what damping ratios belong to, as the records move
+STARTS = (1.0, 0.2, 5.0)  # times what a strength is tried at: beside a viscous damping a law may die out on the way
 ITERATIONS = 40  # at most, of a fit of one's own model
 STEEL = 1.4e10  # N/m^2: mesh stiffness of steel teeth by their width (ISO 6336-1: 14 N/(mm um) of one pair)
 WIDTH = 10.0  # modules, of usual teeth
@@ -78,7 +81,7 @@ def own_fit(measurement: Measurement, model: Model, free: Sequence[str], log: Lo
 
     Raises:
         InputError: the model is of another system, a name is unknown, a free parameter begins at zero, nothing is
-            free, or an oscillator's stiffness or gain is neither free nor known.
+            free, or an oscillator's stiffness, damping or gain is neither free nor known.
     """
     _refuse_casing(measurement)
     evidence = at_useful_rate(evidence_of(measurement))
@@ -95,22 +98,37 @@ def own_fit(measurement: Measurement, model: Model, free: Sequence[str], log: Lo
         rule = "names nothing to be fitted, and the model was given no values"
         raise InputError(Problem("free", rule, remedy="for example ['damping_ratio']"))
     names = {model.damping_coefficient if name == DAMPING_RATIO else name for name in free}
-    initial = {name: first[name] for name in names if name in first}
     motion = {name: first[name] for name in MOTION if name in first}
+    strengths, others = _sizes(model, evidence, first)
+    sizes = strengths | others | first
+    initial = {name: sizes[name] for name in names if name in sizes}
     given = initial | motion | _radians(model, evidence) | stated | model.given
-    moved = free_parameters(model, given, free, stated, evidence.known.uncertainty)
-    _refuse_unknown(model, [name for name in linear if name not in {DAMPING, *names, *stated}])
-    hypothesis = Hypothesis(model.system, model.effects, given, moved)
+    unknown = [name for name in names if name in strengths and name not in {*stated, *model.given}]
+    starts = [given | {name: factor * given[name] for name in unknown} for factor in (STARTS if unknown else (1.0,))]
+    moved = [free_parameters(model, start, free, stated, evidence.known.uncertainty) for start in starts]
+    _refuse_unknown(model, [name for name in linear if name not in {*names, *stated}])
+    begun = [Hypothesis(model.system, model.effects, *both) for both in zip(starts, moved, strict=True)]
     solver, own = fitting_solver(solver), {}
     if not evidence.has_index:
         evidence = with_own_angles(evidence)
-        own = angles_of(hypothesis, evidence, evidence.duration, solver)
-    outcome = fit_hypothesis(hypothesis, evidence, InitialValues(own=own), Rounds(ITERATIONS), solver=solver)
+        own = angles_of(begun[0], evidence, evidence.duration, solver)
+    values, rounds = InitialValues(own=own), Rounds(ITERATIONS)
+    outcomes = [fit_hypothesis(one, evidence, values, rounds, solver=solver) for one in begun]
+    outcome = min(outcomes, key=lambda one: rmse(one.fit_residuals) if one.is_finite else inf)
     if not outcome.is_finite:
         rule = "runs away when it is simulated with what the fit came to"
         remedy = "begin with values nearer to those of the rig, or free fewer parameters"
         raise InputError(Problem("model", rule, remedy=remedy, source=str(measurement.source)))
     return Fitted(evidence, noise, weighed(outcome, evidence))
+
+
+def _sizes(model: Model, evidence: Evidence, first: Given) -> tuple[Given, Given]:
+    """Strengths and other sizes of the effects of an oscillator that show in its motion: no default knows that."""
+    if not evidence.has(Trait.REST):
+        return {}, {}
+    own = {parameter.name for parameter in model.system.parameters}
+    given = {name: value for name, value in (first | model.given).items() if name in own}
+    return first_sizes(Hypothesis(model.system, (), given, ()), evidence, model.effects)
 
 
 def _linear(evidence: Evidence) -> list[str]:

@@ -81,3 +81,40 @@ def test_a_stiffness_that_nobody_knows_is_not_held_at_its_default(decay):
         gd.identify(decay, model, free="damping_ratio")
     free_too = gd.identify(decay, model, free=["damping_ratio", "stiffness"])
     assert free_too.parameters["stiffness"]["value"] == pytest.approx(STIFFNESS, rel=1e-3)
+
+
+@pytest.fixture(scope="module")
+def drag(tmp_path_factory):
+    """Decays in millimetres of a rig with a viscous damping and a drag by the square of its speed, by scipy."""
+    folder, time = tmp_path_factory.mktemp("drag"), np.arange(1000) / 100
+
+    def rates(_, state):
+        return [state[1], -142.5 * state[0] - 0.095 * state[1] - 0.0014 * abs(state[1]) * state[1]]
+
+    for number, start in enumerate((40.0, 25.0)):
+        place = solve_ivp(rates, (0, time[-1]), [start, 0.0], t_eval=time, rtol=1e-10, atol=1e-12).y[0]
+        place += 0.01 * np.random.default_rng(number).normal(size=time.size)
+        np.savetxt(folder / f"{number}.csv", place, header="x", comments="")
+    channels = {"sampling_rate": "100 Hz", "displacement": {"column": "x", "unit": "mm", "datum": "absolute"}}
+    records = [{"file": f"{number}.csv", "channels": channels} for number in range(2)]
+    (folder / "measurement.yaml").write_text(yaml.safe_dump({"system": "oscillator", "records": records}))
+    return gd.load(folder / "measurement.yaml")
+
+
+def test_a_law_without_a_coefficient_begins_at_a_size_that_shows_in_these_records(drag):
+    """It began at its default in SI, 1e5 times too large in a rig of millimetres, and ran away."""
+    model = gd.Model(gd.Oscillator(), [gd.ViscousDamping(), gd.PowerLawDamping()])
+    law = ["power_law_damping.coefficient", "power_law_damping.exponent"]
+    found = gd.identify(drag, model, free=[*FREE, *law])
+    assert found.parameters[law[0]]["value"] == pytest.approx(0.0014, rel=0.05)
+    assert found.parameters[law[1]]["value"] == pytest.approx(2.0, rel=0.02)
+    assert found.parameters[FREE[1]]["value"] == pytest.approx(0.095, rel=0.05)
+    alone = gd.identify(drag, gd.Model(gd.Oscillator(), [gd.PowerLawDamping()]), free=["stiffness", *law])
+    assert alone.damping_ratio_percent["value"] == pytest.approx(found.damping_ratio_percent["value"], rel=0.05)
+
+
+def test_a_damping_that_nobody_knows_is_not_held_at_its_default(drag):
+    """64.5 1/s, the default of a gear pair in N s/m, are 270 % of this rig."""
+    model = gd.Model(gd.Oscillator(), [gd.ViscousDamping(), gd.CoulombFriction()])
+    with pytest.raises(InputError, match=r"lacks 'viscous_damping.damping_coefficient', which is not known"):
+        gd.identify(drag, model, free=["stiffness", "coulomb_friction.force"])

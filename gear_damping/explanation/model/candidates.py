@@ -1,6 +1,6 @@
 """Step 5a: what could be missing. Every effect of the catalogue as something that can be switched on gradually."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import inf, log
 
@@ -104,6 +104,26 @@ def candidates_for(base: Hypothesis, evidence: Evidence, residuals: Residuals | 
         if sizes.rig is rig or recipe.turns == "gear"  # where only the pinion has a mark, turns of the gear have none
         if all(_value(base, parameter) > 0 for parameter in recipe.replaces)
     ]
+
+
+def first_sizes(base: Hypothesis, evidence: Evidence, effects: Sequence[Effect]) -> tuple[Given, Given]:
+    """Where the parameters of effects begin that nobody knows, as they are tried on this rig.
+
+    Returns:
+        Strengths, without which an effect is not there, and everything else, by flat name.
+    """
+    rig = rig_of(base, evidence)
+    sizes, strengths, others = _Sizes(base, evidence.duration, rig), {}, {}
+    for effect in effects:
+        recipe = next(iter(effect.cause.recipes_for(rig) if effect.cause else ()), None)
+        for parameter in effect.parameters if recipe else ():
+            name, flat = parameter.name, f"{effect.name}.{parameter.name}"
+            if name in recipe.strengths and not parameter.vector:
+                own = replace(recipe, scanned={**recipe.scanned, **effect.given})
+                strengths[flat] = sizes.size(type(effect), name, recipe.strengths[name], own)
+            else:
+                others[flat] = sizes.default(type(effect), parameter, recipe)
+    return strengths, others
 
 
 def restored(hypothesis: Hypothesis, cause: str) -> Hypothesis:
