@@ -64,6 +64,17 @@ def _of_estimators(whole: Whole) -> Found:
             yield key, rule, value, "leave it out, or choose model=classical" if is_fit else "leave it out"
 
 
+def _solver_of_a_fit(whole: Whole) -> Found:
+    """The solver of a fit, where neither estimators of records nor a network simulate with its settings."""
+    asked = (whole.models is not None and whole.models.of_records) or whole["checkpoint"] is not None
+    if whole["task"] != "identify" or not asked or whole.simulator.extended is not None:
+        return
+    for key, value in whole.origin.typed():
+        if key.startswith("simulator.solver"):
+            rule = "has no effect: it acts on the fit of a simulation, and estimators take a record by themselves"
+            yield key, rule, value, "leave it out, or leave out model and checkpoint, and the simulation is fitted"
+
+
 def _wavelet_of_networks(whole: Whole) -> Found:
     """The transform is one of networks that say so: the others have their own, or none."""
     models = whole.models
@@ -160,6 +171,7 @@ BY_TASK: tuple[tuple[tuple[str, ...], Callable[[Whole], Found]], ...] = (
     (("task", "checkpoint"), _checkpoint),
     (("task", "checkpoint", "model"), _estimators),
     (("task", "checkpoint", "model", "measurement"), _of_estimators),
+    (("task", "checkpoint", "model", "simulator"), _solver_of_a_fit),
     (("model", "wavelet"), _wavelet_of_networks),
     (("task", "model", "protocol"), _whole_records),
     (("task", "evaluation", "simulator", "family"), _evaluated),

@@ -106,6 +106,7 @@ def test_an_extended_rig_takes_what_comes_on_top_of_it_and_no_data_set(tmp_path)
     path.write_text("system: gear_pair\nfourier_mesh_stiffness: {}\npower_law_damping: {}\n")
     given = [f"simulator.extended={path}", "simulator.backlash.gap_um=5", "simulator.pinion_torque=100"]
     assert problems("identify", *given, "experiment=eccentricity", "model=classical") == []
+    assert problems("identify", *given, "simulator.solver.accuracy=1e-4", "model=classical") == []
     (found,) = problems("identify", *given, "simulator.n_runs=3")
     assert found.key == "simulator.n_runs"
     assert "task=identify" not in found.rule.partition(": ")[2]
@@ -125,6 +126,13 @@ def test_what_only_estimators_read_is_refused_where_none_is_asked(words, said):
     assert found.key == words[0].partition("=")[0]
     assert said in found.rule
     assert ("model=classical" in found.remedy) == (len(words) == 1)
+
+
+@pytest.mark.parametrize("word", ["model=classical", "model=output_error", "checkpoint=README.md"])
+def test_the_solver_has_no_effect_on_estimators(word):
+    (found,) = problems("identify", "simulator.solver.accuracy=1e-9", word)
+    assert (found.key, found.value) == ("simulator.solver.accuracy", "1e-9")
+    assert "has no effect: it acts on the fit of a simulation" in found.rule
 
 
 @pytest.mark.parametrize("word", ["model=classical", "checkpoint=README.md"])
