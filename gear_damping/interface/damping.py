@@ -21,7 +21,7 @@ from gear_damping.measurement.record import Channel, Measurement, Record
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.reporting import figures
 from gear_damping.reporting.figures.axis_names import axis
-from gear_damping.reporting.numbers import pretty_unit
+from gear_damping.reporting.numbers import pretty_unit, with_interval
 from gear_damping.reporting.page.render import words
 from gear_damping.reporting.tables import damping_table
 
@@ -95,8 +95,7 @@ class Damping:
                     reasons.setdefault((name, one.unsuited), []).append(record.name)
                     continue
                 doubts += [f"{name} of {record.name} is in doubt: {one.doubt}"] if one.doubt else []
-                low, high = one.interval95
-                ratio, interval = f"{one.damping_ratio_percent:.4g}", f"{low:.4g} … {high:.4g}"
+                ratio, interval = with_interval(one.damping_ratio_percent, one.interval95)
                 declared = self._declared(record)
                 large, small = (f"{size / declared.declared_factor:.3g}" for size in one.amplitudes)
                 amplitudes = f"{large} … {small} {pretty_unit(declared.declared_unit)}"

@@ -54,6 +54,16 @@ def quantity(value: float | None, unit: str | None, interval: Interval = None, d
     return f"{text} ({texts[1]} … {texts[2]})" if len(texts) == 3 else text
 
 
+def with_interval(value: float, interval: Sequence[float]) -> tuple[str, str]:
+    """A value and `low … high` with the same decimals: four digits of the value, and two of the interval's width."""
+    numbers = [value, *interval]
+    texts = _alike(numbers) if all(map(isfinite, numbers)) else [number(one) for one in numbers]
+    if "e" not in "".join(texts) and NOTHING not in texts:
+        decimals = max(len(text.partition(".")[2]) for text in (*texts, number(value)))
+        texts = [f"{one:.{decimals}f}" for one in numbers]
+    return texts[0], f"{texts[1]} … {texts[2]}"
+
+
 def _alike(numbers: Sequence[float]) -> list[str]:
     """Value and ends of its interval with the same decimals, so many as show two digits of the width."""
     width, largest = abs(numbers[2] - numbers[1]), max(map(abs, numbers))

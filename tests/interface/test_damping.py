@@ -8,7 +8,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import gear_damping as gd
+from gear_damping.interface.damping import Damping
 from gear_damping.interface.damping_law import damping_law
+from gear_damping.interface.estimator import Prediction
 
 RATE, OMEGA, LINEAR, QUADRATIC = 400.0, 2 * math.pi * 8, 0.4, 3.0
 SAMPLES = 6000
@@ -53,6 +55,13 @@ def fitted(record):
     )
     names = ["stiffness", "viscous_damping.damping_coefficient", "power_law_damping.coefficient"]
     return gd.identify(record, model, free=names)
+
+
+def test_the_table_shows_the_ends_of_an_interval_apart(record):
+    told = Prediction(1.1, interval95=(1.09995, 1.10015), frequency_hz=8.0, amplitudes=(0.02, 0.001))
+    found = {"mine": {one.name: told for one in record.records}}
+    text = Damping(record, found, {one.name: "displacement" for one in record.records}).table()
+    assert "1.10000   1.09995 … 1.10015" in text
 
 
 def test_every_estimator_speaks_of_every_record(record):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from gear_damping.reporting.numbers import NOTHING, estimate, number, percent, pretty_unit, quantity
+from gear_damping.reporting.numbers import NOTHING, estimate, number, percent, pretty_unit, quantity, with_interval
 
 NAN, INFINITE = float("nan"), float("inf")
 
@@ -68,3 +68,11 @@ def test_units_and_percentages():
         "",
     ]
     assert [percent(s) for s in (0.1234, 1.0, None, NAN)] == ["12.3 %", "100 %", NOTHING, NOTHING]
+
+
+def test_a_narrow_interval_is_told_by_as_many_digits_as_it_needs():
+    """It was 1.1 and 1.1 … 1.1."""
+    assert with_interval(1.1, (1.09995, 1.10015)) == ("1.10000", "1.09995 … 1.10015")
+    assert with_interval(25.3, (20.0, 31.0)) == ("25.3", "20.0 … 31.0")
+    assert with_interval(3e-5, (2.9e-5, 3.1e-5)) == ("3e-5", "2.9e-5 … 3.1e-5")
+    assert with_interval(1.5, (0.5, INFINITE)) == ("1.5", "0.5 … –")

@@ -4,7 +4,7 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from gear_damping.reporting.numbers import NOTHING, estimate, number, pretty_unit, quantity
+from gear_damping.reporting.numbers import NOTHING, estimate, number, pretty_unit, quantity, with_interval
 from gear_damping.reporting.page.picture import Picture
 from gear_damping.reporting.page.render import words
 from gear_damping.reporting.page.table import Table
@@ -101,11 +101,10 @@ def _of_estimators(left: Left, content: Mapping[str, Any]) -> RunReport:
 
 
 def _told(one: Mapping[str, Any], unit: str) -> tuple[str, ...]:
-    low, high = one.get("interval95") or (None, None)
+    value, ends = one["damping_ratio_percent"], one.get("interval95") or (None, None)
     sizes = [number(size, 3) for size in one.get("amplitudes") or ()]
     return (
-        number(one["damping_ratio_percent"]),
-        NOTHING if low is None else f"{number(low)} … {number(high)}",
+        *((number(value), NOTHING) if None in ends else with_interval(value, ends)),
         number(one.get("frequency_hz")),
         f"{' … '.join(sizes)} {pretty_unit(unit)}" if sizes else NOTHING,
     )
