@@ -1,15 +1,25 @@
 """What users hand over in Python, checked at the door: one message names the argument, the rule and the remedy."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from numbers import Number
-from typing import Any
+from numbers import Number as AnyNumber
+from typing import Any, get_args
 
 import numpy as np
 import torch
 
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.record import Measurement
-from gear_damping.simulation.solver_settings import Solver
+from gear_damping.schema.values import Flag, Given, Number, OneOf, Problems
+from gear_damping.simulation.solver_settings import Engine, Solver
+
+COUNT = Number(1, whole=True)  # of what there has to be one at least
+SOLVER = {
+    "accuracy": Number(0, 1, exclusive=True),
+    "substeps": Given(COUNT, optional=True),
+    "engine": OneOf(get_args(Engine)),
+    "acceleration": Flag(),
+    **dict.fromkeys(("most_substeps", "chunk", "block"), COUNT),
+}
 
 
 def refuse_other(measurement: object) -> None:
@@ -35,12 +45,20 @@ def refuse_other_kind(name: str, value: object, kind: type, example: str) -> Non
 
 
 def refuse_other_solver(solver: object) -> None:
-    """Refuse what is no `Solver`, as the name of a method.
+    """Refuse what is no `Solver`, as the name of a method, and one with settings that nothing can be solved with.
 
     Raises:
         InputError: it is none.
     """
     refuse_other_kind("solver", solver, Solver, "gd.Solver(substeps=4)")
+    problems = Problems()
+    for name, kind in SOLVER.items() if isinstance(solver, Solver) else ():
+        try:
+            kind.read(getattr(solver, name), name)
+        except InputError as error:
+            wrong = error.problems[0]
+            problems.append(Problem(f"solver.{name}", wrong.rule, wrong.value, wrong.remedy))
+    problems.raise_any()
 
 
 def names(argument: str, given: str | Iterable[str]) -> tuple[str, ...]:
@@ -70,7 +88,7 @@ def numbers(name: str, value: Any, unit: str = "SI") -> torch.Tensor:
         InputError: it holds something else, as a text or complex numbers.
     """
     given = value.detach().cpu() if isinstance(value, torch.Tensor) else value
-    remedy, shown = f"give real numbers in {unit}", value if isinstance(value, str | Number) else None
+    remedy, shown = f"give real numbers in {unit}", value if isinstance(value, str | AnyNumber) else None
     try:
         array = np.asarray(given)
         real = None if array.dtype.kind == "c" else np.array(array, dtype=float)

@@ -13,9 +13,14 @@ from gear_damping.identification.test_plan.repeated import Repeated, repeat
 from gear_damping.identification.test_plan.rig import Rig
 from gear_damping.interface import planned_page as page
 from gear_damping.interface.arguments import refuse_other_kind, refuse_other_solver
+from gear_damping.interface.planned_arguments import Handed
 from gear_damping.physics.model import Model
 from gear_damping.reporting.figures.test_plan import test_plan_figure
+from gear_damping.schema.values import Number, Problems
+from gear_damping.simulation.sampling import whole_number_problems
 from gear_damping.simulation.solver_settings import Solver
+
+TIMES, SEED = Number(whole=True), Number(0, 2**63 - 1, whole=True)  # a count; what a generator of 64 bits takes
 
 
 class Plan:
@@ -89,8 +94,10 @@ class Plan:
             seed: Of the noise.
 
         Raises:
-            InputError: nothing is promised for it.
+            InputError: nothing is promised for it, or the count is none.
         """
+        refuse_other_kind("of", of, ToldTest, "plan.best")
+        Problems(whole_number_problems("count", count, TIMES) + whole_number_problems("seed", seed, SEED)).raise_any()
         return repeat(self.found, of or self.cheapest or self.best, count, joint=joint, seed=seed)
 
     def __repr__(self) -> str:
@@ -113,7 +120,8 @@ def plan(
 
     Args:
         model: The rig, with the values that it is expected to have.
-        tests: Speeds, torques or amplitudes, and durations that could be tested.
+        tests: Speeds, torques or amplitudes, and durations that could be tested. Here as below numbers are in SI, and
+            texts in their own unit, `'2 min'`.
         sensors: What could be mounted.
         unknown: What is unknown beside the damping: flat names, or `Unknown` where something is known beforehand or
             it differs from test to test.
@@ -124,11 +132,12 @@ def plan(
         InputError: everything that is wrong with it.
     """
     refuse_other_solver(solver)
-    refuse_other_kind("goal", goal, PlanGoal, "gd.PlanGoal(percent=5)")
-    solver = solver or Solver()
-    unknown = [unknown] if isinstance(unknown, str | Unknown) else unknown
-    sensors = [sensors] if isinstance(sensors, PlannedSensor) else sensors
-    named = tuple(Unknown(one) if isinstance(one, str) else one for one in unknown)
-    goal = goal or PlanGoal()
-    rig = Rig(model, {}, goal.law, solver)
-    return Plan(plan_tests(rig, Asked(tests, tuple(sensors), named, goal), solver.progress))
+    solver, handed = solver or Solver(), Handed(model)
+    asked = Asked(
+        handed.tests(tests),
+        handed.each("sensors", sensors, (str, PlannedSensor), handed.sensor),
+        handed.each("unknown", unknown, (str, Unknown), handed.unknown),
+        handed.goal(goal),
+    )
+    handed.problems.raise_any()
+    return Plan(plan_tests(Rig(model, {}, asked.goal.law, solver), asked, solver.progress))

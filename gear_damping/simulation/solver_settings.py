@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from numbers import Integral, Real
 from typing import Literal
 
 Progress = Callable[[int, int], None]  # told (done, total)
@@ -34,3 +35,10 @@ class Solver:
     block: int = 16
     acceleration: bool = False
     progress: Progress | None = field(default=None, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Numbers of numpy become plain ones; what is none stays, and is refused where it is used."""
+        for name in ("accuracy", "substeps", "most_substeps", "chunk", "block"):
+            value = getattr(self, name)
+            if isinstance(value, Real) and not isinstance(value, bool):
+                object.__setattr__(self, name, int(value) if isinstance(value, Integral) else float(value))

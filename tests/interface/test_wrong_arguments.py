@@ -217,3 +217,70 @@ def test_the_size_of_a_file_is_a_number_of_bytes(record, size):
 def test_arguments_of_another_kind_are_answered(record, ask, said):
     with pytest.raises(gd.InputError, match=said):
         ask(record)
+
+
+RIG = {"stiffness": 2103.8, "amplitude": 0.01}
+SEEN = gd.PlannedSensor("displacement", noise=1e-4)
+
+
+def planned(sensor=SEEN, goal=None, unknown=(), **tests):
+    rig = gd.Model(gd.Oscillator(**RIG), [gd.ViscousDamping(damping_coefficient=1.835)])
+    given = {"durations": [1.0, 2.0], "sampling_rate": 500, "amplitudes": (0.01,)} | tests
+    return gd.plan(rig, gd.PlannedTests(**given), sensor, goal=goal, unknown=unknown)
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        {"durations": np.array([1.0, 2.0]), "amplitudes": torch.tensor([0.01], dtype=torch.float64)},
+        {"durations": ["1 s", "2000 ms"], "sampling_rate": "500 Hz", "settle": "0 s", "amplitudes": ["1 cm"]},
+        {"sensor": gd.PlannedSensor("displacement", noise="0.1 mm")},
+        {"goal": gd.PlanGoal(percent="10 %", repeats=np.int64(1))},
+    ],
+)
+def test_a_plan_takes_arrays_and_quantities(said):
+    assert planned(**said).content == planned(settle=0.0 if "settle" in said else None).content
+
+
+@pytest.mark.parametrize(
+    ("said", "told"),
+    [
+        ({"sampling_rate": None}, "plan.sampling_rate = 'None': must be a number in Hz; remedy: for example 2 or"),
+        ({"sampling_rate": 0}, "plan.sampling_rate = 0.0: must lie within"),
+        ({"durations": "1 s"}, "plan.durations = 1.0: must be a list; remedy: write [1]"),
+        ({"durations": None}, "plan.durations = 'None': must be a list"),
+        ({"durations": ["3 kg"]}, "plan.durations[0] = 3.0: the unit 'kg' is not one of the kind of 's'"),
+        ({"settle": "soon"}, "plan.settle = 'soon': must be a number in s"),
+        ({"sensor": gd.PlannedSensor("displacement", noise=1e-4, cost="2 min")}, "cost = '2 min': must be a number"),
+        ({"sensor": "displacement"}, "sensors = \"'displacement'\": must be a PlannedSensor"),
+        ({"goal": gd.PlanGoal(percent=0.1, repeats=2.5)}, "plan.repeats = 2.5: must be a whole number"),
+        ({"goal": gd.PlanGoal(costs=gd.PlanCosts(per_test="a"))}, "plan.cost.per_test = 'a': must be a number"),
+        ({"unknown": 3}, "unknown = '3': must be a list"),
+    ],
+)  # fmt: skip
+def test_what_is_no_plan_is_answered(said, told):
+    with pytest.raises(gd.InputError) as caught:
+        planned(**said)
+    assert told in str(caught.value)
+
+
+@pytest.mark.parametrize("wrong", [{"count": "100"}, {"count": 2.5}, {"count": 20, "seed": "a"}, {"of": 3}])
+def test_simulated_tests_are_counted(wrong):
+    with pytest.raises(gd.InputError, match=f"{list(wrong)[-1]} = .*: must be a "):
+        planned().simulated(**wrong)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("accuracy", "high"), ("accuracy", 0), ("substeps", 2.5), ("engine", "gpu"), ("chunk", 0), ("acceleration", 1)],
+)
+def test_settings_of_a_solver_are_checked(name, value):
+    model = gd.Model(gd.Oscillator(**RIG), [gd.ViscousDamping()])
+    with pytest.raises(gd.InputError, match=rf"solver\.{name} = .*: must "):
+        gd.simulate(model, sampling_rate=500, n_samples=10, solver=gd.Solver(**{name: value}))
+
+
+def test_numbers_of_numpy_are_numbers_of_a_solver():
+    model, given = gd.Model(gd.Oscillator(**RIG), [gd.ViscousDamping(damping_coefficient=1.0)]), {"sampling_rate": 500}
+    solver = gd.Solver(accuracy=np.float32(1e-4), chunk=np.int64(8))
+    assert len(gd.simulate(model, n_samples=10, initial_displacement=0.01, solver=solver, **given)) == 1

@@ -1,0 +1,131 @@
+"""What is handed to `gd.plan`, as plain numbers: quantities with units are read, and what is none is answered."""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import fields, replace
+from numbers import Integral, Real
+from typing import Any
+
+from gear_damping.errors import InputError, Problem
+from gear_damping.identification.test_plan.asked import PlanCosts, PlanGoal, PlannedSensor, PlannedTests, Unknown
+from gear_damping.identification.test_plan.channels import channels_of
+from gear_damping.interface.arguments import refuse_other_kind
+from gear_damping.physics.model import Model
+from gear_damping.schema.values import Problems
+from gear_damping.simulation.sampling import SAMPLING_RATE
+from gear_damping.units import number_in
+
+LISTS = {"durations": "s", "speeds": "rad/s", "torques": "N*m", "amplitudes": "m"}  # of tests, with their units
+GOAL = {"percent": "%", "exponent": "1"}  # numbers of a goal, with their units
+COUNTS = ("most_tests", "repeats")  # numbers of a goal that count something
+
+
+class Handed:
+    """Reads what was handed over for one model, and gathers what is wrong with it."""
+
+    def __init__(self, model: Model) -> None:
+        """Begin with the model whose units they are in."""
+        refuse_other_kind("model", model, Model, "gd.Model(gd.Oscillator(), [gd.ViscousDamping()])")
+        self.system, self.declared, self.problems = model.system, model.parameters(), Problems()
+
+    def tests(self, given: object) -> PlannedTests:
+        """Tests with numbers alone."""
+        _refuse_other("tests", given, PlannedTests, "gd.PlannedTests(durations=[1, 2], sampling_rate=500)")
+        found = {name: self._list(f"plan.{name}", getattr(given, name), unit) for name, unit in LISTS.items()}
+        rate = self._number("plan.sampling_rate", given.sampling_rate, "Hz")
+        wrong = None if rate is None else SAMPLING_RATE.problem(rate, "plan.sampling_rate")
+        self.problems += [wrong] if wrong else []
+        settle = self._number("plan.settle", given.settle, "s", optional=True)
+        return PlannedTests(sampling_rate=rate, settle=settle, **found)
+
+    def sensor(self, given: object) -> PlannedSensor:
+        """A sensor with numbers alone."""
+        _refuse_other("sensors", given, PlannedSensor, "gd.PlannedSensor('response', snr_db=30)")
+        key, seen = f"plan.sensors.{given.name}", channels_of(self.system)
+        unit = seen.get(given.sees) if isinstance(given.sees, str) else None
+        found = {
+            "noise": given.noise if unit is None else self._number(f"{key}.noise", given.noise, unit, optional=True),
+            "snr_db": self._number(f"{key}.snr_db", given.snr_db, "dB", optional=True),
+            "cost": self._number(f"{key}.cost", given.cost, ""),
+        }
+        found["noise"] = (
+            found["noise"] if isinstance(found["noise"], float | None) else 1.0
+        )  # of no channel, as is said
+        return replace(given, **found)
+
+    def unknown(self, given: object) -> Unknown:
+        """What is unknown, with numbers alone."""
+        if isinstance(given, str):
+            return Unknown(given)
+        _refuse_other("unknown", given, Unknown, "gd.Unknown('stiffness', percent=2)")
+        key, declared = f"plan.unknown.{given.name}", self.declared.get(given.name)
+        unit = "" if declared is None else self.system.unit_of(declared.unit)
+        said = None if declared is None else given.deviation  # that there is no such parameter is said later
+        deviation = self._number(f"{key}.deviation", said, unit, optional=True)
+        return replace(given, deviation=deviation, percent=self._number(f"{key}.percent", given.percent, "%", True))
+
+    def goal(self, given: object) -> PlanGoal:
+        """A goal with numbers alone."""
+        refuse_other_kind("goal", given, PlanGoal, "gd.PlanGoal(percent=5)")
+        given = given or PlanGoal()
+        _refuse_other("goal.costs", given.costs, PlanCosts, "gd.PlanCosts(per_test=1)")
+        found = {
+            name: self._number(f"plan.wanted_{name}", getattr(given, name), unit, optional=name == "exponent")
+            for name, unit in GOAL.items()
+        }
+        counts = {name: self.count(f"plan.{name}", getattr(given, name)) for name in COUNTS}
+        costs = {
+            one.name: self._number(f"plan.cost.{one.name}", getattr(given.costs, one.name), "")
+            for one in fields(PlanCosts)
+        }
+        return replace(given, **found, **counts, costs=PlanCosts(**costs))
+
+    def each(self, key: str, given: Any, alone: type | tuple[type, ...], read: Callable[[object], Any]) -> tuple:
+        """What is made of each of a list, or of one that stands alone."""
+        if isinstance(given, alone):
+            return (read(given),)
+        if not isinstance(given, Iterable):
+            raise InputError(Problem(key, "must be a list", repr(given), f"write {key}=[…]"))
+        return tuple(read(one) for one in given)
+
+    def count(self, key: str, value: object) -> int | None:
+        """A whole number."""
+        if isinstance(value, Integral) and not isinstance(value, bool):
+            return int(value)
+        self.problems.append(Problem(key, "must be a whole number", _shown(value), "for example 2"))
+        return None
+
+    def _list(self, key: str, given: Any, unit: str) -> tuple | float | None:
+        unit = self.system.unit_of(unit)
+        if isinstance(given, str | Real) or getattr(given, "ndim", 1) == 0:
+            return self._number(key, given, unit)  # that it must be a list is said later
+        if isinstance(given, Mapping) or not isinstance(given, Iterable):
+            self.problems.append(Problem(key, "must be a list", _shown(given), "write [1, 2]"))
+            return ()
+        return tuple(self._number(f"{key}[{place}]", one, unit) for place, one in enumerate(given))
+
+    def _number(self, key: str, value: Any, unit: str, optional: bool = False) -> float | None:
+        """A number in a unit; a text with another unit of its kind too. None, noted, for what is neither."""
+        if value is None and optional:
+            return None
+        value = value.item() if getattr(value, "ndim", 1) == 0 else value
+        with self.problems.collecting():
+            value = number_in(value, unit, key) if unit else value
+            if isinstance(value, Real) and not isinstance(value, bool):
+                return float(value)
+            of, such = (f" in {unit}", f" or '2 {unit}'") if unit not in ("", "1") else ("", "")
+            self.problems.append(Problem(key, f"must be a number{of}", _shown(value), f"for example 2{such}"))
+        return None
+
+
+def _refuse_other(name: str, value: object, kind: type, example: str) -> None:
+    """Refuse an argument of another kind, None too.
+
+    Raises:
+        InputError: it is one.
+    """
+    if not isinstance(value, kind):
+        raise InputError(Problem(name, f"must be a {kind.__name__}", repr(value), f"for example {name}={example}"))
+
+
+def _shown(value: object) -> object:
+    return value if isinstance(value, str | Real) else repr(value)
