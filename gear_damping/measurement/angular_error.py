@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 GEOMETRY = {"pinion": "n_teeth_pinion", "gear": "n_teeth_gear"}  # the teeth that make a shaft's base radius
 NEEDED = ("module", "pressure_angle")  # beside them
-_LENGTH = "um"  # that the channel is then told in
+LENGTH = "um"  # that the channel is then told in
 
 
 def base_radius(n_teeth: float, module: float, pressure_angle: float) -> float:
@@ -52,9 +52,9 @@ def along_the_line(plan: "ChannelPlan", parameters: Mapping[str, Quantity]) -> "
     known = [parameters.get(name) for name in (GEOMETRY[sensor.pop("shaft")], *NEEDED)]
     radius = base_radius(*(one.value for one in known)) if all(known) else 1.0
     angle = parse_unit(plan.unit)
-    sensor["gain"] *= parse_unit(_LENGTH).factor / (radius * angle.factor)  # the declared unit in one micrometre
+    sensor["gain"] *= parse_unit(LENGTH).factor / (radius * angle.factor)  # the declared unit in one micrometre
     limits = {name: _length(quantity, radius, angle) for name, quantity in plan.limits.items()}
-    return replace(plan, unit=_LENGTH, sensor=sensor, limits=limits, stated_unit=plan.unit)
+    return replace(plan, unit=LENGTH, sensor=sensor, limits=limits, stated_unit=plan.unit)
 
 
 def _length(quantity: Quantity, radius: float, angle: Unit) -> Quantity:
@@ -62,4 +62,4 @@ def _length(quantity: Quantity, radius: float, angle: Unit) -> Quantity:
     own = parse_unit(quantity.unit)
     if own.dimension != angle.dimension:
         return quantity
-    return Quantity(quantity.value * own.factor * radius / parse_unit(_LENGTH).factor, _LENGTH, quantity.uncertainty)
+    return Quantity(quantity.value * own.factor * radius / parse_unit(LENGTH).factor, LENGTH, quantity.uncertainty)

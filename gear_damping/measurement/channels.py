@@ -280,7 +280,7 @@ class TransmissionError(Response):
         if self.unit is not None and is_angle(self.unit) and not self.given("shaft"):
             rule = f"a transmission error in '{self.unit}' is the angle of a shaft, and nothing says of which"
             refuse(rule, None, "write shaft: pinion (or gear), whose base radius makes it a length", "shaft")
-        if self.given("shaft") and not is_angle(self.unit):
+        if self.given("shaft") and self.unit is not None and not is_angle(self.unit):
             rule = "has a meaning only for a transmission error in a unit of an angle"
             refuse(rule, self.shaft, "leave it out, or state the unit, as arcsec", "shaft")
         return self

@@ -1,7 +1,7 @@
 """From the YAML to a plan: what it declares, checked, before any measured file is opened; every problem is noted."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from gear_damping.errors import InputError, Problem, nearest
@@ -36,7 +36,8 @@ class TimePlan:
 class ChannelPlan:
     """A declared channel; `unit` None asks the file, `limits` are range and noise as declared.
 
-    `is_scaled` says that its gain is stated, be it 1; `stated_unit` is the angle that `unit` is the length of.
+    `is_scaled` says that its gain is stated, be it 1; `stated_unit` is the angle that `unit` is the length of;
+    `geometry` makes a length of an angle of a shaft whose unit the file says.
     """
 
     name: str
@@ -48,6 +49,7 @@ class ChannelPlan:
     timing: TimePlan | None
     is_scaled: bool = False
     stated_unit: str | None = None
+    geometry: Mapping[str, Quantity] | None = None
 
     @property
     def shaft_radius(self) -> float | None:
@@ -198,7 +200,7 @@ def _record(
         role=record.role,
         rows=record.slice,
         timing=_timing(record) or _timing(record.channels) or TimePlan(),
-        channels=tuple(along_the_line(plan, parameters) if is_angle_of_a_shaft(plan) else plan for plan in channels),
+        channels=tuple(_as_length(plan, parameters) if is_angle_of_a_shaft(plan) else plan for plan in channels),
         encoders=tuple(_encoders(record, key)) if gear else (),
         conditions=conditions,
         gear_torque_mode=mode,
@@ -206,6 +208,11 @@ def _record(
         window=record.window.seconds if record.window else None,
         resample=record.resample.value if record.resample else None,
     )
+
+
+def _as_length(plan: ChannelPlan, parameters: Mapping[str, Quantity]) -> ChannelPlan:
+    """An angle of a shaft as a length; where the header of the column says its unit, what makes it one."""
+    return replace(plan, geometry=parameters) if plan.unit is None else along_the_line(plan, parameters)
 
 
 def _declared_channels(record: layout.AnyRecord) -> dict[str, AnyChannel]:

@@ -159,7 +159,7 @@ def _units(plan: Plan) -> Iterable[tuple[str, str | None, str, float | None]]:
     for record in plan.records:
         for channel in record.channels:
             yield channel.name, channel.unit, f"{channel.key}.unit", channel.shaft_radius
-            for limit, quantity in channel.limits.items():
+            for limit, quantity in () if channel.geometry else channel.limits.items():  # of an angle: with its header
                 yield channel.name, quantity.unit, f"{channel.key}.{limit}", channel.shaft_radius
         for name, quantity in record.conditions.items():
             yield name, quantity.unit, f"{record.key}.conditions.{name}", None

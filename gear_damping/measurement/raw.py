@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.angular_error import LENGTH, along_the_line, is_angle
 from gear_damping.measurement.checks import refuse_not_finite
 from gear_damping.measurement.cutting import rows_beside, slower, window_rows
 from gear_damping.measurement.declaration import ChannelPlan, EncoderPlan, RecordPlan, TimePlan
@@ -280,6 +281,8 @@ class RawReader:
         if plan.unit is None and (own := scaled_unit(unit)):
             remedy = f"write unit: {own}, and gain: what the column holds for one {own}"
             raise InputError(Problem(f"{plan.key}.unit", f"the header says '{unit}'", None, remedy, self.source))
+        if plan.geometry is not None:
+            plan, unit = self._along_the_line(plan, unit), LENGTH
         clock = self._clock_beside(plan, base)
         if plan.timing is None and clock is None:
             if self.rows.filled and filled_in(self.rows.whole.of(self.columns.all(plan.column))) is None:
@@ -293,6 +296,14 @@ class RawReader:
         if rate and own.time.size in rows and own.sampling_rate < _CLOCKS_AGREE * rate:
             own = replace(own, findings=(*own.findings, two_clocks(rate, own.sampling_rate, plan.name)))
         return RawChannel(plan, values, unit, header, own)
+
+    def _along_the_line(self, plan: ChannelPlan, unit: str) -> ChannelPlan:
+        """An angle of a shaft in the unit of its header, as a length."""
+        if not is_angle(unit):
+            rule = f"has a meaning only for a transmission error in a unit of an angle, and the header says '{unit}'"
+            remedy = "leave it out, or state the unit, as arcsec"
+            raise InputError(Problem(f"{plan.key}.shaft", rule, plan.sensor["shaft"], remedy, self.source))
+        return along_the_line(replace(plan, unit=unit), plan.geometry)
 
     def _faster(self, plan: ChannelPlan, unit: str, header: str | None) -> RawChannel:
         """A channel that has values in all rows, beside slower ones."""

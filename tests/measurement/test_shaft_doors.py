@@ -141,6 +141,21 @@ def test_a_transmission_error_in_arc_seconds_says_what_it_lacks(bench):
     assert "only for a transmission error in a unit of an angle" in problem
 
 
+@pytest.mark.parametrize("said", ["arcsec", "um"])
+def test_the_unit_of_the_header_tells_whether_it_is_an_angle(bench, said):
+    """It was refused, with a remedy that leads to a length in arc seconds."""
+    length = _in_arc_seconds(bench, "gear", 55)
+    column, channel = f"dte [{said}]", bench.channels["transmission_error"]
+    bench.columns = {column if name == "dte" else name: values for name, values in bench.columns.items()}
+    channel |= {"column": column}
+    del channel["unit"]
+    if said == "arcsec":
+        assert bench.load().records[0].channels["transmission_error"].values == pytest.approx(length, rel=1e-9)
+        return
+    (problem,) = bench.problems()
+    assert "only for a transmission error in a unit of an angle, and the header says 'um'" in problem
+
+
 def test_a_threshold_beyond_a_pulse_train_says_what_the_train_holds(bench):
     bench.columns["pulse"] = 0.2 * (np.mod(bench.columns["theta1"] / TURN, 1) < 0.5)
     del bench.channels["pinion_angle"]
