@@ -22,6 +22,7 @@ FORMAT = "gear_damping.network"
 VERSION = 1  # of the JSON; a reader refuses later ones
 ARGUMENTS = ("estimator", "data", "settings", "wavelet", "learning_rate")  # of DampingModule, which a file may give
 KEY = "checkpoint"
+DECLARES = (".yaml", ".yml")  # ends of files in which people declare measurements and simulators
 MOST_BYTES = 2**24  # of a JSON: ours hold a few thousand
 
 
@@ -108,6 +109,9 @@ def read_description(path: Path) -> dict[str, Any]:
 
 
 def _from_checkpoint(path: Path, plugins: Sequence[str]) -> DampingModule:
+    if path.suffix.lower() in DECLARES:
+        rule, remedy = "declares something, and is no saved estimator", "give a best.ckpt, or what `save` wrote"
+        raise InputError(Problem(KEY, rule, str(path), remedy))
     try:
         content = torch.load(path, map_location="cpu", weights_only=True)
         module = _restored(content["hyper_parameters"], content["state_dict"], plugins)

@@ -41,7 +41,10 @@ def bound(
     Raises:
         InputError: a name is unknown, nothing moves, or neither or both of noise and snr_db are given.
     """
-    if (noise is None) == (snr_db is None):
+    if noise is not None and snr_db is not None:
+        rule, remedy = "is given beside snr_db, and one of noise and snr_db is needed", "leave out one of the two"
+        raise InputError(Problem("noise", rule, repr(noise), remedy))
+    if noise is None and snr_db is None:
         raise InputError(Problem("noise", "one of noise and snr_db is needed", noise, "for example snr_db=30"))
     if snr_db is not None and not isinstance(snr_db, Real):
         raise InputError(Problem("snr_db", "is one level", repr(snr_db), "ask once for each, for example snr_db=30"))

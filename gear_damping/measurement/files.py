@@ -29,6 +29,7 @@ _CURES = {"appears twice": "keep the one that is right", "'\\t'": "indent with s
 _ALIKE = 0.8  # share of the letters that two names of files must have in common to be taken for one
 _CURE = "mind indentation, and quote texts that hold any of : # [ ] { } ,"
 DATA_VARIABLE = "GEAR_DAMPING_DATA"
+YAML = (".yaml", ".yml")  # ends of declarations; what ends otherwise is a file of data
 UNKNOWN = "???"  # in a measurement.yaml that task=inspect began: what nobody can guess
 
 
@@ -78,7 +79,9 @@ def read_yaml(path: Path) -> object:
         with reading(path, "measurement.path"):
             content = yaml.load(path.read_text(encoding="utf-8-sig"), Loader=_Loader)
     except UnicodeDecodeError as error:
-        remedy = f"save it as UTF-8 ({error.reason}); {data}"
+        utf8 = f"save it as UTF-8 ({error.reason})"
+        is_yaml = path.suffix.lower() in YAML
+        remedy = f"{utf8}; {data}" if is_yaml else f"{data}; a measurement.yaml: {utf8}"
         raise InputError(Problem("measurement.path", "not UTF-8 text", str(path), remedy)) from None
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)

@@ -284,3 +284,20 @@ def test_numbers_of_numpy_are_numbers_of_a_solver():
     model, given = gd.Model(gd.Oscillator(**RIG), [gd.ViscousDamping(damping_coefficient=1.0)]), {"sampling_rate": 500}
     solver = gd.Solver(accuracy=np.float32(1e-4), chunk=np.int64(8))
     assert len(gd.simulate(model, n_samples=10, initial_displacement=0.01, solver=solver, **given)) == 1
+
+
+def test_of_two_levels_of_noise_one_is_left_out():
+    model = gd.Model(gd.Oscillator(**RIG), [gd.ViscousDamping(damping_coefficient=1.0)])
+    runs = gd.simulate(model, sampling_rate=500, n_samples=200, initial_displacement=0.01)
+    with pytest.raises(
+        gd.InputError, match=r"noise = '1e-05': is given beside snr_db.*; remedy: leave out one of the two"
+    ):
+        gd.bound(runs, noise=1e-5, snr_db=30)
+
+
+def test_a_declaration_is_no_estimator(record):
+    with pytest.raises(
+        gd.InputError, match=r"declares something, and is no saved estimator; remedy: give a best"
+    ) as caught:
+        gd.load_estimator(record.source)
+    assert "Error" not in str(caught.value)

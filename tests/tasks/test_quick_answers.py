@@ -69,11 +69,14 @@ def test_a_wrong_yaml_is_answered_as_a_whole_and_leaves_nothing(wrong):
 def test_a_yaml_that_is_no_yaml_is_answered_too(tmp_path):
     (tmp_path / "a.yaml").write_text("system: [oscillator\n")
     (tmp_path / "b.yaml").write_bytes(b"system: \xff\xfe\n")
-    commands = [["task=explain", f"measurement.path={tmp_path / name}"] for name in ("a.yaml", "b.yaml")]
+    (tmp_path / "c.wav").write_bytes(b"RIFF\xff\xfe")
+    commands = [["task=explain", f"measurement.path={tmp_path / name}"] for name in ("a.yaml", "b.yaml", "c.wav")]
     last, said, _ = answered([*commands, ["task=inspect", "seed=-1"]], tmp_path)
-    assert last == "codes [1, 1, 1] loaded []"
+    assert last == "codes [1, 1, 1, 1] loaded []"
+    assert f"remedy: of a file of data, task=inspect measurement.path={tmp_path / 'c.wav'} writes one" in said
     assert "not valid YAML at line 2, column 1" in said
     assert "save it as UTF-8 (invalid start byte)" in said
+    assert "remedy: save it as UTF-8" in said
     assert f"(from command line: measurement.path={tmp_path}" in said
     assert "seed = -1: " in said
     assert "task=inspect needs a measurement; remedy: measurement.path=PATH/FILE" in said
