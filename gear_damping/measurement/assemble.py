@@ -10,7 +10,7 @@ from gear_damping.measurement.angular_error import GEOMETRY, NEEDED, base_radius
 from gear_damping.measurement.column_kinds import unit_at_end
 from gear_damping.measurement.cutting import is_faster, moved
 from gear_damping.measurement.declaration import ChannelPlan, Plan
-from gear_damping.measurement.declared_units import Conversion, UnitSystem
+from gear_damping.measurement.declared_units import Conversion, UnitSystem, written
 from gear_damping.measurement.encoders import (
     FROM_ENCODERS,
     ShaftAngle,
@@ -88,7 +88,7 @@ class Assembler:
         conversion = self._conversion(plan, raw.unit, f"{plan.key}.unit")
         findings += [found] if (found := _unit_conflict(raw, conversion)) else []
         limits = {
-            name: quantity.value * self._conversion(plan, quantity.unit, f"{plan.key}.{name}").factor
+            name: quantity.value * self._conversion(plan, quantity.unit, f"{plan.key}.{name}", written(quantity)).factor
             for name, quantity in plan.limits.items()
         }
         factor = conversion.factor
@@ -125,8 +125,8 @@ class Assembler:
             plan.name, values, conversion.unit, raw.unit, conversion.factor, rounding=rounding, **limits, **sensor
         )
 
-    def _conversion(self, plan: ChannelPlan, unit: str, key: str) -> Conversion:
-        return self.units.conversion(plan.name, unit, key, self.source, plan.shaft_radius)
+    def _conversion(self, plan: ChannelPlan, unit: str, key: str, said: str = "") -> Conversion:
+        return self.units.conversion(plan.name, unit, key, self.source, plan.shaft_radius, said)
 
     def _held(self, raw: RawChannel, record: RawRecord, values: NDArray, notes: list[str]) -> bool:
         """Whether an input stays at each value: as stated, or as it looks."""

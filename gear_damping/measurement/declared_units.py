@@ -60,7 +60,9 @@ class UnitSystem:
             elif self._response is None or order < self._response.order:
                 self._response = _Reference(unit, text, order)
 
-    def conversion(self, name: str, text: str, key: str, source: str, radius: float | None = None) -> Conversion:
+    def conversion(
+        self, name: str, text: str, key: str, source: str, radius: float | None = None, said: str = ""
+    ) -> Conversion:
         """How values of channel `name` in the unit `text` are converted.
 
         Args:
@@ -69,6 +71,7 @@ class UnitSystem:
             key: What is at fault in messages.
             source: The file that declares it.
             radius: m, at which the speed of a shaft, or its acceleration, is measured along the circumference.
+            said: The whole value, of a limit of the channel, as its noise.
 
         Raises:
             InputError: the unit is unknown or of another kind than the channel.
@@ -88,7 +91,8 @@ class UnitSystem:
             kept = self._oscillator_unit(name, text, unit)
         if unit.dimension != kept.unit.dimension:
             rule = f"the unit '{text}' is not one of the kind of '{kept.text}'"
-            raise InputError(Problem(key, rule, text, other_kind(unit, kept.text), source))
+            remedy = ("it is in the unit of the channel: " if said else "") + other_kind(unit, kept.text)
+            raise InputError(Problem(key, rule, said or text, remedy, source))
         return Conversion(unit.factor / kept.unit.factor, kept.text)
 
     def _oscillator_unit(self, name: str, text: str, unit: Unit) -> _Reference:
@@ -128,3 +132,8 @@ def _around(unit: Unit, radius: float | None, kept: str, key: str, text: str, so
         rule = f"'{text}' is no velocity along the circumference, which alone a radius has a meaning for"
         raise InputError(Problem(key, rule, text, "leave out radius, or give the unit of the velocity, mm/s", source))
     return Conversion(unit.factor / radius, kept)
+
+
+def written(quantity: Quantity) -> str:
+    """A quantity as people write it."""
+    return f"{quantity.value:g} {quantity.unit}"

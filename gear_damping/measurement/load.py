@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from gear_damping.at_home import at_home
 from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.declaration import Plan, RecordPlan, declared_plan
-from gear_damping.measurement.declared_units import UnitSystem
+from gear_damping.measurement.declared_units import UnitSystem, written
 from gear_damping.measurement.files import UNKNOWN, Files, read_yaml, unfilled
 from gear_damping.measurement.fitted_twice import with_what_is_fitted_twice
 from gear_damping.measurement.formats.registry import MAX_BYTES, readers
@@ -120,8 +120,8 @@ def _checked(content: object, source: str, plugins: Sequence[str | Path]) -> Pla
     if plan is not None:
         _names(plan.records, problems, source)
         declared = list(_units(plan))
-        if plan.si is not None or all(unit for _, unit, _, _ in declared):
-            known = [(name, unit) for name, unit, _, _ in declared if unit]
+        if plan.si is not None or all(unit for _, unit, *_ in declared):
+            known = [(name, unit) for name, unit, *_ in declared if unit]
             units = UnitSystem(plan.si, known)
             _compare_units(plan, units, problems, source)
     problems.raise_any()
@@ -154,23 +154,24 @@ def _loaded(content: object, path: Path, max_bytes: int | None, plugins: Sequenc
     return replace(found, records=with_what_is_fitted_twice(kept, found.base.responses))
 
 
-def _units(plan: Plan) -> Iterable[tuple[str, str | None, str, float | None]]:
-    """Name, unit, key and the radius on a shaft, of what is declared with a unit that must fit the others."""
+def _units(plan: Plan) -> Iterable[tuple[str, str | None, str, float | None, str]]:
+    """Name, unit, key, radius on a shaft, and value as written, of what has a unit that must fit the others."""
     for record in plan.records:
         for channel in record.channels:
-            yield channel.name, channel.unit, f"{channel.key}.unit", channel.shaft_radius
+            yield channel.name, channel.unit, f"{channel.key}.unit", channel.shaft_radius, ""
             for limit, quantity in () if channel.geometry else channel.limits.items():  # of an angle: with its header
-                yield channel.name, quantity.unit, f"{channel.key}.{limit}", channel.shaft_radius
+                said = written(quantity)
+                yield channel.name, quantity.unit, f"{channel.key}.{limit}", channel.shaft_radius, said
         for name, quantity in record.conditions.items():
-            yield name, quantity.unit, f"{record.key}.conditions.{name}", None
+            yield name, quantity.unit, f"{record.key}.conditions.{name}", None, ""
 
 
 def _compare_units(plan: Plan, units: UnitSystem, problems: Problems, source: str) -> dict[str, Quantity]:
     """Note every unit that is not of its kind; returns the parameters in the rig's own units."""
-    for name, unit, key, radius in _units(plan):
+    for name, unit, key, radius, said in _units(plan):
         with problems.collecting():
             if unit:
-                units.conversion(name, unit, key, source, radius)
+                units.conversion(name, unit, key, source, radius, said)
     own = {}
     for name, quantity in plan.own.items():
         with problems.collecting():

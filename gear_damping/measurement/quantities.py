@@ -29,6 +29,7 @@ Found = list[Problem]
 _THOUSANDS = re.compile(r"^\s*([+-]?\d{1,3}(?:[, '’]\d{3})+)\s*([A-Za-z%µμ°].*?)?\s*$")  # `1,000 Hz`, `1 000 Hz`
 _BARE = re.compile(r"^\s*[+-]?\d+(\.\d+)?\s*$")
 _DECIMAL_COMMA = re.compile(r"^\s*([+-]?\d+),(\d+([eE][+-]?\d+)?\s*\D.*?)\s*$")
+_BOTH_SIGNS = re.compile(r"^\s*(?:±|\+/?-)\s*(\S.*?)\s*$")  # `±50 mm`, `+-50 mm`
 _ELECTRIC = ("V", "A")  # in which columns of sensors usually are
 # The units that people mean by a bare number, by the unit that it is converted to.
 _USUAL = Frozen(
@@ -197,6 +198,10 @@ class Measured(Value):
             return f"write {name}: {number} {unit}, without a sign between thousands{point}"
         if isinstance(value, str) and (comma := _DECIMAL_COMMA.match(value)):
             return f"write a decimal point, not a comma: {name}: {comma[1]}.{comma[2]}"
+        if isinstance(value, str) and (both := _BOTH_SIGNS.match(value)) and spoken(both[1]):
+            return f"write {name}: {both[1]}, without a sign"
+        if number is None and self.unit is None:
+            return f"say it in the unit of the channel or one of its kind, as {name}: 5 mm for one in mm"
         if number is None:
             number = value.strip() if isinstance(value, str) and _BARE.match(value) else "…"
             return f"write {name}: {{value: {number}, unit: {self._example}}}, or {name}: {number} {self._example}"

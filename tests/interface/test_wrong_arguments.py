@@ -301,3 +301,18 @@ def test_a_declaration_is_no_estimator(record):
     ) as caught:
         gd.load_estimator(record.source)
     assert "Error" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("said", "told"),
+    [
+        ("range: ±50 mm", "write range: 50 mm, without a sign"),
+        ("range: full", "say it in the unit of the channel or one of its kind, as range: 5 mm for one in mm"),
+        ("noise: 1 %", "noise = '1 %': the unit '%' is not one of the kind of 'm'; remedy: it is in the unit of"),
+    ],
+)
+def test_limits_of_a_channel_are_in_its_unit(record, said, told):
+    record.source.write_text(YAML.replace("unit: m}", f"unit: m, {said}}}"))
+    with pytest.raises(gd.InputError) as caught:
+        gd.load(record.source)
+    assert told in str(caught.value)
