@@ -29,6 +29,7 @@ from gear_damping.simulation.runs import Runs
 BESIDE_THE_MESH = (
     BearingForce, ContactChange, ElasticForce, ExtraStates, LoadPath, MeshForceFactor, StiffnessFactor, SystemChange,
 )  # fmt: skip
+FAR = 2.0  # times an amplitude: nearer, no law of damping tells a much different ratio
 log = logging.getLogger("gear_damping").info
 
 
@@ -70,7 +71,21 @@ def _damping(runs: Runs, law: str | None) -> str:
         exponent = float(runs.values[f"{law}.exponent"][0])
         line += f", alpha {_shown(float(alpha.min()))} … {_shown(float(alpha.max()))}{_unit_of_law(runs, exponent)}"
     amplitude = quantity(float(runs.reference_velocity[0]), runs.model.system.unit_of("m/s"))
-    return f"{line}, at a velocity amplitude of {amplitude}"
+    return f"{line}, at a velocity amplitude of {amplitude}{_other_start(runs)}"
+
+
+def _other_start(runs: Runs) -> str:
+    """What is said where an oscillator begins far from the amplitude that its damping ratio is stated at."""
+    if not runs.model.system.has(Trait.REST):
+        return ""
+    stated, start = (float(runs.values[name][0]) for name in ("amplitude", "initial_displacement"))
+    if not start or abs(start) / FAR < stated < FAR * abs(start):
+        return ""
+    at, begins = (quantity(one, runs.model.system.unit_of("m")) for one in (stated, start))
+    return (
+        f", which is that of simulator.amplitude, {at}; the motion begins at {begins}, "
+        "and a damping that depends on the amplitude is another one there"
+    )
 
 
 def _shown(coefficient: float) -> str:

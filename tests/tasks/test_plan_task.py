@@ -89,3 +89,11 @@ def test_figures_of_a_rig_in_millimetres_are_no_metres(tmp_path, said, unit):
     declared = (tmp_path / "simulated" / "measurement" / "measurement.yaml").read_text()
     assert f"unit: {unit or repr('1')}" in declared
     assert ("amplitude&nbsp;/&nbsp;mm" in (tmp_path / "plan" / "report.html").read_text()) == (unit == "mm")
+
+
+@pytest.mark.parametrize(("start", "far"), [("1mm", True), ("1.2m", False)])
+def test_a_start_far_from_the_stated_amplitude_is_said(tmp_path, said, start, far):
+    """The ratio was that of the default amplitude of 1 m, and nothing said that the motion is a thousandth of it."""
+    run = ["task=simulate", "simulator=oscillator", "family=none", f"simulator.initial_displacement={start}"]
+    assert main([*run, "simulator.n_samples=100", "progress=false", f"hydra.run.dir={tmp_path / 'run'}"]) == 0
+    assert ("that of simulator.amplitude, 1 m; the motion begins at 1 mm" in said()) == far
