@@ -107,7 +107,7 @@ class Assembler:
             values = unwrapped(values, turn, plan.name, notes)
         rounding = rounding_of(values) if record.plan.resample else 0.0
         if raw.own_time is None:
-            recorded, values = values, record.base.resample(values)
+            recorded, values = values, values if _switches(raw, record) else record.base.resample(values)
             was = getattr(record.base, "recorded", None) or record.base
             findings += _lost(recorded, was, values, record.base, plan.name) if record.plan.resample else []
         else:
@@ -245,6 +245,14 @@ class Assembler:
         held = true * values["n_teeth_gear"] / values["n_teeth_pinion"]
         conditions["gear_torque"] = Quantity(held, "N*m")
         notes.append(f"gear_torque: held at {held:.6g} N*m, which balances the mean of pinion_torque")
+
+
+def _switches(raw: RawChannel, record: RawRecord) -> bool:
+    """Whether an input jumps between values, at stamps that are nearly even: a spline would swing about each jump."""
+    stated = raw.plan.sensor.get("hold")
+    if raw.plan.name not in HOLDABLE or record.plan.resample:
+        return False
+    return is_staircase(raw.values) if stated is None else bool(stated)
 
 
 def _lost(

@@ -269,6 +269,31 @@ def test_a_rate_above_a_table_of_texts_may_be_that_of_its_rows(above, rate, tmp_
     assert inspect_table(read_table(tmp_path / "timed.csv")).rate == pytest.approx(50.0)
 
 
+@pytest.mark.parametrize(
+    ("above", "rate"),
+    [
+        (["trigger_deg, sample_rate, duration", "90, 1000, 5"], 1000.0),
+        (["trigger_deg,duration", "90,5"], None),
+        (["trigger_deg,sample_rate", "90"], None),
+    ],
+)
+def test_a_rate_may_stand_in_a_row_below_its_name(above, rate, tmp_path):
+    values = np.sin(0.3 * np.arange(60.0)) + 0.1 * np.cos(np.arange(60.0) ** 2)
+    (tmp_path / "a.txt").write_text("\n".join([*above, *(f"{x:.6f}" for x in values)]))
+    found = inspect_table(read_table(tmp_path / "a.txt"))
+    assert found.rate == (None if rate is None else pytest.approx(rate))
+
+
+def test_an_empty_line_before_a_last_comment_is_no_lost_row(tmp_path):
+    rows = [f"{x:.6f},{-x:.6f}" for x in np.sin(0.3 * np.arange(60.0))]
+    (tmp_path / "a.csv").write_text("\n".join([*rows, "", "# completed at noon", ""]))
+    assert read_table(tmp_path / "a.csv").notes == ()
+    (tmp_path / "a.csv").write_text("\n".join([*rows[:30], "", *rows[30:], "# completed at noon", ""]))
+    assert any(
+        "1 empty row(s) among its values, the first in line 31" in n for n in read_table(tmp_path / "a.csv").notes
+    )
+
+
 def test_what_is_not_declared_cuts_no_stretch(tmp_path):
     x, spectrum = np.sin(9 * T), np.cos(5 * T)
     x[5990:], spectrum[4000:] = np.nan, np.nan

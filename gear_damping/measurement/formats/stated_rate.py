@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import pairwise
 from math import inf
 from typing import Any
 
@@ -37,9 +38,18 @@ def stated_rate(rows: Iterable[Sequence[str]], beside_arrays: bool = False) -> t
         rows: The cells of the lines above a table of texts, comments among them, or attributes: a name and its value.
         beside_arrays: Whether they are numbers beside arrays, of which one that is called `rate` is that of these.
     """
+    rows = [*rows]
+    rows += [pair for above, below in pairwise(rows) for pair in _over_their_values(above, below)]
     found = [one for row in rows if (one := _of_row(row, beside_arrays)) is not None]
     rates = {f"{rate:.5g}" for _, rate in found}
     return found[0] if len(rates) == 1 else None
+
+
+def _over_their_values(above: Sequence[str], below: Sequence[str]) -> list[tuple[str, str]]:
+    """Names and values where one row holds several of the former and the next one of the latter, one below each."""
+    names, values = ([one for cell in row if (one := cell.strip(" \t,;"))] for row in (above, below))
+    are_values = len(names) == len(values) > 1 and all(map(_NUMBER.fullmatch, values))
+    return list(zip(names, values, strict=True)) if are_values and not any(map(_NUMBER.fullmatch, names)) else []
 
 
 def _of_row(row: Sequence[str], beside_arrays: bool) -> tuple[str, float] | None:

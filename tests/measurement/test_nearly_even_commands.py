@@ -1,0 +1,40 @@
+"""A command that switches stays as it was put out where the stamps are a few thousandths of a step off a grid."""
+
+import numpy as np
+import pytest
+import yaml
+
+from gear_damping.measurement.load import load_measurement
+
+
+def loaded(folder, hold=None, wave=False):
+    rng, n = np.random.default_rng(0), 3000
+    stamps = np.arange(n) / 150 + 2e-5 * rng.uniform(-1, 1, n)
+    force = 4 * np.sign(np.sin(2 * np.pi * 0.7 * stamps))
+    force = np.sin(2 * np.pi * 0.7 * stamps) + 0.01 * rng.normal(size=n) if wave else force
+    place = np.cumsum(np.cumsum(force)) / 150**2
+    np.savez(folder / "a.npz", t=stamps, u=force, x=place + 1e-4 * rng.normal(size=n))
+    command = {"column": "u", "unit": "A"} | ({} if hold is None else {"hold": hold})
+    channels = {"time": {"column": "t", "unit": "s"}, "force": command, "displacement": {"column": "x", "unit": "m"}}
+    declared = {"system": "oscillator", "records": [{"file": "a.npz", "channels": channels}]}
+    (folder / "measurement.yaml").write_text(yaml.safe_dump(declared))
+    (record,) = load_measurement(folder / "measurement.yaml").records
+    assert any("resampled to a uniform grid" in note for note in record.notes)
+    return record.channels["force"], force
+
+
+@pytest.mark.parametrize("hold", [None, True])
+def test_it_is_held_and_no_spline_swings_about_its_jumps(tmp_path, hold):
+    channel, force = loaded(tmp_path, hold)
+    assert channel.hold
+    np.testing.assert_array_equal(channel.values, force)
+
+
+def test_what_is_not_held_is_moved_as_it_was(tmp_path):
+    assert np.abs(loaded(tmp_path, hold=False)[0].values).max() > 4.001
+
+
+def test_a_wave_is_no_command(tmp_path):
+    channel, force = loaded(tmp_path, wave=True)
+    assert not channel.hold
+    assert np.any(channel.values != force)
