@@ -19,8 +19,10 @@ from gear_damping.explanation.model.contradicted import contradicts_stated
 from gear_damping.explanation.model.homogeneity import homogeneity
 from gear_damping.explanation.model.positive import positive
 from gear_damping.explanation.state import State
+from gear_damping.explanation.statistics.paired import Share, share_taken
 from gear_damping.explanation.steps.confirm import Confirmed, without
 from gear_damping.explanation.steps.judge import CONSISTENT, UNEXPLAINED, Judged, Known, verdict
+from gear_damping.explanation.trials.refit import block_samples
 from gear_damping.explanation.trials.told_size import without_a_figure
 from gear_damping.physics.terms import Sensor
 
@@ -83,6 +85,12 @@ def _small(state: State) -> tuple[str, ...]:
     return tuple(cause.name for cause in alike if cause.share < state.bench.settings.settled_share)
 
 
+def share_of_held_out(state: State) -> Share:
+    """The share of held-out records' squared residuals that the causes take together."""
+    first, last, evidence = state.nominal, state.outcome, state.bench.evidence
+    return share_taken(first.holdout, last.holdout, block_samples(last, evidence, evidence.held))
+
+
 def _reported(said: Judged) -> Judged:
     """The same with the extended model's waves as they are reported."""
     state = said.found
@@ -118,6 +126,7 @@ def _judged(found: Confirmed, notes: Sequence[str], is_short: bool) -> tuple[Jud
         is_short=is_short,
         any_figures=unknown,
         is_stated_otherwise=bool(contradicts_stated(state.nominal, evidence)),
+        predicts_worse=bool(state.accepted) and found.is_opened and share_of_held_out(state).interval95[1] < 0,
     )
     said = verdict(state, before, after, known)
     left = line_left(state)

@@ -7,6 +7,7 @@ from typing import Any
 from torch import Tensor
 
 from gear_damping.explanation.answer import gain
+from gear_damping.explanation.answer.judged import share_of_held_out
 from gear_damping.explanation.answer.levels import damping_by_record, levels_by_record
 from gear_damping.explanation.answer.next_experiment import confusable_beforehand, next_experiment
 from gear_damping.explanation.answer.unexplained import unexplained_residual
@@ -22,11 +23,9 @@ from gear_damping.explanation.model.nominal_gear_pair import is_standing
 from gear_damping.explanation.model.own_phases import own_levels
 from gear_damping.explanation.model.ringing import told_covariance
 from gear_damping.explanation.report_schema import KEYS, SCHEMA_VERSION
-from gear_damping.explanation.statistics.paired import share_taken
 from gear_damping.explanation.steps.judge import CONSISTENT, DATA_PROBLEM, LARGEST_SET, Judged, is_visible, statuses
 from gear_damping.explanation.trials.assess import Assessment
 from gear_damping.explanation.trials.random_part import Random
-from gear_damping.explanation.trials.refit import block_samples
 from gear_damping.explanation.trials.score import Score, best_by_effect
 from gear_damping.measurement.record import Finding, Measurement
 from gear_damping.physics.systems.traits import Trait
@@ -307,8 +306,7 @@ def _gain(judged: Judged, evidence: Evidence, noise: NoiseLevel) -> dict[str, An
 
 def _confirmed(judged: Judged) -> dict[str, Any]:
     """What the causes together add to the prediction of held-out records, and the share of these that they take."""
-    first, last, bench = judged.found.nominal, judged.found.outcome, judged.found.bench
-    share = share_taken(first.holdout, last.holdout, block_samples(last, bench.evidence, bench.evidence.held))
+    share = share_of_held_out(judged.found)
     interval = [100 * end for end in share.interval95]
     return {"t": judged.confirmed_t, "percent": 100 * share.value, "interval95": interval}
 

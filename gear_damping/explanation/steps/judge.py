@@ -16,6 +16,7 @@ TOO_SHORT = "but the held-out records are too short to judge so small an effect.
 TOO_STILL = "but something is left beside it, and the held-out records tell nothing of either."
 UNTOLD = "but there was no time to see whether it stands in for something else."
 WORSE = "but with it the held-out records are predicted worse than by their means."
+NO_BETTER = "but with it the held-out records are predicted worse than without."
 NOT_LESS = "but what is visible and not random stays."
 WITHIN_NOISE = "What is left is no more than the noise of the held-out records, and is not all random."
 AT_BOUND = "but it has run into the end of what it can be, and leaves most: it stands in for something else."
@@ -87,6 +88,7 @@ class Known:
         any_figures: A cause of which not one figure is known within itself; empty where none is such.
         is_stated_otherwise: Whether the nominal model has figures far from what is stated of them.
         is_short: Whether held-out records are too short to judge more than what is missing of the power in them.
+        predicts_worse: Whether held-out records are predicted clearly worse with the causes than without them.
     """
 
     converged: bool = True
@@ -103,6 +105,7 @@ class Known:
     is_short: bool = False
     any_figures: str = ""
     is_stated_otherwise: bool = False
+    predicts_worse: bool = False
 
     @property
     def unsettled(self) -> tuple[str, ...]:
@@ -132,6 +135,8 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
     further = (taken.sentence, *_not_told_apart(confused), *known.unsettled)
     if known.stands_in:
         return _not_established(found, before, known, known.stands_in)
+    if known.predicts_worse:
+        return _not_established(found, before, known, NO_BETTER)
     if known.is_short and not before.significant:
         return _not_established(found, before, known, TOO_SHORT)
     if taken.is_faint and taken.share < settings.least_share:
