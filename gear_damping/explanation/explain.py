@@ -18,6 +18,7 @@ from gear_damping.explanation.evidence.data_faults import data_faults, mesh_orde
 from gear_damping.explanation.evidence.excess import ac_energy
 from gear_damping.explanation.evidence.noise import NoiseLevel, Scatter, noise_of, weighted
 from gear_damping.explanation.evidence.records import Evidence, evidence_of
+from gear_damping.explanation.evidence.stated_speed import stated_speed_faults
 from gear_damping.explanation.evidence.useful_samples import at_useful_rate, of_useful_length
 from gear_damping.explanation.model.calibration_error import calibration_error
 from gear_damping.explanation.model.contradicted import contradicts_stated, noise_above
@@ -115,7 +116,7 @@ def explain(
         found, studies = explain_casing(measurement, listener.log)
         return Explanation(report_fields.of_casing(measurement, found), casing=studies)
     evidence = replace(evidence_of(measurement), settings=settings, is_over=lambda: budget.spent)
-    if faults := mesh_order_faults(evidence):
+    if faults := mesh_order_faults(evidence) or stated_speed_faults(evidence):
         return Explanation(report_fields.of_faults(measurement, faults))
     evidence = evidence if library is None else replace(evidence, library=library)
     return _of_evidence(evidence, measurement, listener, fitting_solver(solver), budget)
