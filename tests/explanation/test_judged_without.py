@@ -135,6 +135,15 @@ def test_a_small_friction_is_no_other_form_of_a_stiffness():
     assert module._small(state) == ("c",)
 
 
+@pytest.mark.parametrize(("third", "small"), [(5e-6, ("c",)), (5e-5, ())])
+def test_a_friction_may_be_the_form_of_a_larger_one(third, small):
+    """A pendulum's dry friction took .2 % beside its sine, and a power law of unknown exponent .0006 % more."""
+    state = searched_for((0.998, 0.0018, third)).state
+    state.accepted[1].effect = effect_class("coulomb_friction")()
+    state.accepted[2].effect = effect_class("power_law_damping")()
+    assert module._small(state) == small
+
+
 def test_a_sensor_that_is_off_by_little_may_be_a_form_of_any_law():
     state = searched_for((0.98, 0.013)).state
     state.accepted[0].effect = effect_class("hysteretic_damping")()

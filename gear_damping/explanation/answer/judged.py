@@ -70,19 +70,21 @@ def _without_form(found: Confirmed) -> tuple[Confirmed, tuple[str, ...]]:
 
 
 def _small(state: State) -> tuple[str, ...]:
-    """The causes beside the largest that take no more than its form may be wrong by, where something is left.
+    """The causes beside larger ones that take no more than the form of these may be wrong by, where something is left.
 
-    What takes energy out of the motion is no other form of what stores it; a sensor that is off bends to either.
+    What takes energy out of the motion is no other form of what stores it, but of a larger one that takes it too; a
+    sensor that is off bends to either.
     """
     if state.left is None or not state.left.visible or not state.accepted:
         return ()
     largest, *others = sorted(state.accepted, key=lambda cause: -cause.share)
-    alike = [
-        cause
-        for cause in others
-        if isinstance(cause.effect, Sensor) or cause.effect.dissipative == largest.effect.dissipative
-    ]
-    return tuple(cause.name for cause in alike if cause.share < state.bench.settings.settled_share)
+    share, found = state.bench.settings.settled_share, []
+    for place, cause in enumerate(others):
+        larger = [one for one in others[:place] if one.effect.dissipative == cause.effect.dissipative]
+        is_alike = isinstance(cause.effect, Sensor) or cause.effect.dissipative == largest.effect.dissipative
+        form = 1.0 if is_alike else larger[0].share if larger else 0.0
+        found += [cause.name] if cause.share < share * form else []
+    return tuple(found)
 
 
 def share_of_held_out(state: State) -> Share:
