@@ -69,8 +69,10 @@ class NoiseLevel:
         """
         if self.by_record == floor.by_record:
             return own
-        levels = np.array([self.by_record[name] for name in floor.by_record])
-        shares = levels / np.maximum([floor.by_record[name] for name in floor.by_record], 1e-300)
+        floors, levels = (
+            np.maximum([one.by_record[name] for name in floor.by_record], 1e-300) for one in (floor, self)
+        )
+        shares = levels / floors
         goes_with_floors = shares.max() / shares.min() < levels.max() / levels.min()
         return max(own, self.value, own * float(np.median(shares)) if goes_with_floors else 0.0)
 

@@ -11,15 +11,13 @@ from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.measurement.record import Finding
 from gear_damping.physics.systems.traits import Trait
 
-HARMONICS, FEWEST = (
-    4,
-    2,
-)  # of a comb, that stand for all of it: the higher ones are smaller; those that a rate must hold
+HARMONICS = 4  # of a comb, that stand for all of it: the higher ones are smaller
+FEWEST = 2  # of them that a sampling rate must hold, and that must stand out: one line may be the structure's
 NEAR, FAR = 0.01, 0.25  # of the stated speed: a nearer one is its uncertainty; farther, combs of other orders lie too
 FEWEST_TEETH = 50  # that pass in a record: of fewer, combs a hundredth apart are not told apart
 STRONG = 0.2  # share of a signal's variance that a comb must have to be the mesh
 FAINT = 0.1  # share of that comb's energy below which the stated one is absent
-OUT = 10.0  # times what is usual at other speeds, that a second harmonic must have: one line may be the structure's
+OUT = 10.0  # times what is usual at other speeds: a harmonic that stands out
 WIDTH = 1.5  # lines of a spectrum on either side that a wave with a Hann window fills
 FINE = 4  # trial frequencies to the width of a line of the highest harmonic
 
