@@ -1,4 +1,4 @@
-"""Records that hold the same samples, which would count twice: every interval would be too narrow."""
+"""Records that hold the same samples: fitted twice, intervals are too narrow; held out too, a fit judges itself."""
 
 from collections.abc import Collection, Sequence
 from dataclasses import replace
@@ -12,20 +12,28 @@ FEWEST = 16  # samples that are the same: fewer steps of a sensor may agree by c
 
 
 def with_what_is_fitted_twice(records: Sequence[Record], responses: Collection[str]) -> tuple[Record, ...]:
-    """The records; one whose response an earlier one holds too, where both are fitted, with a note of that."""
-    found = []
+    """The records; one whose response an earlier one holds too, of which one is fitted, with a note of that."""
+    found: list[Record] = []
     for record in records:
-        earlier = (one for one in found if _is_fitted(one) and _is_fitted(record) and _repeats(record, one, responses))
-        if (first := next(earlier, None)) is not None:
-            message = (
-                f"holds samples that '{first.name}' holds too, and both are fitted: they count twice, and every "
-                "interval is too narrow; let each have its own slice or window, or leave one out"
-            )
-            record = replace(
-                record, findings=(*record.findings, Finding("fitted_twice", message, record.name, severity="note"))
-            )
-        found.append(record)
+        earlier = (one for one in found if _is_fitted(one) or _is_fitted(record))
+        first = next((one for one in earlier if _repeats(record, one, responses)), None)
+        found.append(record if first is None else replace(record, findings=(*record.findings, _finding(record, first))))
     return tuple(found)
+
+
+def _finding(record: Record, first: Record) -> Finding:
+    """What the same samples in two records do."""
+    if _is_fitted(record) and _is_fitted(first):
+        message = (
+            f"holds samples that '{first.name}' holds too, and both are fitted: they count twice, and every "
+            "interval is too narrow; let each have its own slice or window, or leave one out"
+        )
+        return Finding("fitted_twice", message, record.name, severity="note")
+    message = (
+        f"holds samples that '{first.name}' holds too, and one of them is held out: what was fitted to them is "
+        "judged by them; let each have its own slice or window, or leave one out"
+    )
+    return Finding("fitted_and_held_out", message, record.name, severity="note")
 
 
 def _is_fitted(record: Record) -> bool:

@@ -348,3 +348,29 @@ def test_samples_that_are_fitted_twice_are_said(tmp_path, first, second, is_said
     (tmp_path / "m.yaml").write_text(yaml.safe_dump({"system": "oscillator", "records": records}))
     found = load_measurement(tmp_path / "m.yaml").records[1].findings
     assert any(one.kind == "fitted_twice" for one in found) == is_said
+
+
+@pytest.mark.parametrize(
+    ("roles", "kinds"),
+    [
+        (("fit", "holdout"), ["fitted_and_held_out"]),
+        (("holdout", "fit"), ["fitted_and_held_out"]),
+        (("holdout", "holdout"), []),  # nothing is fitted to them
+        (("fit", "fit"), ["fitted_twice"]),
+    ],
+)
+def test_a_copy_that_judges_what_was_fitted_to_it_is_said(tmp_path, roles, kinds):
+    records = []
+    for name, role in zip("ab", roles, strict=True):
+        values = np.random.default_rng(0).normal(size=400)  # two files of one run
+        (tmp_path / f"{name}.csv").write_text("x\n" + "\n".join(f"{value:.6f}" for value in values))
+        channels = {"sampling_rate": "100 Hz", "displacement": {"column": "x", "unit": "m"}}
+        records.append({"name": name, "file": f"{name}.csv", "role": role, "channels": channels})
+    (tmp_path / "m.yaml").write_text(yaml.safe_dump({"system": "oscillator", "records": records}))
+    found = [
+        one.kind
+        for record in load_measurement(tmp_path / "m.yaml").records
+        for one in record.findings
+        if one.kind.startswith("fitted_")
+    ]
+    assert found == kinds
