@@ -39,6 +39,9 @@ class Effect(Declared, ABC):
     cause: ClassVar[Cause | None] = None  # what `task=explain` tries and says of it; None: it is no candidate
     mean_free: ClassVar[tuple[str, ...]] = ()  # lists of which only the differences act: their mean is taken as 0
     radian: ClassVar[str] = ""  # parameter that is one radian in the unit of the response, where that is an angle
+    told_alone: ClassVar[str] = (
+        ""  # of what differs between records: the parameter of a system that is its size in each
+    )
     refinement: ClassVar[float] = 1.0  # of the steps, where the force bends too sharply for them; measured
 
     def __str__(self) -> str:

@@ -9,6 +9,7 @@ from gear_damping.explanation.model.hypothesis import Outcome, settled_at
 from gear_damping.explanation.model.nominal_gear_pair import SHAPE, shaped
 from gear_damping.explanation.model.parting_flanks import are_missed, flanks_part, stay_closed, with_parting_flanks
 from gear_damping.explanation.state import State
+from gear_damping.explanation.trials.levels_alone import levels_alone
 from gear_damping.explanation.trials.refit import Refit, again, compared
 from gear_damping.explanation.trials.score import Score, best_by_effect
 from gear_damping.identification.output_error.least_squares import NONE
@@ -197,7 +198,20 @@ def _best(fits: Sequence[Refit], state: State) -> Refit | None:
 
 def cause_of_records(state: State) -> State | None:
     """The state with a cause that differs from record to record, where nothing that is one for all is validated."""
-    best = next((fit for fit in state.rejected if fit.is_seen_in_fit and fit.differs), None)
+    best = next((fit for fit in state.rejected if fit.is_seen_in_fit and fit.differs), None) or _told_alone(state)
     if state.is_unpredictable or best is None or not state.is_validated(best):
         return None
     return state.accepting(best, ())
+
+
+def _told_alone(state: State) -> Refit | None:
+    """What differs between records that a model of its own follows one by one: no score of a mean one foresees it."""
+    bench = state.bench
+    for score in best_by_effect(state.ranked).values() if not state.accepted else ():
+        if levels_alone(score, state.outcome, bench.evidence, bench.solver) is None:
+            continue
+        fit = None if bench.budget.refuses(score.candidate.name) else bench.full_fit(score, state.outcome)
+        if fit is not None and fit.is_seen_in_fit:
+            bench.log(f"{fit.name}: each record is followed by a model of its own")
+            return fit
+    return None

@@ -13,6 +13,7 @@ from gear_damping.explanation.model.fitting import InitialValues, fit_hypothesis
 from gear_damping.explanation.model.hypothesis import Hypothesis, Outcome, time_scale
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.explanation.statistics.paired import paired_gain
+from gear_damping.explanation.trials.levels_alone import levels_alone
 from gear_damping.explanation.trials.score import Score, best_by_effect, collinearity
 from gear_damping.identification.output_error.least_squares import Ends, Rounds
 from gear_damping.identification.output_error.records import FitRecord
@@ -155,6 +156,9 @@ def refitted(
     rounds = Rounds((FIRST_ITERATIONS, LAST_ITERATIONS), (FIRST_PART * evidence.duration, None), kept)
     initial = InitialValues(_starts(score), outcome, score.own)
     found = fit_hypothesis(hypothesis, evidence, initial, rounds, ends, solver)
+    if (alone := levels_alone(score, outcome, evidence, solver)) is not None:
+        apart = fit_hypothesis(hypothesis, evidence, alone, rounds, ends, solver)
+        found = min(found, apart, key=lambda one: one.fitted.cost if one.is_finite else inf)
     gone, wanted = (max(outcome.fitted.cost - cost, 0.0) for cost in (found.fitted.cost, reach))
     if candidate.later and gone >= JOINS * wanted:
         found = with_later(found, candidate, evidence, solver, ends)

@@ -24,6 +24,7 @@ class StiffnessByRecord(ElasticForce):
     equation = "N + s z delta, with z of the record's own"
     reference = "random effects: Laird & Ware (1982), Biometrics 38(4)"
     needs: ClassVar = (Trait.REST,)
+    told_alone: ClassVar = "stiffness"
     parameters: ClassVar = (
         Parameter("spread", "N/m", 1e6, "s, standard deviation of the stiffness between records", 0, 1e14),
         Parameter("level", "1", 1.0, "z, of the record: by how many of them it is off the mean", -1e3, 1e3),
