@@ -5,18 +5,16 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
+from gear_damping.explanation.evidence.data_faults import FAINT, HARMONICS, STRONG
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.evidence.shaft import shaft_of
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.measurement.record import Finding
 from gear_damping.physics.systems.traits import Trait
 
-HARMONICS = 4  # of a comb, that stand for all of it: the higher ones are smaller
 FEWEST = 2  # of them that a sampling rate must hold, and that must stand out: one line may be the structure's
 NEAR, FAR = 0.01, 0.25  # of the stated speed: a nearer one is its uncertainty; farther, combs of other orders lie too
 FEWEST_TEETH = 50  # that pass in a record: of fewer, combs a hundredth apart are not told apart
-STRONG = 0.2  # share of a signal's variance that a comb must have to be the mesh
-FAINT = 0.1  # share of that comb's energy below which the stated one is absent
 OUT = 10.0  # times what is usual at other speeds: a harmonic that stands out
 WIDTH = 1.5  # lines of a spectrum on either side that a wave with a Hann window fills
 FINE = 4  # trial frequencies to the width of a line of the highest harmonic
@@ -31,11 +29,11 @@ def stated_speed_faults(evidence: Evidence) -> list[Finding]:
         return []
     told = [record for record in evidence.records if _is_stated(record)]
     counted = {record.name: _counted(record, evidence) for record in told}
-    kept = [name for name, one in counted.items() if one is not None and one[1] >= STRONG]
+    kept = [name for name, one in counted.items() if one is not None and one[0] >= STRONG]
     return [
-        _finding(record, one[2], evidence)
+        _finding(record, one[1], evidence)
         for record in told
-        if kept and (one := counted[record.name]) is not None and one[2] is not None
+        if kept and (one := counted[record.name]) is not None and one[1] is not None
     ]
 
 
@@ -45,8 +43,8 @@ def _is_stated(record: FitRecord) -> bool:
     return bool(record.conditions.get("pinion_speed")) and "pinion_angle" not in record.inputs and not changing
 
 
-def _counted(record: FitRecord, evidence: Evidence) -> tuple[float, float, float | None] | None:
-    """The stated mesh frequency in Hz, the share of its comb, and the factor by which another one stands elsewhere.
+def _counted(record: FitRecord, evidence: Evidence) -> tuple[float, float | None] | None:
+    """The share of the comb of the stated mesh, and the factor by which another one stands elsewhere.
 
     None of a record that is too short or too coarse; the factor is None where the stated comb is there, or none is.
     """
@@ -63,7 +61,7 @@ def _counted(record: FitRecord, evidence: Evidence) -> tuple[float, float, float
     own, at = float(shares[is_near].max()), int(np.where(is_near, 0.0, shares).argmax())
     is_comb = np.count_nonzero(combs[at] >= OUT * np.median(combs, 0)) >= FEWEST
     is_elsewhere = shares[at] >= STRONG and own <= FAINT * shares[at] and is_comb
-    return mesh, own, float(factors[at]) if is_elsewhere else None
+    return own, float(factors[at]) if is_elsewhere else None
 
 
 def _power(values: NDArray[np.float64]) -> NDArray[np.float64]:

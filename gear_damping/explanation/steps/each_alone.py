@@ -2,7 +2,8 @@
 
 from gear_damping.explanation.evidence.records import is_begun_anew
 from gear_damping.explanation.state import State
-from gear_damping.identification.oscillator.each_alone import each_alone, said_of_each
+from gear_damping.explanation.trials.levels_alone import alone_beside
+from gear_damping.identification.oscillator.each_alone import said_of_each
 from gear_damping.physics.systems.traits import Trait
 
 
@@ -15,10 +16,7 @@ def followed_one_by_one(state: State) -> str:
     evidence = state.bench.evidence
     if state.accepted or not is_begun_anew(evidence) or not evidence.has(Trait.REST):
         return ""
-    residuals = zip(evidence.fitted, state.nominal.fit_residuals, strict=True)
-    first = [(record.weight * one[: len(one) // len(record.channels)]) for record, one in residuals]
-    left = sum(float(one.square().sum()) for one in first)
-    alone = each_alone(evidence.fit, left, evidence.known, state.bench.solver)
+    alone = alone_beside(state.nominal, evidence, state.bench.solver)
     if not alone:
         return ""
     return (

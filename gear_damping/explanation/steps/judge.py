@@ -133,12 +133,8 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
         not is_visible(found.left) and after.misfit <= settings.small_misfit
     )
     further = (taken.sentence, *_not_told_apart(confused), *known.unsettled)
-    if known.stands_in:
-        return _not_established(found, before, known, known.stands_in)
-    if known.predicts_worse:
-        return _not_established(found, before, known, NO_BETTER)
-    if known.is_short and not before.significant:
-        return _not_established(found, before, known, TOO_SHORT)
+    if why := _is_none(before, known):
+        return _not_established(found, before, known, why)
     if taken.is_faint and taken.share < settings.least_share:
         return _not_established(found, before, known, NOT_LESS)
     if not explains_all and (why := _beside_a_rest(before, after, known)):
@@ -175,6 +171,13 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
         return Verdict(AMBIGUOUS, (named, *_one_class(classes), *further, *_small_residual(found, after)))
     same = _same_record(found.accepted)
     return Verdict(EXPLAINED, (f"{missing}: {said}.", *further, *same, *_small_residual(found, after)))
+
+
+def _is_none(before: Excess, known: Known) -> str:
+    """Why causes are none, whatever they take; empty where they may be some."""
+    if known.stands_in or known.predicts_worse:
+        return known.stands_in or NO_BETTER
+    return TOO_SHORT if known.is_short and not before.significant else ""
 
 
 def _beside_a_rest(before: Excess, after: Excess, known: Known) -> str:

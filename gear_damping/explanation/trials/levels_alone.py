@@ -28,10 +28,15 @@ def levels_alone(
     spring = evidence.base.spring
     if candidate.hypothesis.effects[-1].told_alone != spring:
         return None
+    alone = alone_beside(outcome, evidence, solver)
+    return _begun(alone, score, outcome, str(spring)) if alone else None
+
+
+def alone_beside(outcome: Outcome, evidence: Evidence, solver: Solver | None = None) -> tuple[Alone, ...]:
+    """What each record says by itself, where that is what a model for all of them misses."""
     pairs = zip(evidence.fitted, outcome.fit_residuals, strict=True)
     left = sum(_of_first_channel(record, residual) for record, residual in pairs)
-    alone = each_alone(evidence.fit, left, evidence.known, solver)
-    return _begun(alone, score, outcome, str(spring)) if alone else None
+    return each_alone(evidence.fit, left, evidence.known, solver)
 
 
 def _begun(alone: tuple[Alone, ...], score: Score, outcome: Outcome, spring: str) -> InitialValues:

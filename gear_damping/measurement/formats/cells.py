@@ -157,8 +157,9 @@ class CellTable(Table):
         self._bad: dict[int, tuple[list[str], list[int]]] = {}
         self._begins = {k: one.begins for k, one in enumerate(columns) if one.begins is not None}
 
-    def _named(self, column: str) -> list[int]:
-        return super()._named(column) or [k for k, one in enumerate(self._columns) if column.strip() in one.also]
+    def also(self, index: int) -> tuple[str, ...]:
+        """What further rows of the header say above a column."""
+        return self._columns[index].also
 
     def unit(self, index: int) -> str | None:
         """The unit in the header of a column, or None; of dates and clocks s."""

@@ -209,8 +209,8 @@ def _holds_rows(cell: Any, delimiter: str) -> bool:
 def _empty_rows(text: Text, first_line: int) -> str:
     """What is noted of rows without a value among the others; of one behind every other, as a printer does, nothing."""
     lines = text.utf8.rstrip(b'\n\r\t ;,|"').split(b"\n")[first_line:]
-    filled = [k for k, line in enumerate(lines) if line.strip(b' \t;,|"') and not _COMMENT.match(line)]
-    lines = lines[: filled[-1] + 1] if filled else []  # below the last values a comment may stand
+    while lines and (not lines[-1].strip(b' \t;,|"') or _COMMENT.match(lines[-1])):
+        lines.pop()  # below the last values a comment may stand
     empty = [k for k, line in enumerate(lines, first_line + 1) if not line.strip(b' \t;,|"')]
     return said_of_empty_rows(empty, len(lines))
 

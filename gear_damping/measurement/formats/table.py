@@ -59,6 +59,10 @@ class Table(ABC):
         """The unit that the file itself gives for a column, or None."""
         return None
 
+    def also(self, index: int) -> tuple[str, ...]:
+        """Other names by which a column may be asked for."""
+        return ()
+
     def clock(self, index: int) -> tuple[float, float] | None:
         """The time of a column's first sample in s and its rate in Hz, where the file gives them."""
         return None if self.sampling_rate is None else (0.0, self.sampling_rate)
@@ -107,7 +111,7 @@ class Table(ABC):
         for names, sought in ((self.names, column), (own, alike), (last, alike), (bare, alike), (before, alike)):
             if found := [index for index, name in enumerate(names) if name and name == sought]:
                 return found
-        return []
+        return [index for index in range(len(self.names)) if column.strip() in self.also(index)]
 
     def _absent(self, column: str, key: str) -> Problem:
         named = [name for name in self.names if name]
@@ -206,10 +210,9 @@ class ArrayTable(Table):
         if len(clocks) == 1 and None not in clocks:
             self.sampling_rate = held[0].clock[1]
 
-    def _named(self, column: str) -> list[int]:
-        """Those of the name, or of the other one of their array."""
-        named = super()._named(column)
-        return named or [k for k, (array, _) in enumerate(self._place) if column == self._held[array].also != ""]
+    def also(self, index: int) -> tuple[str, ...]:
+        """The other name of the column's array, where it has one."""
+        return tuple(filter(None, (self._held[self._place[index][0]].also,)))
 
     def values(self, index: int) -> NDArray[np.float64]:
         """(n,) float64: the column at a 0-based index; raises InputError where the file is damaged there."""
