@@ -106,8 +106,9 @@ class Assembler:
         if plan.name == "pinion_angle" or (turn and begins_again(values, turn)):
             values = unwrapped(values, turn, plan.name, notes)
         rounding = rounding_of(values) if record.plan.resample else 0.0
+        switches = plan.name in HOLDABLE and _switches(raw, record)
         if raw.own_time is None:
-            recorded, values = values, values if _switches(raw, record) else record.base.resample(values)
+            recorded, values = values, values if switches else record.base.resample(values)
             was = getattr(record.base, "recorded", None) or record.base
             findings += _lost(recorded, was, values, record.base, plan.name) if record.plan.resample else []
         else:
@@ -118,7 +119,7 @@ class Assembler:
             findings += [] if evenly is None else _lost(evenly, own, values, record.base, plan.name)
             done = "filtered and taken" if is_faster(own, record.base) else "interpolated"
             notes.append(f"{plan.name}: {done} from {own.sampling_rate:.6g} Hz to the record's time")
-        sensor = plan.sensor | ({"hold": self._held(raw, record, values, notes)} if plan.name in HOLDABLE else {})
+        sensor = plan.sensor | ({"hold": self._held(raw, record, switches, notes)} if plan.name in HOLDABLE else {})
         if plan.name in SHAFT_SPEEDS:
             sensor.pop("radius", None)  # the values are divided by it
         return Channel(
@@ -128,18 +129,17 @@ class Assembler:
     def _conversion(self, plan: ChannelPlan, unit: str, key: str, said: str = "") -> Conversion:
         return self.units.conversion(plan.name, unit, key, self.source, plan.shaft_radius, said)
 
-    def _held(self, raw: RawChannel, record: RawRecord, values: NDArray, notes: list[str]) -> bool:
+    def _held(self, raw: RawChannel, record: RawRecord, switches: bool, notes: list[str]) -> bool:
         """Whether an input stays at each value: as stated, or as it looks."""
-        stated, moved_to = raw.plan.sensor.get("hold"), record.plan.resample or raw.own_time
-        if stated and moved_to:
+        stated = raw.plan.sensor.get("hold")
+        if stated and _is_moved(raw, record):
             rule = "cannot be held where its samples are moved to other instants"
             remedy = "leave out hold; where each value of the file lasts one of its sampling intervals T, "
             remedy += "give a delay of -T/2"
             raise InputError(Problem(f"{raw.plan.key}.hold", rule, True, remedy, self.source))
-        if stated is not None or moved_to or not is_staircase(values):
-            return bool(stated)
-        notes.append(f"{raw.plan.name}: comes in steps, and stays at each value until the next (else hold: false)")
-        return True
+        if switches and stated is None:
+            notes.append(f"{raw.plan.name}: comes in steps, and stays at each value until the next (else hold: false)")
+        return switches
 
     def _from_encoders(
         self, raw: RawRecord, channels: dict[str, Channel], notes: list[str], findings: list[Finding]
@@ -248,11 +248,16 @@ class Assembler:
 
 
 def _switches(raw: RawChannel, record: RawRecord) -> bool:
-    """Whether an input jumps between values, at stamps that are nearly even: a spline would swing about each jump."""
+    """Whether an input jumps between values, as stated or as it looks: a spline would swing about each jump."""
     stated = raw.plan.sensor.get("hold")
-    if raw.plan.name not in HOLDABLE or record.plan.resample:
+    if _is_moved(raw, record):
         return False
     return is_staircase(raw.values) if stated is None else bool(stated)
+
+
+def _is_moved(raw: RawChannel, record: RawRecord) -> bool:
+    """Whether the samples of a channel are taken at other instants than they were recorded."""
+    return bool(record.plan.resample or raw.own_time)
 
 
 def _lost(

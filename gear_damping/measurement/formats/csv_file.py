@@ -217,10 +217,10 @@ def _empty_rows(text: Text, first_line: int) -> str:
 
 def _lone_rows(text: Text, first_line: int) -> int:
     """How many rows at its end the only empty lines of a table part from all others."""
-    lines = text.utf8.rstrip(b'\n\r\t ;,|"').split(b"\n")[first_line - 1 :]
-    is_filled = [bool(line.strip(b' \t;,|"')) for line in lines[-FEWEST_BEHIND:]]
-    if all(is_filled):
+    whole = text.utf8.rstrip(b'\n\r\t ;,|"')
+    if all(line.strip(b' \t;,|"') for line in whole.rsplit(b"\n", FEWEST_BEHIND)[-FEWEST_BEHIND:]):
         return 0
+    lines = whole.split(b"\n")[first_line - 1 :]
     told = [k for k, line in enumerate(lines) if line.strip(b' \t;,|"')]
     return sum(not _COMMENT.match(lines[k]) for k in told[len(told) - lone_rows(told) :])
 
