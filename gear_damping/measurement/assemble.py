@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.measurement.angular_error import GEOMETRY, NEEDED, base_radius, turn_in
+from gear_damping.measurement.angular_error import GEOMETRY, NEEDED, base_radius, is_angular_acceleration, turn_in
 from gear_damping.measurement.column_kinds import unit_at_end
 from gear_damping.measurement.cutting import is_faster, moved
 from gear_damping.measurement.declaration import ChannelPlan, Plan
@@ -384,9 +384,10 @@ def _unit_conflict(raw: RawChannel, conversion: Conversion) -> Finding | None:
         header, is_other = parse_unit(raw.header_unit.replace("kg", "kgf")), False  # as load cells say it
     if (header.dimension, header.factor) == (stated.dimension, stated.factor):
         return None
+    kept = "rad/s^2" if is_angular_acceleration(said) else conversion.unit
     message = (
         f"the header of column '{raw.plan.column}' says '{raw.header_unit}' and the YAML '{said}', "
-        f"which was used to read {raw.plan.name} in {conversion.unit}; correct the one that is wrong"
+        f"which was used to read {raw.plan.name} in {kept}; correct the one that is wrong"
     )
     if is_other:
         message += f", or write gain: what the column holds for one {said} (1 where its header names something else)"

@@ -248,7 +248,8 @@ def _bare(column: Column) -> str:
         return ""
     bare = re.sub(r"[(\[][^)\]]*[)\]]\s*$", "", column.reference).strip()
     bare = re.sub(rf"(^|\s)in\s+{re.escape(column.unit)}$", "", bare) if column.unit else bare
-    return bare.removesuffix(column.unit or "").rstrip(" /").lower() if "/" in bare else bare.lower()
+    is_behind = "/" in bare or "*" in bare
+    return bare.removesuffix(column.unit or "").rstrip(" /_").lower() if is_behind else bare.lower()
 
 
 def _plain(column: Column) -> str:

@@ -5,7 +5,7 @@ import pytest
 
 from gear_damping.errors import InputError
 from gear_damping.measurement.formats.registry import read_table
-from gear_damping.measurement.guessing import guessed
+from gear_damping.measurement.guessing import guessed, guesses
 from gear_damping.measurement.inspection import inspect_table
 
 SETTINGS = [
@@ -326,3 +326,35 @@ def test_a_unit_behind_in_is_that_of_its_column_and_no_name(tmp_path):
 @pytest.mark.parametrize("name", ["plug in", "built in 2019", "x in place", "turn-in A"])
 def test_an_in_before_no_unit_says_nothing(name, tmp_path):
     assert table_of(tmp_path, [f"t,{name}", *rows(60, 2, ",")]).unit(1) is None
+
+
+@pytest.mark.parametrize(
+    ("name", "unit"),
+    [
+        ("alpha2_rad/s^2", "rad/s^2"),
+        ("alpha2 rad/s^2", "rad/s^2"),
+        ("run1/acc_m/s2", "m/s2"),
+        ("omega_rad/s", "rad/s"),
+        ("alpha-°/s²", "°/s²"),
+        ("rad/s", "rad/s"),
+        ("n_1/min", "1/min"),
+        ("torque_N*m", "N*m"),
+        ("t/s", "s"),
+        ("v/m/s", "m/s"),
+        ("v_m/m/s", "m/s"),
+        ("a/(m/s^2)", "m/s^2"),
+        ("a_m/(m/s^2)", "m/s^2"),
+        ("F_t/N", "N"),
+        ("x_1/mm", "mm"),
+        ("t_1/s", "s"),
+    ],
+)
+def test_a_unit_of_several_factors_at_the_end_of_a_name_is_read_whole(tmp_path, name, unit):
+    table = table_of(tmp_path, [f"k;x;{name}", *rows(20)])
+    assert table.unit(2) == unit
+
+
+def test_what_a_column_is_is_seen_by_its_name_before_a_unit_of_several_factors(tmp_path):
+    lines = ["t_s;n1_rad/s;T1_N*m", *(f"{k / 1e3:.3f};{k % 7};{k % 5}" for k in range(60))]
+    found = guesses(inspect_table(table_of(tmp_path, lines)), "gear_pair")
+    assert [(guess.channel, guess.unit) for guess in found] == [("pinion_speed", "rad/s"), ("pinion_torque", "N*m")]

@@ -189,3 +189,13 @@ def test_an_angular_acceleration_needs_no_radius(bench, unit, factor, radius):
     channel["unit"] = "m/s^2"
     bench.channels["acceleration"] = channel
     assert "state the unit of an angular acceleration, unit: rad/s^2" in " ".join(bench.problems())
+
+
+@pytest.mark.parametrize(("header", "conflicts"), [("alpha_rad/s^2", False), ("alpha_deg/s^2", True)])
+def test_an_angular_acceleration_is_held_against_its_header_in_its_own_unit(bench, header, conflicts):
+    bench.columns[header] = 300 * np.cos(np.arange(400) / 7)
+    channel = {"column": header, "unit": "rad/s^2", "mounting": "tangential", "shaft": "gear"}
+    bench.channels["acceleration"] = channel
+    found = [one.message for one in bench.load().records[0].findings if one.kind == "unit_conflict"]
+    assert len(found) == conflicts
+    assert all("which was used to read acceleration in rad/s^2;" in message for message in found)

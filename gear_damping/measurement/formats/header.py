@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from gear_damping.errors import InputError
+from gear_damping.measurement.column_kinds import compound_at_end
 from gear_damping.measurement.formats.number_texts import is_absent, is_number, is_written
 from gear_damping.measurement.time_column import NAMED, is_time
 from gear_damping.units import multiple_of_a_unit, parse_unit, scaled_unit
@@ -209,7 +210,10 @@ def _are_numbered(row: Sequence[str], width: int) -> bool:
 
 
 def bracket_unit(name: str) -> str | None:
-    """What stands in brackets at the end of a name, or within it, behind its first stroke or `in` where that is one."""
+    """What stands in brackets at the end of a name, or within it, or at its end without any where that is a unit.
+
+    A unit of several factors (`acc_m/s^2`) goes before one behind a quantity's first stroke (`a/(m/s^2)`, `Weg/mm`).
+    """
     if _INDEX.search(name) or _ARGUMENT.match(name):
         return None
     for pattern in (_FACTOR_BEHIND, _FACTOR_BEFORE):
@@ -226,6 +230,8 @@ def bracket_unit(name: str) -> str | None:
         return units[0]
     if (said := _IN.search(name)) and _is_unit(said[1]):
         return said[1]
+    if compound := compound_at_end(name):
+        return compound
     behind = _SLASH.search(name.strip())
     return behind[1] if behind is not None and (_is_unit(behind[1]) or scaled_unit(behind[1])) else None
 
