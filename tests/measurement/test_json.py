@@ -74,6 +74,17 @@ def test_channels_without_names_go_by_their_numbers(tmp_path):
     assert (table.names, table.lengths, table.unit(1)) == (("channels[0]", "channels[1]"), (60, 60), "s")
 
 
+@pytest.mark.parametrize("runs", [1, 2])
+def test_long_lists_within_objects_of_a_list_are_columns_of_their_number(tmp_path, runs):
+    one = {"type": "drop", "targets": ["friction"], "actions": [*TIME[:-1], None], "sensor_data": WAVE}
+    table = _table(tmp_path, {"dataset": "real", "config": {"hz": 50, "limits": [-1, 1]}, "data": [one] * runs})
+    own = [f"data[{k}].{name}" for k in range(runs) for name in ("actions", "sensor_data")]
+    assert table.names == ("config.limits", *own)
+    for k in range(runs):
+        assert table.values(table.index(f"data[{k}].sensor_data", "column")).tolist() == WAVE
+    assert table.values(1).tolist()[:-1] == TIME[:-1]
+
+
 def test_short_vectors_in_rows_are_no_channels(tmp_path):
     rows = [{"t": t, "acc": [x, 0.0, 9.8]} for t, x in zip(TIME, WAVE, strict=True)]
     assert _table(tmp_path, rows).names == ("t", "acc[0]", "acc[1]", "acc[2]")

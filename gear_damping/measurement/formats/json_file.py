@@ -1,7 +1,8 @@
 """JSON as loggers, web services and pandas write it: columns by name, rows as objects or lists, one object a line.
 
 Channels in a list of objects, `{"name": "x", "unit": "mm", "data": [...]}`, go by their names. What lies deeper bears
-the path to it, `axle.x`, and rows of lists are columns `x[0]`, `x[1]`, as elsewhere.
+the path to it, `axle.x`, and rows of lists are columns `x[0]`, `x[1]`, as elsewhere; lists of objects with long lists
+in them are records, `data[0].x`.
 """
 
 import json
@@ -79,6 +80,9 @@ def _lists(name: str, value: Any, unit: str | None = None) -> Iterator[tuple[str
             yield own, channel[key], unit
             for other in (one for one in channel if one not in (key, *_UNITS) and not _NAME.match(one)):
                 yield from _lists(_below(own, other), channel[other])
+    elif _are_records(value):
+        for k, one in enumerate(value):
+            yield from _lists(f"{name}[{k}]", one)
     elif any(isinstance(one, dict) for one in value):
         rows = [one if isinstance(one, dict) else {} for one in value]
         for key in dict.fromkeys(key for row in rows for key in row):
@@ -107,6 +111,13 @@ def _own_names(value: list[Any]) -> dict[str, tuple[dict[str, Any], str]] | None
             return None
         found[named[0]] = one, keys[0]
     return found or None
+
+
+def _are_records(value: list[Any]) -> bool:
+    """Whether a list is one of objects that hold records: a list of numbers with more of them than there are objects."""
+    lists = [one for row in value if isinstance(row, dict) for one in row.values() if isinstance(one, list)]
+    long = [one for one in lists if len(one) > len(value) and all(isinstance(x, int | float | None) for x in one)]
+    return bool(long) and all(isinstance(row, dict) for row in value)
 
 
 def _of_object(name: str, value: dict[str, Any]) -> Iterator[tuple[str, Sequence[Any], str | None]]:
