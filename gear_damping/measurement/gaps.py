@@ -4,7 +4,8 @@ Samples that a logger lost are no fault of those that it kept: where their stamp
 stamps. That asks two things of a gap. It must be whole steps of the clock, which a clock that jumps seldom makes; and
 what was lost must follow from its neighbours, so that the motion within the gap is known, and inputs can be put across
 it. How well it follows is tried where nothing was lost: a hole as long is filled by a cubic spline through the samples
-beside it.
+beside it. Where more than a few were lost, the holes must be of a sample or two each, as rows that somebody took out,
+and the values must have moved over them as long as the stamps say.
 
 A clock that jumps by part of a step and a recorder that paused look alike in the stamps; the values tell them apart.
 Where every step is another one, a program asked for the samples one by one and wrote down when: a long step is one
@@ -27,7 +28,9 @@ _NEARER = 0.65  # of the way from a clock's jump to a pause
 _ERRORS = 4.0  # standard errors that it must be beyond that by
 _FOLLOWS = 0.1  # of a channel's standard deviation: what a spline may miss of what was lost
 _NO_WORSE = 1.5  # times what it misses of a single sample: what is missed is noise then, and would be without a gap
-_MOST_LOST = 0.02  # of the samples; beyond, another clock is as likely
+_MOST_LOST = 0.02  # of the samples; beyond, another clock is as likely where the values do not tell
+_MOST_SINGLE, _SINGLE = 0.1, 2  # of the samples in single holes, that a record may lack; samples in such a hole
+_HALF_WAY, _TWICE = 0.5, 2.0  # share of a hole of one that a jump moves values over; standard errors to be beyond it by
 _FEWEST_HOLES = 20  # that can be tried in a record
 _SUM = 16  # steps over which stamps wander, or do not: a few beside a record, and many beside one
 _POLLED = 0.05  # of a step, by which steps scatter: the clock of a recorder keeps to a thousandth
@@ -47,7 +50,7 @@ def _losses(record: Record) -> Record:
     if not lost:
         return record
     missing = np.diff(counted(record.time)) - 1
-    if missing.sum() > _MOST_LOST * len(record.time):
+    if missing.sum() > _MOST_LOST * len(record.time) and not _are_single(record, missing):
         return record
     if not _all_follow(record, int(missing.max())):
         return record
@@ -56,6 +59,19 @@ def _losses(record: Record) -> Record:
         replace(f, message=f"{f.message.partition(';')[0]}, {said}", severity="note") if f in lost else f
         for f in record.findings
     ))  # fmt: skip
+
+
+def _are_single(record: Record, missing: NDArray[np.float64]) -> bool:
+    """Whether holes are of a sample or two, a tenth of all at most, and values moved over them as long as stamps say.
+
+    Args:
+        record: With its stamps.
+        missing: (n - 1,) samples that every step lacks.
+    """
+    if missing.max() > _SINGLE or missing.sum() > _MOST_SINGLE * len(record.time):
+        return False
+    shares = [share_over_gaps(channel.values, record.time) for channel in record.channels.values()]
+    return any(abs(share - 1) + _TWICE * error < _HALF_WAY for share, error in shares)
 
 
 def _polled(record: Record) -> Record:

@@ -26,6 +26,7 @@ EXACT = 1e-4  # of the last digit; how near a whole number of it stamps must be
 _WHOLE = 0.05  # of a gap; how near a whole number of steps it must be, beside what the jitter allows
 _LAST_SECOND, _MINUTE = 59, 60  # s, of a clock HHMMSS before it shows the next minute
 _LISTED = 5  # gaps that a message lists
+_DIGITS = (6, 15)  # that a time is told with: as numbers are elsewhere, and as many as a number in memory has
 _RUN = 0.8  # share of gaps behind a gap from which they are a lower rate, not losses
 _MANY = 0.1  # share of the steps; so many are no jumps but another rate, or none
 _LOOSE = 0.2  # of a step; all that jitter may add to that
@@ -135,13 +136,19 @@ def _dropped(lost: NDArray, stamps: NDArray, gaps: NDArray, first: int) -> Findi
         )
     else:
         rows = ", ".join(str(gap + 1 + first) for gap in gaps[:_LISTED].tolist())
-        times = ", ".join(f"{time:.6g}" for time in behind[:_LISTED].tolist())
+        digits = _digits_for(float(behind[0]), float(np.median(np.diff(stamps))))
+        times = ", ".join(f"{time:.{digits}g}" for time in behind[:_LISTED].tolist())
         more = " and others" if gaps.size > _LISTED else ""
         message = (
             f"about {lost.sum():.12g} sample(s) were dropped in {gaps.size} gap(s), before row(s) {rows} of the file "
             f"(at {times} s){more}; use slices or windows between the gaps"
         )
     return Finding(LOST, message, channel="time", sample=int(gaps[0]) + 1)
+
+
+def _digits_for(time: float, step: float) -> int:
+    """The digits by which a time in s is told from the one a step before it; those of a usual number at least."""
+    return int(np.clip(np.ceil(np.log10(max(abs(time), step) / step)) + 1, *_DIGITS))
 
 
 def _are_clocks(before: NDArray, behind: NDArray) -> bool:

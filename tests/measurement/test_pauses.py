@@ -175,3 +175,29 @@ def test_a_stamp_out_of_order_is_no_recording(tmp_path):
     stamps[200] -= 30 * STEP
     with pytest.raises(InputError, match="1 backward time stamp"):
         loaded(tmp_path, stamps, values)
+
+
+@pytest.mark.parametrize("jumps", [False, True])
+def test_many_single_lost_samples_count_where_the_values_moved_as_long_as_the_stamps_say(jumps, tmp_path):
+    """A row a second is taken out of a slow decay at 20 Hz, ms since 1970; a clock that jumps says the same stamps."""
+    even = np.arange(200)
+    stamps = np.delete(even, np.arange(14, 200, 19)) / 20
+    decay = np.exp(-0.4 * (even[: stamps.size] / 20 if jumps else stamps))
+    values = decay + 1e-3 * np.random.default_rng(6).normal(size=stamps.size)
+    np.savetxt(tmp_path / "a.csv", np.column_stack([1544018294436 + 1000 * stamps, values]), "%.9f", ",")
+    channels = "{time: {column: 0, unit: ms}, velocity: {column: 1, unit: rad/s}}"
+    text = f"system: oscillator\nrecords:\n- file: a.csv\n  channels: {channels}\n"
+    (tmp_path / "measurement.yaml").write_text(text)
+    (record,) = load_measurement(tmp_path / "measurement.yaml").records
+    (finding,) = [one for one in record.findings if one.channel == "time"]
+    assert (finding.kind, finding.severity) == ("dropped_samples", "data_problem" if jumps else "note")
+    assert "(at 1544018295.19, 1544018296.14, 1544018297.09," in finding.message
+
+
+def test_many_single_lost_samples_of_noise_alone_stay_a_fault(tmp_path):
+    random = np.random.default_rng(3)
+    stamps = kept(np.arange(14, 3000, 19), 0.7)[0]
+    values = random.normal(size=stamps.size)
+    stamps = stamps + 1e-4 * random.normal(size=stamps.size)
+    (finding,) = [one for one in loaded(tmp_path, stamps, values).findings if one.channel == "time"]
+    assert finding.severity == "data_problem"

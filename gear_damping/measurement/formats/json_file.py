@@ -114,7 +114,7 @@ def _own_names(value: list[Any]) -> dict[str, tuple[dict[str, Any], str]] | None
 
 
 def _are_records(value: list[Any]) -> bool:
-    """Whether a list is one of objects that hold records: a list of numbers with more of them than there are objects."""
+    """Whether a list is one of objects that hold records: lists of more numbers than there are objects."""
     lists = [one for row in value if isinstance(row, dict) for one in row.values() if isinstance(one, list)]
     long = [one for one in lists if len(one) > len(value) and all(isinstance(x, int | float | None) for x in one)]
     return bool(long) and all(isinstance(row, dict) for row in value)
