@@ -80,10 +80,10 @@ def steady_time(rate: float, first: int, n: int, start: float = 0.0) -> TimeBase
 def stamped_time(stamps: NDArray[np.float64], key: str, source: str, first: int = 0) -> TimeBase:
     """The time base that stamps give.
 
-    Stamps on a grid stay; stamps within a hundredth of a step of one are moved there by a spline; stamps that were
-    rounded to few digits are replaced by the grid that they round; stamps that jitter are kept, and their samples
-    are fitted where they were taken (`uniform` is False, with a note), and so are those of a changing rate. Lost
-    samples and a clock that jumps are data problems.
+    Stamps on a grid stay; stamps that were rounded are replaced by the grid that they round; others within a hundredth
+    of a step of one are moved there by a spline; stamps that jitter are kept, and their samples are fitted where they
+    were taken (`uniform` is False, with a note), and so are those of a changing rate. Lost samples and a clock that
+    jumps are data problems.
 
     Args:
         stamps: (n,) in s, n >= 2.
@@ -107,11 +107,11 @@ def stamped_time(stamps: NDArray[np.float64], key: str, source: str, first: int 
     away = float(np.max(np.abs(stamps - grid))) * rate
     if away <= GRID_TOLERANCE:
         return TimeBase(stamps, rate)
-    if away <= SPLINE_TOLERANCE:
+    written = None if _is_grid_with_holes(stamps) else written_in(stamps)
+    if away <= SPLINE_TOLERANCE and written is None:
         variation = 100 * float(np.max(np.abs(np.diff(stamps) * rate - 1)))
         note = f"time steps vary by up to {variation:.2g} %: resampled to a uniform grid at {rate:.6g} Hz"
         return TimeBase(grid, rate, stamps=stamps, notes=(note,))
-    written = None if _is_grid_with_holes(stamps) else written_in(stamps)
     if written is not None:
         note = f"time stamps are rounded to {written.digit:.3g} s: taken as an even {written.rate:.6g} Hz"
         return TimeBase(written.start + np.arange(stamps.size) / written.rate, written.rate, notes=(note,))

@@ -180,6 +180,17 @@ def test_stamps_of_few_digits_are_an_even_grid(bench, rate, places, start):
     assert any("rounded" in note for note in record.notes)
 
 
+@pytest.mark.parametrize(("rate", "places"), [(6000.0, 6), (12800.0, 7), (1500.0, 5)])
+def test_stamps_that_rounding_hardly_moves_are_the_even_grid_too_and_jitter_of_as_much_is_none(rate, places, rng):
+    even = np.arange(20000) / rate
+    base = stamped_time(np.round(even, places), "t", "a.csv")
+    assert base.stamps is None
+    assert base.sampling_rate == rate
+    np.testing.assert_allclose(base.time, even, rtol=0, atol=1e-6 / rate)
+    jittered = stamped_time(np.round(even + 0.004 * rng.uniform(-1, 1, 20000) / rate, places + 3), "t", "a.csv")
+    assert jittered.stamps is not None
+
+
 def test_stamps_that_are_moved_to_a_grid_are_moved_without_harm(bench, rng):
     even = np.arange(2000) / RATE
     stamps = even + 0.004 * rng.uniform(-1, 1, 2000) / RATE
