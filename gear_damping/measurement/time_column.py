@@ -81,7 +81,7 @@ def find_stamps(columns: Sequence[_Column], untimed: bool = False) -> Stamps | N
         columns: Those of the file.
         untimed: Whether nothing else says the time, so that a first one of any name that rises evenly may be it.
     """
-    for by in (_by_unit, _by_name, _by_steps, _by_ramp):
+    for by in (_by_unit, _by_name, _by_steps, _by_ramp, _by_epoch):
         for index, column in enumerate(columns):
             says = by(index, column) if column.inside.size >= FEWEST_STAMPS else ""
             if says:
@@ -198,6 +198,16 @@ def _by_ramp(index: int, column: _Column) -> str:
     return "advances evenly, and its name begins with t" if named and _is_even(column) else ""
 
 
+def _by_epoch(index: int, column: _Column) -> str:
+    """A column that advances from 2000 on, as counted from 1970; a few stamps that go back are said of its time."""
+    name, values = _bare(column.reference), column.inside
+    if column.unit is not None or any(words.search(name) for words in (ANGLE, MOTION, _NO_TIME)):
+        return ""
+    unit = _unit_from_1970(float(values.min()), float(np.median(np.diff(values))))
+    is_kept = unit is not None and unit == _unit_from_1970(float(values.max()), 0.0)
+    return f"advances and lies where {unit} since 1970 do" if is_kept and _advances(column) else ""
+
+
 def _rises(column: _Column) -> bool:
     """Whether it rises from row to row in nearly even steps, as the stamps of a camera; counts may be of a shaft."""
     name, values = _bare(column.reference), column.inside
@@ -275,6 +285,12 @@ def is_time(unit: str | None) -> bool:
     return is_of_kind(unit, "s")
 
 
+def _unit_from_1970(stamp: float, step: float) -> str | None:
+    """The unit in which a stamp since 2000 counts from 1970, where a usual step is one of a vibration; else None."""
+    found = (unit for low, high, unit in _EPOCHS if low < stamp < high and to_si(step, unit, "s") < _SLOWEST)
+    return next(found, None)
+
+
 def _unit(column: _Column) -> tuple[str, str]:
     """The unit of the stamps, and why where the file does not say it."""
     if is_time(column.unit):
@@ -286,9 +302,8 @@ def _unit(column: _Column) -> tuple[str, str]:
         if word in name:
             return unit, "from its name"
     first, step = float(column.inside[0]), float(np.median(np.diff(column.inside)))
-    for low, high, unit in _EPOCHS:
-        if low < first < high and to_si(step, unit, "s") < _SLOWEST:
-            return unit, "counted from 1970"
+    if unit := _unit_from_1970(first, step):
+        return unit, "counted from 1970"
     if _are_days(column.inside, _DAYLONG):
         return "day", "counted from 1900 or the year 0"
     if any(low < first < high for low, high in _TICKS):

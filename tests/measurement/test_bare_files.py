@@ -168,3 +168,26 @@ def test_a_steady_shaft_beside_stamps_is_no_other_clock(tmp_path):
     found = _logged(tmp_path, 5 * np.arange(400), 3 * np.arange(400), np.round(900 * np.sin(np.arange(400) / 9)))
     assert found.time.index == 0
     assert [one.kind for one in found.columns[1:]] == [COUNTER, SIGNAL]
+
+
+@pytest.mark.parametrize(("unit", "one"), [("s", 1.0), ("ms", 1e-3), ("us", 1e-6)])
+@pytest.mark.parametrize("backward", [0, 1, 3])
+def test_a_column_that_counts_from_1970_is_the_clock_though_some_stamps_go_back(tmp_path, unit, one, backward):
+    stamps = 1544018294.436 + np.arange(400) / 20 + RNG(1).uniform(-2e-3, 2e-3, 400)
+    stamps[[90, 200, 310][:backward]] -= 0.095
+    values = np.column_stack([np.exp(-np.arange(400) / 90), np.round(stamps / one, 3 if unit == "s" else 0)])
+    np.savetxt(tmp_path / "run.csv", values, "%.17g", ";")
+    found = inspect_table(read_table(tmp_path / "run.csv"))
+    assert (found.time.index, found.time.unit) == (1, unit)
+    assert found.rate == pytest.approx(20, rel=2e-3)
+    assert [fault.partition(",")[0] for fault in found.faults] == [f"{backward} backward time stamp(s)"] * (
+        backward > 0
+    )
+
+
+@pytest.mark.parametrize(("name", "first"), [("n", 1.5e7), ("n", 1.5e11), ("angle", 1.544e12)])
+def test_other_large_numbers_that_advance_are_no_clock(tmp_path, name, first):
+    steps = 50 + np.round(9 * np.sin(np.arange(N) / 70))
+    found = inspected(tmp_path, x=np.sin(9 * T), **{name: first + np.cumsum(steps)})
+    assert found.time is None
+    assert column(found, name).kind == COUNTER
