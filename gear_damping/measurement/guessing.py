@@ -22,7 +22,7 @@ from gear_damping.measurement.column_kinds import (
 from gear_damping.measurement.files import UNKNOWN
 from gear_damping.measurement.formats.table import Table
 from gear_damping.measurement.inspection import Column, Inspection, clock_of, inspect_table, of_columns
-from gear_damping.measurement.staircase import is_staircase
+from gear_damping.measurement.staircase import is_staircase, rests_between_jumps
 from gear_damping.measurement.vocabulary import INPUTS
 from gear_damping.units import parse_unit
 
@@ -194,7 +194,7 @@ def _without_references(named: list[tuple[Column, str | None, str]]) -> list[tup
 
 
 def _completed(named: list[tuple[Column, str | None, str]]) -> list[tuple[Column, str | None, str]]:
-    """The same where names say too little: the slower column answers, the faster one drives it."""
+    """The same where names say too little: what rests but for jumps drives, else the faster one; the other answers."""
     channels = {channel for _, channel, _ in named}
     if channels & {"displacement", "velocity", "acceleration"}:
         return named
@@ -203,10 +203,30 @@ def _completed(named: list[tuple[Column, str | None, str]]) -> list[tuple[Column
     free.sort(key=lambda column: column.spectrum.centroid)  # an input by its name that nothing answers is the answer
     if not free:
         return named
-    chosen = {id(free[0]): ("displacement", "the slowest column; what it is, only you know")}
-    if "force" not in channels and len(free) == 2 and free[1].spectrum.centroid > _HIGHER * free[0].spectrum.centroid:
-        chosen[id(free[1])] = ("force", f"its content lies higher than that of '{free[0].reference}': an input?")
+    resting = [column for column in free if rests_between_jumps(column.inside)]
+    if len(resting) == 1 and len(free) == 2:
+        answer = next(column for column in free if column is not resting[0])
+        chosen = _driven(answer, resting[0], "force" in channels)
+    else:
+        chosen = {id(free[0]): ("displacement", "the slowest column; what it is, only you know")}
+        lies_higher = len(free) == 2 and free[1].spectrum.centroid > _HIGHER * free[0].spectrum.centroid
+        if "force" not in channels and lies_higher:
+            chosen[id(free[1])] = ("force", f"its content lies higher than that of '{free[0].reference}': an input?")
     return [(column, *chosen.get(id(column), (channel, why))) for column, channel, why in named]
+
+
+def _driven(answer: Column, drives: Column, is_known: bool) -> dict[int, tuple[str, str]]:
+    """What two columns are of which one moves on where the other rests, by their identity.
+
+    Args:
+        answer: The one that moves on.
+        drives: The one that rests.
+        is_known: Whether another column is the input by its name.
+    """
+    chosen = {id(answer): ("displacement", f"moves on where '{drives.reference}' rests; what it is, only you know")}
+    if not is_known:
+        chosen[id(drives)] = ("force", f"rests but for jumps where '{answer.reference}' moves on: an input?")
+    return chosen
 
 
 def _gear_channel(column: Column) -> tuple[str | None, str]:

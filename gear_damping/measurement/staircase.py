@@ -7,6 +7,7 @@ LEVELS = 2  # a series that knows no more of them switches
 LEAST_RUN = 2  # samples for which it stands still, in the median
 FEW_LEVELS, LONG_RUN = 8, 10  # three bits, which no converter has so few of; samples for which such a command stands
 SKIP, SHORT_RUN = 2, 5  # levels in the median change, and samples before it: what is read goes no ten times as fast
+_JUMPS, _SELDOM, _RESTS = 0.1, 0.02, 0.2  # of the range; of the samples; of the range, that is left without the jumps
 JUMP = 3.0  # least steps of the values in the median change: a coarse converter follows what it reads by single ones
 
 
@@ -28,3 +29,13 @@ def is_staircase(values: NDArray[np.float64]) -> bool:
     if usual >= SHORT_RUN and np.median(places[places > 0]) >= SKIP:
         return True
     return bool(usual >= LEAST_RUN and np.median(moved) >= JUMP * np.diff(levels).min())
+
+
+def rests_between_jumps(values: NDArray[np.float64]) -> bool:
+    """Whether a series (time,) changes in a few jumps and hardly between them, as a pulse or a step that is put in."""
+    steps, span = np.diff(values), np.ptp(values)
+    is_jump = np.abs(steps) > _JUMPS * span
+    if not 0 < is_jump.sum() <= max(LEVELS, _SELDOM * steps.size):
+        return False
+    between = np.cumsum(np.where(is_jump, 0.0, steps))
+    return bool(np.ptp(between) < _RESTS * span)

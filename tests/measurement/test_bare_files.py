@@ -191,3 +191,24 @@ def test_other_large_numbers_that_advance_are_no_clock(tmp_path, name, first):
     found = inspected(tmp_path, x=np.sin(9 * T), **{name: first + np.cumsum(steps)})
     assert found.time is None
     assert column(found, name).kind == COUNTER
+
+
+@pytest.mark.parametrize("kind", ["pulse", "step", "blow"])
+@pytest.mark.parametrize("noise", [0.0, 0.003])
+def test_what_rests_while_another_column_rings_drives_it(tmp_path, kind, noise):
+    put_in = {"pulse": 5.0 * (np.arange(N) == 40), "step": 5.0 * (np.arange(N) > 40)}
+    put_in["blow"] = 5.0 * np.clip(np.sin((np.arange(N) - 40) / 3), 0, None) * (np.abs(np.arange(N) - 44) < 6)
+    late = np.clip(np.arange(N) - 40, 0, None)
+    rings = np.exp(-late / 900) * np.sin(late / 9)
+    noisy = {name: values + noise * RNG(2).normal(size=N) for name, values in (("V_S", put_in[kind]), ("V_C", rings))}
+    guess = {one.column.reference: one for one in guesses(inspected(tmp_path, time=T, **noisy), "oscillator")}
+    assert (guess["V_S"].channel, guess["V_C"].channel) == ("force", "displacement")
+    assert guess["V_S"].why == "rests but for jumps where 'V_C' moves on: an input?"
+
+
+def test_of_two_columns_that_both_move_on_the_faster_one_may_drive(tmp_path):
+    found = inspected(tmp_path, time=T, a1=np.sin(9 * T), b1=np.sin(60 * T))
+    assert {one.column.reference: one.channel for one in guesses(found, "oscillator")} == {
+        "a1": "displacement",
+        "b1": "force",
+    }
