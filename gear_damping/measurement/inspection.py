@@ -179,10 +179,15 @@ def _by_own_clock(found: Inspection, column: Column) -> Column:
 def _refuse_lying(table: Table) -> None:
     """Refuse a table with a row for each channel, whose columns are its samples."""
     rows, columns = max(table.lengths, default=0), len(table.names)
-    if isinstance(table, ArrayTable) or not 0 < rows < LEAST_SAMPLES or columns < _LYING * rows:
+    if isinstance(table, ArrayTable) or not 0 < rows <= columns / _LYING:
         return
     rule = f"{columns} columns and {rows} row{'s' * (rows > 1)} of numbers, perhaps a row for each channel"
-    raise InputError(Problem("file", rule, str(table.path), "write a column for each channel, a line for each sample"))
+    remedy = (
+        "write a column for each channel, a line for each sample: turn the table with 'transpose' of a spreadsheet, or "
+        f"in Python with pandas.read_csv('{table.path.name}', header=None, sep=None, engine='python')"
+        ".T.to_csv('turned.csv', header=False, index=False)"
+    )
+    raise InputError(Problem("file", rule, str(table.path), remedy))
 
 
 def _refuse_spectrum(table: Table, columns: Sequence[Column]) -> None:

@@ -32,7 +32,8 @@ from gear_damping.tasks.run_folder import EDITED, RunFolder
 
 YAML_NAME, TEXT_NAME, FIGURE_NAME = EDITED["inspect"], "inspection.txt", "inspection.png"
 JSON_NAME = "inspection.json"  # what the report is made of
-LISTED = 20  # of what a file holds besides real numbers
+LISTED = 20  # of what a file holds besides real numbers, and of its columns where they are many
+MOST_COLUMNS = 100  # that are listed one by one: what has more hides what is said of the file
 LEVELS = 4  # between which a command switches: fewer than a converter has that rounds a motion
 ROUNDED = 1e-9  # of the range: less is what a difference of large angles or a sum of many values is rounded by
 log = logging.getLogger("gear_damping").info
@@ -136,11 +137,15 @@ def _time(found: Inspection) -> str:
 
 
 def _column_lines(found: Inspection, listed: Sequence[Guess]) -> Iterator[str]:
-    for column, shape, guess in _told(found, listed):
+    told = list(_told(found, listed))
+    shown = told if len(told) <= MOST_COLUMNS else told[:LISTED]
+    for column, shape, guess in shown:
         yield f"column {_name(column, found)} ({shape}), {_unit(column, guess)}: {column.kind}"
         yield from (f"    {line}" for line in _looks(column, found) if line)
         if guess is not None and guess.channel:
             yield f"    may be {guess.channel}: {guess.why}"
+    if len(shown) < len(told):
+        yield f"and {len(told) - len(shown)} columns more, which {JSON_NAME} lists"
 
 
 def _name(column: Column, found: Inspection) -> str:

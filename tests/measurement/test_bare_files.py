@@ -9,7 +9,7 @@ from gear_damping.measurement.guessing import guessed, guesses
 from gear_damping.measurement.inspection import inspect_table
 from gear_damping.measurement.load import load_measurement
 from gear_damping.measurement.starting_yaml import starting_yaml
-from gear_damping.tasks.inspect import _panels
+from gear_damping.tasks.inspect import _column_lines, _panels
 from tests.measurement.bare import column, inspected
 
 N = 6000
@@ -212,3 +212,12 @@ def test_of_two_columns_that_both_move_on_the_faster_one_may_drive(tmp_path):
         "a1": "displacement",
         "b1": "force",
     }
+
+
+@pytest.mark.parametrize(("columns", "shown"), [(100, 100), (150, 20)])
+def test_of_very_many_columns_the_first_ones_are_listed(tmp_path, columns, shown):
+    values = RNG(0).normal(size=(60, columns))
+    found = inspected(tmp_path, **{f"c{k}": values[:, k] for k in range(columns)})
+    lines = list(_column_lines(found, []))
+    assert sum(line.startswith("column ") for line in lines) == shown
+    assert (f"and {columns - shown} columns more, which inspection.json lists" in lines) is (columns > shown)

@@ -306,6 +306,19 @@ def test_a_table_that_lies_on_its_side_is_refused_in_one_sentence(tmp_path):
         inspect_table(table)
 
 
+@pytest.mark.parametrize("names", ["", "a"])
+@pytest.mark.parametrize("channels", [8, 40])
+def test_a_table_of_many_channels_that_lies_on_its_side_is_refused_with_how_to_turn_it(tmp_path, names, channels):
+    values = np.random.default_rng(0).normal(size=(channels, 2000))
+    begin = [f"{names}{k}," if names else "" for k in range(channels)]
+    table = table_of(
+        tmp_path, [word + ",".join(f"{x:.4g}" for x in row) for word, row in zip(begin, values, strict=True)]
+    )
+    with pytest.raises(InputError, match=f"columns and {channels} rows of numbers, perhaps a row for each") as raised:
+        inspect_table(table)
+    assert "pandas.read_csv('run.csv', header=None, sep=None, engine='python').T.to_csv(" in str(raised.value)
+
+
 @pytest.mark.parametrize(("name", "is_told"), [("Channel A", False), ("CH B", False), ("Probe A", False), ("a", True)])
 def test_the_letter_of_an_oscilloscopes_channel_names_no_quantity(tmp_path, name, is_told):
     lines = [f"{k / 200:.4f};{np.exp(-k / 200) * np.sin(k / 5):.5f}" for k in range(600)]
