@@ -278,7 +278,10 @@ def _inputs_of_all(file: layout.AnyFile, records: Numbered) -> Found:
 
 
 def _force_that_tells(file: layout.AnyFile, records: Numbered) -> Found:
-    """One constant force in all records shifts the place of rest, which is not known without it either."""
+    """One constant force in all records shifts the place of rest, which is not known without it either.
+
+    On what has no spring it is left out with a note once the records are read, where its gain is not stated either.
+    """
     unmeasured = [record for _, record in records if "force" not in given(record.channels)]
     forces = [given(record.conditions).get("force") for record in unmeasured]
     if not records or len(forces) < len(records) or None in forces:
@@ -287,6 +290,8 @@ def _force_that_tells(file: layout.AnyFile, records: Numbered) -> Found:
         rule = "a force that is the same in every record shifts the place of rest, and tells nothing more"
         stiffness = getattr(file.parameters, "stiffness", None)
         if stiffness is not None and stiffness.value == 0:
+            if getattr(file.parameters, "force_gain", None) is None:
+                return
             rule = "a constant force on what has no spring is fitted by itself, and its size tells nothing more"
         yield Problem(f"records[{records[0][0]}].conditions.force", rule, forces[0].value, "leave it out")
 

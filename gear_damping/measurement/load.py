@@ -149,7 +149,7 @@ def _loaded(content: object, path: Path, max_bytes: int | None, plugins: Sequenc
     parameters = {**plan.parameters, **own}
     _refuse_unseen_spring(parameters.get("stiffness"), records, source)
     _refuse_longer_than_records(plan, records, source)
-    kept, own_system = _compared(_free(records)), systems.get(plan.system)
+    kept, own_system = _compared(_free(_of_one_force(records, parameters.get("stiffness")))), systems.get(plan.system)
     found = Measurement(plan.system, parameters, kept, path.resolve(), plan.segment_s, own_system)
     return replace(found, records=with_what_is_fitted_twice(kept, found.base.responses))
 
@@ -243,6 +243,25 @@ def _free(records: list[Record]) -> list[Record]:
     if any(force is None or force.value for force in forces):
         return records
     return [replace(r, conditions={n: q for n, q in r.conditions.items() if n != "force"}) for r in records]
+
+
+def _of_one_force(records: list[Record], stiffness: Quantity | None) -> list[Record]:
+    """The records without a constant force that is one in all of them, where no spring is: the fit has its own."""
+    forces = [record.conditions.get("force") for record in records]
+    if stiffness is None or stiffness.value or None in forces:
+        return records
+    if len({force.value for force in forces}) > 1 or not forces[0].value:
+        return records
+    message = (
+        f"the force of {written(forces[0])} under conditions is left out: a constant force on what has no spring is "
+        "fitted by itself, and its size tells nothing more"
+    )
+    note = Finding("constant_force", message, channel="force", severity="note")
+    left = [{name: held for name, held in r.conditions.items() if name != "force"} for r in records]
+    return [
+        replace(record, conditions=conditions, findings=(*record.findings, replace(note, record=record.name)))
+        for record, conditions in zip(records, left, strict=True)
+    ]
 
 
 def _compared(records: list[Record]) -> tuple[Record, ...]:

@@ -167,4 +167,8 @@ class OscillatorConditions(Declared):
     """What was constant in a record of an oscillator."""
 
     title: ClassVar[str] = "an oscillator"
-    force: Annotated[Quantity, Measured(None, "any")] = key("Constant force, beside records with another.", "load")
+    force: Annotated[Quantity, Measured(None, "any")] = key(
+        "Constant force, beside records with another. The same in all it tells nothing: it is left out with a note "
+        "where there is no spring, and refused elsewhere.",
+        "load",
+    )

@@ -95,6 +95,21 @@ def test_what_tells_nothing_of_an_oscillator_is_refused(load, records, more, key
     assert [problem.key for problem in refused.value.problems] == [key]
 
 
+def test_a_constant_force_on_what_has_no_spring_is_left_out_with_a_note(load):
+    pushed = {"channels": TIME | MOTION, "conditions": {"force": {"value": 12, "unit": "V"}}}
+    no_spring = {"stiffness": {"value": 0, "unit": "1/s^2"}}
+    for record in load("oscillator", pushed, pushed, parameters=no_spring).records:
+        assert record.conditions == {}
+        (note,) = [finding for finding in record.findings if finding.kind == "constant_force"]
+        assert (note.severity, note.record) == ("note", record.name)
+        assert "the force of 12 V under conditions is left out" in note.message
+    other = {"channels": TIME | MOTION, "conditions": {"force": {"value": 6, "unit": "V"}}}
+    told = load("oscillator", pushed, other, parameters=no_spring).records
+    assert [record.conditions["force"].value for record in told] == [12, 6]
+    with pytest.raises(InputError, match="fitted by itself"):
+        load("oscillator", pushed, parameters=no_spring | {"force_gain": {"value": 3, "unit": "mm/s^2/V"}})
+
+
 def test_records_without_a_force_are_free_decays(load):
     none = {"channels": TIME | MOTION, "conditions": {"force": {"value": 0, "unit": "N"}}}
     assert load("oscillator", none).records[0].conditions == {}
