@@ -10,7 +10,7 @@ from gear_damping.explanation.steps.each_alone import followed_one_by_one
 from gear_damping.explanation.steps.faint import faint_cause
 from gear_damping.explanation.steps.pairs import with_pair, with_pair_instead, with_pair_of_as_many
 from gear_damping.explanation.steps.revise import beside_the_others, exchanged, pruned, simplified
-from gear_damping.explanation.steps.single import cause_of_records, single_cause
+from gear_damping.explanation.steps.single import cause_of_records, differing_instead, single_cause
 from gear_damping.explanation.steps.told import told
 from gear_damping.explanation.trials.bench import Bench
 from gear_damping.explanation.trials.refit import Refit
@@ -92,15 +92,23 @@ def _with_more(state: State) -> tuple[State, bool]:
     if state.accepted and state.first.significant and is_form(current, state.first, bench.settings):
         return state, False
     if settled and not is_gross:
-        state, best, rivals = faint_cause(state)
+        state, best, rivals = _of_records_instead(*faint_cause(state))
         further = with_pair_of_as_many(state) if best is None else state.accepting(best, rivals)
         return (state, False) if further is None else (further, True)
-    state, best, rivals = single_cause(state)
+    state, best, rivals = _of_records_instead(*single_cause(state))
     if best is None:
         further = with_pair(state) or cause_of_records(state)
     else:
         further = _calibrated_anew(state, best) or with_pair_instead(exchanged(state.accepting(best, rivals)))
     return (state, False) if further is None else (further, True)
+
+
+def _of_records_instead(
+    state: State, best: Refit | None, rivals: tuple[str, ...]
+) -> tuple[State, Refit | None, tuple[str, ...]]:
+    """The cause and its rivals, or in their place what differs from record to record."""
+    own = None if best is None else differing_instead(best, state)
+    return (state, best, rivals) if own is None else (state, own, ())
 
 
 def _is_missed_grossly(state: State) -> bool:

@@ -85,6 +85,15 @@ def test_beside_a_rest_a_cause_of_any_size_is_none(unknown, word):
     assert ("but not one figure of `coulomb_friction` is told" in said.sentences[0]) == bool(unknown)
 
 
+@pytest.mark.parametrize(("unknown", "word"), [("hysteretic_damping", UNEXPLAINED), ("", EXPLAINED)])
+def test_a_cause_of_any_size_explains_nothing(unknown, word):
+    """Half a swing of an arm took a cubic spring of -242 to 36 and a hysteresis of 0 to 10 for .17 %."""
+    found = search(accepted=(cause(),), left=False)
+    said = verdict(found, MUCH, excess_of(0.01, 1.05), any_figures=unknown)
+    assert said.word == word
+    assert ("it bends to what they show" in said.sentences[0]) == bool(unknown)
+
+
 @pytest.mark.parametrize(("left", "word"), [(1080.0, UNEXPLAINED), (60.0, UNEXPLAINED), (40.0, PARTLY)])
 def test_of_a_signal_no_more_can_be_missing_than_all_of_it(left, word):
     """A pendulum's swing of 3.5 s took a low-pass of 1.3 Hz for its friction: 1080 % left of 67 500."""

@@ -10,14 +10,14 @@ from gear_damping.explanation.steps import too_short as module
 NOMINAL = SimpleNamespace(hypothesis=SimpleNamespace(model=None), flat_given=dict)
 
 
-def said(monkeypatch, fitted, *, stated=0.0, spring=True, held_s=20.0, alone=False):
+def said(monkeypatch, fitted, *, stated=0.0, spring=True, held_s=20.0, alone=False, parts=1):
     """Of records of 40 s that forget themselves in 0.5 s."""
     monkeypatch.setattr(module, "natural_frequency_hz", lambda *_: fitted)
     monkeypatch.setattr(module, "stated_frequency", lambda _: stated)
     monkeypatch.setattr(module, "decorrelation_time", lambda _: 0.5)
     fit, held = (SimpleNamespace(response=torch.zeros(int(10 * s)), sampling_rate=10.0) for s in (40.0, held_s))
     evidence = SimpleNamespace(
-        has_spring=spring, duration=40.0, fit=(fit,), holdout=(held,), records=(fit, held), one_record=alone
+        has_spring=spring, duration=40.0, fit=(fit,) * parts, holdout=(held,), records=(fit, held), one_record=alone
     )
     return module.too_short(evidence, NOMINAL)
 
@@ -43,3 +43,4 @@ def test_where_nothing_swings_within_the_records_the_motion_has_times_of_its_own
 
 def test_the_part_of_one_record_that_is_held_out_counts(monkeypatch):
     assert "of which the last" in said(monkeypatch, fitted=0.1, alone=True)
+    assert "of which 2 in the middle are held out" in said(monkeypatch, fitted=0.1, alone=True, parts=2)

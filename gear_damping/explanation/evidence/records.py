@@ -31,7 +31,7 @@ from gear_damping.physics.terms import Effect
 HELD_OUT = 4  # every so many operating conditions one is held out where the file does not say
 FEWEST_CONDITIONS = 3  # of the fitted records, for each to be left out in turn
 FEWEST_DECAYS = 3  # of one condition, for one of them to be held out whole
-SPLIT = 2 / 3  # of a single record: fitted before, held out behind
+SPLIT = 2 / 3  # of a single record are fitted, the rest held out
 
 
 @dataclass(frozen=True)
@@ -185,7 +185,7 @@ def evidence_of(measurement: Measurement) -> Evidence:
     one, silent = not holdout, 0.0
     if one:
         fit, silent = _audible(fit) if dies_away else (fit, 0.0)
-        fit, holdout = _cut(fit)
+        fit, holdout = _cut(fit, dies_away)
     return Evidence(
         system=measurement.system,
         base=base,
@@ -258,11 +258,33 @@ def _audible(records: Sequence[FitRecord]) -> tuple[list[FitRecord], float]:
     return kept, sum(whole.duration - left.duration for whole, left in zip(records, kept, strict=True))
 
 
-def _cut(records: Sequence[FitRecord]) -> tuple[list[FitRecord], list[FitRecord]]:
-    """Every record in two: the first part is fitted, the rest held out."""
+def _cut(records: Sequence[FitRecord], dies_away: bool) -> tuple[list[FitRecord], list[FitRecord]]:
+    """A third of every record held out: its end, or where its motion dies away what stands before little is left.
+
+    The end of a decay shows nothing that grows with the amplitude, neither that it is there nor that it is not.
+    """
     fit, holdout = [], []
     for record in records:
-        at = round(SPLIT * len(record.response))
-        fit.append(part(record, slice(None, at), " (first part)"))
-        holdout.append(part(record, slice(at, None), " (last part)"))
+        first, last = _held_out(record, dies_away)
+        if last == len(record.response):
+            fit.append(part(record, slice(None, first), " (first part)"))
+            holdout.append(part(record, slice(first, None), " (last part)"))
+            continue
+        ends = (slice(None, first), " (first part)"), (slice(last, None), " (last part)")
+        fit += [replace(part(record, *end), group=record.record) for end in ends]
+        holdout.append(part(record, slice(first, last), " (middle part)"))
     return fit, holdout
+
+
+def _held_out(record: FitRecord, dies_away: bool) -> tuple[int, int]:
+    """The samples of a record that are held out: a third of them, from where a third of its energy is still to come.
+
+    Of a motion that goes on that is the end. What is fitted before it is half as long at least, or it tells nothing.
+    """
+    total, length = len(record.response), round((1 - SPLIT) * len(record.response))
+    if not dies_away:
+        return total - length, total
+    energy = (record.response - record.response[-length:].mean()).square().cumsum(0)
+    first = max(int((energy < SPLIT * energy[-1]).sum()), length // 2)
+    last = first + length
+    return (first, last) if last + length // 2 <= total else (total - length, total)

@@ -25,6 +25,7 @@ OTHER_FIGURES = (
     "what measured the records has a wrong gain, which bends them."
 )
 TOO_MUCH = "but too much is left for it to be the cause."
+NO_FIGURE = "but not one figure of `{}` is told by the records: it bends to what they show."
 ANY_FIGURES = "but not one figure of `{}` is told by the records, and too much is left for it to be the cause."
 OTHER_SIZES = (
     "but with another size in other records: its form is another one, or it stands in for something that has no name."
@@ -148,6 +149,8 @@ def verdict(found: State, before: Excess, after: Excess, known: Known | None = N
         why = ANY_FIGURES.format(known.any_figures) if known.any_figures else TOO_MUCH
         why = OTHER_SIZES if known.is_one is False else why
         return _not_established(found, before, known, why)
+    if known.any_figures:
+        return _not_established(found, before, known, NO_FIGURE.format(known.any_figures))
     is_part = known.whole < settings.taken_by_one
     is_unsteady = before.misfit < settings.random_misfit  # held-out: less noise
     if is_part and is_unsteady:

@@ -204,6 +204,19 @@ def cause_of_records(state: State) -> State | None:
     return state.accepting(best, ())
 
 
+def differing_instead(best: Refit, state: State) -> Refit | None:
+    """What differs between records that are followed one by one, where a law for all of them leaves far more.
+
+    Of pendulums of six lengths a law whose frequency falls with the swing follows some, as their swings differ too.
+    """
+    leaves_noise = state.beyond_sensor(best.outcome).misfit <= state.bench.settings.small_misfit
+    if state.accepted or best.differs or leaves_noise:
+        return None
+    own = _told_alone(state)
+    is_better = own is not None and APART * own.outcome.left_out_cost < best.outcome.left_out_cost
+    return own if is_better and state.is_validated(own) else None
+
+
 def _told_alone(state: State) -> Refit | None:
     """What differs between records that a model of its own follows one by one: no score of a mean one foresees it."""
     bench = state.bench

@@ -30,8 +30,9 @@ def too_short(evidence: Evidence, nominal: Outcome) -> str:
         return ""
     if evidence.one_record:
         whole, share = _times(evidence.records, period), 1 - SPLIT
+        which = f"the last {held:.2g}" if len(evidence.fit) == 1 else f"{held:.2g} in the middle"
         return (
-            f"This record holds {whole:.3g} {name}, of which the last {held:.2g} are held out; at least "
+            f"This record holds {whole:.3g} {name}, of which {which} are held out; at least "
             f"{ceil(needed / share)} are needed to judge more than large effects: record at least "
             f"{needed / share * period:.3g} s."
         )
@@ -48,8 +49,8 @@ def left_out_ends(evidence: Evidence) -> str:
         "moves the rig until then."
     )
     behind = (
-        f"The last {evidence.silent_s:.3g} s hold only noise and are left out: what is held out is the end of the "
-        "motion (records with `role: holdout` are taken whole)."
+        f"The last {evidence.silent_s:.3g} s hold only noise and are left out: a third of what moves is held out "
+        "(records with `role: holdout` are taken whole)."
     )
     return " ".join([*[before] * (evidence.waited_s > 0), *[behind] * (evidence.silent_s > 0)])
 

@@ -162,7 +162,7 @@ def _by_record(rows: Tensor, weights: Tensor, outcome: Outcome, scale: float) ->
     problem, squares, samples = outcome.problem, {}, {}
     for place, record in enumerate(problem.records):
         row = place * len(problem.response.channels) + problem.response.channels.index(record.observed.name)
-        kept, name = rows[row][weights[row] > 0] / record.weight, record.record
+        kept, name = rows[row][weights[row] > 0] / record.weight, record.name
         squares[name] = squares.get(name, 0.0) + float(kept.square().sum())
         samples[name] = samples.get(name, 0) + len(kept)
     return {name: scale * squares[name] / max(samples[name], 1) for name in squares}
