@@ -1,5 +1,6 @@
 """What systems and effects have in common: options and parameters that are declared, and chosen by name."""
 
+from collections.abc import Mapping
 from inspect import Parameter as Argument
 from inspect import Signature
 from math import isfinite
@@ -14,8 +15,11 @@ Given = dict[str, float | tuple[float, ...]]
 class Declared:
     """Something with a name, options and parameters; two of them are equal where all of that is.
 
-    `chosen` holds every option, `given` those parameters that were given, in SI.
+    `chosen` holds every option, `given` those parameters that were given, in SI. They are fixed once it is made.
     """
+
+    chosen: dict[str, Any]
+    given: Given
 
     name: ClassVar[str]
     parameters: ClassVar[tuple[Parameter, ...]]
@@ -45,18 +49,40 @@ class Declared:
             for name in given
             if name not in known
         ]
-        self.chosen = {name: given.get(name, option.default) for name, option in options.items()}
-        problems += [p for name, value in self.chosen.items() if (p := options[name].problem(value, self._key(name)))]
-        self.given: Given = {}
+        chosen = {name: given.get(name, option.default) for name, option in options.items()}
+        problems += [p for name, value in chosen.items() if (p := options[name].problem(value, self._key(name)))]
+        values: Given = {}
         for name in (name for name in declared if name in given):
             found = _numbers(given[name], declared[name], self._key(name))
             problems += [found] if isinstance(found, Problem) else []
-            self.given[name] = found
+            values[name] = found
+        vars(self).update(chosen=chosen, given=values)
         if problems:
             raise InputError(problems)
 
     def _key(self, name: str) -> str:
         return f"{self.name}.{name}"
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        """Refuse a new value, which models that hold this would not follow.
+
+        A class of one's own may hold more: what its own __init__ makes, and what begins with _.
+
+        Raises:
+            InputError: says how another one is made.
+        """
+        known = [one.name for one in (*self.options, *self.parameters)]
+        is_own = name.startswith("_") or type(self).__init__ is not Declared.__init__
+        if is_own and name not in (*known, "chosen", "given"):
+            super().__setattr__(name, value)
+            return
+        if name in known:
+            rule = "cannot be set: its values are fixed once it is made"
+            remedy = f"make another one, {self._written(self.given | self.chosen | {name: value})}, and a model of it"
+        else:
+            rule, how = "no such parameter or option", f"values are given where it is made, {type(self).__name__}(…)"
+            remedy = f"{nearest(name, known)}; {how}" if known else how
+        raise InputError(Problem(f"{self.name}.{name}", rule, value, remedy))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Declared):
@@ -67,10 +93,13 @@ class Declared:
         return hash((type(self), tuple(sorted(self.chosen.items())), tuple(sorted(self.given.items()))))
 
     def __repr__(self) -> str:
-        defaults = {option.name: option.default for option in self.options}
-        other = {name: value for name, value in self.chosen.items() if value != defaults[name]}
-        words = ", ".join(f"{name}={_plain(value)}" for name, value in (self.given | other).items())
-        return f"{type(self).__name__}({words})"
+        return self._written(self.given | self.chosen)
+
+    def _written(self, values: Mapping[str, Any]) -> str:
+        """How it is made with these values; options that are as usual are left out."""
+        usual = {option.name: option.default for option in self.options}
+        other = {name: value for name, value in values.items() if name not in usual or value != usual[name]}
+        return f"{type(self).__name__}({', '.join(f'{name}={_plain(value)}' for name, value in other.items())})"
 
 
 def _numbers(value: Any, parameter: Parameter, key: str) -> float | tuple[float, ...] | Problem:

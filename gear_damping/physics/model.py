@@ -50,8 +50,12 @@ class Model:
     """A base system with effects; values live outside it, as tensors by flat name.
 
     The flat name of a system's parameter is its own (`pinion_torque`), that of an effect's is
-    `effect.parameter` (`backlash.gap`).
+    `effect.parameter` (`backlash.gap`). It is fixed once it is made.
     """
+
+    system: System
+    effects: tuple[Effect, ...]
+    _mesh: MeshStiffness | None
 
     def __init__(self, system: System, effects: Sequence[Effect] = ()) -> None:
         """Compose the model.
@@ -61,12 +65,22 @@ class Model:
                 one term (mesh stiffness, contact) is filled wrongly; or one of them is none.
         """
         _refuse_others(system, effects)
-        self.system = system
-        self.effects = tuple(effects)
-        self._mesh = next((effect for effect in self.effects if isinstance(effect, MeshStiffness)), None)
+        effects = tuple(effects)
+        mesh = next((effect for effect in effects if isinstance(effect, MeshStiffness)), None)
+        vars(self).update(system=system, effects=effects, _mesh=mesh)
         problems = list(_composition_problems(system, self.effects))
         if problems:
             raise InputError(problems)
+
+    def __setattr__(self, name: str, value: object) -> None:
+        """Refuse a new value.
+
+        Raises:
+            InputError: says how another model is made.
+        """
+        rule = "cannot be set: a model is fixed once it is made"
+        remedy = "make another one with it: gd.Model(system, effects), where system and effects hold the values"
+        raise InputError(Problem(f"model.{name}", rule, value, remedy))
 
     def parameters(self) -> dict[str, Parameter]:
         """Every parameter by its flat name."""

@@ -316,3 +316,40 @@ def test_limits_of_a_channel_are_in_its_unit(record, said, told):
     with pytest.raises(gd.InputError) as caught:
         gd.load(record.source)
     assert told in str(caught.value)
+
+
+LAW = gd.ViscousDamping(damping_coefficient=0.8)
+HELD = gd.Model(gd.Oscillator(stiffness=400, unit="mm"), [LAW])
+
+
+@pytest.mark.parametrize(
+    ("part", "name", "said"),
+    [
+        (
+            HELD.system,
+            "stiffness",
+            r"oscillator\.stiffness = 9.0: cannot be set.* Oscillator\(stiffness=9, unit='mm'\)",
+        ),
+        (HELD.system, "stifness", r"oscillator\.stifness = 9.0: no such parameter.* did you mean 'stiffness'"),
+        (HELD.system, "given", r"oscillator\.given = 9.0: no such parameter"),
+        (LAW, "damping_coefficient", r"cannot be set: .*another one, ViscousDamping\(damping_coefficient=9\)"),
+        (HELD, "effects", r"model\.effects = 9.0: cannot be set: .*another one with it: gd\.Model\("),
+        (HELD, "stiffness", r"model\.stiffness = 9.0: cannot be set: "),
+    ],
+)
+def test_what_is_made_is_fixed(part, name, said):
+    """Else it would read as the new value, and every simulation went on with the old one."""
+    with pytest.raises(gd.InputError, match=said):
+        setattr(part, name, 9.0)
+
+
+def test_a_law_of_ones_own_may_hold_what_it_makes():
+    class Held(type(LAW)):
+        def __init__(self):
+            super().__init__(damping_coefficient=0.8)
+            self.network = torch.zeros(1)
+
+    own = Held()
+    own.network = None
+    with pytest.raises(gd.InputError, match="cannot be set"):
+        own.damping_coefficient = 3
