@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.errors import InputError, Problem
+from gear_damping.measurement.cut_flanks import is_cut
 from gear_damping.measurement.frozen import frozen, stays
 from gear_damping.measurement.out_of_range import CONTINUOUS, out_of_range
 from gear_damping.measurement.overflow import overflowed
@@ -77,7 +78,10 @@ def _would_go_on(outward: NDArray, at: NDArray) -> bool:
         return True
     step = max(step_of(outward), _held_step(outward, at)) if held >= _HELD else step_of(outward)
     cut = [length for length, plateau in zip(lengths, plateaus, strict=True) if _cut(outward, *plateau, step)]
-    return sum(cut) > _BEYOND * int(at.sum())
+    if sum(cut) > _BEYOND * int(at.sum()):
+        return True
+    step = step_of(outward)
+    return sum(last + 1 - first for first, last in plateaus if is_cut(outward, first, last, step)) > _BEYOND * at.sum()
 
 
 def _held_step(outward: NDArray, at: NDArray) -> float:

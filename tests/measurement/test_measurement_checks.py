@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from gear_damping.measurement.checks import clipped_at
+
 
 def _errors(bench) -> np.ndarray:
     return bench.columns["dte"]
@@ -102,6 +104,24 @@ def test_a_coarse_converter_is_not_taken_for_clipping(bench):
         bench.columns["dte"] = np.round(signal * levels / np.ptp(signal)) * np.ptp(signal) / levels
         bench.write_csv()
         assert bench.kinds() == [], levels
+
+
+@pytest.mark.parametrize(("limit", "clipped"), [(2.0, "minimum"), (3.0, "minimum"), (6.0, None)])
+@pytest.mark.parametrize("bits", [8, 10])
+def test_a_fast_decay_that_a_coarse_converter_cut_is_clipped(limit, clipped, bits):
+    step, time = limit / 2 ** (bits - 1), np.arange(1200) / 200
+    decay = 5 * np.exp(-0.031 * 45.87 * time) * np.cos(45.87 * time - 0.3)
+    found = clipped_at(np.clip(step * np.round(decay / step), -limit, limit - step))
+    assert (found and found[0]) == clipped
+
+
+@pytest.mark.parametrize("period", [5.3, 9.7, 27.4, 100.3])
+@pytest.mark.parametrize("levels", [2.4, 5.3, 40.2])
+def test_a_whole_swing_of_few_steps_is_not_clipped(period, levels):
+    time = np.arange(1200)
+    for damping in (0.0, 0.004, 0.03):
+        swing = levels * np.exp(-damping * 2 * np.pi * time / period) * np.cos(2 * np.pi * time / period)
+        assert clipped_at(np.round(swing)) is None, damping
 
 
 def test_a_torque_that_steps_or_ramps_and_holds_is_not_clipped(bench):
