@@ -4,11 +4,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_damping.measurement.encoders import WITHIN_A_TURN
+from gear_damping.measurement.overflow import FEWEST_LEAPS, leaps_over
 from gear_damping.measurement.record import Finding
 
 _BESIDE = 4  # steps at either side of a jump of an angle, by which it is seen whether it is a whole turn
 _AS_BESIDE, _NEARLY_WHOLE = 3.0, 0.02  # times their median, and of a turn, as where it turns back or is rounded
 _REGISTERS = (8, 16, 24, 32)  # bits of converters and counters
+_MOSTLY, _SLOW = 0.8, 0.25  # of the long steps, that go over an end; of half the register, for a usual step
 _LEVELS = 16  # different counts, with fewer of which a series switches and does not run over
 
 
@@ -37,7 +39,9 @@ def run_over(counts: NDArray[np.float64], name: str, column: str | int) -> Findi
     """Whole numbers that jump by a whole register: a sign that was not written, or a counter that ran over."""
     if np.any(counts != np.round(counts)) or np.unique(counts).size <= _LEVELS:
         return None
-    size = next((2**bits for bits in _REGISTERS if counts.min() >= 0 and counts.max() < 2**bits), None)
+    if counts.min() < 0:
+        return _signed_run_over(counts, name, column)
+    size = next((2**bits for bits in _REGISTERS if counts.max() < 2**bits), None)
     if size is None:
         return None
     steps, size = np.diff(counts), _size(counts, size)
@@ -53,15 +57,34 @@ def run_over(counts: NDArray[np.float64], name: str, column: str | int) -> Findi
     return Finding("run_over", message, channel=name)
 
 
+def _signed_run_over(counts: NDArray[np.float64], name: str, column: str | int) -> Finding | None:
+    """Whole numbers with a sign that leave their register at one end and come back at the other."""
+    reach = 2 ** max(int(-counts.min() - 1).bit_length(), int(counts.max()).bit_length())
+    leaps, steps = leaps_over(counts, float(reach)), np.abs(np.diff(counts))
+    if leaps.size < max(FEWEST_LEAPS, _MOSTLY * np.count_nonzero(steps > reach)) or np.median(steps) > _SLOW * reach:
+        return None
+    first = int(leaps[0]) + 1
+    message = (
+        f"column '{column}' jumps {leaps.size} time(s) by about {2 * reach} from sample to sample, the first time at "
+        f"sample {first}, as integers from {-reach} to {reach - 1} do that overflowed; export it as floating point or in "
+        f"more bits, or add {2 * reach} to what came back at the lower end, and take it from what did at the other"
+    )
+    return Finding("run_over", message, channel=name, sample=first)
+
+
 def _size(counts: NDArray[np.float64], register: int) -> int:
     """How many counts there are: a power of two that the jumps agree with, else as many as were met.
 
-    Beside a jump the counts go on by a step like its neighbours, so that it falls short of all counts by one of them.
+    A jump falls short of all counts by what the motion does over it, which the steps beside it say.
     """
-    steps = np.abs(np.diff(counts))
-    far = steps > counts.max() / 2
-    if not far.any() or far.all():
+    steps = np.diff(counts)
+    far = np.abs(steps) > counts.max() / 2
+    inner = far[1:-1] & ~far[:-2] & ~far[2:]
+    at = np.flatnonzero(inner) + 1
+    if not at.size:
         return register
-    short = _AS_BESIDE * np.median(steps[~far])
+    before, behind = (-np.sign(steps[at]) * steps[at + side] for side in (-1, 1))
+    whole = float(np.median(np.abs(steps[at]) + (before + behind) / 2))
+    off = float(np.median(np.abs(behind - before))) + 1
     powers = (register, 2 ** int(counts.max()).bit_length())
-    return next((size for size in powers if size - np.median(steps[far]) <= short), int(counts.max()) + 1)
+    return next((size for size in powers if abs(size - whole) <= off), int(counts.max()) + 1)
