@@ -4,7 +4,7 @@ import importlib.util
 import inspect
 import pkgutil
 import traceback
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
@@ -18,6 +18,18 @@ _run: dict[Path, tuple[bytes, ModuleType]] = {}  # what each of the user's files
 def modules_of(room: ModuleType) -> list[ModuleType]:
     """The modules of a package that each declare parts, in the order of their names."""
     return [importlib.import_module(f"{room.__name__}.{one.name}") for one in pkgutil.iter_modules(room.__path__)]
+
+
+def plugin_paths(given: str | Path | Iterable[str | Path]) -> tuple[str | Path, ...]:
+    """The files of one's own that were handed over in Python; one path that stands alone is one, not its letters.
+
+    Raises:
+        InputError: they are no paths.
+    """
+    found = (given,) if isinstance(given, str | Path) or not isinstance(given, Iterable) else tuple(given)
+    if wrong := [one for one in found if not isinstance(one, str | Path)]:
+        raise InputError(Problem("plugins", "must be paths of Python files", wrong[0], "write plugins=['mine.py']"))
+    return found
 
 
 def load_module(path: Path, key: str) -> ModuleType:

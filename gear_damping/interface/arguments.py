@@ -1,13 +1,19 @@
 """What users hand over in Python, checked at the door: one message names the argument, the rule and the remedy."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import fields
+from math import inf
 from numbers import Number as AnyNumber
+from os import PathLike
+from pathlib import Path
 from typing import Any, get_args
 
 import numpy as np
 import torch
 
+from gear_damping.at_home import at_home
 from gear_damping.errors import InputError, Problem
+from gear_damping.explanation.explain import Listener
 from gear_damping.measurement.record import Measurement
 from gear_damping.schema.values import Flag, Given, Number, OneOf, Problems
 from gear_damping.simulation.solver_settings import Engine, Solver
@@ -61,16 +67,71 @@ def refuse_other_solver(solver: object) -> None:
     problems.raise_any()
 
 
-def names(argument: str, given: str | Iterable[str]) -> tuple[str, ...]:
-    """Names as a sequence; one that stands alone is one name, not its letters.
+def refuse_other_call(name: str, value: object) -> None:
+    """Refuse what cannot be told anything; None stands for nobody.
 
     Raises:
-        InputError: they come with values, or one is there twice.
+        InputError: it cannot be called.
+    """
+    if value is not None and not callable(value):
+        raise InputError(Problem(name, "must be a function, which is told", value, f"for example {name}=print"))
+
+
+def refuse_other_listener(listener: object) -> None:
+    """Refuse what is no `Listener`, as a bare function, and one that cannot be told anything.
+
+    Raises:
+        InputError: it is none.
+    """
+    refuse_other_kind("listener", listener, Listener, "gd.Listener(print)")
+    for one in fields(Listener) if listener is not None else ():
+        refuse_other_call(f"listener.{one.name}", getattr(listener, one.name))
+
+
+def refuse_other_name(argument: str, given: object, example: str) -> None:
+    """Refuse what is no name; None stands for what is usual.
+
+    Raises:
+        InputError: it is none.
+    """
+    if given is not None and not (isinstance(given, str) and given):
+        raise InputError(Problem(argument, "must be a name", given, f"for example {argument}='{example}'"))
+
+
+def file_path(argument: str, given: Any, what: str) -> Path:
+    """A path that was handed over, with the home that it begins at.
+
+    Args:
+        argument: Its name, for messages.
+        given: What was handed over.
+        what: Of what it is the path, for messages.
+
+    Raises:
+        InputError: it is no path.
+    """
+    if not isinstance(given, str | PathLike) or not str(given):
+        raise InputError(Problem(argument, "must be a path", given, f"give the path of {what}"))
+    return at_home(given)
+
+
+def plain(value: Any) -> Any:
+    """A number of numpy as one of Python; anything else as it is."""
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def names(argument: str, given: str | Iterable[str] | None) -> tuple[str, ...]:
+    """Names as a sequence, empty for None; one that stands alone is one name, not its letters.
+
+    Raises:
+        InputError: they are no names, come with values, or one is there twice.
     """
     if isinstance(given, Mapping):
         remedy = f"write {argument}={list(given)}, and give the model the values"
         raise InputError(Problem(argument, "holds names alone, and values of them are not looked at", remedy=remedy))
-    found = (given,) if isinstance(given, str) else tuple(given)
+    given = () if given is None else given
+    found = (given,) if isinstance(given, str) or not isinstance(given, Iterable) else tuple(given)
+    if wrong := [one for one in found if not isinstance(one, str)]:
+        raise InputError(Problem(argument, "must be names", wrong[0], f"write {argument}=[…] with the name of each"))
     if len(set(found)) < len(found):
         raise InputError(Problem(argument, "names one twice", list(found), "name it once"))
     return found
@@ -92,6 +153,8 @@ def numbers(name: str, value: Any, unit: str = "SI") -> torch.Tensor:
     try:
         array = np.asarray(given)
         real = None if array.dtype.kind == "c" else np.array(array, dtype=float)
+        if array.dtype.kind == "O" and any(one is None for one in array.flat):
+            raise TypeError
     except (TypeError, ValueError):
         raise InputError(Problem(name, "must hold numbers alone", shown, remedy)) from None
     if real is None:
@@ -109,10 +172,15 @@ def of_every_run(name: str, value: torch.Tensor, batch: int) -> list[Problem]:
 
 
 def levels(name: str, given: Any) -> tuple[float, ...]:
-    """One level or several, in dB.
+    """One level or several, in dB; infinity stands for no noise.
 
     Raises:
         InputError: it is neither.
     """
+    remedy = f"for example {name}=30 or {name}=[30, 20]"
     found = numbers(name, [given] if isinstance(given, str) or not isinstance(given, Sequence) else given, "dB")
+    if not found.numel():
+        raise InputError(Problem(name, "names no level", given, remedy))
+    if bool(found.isnan().any()) or bool((found == -inf).any()):
+        raise InputError(Problem(name, "must be levels in dB", given, remedy))
     return tuple(found.flatten().tolist())

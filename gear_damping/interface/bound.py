@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from gear_damping.errors import InputError, Problem
 from gear_damping.identification.cramer_rao import cramer_rao
 from gear_damping.interface.arguments import names, numbers, of_every_run
-from gear_damping.interface.simulated import Simulation, refuse_rest
+from gear_damping.interface.simulated import Simulation, refuse_other_runs, refuse_rest
 from gear_damping.physics.damping_ratio import DAMPING_RATIO
 from gear_damping.schema.values import Problems
 
@@ -41,6 +41,7 @@ def bound(
     Raises:
         InputError: a name is unknown, nothing moves, or neither or both of noise and snr_db are given.
     """
+    refuse_other_runs(runs)
     if noise is not None and snr_db is not None:
         rule, remedy = "is given beside snr_db, and one of noise and snr_db is needed", "leave out one of the two"
         raise InputError(Problem("noise", rule, repr(noise), remedy))

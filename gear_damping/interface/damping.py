@@ -1,6 +1,6 @@
 """The damping of every record by estimators that learn nothing, side by side."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Sized
 from dataclasses import replace
 from pathlib import Path
 from statistics import fmean
@@ -10,12 +10,13 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from gear_damping.errors import InputError, Problem
-from gear_damping.identification.catalogue import builtin_estimators, record_estimator
+from gear_damping.identification.catalogue import builtin_estimators
 from gear_damping.identification.damping_estimate import DampingCurve
 from gear_damping.identification.estimators.base import RecordEstimator
 from gear_damping.interface import identified_gears
+from gear_damping.interface.arguments import names
 from gear_damping.interface.damping_law import damping_law
-from gear_damping.interface.estimator import ClassicalEstimator, Prediction, all_recorded
+from gear_damping.interface.estimator import Prediction, all_recorded, made
 from gear_damping.interface.identified import Identification, refuse_faults
 from gear_damping.measurement.record import Channel, Measurement, Record
 from gear_damping.physics.systems.traits import Trait
@@ -150,7 +151,7 @@ def damping(
     estimators: Mapping[str, Settings] | Sequence[str] = (),
     *,
     channel: str | None = None,
-    plugins: Sequence[Path | str] = (),
+    plugins: str | Path | Sequence[Path | str] = (),
     laws: Mapping[str, Identification] | None = None,
 ) -> Damping:
     """The damping of every record by several estimators that take a record by itself.
@@ -169,16 +170,41 @@ def damping(
     refuse_faults(measurement)
     kinds = builtin_estimators()
     for_decays = [n for n, kind in kinds.items() if issubclass(kind, RecordEstimator) and kind.of_ring_downs]
-    chosen = estimators or for_decays
-    chosen = [chosen] if isinstance(chosen, str) else chosen
-    settings = chosen if isinstance(chosen, Mapping) else {name: {} for name in chosen}
-    made = {name: ClassicalEstimator(record_estimator(name, given, plugins)) for name, given in settings.items()}
+    fits = _by_name(laws)
+    is_empty = estimators is None or (isinstance(estimators, Sized) and not len(estimators))
+    asked = for_decays if is_empty else estimators
+    settings = asked if isinstance(asked, Mapping) else {name: {} for name in names("estimators", asked)}
+    chosen = {name: made(name, _settings_of(name, given), plugins) for name, given in settings.items()}
     records = all_recorded(measurement, channel)
-    found = {name: {record: one.tell(seen) for record, seen in records.items()} for name, one in made.items()}
+    found = {name: {record: one.tell(seen) for record, seen in records.items()} for name, one in chosen.items()}
     channels = {record: seen.record.observed.name for record, seen in records.items()}
     swings = _swings(found)
-    fitted = {name: _of_law(one, swings, channels) for name, one in (laws or {}).items()}
+    fitted = {name: _of_law(one, swings, channels) for name, one in fits.items()}
     return Damping(measurement, found, channels, fitted)
+
+
+def _by_name(laws: Any) -> Mapping[str, Any]:
+    """Fitted simulations by what they are called.
+
+    Raises:
+        InputError: they have no names.
+    """
+    if laws is None or isinstance(laws, Mapping):
+        return laws or {}
+    remedy = "write laws={'explained': what gd.identify(record, model) found}"
+    raise InputError(Problem("laws", f"must be named, and is a {type(laws).__name__}", remedy=remedy))
+
+
+def _settings_of(name: str, given: Any) -> Settings:
+    """The settings of one estimator; None stands for what is usual.
+
+    Raises:
+        InputError: they have no names.
+    """
+    if given is None or isinstance(given, Mapping):
+        return given or {}
+    remedy = f"write {{'{name}': {{}}}}, or its settings by name"
+    raise InputError(Problem(f"estimators.{name}", "must be settings by name", given, remedy))
 
 
 def _swings(found: Found) -> dict[str, tuple[float, float]]:

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import torch
 
-from gear_damping.at_home import at_home
 from gear_damping.errors import InputError, Problem
 from gear_damping.explanation.evidence.release import released_at
 from gear_damping.identification.catalogue import record_estimator
@@ -25,8 +24,9 @@ from gear_damping.identification.output_error.segments import stretch
 from gear_damping.identification.saved import FORMAT as NETWORK
 from gear_damping.identification.saved import description_of, read_description, write_shared
 from gear_damping.identification.saved import load_estimator as load_module
-from gear_damping.interface.arguments import refuse_other
+from gear_damping.interface.arguments import file_path, plain, refuse_other, refuse_other_name
 from gear_damping.measurement.record import Measurement, Record
+from gear_damping.own_files import plugin_paths
 from gear_damping.physics.systems.gear_pair import teeth_of
 from gear_damping.physics.systems.traits import Trait
 from gear_damping.reporting.model_card import model_card
@@ -98,6 +98,7 @@ class NetworkEstimator(Estimator):
                 record has no such channel, or is too short.
         """
         refuse_other(measurement)
+        refuse_other_name("channel", channel, measurement.base.response)
         wanted = channel or measurement.base.response
         problems = _without_channel(measurement, wanted) or self._unlike(measurement, wanted)
         if problems:
@@ -167,6 +168,7 @@ def all_recorded(measurement: Measurement, channel: str | None = None) -> dict[s
         InputError: a record has no such channel, or no response at all.
     """
     refuse_other(measurement)
+    refuse_other_name("channel", channel, measurement.base.response)
     problems = _without_channel(measurement, channel, measurement.base.responses) if channel else []
     if problems:
         raise InputError(problems)
@@ -195,7 +197,9 @@ def _turning(record: FitRecord, values: Mapping[str, float]) -> Turning | None:
     return Turning(teeth[0] * speed / record.sampling_rate * np.linspace(*ends, count), teeth) if speed else None
 
 
-def estimator(name: str, *, plugins: Sequence[Path | str] = (), **settings: float | bool) -> ClassicalEstimator:
+def estimator(
+    name: str, *, plugins: str | Path | Sequence[Path | str] = (), **settings: float | bool
+) -> ClassicalEstimator:
     """An estimator that takes a record by itself: `gd.estimator("wavelet_ridge", omega0=8)`.
 
     Args:
@@ -206,10 +210,20 @@ def estimator(name: str, *, plugins: Sequence[Path | str] = (), **settings: floa
     Raises:
         InputError: there is none, a setting is unknown or out of range, or a file cannot be used.
     """
-    return ClassicalEstimator(record_estimator(name, settings, plugins))
+    return made(name, settings, plugins)
 
 
-def load_estimator(path: Path | str, plugins: Sequence[str] = ()) -> Estimator:
+def made(name: str, settings: Mapping[str, Any], plugins: str | Path | Sequence[Path | str]) -> ClassicalEstimator:
+    """An estimator of one record with its settings, which may be numbers of numpy.
+
+    Raises:
+        InputError: there is none, a setting is unknown or out of range, or a file cannot be used.
+    """
+    own = {key: plain(value) for key, value in settings.items()}
+    return ClassicalEstimator(record_estimator(name, own, plugin_paths(plugins)))
+
+
+def load_estimator(path: Path | str, plugins: str | Path | Sequence[Path | str] = ()) -> Estimator:
     """The estimator of a checkpoint, of a folder with `model.safetensors`, or of what `save` wrote.
 
     Args:
@@ -219,7 +233,8 @@ def load_estimator(path: Path | str, plugins: Sequence[str] = ()) -> Estimator:
     Raises:
         InputError: a file is missing or damaged, is none of these kinds, or of an estimator that no file declares.
     """
-    path = at_home(path)
+    path = file_path("path", path, "a best.ckpt, of a folder with model.safetensors, or of what `save` wrote")
+    plugins = plugin_paths(plugins)
     if path.suffix == ".json":
         content = read_description(path)
         if content.get("format") != NETWORK:

@@ -23,11 +23,14 @@ from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.seeding import seeded_generator
 from gear_damping.interface.arguments import levels
 from gear_damping.interface.estimator import ClassicalEstimator, Estimator, NetworkEstimator
-from gear_damping.interface.simulated import Simulation, refuse_rest
+from gear_damping.interface.simulated import Simulation, refuse_other_runs, refuse_rest
 from gear_damping.physics.damping_ratio import DAMPING_RATIO
 from gear_damping.reporting.evaluation import evaluation_figure, evaluation_table
+from gear_damping.schema.values import Number, Problems
 from gear_damping.simulation.runs import Runs
+from gear_damping.simulation.sampling import whole_number_problems
 
+SEED = Number(0, whole=True)  # of what is drawn
 NOTHING = (float("nan"),) * 3  # of a record that does not suit an estimator: ratio and ends of its interval
 # Width of a Gaussian's 90 % interval over that of its 95 % one.
 NARROWER = NormalDist().inv_cdf(0.95) / NormalDist().inv_cdf(0.975)
@@ -86,6 +89,9 @@ def evaluate(
         raise InputError(Problem("estimators", rule, repr(estimators), remedy))
     if not estimators:
         raise InputError(Problem("estimators", "none is named", {}, "for example {'mine': gd.load_estimator(PATH)}"))
+    refuse_other_runs(runs)
+    Problems(whole_number_problems("seed", seed, SEED)).raise_any()
+    seed = int(seed)
     _require_alike(estimators, runs)
     refuse_rest(runs.runs)
     signals = runs.runs.response

@@ -12,15 +12,24 @@ from gear_damping.explanation import explain as explaining
 from gear_damping.explanation.budget import Budget
 from gear_damping.explanation.explain import NOBODY, Listener
 from gear_damping.explanation.settings import SearchSettings
-from gear_damping.interface.arguments import names, refuse_other, refuse_other_solver
+from gear_damping.interface.arguments import (
+    file_path,
+    names,
+    plain,
+    refuse_other,
+    refuse_other_listener,
+    refuse_other_solver,
+)
 from gear_damping.interface.model import Model
 from gear_damping.interface.new_file import written_anew
 from gear_damping.measurement.record import Measurement
+from gear_damping.own_files import plugin_paths
 from gear_damping.physics.catalogue import catalogue
 from gear_damping.reporting.explanation_report import render, report_input
 from gear_damping.reporting.explanation_report.sentences import in_short
 from gear_damping.simulation.solver_settings import Solver
 
+PAGES = ("", ".html", ".htm")  # ends of names of files that hold a page
 ARGUMENTS = ("minutes", "ruled_out", "plugins", "listener", "solver")  # of `explain`, beside its thresholds
 
 
@@ -73,8 +82,13 @@ class Answer:
         """Write the report as one HTML file; an existing one stays.
 
         Raises:
+            InputError: it is no path, or that of another kind of file.
             FileExistsError: there is such a file.
         """
+        path = file_path("path", path, "the new HTML file, for example report.html")
+        if path.suffix.lower() not in PAGES:
+            rule, remedy = "a report is an HTML file", f"write {path.with_suffix('.html')}, which a browser can print"
+            raise InputError(Problem("path", rule, str(path), remedy))
         return written_anew(path, render(report_input(self.found)))
 
     def __repr__(self) -> str:
@@ -94,7 +108,7 @@ def explain(
     *,
     minutes: float = inf,
     ruled_out: str | Sequence[str] = (),
-    plugins: Sequence[str | Path] = (),
+    plugins: str | Path | Sequence[str | Path] = (),
     listener: Listener = NOBODY,
     solver: Solver | None = None,
     **thresholds: float,
@@ -113,9 +127,11 @@ def explain(
     Raises:
         InputError: the measurement cannot be explained, or a name is unknown.
     """
-    known = catalogue(plugins)
+    known = catalogue(plugin_paths(plugins))
     refuse_other(measurement)
     refuse_other_solver(solver)
+    refuse_other_listener(listener)
+    minutes, thresholds = plain(minutes), {name: plain(value) for name, value in thresholds.items()}
     wrong, ruled_out = _wrong_minutes(minutes), names("ruled_out", ruled_out)
     wrong += [Problem("ruled_out", "no such effect", n, nearest(n, list(known))) for n in ruled_out if n not in known]
     wrong += _wrong(thresholds)
@@ -123,7 +139,7 @@ def explain(
         raise InputError(wrong)
     library = {name: kind for name, kind in known.items() if name not in ruled_out}
     budget, settings = Budget(minutes), SearchSettings(**thresholds)
-    return Answer(explaining.explain(measurement, listener, solver, library, budget, settings))
+    return Answer(explaining.explain(measurement, listener or NOBODY, solver, library, budget, settings))
 
 
 def _wrong_minutes(minutes: object) -> list[Problem]:
@@ -135,9 +151,12 @@ def _wrong_minutes(minutes: object) -> list[Problem]:
 def _wrong(thresholds: Mapping[str, float]) -> list[Problem]:
     """What is wrong with thresholds: their names, and values out of range."""
     known, problems = {one.name: one.metadata for one in fields(SearchSettings)}, []
+    usual = {one.name: one.default for one in fields(SearchSettings)}
     for name, value in thresholds.items():
         if name not in known:
             problems.append(Problem(name, "no argument and no threshold", remedy=nearest(name, [*known, *ARGUMENTS])))
+        elif isinstance(value, bool) or not isinstance(value, int | float):
+            problems.append(Problem(name, "must be a number", value, f"for example {name}={usual[name]:g}"))
         elif not known[name]["lower"] <= value <= known[name]["upper"]:
             rule = f"must lie within {known[name]['lower']:g} … {known[name]['upper']:g}"
             problems.append(Problem(name, rule, value, "see conf/explain/default.yaml"))

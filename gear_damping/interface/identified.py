@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from gear_damping.errors import InputError, Problem
 from gear_damping.explanation.explain import NOBODY, Listener
 from gear_damping.interface import identified_gears, identified_oscillator
-from gear_damping.interface.arguments import names, refuse_other, refuse_other_solver
+from gear_damping.interface.arguments import names, refuse_other, refuse_other_call, refuse_other_solver
 from gear_damping.interface.model import Model
 from gear_damping.measurement.record import Measurement
 from gear_damping.physics.systems.traits import Trait
@@ -75,7 +75,7 @@ def identify(
     model: Model | None = None,
     free: str | Sequence[str] = (),
     *,
-    log: Callable[[str], None] = lambda text: None,
+    log: Callable[[str], None] | None = None,
     progress: Progress | None = None,
     solver: Solver | None = None,
 ) -> Identification:
@@ -98,6 +98,9 @@ def identify(
     """
     refuse_faults(measurement)
     refuse_other_solver(solver)
+    refuse_other_call("log", log)
+    refuse_other_call("progress", progress)
+    log = log or NOBODY.log
     free = names("free", free)
     if model is None and free:
         raise InputError(Problem("free", "names parameters of a model", list(free), "give the model too"))

@@ -6,10 +6,10 @@ from typing import Any
 
 import yaml
 
-from gear_damping.at_home import at_home
 from gear_damping.config.simulator import SimulatorSettings, read_simulator
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
+from gear_damping.interface.arguments import file_path
 from gear_damping.interface.new_file import written_anew
 from gear_damping.physics import model as physics
 from gear_damping.physics.systems.base import System
@@ -53,7 +53,9 @@ class Model(physics.Model):
         Raises:
             InputError: everything that is wrong with it.
         """
-        content, source = (node, "the mapping") if isinstance(node, Mapping) else (_read(at_home(node)), str(node))
+        what = "a simulator's YAML, or the mapping that it holds"
+        is_node = isinstance(node, Mapping)
+        content, source = (node, "the mapping") if is_node else (_read(file_path("node", node, what)), str(node))
         return cls.of_settings(read_simulator({**HOW, **content}, FIXED, _Given(source)))
 
     @classmethod

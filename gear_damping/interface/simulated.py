@@ -182,6 +182,17 @@ def simulate(
     return Simulation(runs)
 
 
+def refuse_other_runs(runs: object) -> None:
+    """Refuse what is no simulation.
+
+    Raises:
+        InputError: it is none.
+    """
+    if not isinstance(runs, Simulation):
+        remedy = "give what gd.simulate(model, sampling_rate=…, n_samples=…) returns"
+        raise InputError(Problem("runs", f"must be a simulation, and is a {type(runs).__name__}", remedy=remedy))
+
+
 def refuse_rest(runs: Runs) -> None:
     """Refuse runs of which a level of noise says nothing.
 
@@ -215,6 +226,8 @@ def _within_bounds(model: Model, values: Mapping[str, ArrayLike], batch: int) ->
     found, declared = {name: numbers(name, value) for name, value in values.items()}, model.parameters()
     single = [(name, value) for name, value in found.items() if name in declared and not declared[name].vector]
     problems = [problem for name, value in single for problem in of_every_run(name, value, batch)]
+    empty = [name for name, value in found.items() if bool(value.isnan().any())]
+    problems += [Problem(name, "must be finite, and holds nan", remedy="leave it out, or give it") for name in empty]
     if problems:
         raise InputError(problems)
     ends = [(name, float(end)) for name, v in found.items() if name in declared for end in (v.min(), v.max())]

@@ -23,6 +23,7 @@ from gear_damping.measurement.fitted_twice import with_what_is_fitted_twice
 from gear_damping.measurement.formats.registry import MAX_BYTES, readers
 from gear_damping.measurement.own_system import own_systems
 from gear_damping.measurement.record import Finding, Measurement, Quantity, Record
+from gear_damping.own_files import plugin_paths
 from gear_damping.schema.values import Problems
 
 if TYPE_CHECKING:
@@ -72,7 +73,7 @@ def load_measurement(
         raise InputError(Problem("max_bytes", rule, max_bytes, "for example max_bytes=4e9"))
     content = _filled(path)
     with _telling_names(content):
-        return _loaded(content, at_home(path), max_bytes, plugins)
+        return _loaded(content, at_home(path), max_bytes, plugin_paths(plugins))
 
 
 def _filled(path: str | Path) -> object:

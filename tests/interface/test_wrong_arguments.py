@@ -353,3 +353,97 @@ def test_a_law_of_ones_own_may_hold_what_it_makes():
     own.network = None
     with pytest.raises(gd.InputError, match="cannot be set"):
         own.damping_coefficient = 3
+
+
+@pytest.mark.parametrize("channel", [0, "", ["displacement"]])
+@pytest.mark.parametrize("ask", [gd.damping, lambda *a, **k: gd.estimator("log_decrement").predict(*a, **k)])
+def test_a_channel_is_named(record, ask, channel):
+    with pytest.raises(gd.InputError, match=r"channel = .*: must be a name; .* channel='displacement'"):
+        ask(record, channel=channel)
+
+
+TAKEN = {"log_decrement": gd.estimator("log_decrement")}
+
+
+@pytest.mark.parametrize(
+    ("ask", "said"),
+    [
+        (lambda record: gd.identify(record, free=3), r"free = 3: must be names; .* free=\["),
+        (lambda record: gd.identify(record, MODEL, free=[3]), r"free = 3: must be names"),
+        (lambda record: gd.identify(record, log=3), r"log = 3: must be a function.* log=print"),
+        (lambda record: gd.identify(record, progress="x"), r"progress = 'x': must be a function"),
+        (lambda record: gd.explain(record, ruled_out=3), r"ruled_out = 3: must be names"),
+        (lambda record: gd.explain(record, accepted_t="4"), r"accepted_t = '4': must be a number; .* accepted_t=3"),
+        (
+            lambda record: gd.explain(record, listener=print),
+            r"listener = .*: must be a Listener; .*gd\.Listener\(print",
+        ),
+        (lambda record: gd.explain(record, listener=gd.Listener(3)), r"listener\.log = 3: must be a function"),
+        (lambda record: gd.damping(record, laws=3), r"laws: must be named, .* laws=\{"),
+        (lambda record: gd.damping(record, 3), r"estimators = 3: must be names"),
+        (
+            lambda record: gd.damping(record, {"log_decrement": 3}),
+            r"estimators\.log_decrement = 3: must be settings by",
+        ),
+        (lambda record: gd.load_estimator(3), r"path = 3: must be a path; .* best\.ckpt"),
+        (lambda record: gd.Model.from_config(None), r"node: must be a path; .*mapping"),
+        (lambda record: MODEL.write(3), r"path = 3: must be a path"),
+        (lambda record: gd.bound(record, snr_db=30), r"runs: must be a simulation, .*gd\.simulate"),
+        (lambda record: gd.evaluate(TAKEN, record), r"runs: must be a simulation, .*gd\.simulate"),
+        (lambda record: gd.simulate(MODEL, **SAMPLED, stiffness=None), r"stiffness: must hold numbers alone"),
+        (lambda record: gd.simulate(MODEL, **SAMPLED, stiffness=np.nan), r"stiffness: must be finite, .*leave it out"),
+    ],
+)
+def test_an_argument_of_a_wrong_type_is_named(record, ask, said):
+    with pytest.raises(gd.InputError, match=said):
+        ask(record)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"seed": "x"}, r"seed = 'x': must be a whole number"),
+        ({"seed": -1}, r"seed = -1: must be at least 0"),
+        ({"snr_db": np.nan}, r"snr_db = nan: must be levels in dB; .* snr_db=30"),
+        ({"snr_db": []}, r"snr_db = \[\]: names no level"),
+    ],
+)
+def test_noise_that_cannot_be_drawn_is_answered(runs, given, said):
+    with pytest.raises(gd.InputError, match=said):
+        gd.evaluate(TAKEN, runs, **given)
+
+
+@pytest.mark.parametrize(
+    "ask",
+    [
+        lambda path, record: gd.load(record.source, plugins=path),
+        lambda path, record: gd.explain(record, plugins=path),
+        lambda path, record: gd.damping(record, plugins=path),
+        lambda path, record: gd.estimator("mine", plugins=path),
+    ],
+)
+def test_one_path_of_a_plugin_is_one_path(record, ask):
+    with pytest.raises(gd.InputError, match=r"plugins = 'mine\.py': no such file"):
+        ask("mine.py", record)
+    with pytest.raises(gd.InputError, match=r"plugins = 3: must be paths of Python files"):
+        ask(3, record)
+
+
+@pytest.mark.parametrize("number", [np.int64(8), np.float32(8), np.float64(8)])
+def test_numbers_of_numpy_are_numbers(record, number):
+    usual = gd.estimator("wavelet_ridge", omega0=8).predict(record)["decay"]
+    found = gd.estimator("wavelet_ridge", omega0=number).predict(record)["decay"]
+    assert found.damping_ratio_percent == usual.damping_ratio_percent
+    found = gd.damping(record, {"wavelet_ridge": {"omega0": number}}).found["wavelet_ridge"]["decay"]
+    assert found.damping_ratio_percent == usual.damping_ratio_percent
+    with pytest.raises(gd.InputError, match=r"minutes = -8(\.0)?: must be a positive number"):
+        gd.explain(record, minutes=-number)
+
+
+def test_a_report_is_a_page(record, tmp_path):
+    answer = gd.explain(record, minutes=0.001)
+    with pytest.raises(gd.InputError, match=r"path = '.*a\.pdf': a report is an HTML file; remedy: write .*a\.html"):
+        answer.report(tmp_path / "a.pdf")
+    with pytest.raises(gd.InputError, match=r"path = 3: must be a path"):
+        answer.report(3)
+    assert answer.report(tmp_path / "a.html").is_file()
