@@ -80,7 +80,6 @@ def _would_go_on(outward: NDArray, at: NDArray) -> bool:
     cut = [length for length, plateau in zip(lengths, plateaus, strict=True) if _cut(outward, *plateau, step)]
     if sum(cut) > _BEYOND * int(at.sum()):
         return True
-    step = step_of(outward)
     return sum(last + 1 - first for first, last in plateaus if is_cut(outward, first, last, step)) > _BEYOND * at.sum()
 
 

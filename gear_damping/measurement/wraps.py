@@ -66,8 +66,8 @@ def _signed_run_over(counts: NDArray[np.float64], name: str, column: str | int) 
     first = int(leaps[0]) + 1
     message = (
         f"column '{column}' jumps {leaps.size} time(s) by about {2 * reach} from sample to sample, the first time at "
-        f"sample {first}, as integers from {-reach} to {reach - 1} do that overflowed; export it as floating point or in "
-        f"more bits, or add {2 * reach} to what came back at the lower end, and take it from what did at the other"
+        f"sample {first}, as integers from {-reach} to {reach - 1} do that overflowed; export it as floating point or "
+        f"in more bits, or add {2 * reach} to what came back at the lower end, and take it from what did at the other"
     )
     return Finding("run_over", message, channel=name, sample=first)
 
