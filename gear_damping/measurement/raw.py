@@ -18,6 +18,7 @@ from gear_damping.measurement.file_clocks import FileClocks, conflict_with_file,
 from gear_damping.measurement.formats.table import Table
 from gear_damping.measurement.rows import LEAST_SAMPLES, MOST_MISSING, Columns, Rows, filled_in, last_number
 from gear_damping.measurement.stamp_units import (
+    may_count_rows,
     refuse_endless,
     refuse_other_clock,
     refuse_other_unit,
@@ -249,11 +250,14 @@ class RawReader:
 
     def _stamped(self, timing: TimePlan, key: str, read: ReadColumn, first: int) -> TimeBase:
         stamps = read(timing.column, key)
-        refuse_row_numbers(self.table, timing, key, stamps, self.source)
+        refuse_row_numbers(self.table, timing, key, stamps, read, self.source)
         one = self._in_seconds(timing, key)
         refuse_other_unit(self.table, timing, key, stamps, one, self.source)
         refuse_other_clock(self.table, timing, key, stamps * one, read, self.source)
-        return stamped_time(stamps * one, self._named(key, timing.column), self.file, first)
+        base = stamped_time(stamps * one, self._named(key, timing.column), self.file, first)
+        unit = timing.unit or self.table.unit(self.table.index(timing.column, key))
+        note = may_count_rows(stamps, str(timing.column), unit)
+        return replace(base, findings=(*base.findings, note)) if note else base
 
     def _in_seconds(self, timing: TimePlan, key: str) -> float:
         """One unit of the time stamps in s."""

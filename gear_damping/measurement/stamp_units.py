@@ -9,9 +9,12 @@ from gear_damping.measurement.declaration import TimePlan
 from gear_damping.measurement.encoders import ReadColumn
 from gear_damping.measurement.formats.registry import MAX_BYTES
 from gear_damping.measurement.formats.table import Table
+from gear_damping.measurement.record import Finding
 from gear_damping.measurement.time_column import (
     COUNTER,
+    ENDINGS,
     FEWEST_STAMPS,
+    NAMED,
     finer_than_said,
     no_seconds,
     seconds_by_name,
@@ -20,6 +23,7 @@ from gear_damping.measurement.time_column import (
 from gear_damping.units import is_of_kind, to_si
 
 _TELLS = 10.0  # of its own largest steps, from which the length of a clock tells something
+_EVENLY = 0.05  # of a step, by which those of a clock beside row numbers may differ: stamps are rounded
 MOST_SAMPLES = MAX_BYTES // 8  # of a record: as many numbers as the largest file that is read holds
 _AS_LONG = 0.02  # of it, by which stamps may differ: more than two clocks drift apart, less than any wrong unit
 
@@ -49,7 +53,9 @@ def refuse_other_unit(
         raise InputError(Problem(f"{key}.unit", rule, timing.unit, remedy, source))
 
 
-def refuse_row_numbers(table: Table, timing: TimePlan, key: str, stamps: NDArray[np.float64], source: str) -> None:
+def refuse_row_numbers(
+    table: Table, timing: TimePlan, key: str, stamps: NDArray[np.float64], read: ReadColumn, source: str
+) -> None:
     """Refuse a column that counts the rows, whatever unit it is declared in.
 
     Raises:
@@ -59,12 +65,52 @@ def refuse_row_numbers(table: Table, timing: TimePlan, key: str, stamps: NDArray
     one = to_si(1.0, timing.unit, "s") if timing.unit and is_of_kind(timing.unit, "s") else None
     if rate and one and abs(rate * one - 1) < _AS_LONG:
         return
-    is_number = rate or COUNTER.match(table.names[table.index(timing.column, key)])  # beside a step any name will do
-    if not is_number or stamps.size < FEWEST_STAMPS or not counts_rows(stamps):
+    if stamps.size < FEWEST_STAMPS or not counts_rows(stamps):
+        return
+    place = table.index(timing.column, key)
+    beside = None if rate or one is None else _clock_behind(table, place, one, read)
+    if not (rate or beside or COUNTER.match(table.names[place])):  # beside a step any name will do
         return
     remedy = "give sampling_rate in its place" + (f"; '{said}' beside the table says {rate:.6g} Hz" if rate else "")
+    remedy = f"name column {beside} as the time, whose steps are even too, or {remedy}" if beside else remedy
     rule = "counts the rows: its numbers go on by one, and say nothing of the time between them"
     raise InputError(Problem(key, rule, timing.column, remedy, source))
+
+
+def _clock_behind(table: Table, place: int, one: float, read: ReadColumn) -> str | int | None:
+    """The column behind one that counts the rows, where it goes like a clock of another rate than 1 / `one` Hz."""
+    behind = place + 1
+    if behind >= len(table.names):
+        return None
+    name, unit = table.names[behind], table.unit(behind)
+    if not is_of_kind(unit, "s") and (unit is not None or (name and not NAMED.search(name))):
+        return None
+    try:
+        stamps = read(behind, "")
+    except InputError:
+        return None
+    step = float(np.median(np.diff(stamps)))
+    if step <= 0 or np.any(np.abs(np.diff(stamps) / step - 1) > _EVENLY):
+        return None
+    units = [unit] if unit else ENDINGS
+    is_same = any(abs(step * to_si(1.0, other, "s") / one - 1) < _AS_LONG for other in units)
+    return None if is_same else (repr(name) if name else behind)
+
+
+def may_count_rows(stamps: NDArray[np.float64], name: str, unit: str | None) -> Finding | None:
+    """A note on stamps that begin with 0 or 1 and go on by exactly one, where a count of the rows is as likely.
+
+    Those in ms that begin with 0 are of 1 kHz, which many recorders have.
+    """
+    if stamps.size < FEWEST_STAMPS or not counts_rows(stamps) or stamps[0] not in (0, 1):
+        return None
+    if unit != "s" and stamps[0] == 0:
+        return None
+    message = (
+        f"column '{name}' goes on by exactly 1 {unit} from {stamps[0]:.0f}; where it counts the rows, give "
+        "sampling_rate in its place"
+    )
+    return Finding("row_numbers", message, channel="time", severity="note")
 
 
 def refuse_other_clock(

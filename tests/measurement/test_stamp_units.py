@@ -117,3 +117,35 @@ def test_the_ending_of_a_name_is_heeded(name, unit, right, tmp_path):
         load_measurement(path)
     path.write_text(path.read_text().replace(f"unit: {unit}", f"unit: {right}"))
     assert load_measurement(path).records[0].sampling_rate > 49
+
+
+@pytest.mark.parametrize(("columns", "named"), [("n,Time (s),x", "column 'Time (s)'"), ("", "column 1")])
+def test_row_numbers_before_a_column_that_goes_like_a_clock_are_no_time(columns, named, tmp_path):
+    rows = [f"{k + 1},{t:.4f},{x:.6f}" for k, (t, x) in enumerate(zip(SECONDS, MOTION, strict=True))]
+    path = declared(tmp_path, None, "s", columns=columns, rows=rows)
+    path.write_text(path.read_text().replace("column: t", "column: 0").replace("column: x", "column: 2"))
+    with pytest.raises(InputError) as caught:
+        load_measurement(path)
+    assert f"remedy: name {named} as the time" in str(caught.value)
+
+
+def test_milliseconds_beside_the_seconds_of_the_same_rows_are_a_time(tmp_path):
+    rows = [f"{k},{k / 1000:.3f},{x:.6f}" for k, x in enumerate(MOTION)]
+    record = load_measurement(declared(tmp_path, None, "ms", columns="t,Time (s),x", rows=rows)).records[0]
+    assert record.sampling_rate == pytest.approx(1000)
+    assert record.findings == ()
+
+
+@pytest.mark.parametrize(("first", "unit", "is_said"), [(0, "s", True), (1, "ms", True), (0, "ms", False)])
+def test_stamps_that_go_on_by_one_are_said_where_they_may_be_row_numbers(first, unit, is_said, tmp_path):
+    record = load_measurement(declared(tmp_path, range(first, first + 400), unit)).records[0]
+    notes = [one for one in record.findings if one.kind == "row_numbers"]
+    assert [one.severity for one in notes] == ["note"] * is_said
+    assert all("give sampling_rate in its place" in one.message for one in notes)
+
+
+def test_row_numbers_beside_the_axis_of_a_signal_analyser_are_no_time(tmp_path):
+    path = declared(tmp_path, range(1, 401), "s", columns="X-axis delta,2.0E-2")
+    path.write_text(path.read_text().replace("column: t", "column: 0").replace("column: x", "column: 1"))
+    with pytest.raises(InputError, match=r"counts the rows.*'X-axis delta' beside the table says 50 Hz"):
+        load_measurement(path)

@@ -13,8 +13,8 @@ from gear_damping.units import is_of_kind, to_si
 
 _END = r"(?:\b|(?=_(?:ns|us|ms|s|hz|khz|mhz)\b))"  # of a name, before its unit too: `dt_us`
 _STEP = re.compile(
-    r"\b(delta[ _]?[tx]|d[tx]|t ?interval|[tx][ _]?incr(ement)?|(samp(le|ling)|time|horizontal|record|abtast)[ _-]?"
-    r"(interval\w*|period\w*|increment\w*|step\w*))" + _END, re.I,
+    r"\b(delta[ _]?[tx]|d[tx]|t ?interval|[tx][ _]?incr(ement)?|x-axis delta|"
+    r"(samp(le|ling)|time|horizontal|record|abtast)[ _-]?(interval\w*|period\w*|increment\w*|step\w*))" + _END, re.I,
 )  # fmt: skip
 _RATE = re.compile(
     r"\b(samp(le|ling)[ _-]?(rate|freq(uency)?)|samples (per|a) second|abtast(rate|frequenz)|fs|"
