@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import torch
 
+from gear_damping.explanation.model import ringing
 from gear_damping.explanation.model.ringing import with_untold_ringing
 from gear_damping.identification.output_error.normal_equations import nuisance_basis, project_out
 from gear_damping.identification.output_error.problem import Prediction
@@ -18,6 +19,11 @@ RINGING = 2 * np.pi * 2800.0
 MESH = 3e-6 * np.cos(TEETH * SPEED * TIME) + 1e-6 * np.sin(2 * TEETH * SPEED * TIME)
 COSINE, SINE = np.cos(RINGING * TIME), np.sin(RINGING * TIME)
 LEVEL = 1e-7  # of the noise
+
+
+@pytest.fixture(autouse=True)
+def natural_frequency(monkeypatch):
+    monkeypatch.setattr(ringing, "natural_frequency_hz", lambda *_: RINGING / (2 * np.pi))
 
 
 def _case(sizes, stated=True, spectrum=None):
@@ -33,7 +39,14 @@ def _case(sizes, stated=True, spectrum=None):
     found = Prediction(torch.stack(left)[None], torch.stack(owned)[None])
     problem = SimpleNamespace(records=fitted, n_shared=2, response=SimpleNamespace(channels=("transmission_error",)))
     values = {f"pinion_speed@run{seed}": SPEED for seed in range(len(sizes))}
-    outcome = SimpleNamespace(linearisation=found, problem=problem, fit_residuals=left, values=values)
+    outcome = SimpleNamespace(
+        linearisation=found,
+        problem=problem,
+        fit_residuals=left,
+        values=values,
+        hypothesis=SimpleNamespace(model=None),
+        flat_given=dict,
+    )
     teeth = {"n_teeth_pinion": float(TEETH), "n_teeth_gear": 41.0}
     return outcome, SimpleNamespace(has=lambda trait: True, fitted=fitted, parameters=teeth)
 
@@ -87,3 +100,19 @@ def test_a_ringing_that_another_channel_shows_is_told():
     assert float(_told((outcome, evidence), 0)) > 0.1
     outcome.fit_residuals = [torch.cat([outcome.fit_residuals[0][:N], shown])]  # of which the simulation shows nothing
     assert float(_told((outcome, evidence), 0)) < 1e-6
+
+
+@pytest.mark.parametrize(("size", "told"), [(0.03 * LEVEL, False), (LEVEL, True)])
+def test_of_a_slow_mesh_orders_far_beyond_the_ringing_are_not_taken_out(monkeypatch, size, told):
+    """At 100 kHz a mesh of 30 Hz has 1666 of them, the least squares of which took a minute for each record."""
+    rate, count, asked = 100e3, 15000, []
+    time = np.arange(count) / rate
+    noise = LEVEL * np.random.default_rng(3).standard_normal(count)
+    series = MESH[0] * np.cos(2 * np.pi * 30 * time) + size * np.cos(RINGING / 4 * time) + noise
+    angle = torch.as_tensor(2 * np.pi * 30 / TEETH * time)
+    record = FitRecord("slow", torch.as_tensor(series), rate, {"pinion_angle": angle}, {})
+    taken_out = ringing.without_orders
+    monkeypatch.setattr(ringing, "without_orders", lambda x, turning: asked.append(x.shape) or taken_out(x, turning))
+    turning = ringing.Turning(TEETH * angle.numpy(), (TEETH, 41.0))
+    assert ringing._is_told(record, noise, turning, RINGING / 4 / (2 * np.pi)) is told
+    assert asked[0][0] < 2 * 5 * 700 * 0.15 * 1.2  # samples of .15 s at twice five natural frequencies

@@ -12,11 +12,12 @@ from math import log
 import numpy as np
 import torch
 from numpy.typing import NDArray
+from scipy.signal import decimate
 from torch import Tensor
 
 from gear_damping.explanation.evidence.records import Evidence
 from gear_damping.explanation.model.covariance import covariance_of
-from gear_damping.explanation.model.hypothesis import Outcome
+from gear_damping.explanation.model.hypothesis import Outcome, natural_frequency_hz
 from gear_damping.identification.damping_estimate import UnsuitedRecord
 from gear_damping.identification.free_vibration import Turning, without_orders
 from gear_damping.identification.output_error.problem import Prediction
@@ -25,6 +26,8 @@ from gear_damping.physics.systems.gear_pair import teeth_of, turned
 from gear_damping.physics.systems.traits import Trait
 
 Array = NDArray[np.float64]
+BAND = 5.0  # natural frequencies: what rings lies below, and of a slow mesh orders beyond are thousands
+EDGE = 10  # samples at either end of what was decimated, into which scipy's filter carries zeros from beyond
 BY_CHANCE = 0.01  # probability at which the strongest of all lines of white noise counts as one
 
 
@@ -42,7 +45,8 @@ def with_untold_ringing(outcome: Outcome, evidence: Evidence) -> Prediction:
     if not evidence.has(Trait.TEETH) or rows != len(evidence.fitted):  # segments are too short to tell a line
         return found
     pairs = zip(evidence.fitted, outcome.fit_residuals, strict=True)
-    told = [_is_told(record, left.numpy(), _turning(record, outcome, evidence)) for record, left in pairs]
+    natural = natural_frequency_hz(outcome.hypothesis.model, outcome.flat_given())
+    told = [_is_told(record, left.numpy(), _turning(record, outcome, evidence), natural) for record, left in pairs]
     untold = 1 - torch.tensor(told, dtype=torch.float64)
     own = found.sensitivity[..., outcome.problem.n_shared :]
     channels = len(outcome.problem.response.channels)
@@ -51,17 +55,26 @@ def with_untold_ringing(outcome: Outcome, evidence: Evidence) -> Prediction:
     return replace(found, sensitivity=torch.cat([found.sensitivity, more], -1))
 
 
-def _is_told(record: FitRecord, left: Array, turning: Turning) -> bool:
+def _is_told(record: FitRecord, left: Array, turning: Turning, natural: float) -> bool:
     """Whether a ringing stands out in any channel of a record, what neither the mesh nor a shaft repeats.
 
     Args:
         record: As it was fitted.
         left: What is left of its channels, one after another, in the unit of the first.
         turning: What turns.
+        natural: The natural frequency in Hz, far beyond which nothing is looked at.
     """
     shown, channels = record.stacked.numpy() - left, len(record.channels)
+    signals, step = (
+        np.stack([shown, left]).reshape(2 * channels, -1).T,
+        int(record.sampling_rate / (2 * BAND * natural)),
+    )
+    if step > 1 and len(signals) > 4 * EDGE * step:
+        inside = slice(EDGE, -EDGE)
+        turning = replace(turning, mesh_angle=turning.mesh_angle[::step][inside])
+        signals = decimate(signals, step, ftype="fir", axis=0)[inside]
     try:
-        apart = without_orders(np.stack([shown, left]).reshape(2 * channels, -1).T, turning).T
+        apart = without_orders(signals, turning).T
     except UnsuitedRecord:  # so few turns tell no lines
         return True
     return any(map(_rings, apart[:channels], apart[channels:]))
