@@ -7,6 +7,7 @@ from gear_damping.errors import InputError, Problem
 from gear_damping.measurement.column_kinds import counts_rows
 from gear_damping.measurement.declaration import TimePlan
 from gear_damping.measurement.encoders import ReadColumn
+from gear_damping.measurement.formats.moments import DAY
 from gear_damping.measurement.formats.registry import MAX_BYTES
 from gear_damping.measurement.formats.table import Table
 from gear_damping.measurement.record import Finding
@@ -16,13 +17,15 @@ from gear_damping.measurement.time_column import (
     FEWEST_STAMPS,
     NAMED,
     finer_than_said,
+    may_be_days,
     no_seconds,
     seconds_by_name,
-    unit_by_ending,
+    unit_by_name,
 )
 from gear_damping.units import is_of_kind, to_si
 
 _TELLS = 10.0  # of its own largest steps, from which the length of a clock tells something
+_FEW, _GROSSLY = 3.0, 2.0  # of these steps, from which it tells whether stamps last so many times as long, or as short
 _EVENLY = 0.05  # of a step, by which those of a clock beside row numbers may differ: stamps are rounded
 MOST_SAMPLES = MAX_BYTES // 8  # of a record: as many numbers as the largest file that is read holds
 _AS_LONG = 0.02  # of it, by which stamps may differ: more than two clocks drift apart, less than any wrong unit
@@ -43,9 +46,11 @@ def refuse_other_unit(
         rule = f"stamps of {stamps[0]:.6g} look like {what}"
         raise InputError(Problem(f"{key}.unit", rule, timing.unit, remedy, source))
     name, first = table.names[table.index(timing.column, key)], float(stamps[0])
+    if one == DAY and may_be_days(first):
+        return  # whatever the column was named before somebody made days of it
     finer = finer_than_said(first, one)
     rule = f"in {timing.unit} from 1970 on, stamps of {first:.6g} lie beyond the year 2286"
-    named = "s" if seconds_by_name(name) and one < 1 else unit_by_ending(name)
+    named = "s" if seconds_by_name(name) and one < 1 else unit_by_name(name)
     if finer is None and named is not None and abs(to_si(1.0, named, "s") / one - 1) > _AS_LONG:
         finer, rule = named, f"the column is named '{name}'"
     if finer is not None:
@@ -129,11 +134,20 @@ def refuse_other_clock(
         if clock is None:
             continue
         stamped, lasts, coarse = np.ptp(seconds), np.ptp(clock), float(np.abs(np.diff(clock)).max())
-        if lasts < _TELLS * coarse or abs(stamped - lasts) <= max(2 * coarse, _AS_LONG * lasts):
+        if _are_as_long(stamped, lasts, coarse):
             continue
         rule = f"these stamps last {stamped:.4g} s, and the clock '{name}' in the same rows {lasts:.4g} s"
         remedy = f"correct the unit, name the column {name}, or give sampling_rate instead"
         raise InputError(Problem(key, rule, timing.column, remedy, source))
+
+
+def _are_as_long(stamped: float, lasts: float, coarse: float) -> bool:
+    """Whether stamps that last `stamped` s may be those of a clock of `lasts` s whose largest step is `coarse` s."""
+    if lasts < _FEW * coarse or not coarse:
+        return True
+    if lasts < _TELLS * coarse:
+        return (lasts - coarse) / _GROSSLY <= stamped <= (lasts + coarse) * _GROSSLY
+    return abs(stamped - lasts) <= max(2 * coarse, _AS_LONG * lasts)
 
 
 def _clock(table: Table, place: int, key: str, read: ReadColumn) -> NDArray[np.float64] | None:

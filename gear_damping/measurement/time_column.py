@@ -16,16 +16,24 @@ NAMED = re.compile(
 )
 _SUFFIX = re.compile(r"[_ .\-/](s|sec|ms|us|µs|ns|min|h)$", re.I)
 ENDINGS = ("s", "ms", "us", "ns")
+_CLOCKS = (("millis", "ms"), ("micros", "us"), ("nanos", "ns"))  # of controllers, and words that begin like them
 _SLOW = 200  # whole numbers a step: as milliseconds less than 5 Hz, and few vibrate as slowly
 # Ranges that a time counted from 1970 lies in, by its unit: from 2000 on, and they do not meet.
 _EPOCHS = ((9.4e8, 1e10, "s"), (9.4e11, 1e13, "ms"), (9.4e14, 1e16, "us"), (9.4e17, 1e19, "ns"))
 _SLOWEST = 100.0  # s between two samples of a vibration: a free clock of microseconds goes on by more, taken for s
-# Ranges that days lie in from 2000 to 2099, as spreadsheets count them from 1900 and MATLAB from the year 0.
-_DAYS = ((36526.0, 73050.0), (730486.0, 767010.0))
+# Ranges that days lie in from 2000 to 2099, as spreadsheets count them from 1900, MATLAB from the year 0, and
+# astronomers from 4713 BC.
+_DAYS = ((36526.0, 73050.0), (730486.0, 767010.0), (2451544.5, 2488069.5))
 _DAYLONG, _NO_SECONDS = 1e-4, 1e-6  # steps below which these may be days (9 s), and can be no seconds (a MHz)
 # Ranges that ticks of 100 ns lie in since 2000, as Windows counts them from 1601 and .NET from the year 1.
 _TICKS = ((1.25e17, 1.6e17), (6.3e17, 6.7e17))
 TICKS = "ticks of 100 ns, as Windows counts them"
+_MILLIONTHS, _OF_A_DAY = (3.6526e10, 7.305e10), 0.0864  # range of millionths of days since 1900; s in one
+_YEARS = (1990.0, 2100.0)  # range of years with a decimal part: as seconds half an hour after a start
+_WAY = 1e-2  # of the first stamp: what a part of a day goes on by is less, and no seconds are so short beside it
+_CLOCK_DIGITS = (1e7, 2.4e8)  # range of whole numbers HHMMSSmmm, from one in the morning on
+_LONG_DIGITS = (17, 20)  # digits of a date and a clock to the ms or the us; 14 count seconds within a minute
+_MONTHS, _LONGEST_MONTH, _FULL = 12, 31, (24, 60, 60)  # in a year; days in one; hours, minutes, seconds that are full
 _SECONDS, _PARTS = re.compile(r"seconds?(\b|_)", re.I), re.compile(r"milli|micro|nano|msec|usec|nsec", re.I)
 FEWEST_STAMPS = 8  # stamps, as many as a record needs
 _ADVANCING = 0.9  # share of the steps of a named column that go forward
@@ -125,21 +133,73 @@ def finer_than_said(first: float, one: float) -> str | None:
 def no_seconds(values: NDArray[np.float64], one: float) -> tuple[str, str] | None:
     """What (n,) stamps in a unit of `one` s are where they can be no such, and the remedy; None where they may be.
 
-    Days since 1900 or the year 0, whose steps would be shorter than a microsecond as seconds; and ticks of 100 ns.
+    Days, parts of one and years, whose steps would be shorter than a microsecond as seconds; ticks of 100 ns; and
+    digits of a date or a clock that are written as one number.
     """
     if values.size < FEWEST_STAMPS:
         return None
+    instead = "give sampling_rate instead of the time column"
     if any(low < values[0] < high for low, high in _TICKS):
         return TICKS, "divide the column by 10 and write unit: us, or give sampling_rate instead of it"
-    if one <= 1 and _are_days(values, _NO_SECONDS):
-        return "days since 1900 or the year 0", "write unit: day, or give sampling_rate instead of the time column"
+    if are_digits(values):
+        return "dates YYYYMMDDHHMMSSmmm", f"write them as 2024-03-01 12:34:56.789, or {instead}"
+    step = float(np.median(np.diff(values)))
+    if _are_millionths(values):
+        rate = f"; their steps make {1 / (step * _OF_A_DAY):.4g} Hz"
+        return "days since 1900, times 10^6", f"divide the column by 10^6 and write unit: day, or {instead}{rate}"
+    if one > 1:
+        return None
+    if one == 1 and _are_clock_digits(values):
+        return "clocks HHMMSSmmm", f"write them as 12:34:56.789, or {instead}"
+    if _are_days(values, _NO_SECONDS):
+        return "days since 1900, the year 0 or 4713 BC", f"write unit: day, or {instead}"
+    if 0 < step < _NO_SECONDS and 0 < np.ptp(values) < _WAY * abs(values[0]):
+        if 0 < values[0] < 1:
+            return "parts of a day", f"write unit: day, or {instead}"
+        if _YEARS[0] < values[0] < _YEARS[1]:
+            return "years", f"take the year off, multiply by 31557600 and write unit: s, or {instead}"
     return None
+
+
+def are_digits(values: NDArray[np.float64]) -> bool:
+    """Whether (n,) whole numbers hold the digits of dates and clocks to the millisecond, YYYYMMDDHHMMSSmmm."""
+    return all(_is_date_and_clock(f"{value:.0f}") for value in values[[0, values.size // 2, -1]])
+
+
+def _is_date_and_clock(digits: str) -> bool:
+    """Whether 17 digits or more begin with those of a date since 1990 and of a clock."""
+    if len(digits) not in _LONG_DIGITS or not _YEARS[0] < int(digits[:4]) < _YEARS[1]:
+        return False
+    month, day, *clock = (int(digits[k : k + 2]) for k in range(4, 14, 2))
+    return 1 <= month <= _MONTHS and 1 <= day <= _LONGEST_MONTH and all(map(int.__lt__, clock, _FULL))
+
+
+def _are_clock_digits(values: NDArray[np.float64]) -> bool:
+    """Whether (n,) whole numbers that go on hold the digits of clocks to the millisecond, HHMMSSmmm."""
+    if not (
+        _CLOCK_DIGITS[0] <= values.min() and values.max() < _CLOCK_DIGITS[1] and np.all(values == np.round(values))
+    ):
+        return False
+    clocks = values // 1000
+    return bool(np.all(clocks % 100 < _FULL[2]) and np.all(clocks // 100 % 100 < _FULL[1]))
+
+
+def _are_millionths(values: NDArray[np.float64]) -> bool:
+    """Whether (n,) values with a decimal part lie where millionths of days do, as WinCC writes them in `Time_ms`."""
+    low, high = _MILLIONTHS
+    goes_on = float(np.median(np.diff(values))) > 0
+    return bool(goes_on and low < values.min() and values.max() < high and np.any(values != np.round(values)))
+
+
+def may_be_days(first: float) -> bool:
+    """Whether a first stamp lies where days since 2000 do, however they are counted."""
+    return any(low < first < high for low, high in _DAYS)
 
 
 def _are_days(values: NDArray[np.float64], least: float) -> bool:
     """Whether (n,) values lie where days from 1900 or the year 0 do, and go on by less than a part of one."""
     step = float(np.median(np.diff(values)))
-    return any(low < values[0] < high for low, high in _DAYS) and 0 < step < least
+    return may_be_days(values[0]) and 0 < step < least
 
 
 def seconds_by_name(name: str) -> bool:
@@ -147,10 +207,12 @@ def seconds_by_name(name: str) -> bool:
     return bool(_SECONDS.search(name)) and not _PARTS.search(name)
 
 
-def unit_by_ending(name: str) -> str | None:
-    """The part of a second that the name of a column of stamps ends with, as `t_ms`; None of any other."""
+def unit_by_name(name: str) -> str | None:
+    """The unit that the name of a column of stamps says, at its end as `t_ms`, or as `millis`; None of any other."""
     unit = _ending(name)
-    return unit if unit in ENDINGS else None
+    if unit in ENDINGS:
+        return unit
+    return next((part for word, part in _CLOCKS if word in name.lower()), None)
 
 
 def _ending(reference: str | int) -> str | None:

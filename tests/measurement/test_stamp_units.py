@@ -10,7 +10,7 @@ from gear_damping.measurement.load import load_measurement
 
 SECONDS = np.arange(400) * 0.02
 MOTION = np.exp(-0.05 * SECONDS) * np.cos(5.6 * SECONDS)
-DAYS = {"excel": 45356.586, "matlab": 739316.586}
+DAYS = {"excel": 45356.586, "matlab": 739316.586, "julian": 2460371.086}
 
 
 def declared(folder, stamps, unit, more="", columns="t,x", rows=None):
@@ -149,3 +149,59 @@ def test_row_numbers_beside_the_axis_of_a_signal_analyser_are_no_time(tmp_path):
     path.write_text(path.read_text().replace("column: t", "column: 0").replace("column: x", "column: 1"))
     with pytest.raises(InputError, match=r"counts the rows.*'X-axis delta' beside the table says 50 Hz"):
         load_measurement(path)
+
+
+@pytest.mark.parametrize(
+    ("name", "unit", "right"), [("millis", "s", "ms"), ("micros", "ms", "us"), ("t_nanos", "s", "ns")]
+)
+def test_the_clocks_of_a_controller_are_in_their_own_unit(name, unit, right, tmp_path):
+    stamps = [20 * k + 31234 for k in range(400)]
+    path = declared(tmp_path, stamps, unit, columns=f"{name},x")
+    path.write_text(path.read_text().replace("column: t", f"column: {name}"))
+    with pytest.raises(InputError, match=f"the column is named '{name}'; remedy: write unit: {right}"):
+        load_measurement(path)
+    path.write_text(path.read_text().replace(f"unit: {unit}", f"unit: {right}"))
+    assert load_measurement(path).records[0].time.size == 400
+
+
+OTHER_STAMPS = {
+    "part of a day": ([f"{0.5 + s / 86400:.12f}" for s in SECONDS / 4], "parts of a day; remedy: write unit: day"),
+    "year": ([f"{2024.16 + s / 31557600:.13f}" for s in SECONDS / 4], "years; remedy: take the year off"),
+    "clock": (
+        [f"1159{50000 + round(1000 * s):05d}" for s in SECONDS],
+        r"clocks HHMMSSmmm; remedy: write them as 12:34",
+    ),
+    "date": ([f"20240301115{950000 + round(1000 * s):06d}" for s in SECONDS], "dates YYYYMMDDHHMMSSmmm; remedy: write"),
+    "WinCC": ([f"{45352.5e6 + s / 0.0864:.6f}" for s in SECONDS], r"days since 1900, times 10\^6; .* make 50 Hz"),
+}
+
+
+@pytest.mark.parametrize(("stamps", "said"), OTHER_STAMPS.values(), ids=OTHER_STAMPS)
+def test_numbers_of_dates_and_clocks_are_no_seconds(stamps, said, tmp_path):
+    with pytest.raises(InputError, match=f"look like {said}"):
+        load_measurement(declared(tmp_path, stamps, "s"))
+
+
+@pytest.mark.parametrize("first", [0.0, 0.5, 2024.16])
+def test_a_fast_clock_that_is_not_beside_its_first_stamp_is_one(first, tmp_path):
+    record = load_measurement(declared(tmp_path, [f"{first + s / 100:.6f}" for s in SECONDS], "s")).records[0]
+    assert record.sampling_rate == pytest.approx(5000)
+
+
+def test_days_of_a_column_that_is_named_after_milliseconds_are_read(tmp_path):
+    path = declared(tmp_path, [f"{45352.5 + s / 86400:.12f}" for s in SECONDS], "day", columns="Time_ms,x")
+    path.write_text(path.read_text().replace("column: t", "column: Time_ms"))
+    assert load_measurement(path).records[0].sampling_rate == pytest.approx(50, rel=1e-3)
+
+
+@pytest.mark.parametrize(("factor", "is_refused"), [(1.0, False), (1.5, False), (86.4, True), (0.014, True)])
+def test_a_clock_of_a_few_whole_seconds_tells_a_grossly_wrong_unit(factor, is_refused, tmp_path):
+    rows = [
+        f"{factor * s:.6f},01.03.2024 12:00:{int(s):02d},{x:.6f}" for s, x in zip(SECONDS * 0.7, MOTION, strict=True)
+    ]
+    path = declared(tmp_path, None, "s", columns="t,clock,x", rows=rows)
+    if is_refused:
+        with pytest.raises(InputError, match="the clock 'clock' in the same rows 5 s"):
+            load_measurement(path)
+    else:
+        assert load_measurement(path).records[0].sampling_rate == pytest.approx(50 / 0.7 / factor, rel=1e-3)
