@@ -86,7 +86,7 @@ class Assembler:
     def _channel(self, raw: RawChannel, record: RawRecord, notes: list[str], findings: list[Finding]) -> Channel:
         plan = raw.plan
         conversion = self._conversion(plan, raw.unit, f"{plan.key}.unit")
-        findings += [found] if (found := _unit_conflict(raw, conversion)) else []
+        findings += [found for found in (_unit_conflict(raw, conversion), _scale_beside(raw, record)) if found]
         limits = {
             name: quantity.value * self._conversion(plan, quantity.unit, f"{plan.key}.{name}", written(quantity)).factor
             for name, quantity in plan.limits.items()
@@ -359,6 +359,20 @@ def _name_conflict(raw: RawChannel, said: str, stated: Unit) -> Finding | None:
         "the one that is wrong, or write gain: 1 where it is the name"
     )
     return Finding("unit_conflict", message, channel=raw.plan.name)
+
+
+def _scale_beside(raw: RawChannel, record: RawRecord) -> Finding | None:
+    """A factor or a zero that the file states beside the column, where the YAML says nothing of a gain."""
+    table = record.table
+    scales = table.scales(table.index(raw.plan.column, raw.plan.key))
+    if raw.plan.is_scaled or not scales:
+        return None
+    stated = " and ".join(f"{name} = {value}" for name, value in scales.items())
+    message = (
+        f"column '{raw.plan.column}' has an attribute {stated}, which is not applied; values are divided by gain: "
+        "where it is a factor that multiplies them, write gain: one over it, and gain: 1 where they are right as they are"
+    )
+    return Finding("not_applied", message, channel=raw.plan.name, severity="note")
 
 
 def _unit_conflict(raw: RawChannel, conversion: Conversion) -> Finding | None:

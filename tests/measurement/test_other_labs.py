@@ -402,6 +402,28 @@ def test_the_rate_of_a_dataset_is_the_file_s_and_a_scale_beside_it_is_said(tmp_p
     assert any("add_offset = 3.0, which is not applied" in note for note in table.notes)
 
 
+@pytest.mark.parametrize("name", ["scale", "scale_factor", "gain", "slope", "calibration_factor"])
+def test_a_record_says_a_factor_beside_its_column_unless_a_gain_is_declared(name, tmp_path):
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["acc"] = DECAY
+        file["acc"].attrs.update({"sampling_rate": 500.0, "unit": "m", name: 0.001, "offset": 0.0})
+    path = tmp_path / "m.yaml"
+    said = {}
+    for gain in ("", ", gain: 1"):
+        path.write_text(
+            "system: oscillator\nrecords:\n  - file: a.h5\n    channels:\n      displacement: {column: acc"
+            + gain
+            + "}\n"
+        )
+        found = load_measurement(path).findings
+        said[gain] = [one.message for one in found if (one.kind, one.severity) == ("not_applied", "note")]
+    assert len(said[""]) == 1
+    assert f"has an attribute {name} = 0.001, which is not applied" in said[""][0]
+    assert "write gain: one over it" in said[""][0]
+    assert said[", gain: 1"] == []
+
+
 def test_a_level_is_no_motion(tmp_path):
     rows = "\n".join(f"{t:.4f},{x:.6g}" for t, x in zip(TIME, DECAY, strict=True))
     channels = {"time": {"column": "t", "unit": "s"}, "displacement": {"column": "x", "unit": "dB"}}

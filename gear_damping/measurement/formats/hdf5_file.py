@@ -24,7 +24,7 @@ from gear_damping.measurement.formats.table import (
 SUFFIXES = (".h5", ".hdf5", ".hdf")
 DEADLY = True  # a damaged file may end the process
 
-_FACTORS = ("scale", "scale_factor", "factor", "gain", "sensitivity", "calibration", "slope")
+_FACTORS = ("scale", "scale_factor", "factor", "gain", "sensitivity", "calibration", "calibration_factor", "slope")
 _ZEROS = ("add_offset", "offset", "intercept")  # that they may have to be moved by
 _SINCE = re.compile(r"\s+since\s.*$", re.I | re.S)  # a time counts from
 _UNIT_ATTRIBUTES = ("unit", "units", "Unit", "Units", "unit_string")
@@ -52,20 +52,25 @@ def read(path: Path, max_bytes: int) -> Table:
         groups = [one for one in items if not isinstance(one, h5py.Dataset)]
         settings = _settings(groups)
         rates = {one.name.strip("/"): stated for one in groups if (stated := stated_rate(_settings([one])))}
-        notes = [note for dataset in datasets for note in _not_applied(path, dataset)]
+        left = {name: scales for one in datasets if (scales := _not_applied(one)) for name, *_ in _fields(one)}
+        notes = [
+            f"{path.name}: '{name}' has an attribute {attribute} = {value}, which is not applied"
+            for name, scales in left.items()
+            for attribute, value in scales.items()
+        ]
     table = ArrayTable(path, held, left_out)
     table.stated_rate = stated_rate(settings)
     table.stated_rates = rates
+    table.not_applied = left
     table.notes += tuple(notes)
     return table
 
 
-def _not_applied(path: Path, dataset: Any) -> Iterator[str]:
-    """A note for each attribute by which numbers may have to be multiplied or moved: nothing says that they are."""
-    for name, value in dataset.attrs.items():
-        nothing = {**dict.fromkeys(_FACTORS, 1), **dict.fromkeys(_ZEROS, 0)}.get(name.lower())
-        if nothing is not None and np.size(value) == 1 and value != nothing:
-            yield f"{path.name}: '{dataset.name.strip('/')}' has an attribute {name} = {value}, which is not applied"
+def _not_applied(dataset: Any) -> dict[str, float]:
+    """The attributes by which numbers may have to be multiplied or moved: nothing says that they are."""
+    neutral = {**dict.fromkeys(_FACTORS, 1), **dict.fromkeys(_ZEROS, 0)}
+    found = {name: value for name, value in dataset.attrs.items() if name.lower() in neutral and np.size(value) == 1}
+    return {name: value for name, value in found.items() if value != neutral[name.lower()]}
 
 
 def _items(file: Any) -> list[Any]:

@@ -49,6 +49,7 @@ class Table(ABC):
         self.stated_rate: tuple[str, float] | None = None  # its name in lines above, or attributes; Hz; a guess
         self.stated_rates: dict[str, tuple[str, float]] = {}  # the same of groups, by their path
         self.full_scale: float | None = None  # the value of full scale, where samples are fractions of it
+        self.not_applied: dict[str, dict[str, float]] = {}  # factors and zeros beside arrays, by the name of these
         self.notes: tuple[str, ...] = ()
 
     @abstractmethod
@@ -99,6 +100,10 @@ class Table(ABC):
     def empty_cells(self, index: int) -> list[int]:
         """The rows in which a column has a cell with nothing in it; of a table of numbers none."""
         return []
+
+    def scales(self, index: int) -> dict[str, float]:
+        """The factors and zeros that the file states beside a column, by their names: values are without them."""
+        return self.not_applied.get(self.shapes[self._place[index][0]][0], {})
 
     def _named(self, column: str) -> list[int]:
         """Those of the very name, else of its letters in other codes (µ and μ), of the last part of its path, or of
