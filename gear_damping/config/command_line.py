@@ -25,7 +25,8 @@ NEEDED = {  # what a launcher is made of: its module, and what brings it
     "joblib": ("hydra_plugins.hydra_joblib_launcher", "joblib"),
     "slurm": ("hydra_plugins.hydra_submitit_launcher", "slurm"),
 }
-OF_A_PATH = (PATH, "checkpoint", "resume", "sweep", "data_folder", "hydra.run.dir", "hydra.sweep.dir")
+PLACES = ("hydra.run.dir", "hydra.sweep.dir")  # where the output of one run lies, and that of a sweep
+OF_A_PATH = (PATH, "checkpoint", "resume", "sweep", "data_folder", *PLACES)
 NAMES_FILES = (*OF_A_PATH, "simulator.extended", "simulator.plugins", "measurement.plugins", "model.plugins")
 _AT_HOME = re.compile(r"(?<=[=,\[])~/")
 LONGEST_KEY = 200  # letters; a folder of configurations is looked up by them, and file systems end at 255
@@ -148,6 +149,9 @@ def _read_override(argument: str, many: bool, before: str) -> tuple[list[Problem
         return [Problem(f"{key[:40]}…", rule, remedy="write key=value with a key of --help", source=SOURCE)], []
     if not many and not parsed.is_delete() and parsed.is_sweep_override():
         return [Problem(key, "has several values and this is one run", value, _one_value(value), SOURCE)], []
+    if key in PLACES and key != PLACES[many]:
+        rule = f"is the place {'of one run, and this is a sweep' if many else 'of a sweep, and this is one run'}"
+        return [Problem(key, rule, value, f"use {PLACES[many]}=FOLDER", SOURCE)], []
     if key == LAUNCHER and value in NEEDED:
         return _missing_launcher(value), [argument]
     if parsed.is_delete() or key.startswith("hydra"):

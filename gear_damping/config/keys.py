@@ -8,7 +8,7 @@ from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
 from gear_damping.explanation.settings import SearchSettings
 from gear_damping.reporting.paper.printed import EFFECTS
-from gear_damping.schema.mappings import group, read_declared, values_of
+from gear_damping.schema.mappings import Group, group, read_declared, values_of
 from gear_damping.schema.values import Flag, Given, Levels, Names, Number, OneOf, Problems, Text, Value
 from gear_damping.units import SUFFIXES
 
@@ -79,6 +79,13 @@ def check(config: Mapping[str, Any], origin: Origin) -> tuple[dict[str, Any], li
     return known, [_with_its_group(problem) if problem.key not in SCHEMA else problem for problem in problems]
 
 
+def without_group(key: str) -> str:
+    """The remedy for a key of no group that was given in one, `explain.seed`; empty for any other key."""
+    inside, _, name = key.rpartition(".")
+    alone = inside and name in SCHEMA and not isinstance(SCHEMA[name], Mapping)
+    return f"did you mean '{name}', which stands in no group?" if alone else ""
+
+
 def _with_its_group(problem: Problem) -> Problem:
     """Of a key that is one of a group's and was given without it, the remedy names the group."""
     groups = [name for name, kinds in SCHEMA.items() if isinstance(kinds, Mapping) and problem.key in kinds]
@@ -99,7 +106,8 @@ def read_keys(
     """
     problems = Problems()
     found = read_declared(group(kinds, others), values, problems, origin.of, prefix)
-    return ({} if found is None else _as_given(values, values_of(found))), problems
+    told = [replace(p, remedy=without_group(p.key) or p.remedy) if p.rule == Group.unknown else p for p in problems]
+    return ({} if found is None else _as_given(values, values_of(found))), told
 
 
 def _as_given(given: Any, read: Any) -> Any:

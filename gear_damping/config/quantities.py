@@ -84,12 +84,18 @@ def parameter_value(
     listed, unit = _listed(value, unit)
     if listed is None:
         raise InputError(
-            Problem(key, f"must be a list of numbers in {parameter.unit}", value, "write [a, b, …]", source)
+            Problem(key, f"must be a list of numbers in {unit or parameter.unit}", value, _as_list(value), source)
         )
     numbers = tuple(quantity(v, parameter.unit, f"{key}[{i}]", source, unit) for i, v in enumerate(listed))
     for i, number in enumerate(numbers):
         _refuse(parameter.problem(number, f"{key}[{i}]", source))
     return numbers
+
+
+def _as_list(value: Any) -> str:
+    """The remedy for what is no list; one number is one of a list."""
+    alone = isinstance(value, int | float | str) and not isinstance(value, bool)
+    return f"write [{value}], or [a, b, …]" if alone else "write [a, b, …]"
 
 
 def _listed(value: Any, unit: str | None) -> tuple[Sequence[Any] | None, str | None]:

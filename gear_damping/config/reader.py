@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from gear_damping.config.keys import read_value
+from gear_damping.config.keys import read_value, without_group
 from gear_damping.config.quantities import parameter_value, split_suffix
 from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem, nearest
@@ -26,7 +26,8 @@ class Reader:
     def refuse_unknown(self, key: str, choices: Iterable[str], rule: str = "no such key") -> None:
         """Note a key whose last part is none of the choices."""
         names = list(choices)
-        self.refuse(key, rule, remedy=nearest(key.split(".")[-1], names) if names else "it takes none")
+        near = nearest(key.split(".")[-1], names) if names else "it takes none"
+        self.refuse(key, rule, remedy=without_group(key) or near)
 
     def collect(self, work: Callable[[], Any], group: str = "") -> Any:
         """The result of `work`; None where it raised an InputError, whose problems are kept.

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any, get_args
 
 from gear_damping.config.extended import with_extended
+from gear_damping.config.keys import without_group
 from gear_damping.config.prior import OTHER_FAMILY, read_prior
 from gear_damping.config.quantities import split_suffix
 from gear_damping.config.reader import Reader
@@ -197,7 +198,7 @@ def _refuse_unknown(
         elif options is not None:
             ours = {*HOW, "system", *options}
             if key not in ours and split_suffix(key, numbers)[0] not in numbers:
-                remedy = nearest(key, [*known, *numbers, *ours])
+                remedy = without_group(full) or nearest(key, [*known, *numbers, *ours])
                 remedy += (
                     "; an effect of your own needs simulator.plugins=[its file]" if isinstance(value, Mapping) else ""
                 )

@@ -37,6 +37,22 @@ FAULTS = {
         ["data.csv: is not an override", '"measurement.path=my data.csv'],
     ),
     "unknown_key": (["sed=3"], ["sed: no such key", "did you mean 'seed'"]),
+    "key_of_no_group": (["explain.ruled_out=[backlash]"], ["explain.ruled_out", "did you mean 'ruled_out', which"]),
+    "key_of_no_group_in_a_model": (["model.checkpoint=a"], ["model.checkpoint", "did you mean 'checkpoint', which"]),
+    "key_of_no_group_in_a_simulator": (["simulator.seed=3"], ["simulator.seed", "did you mean 'seed', which"]),
+    "key_of_no_group_in_a_plan": (["experiment=plan", "plan.seed=3"], ["plan.seed", "did you mean 'seed', which"]),
+    "list_in_the_unit_of_its_key": (
+        ["experiment=plan", "plan.speeds_rpm=3000"],
+        ["plan.speeds_rpm = 3000", "must be a list of numbers in rpm", "write [3000]"],
+    ),
+    "folder_of_a_run_for_a_sweep": (
+        ["--multirun", "seed=1,2", "hydra.run.dir=there"],
+        ["hydra.run.dir = 'there'", "this is a sweep", "use hydra.sweep.dir=FOLDER"],
+    ),
+    "folder_of_a_sweep_for_a_run": (
+        ["hydra.sweep.dir=there"],
+        ["hydra.sweep.dir = 'there'", "this is one run", "use hydra.run.dir=FOLDER"],
+    ),
     "unknown_plus_key": (["+foo=3"], ["foo: no such key", "command line: foo=3"]),
     "no_override": (["backlash"], ["backlash: is not an override"]),
     "of_another_task": (["task=simulate", "explain.accepted_t=4"], ["explain.accepted_t", "acts in task=explain"]),
