@@ -15,7 +15,7 @@ from gear_damping.identification.oscillator.each_alone import Alone
 from gear_damping.identification.oscillator.linear_model import DAMPING
 from gear_damping.identification.output_error.records import FreeParameter
 from gear_damping.physics.effects.stiffness_by_record import StiffnessByRecord
-from tests.explanation.decisions.made_up import bench, fit, outcome
+from tests.explanation.decisions.made_up import bench, fit, left, outcome
 
 FREQUENCIES = {"a": 4.71, "b": 3.97, "c": 3.46}  # Hz
 ALONE = tuple(
@@ -87,3 +87,27 @@ def test_it_is_tried_where_nothing_else_is_found_and_each_record_has_a_model_of_
     monkeypatch.setattr(State, "accepting", lambda _, best, rivals: best)
     state = State(made, nominal, nominal, ranked=(score(),))
     assert (single.cause_of_records(state) is found) is named
+
+
+@pytest.mark.parametrize(
+    ("misfit", "squares", "is_validated", "is_told", "instead"),
+    [
+        (50.0, 0.2, True, True, True),
+        (1.0, 0.2, True, True, False),  # the law leaves noise
+        (50.0, 0.3, True, True, False),  # it leaves no more than twice as much, with one figure
+        (50.0, 0.2, False, True, False),
+        (50.0, 0.2, True, False, False),
+    ],
+)
+def test_it_takes_the_place_of_a_law_for_all_that_leaves_far_more(
+    misfit, squares, is_validated, is_told, instead, monkeypatch
+):
+    """Of pendulums of six lengths a law whose frequency falls with the swing follows some."""
+    law, own, nominal = fit("sine_restoring", squares=0.5), fit("stiffness_by_record", squares=squares), outcome()
+    own.differs = True
+    monkeypatch.setattr(single, "_told_alone", lambda _: own if is_told else None)
+    monkeypatch.setattr(State, "is_validated", lambda *_: is_validated)
+    monkeypatch.setattr(State, "beyond_sensor", lambda *_: left(40.0, misfit))
+    state = State(bench(SearchSettings(), [(nominal, None)]), nominal, nominal)
+    assert single.differing_instead(law, state) is (own if instead else None)
+    assert single.differing_instead(own, state) is None
