@@ -45,14 +45,6 @@ FAULTS = {
         ["experiment=plan", "plan.speeds_rpm=3000"],
         ["plan.speeds_rpm = 3000", "must be a list of numbers in rpm", "write [3000]"],
     ),
-    "folder_of_a_run_for_a_sweep": (
-        ["--multirun", "seed=1,2", "hydra.run.dir=there"],
-        ["hydra.run.dir = 'there'", "this is a sweep", "use hydra.sweep.dir=FOLDER"],
-    ),
-    "folder_of_a_sweep_for_a_run": (
-        ["hydra.sweep.dir=there"],
-        ["hydra.sweep.dir = 'there'", "this is one run", "use hydra.run.dir=FOLDER"],
-    ),
     "unknown_plus_key": (["+foo=3"], ["foo: no such key", "command line: foo=3"]),
     "no_override": (["backlash"], ["backlash: is not an override"]),
     "of_another_task": (["task=simulate", "explain.accepted_t=4"], ["explain.accepted_t", "acts in task=explain"]),
@@ -216,3 +208,17 @@ def test_a_file_whose_name_has_brackets_needs_no_quotes():
     typed = read_command_line(["task=inspect", f"measurement.path={path}"])
     assert not typed.problems
     assert f'++measurement.path="{path}"' in typed.overrides
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--multirun", "seed=1,2", "hydra.run.dir=there"], "this is a sweep; remedy: use hydra.sweep.dir=FOLDER"),
+        (["hydra.sweep.dir=there"], "this is one run; remedy: use hydra.run.dir=FOLDER"),
+    ],
+)
+def test_one_run_and_a_sweep_have_each_a_place(words, said):
+    (problem,) = read_command_line(words).problems
+    assert said in str(problem)
+    assert not read_command_line(["--multirun", "seed=1,2", "hydra.sweep.dir=there"]).problems
+    assert not read_command_line(["seed=1", "hydra.run.dir=there"]).problems
