@@ -370,7 +370,7 @@ def _scale_beside(raw: RawChannel, record: RawRecord) -> Finding | None:
     stated = " and ".join(f"{name} = {value}" for name, value in scales.items())
     message = (
         f"column '{raw.plan.column}' has an attribute {stated}, which is not applied; values are divided by gain: "
-        "where it is a factor that multiplies them, write gain: one over it, and gain: 1 where they are right as they are"
+        "where it is a factor that multiplies them, write gain: one over it, and gain: 1 where they are right so"
     )
     return Finding("not_applied", message, channel=raw.plan.name, severity="note")
 

@@ -337,3 +337,15 @@ class Cutoff(Measured):
     def made(self, quantity: Quantity, more: int) -> Corner:
         """The corner with its order."""
         return Corner(quantity.value, more)
+
+
+@dataclass(frozen=True)
+class Ratio(Measured):
+    """A damping ratio; a bare number above 1 is more likely one in per cent."""
+
+    def read(self, value: Any, name: str) -> Any:
+        """The quantity, as a part of one."""
+        number = value.get("value") if isinstance(value, dict) and not value.get("unit") else value
+        if isinstance(number, int | float) and not isinstance(number, bool) and number > 1:
+            refuse(f"means {100 * number:g} %", value, f"write {name}: {number:g} %, or {100 * number:g} % where it is")
+        return super().read(value, name)

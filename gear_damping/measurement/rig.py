@@ -6,7 +6,7 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import model_validator
 
-from gear_damping.measurement.quantities import Measured
+from gear_damping.measurement.quantities import Measured, Ratio
 from gear_damping.measurement.record import Quantity
 from gear_damping.schema.mappings import Declared, key
 from gear_damping.schema.values import OneOf, refuse
@@ -87,7 +87,7 @@ class GearParameters(Declared):
     contact_ratio: Annotated[Quantity, Measured("1", uncertain=True, within=(1, 2), beyond=MORE_PAIRS)] = key(
         "Contact ratio.", START
     )
-    damping_ratio: Annotated[Quantity, Measured("1", uncertain=True, excluded=UNDAMPED)] = key(
+    damping_ratio: Annotated[Quantity, Ratio("1", uncertain=True, excluded=UNDAMPED)] = key(
         "Viscous damping ratio of the mesh.", START
     )
     equivalent_mass: Annotated[Quantity, Measured("kg", uncertain=True, within=(0, 1e5))] = key(
@@ -109,6 +109,12 @@ class GearParameters(Declared):
         if self.given("equivalent_mass") and inertias:
             rule = f"{' and '.join(inertias)} give the mass along the line of action too"
             refuse(rule, self.equivalent_mass.value, "keep the two inertias or equivalent_mass", "equivalent_mass")
+        if len(inertias) == 1:
+            (missing,) = {"inertia_pinion", "inertia_gear"} - {*inertias}
+            remedy = (
+                "give it too, or equivalent_mass instead of both: a usual one beside it would be no mass of this rig"
+            )
+            refuse(f"is missing beside {inertias[0]}", None, remedy, missing)
         if self.mesh_stiffness_max and self.mesh_stiffness_min:
             most, least = self.mesh_stiffness_max.value, self.mesh_stiffness_min.value
             if least > most:
@@ -127,7 +133,7 @@ class OscillatorParameters(Declared):
     damping_coefficient: Annotated[Quantity, Measured("1/s", uncertain=True, excluded=UNDAMPED)] = key(
         "Viscous damping over mass.", START
     )
-    damping_ratio: Annotated[Quantity, Measured("1", uncertain=True, excluded=UNDAMPED)] = key(
+    damping_ratio: Annotated[Quantity, Ratio("1", uncertain=True, excluded=UNDAMPED)] = key(
         "Viscous damping over the critical one, instead of damping_coefficient.", START
     )
     force_gain: Annotated[Quantity, Measured("own", "not zero", uncertain=True)] = key(

@@ -278,3 +278,22 @@ def test_a_sensitivity_with_its_unit_is_answered_with_the_gain_and_a_quoted_sign
     assert "write unit: g, and gain: 100 where the column is in mV, 0.1 where it is in V" in bench.only_problem()
     channel["gain"] = 2.0
     assert bench.load().records[0].channels["transmission_error"].polarity == -1
+
+
+@pytest.mark.parametrize("given", ["inertia_pinion", "inertia_gear"])
+def test_one_inertia_of_a_pair_needs_the_other(bench, given):
+    bench.content["parameters"][given] = {"value": 0.01, "unit": "kg*m^2"}
+    missing = {"inertia_pinion": "inertia_gear", "inertia_gear": "inertia_pinion"}[given]
+    said = bench.only_problem()
+    assert f"parameters.{missing}: is missing beside {given}; remedy: give it too" in said
+    bench.content["parameters"][missing] = {"value": 0.02, "unit": "kg*m^2"}
+    assert bench.load().parameters[missing].value == pytest.approx(0.02)
+
+
+@pytest.mark.parametrize("written", [3, {"value": 3}, {"value": 3.0, "uncertainty": 0.1}])
+def test_a_bare_damping_ratio_above_one_is_asked_whether_it_is_in_per_cent(bench, written):
+    bench.content["parameters"]["damping_ratio"] = written
+    assert "means 300 %; remedy: write damping_ratio: 3 %, or 300 % where" in bench.only_problem()
+    for text, value in (("3 %", 0.03), ("300 %", 3.0), (0.03, 0.03), ({"value": 3, "unit": "%"}, 0.03)):
+        bench.content["parameters"]["damping_ratio"] = text
+        assert bench.load().parameters["damping_ratio"].value == pytest.approx(value)
