@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from functools import cached_property
+from types import ModuleType
 from typing import Any
 
 from matplotlib.figure import Figure
@@ -24,8 +25,12 @@ class Identification:
     def __init__(self, measurement: Measurement, fitted: Fitted) -> None:
         """Hold a fit."""
         self.measurement, self.fitted = measurement, fitted
-        linear = isinstance(fitted, identified_oscillator.Fitted)
-        self._words = identified_oscillator if linear else identified_gears
+
+    @property
+    def _words(self) -> ModuleType:
+        """What puts it into words: that of its kind of fit."""
+        linear = isinstance(self.fitted, identified_oscillator.Fitted)
+        return identified_oscillator if linear else identified_gears
 
     @cached_property
     def content(self) -> dict[str, Any]:

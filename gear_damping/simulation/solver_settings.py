@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from numbers import Integral, Real
-from typing import Literal
+from typing import Any, Literal
 
 Progress = Callable[[int, int], None]  # told (done, total)
 Engine = Literal["auto", "native", "eager"]
@@ -35,6 +35,10 @@ class Solver:
     block: int = 16
     acceleration: bool = False
     progress: Progress | None = field(default=None, compare=False, repr=False)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What is kept in a file: who is told of the progress goes on in its own process alone."""
+        return vars(self) | {"progress": None}
 
     def __post_init__(self) -> None:
         """Numbers of numpy become plain ones; what is none stays, and is refused where it is used."""

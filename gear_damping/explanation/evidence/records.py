@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import floor, log10, pi
+from typing import Any
 
 from gear_damping.explanation.evidence.release import released_at
 from gear_damping.explanation.evidence.silent_end import audible_samples
@@ -32,6 +33,11 @@ HELD_OUT = 4  # every so many operating conditions one is held out where the fil
 FEWEST_CONDITIONS = 3  # of the fitted records, for each to be left out in turn
 FEWEST_DECAYS = 3  # of one condition, for one of them to be held out whole
 SPLIT = 2 / 3  # of a single record are fitted, the rest held out
+
+
+def never() -> bool:
+    """Where no time runs out."""
+    return False
 
 
 @dataclass(frozen=True)
@@ -77,7 +83,7 @@ class Evidence:
     silent_s: float = 0.0
     waited_s: float = 0.0
     settings: SearchSettings = field(default_factory=SearchSettings)
-    is_over: Callable[[], bool] = lambda: False
+    is_over: Callable[[], bool] = never
     input_noise: bool = False
     sealed: bool = False
     base: type[System] | None = None
@@ -85,6 +91,10 @@ class Evidence:
     def __post_init__(self) -> None:
         if self.base is None:
             object.__setattr__(self, "base", system_class(self.system))
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What is kept in a file: a clock goes on in its own process alone, and there no time runs out."""
+        return vars(self) | {"is_over": never}
 
     def has(self, trait: Trait) -> bool:
         """Whether the system has a trait."""

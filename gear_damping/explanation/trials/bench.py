@@ -3,6 +3,7 @@
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field, replace
 from math import inf
+from typing import Any
 
 from torch import Tensor
 
@@ -32,6 +33,10 @@ SAME = 1e-3  # of the noise variance: a mean difference below it is none
 Log = Callable[[str], None]
 
 
+def nobody(text: str) -> None:
+    """Where nobody is told."""
+
+
 @dataclass(frozen=True)
 class Bench:
     """Where candidates are tried.
@@ -58,6 +63,10 @@ class Bench:
     budget: Budget = field(default_factory=Budget)
     rough: Outcome | None = None
     fewer: dict[tuple[int, str], tuple[Fitted, Outcome]] = field(default_factory=dict, repr=False)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What is kept in a file: who was told goes on in its own process alone, and so do numbers of its objects."""
+        return vars(self) | {"log": nobody, "fewer": {}}
 
     @property
     def settings(self) -> SearchSettings:
