@@ -13,6 +13,7 @@ from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.measurement.record import Channel
 
 ABOVE = 3.0  # times the noise: what noise of another colour leaves about a resonance is less
+PARTS = 8  # of a record: a decay is over after one or two of them, and behind it noise hides what it left
 LINEAR = 0.1  # % of the signal: no better is a sensor linear
 
 
@@ -33,8 +34,8 @@ def lack_of_fit(
         noise: Of the records.
 
     Returns:
-        `significant`, and in the declared unit `residual` and `noise`, beside `percent_of_signal` of the
-        residual; None where the records are too short to estimate their noise.
+        `significant`, and in the declared unit `residual`, `noise` and `loudest`, the residual of the eighth of a
+        record with the largest, beside `percent_of_signal` of the residual; None where the records are too short to estimate their noise.
     """
     if noise.degrees_of_freedom < 1:
         return None
@@ -42,10 +43,12 @@ def lack_of_fit(
     responses, predicted = [r.response for r in judged], [predictions[r.name][: len(r.response)] for r in judged]
     residuals = [measured - found for measured, found in zip(responses, predicted, strict=True)]
     left = rmse(responses, predicted)
+    loudest = max(float(part.square().mean()) for one in residuals for part in one.chunk(PARTS)) ** 0.5
     signal = rmse(responses, [response.mean().expand_as(response) for response in responses])
     return {
         "significant": bool(excess(residuals, judged, noise).significant),
         "residual": float(left / channel.declared_factor),
+        "loudest": loudest / channel.declared_factor,
         "percent_of_signal": float(100 * left / signal),
         "noise": float(noise.value / channel.declared_factor),
         "noise_method": noise.method,
@@ -56,7 +59,7 @@ def lack_of_fit(
 def sentence(found: Mapping[str, Any]) -> str | None:
     """What a lack of fit means for the figures, and what to do about it; None where there is hardly one."""
     if not found["significant"]:
-        is_seen = found["residual"] > ABOVE * found["noise"] > 0 and found["percent_of_signal"] > LINEAR
+        is_seen = found["loudest"] > ABOVE * found["noise"] > 0 and found["percent_of_signal"] > LINEAR
         return _small(found) if is_seen else None
     return (
         f"lack of fit: the linear oscillator leaves {found['residual']:.3g} {found['unit']}, "
@@ -68,9 +71,10 @@ def sentence(found: Mapping[str, Any]) -> str | None:
 
 def _small(found: Mapping[str, Any]) -> str:
     """What the noise of a sensor does not leave, though it is less of the signal than is looked for a name of."""
-    times = found["residual"] / found["noise"]
+    times = found["loudest"] / found["noise"]
     return (
-        f"The residual, {found['percent_of_signal']:.2g} % of the signal, is {times:.2g} times the noise of "
-        f"{found['noise']:.3g} {found['unit']} ({found['noise_method']}). What makes it is too small to be looked for, "
-        "as channels that are a part of a sample apart; the intervals do not cover what it does to the figures"
+        f"The residual, {found['percent_of_signal']:.2g} % of the signal, is up to {times:.2g} times the noise of "
+        f"{found['noise']:.3g} {found['unit']} ({found['noise_method']}). What makes it is small, as a law that differs "
+        "little from the linear one or channels that are a part of a sample apart; the intervals do not cover what it "
+        f"does to the figures, and task=explain measurement.path={found['source']} may find it"
     )

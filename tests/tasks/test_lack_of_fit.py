@@ -84,6 +84,23 @@ def test_channels_that_are_half_a_sample_apart_leave_what_the_noise_does_not(lat
     assert "lack of fit" not in fit.table()
 
 
+@pytest.mark.parametrize(("cubic", "is_said"), [(8e5, True), (0.0, False)])
+def test_what_a_decay_leaves_before_it_is_over_is_not_hidden_by_the_noise_behind_it(cubic, is_said, tmp_path):
+    time = np.arange(4000) / RATE
+
+    def rates(_, state):
+        return [state[1], -2 * 0.031 * 45.87 * state[1] - 45.87**2 * state[0] - cubic * state[0] ** 3]
+
+    swing = solve_ivp(rates, (0, 8), [5e-3, 0], "DOP853", time, rtol=1e-10, atol=1e-14).y[0]
+    np.savez(tmp_path / "a.npz", t=time, x=swing + 4e-6 * np.random.default_rng(4).standard_normal(time.size))
+    channels = "{time: {column: t, unit: s}, displacement: {column: x, unit: m}}"
+    path = tmp_path / "measurement.yaml"
+    path.write_text(f"system: oscillator\nrecords:\n- {{file: a.npz, channels: {channels}}}\n")
+    fit = gd.identify(gd.load(path))
+    assert ("times the noise of" in fit.table()) is is_said
+    assert "lack of fit" not in fit.table()
+
+
 def test_what_goes_on_by_a_drive_that_no_channel_holds_is_no_decay(tmp_path, caplog, capsys):
     found = identified(tmp_path, 1e-2 * np.cos(OMEGA * TIME), 1e-4)
     said = caplog.text + capsys.readouterr().err
