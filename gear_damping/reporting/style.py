@@ -1,16 +1,22 @@
 """One look for every figure: colours, sizes, and the legend beside the data instead of on it."""
 
+import logging
+import re
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
+from matplotlib import font_manager
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+log = logging.getLogger("gear_damping")
 # Okabe & Ito (2008): told apart also without colour vision.
 BLUE, ORANGE, GREEN, RED, PURPLE, SKY, YELLOW = (
     "#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7", "#56B4E9", "#F0E442",
@@ -21,6 +27,13 @@ MODEL_COLOURS = {"raw_lstm": BLUE, "cwt_lstm": RED, "record_cwt_lstm": GREEN, "w
 MODEL_MARKERS = {"raw_lstm": "o", "cwt_lstm": "s", "record_cwt_lstm": "D", "white_noise": "x", "mean": "+"}
 SEQUENTIAL, DIVERGING = "cividis", "RdBu_r"
 WIDTH = 8.0  # inches; 1200 pixels at the resolution of saved files
+# Fonts that have the letters of East Asia, on one system or another; the usual one has the others.
+EAST_ASIAN = (
+    "Noto Sans CJK JP", "Noto Sans JP", "Noto Sans CJK SC", "Noto Sans SC", "IPAexGothic", "Yu Gothic", "Meiryo",
+    "MS Gothic", "Hiragino Sans", "SimHei", "Microsoft YaHei", "PingFang SC", "WenQuanYi Zen Hei", "Malgun Gothic",
+    "Apple SD Gothic Neo", "NanumGothic",
+)  # fmt: skip
+NO_LETTER = "Glyph .* missing from"  # how a warning of matplotlib begins that a letter is drawn as a box
 SAVED_DPI = 150  # sharp in print at half a page
 _STYLE = {
     "font.size": 10,
@@ -51,9 +64,28 @@ _STYLE = {
 
 @contextmanager
 def styled() -> Iterator[None]:
-    """The look, for what is made or drawn inside."""
-    with mpl.rc_context(_STYLE):
+    """The look, for what is made or drawn inside; that a font lacks letters is said in one line."""
+    with mpl.rc_context(_STYLE | {"font.family": families()}), warnings.catch_warnings(record=True) as found:
+        warnings.filterwarnings("always", NO_LETTER)
         yield
+    for one in found:
+        if re.match(NO_LETTER, str(one.message)):
+            _say_boxes()
+        else:
+            warnings.warn_explicit(one.message, one.category, one.filename, one.lineno)
+
+
+@cache
+def families() -> list[str]:
+    """The fonts of a figure: the usual one, and for letters that it lacks those of East Asia that are installed."""
+    installed = {font.name for font in font_manager.fontManager.ttflist}
+    return ["sans-serif", *(name for name in EAST_ASIAN if name in installed)]
+
+
+@cache
+def _say_boxes() -> None:
+    """Once in a process."""
+    log.info("no font here has all letters of the names: figures show boxes for them")
 
 
 class StyledFigure(Figure):

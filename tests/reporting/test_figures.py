@@ -1,11 +1,14 @@
 """Figures show what they were given, keep their text inside, and say so where there is nothing to show."""
 
+import warnings
+from types import SimpleNamespace
+
 import matplotlib as mpl
 import numpy as np
 import pytest
 from matplotlib.text import Text
 
-from gear_damping.reporting import figures
+from gear_damping.reporting import figures, style
 from gear_damping.reporting.figures.marks import harmonics, spaced
 from gear_damping.reporting.style import new_figure
 
@@ -274,3 +277,32 @@ def test_small_fractions_of_a_metre_are_drawn_in_a_smaller_unit(size, unit, labe
 def test_an_axis_has_a_unit_where_there_is_one(unit, label):
     axes = figures.overlay_figure(figures.Overlay("a", TIME, SIGNAL, SIGNAL), unit).axes
     assert axes[1].get_ylabel() == label
+
+
+def test_letters_that_no_font_has_are_said_in_one_line(tmp_path, caplog):
+    style._say_boxes.cache_clear()
+    with caplog.at_level("INFO", logger="gear_damping"):
+        for name in ("first.png", "second.png"):
+            figure = new_figure()
+            figure.subplots().set_title("\U00013000 \U00013001")  # of hieroglyphs, which no font here has
+            style.save(figure, tmp_path / name)
+    assert [record.message for record in caplog.records] == [
+        "no font here has all letters of the names: figures show boxes for them"
+    ]
+
+
+def test_other_warnings_of_a_figure_go_on():
+    with pytest.warns(UserWarning, match="other"), style.styled():
+        warnings.warn("another of other things: other", stacklevel=1)
+
+
+def test_fonts_of_east_asia_are_used_where_they_are_installed(monkeypatch, caplog):
+    style.families.cache_clear()
+    installed = [*style.font_manager.fontManager.ttflist, SimpleNamespace(name="Yu Gothic")]
+    with monkeypatch.context() as patch:
+        patch.setattr(style.font_manager.fontManager, "ttflist", installed)
+        assert "Yu Gothic" in style.families()
+    style.families.cache_clear()
+    assert style.families()[0] == "sans-serif"
+    new_figure().subplots().set_title("a")
+    assert "findfont" not in caplog.text
