@@ -12,9 +12,13 @@ from gear_damping.measurement.column_kinds import ANGLE, MOTION, counts_rows
 from gear_damping.units import is_of_kind, to_si
 
 NAMED = re.compile(
-    r"^(t|ts|tt|x_value)$|time|zeit|temps|tiempo|stamp|second|millis|micros|elapsed|clock|abscissa", re.I
+    r"^(t|ts|tt|x_value|ms|msec|us|usec|µs|ns|sec)$|time|zeit|temps|tiempo|stamp|second|millis|micros|elapsed|clock|abscissa",
+    re.I,
 )
 _SUFFIX = re.compile(r"[_ .\-/](s|sec|ms|us|µs|ns|min|h)$", re.I)
+_IS_UNIT = re.compile(r"^(sec|ms|msec|us|usec|µs|ns)$", re.I)  # a name that is nothing else; `s` is a way too
+_TICKS_NAMED = re.compile(r"^((sys|hal)_?)?tick(s?)$", re.I)  # of a clock where they are even, else of an encoder
+_ROUNDED_BY = 2  # numbers that steps of a `tick` differ by where its stamps are rounded
 ENDINGS = ("s", "ms", "us", "ns")
 _CLOCKS = (("millis", "ms"), ("micros", "us"), ("nanos", "ns"))  # of controllers, and words that begin like them
 _SLOW = 200  # whole numbers a step: as milliseconds less than 5 Hz, and few vibrate as slowly
@@ -217,8 +221,13 @@ def unit_by_name(name: str) -> str | None:
 
 def _ending(reference: str | int) -> str | None:
     """The unit of time that a name ends with."""
-    ending = _SUFFIX.search(_bare(reference))
-    return {"sec": "s", "µs": "us"}.get(ending[1].lower(), ending[1].lower()) if ending else None
+    return _unit_written(_SUFFIX.search(_bare(reference)))
+
+
+def _unit_written(found: re.Match[str] | None) -> str | None:
+    """The unit of time that was found in a name, as units are written."""
+    written = {"sec": "s", "msec": "ms", "usec": "us", "µs": "us"}
+    return written.get(found[1].lower(), found[1].lower()) if found else None
 
 
 def stamped_rate(unit: str, values: NDArray[np.float64]) -> float | None:
@@ -257,39 +266,20 @@ def _by_steps(index: int, column: _Column) -> str:
 
 def _by_ramp(index: int, column: _Column) -> str:
     named = column.unit is None and _SHORT.search(_bare(column.reference))
-    return "advances evenly, and its name begins with t" if named and _is_even(column) else ""
+    if named and _is_even(column):
+        return "advances evenly, and its name begins with t"
+    return "advances evenly, and is named like a clock's ticks" if _ticks(column) else ""
 
 
-def _by_epoch(index: int, column: _Column) -> str:
-    """A column that advances from 2000 on, as counted from 1970; a few stamps that go back are said of its time."""
-    name, values = _bare(column.reference), column.inside
-    if column.unit is not None or any(words.search(name) for words in (ANGLE, MOTION, _NO_TIME)):
-        return ""
-    unit = _unit_from_1970(float(values.min()), float(np.median(np.diff(values))))
-    is_kept = unit is not None and unit == _unit_from_1970(float(values.max()), 0.0)
-    return f"advances and lies where {unit} since 1970 do" if is_kept and _advances(column) else ""
+def _ticks(column: _Column) -> bool:
+    """Whether it is named like ticks and advances as those of a clock: by more than row numbers, and evenly.
 
-
-def _rises(column: _Column) -> bool:
-    """Whether it rises from row to row in nearly even steps, as the stamps of a camera; counts may be of a shaft."""
-    name, values = _bare(column.reference), column.inside
-    if column.unit is not None or any(words.search(name) for words in (ANGLE, MOTION, _NO_TIME)):
+    Several `ticks` are an encoder's where their steps differ at all.
+    """
+    named, steps = _TICKS_NAMED.search(_bare(column.reference)), np.diff(column.inside)
+    if column.unit is not None or not named:
         return False
-    steps = np.diff(values)
-    median = float(np.median(steps))
-    nearly = median > 0 and np.mean(np.abs(steps / median - 1) < _NEARLY) > _ADVANCING
-    return bool(nearly and steps.min() > 0 and not np.all(values == np.round(values)))
-
-
-def _goes_like_a_clock(column: _Column) -> bool:
-    """Whether a column without a name or unit goes on by one whole number, as no count of a shaft that moves does."""
-    values = column.inside
-    if column.unit is not None or _named(column):
-        return False
-    steps = np.diff(values)
-    median = float(np.median(steps))
-    whole = bool(np.all(values == np.round(values)))
-    return bool(whole and median > 0 and steps.min() >= 0 and np.mean(steps == median) > _ADVANCING)
+    return bool(steps.min() > 1 and np.ptp(steps) <= (0 if named[3] else _ROUNDED_BY))
 
 
 def _is_even(column: _Column) -> bool:
@@ -357,7 +347,7 @@ def _unit(column: _Column) -> tuple[str, str]:
     """The unit of the stamps, and why where the file does not say it."""
     if is_time(column.unit):
         return column.unit, ""
-    if unit := _ending(column.reference):
+    if unit := _ending(column.reference) or _unit_written(_IS_UNIT.search(_bare(column.reference))):
         return unit, "from its name"
     name = _bare(column.reference).lower()
     for word, unit in (("milli", "ms"), ("micro", "us"), ("nano", "ns")):

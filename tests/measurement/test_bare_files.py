@@ -221,3 +221,20 @@ def test_of_very_many_columns_the_first_ones_are_listed(tmp_path, columns, shown
     lines = list(_column_lines(found, []))
     assert sum(line.startswith("column ") for line in lines) == shown
     assert (f"and {columns - shown} columns more, which inspection.json lists" in lines) is (columns > shown)
+
+
+@pytest.mark.parametrize(("name", "unit"), [("ms", "ms"), ("us", "us"), ("msec", "ms"), ("sec", "s"), ("tick", "ms")])
+def test_a_column_that_is_named_as_a_unit_of_time_or_as_ticks_is_the_clock(name, unit, tmp_path):
+    found = inspected(tmp_path, **{"x": np.sin(9 * T), name: 5.0 * np.arange(N)})
+    assert (found.columns[found.time.index].reference, found.time.unit) == (name, unit)
+
+
+def test_a_tick_that_was_rounded_is_a_clock(tmp_path):
+    found = inspected(tmp_path, x=np.sin(9 * T), HAL_tick=np.round(5.03 * np.arange(N)))
+    assert found.columns[found.time.index].reference == "HAL_tick"
+
+
+def test_ticks_that_are_not_even_are_of_an_encoder(tmp_path):
+    found = inspected(tmp_path, x=np.sin(9 * T), ticks=np.round(700 * T + np.sin(3 * T)))
+    assert found.time is None
+    assert column(found, "ticks").kind == COUNTER
