@@ -282,6 +282,38 @@ def _ticks(column: _Column) -> bool:
     return bool(steps.min() > 1 and np.ptp(steps) <= (0 if named[3] else _ROUNDED_BY))
 
 
+def _by_epoch(index: int, column: _Column) -> str:
+    """A column that advances from 2000 on, as counted from 1970; a few stamps that go back are said of its time."""
+    name, values = _bare(column.reference), column.inside
+    if column.unit is not None or any(words.search(name) for words in (ANGLE, MOTION, _NO_TIME)):
+        return ""
+    unit = _unit_from_1970(float(values.min()), float(np.median(np.diff(values))))
+    is_kept = unit is not None and unit == _unit_from_1970(float(values.max()), 0.0)
+    return f"advances and lies where {unit} since 1970 do" if is_kept and _advances(column) else ""
+
+
+def _rises(column: _Column) -> bool:
+    """Whether it rises from row to row in nearly even steps, as the stamps of a camera; counts may be of a shaft."""
+    name, values = _bare(column.reference), column.inside
+    if column.unit is not None or any(words.search(name) for words in (ANGLE, MOTION, _NO_TIME)):
+        return False
+    steps = np.diff(values)
+    median = float(np.median(steps))
+    nearly = median > 0 and np.mean(np.abs(steps / median - 1) < _NEARLY) > _ADVANCING
+    return bool(nearly and steps.min() > 0 and not np.all(values == np.round(values)))
+
+
+def _goes_like_a_clock(column: _Column) -> bool:
+    """Whether a column without a name or unit goes on by one whole number, as no count of a shaft that moves does."""
+    values = column.inside
+    if column.unit is not None or _named(column):
+        return False
+    steps = np.diff(values)
+    median = float(np.median(steps))
+    whole = bool(np.all(values == np.round(values)))
+    return bool(whole and median > 0 and steps.min() >= 0 and np.mean(steps == median) > _ADVANCING)
+
+
 def _is_even(column: _Column) -> bool:
     steps = np.diff(column.inside)
     median = float(np.median(steps))
