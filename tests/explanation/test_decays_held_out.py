@@ -64,6 +64,22 @@ def test_of_a_motion_that_goes_on_the_end_is(tmp_path):
     assert len(found.fit) == 2
 
 
+@pytest.mark.parametrize(("slows", "part"), [(0.0, "(last part)"), (1.0, "(middle part)")])
+def test_of_a_place_that_no_spring_holds_the_rate_counts(tmp_path, slows, part):
+    """It goes on and on: about where it came to it would always have moved most at the beginning."""
+    turned = np.where(slows, (1 - np.exp(-slows * TIME)) / max(slows, 1e-9), TIME)
+    np.savez(tmp_path / "0.npz", t=TIME, x=turned + 1e-4 * np.random.default_rng(2).normal(size=TIME.size))
+    channels = {"time": {"column": "t", "unit": "s"}, "displacement": {"column": "x", "unit": "rad"}}
+    declared = {
+        "system": "oscillator",
+        "parameters": {"stiffness": 0},
+        "records": [{"file": "0.npz", "channels": channels}],
+    }
+    (tmp_path / "measurement.yaml").write_text(yaml.safe_dump(declared))
+    (held,) = evidence_of(load_measurement(tmp_path / "measurement.yaml")).holdout
+    assert held.name.endswith(part)
+
+
 def test_of_one_decay_a_spring_that_hardens_is_named(tmp_path):
     """Over the end, .03 of 5 mm, it was `consistent`: nothing that takes more than 2.5 % of the variance."""
     time = np.arange(2000) / 250.0

@@ -195,7 +195,7 @@ def evidence_of(measurement: Measurement) -> Evidence:
     one, silent = not holdout, 0.0
     if one:
         fit, silent = _audible(fit) if dies_away else (fit, 0.0)
-        fit, holdout = _cut(fit, dies_away)
+        fit, holdout = _cut(fit, dies_away, spring)
     return Evidence(
         system=measurement.system,
         base=base,
@@ -268,14 +268,14 @@ def _audible(records: Sequence[FitRecord]) -> tuple[list[FitRecord], float]:
     return kept, sum(whole.duration - left.duration for whole, left in zip(records, kept, strict=True))
 
 
-def _cut(records: Sequence[FitRecord], dies_away: bool) -> tuple[list[FitRecord], list[FitRecord]]:
+def _cut(records: Sequence[FitRecord], dies_away: bool, spring: bool) -> tuple[list[FitRecord], list[FitRecord]]:
     """A third of every record held out: its end, or where its motion dies away what stands before little is left.
 
     The end of a decay shows nothing that grows with the amplitude, neither that it is there nor that it is not.
     """
     fit, holdout = [], []
     for record in records:
-        first, last = _held_out(record, dies_away)
+        first, last = _held_out(record, dies_away, spring)
         if last == len(record.response):
             fit.append(part(record, slice(None, first), " (first part)"))
             holdout.append(part(record, slice(first, None), " (last part)"))
@@ -286,15 +286,17 @@ def _cut(records: Sequence[FitRecord], dies_away: bool) -> tuple[list[FitRecord]
     return fit, holdout
 
 
-def _held_out(record: FitRecord, dies_away: bool) -> tuple[int, int]:
+def _held_out(record: FitRecord, dies_away: bool, spring: bool) -> tuple[int, int]:
     """The samples of a record that are held out: a third of them, from where a third of its energy is still to come.
 
-    Of a motion that goes on that is the end. What is fitted before it is half as long at least, or it tells nothing.
+    Of a motion that goes on that is the end. What is fitted before it is half as long at least, or it tells nothing. A
+    place that no spring holds is where it came to: its rate dies away.
     """
     total, length = len(record.response), round((1 - SPLIT) * len(record.response))
     if not dies_away:
         return total - length, total
-    energy = (record.response - record.response[-length:].mean()).square().cumsum(0)
+    moves = record.response if spring or record.observed.derivatives else record.response.diff()
+    energy = (moves - moves[-length:].mean()).square().cumsum(0)
     first = max(int((energy < SPLIT * energy[-1]).sum()), length // 2)
     last = first + length
     return (first, last) if last + length // 2 <= total else (total - length, total)

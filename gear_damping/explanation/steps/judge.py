@@ -271,9 +271,10 @@ def _without_name(found: State, before: Excess, known: Known) -> Verdict:
         )
         return Verdict(UNEXPLAINED, (text, *known.unsettled))
     if raised and before.threshold > settings.gross_percent:  # so large an effect could hide in what looks random
+        much = f"{beyond.percent:.3g} % of the signal's variance" if beyond.percent <= WHOLE else "What is missed"
         text = (
-            f"{beyond.percent:.3g} % of the signal's variance is more than the noise of the sensor, and the records "
-            "are too short to tell whether a random load makes it or something is missing."
+            f"{much} is more than the noise of the sensor, and the records are too short to tell whether a random load "
+            "makes it or something is missing."
         )
         return Verdict(UNEXPLAINED, (text, *known.unsettled))
     if known.is_stated_otherwise:
