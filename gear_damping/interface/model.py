@@ -104,7 +104,7 @@ class Model(physics.Model):
         declared, lines = self.parameters(), [repr(self.system), *(f"  {effect}" for effect in self.effects)]
         for name, value in self.given.items():
             shown = f"{value:g}" if isinstance(value, float) else "[" + ", ".join(f"{v:g}" for v in value) + "]"
-            unit = declared[name].unit
+            unit = self.system.told_unit(declared[name].unit)
             lines.append(f"    {name} = {shown}" + ("" if unit == "1" else f" {unit}"))
         return "\n".join(lines)
 

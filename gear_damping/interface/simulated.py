@@ -231,7 +231,8 @@ def _within_bounds(model: Model, values: Mapping[str, ArrayLike], batch: int) ->
     if problems:
         raise InputError(problems)
     ends = [(name, float(end)) for name, v in found.items() if name in declared for end in (v.min(), v.max())]
-    problems = [problem for name, end in ends if (problem := declared[name].problem(end, name))]
+    told = {name: replace(declared[name], unit=model.system.told_unit(declared[name].unit)) for name, _ in ends}
+    problems = [problem for name, end in ends if (problem := told[name].problem(end, name))]
     if problems:
         raise InputError(list(dict.fromkeys(problems)))
     return found

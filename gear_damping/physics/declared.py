@@ -51,14 +51,20 @@ class Declared:
         ]
         chosen = {name: given.get(name, option.default) for name, option in options.items()}
         problems += [p for name, value in chosen.items() if (p := options[name].problem(value, self._key(name)))]
+        vars(self).update(chosen=chosen)
+        told = declared if problems else {name: self._told(one) for name, one in declared.items() if name in given}
         values: Given = {}
         for name in (name for name in declared if name in given):
-            found = _numbers(given[name], declared[name], self._key(name))
+            found = _numbers(given[name], told[name], self._key(name))
             problems += [found] if isinstance(found, Problem) else []
             values[name] = found
-        vars(self).update(chosen=chosen, given=values)
+        vars(self).update(given=values)
         if problems:
             raise InputError(problems)
+
+    def _told(self, parameter: Parameter) -> Parameter:
+        """A parameter with the unit in which messages tell it; its options are chosen by then."""
+        return parameter
 
     def _key(self, name: str) -> str:
         return f"{self.name}.{name}"

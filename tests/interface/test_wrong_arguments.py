@@ -447,3 +447,18 @@ def test_a_report_is_a_page(record, tmp_path):
     with pytest.raises(gd.InputError, match=r"path = 3: must be a path"):
         answer.report(3)
     assert answer.report(tmp_path / "a.html").is_file()
+
+
+@pytest.mark.parametrize("unit", ["m", "mm"])
+def test_an_oscillator_is_told_per_unit_of_mass_as_it_is_identified(unit):
+    model = gd.Model(gd.Oscillator(stiffness=400, unit=unit), [LAW, gd.CubicStiffness(coefficient=3.0)])
+    lines = [line.strip() for line in str(model).splitlines()]
+    assert {"stiffness = 400 1/s^2", "viscous_damping.damping_coefficient = 0.8 1/s"} < {*lines}
+    assert f"cubic_stiffness.coefficient = 3 1/{unit}^2/s^2" in lines
+    for ask in (lambda: gd.Oscillator(stiffness=-1, unit=unit), lambda: gd.simulate(model, **SAMPLED, stiffness=-1)):
+        with pytest.raises(gd.InputError, match=r"stiffness = -1\.0: must lie within 0 … 1e\+18 1/s\^2"):
+            ask()
+    coefficient = {"viscous_damping.damping_coefficient": -1}
+    with pytest.raises(gd.InputError, match=r"must lie within 0 … 1e\+12 1/s;"):
+        gd.simulate(model, **SAMPLED, **coefficient)
+    assert "pinion_torque = 9 N*m" in str(gd.Model(gd.GearPair(pinion_torque=9), [gd.FourierMeshStiffness()]))

@@ -2,12 +2,14 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import ClassVar
 
 from torch import Tensor
 
 from gear_damping.physics.declared import Declared
 from gear_damping.physics.kinematics import Kinematics, Rotation
+from gear_damping.physics.parameter import Parameter
 from gear_damping.physics.scales import Scales
 from gear_damping.physics.systems.traits import Trait
 
@@ -36,12 +38,19 @@ class System(Declared, ABC):
         """Whether it has all of these traits."""
         return cls.traits.issuperset(traits)
 
+    def _told(self, parameter: Parameter) -> Parameter:
+        return replace(parameter, unit=self.told_unit(parameter.unit))
+
     def _key(self, name: str) -> str:
         return name  # beside those of effects
 
     def unit_of(self, declared: str) -> str:
         """The unit of what is declared in `declared` (SI), as its values are in; "" where nobody knows it."""
         return declared
+
+    def told_unit(self, declared: str) -> str:
+        """The unit in which a value of what is declared in `declared` (SI) is told."""
+        return self.unit_of(declared) or declared
 
     @abstractmethod
     def derived(self, values: Values, mean_stiffness: Tensor | None) -> dict[str, Tensor]:
