@@ -18,11 +18,13 @@ from gear_damping.measurement.file_clocks import FileClocks, conflict_with_file,
 from gear_damping.measurement.formats.table import Table
 from gear_damping.measurement.rows import LEAST_SAMPLES, MOST_MISSING, Columns, Rows, filled_in, last_number
 from gear_damping.measurement.stamp_units import (
+    completed_by,
     may_count_rows,
     refuse_endless,
     refuse_other_clock,
     refuse_other_unit,
     refuse_row_numbers,
+    refuse_steps,
 )
 from gear_damping.measurement.time_column import is_time
 from gear_damping.measurement.timebase import TimeBase, stamped_time, steady_time
@@ -254,7 +256,11 @@ class RawReader:
         one = self._in_seconds(timing, key)
         refuse_other_unit(self.table, timing, key, stamps, one, self.source)
         refuse_other_clock(self.table, timing, key, stamps * one, read, self.source)
-        base = stamped_time(stamps * one, self._named(key, timing.column), self.file, first)
+        refuse_steps(timing, key, stamps * one, self.source)
+        try:
+            base = stamped_time(stamps * one, self._named(key, timing.column), self.file, first)
+        except InputError as error:
+            raise completed_by(error, self.table, timing, key, stamps * one, read) from None
         unit = timing.unit or self.table.unit(self.table.index(timing.column, key))
         note = may_count_rows(stamps, str(timing.column), unit)
         return replace(base, findings=(*base.findings, note)) if note else base

@@ -1,5 +1,8 @@
 """Units of time stamps that the stamps themselves, the name of their column or a clock in the same rows contradict."""
 
+import re
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,6 +14,7 @@ from gear_damping.measurement.formats.moments import DAY
 from gear_damping.measurement.formats.registry import MAX_BYTES
 from gear_damping.measurement.formats.table import Table
 from gear_damping.measurement.record import Finding
+from gear_damping.measurement.recordings import past_overflow
 from gear_damping.measurement.time_column import (
     COUNTER,
     ENDINGS,
@@ -22,10 +26,13 @@ from gear_damping.measurement.time_column import (
     seconds_by_name,
     unit_by_name,
 )
+from gear_damping.measurement.timebase import MOST_STRAY
 from gear_damping.units import is_of_kind, to_si
 
 _TELLS = 10.0  # of its own largest steps, from which the length of a clock tells something
 _FEW, _GROSSLY = 3.0, 2.0  # of these steps, from which it tells whether stamps last so many times as long, or as short
+_MOST_LEVELS = 0.25  # of the samples: steps repeat, and stamps of rows in another order do not
+_STEPS_NAMED = re.compile(r"(^|[_\W])(dt|delta|diff|step)([_\W]|$)", re.I)
 _EVENLY = 0.05  # of a step, by which those of a clock beside row numbers may differ: stamps are rounded
 MOST_SAMPLES = MAX_BYTES // 8  # of a record: as many numbers as the largest file that is read holds
 _AS_LONG = 0.02  # of it, by which stamps may differ: more than two clocks drift apart, less than any wrong unit
@@ -133,12 +140,63 @@ def refuse_other_clock(
         clock = None if other == place else _clock(table, other, key, read)
         if clock is None:
             continue
-        stamped, lasts, coarse = np.ptp(seconds), np.ptp(clock), float(np.abs(np.diff(clock)).max())
+        stamped, lasts, coarse = np.ptp(past_overflow(seconds)), np.ptp(clock), float(np.abs(np.diff(clock)).max())
         if _are_as_long(stamped, lasts, coarse):
             continue
         rule = f"these stamps last {stamped:.4g} s, and the clock '{name}' in the same rows {lasts:.4g} s"
         remedy = f"correct the unit, name the column {name}, or give sampling_rate instead"
         raise InputError(Problem(key, rule, timing.column, remedy, source))
+
+
+def refuse_steps(timing: TimePlan, key: str, seconds: NDArray[np.float64], source: str) -> None:
+    """Refuse (n,) s that are the steps from row to row, and no clock.
+
+    Raises:
+        InputError: they repeat and go to and fro, or do so under a name such as `dt_ms`.
+    """
+    if seconds.size < FEWEST_STAMPS or seconds.min() < 0 or not np.mean(seconds) > 0:
+        return
+    steps = np.diff(seconds)
+    to_and_fro = np.mean(steps < 0) > MOST_STRAY and np.mean(steps > 0) > MOST_STRAY
+    few = np.unique(seconds).size < _MOST_LEVELS * seconds.size
+    if not to_and_fro or not (few or _STEPS_NAMED.search(str(timing.column))):
+        return
+    mean = float(np.mean(seconds))
+    rule = f"its numbers go to and fro about {mean:.4g} s: steps from row to row, and no clock"
+    remedy = "give their running sum as a column of stamps, or sampling_rate"
+    remedy += f"; on average they make {1 / mean:.4g} Hz"
+    raise InputError(Problem(key, rule, timing.column, remedy, source))
+
+
+def completed_by(
+    error: InputError, table: Table, timing: TimePlan, key: str, seconds: NDArray[np.float64], read: ReadColumn
+) -> InputError:
+    """What refuses whole (n,) s, with the column that holds the parts of each second as the remedy, if there is one."""
+    place = table.index(timing.column, key)
+    if np.any(seconds != np.round(seconds)):
+        return error
+    for other, name in enumerate(table.names):
+        if other == place:
+            continue
+        try:
+            parts = read(other, key)
+        except InputError:
+            continue
+        unit = _unit_of_parts(parts, seconds)
+        if unit:
+            named = repr(name) if name else other
+            remedy = f"name column {named} in its place, with unit: {unit}: it begins again with every second"
+            return InputError([replace(one, remedy=remedy) for one in error.problems])
+    return error
+
+
+def _unit_of_parts(parts: NDArray[np.float64], seconds: NDArray[np.float64]) -> str | None:
+    """The unit in which (n,) values count the parts of each of (n,) whole seconds; None where they do not."""
+    if parts.size != seconds.size or not parts.size or parts.min() < 0:
+        return None
+    falls, goes_on = np.diff(parts) < 0, np.diff(seconds) > 0
+    unit = next((unit for unit in ENDINGS if parts.max() * to_si(1.0, unit, "s") < 1), None)
+    return unit if falls.any() and np.array_equal(falls, goes_on) else None
 
 
 def _are_as_long(stamped: float, lasts: float, coarse: float) -> bool:

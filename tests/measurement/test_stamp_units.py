@@ -205,3 +205,41 @@ def test_a_clock_of_a_few_whole_seconds_tells_a_grossly_wrong_unit(factor, is_re
             load_measurement(path)
     else:
         assert load_measurement(path).records[0].sampling_rate == pytest.approx(50 / 0.7 / factor, rel=1e-3)
+
+
+SPLIT = 0.4 + SECONDS[:300]  # s, over fewer whole seconds than tell a rate
+
+
+@pytest.mark.parametrize("clock", ["170929080", "12:00:0"], ids=["number", "clock"])
+@pytest.mark.parametrize(("unit", "in_a_second"), [("ms", 1e3), ("us", 1e6), ("ns", 1e9)])
+def test_whole_seconds_are_completed_by_the_column_of_their_parts(clock, unit, in_a_second, tmp_path):
+    rows = [
+        f"{clock}{int(s + 1e-9)},{round((s + 1e-9) % 1 * in_a_second)},{x:.6f}"
+        for s, x in zip(SPLIT, MOTION, strict=False)
+    ]
+    path = declared(tmp_path, None, "s", columns="t,part,x", rows=rows)
+    if ":" in clock:
+        path.write_text(path.read_text().replace(", unit: s", ""))
+    with pytest.raises(InputError, match=f"repeated .* remedy: name column 'part' in its place, with unit: {unit}"):
+        load_measurement(path)
+    path.write_text(path.read_text().replace("time: {column: t", "time: {column: part").replace(", unit: s", ""))
+    path.write_text(path.read_text().replace("{column: part", f"{{column: part, unit: {unit}"))
+    assert load_measurement(path).records[0].sampling_rate == pytest.approx(50)
+
+
+@pytest.mark.parametrize(("name", "few"), [("dt_ms", False), ("t", True)])
+def test_steps_from_row_to_row_are_no_stamps(name, few, tmp_path):
+    steps = np.random.default_rng(2).uniform(18, 22, SECONDS.size)
+    path = declared(tmp_path, np.round(steps) if few else steps, "ms", columns=f"{name},x")
+    path.write_text(path.read_text().replace("column: t,", f"column: {name},"))
+    with pytest.raises(InputError) as caught:
+        load_measurement(path)
+    (problem,) = caught.value.problems
+    assert "steps from row to row, and no clock" in problem.rule
+    assert f"on average they make {1e3 / np.mean(steps):.2g}" in problem.remedy
+
+
+def test_rows_in_another_order_are_no_steps(tmp_path):
+    stamps = np.random.default_rng(2).permutation(SECONDS)
+    with pytest.raises(InputError, match="sort the rows by time"):
+        load_measurement(declared(tmp_path, stamps, "s"))
