@@ -96,6 +96,7 @@ _MEANT = {
 }  # fmt: skip
 
 _SPELLINGS = {"⁻¹": "^-1", "⁻²": "^-2", "µ": "u", "μ": "u", "·": "*", "²": "^2", "³": "^3", "°": "deg", "**": "^"}
+_SPELLINGS |= {"º": "deg", "㎜": "mm", "㎝": "cm", "㎳": "ms", "㎲": "us", "㎐": "Hz", "秒": "s"}
 _SPELLINGS |= {"N.m": "N*m", "N m": "N*m"}
 _ALSO = {
     "sec": "s", "secs": "s", "second": "s", "seconds": "s", "msec": "ms", "usec": "us", "minutes": "min",
@@ -105,7 +106,8 @@ _ALSO = {
     "Newton": "N", "newton": "N", "newtons": "N",
     "amp": "A", "amps": "A", "ampere": "A", "Ampere": "A", "hz": "Hz",
     "HZ": "Hz", "Deg": "deg", "DEG": "deg", "Grad": "deg", "degree": "deg", "degrees": "deg",
-    "radian": "rad", "radians": "rad",
+    "radian": "rad", "radians": "rad", "RAD": "rad", "Rad": "rad",
+    "sek": "s", "Sek": "s", "Sekunde": "s", "Sekunden": "s", "seconde": "s", "secondes": "s", "segundos": "s",
     "turn": "rev", "turns": "rev", "revs": "rev", "nsec": "ns", "days": "day", "kp": "kgf",
     "dps": "deg/s", "rps": "rev/s", "Meter": "m", "meter": "m", "meters": "m", "metre": "m", "metres": "m",
     "min-1": "1/min", "/min": "1/min", "r/min": "rpm", "tr/min": "rpm",

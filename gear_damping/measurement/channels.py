@@ -329,6 +329,12 @@ class GearAcceleration(Response):
 class Motion(Response):
     """A motion of an oscillator."""
 
+    refused: ClassVar[Reasons] = Frozen(
+        {
+            "mounting": ("it tells accelerometers of a gear_pair on a shaft from those on a casing", "leave it out"),
+            "timing_error": ("it is that of the angle of a gear_pair", "write delay, which has a value and its unit"),
+        }
+    )
     usual_frame: ClassVar[str] = "relative"
     frame: Annotated[str, OneOf(("absolute", "relative"))] = key(
         "Beside a measured `base_acceleration`: relative to the base, or of an acceleration alone against the ground. "

@@ -212,7 +212,11 @@ class AnyRecord(Declared):
     """What the records of every system have."""
 
     meant: ClassVar[Mapping[str, str]] = Frozen(
-        {**PERIODS, "parameters": "they are those of the rig, for all records: write them beside records"}
+        {
+            **PERIODS,
+            "parameters": "they are those of the rig, for all records: write them beside records",
+            "segments": "it cuts all records: write it beside records, at the top of the file",
+        }
     )
     name: Annotated[str, Text()] = key("Name of the record; that of its file where absent.", "report")
     file: Annotated[str, FileName()] = key(

@@ -297,3 +297,37 @@ def test_a_bare_damping_ratio_above_one_is_asked_whether_it_is_in_per_cent(bench
     for text, value in (("3 %", 0.03), ("300 %", 3.0), (0.03, 0.03), ({"value": 3, "unit": "%"}, 0.03)):
         bench.content["parameters"]["damping_ratio"] = text
         assert bench.load().parameters["damping_ratio"].value == pytest.approx(value)
+
+
+@pytest.mark.parametrize(
+    ("key", "said"),
+    [
+        ("mounting", "tells accelerometers of a gear_pair on a shaft from those on a casing"),
+        ("timing_error", "is that of the angle of a gear_pair; remedy: write delay"),
+        (None, "it cuts all records: write it beside records, at the top of the file"),
+    ],
+)
+def test_keys_that_have_a_meaning_elsewhere_say_where(key, said, tmp_path):
+    inside, below = (f", {key}: 1 ms", "") if key else ("", "    segments: 1 s\n")
+    path = tmp_path / "m.yaml"
+    path.write_text(
+        "system: oscillator\nrecords:\n  - file: a.csv\n    channels:\n      sampling_rate: 50 Hz\n"
+        f"      displacement: {{column: x, unit: mm{inside}}}\n{below}"
+    )
+    with pytest.raises(InputError) as caught:
+        load_measurement(path)
+    assert said in str(caught.value)
+
+
+def test_small_files_beyond_a_smaller_limit_are_told_to_the_byte(bench):
+    bench.load()
+    with pytest.raises(InputError, match=r"0\.0\d+ MB are more than the 0\.000010 MB"):
+        load_measurement(bench.folder / "measurement.yaml", max_bytes=10)
+
+
+@pytest.mark.parametrize(
+    ("written", "unit"),
+    [("RAD", "rad"), ("º", "deg"), ("秒", "s"), ("㎜", "mm"), ("sek", "s"), ("secondes", "s"), ("㎳", "ms")],
+)
+def test_units_in_the_letters_of_other_countries_are_read(written, unit):
+    assert parse_unit(written) == parse_unit(unit)

@@ -22,6 +22,7 @@ _SHOWN = 20  # arrays that a message lists
 _UNIT_AT_ONCE = re.compile(r"/\(?[^/()\s]+(/\w+[²³^\d]*)?\)?$")  # `x/mm`, `a/(m/s²)`
 _UNIT_BEHIND = re.compile(r"\s*([(\[](?![\d, ]*[)\]])[^()\[\]]*[)\]](\s*run\s*#?\s*\d+)?|\s/\s*\S+)$", re.I)
 _OF_ARRAY = re.compile(r"^(.+)\[(\d+)\]\.(\w+)$")  # `runs[0].t`, the member of a structure in an array of them
+_SMALL = 5e5  # bytes, below which a size in whole MB is said as none
 _INDEXED = re.compile(r"^(.*)\[[\d, ]+\]$")
 
 
@@ -311,5 +312,6 @@ def extra_library(name: str, path: Path) -> ModuleType:
 def refuse_size(path: Path, size: int, limit: int) -> None:
     """Raise InputError where a file would take more than `limit` bytes."""
     if size > limit:
-        rule = f"{size / 1e6:.0f} MB are more than the {limit / 1e6:.0f} MB that are read at once"
+        places = 6 if size < _SMALL else 0
+        rule = f"{size / 1e6:.{places}f} MB are more than the {limit / 1e6:.{places}f} MB that are read at once"
         raise InputError(Problem("file", rule, str(path), "cut it into several records, or resample it"))
