@@ -43,4 +43,4 @@ def test_where_nothing_swings_within_the_records_the_motion_has_times_of_its_own
 
 def test_the_part_of_one_record_that_is_held_out_counts(monkeypatch):
     assert "of which the last" in said(monkeypatch, fitted=0.1, alone=True)
-    assert "of which 2 in the middle are held out" in said(monkeypatch, fitted=0.1, alone=True, parts=2)
+    assert "of which 2 in two parts are held out" in said(monkeypatch, fitted=0.1, alone=True, parts=2)

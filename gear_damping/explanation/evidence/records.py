@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from math import floor, log10, pi
 from typing import Any
 
@@ -269,34 +270,38 @@ def _audible(records: Sequence[FitRecord]) -> tuple[list[FitRecord], float]:
 
 
 def _cut(records: Sequence[FitRecord], dies_away: bool, spring: bool) -> tuple[list[FitRecord], list[FitRecord]]:
-    """A third of every record held out: its end, or where its motion dies away what stands before little is left.
+    """A third of every record held out: its end, and where its motion dies away also what stands before little is left.
 
-    The end of a decay shows nothing that grows with the amplitude, neither that it is there nor that it is not.
+    The end of a decay shows nothing that grows with the amplitude, and its beginning no friction, neither that these
+    are there nor that they are not. What is fitted of one record has one offset and one level.
     """
     fit, holdout = [], []
     for record in records:
-        first, last = _held_out(record, dies_away, spring)
-        if last == len(record.response):
-            fit.append(part(record, slice(None, first), " (first part)"))
-            holdout.append(part(record, slice(first, None), " (last part)"))
-            continue
-        ends = (slice(None, first), " (first part)"), (slice(last, None), " (last part)")
-        fit += [replace(part(record, *end), group=record.record) for end in ends]
-        holdout.append(part(record, slice(first, last), " (middle part)"))
+        ends = _ends(record, dies_away, spring)
+        count = len(ends) - 1
+        for number, (begin, end) in enumerate(pairwise(ends), start=1):
+            piece = part(record, slice(begin, end), f" (part {number} of {count})")
+            if number % 2:
+                fit.append(replace(piece, group=record.record))
+            else:
+                holdout.append(piece)
     return fit, holdout
 
 
-def _held_out(record: FitRecord, dies_away: bool, spring: bool) -> tuple[int, int]:
-    """The samples of a record that are held out: a third of them, from where a third of its energy is still to come.
+def _ends(record: FitRecord, dies_away: bool, spring: bool) -> list[int]:
+    """Samples between which parts of a record are fitted and held out in turn.
 
-    Of a motion that goes on that is the end. What is fitted before it is half as long at least, or it tells nothing. A
-    place that no spring holds is where it came to: its rate dies away.
+    The first part that is held out begins where a third of the energy is still to come; of a motion that goes on that
+    is its last third. A place that no spring holds is where it came to: its rate dies away.
     """
-    total, length = len(record.response), round((1 - SPLIT) * len(record.response))
+    total = len(record.response)
+    last = round(SPLIT * total)
     if not dies_away:
-        return total - length, total
+        return [0, last, total]
+    half = (total - last) // 2
     moves = record.response if spring or record.observed.derivatives else record.response.diff()
-    energy = (moves - moves[-length:].mean()).square().cumsum(0)
-    first = max(int((energy < SPLIT * energy[-1]).sum()), length // 2)
-    last = first + length
-    return (first, last) if last + length // 2 <= total else (total - length, total)
+    energy = (moves - moves[last:].mean()).square().cumsum(0)
+    first = max(int((energy < SPLIT * energy[-1]).sum()), half // 2)
+    if first + half + half // 2 > total - half:  # what is fitted between both is half as long as either at least
+        return [0, last, total]
+    return [0, first, first + half, total - half, total]

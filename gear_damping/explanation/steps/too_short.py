@@ -30,7 +30,7 @@ def too_short(evidence: Evidence, nominal: Outcome) -> str:
         return ""
     if evidence.one_record:
         whole, share = _times(evidence.records, period), 1 - SPLIT
-        which = f"the last {held:.2g}" if len(evidence.fit) == 1 else f"{held:.2g} in the middle"
+        which = f"the last {held:.2g}" if len(evidence.fit) == 1 else f"{held:.2g} in two parts"
         return (
             f"This record holds {whole:.3g} {name}, of which {which} are held out; at least "
             f"{ceil(needed / share)} are needed to judge more than large effects: record at least "
