@@ -13,7 +13,9 @@ from gear_damping.measurement.record import Channel
 RATE, N = 20000.0, 3000
 
 
-def _record(orders: dict[float, float], speed: float, lines: dict[float, float], seed: int) -> FitRecord:
+def _record(
+    orders: dict[float, float], speed: float, lines: dict[float, float], seed: int, is_stated: bool = False
+) -> FitRecord:
     """Waves by shaft order and by frequency in Hz, with a little noise."""
     time = np.arange(N) / RATE
     angle = 0.3 + speed * time
@@ -21,11 +23,14 @@ def _record(orders: dict[float, float], speed: float, lines: dict[float, float],
     values += sum(size * np.cos(order * angle + order) for order, size in orders.items())
     values += sum(size * np.cos(2 * np.pi * f * time) for f, size in lines.items())
     series = {"response": torch.as_tensor(1e-6 * values), "angle": torch.as_tensor(angle)}
-    return FitRecord(f"run_{seed}", series["response"], RATE, {"pinion_angle": series["angle"]}, {})
+    stated = ({}, {"pinion_speed": speed}) if is_stated else ({"pinion_angle": series["angle"]}, {})
+    return FitRecord(f"run_{seed}", series["response"], RATE, *stated)
 
 
-def _found(teeth: int | None, orders: dict[float, float], lines=None, speeds=(150.0, 190.0), gear=None) -> list[str]:
-    records = tuple(_record(orders, speed, lines or {}, k) for k, speed in enumerate(speeds))
+def _found(
+    teeth: int | None, orders: dict[float, float], lines=None, speeds=(150.0, 190.0), gear=None, is_stated=False
+) -> list[str]:
+    records = tuple(_record(orders, speed, lines or {}, k, is_stated) for k, speed in enumerate(speeds))
     parameters = {} if teeth is None else {"n_teeth_pinion": float(teeth)}
     parameters |= {} if gear is None else {"n_teeth_gear": float(gear)}
     channel = Channel("transmission_error", np.zeros(2), "m")
@@ -90,6 +95,14 @@ def test_turns_that_were_counted_by_another_number_of_counts_are_found(factor):
     (message,) = _found(24, {factor * order: size for order, size in {24: 1.0, 48: 0.25, 72: 0.1, 96: 0.1}.items()})
     assert f"the teeth mesh {24 * factor:g} times a turn" in message
     assert "counts_per_revolution" in message
+
+
+def test_where_a_speed_is_stated_nothing_was_counted():
+    """A sampling rate of half of what it was."""
+    (message,) = _found(24, {12: 1.0, 24: 0.25, 36: 0.1, 48: 0.1}, is_stated=True)
+    assert "the teeth mesh 12 times a turn of the speed that is given" in message
+    assert "check sampling_rate, and pinion_speed" in message
+    assert "counts_per_revolution" not in message
 
 
 @pytest.mark.parametrize(

@@ -27,6 +27,11 @@ UNITS = {  # by which a speed or an angle is wrong whose number is of the second
     2 * np.pi: ("rad/s", "Hz"), 0.5 / np.pi: ("Hz", "rad/s"), np.pi / 180: ("rad", "deg"), 180 / np.pi: ("deg", "rad"),
 }  # fmt: skip
 TURNS_APART = 2.0  # turns of a shaft over a record by which an order differs from a whole one: two lines are told apart
+COUNTED = (  # what was wrong where the turns of an angle are not those of the mesh, and what to look at,
+    "the angle that is given",
+    "check counts_per_revolution (lines, or the two or four counts of each) and the unit of the angle",
+)
+STATED = "the speed that is given", "check sampling_rate, and pinion_speed with its unit"  # and those of a speed
 LACKING = 0.01  # of the energy: of a wave of two stiffnesses the first harmonic is never smaller than the second
 
 
@@ -50,10 +55,9 @@ def mesh_order_faults(evidence: Evidence) -> list[Finding]:
         return []
     series = [record.response.numpy() - float(record.response.mean()) for record in records]
     if _at_other_speeds(records, shafts) and (factor := _miscounted(series, shafts, counts)):
-        message = (
-            f"the teeth mesh {factor * teeth:g} times a turn of the angle that is given, and the pinion has {teeth}: "
-            "check counts_per_revolution (lines, or the two or four counts of each) and the unit of the angle"
-        )
+        counted = all("pinion_angle" in record.inputs for record in records)
+        given, remedy = COUNTED if counted else STATED
+        message = f"the teeth mesh {factor * teeth:g} times a turn of {given}, and the pinion has {teeth}: {remedy}"
         return [Finding("turns_miscounted", message, channel=evidence.channel.name)]
     if units := _other_unit(series, shafts, counts):
         message = (
