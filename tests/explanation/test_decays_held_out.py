@@ -12,7 +12,7 @@ from gear_damping.measurement.load import load_measurement
 from gear_damping.physics.catalogue import builtin_effects
 
 TIME = np.arange(600) / 100.0
-SPRINGS = {name: kind for name, kind in builtin_effects().items() if name.endswith(("stiffness", "damping"))}
+LAWS = {n: kind for n, kind in builtin_effects().items() if n.endswith(("stiffness", "damping", "friction"))}
 
 
 def evidence(folder, sizes, role=None, force=False, decays=True):
@@ -78,23 +78,34 @@ def test_of_a_place_that_no_spring_holds_the_rate_counts(tmp_path, slows, parts)
     assert [one.name.partition(" ")[2] for one in held] == parts
 
 
-def test_of_one_decay_a_spring_that_hardens_is_named(tmp_path):
-    """Over the end, .03 of 5 mm, it was `consistent`: nothing that takes more than 2.5 % of the variance."""
+@pytest.mark.parametrize(
+    ("name", "parameter", "size", "ratio"),
+    [
+        ("cubic_stiffness", "coefficient", 0.8, 0.031),  # 1/(mm² s²): it shows at the beginning,
+        ("coulomb_friction", "force", 10.0, 0.008),  # mm/s²: and this at the end
+        (None, None, 0.0, 0.031),
+    ],
+)
+def test_of_one_decay_what_grows_and_what_lasts_is_named(name, parameter, size, ratio, tmp_path):
+    """Over the end, .03 of 5 mm, the spring was `consistent`: nothing that takes more than 2.5 % of the variance."""
     time = np.arange(2000) / 250.0
 
     def rates(_, state):
-        return [state[1], -2 * 0.031 * 45.87 * state[1] - 45.87**2 * state[0] - 0.8 * state[0] ** 3]
+        place, rate = state
+        more = place**3 if name == "cubic_stiffness" else np.tanh(rate / 0.01)
+        return [rate, -2 * ratio * 45.87 * rate - 45.87**2 * place - size * more]
 
     swing = solve_ivp(rates, (0, 8), [5.0, 0.0], t_eval=time, rtol=1e-9, atol=1e-9).y[0]
     np.savez(tmp_path / "a.npz", t=time, x=swing + 0.004 * np.random.default_rng(4).normal(size=time.size))
     channels = {"time": {"column": "t", "unit": "s"}, "displacement": {"column": "x", "unit": "mm"}}
     declared = {"system": "oscillator", "records": [{"file": "a.npz", "channels": channels}]}
     (tmp_path / "measurement.yaml").write_text(yaml.safe_dump(declared))
-    answer = explain(load_measurement(tmp_path / "measurement.yaml"), library=SPRINGS).content
-    assert answer["verdict"] == "explained"
-    assert [cause["name"] for cause in answer["causes"]] == ["cubic_stiffness"]
-    low, high = answer["causes"][0]["parameters"]["coefficient"]["interval95"]
-    assert low < 0.8 < high
+    answer = explain(load_measurement(tmp_path / "measurement.yaml"), library=LAWS).content
+    assert answer["verdict"] == ("explained" if name else "consistent")
+    assert [cause["name"] for cause in answer["causes"]] == [name] * bool(name)
+    for cause in answer["causes"]:  # in the file's millimetres
+        low, high = cause["parameters"][parameter]["interval95"]
+        assert low < size < high
 
 
 def test_roles_that_are_said_count(tmp_path):
