@@ -35,7 +35,8 @@ def lack_of_fit(
 
     Returns:
         `significant`, and in the declared unit `residual`, `noise` and `loudest`, the residual of the eighth of a
-        record with the largest, beside `percent_of_signal` of the residual; None where the records are too short to estimate their noise.
+        record with the largest, beside `percent_of_signal` of the residual; None where the records are too short to
+        estimate their noise.
     """
     if noise.degrees_of_freedom < 1:
         return None
@@ -74,7 +75,7 @@ def _small(found: Mapping[str, Any]) -> str:
     times = found["loudest"] / found["noise"]
     return (
         f"The residual, {found['percent_of_signal']:.2g} % of the signal, is up to {times:.2g} times the noise of "
-        f"{found['noise']:.3g} {found['unit']} ({found['noise_method']}). What makes it is small, as a law that differs "
-        "little from the linear one or channels that are a part of a sample apart; the intervals do not cover what it "
-        f"does to the figures, and task=explain measurement.path={found['source']} may find it"
+        f"{found['noise']:.3g} {found['unit']} ({found['noise_method']}). What makes it is small, as a law that "
+        "differs little from the linear one or channels that are a part of a sample apart; the intervals do not cover "
+        f"what it does to the figures, and task=explain measurement.path={found['source']} may find it"
     )

@@ -146,8 +146,8 @@ BROKEN = {
     "odd_name": (lambda text: text.replace(f'"{NAME}"', '"shear thinning"'), "has the name 'shear thinning'"),
     "name_of_a_parameter": (lambda text: text.replace(f'"{NAME}"', '"stiffness"'), "repeats the name ['stiffness']"),
     "unknown_unit": (
-        lambda text: text.replace('"m/s"', '"m/sek"'),
-        "gives the parameter thinning_velocity an unknown unit 'm/sek'",
+        lambda text: text.replace('"m/s"', '"m/sekk"'),
+        "gives the parameter thinning_velocity an unknown unit 'm/sekk'",
     ),
     "default_out_of_bounds": (
         lambda text: text.replace("200.0", "-200.0"),
@@ -197,10 +197,10 @@ def test_a_missing_file_is_named(tmp_path, caplog, capsys):
 
 def test_all_that_is_wrong_in_a_file_is_said_at_once_beside_the_other_problems(tmp_path, caplog):
     path = tmp_path / "two_faults.py"
-    path.write_text(EXAMPLE.read_text().replace("reference = ", "source = ").replace('"m/s"', '"m/sek"'))
+    path.write_text(EXAMPLE.read_text().replace("reference = ", "source = ").replace('"m/s"', '"m/sekk"'))
     assert main(decay(tmp_path, "simulator.n_runs=0", plugin=path)) == 1
     assert "3 problems" in caplog.text
-    for words in ("lacks reference", "'m/sek'", "simulator.n_runs = 0"):
+    for words in ("lacks reference", "'m/sekk'", "simulator.n_runs = 0"):
         assert words in caplog.text
     assert caplog.text.count("(from command line: simulator.plugins=[") == 2
 
