@@ -270,10 +270,10 @@ def _audible(records: Sequence[FitRecord]) -> tuple[list[FitRecord], float]:
 
 
 def _cut(records: Sequence[FitRecord], dies_away: bool, spring: bool) -> tuple[list[FitRecord], list[FitRecord]]:
-    """A third of every record held out: its end, and where its motion dies away also what stands before little is left.
+    """A third of every record held out: its end; of a motion that dies away half of that, and an early part as long.
 
-    The end of a decay shows nothing that grows with the amplitude, and its beginning no friction, neither that these
-    are there nor that they are not. What is fitted of one record has one offset and one level.
+    The end of a decay shows no law that grows with the amplitude, and its beginning no friction, neither that it is
+    there nor that it is not. What is fitted of one record has one offset and one level.
     """
     fit, holdout = [], []
     for record in records:

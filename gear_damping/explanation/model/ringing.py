@@ -65,10 +65,8 @@ def _is_told(record: FitRecord, left: Array, turning: Turning, natural: float) -
         natural: The natural frequency in Hz, far beyond which nothing is looked at.
     """
     shown, channels = record.stacked.numpy() - left, len(record.channels)
-    signals, step = (
-        np.stack([shown, left]).reshape(2 * channels, -1).T,
-        int(record.sampling_rate / (2 * BAND * natural)),
-    )
+    signals = np.stack([shown, left]).reshape(2 * channels, -1).T
+    step = int(record.sampling_rate / (2 * BAND * natural))
     if step > 1 and len(signals) > 4 * EDGE * step:
         inside = slice(EDGE, -EDGE)
         turning = replace(turning, mesh_angle=turning.mesh_angle[::step][inside])
