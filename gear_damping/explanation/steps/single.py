@@ -209,8 +209,9 @@ def differing_instead(best: Refit, state: State) -> Refit | None:
 
     Of pendulums of six lengths a law whose frequency falls with the swing follows some, as their swings differ too.
     """
-    leaves_noise = state.beyond_sensor(best.outcome).misfit <= state.bench.settings.small_misfit
-    if state.accepted or best.differs or leaves_noise:
+    if state.accepted or best.differs:
+        return None
+    if state.beyond_sensor(best.outcome).misfit <= state.bench.settings.small_misfit:  # it leaves noise
         return None
     own = _told_alone(state)
     is_better = own is not None and APART * own.outcome.left_out_cost < best.outcome.left_out_cost
