@@ -36,7 +36,7 @@ from gear_damping.explanation.steps.never_dies import never_dies
 from gear_damping.explanation.steps.out_of_step import out_of_step
 from gear_damping.explanation.steps.polarity import polarity_fault
 from gear_damping.explanation.steps.too_short import left_out_ends, too_short
-from gear_damping.explanation.trials.bench import Bench, Log
+from gear_damping.explanation.trials.bench import Bench, Log, nobody
 from gear_damping.identification.output_error.records import FitRecord
 from gear_damping.identification.output_error.segments import Segments
 from gear_damping.identification.time_scale import characteristic_time
@@ -80,7 +80,7 @@ class Listener:
         progress: (done, total) steps.
     """
 
-    log: Log = lambda text: None
+    log: Log = nobody
     progress: Callable[[int, int], None] = lambda done, total: None
 
 
