@@ -23,14 +23,16 @@ from gear_damping.measurement.irregular_stamps import CLOCK_JUMPS, LOST, scatter
 from gear_damping.measurement.record import Finding, Record
 from gear_damping.measurement.timebase import counted
 
-_GAP, _BESIDE, _FEWEST_GAPS = 1.5, 4, 5  # usual steps in a gap; samples on either side; gaps that a share is had from
+_GAP, _BESIDE, _FEWEST_GAPS = 1.5, 4, 5  # usual steps in a gap; samples at either side; gaps that a share is had from
 _NEARER = 0.65  # of the way from a clock's jump to a pause
 _ERRORS = 4.0  # standard errors that it must be beyond that by
 _FOLLOWS = 0.1  # of a channel's standard deviation: what a spline may miss of what was lost
 _NO_WORSE = 1.5  # times what it misses of a single sample: what is missed is noise then, and would be without a gap
 _MOST_LOST = 0.02  # of the samples; beyond, another clock is as likely where the values do not tell
 _MOST_SINGLE, _SINGLE = 0.1, 2  # of the samples in single holes, that a record may lack; samples in such a hole
-_HALF_WAY, _TWICE = 0.5, 2.0  # share of a hole of one that a jump moves values over; standard errors to be beyond it by
+_TWICE = 2.0  # standard errors that a share over single holes must be beyond that of a clock's jump by, which is 0
+_FEW_LONG = 0.01  # of the steps may be long where the values do not tell why
+_LONGER = 0.05  # of a step, by which one must last longer to tell anything: rounding makes some longer by less
 _FEWEST_HOLES = 20  # that can be tried in a record
 _SUM = 16  # steps over which stamps wander, or do not: a few beside a record, and many beside one
 _POLLED = 0.05  # of a step, by which steps scatter: the clock of a recorder keeps to a thousandth
@@ -71,7 +73,7 @@ def _are_single(record: Record, missing: NDArray[np.float64]) -> bool:
     if missing.max() > _SINGLE or missing.sum() > _MOST_SINGLE * len(record.time):
         return False
     shares = [share_over_gaps(channel.values, record.time) for channel in record.channels.values()]
-    return any(abs(share - 1) + _TWICE * error < _HALF_WAY for share, error in shares)
+    return any(abs(share - 1) + _TWICE * error < 1 for share, error in shares)
 
 
 def _polled(record: Record) -> Record:
@@ -137,13 +139,21 @@ def _pauses(record: Record) -> tuple[Finding, ...]:
     """The findings of a record, where its clock jumps and its values moved as long only with a note of it.
 
     Over a pause of the recorder a value moves by its slope times the pause, over a jump of its clock by that of one
-    step. The slope is that of lines through a few samples on either side.
+    step. The slope is that of lines through a few samples on either side. What no channel tells of shifts by less than
+    a step is a note too: half a step away is what jitter may be.
     """
     jumps = [finding for finding in record.findings if finding.kind == CLOCK_JUMPS]
     shares = [share_over_gaps(c.values, record.time) for c in record.channels.values() if jumps]
-    if not any(share - _ERRORS * error > _NEARER and share + _ERRORS * error < 2 - _NEARER for share, error in shares):
+    said = ""
+    if any(_is_beyond(share, error) and _is_beyond(2 - share, error) for share, error in shares):
+        said = "the recorder paused, and the values moved as long: samples are taken at their stamps"
+    elif jumps and _are_short(record.time) and all(share + _ERRORS * error > _NEARER for share, error in shares):
+        said = (
+            "a few are long, and the values do not tell whether the recorder paused or its clock jumped: samples are "
+            "taken at their stamps; where the clock jumped, give sampling_rate instead of the time column"
+        )
+    if not said:
         return record.findings
-    said = "the recorder paused, and the values moved as long: samples are taken at their stamps"
     note = {"kind": "uneven_stamps", "severity": "note"}
     return tuple(
         replace(f, message=f"{f.message.partition(': ')[0]}: {said}", **note) if f in jumps else f
@@ -151,16 +161,28 @@ def _pauses(record: Record) -> tuple[Finding, ...]:
     )
 
 
+def _is_beyond(share: float, error: float) -> bool:
+    """Whether a share is clearly nearer to that of a pause than to that of a jump of the clock."""
+    return share - _ERRORS * error > _NEARER
+
+
+def _are_short(stamps: NDArray[np.float64]) -> bool:
+    """Whether no step is as long as two, and the stamps are those of a steady clock beside a few."""
+    steps = np.diff(stamps)
+    return bool(steps.max() < 2 * np.median(steps)) and len(_lasting(steps)) <= _FEW_LONG * steps.size
+
+
 def share_over_gaps(values: NDArray[np.float64], stamps: NDArray[np.float64]) -> tuple[float, float]:
-    """The share of the time of gaps in the stamps over which values moved, and its standard error (infinite of few).
+    """The share over which values moved of what gaps last beyond a usual step, and its standard error.
+
+    It is 1 where the recorder paused, and 0 where its clock jumped. The error is infinite of few gaps.
 
     Args:
         values: (n,) samples.
         stamps: (n,) their stamps in s.
     """
     steps = np.diff(stamps)
-    usual = float(np.median(steps))
-    gaps = np.flatnonzero(steps > _GAP * usual)
+    usual, gaps = float(np.median(steps)), _lasting(steps)
     apart = np.diff(np.r_[-_BESIDE, gaps, stamps.size - 1 + _BESIDE]) >= _BESIDE  # no other gap within either side
     gaps = gaps[apart[:-1] & apart[1:] & (gaps >= _BESIDE - 1) & (gaps + _BESIDE < stamps.size)]
     if gaps.size < _FEWEST_GAPS:
@@ -171,6 +193,15 @@ def share_over_gaps(values: NDArray[np.float64], stamps: NDArray[np.float64]) ->
         (slope, end), (other, begin) = (
             np.polyfit(stamps[side] - stamps[at], values[side], 1) for side, at in ((before, k), (behind, k + 1))
         )
-        due[place], seen[place] = (slope + other) / 2 * steps[k], begin - end
+        slope = (slope + other) / 2
+        due[place], seen[place] = slope * (steps[k] - usual), begin - end - slope * usual
     share = float(due @ seen / (due @ due))
     return share, float(np.sqrt(np.sum((due * (seen - share * due)) ** 2)) / (due @ due))
+
+
+def _lasting(steps: NDArray[np.float64]) -> NDArray[np.int_]:
+    """The places of steps that are longer than usual, and that the next ones do not make good."""
+    usual = float(np.median(steps))
+    longer = max(_LONGER * usual, _ERRORS * scatter(steps))
+    next_ones = np.r_[steps[1:], usual] - usual
+    return np.flatnonzero((steps - usual > longer) & (steps - usual + next_ones > longer))

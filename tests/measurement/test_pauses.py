@@ -201,3 +201,19 @@ def test_many_single_lost_samples_of_noise_alone_stay_a_fault(tmp_path):
     stamps = stamps + 1e-4 * random.normal(size=stamps.size)
     (finding,) = [one for one in loaded(tmp_path, stamps, values).findings if one.channel == "time"]
     assert finding.severity == "data_problem"
+
+
+@pytest.mark.parametrize(("moves", "severity"), [("paused", "note"), ("by chance", "note"), ("jumped", "data_problem")])
+def test_shifts_by_less_than_a_step_are_a_fault_where_the_values_contradict_them(moves, severity, tmp_path):
+    """Whole milliseconds at 40 Hz, of which now and then one is late, and those behind it as much."""
+    random = np.random.default_rng(8)
+    steps = np.full(2400, 0.025)
+    steps[np.arange(100, 2400, 180)] += random.integers(4, 15, size=13) / 1000
+    stamps = np.cumsum(steps)
+    time = 0.025 * np.arange(2400) if moves == "jumped" else stamps
+    noise = 3.0 if moves == "by chance" else 0.003
+    values = np.sin(2 * np.pi * 0.65 * time) + noise * random.normal(size=2400)
+    (finding,) = [one for one in loaded(tmp_path, stamps, values).findings if one.channel == "time"]
+    assert finding.severity == severity
+    assert ("the recorder paused, and" in finding.message) is (moves == "paused")
+    assert ("the values do not tell" in finding.message) is (moves == "by chance")
