@@ -187,16 +187,29 @@ def share_over_gaps(values: NDArray[np.float64], stamps: NDArray[np.float64]) ->
     gaps = gaps[apart[:-1] & apart[1:] & (gaps >= _BESIDE - 1) & (gaps + _BESIDE < stamps.size)]
     if gaps.size < _FEWEST_GAPS:
         return 1.0, np.inf
-    due, seen = np.empty(gaps.size), np.empty(gaps.size)
-    for place, k in enumerate(gaps):
-        before, behind = slice(k - _BESIDE + 1, k + 1), slice(k + 1, k + 1 + _BESIDE)
-        (slope, end), (other, begin) = (
-            np.polyfit(stamps[side] - stamps[at], values[side], 1) for side, at in ((before, k), (behind, k + 1))
-        )
-        slope = (slope + other) / 2
-        due[place], seen[place] = slope * (steps[k] - usual), begin - end - slope * usual
-    share = float(due @ seen / (due @ due))
-    return share, float(np.sqrt(np.sum((due * (seen - share * due)) ** 2)) / (due @ due))
+    rows = np.array([_moved_beyond(values, stamps, k, usual) for k in gaps])
+    due, seen, unsure = rows.T
+    known = float(due @ due - unsure @ unsure)  # slopes of noise alone would make every share small
+    if known <= 0:
+        return 1.0, np.inf
+    share = 1 - float(due @ seen) / known
+    return share, float(np.sqrt(np.sum((due * (seen - (1 - share) * due)) ** 2))) / known
+
+
+def _moved_beyond(values: NDArray, stamps: NDArray, k: int, usual: float) -> tuple[float, float, float]:
+    """How much values moved less over the gap behind sample k than their slope says.
+
+    First what a jump of the clock makes of it, then what is seen, then the standard error of the former: by a parabola
+    through the samples on both sides, with a step between these.
+    """
+    around = slice(k + 1 - _BESIDE, k + 1 + _BESIDE)
+    time = stamps[around] - (stamps[k] + stamps[k + 1]) / 2
+    terms = np.column_stack([time**2, time, np.ones_like(time), time > 0])
+    found = np.linalg.lstsq(terms, values[around], rcond=None)[0]
+    left = values[around] - terms @ found
+    variance = float(left @ left) / (len(time) - terms.shape[1]) * np.linalg.inv(terms.T @ terms)[1, 1]
+    longer = stamps[k + 1] - stamps[k] - usual
+    return longer * found[1], -found[3], longer * float(np.sqrt(variance))
 
 
 def _lasting(steps: NDArray[np.float64]) -> NDArray[np.int_]:
