@@ -211,7 +211,7 @@ def test_shifts_by_less_than_a_step_are_a_fault_where_the_values_contradict_them
     steps[np.arange(100, 2400, 180)] += random.integers(4, 15, size=13) / 1000
     stamps = np.cumsum(steps)
     time = 0.025 * np.arange(2400) if moves == "jumped" else stamps
-    noise = 3.0 if moves == "by chance" else 0.003
+    noise = 3.0 if moves == "by chance" else 0.0003
     values = np.sin(2 * np.pi * 0.3 * time) + noise * random.normal(size=2400)
     (finding,) = [one for one in loaded(tmp_path, stamps, values).findings if one.channel == "time"]
     assert finding.severity == severity
