@@ -11,6 +11,7 @@ from gear_damping.config.source import Origin
 from gear_damping.errors import InputError, Problem
 from gear_damping.interface.arguments import file_path
 from gear_damping.interface.new_file import written_anew
+from gear_damping.interface.stated_ratio import at_its_ratio, refuse_both
 from gear_damping.physics import model as physics
 from gear_damping.physics.systems.base import System
 from gear_damping.physics.terms import Effect
@@ -48,7 +49,8 @@ class Model(physics.Model):
         """The model of a `simulator` node, or of a file that holds one, such as `extended_simulator.yaml`.
 
         Args:
-            node: Keys as on the command line: numbers in SI or {value, unit}, or with the unit in the key.
+            node: Keys as on the command line: numbers in SI or {value, unit}, or with the unit in the key. What says
+                how to simulate, as `n_samples`, is no part of a model and is left out.
 
         Raises:
             InputError: everything that is wrong with it.
@@ -56,12 +58,17 @@ class Model(physics.Model):
         what = "a simulator's YAML, or the mapping that it holds"
         is_node = isinstance(node, Mapping)
         content, source = (node, "the mapping") if is_node else (_read(file_path("node", node, what)), str(node))
-        return cls.of_settings(read_simulator({**HOW, **content}, FIXED, _Given(source)))
+        if content.get("extended") is not None:
+            rule, remedy = "names another file, which is not read here", "give from_config its path alone"
+            raise InputError(Problem("simulator.extended", rule, content["extended"], remedy, source))
+        settings = read_simulator({**HOW, **content}, FIXED, _Given(source))
+        refuse_both(settings, source)
+        return cls.of_settings(settings)
 
     @classmethod
     def of_settings(cls, settings: SimulatorSettings) -> "Model":
-        """The model that the command line was asked for."""
-        return cls.holding(settings.model, settings.given)
+        """The model that the command line was asked for, at its damping ratio where one is asked for."""
+        return cls.holding(settings.model, at_its_ratio(settings))
 
     @classmethod
     def holding(cls, model: physics.Model, values: Mapping[str, float | tuple[float, ...]]) -> "Model":

@@ -4,15 +4,12 @@ from dataclasses import asdict, replace
 from typing import Any
 
 from gear_damping.config.settings import Settings
-from gear_damping.config.simulator import SimulatorSettings
 from gear_damping.identification.test_plan.repeated import Repeated
 from gear_damping.interface import planned
 from gear_damping.interface.model import Model
 from gear_damping.interface.planned_page import goal_precision
 from gear_damping.reporting import figures
 from gear_damping.reporting.numbers import number
-from gear_damping.simulation.prior import coefficients_for
-from gear_damping.simulation.runs import reference_velocity
 from gear_damping.tasks import statements
 from gear_damping.tasks.progress import progress_bar
 from gear_damping.tasks.run_folder import RunFolder
@@ -27,7 +24,7 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     with progress_bar("simulating the tests", settings.progress) as progress:
         solver = replace(settings.simulator.solver, progress=progress)
         kept = {"unknown": asked.unknown, "goal": asked.goal, "solver": solver}
-        found = planned.plan(rig_of(settings.simulator), asked.tests, asked.sensors, **kept)
+        found = planned.plan(Model.of_settings(settings.simulator), asked.tests, asked.sensors, **kept)
     content, sentences = found.content, found.sentences
     if asked.simulated_tests:
         joint, of = asked.goal.joint, found.cheapest or found.best
@@ -44,18 +41,6 @@ def run(settings: Settings, folder: RunFolder) -> dict[str, Any]:
     statements.log(f"wrote plan.txt with every test, plan.json and plan_map.png into {folder.path}")
     best = goal_precision(found.found, found.cheapest or found.best)
     return {"reached": found.cheapest is not None, "percent": best.percent, "cost": (found.cheapest or found.best).cost}
-
-
-def rig_of(simulator: SimulatorSettings) -> Model:
-    """The configured rig, at its damping ratio where one was asked for."""
-    given, ratio = simulator.given, simulator.damping_ratio_percent
-    if ratio is not None:
-        values = simulator.model.values(1, **given)
-        velocity = reference_velocity(simulator.model.prepare(values).derived)
-        share = velocity.new_full((1,), ratio / 100)
-        found = coefficients_for(simulator.model, values, simulator.damping_law, share, velocity)
-        given = given | {name: float(value) for name, value in found.items()}
-    return Model.holding(simulator.model, given)
 
 
 def _said(shown: Repeated) -> str:

@@ -96,3 +96,11 @@ def test_of_a_rig_whose_unit_nobody_knows_none_is_converted(tmp_path):
         oscillator(tmp_path, unknown, "++simulator.initial_displacement=1cm")
     with pytest.raises(InputError, match="unknown unit 'qq'"):
         oscillator(tmp_path, MILLIMETRES | {"unit": "qq"})
+
+
+@pytest.mark.parametrize("unit", [{}, {"unit": "m"}, {"unit": "mm"}])
+def test_a_stiffness_in_newtons_is_that_of_a_mass_which_nobody_stated(unit, tmp_path):
+    """1579 N/m were taken as 1579 1/s^2, which they are of 1 kg alone."""
+    content = {key: value for key, value in MILLIMETRES.items() if key != "unit"} | unit
+    with pytest.raises(InputError, match=r"the unit 'N/m' is not one of the kind of '1/s\^2'"):
+        oscillator(tmp_path, content, "++simulator.stiffness='1579 N/m'")

@@ -29,10 +29,5 @@ class Oscillator(Swinging):
     covered_by_nuisance: ClassVar = frozenset({"sensor_offset", "sensor_gain"})
 
     def unit_of(self, declared: str) -> str:
-        """The unit of what is declared in `declared`: per unit of mass where its displacement is in no metres."""
-        length = self.chosen["unit"]
-        return declared if length == "m" else per_mass(declared, length)
-
-    def told_unit(self, declared: str) -> str:
-        """Per unit of mass, in metres too: its stiffness is in 1/s^2, as it is where one is identified."""
-        return per_mass(declared, self.chosen["unit"]) or declared
+        """The unit of what is declared in `declared`: per unit of mass, in metres too; its stiffness is in 1/s^2."""
+        return per_mass(declared, self.chosen["unit"])
